@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What every target of the project is compiled with, in one INTERFACE target.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug or RelWithDebInfo" FORCE)
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+mark_as_advanced(CCACHE_PROGRAM)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  # With a precompiled header ccache must not compare its time stamps.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
+endif()
+
+add_library(arris_options INTERFACE)
+target_compile_options(arris_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -Wno-restrict       # false alarms on std::string in GCC 12 (bug 105651)
+  -ffp-contract=off   # results do not depend on whether the machine has fused multiply-add
+  -frounding-math)    # CGAL's interval arithmetic changes the rounding mode
+# One thread a matrix: the project parallelises over elements, and results must not depend on the number of threads.
+target_compile_definitions(arris_options INTERFACE EIGEN_DONT_PARALLELIZE)
+if(ARRIS_WERROR)
+  target_compile_options(arris_options INTERFACE -Werror)
+endif()
+if(ARRIS_SANITIZE)
+  target_compile_options(arris_options INTERFACE -fsanitize=${ARRIS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(arris_options INTERFACE -fsanitize=${ARRIS_SANITIZE})
+endif()
+
+# The headers that are slow to parse and in nearly every file.
+function(arris_precompile target)
+  target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> <algorithm> <string>
+                            <vector> <fmt/format.h>)
+endfunction()
