@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/bending.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <optional>
+
+namespace arris {
+
+namespace {
+
+struct Normals {
+    Vec3 c, d;                ///< unit, of faces (a, b, c) and (b, a, d)
+    double length_c, length_d;  ///< of the unnormalised ones: twice the areas
+};
+
+std::optional<Normals> find_normals(const std::array<Vec3, 4>& x)
+{
+    const Vec3 e = x[1] - x[0], to_c = x[2] - x[0], to_d = x[3] - x[0];
+    Normals n;
+    n.c = e.cross(to_c);
+    n.d = to_d.cross(e);
+    n.length_c = n.c.norm();
+    n.length_d = n.d.norm();
+
+    constexpr double kCollapsed = 1e-12;  // of the squared size: the normal's direction is round-off below
+    const double squared_size = e.squaredNorm() + to_c.squaredNorm() + to_d.squaredNorm();
+    if (!(n.length_c > kCollapsed * squared_size && n.length_d > kCollapsed * squared_size)) return std::nullopt;
+    n.c /= n.length_c;
+    n.d /= n.length_d;
+    return n;
+}
+
+}  // namespace
+
+double Bending::energy(const HingeState& hinge) const
+{
+    const std::optional<Normals> n = find_normals(hinge.x);
+    // sin^2(theta/2) = |n_c - n_d|^2 / 4   no cancellation where it is flat
+    return n ? stiffness_ * hinge.element.weight * 0.25 * (n->c - n->d).squaredNorm() : 0.0;
+}
+
+void Bending::add(const HingeState& hinge, HingeSystem& system) const
+{
+    const std::optional<Normals> n = find_normals(hinge.x);
+    if (!n) return;
+
+    // grad theta: across the edge by the altitudes, on the edge by the lever rule.
+    const Vec3 e = hinge.x[1] - hinge.x[0];
+    const double length = e.norm();
+    const double at_c = (hinge.x[2] - hinge.x[0]).dot(e) / (length * length);
+    const double at_d = (hinge.x[3] - hinge.x[0]).dot(e) / (length * length);
+    std::array<Vec3, 4> gradient;
+    gradient[2] = -length / n->length_c * n->c;
+    gradient[3] = -length / n->length_d * n->d;
+    gradient[0] = -(1.0 - at_c) * gradient[2] - (1.0 - at_d) * gradient[3];
+    gradient[1] = -at_c * gradient[2] - at_d * gradient[3];
+
+    // dV/dtheta = K w sin(theta/2) cos(theta/2) = K w sin(theta) / 2;  2 K w (cos(theta/2) / 2)^2 for the stiffness.
+    const double scale = stiffness_ * hinge.element.weight;
+    const double sin_theta = n->c.cross(n->d).dot(e) / length;
+    const double squared_cos_half = 0.25 * (n->c + n->d).squaredNorm();
+    for (int i = 0; i < 4; ++i) {
+        system.add_force(i, -0.5 * scale * sin_theta * gradient[i]);
+        for (int j = 0; j <= i; ++j)
+            system.add_stiffness(i, j, 0.5 * scale * squared_cos_half * gradient[i] * gradient[j].transpose());
+    }
+}
+
+}  // namespace arris

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/cloth_mesh.h"
+#include "geometry/mesh_topology.h"
+
+namespace arris {
+
+/// A triangle's material shape. `gradients` are those of its shape functions, 1/m, so that
+/// F = sum_i x_i gradients[i]^T (3x2).
+struct FaceElement {
+    Face vertices;
+    double area = 0.0;  ///< material, m^2
+    std::array<Vec2, 3> gradients;
+};
+
+/// Two faces (a, b, c), (b, a, d) that share the edge (a, b). `weight` = 3 |e|^2 / A, e the edge and A the area
+/// of both faces, in material space.
+struct HingeElement {
+    std::array<int, 4> vertices;
+    std::array<int, 2> faces;
+    double weight = 0.0;
+};
+
+/// Elements in classes ("colours") that share no vertex: those of one class can be added to a system in parallel
+/// without a race, and the sum a matrix entry receives is the same for any number of threads.
+/// Class k holds order[start[k]] .. order[start[k + 1] - 1].
+struct ElementColors {
+    std::vector<int> order;
+    std::vector<int> start;
+};
+
+/// All that the terms need to know of the mesh besides where it is. Made anew where the mesh changes.
+struct ClothElements {
+    int vertex_count = 0;
+    std::vector<FaceElement> faces;
+    std::vector<HingeElement> hinges;
+    ElementColors face_colors, hinge_colors;
+};
+
+/// Linear in face count. Material orientations must be positive (`validate` checks it).
+ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology);
+
+}  // namespace arris

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/energies.h"
+
+#include "physics/membrane.h"
+
+namespace arris {
+
+namespace {
+
+double& energy_of(Energies& energies, EnergyKind kind)
+{
+    switch (kind) {
+        case EnergyKind::Gravity: return energies.gravity;
+        case EnergyKind::Bending: return energies.bending;
+        default: return energies.stretch;
+    }
+}
+
+}  // namespace
+
+Energies compute_energies(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& position)
+{
+    Energies energies;
+    for (const auto& term : terms.faces) {
+        if (term->energy_kind() == EnergyKind::None) continue;
+        double& sum = energy_of(energies, term->energy_kind());
+        for (const FaceElement& face : elements.faces) sum += term->energy(FaceState(face, position));
+    }
+    for (const auto& term : terms.hinges) {
+        if (term->energy_kind() == EnergyKind::None) continue;
+        double& sum = energy_of(energies, term->energy_kind());
+        for (const HingeElement& hinge : elements.hinges) sum += term->energy(HingeState(hinge, position));
+    }
+    return energies;
+}
+
+FaceReadings compute_face_readings(const ClothElements& elements, const Terms& terms,
+                                   const std::vector<Vec3>& position)
+{
+    FaceReadings readings;
+    readings.strain.reserve(elements.faces.size());
+    readings.stretch_energy.assign(elements.faces.size(), 0.0);
+    readings.bending_energy.assign(elements.faces.size(), 0.0);
+    for (std::size_t f = 0; f < elements.faces.size(); ++f) {
+        const FaceState face(elements.faces[f], position);
+        readings.strain.push_back(principal_stretches(face.F)[0] - 1.0);
+        for (const auto& term : terms.faces)
+            if (term->energy_kind() == EnergyKind::Stretch) readings.stretch_energy[f] += term->energy(face);
+    }
+    for (const HingeElement& hinge : elements.hinges)
+        for (const auto& term : terms.hinges)
+            if (term->energy_kind() == EnergyKind::Bending)
+                for (const int f : hinge.faces)
+                    readings.bending_energy[f] += 0.5 * term->energy(HingeState(hinge, position));
+    return readings;
+}
+
+}  // namespace arris

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "physics/term.h"
+
+namespace arris {
+
+/// Energies of the cloth at one moment, J. Where a kind has no term it is 0.
+struct Energies {
+    double gravity = 0.0, stretch = 0.0, bending = 0.0;
+};
+
+Energies compute_energies(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& position);
+
+/// What a frame stores of each face: greatest principal strain, energies in J (a hinge's bending is halved
+/// between its faces).
+struct FaceReadings {
+    std::vector<double> strain, stretch_energy, bending_energy;
+};
+
+FaceReadings compute_face_readings(const ClothElements& elements, const Terms& terms,
+                                   const std::vector<Vec3>& position);
+
+}  // namespace arris

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/linear_system.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace arris {
+
+namespace {
+
+/// Applies `visit` to each element, colour by colour, elements of one colour in parallel.
+template <typename Visit>
+void for_each_by_color(const ElementColors& colors, const Visit& visit)
+{
+    constexpr int kGrain = 128;  // a few tens of microseconds: far above the cost of a task
+    for (std::size_t k = 0; k + 1 < colors.start.size(); ++k) {
+        const tbb::blocked_range<int> range(colors.start[k], colors.start[k + 1], kGrain);
+        tbb::parallel_for(range, [&](const tbb::blocked_range<int>& part) {
+            for (int i = part.begin(); i < part.end(); ++i) visit(colors.order[i]);
+        });
+    }
+}
+
+/// Reduces to the vertices' coordinates where any corner has its own basis.
+template <int N>
+void reduce(const std::array<int, N>& vertices, const Linearization& at, LocalSystem<N>& local)
+{
+    bool has_basis = false;
+    std::array<const Mat3*, N> corner_matrices;
+    for (int i = 0; i < N; ++i) {
+        has_basis = has_basis || at.has_basis[vertices[i]];
+        corner_matrices[i] = &at.basis[vertices[i]];
+    }
+    if (has_basis) local.reduce(corner_matrices);
+}
+
+}  // namespace
+
+void LinearSystem::make_pattern(const ClothElements& elements)
+{
+    // Neighbours below the diagonal, by column.
+    std::vector<std::vector<int>> below(elements.vertex_count);
+    const auto connect = [&](const auto& vertices) {
+        for (const int i : vertices)
+            for (const int j : vertices)
+                if (i > j) below[j].push_back(i);
+    };
+    for (const FaceElement& face : elements.faces) connect(face.vertices);
+    for (const HingeElement& hinge : elements.hinges) connect(hinge.vertices);
+
+    const int n = elements.vertex_count;
+    column_height_.assign(n, 0);
+    Eigen::VectorXi heights(3 * n);
+    for (int j = 0; j < n; ++j) {
+        std::sort(below[j].begin(), below[j].end());
+        below[j].erase(std::unique(below[j].begin(), below[j].end()), below[j].end());
+        column_height_[j] = 3 * (1 + static_cast<int>(below[j].size()));
+        heights.segment<3>(3 * j).setConstant(column_height_[j]);
+    }
+
+    matrix_.resize(3 * n, 3 * n);
+    matrix_.resizeNonZeros(heights.sum());
+    int* outer = matrix_.outerIndexPtr();
+    int* inner = matrix_.innerIndexPtr();
+    outer[0] = 0;
+    for (int j = 0; j < n; ++j)
+        for (int c = 0; c < 3; ++c) {
+            int entry = outer[3 * j + c];
+            for (int r = 0; r < 3; ++r) inner[entry++] = 3 * j + r;
+            for (const int i : below[j])
+                for (int r = 0; r < 3; ++r) inner[entry++] = 3 * i + r;
+            outer[3 * j + c + 1] = entry;
+        }
+    rhs_.resize(3 * n);
+
+    const auto find_blocks = [&](const auto& vertices, auto& blocks) {
+        int k = 0;
+        for (std::size_t i = 1; i < vertices.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                blocks[k++] = find_block(std::max(vertices[i], vertices[j]), std::min(vertices[i], vertices[j]));
+    };
+    face_blocks_.resize(elements.faces.size());
+    hinge_blocks_.resize(elements.hinges.size());
+    for (std::size_t f = 0; f < elements.faces.size(); ++f) find_blocks(elements.faces[f].vertices, face_blocks_[f]);
+    for (std::size_t h = 0; h < elements.hinges.size(); ++h)
+        find_blocks(elements.hinges[h].vertices, hinge_blocks_[h]);
+}
+
+int LinearSystem::find_block(int row, int column) const
+{
+    const int* begin = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[3 * column];
+    const int* end = begin + column_height_[column];
+    const int* found = std::lower_bound(begin, end, 3 * row);
+    assert(found != end && *found == 3 * row && "every pair of an element is in the pattern");
+    return static_cast<int>(found - matrix_.innerIndexPtr());
+}
+
+template <int N>
+void LinearSystem::scatter(const std::array<int, N>& vertices, const int* blocks, const LocalSystem<N>& local)
+{
+    double* values = matrix_.valuePtr();
+    const auto add = [&](int first, int height, const auto& block) {
+        for (int c = 0; c < 3; ++c)
+            for (int r = 0; r < 3; ++r) values[first + c * height + r] += block(r, c);
+    };
+    int k = 0;
+    for (int i = 0; i < N; ++i) {
+        const int v = vertices[i];
+        rhs_.segment<3>(3 * v) += local.rhs(i);
+        add(matrix_.outerIndexPtr()[3 * v], column_height_[v], local.matrix(i, i));
+        for (int j = 0; j < i; ++j, ++k) {
+            const int w = vertices[j];
+            if (v > w)
+                add(blocks[k], column_height_[w], local.matrix(i, j));
+            else
+                add(blocks[k], column_height_[v], local.matrix(i, j).transpose());
+        }
+    }
+}
+
+void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,
+                            const Linearization& at)
+{
+    matrix_.coeffs().setZero();
+
+    // Loads first: they go to vertices, not to elements.
+    std::vector<Vec3> load(elements.vertex_count, Vec3::Zero());
+    for (const auto& term : terms.loads) term->add(mesh, at, load);
+    for (int v = 0; v < elements.vertex_count; ++v)
+        rhs_.segment<3>(3 * v) = at.basis[v].transpose() * (at.gamma * load[v]);
+
+    for_each_by_color(elements.face_colors, [&](int f) {
+        const FaceElement& face = elements.faces[f];
+        FaceSystem local(at, face.vertices);
+        const FaceState state(face, at.position);
+        for (const auto& term : terms.faces) term->add(state, local);
+        reduce<3>(face.vertices, at, local);
+        scatter<3>(face.vertices, face_blocks_[f].data(), local);
+    });
+    if (terms.hinges.empty()) return;
+    for_each_by_color(elements.hinge_colors, [&](int h) {
+        const HingeElement& hinge = elements.hinges[h];
+        HingeSystem local(at, hinge.vertices);
+        const HingeState state(hinge, at.position);
+        for (const auto& term : terms.hinges) term->add(state, local);
+        reduce<4>(hinge.vertices, at, local);
+        scatter<4>(hinge.vertices, hinge_blocks_[h].data(), local);
+    });
+}
+
+}  // namespace arris

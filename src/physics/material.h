@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+namespace arris {
+
+/// What the cloth is made of. All values are those of a sheet, so areal where a solid's would be volumetric.
+struct Material {
+    double density = 0.0;            ///< areal, kg/m^2
+    double youngs_modulus = 0.0;     ///< membrane, N/m
+    double poisson_ratio = 0.0;
+    double bending_stiffness = 0.0;  ///< K of the hinge energy, J; 0 leaves bending out
+    double damping = 0.0;            ///< s, stiffness-proportional; 0 leaves damping out
+    double thickness = 1e-3;         ///< m, the distance kept between the cloth's surface and obstacles
+};
+
+struct MaterialPreset {
+    std::string_view name;
+    Material material;
+    std::string_view source;  ///< where the values are from, one sentence
+};
+
+/// cotton, silk, wool, denim, leather, rubber.
+extern const std::array<MaterialPreset, 6> kMaterialPresets;
+
+/// Empty where no preset has that name.
+std::optional<Material> find_material_preset(std::string_view name);
+
+}  // namespace arris

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "physics/term.h"
+
+namespace arris {
+
+/// A force spread over a material box while it acts. The same in every step, so it has no stiffness.
+class PullForce : public LoadTerm {
+  public:
+    explicit PullForce(const Pull& pull) : pull_(pull) {}
+    void add(const ClothMesh& mesh, const Linearization& at, std::vector<Vec3>& force) const override;
+
+  private:
+    Pull pull_;
+};
+
+}  // namespace arris

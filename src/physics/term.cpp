@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/term.h"
+
+#include "physics/bending.h"
+#include "physics/gravity_force.h"
+#include "physics/inertia.h"
+#include "physics/membrane.h"
+#include "physics/pull_force.h"
+#include "physics/wind_force.h"
+
+namespace arris {
+
+template <int N>
+LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& vertices)
+    : time_(at.time), gamma_(at.gamma), stiffness_weight_(at.gamma * at.gamma + at.gamma * at.damping)
+{
+    for (int i = 0; i < N; ++i) {
+        const int v = vertices[i];
+        const Vec3& drift = at.drift[v];
+        v_last_[i] = at.v_last[v];
+        mass_rhs_[i] = at.v_predicted[v] - drift;
+        stiffness_rhs_[i] = gamma_ * gamma_ * (at.v_expansion[v] - drift) - gamma_ * at.damping * drift;
+        viscosity_rhs_[i] = gamma_ * (at.v_last[v] - drift);
+        rhs_[i].setZero();
+    }
+    for (Mat3& block : matrix_) block.setZero();
+}
+
+template <int N>
+void LocalSystem<N>::add_force(int i, const Vec3& force)
+{
+    rhs_[i] += gamma_ * force;
+}
+
+template <int N>
+void LocalSystem<N>::add_mass(int i, int j, double mass)
+{
+    matrix_[i * (i + 1) / 2 + j].diagonal().array() += mass;
+    rhs_[i] += mass * mass_rhs_[j];
+    if (i != j) rhs_[j] += mass * mass_rhs_[i];
+}
+
+template <int N>
+void LocalSystem<N>::add_block(int i, int j, double weight, const Mat3& block, const std::array<Vec3, N>& times)
+{
+    matrix_[i * (i + 1) / 2 + j] += weight * block;
+    rhs_[i] += block * times[j];
+    if (i != j) rhs_[j] += block.transpose() * times[i];
+}
+
+template <int N>
+void LocalSystem<N>::add_stiffness(int i, int j, const Mat3& minus_df_dx)
+{
+    add_block(i, j, stiffness_weight_, minus_df_dx, stiffness_rhs_);
+}
+
+template <int N>
+void LocalSystem<N>::add_viscosity(int i, int j, const Mat3& minus_df_dv)
+{
+    add_block(i, j, gamma_, minus_df_dv, viscosity_rhs_);
+}
+
+template <int N>
+void LocalSystem<N>::reduce(const std::array<const Mat3*, N>& corner_matrices)
+{
+    for (int i = 0; i < N; ++i) {
+        const Mat3 G_i_transposed = corner_matrices[i]->transpose();
+        rhs_[i] = (G_i_transposed * rhs_[i]).eval();
+        for (int j = 0; j <= i; ++j) {
+            Mat3& block = matrix_[i * (i + 1) / 2 + j];
+            block = (G_i_transposed * block * *corner_matrices[j]).eval();
+        }
+    }
+}
+
+template class LocalSystem<3>;
+template class LocalSystem<4>;
+
+FaceState::FaceState(const FaceElement& face, const std::vector<Vec3>& position) : element(face)
+{
+    F.setZero();
+    for (int i = 0; i < 3; ++i) {
+        x[i] = position[face.vertices[i]];
+        // F from edges, not from positions: no cancellation far from the origin.
+        if (i > 0) F += (x[i] - x[0]) * face.gradients[i].transpose();
+    }
+}
+
+HingeState::HingeState(const HingeElement& hinge, const std::vector<Vec3>& position) : element(hinge)
+{
+    for (int i = 0; i < 4; ++i) x[i] = position[hinge.vertices[i]];
+}
+
+Terms make_terms(const Material& material, const std::optional<Gravity>& gravity,
+                 const std::optional<Wind>& wind, const std::vector<Pull>& pulls)
+{
+    Terms terms;
+    terms.faces.push_back(std::make_unique<Inertia>(material.density));
+    terms.faces.push_back(std::make_unique<Membrane>(material.youngs_modulus, material.poisson_ratio));
+    if (material.bending_stiffness > 0.0)
+        terms.hinges.push_back(std::make_unique<Bending>(material.bending_stiffness));
+    if (gravity) terms.faces.push_back(std::make_unique<GravityForce>(material.density, *gravity));
+    if (wind) terms.faces.push_back(std::make_unique<WindForce>(*wind));
+    for (const Pull& pull : pulls) terms.loads.push_back(std::make_unique<PullForce>(pull));
+    return terms;
+}
+
+}  // namespace arris
