@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/export_frames.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/export_obj.h"
+#include "app/export_usd.h"
+#include "app/frame.h"
+#include "app/frame_files.h"
+#include "app/viewer_html.h"
+#include "geometry/input_error.h"
+
+namespace arris {
+namespace {
+
+void export_obj(const std::string& run_dir, std::int64_t frame_count, const ExportOptions&)
+{
+    for (std::int64_t i = 0; i < frame_count; ++i)
+        write_obj(frame_file(run_dir, i, "obj"), read_frame(frame_file(run_dir, i, "ply")));
+}
+
+void export_usd(const std::string& run_dir, std::int64_t frame_count, const ExportOptions& options)
+{
+    std::vector<std::string> paths;
+    for (std::int64_t i = 0; i < frame_count; ++i) paths.push_back(frame_file(run_dir, i, "ply"));
+    write_usd(run_dir + "/cloth.usda", paths, {options.title, options.frames_per_second});
+}
+
+void export_viewer(const std::string& run_dir, std::int64_t, const ExportOptions& options)
+{
+    ViewerOptions viewer;
+    viewer.title = options.title;
+    viewer.frames_per_second = options.frames_per_second;
+    write_viewer(run_dir, viewer);
+}
+
+/// A format's name and what makes it; one that is planned has no function yet.
+struct Format {
+    const char* name;
+    void (*make)(const std::string& run_dir, std::int64_t frame_count, const ExportOptions&);
+};
+
+constexpr Format kFormats[] = {
+    {"obj", export_obj}, {"usd", export_usd}, {"viewer", export_viewer},
+    {"vtk", nullptr},    {"gltf", nullptr},   {"pc2", nullptr},
+};
+
+const Format& find_format(const std::string& name)
+{
+    std::vector<std::string> built;
+    for (const Format& format : kFormats) {
+        if (name == format.name && format.make == nullptr)
+            throw InputError(fmt::format("formats: \"{}\" is not built yet", name));
+        if (name == format.name) return format;
+        if (format.make != nullptr) built.push_back(format.name);
+    }
+    throw InputError(fmt::format("formats: \"{}\" is not one of: {}", name, fmt::join(built, ", ")));
+}
+
+nlohmann::ordered_json read_report(const std::string& path)
+{
+    std::ifstream in(path);
+    if (!in) throw InputError(path + ": not found: this directory holds no run that came to an end");
+    nlohmann::ordered_json report = nlohmann::ordered_json::parse(in, nullptr, /*allow_exceptions=*/false);
+    if (!report.is_object() || !report.contains("scene") || !report["scene"].is_object())
+        throw InputError(path + ": not a run's report: it has no scene");
+    return report;
+}
+
+}  // namespace
+
+ExportOptions read_export_options(const std::string& run_dir)
+{
+    const std::string path = run_dir + "/report.json";
+    const nlohmann::ordered_json report = read_report(path);
+    const nlohmann::ordered_json& scene = report["scene"];
+
+    ExportOptions options;
+    if (scene.contains("title") && scene["title"].is_string()) options.title = scene["title"];
+    const auto rate = nlohmann::ordered_json::json_pointer("/output/frames_per_second");
+    if (!scene.contains(rate) || !scene[rate].is_number())
+        throw InputError(path + ": scene.output.frames_per_second is not there or not a number");
+    options.frames_per_second = scene[rate];
+    if (!(options.frames_per_second > 0.0) || !std::isfinite(options.frames_per_second))
+        throw InputError(fmt::format("{}: scene.output.frames_per_second is {}: the run wrote no frames",
+                                     path, options.frames_per_second));
+    return options;
+}
+
+void require_known_formats(const std::vector<std::string>& formats)
+{
+    for (const std::string& name : formats) find_format(name);
+}
+
+void export_frames(const std::string& run_dir, const std::vector<std::string>& formats,
+                   const ExportOptions& options)
+{
+    require_known_formats(formats);
+    const std::int64_t frame_count = count_frames(run_dir);
+    if (frame_count == 0) throw InputError(frames_directory(run_dir) + ": no frames (cloth_00000.ply, ...)");
+    for (const std::string& name : formats) find_format(name).make(run_dir, frame_count, options);
+}
+
+}  // namespace arris

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace arris {
+
+/// What the formats made from frames need to know about their run.
+struct ExportOptions {
+    std::string title;
+    double frames_per_second = 24.0;  ///< > 0
+};
+
+/// Read from run_dir/report.json. InputError naming the file if run_dir holds no finished or stopped run, the
+/// report is not one, or the run was asked for no frames.
+ExportOptions read_export_options(const std::string& run_dir);
+
+/// InputError, naming the format and what is allowed, unless every one can be made by export_frames.
+void require_known_formats(const std::vector<std::string>& formats);
+
+/// Makes "obj", "usd", "viewer" from the frames in run_dir/frames, each whole or absent. InputError for an
+/// unknown format, a run without frames or a bad frame file; std::system_error where the disk refuses.
+void export_frames(const std::string& run_dir, const std::vector<std::string>& formats,
+                   const ExportOptions& options);
+
+}  // namespace arris

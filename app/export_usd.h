@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace arris {
+
+/// What a USD stage says about itself.
+struct UsdOptions {
+    std::string title;                ///< any text; it becomes the stage's documentation
+    double frames_per_second = 24.0;  ///< > 0
+};
+
+/// All frames as one text USD stage: z up, metres, time code i for frame_paths[i]; one Mesh /cloth with
+/// points, velocities and extent at every time code, primvars:st likewise if material coordinates ever
+/// change, and faces at the time codes where they change. Numbers read back to the same double. At most two
+/// frames are held in memory: the frame files are read once for each attribute. Whole or absent. Throws
+/// InputError for a bad frame file, std::system_error where the disk refuses.
+void write_usd(const std::string& path, const std::vector<std::string>& frame_paths,
+               const UsdOptions& options);
+
+}  // namespace arris

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/report_html.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "app/atomic_file.h"
+#include "app/html_escape.h"
+#include "app/report_plots.h"
+#include "app/svg_plot.h"
+#include "embedded/report_template.h"
+
+namespace arris {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMaxProbePlots = 24;
+constexpr std::size_t kMaxSceneValue = 400;  // characters shown of one key's value
+
+// Replaces each {{name}} by its HTML, in one pass: what is put in is not searched again.
+std::string fill_template(std::string_view page, const std::map<std::string_view, std::string>& parts)
+{
+    std::string filled;
+    for (;;) {
+        const std::size_t open = page.find("{{");
+        filled += page.substr(0, open);
+        if (open == std::string_view::npos) return filled;
+        const std::size_t close = page.find("}}", open);
+        assert(close != std::string_view::npos && "report_template.html has an unclosed {{");
+        const auto part = parts.find(page.substr(open + 2, close - open - 2));
+        assert(part != parts.end() && "report_template.html names a part that is not made");
+        filled += part->second;
+        page.remove_prefix(close + 2);
+    }
+}
+
+std::string format_seconds(double seconds)
+{
+    if (seconds < 1.0) return fmt::format("{:.3g} ms", 1e3 * seconds);
+    if (seconds < 120.0) return fmt::format("{:.3g} s", seconds);
+    const double whole = std::floor(seconds);
+    const double hours = std::floor(whole / 3600.0), minutes = std::floor((whole - 3600.0 * hours) / 60.0);
+    if (hours < 1.0) return fmt::format("{} min {} s", minutes, whole - 60.0 * minutes);
+    return fmt::format("{} h {} min", hours, minutes);
+}
+
+std::string format_bytes(std::int64_t bytes)
+{
+    const double mebibytes = static_cast<double>(bytes) / (1024.0 * 1024.0);
+    return mebibytes < 1024.0 ? fmt::format("{:.1f} MiB", mebibytes)
+                              : fmt::format("{:.2f} GiB", mebibytes / 1024.0);
+}
+
+std::string status_words(RunStatus status)
+{
+    std::string words = to_string(status);
+    std::replace(words.begin(), words.end(), '_', ' ');
+    return words;
+}
+
+std::string status_html(const RunReport& report)
+{
+    const char* tone = report.status == RunStatus::Finished      ? "good"
+                       : report.status == RunStatus::Interrupted ? "warn"
+                                                                 : "bad";
+    std::string html = fmt::format("<span class=\"status {}\">{}</span>", tone, status_words(report.status));
+    if (!report.message.empty())
+        html += " <span class=\"message\">" + escape_html(report.message) + "</span>";
+    return html;
+}
+
+std::string fact(std::string_view name, std::string_view value, std::string_view note = "",
+                 bool is_bad = false)
+{
+    std::string html =
+        fmt::format("<div class=\"fact{}\"><dt>{}</dt><dd>{}", is_bad ? " bad" : "", name, value);
+    if (!note.empty()) html += fmt::format("<small>{}</small>", note);
+    return html + "</dd></div>\n";
+}
+
+std::string facts_html(const RunReport& report, std::optional<double> tolerance)
+{
+    const StepTotals& totals = report.totals;
+    const std::string halved =
+        totals.halved_steps > 0 ? fmt::format("{} of them halved", totals.halved_steps) : "";
+    const std::string a_step =
+        totals.steps > 0 ? format_seconds(totals.wall_seconds / static_cast<double>(totals.steps)) + " a step"
+                         : "";
+    const std::string allowed = tolerance ? fmt::format("{:.3g} allowed", *tolerance) : "";
+    return fact("Simulated", fmt::format("{:.6g} s", totals.simulated_seconds)) +
+           fact("Steps", fmt::format("{}", totals.steps), halved) +
+           fact("Wall time", format_seconds(totals.wall_seconds), a_step) +
+           fact("CPU time", format_seconds(totals.cpu_seconds),
+                fmt::format("{} thread{}", report.threads, report.threads == 1 ? "" : "s")) +
+           fact("Peak memory", format_bytes(report.peak_memory_bytes)) +
+           fact("Greatest penetration", fmt::format("{:.3g} m", totals.max_penetration), "",
+                totals.max_penetration > 0) +
+           fact("Crossings", fmt::format("{}", totals.crossings), "", totals.crossings > 0) +
+           fact("Greatest KKT residual", fmt::format("{:.2e}", totals.max_kkt_residual), allowed,
+                tolerance && !(totals.max_kkt_residual <= *tolerance));
+}
+
+std::string effects_html(const RunReport& report)
+{
+    if (report.effects.empty()) return "<p class=\"nothing\">none</p>";
+    std::string html = "<ul class=\"chips\">";
+    for (const std::string& effect : report.effects) html += "<li>" + escape_html(effect) + "</li>";
+    return html + "</ul>";
+}
+
+std::string warnings_html(const RunReport& report)
+{
+    if (report.warnings.empty()) return "";
+    std::string html = "<section class=\"warnings\"><h2>Warnings</h2><ul>";
+    for (const std::string& warning : report.warnings) html += "<li>" + escape_html(warning) + "</li>";
+    return html + "</ul></section>";
+}
+
+std::string phases_html(const StepTotals& totals)
+{
+    std::string html;
+    std::size_t colour = 0;
+    for (const NamedSeconds& phase : list_phases(totals.phases)) {
+        const double share = totals.wall_seconds > 0.0 ? 100.0 * phase.seconds / totals.wall_seconds : 0.0;
+        html += fmt::format(
+            "<tr><th scope=\"row\">{}</th><td class=\"bar\"><span class=\"fill c{}\" "
+            "style=\"width:{:.1f}%\"></span></td>"
+            "<td>{}</td><td>{:.1f} %</td></tr>\n",
+            phase.name, colour++, share, format_seconds(phase.seconds), share);
+    }
+    return html;
+}
+
+std::string plots_html(const std::vector<Plot>& plots)
+{
+    std::string html;
+    for (const Plot& plot : plots) html += draw_plot(plot);
+    return html;
+}
+
+std::string probes_html(const std::string& probes_csv)
+{
+    if (!std::filesystem::exists(probes_csv)) return "";
+    const ProbePlots probes = plot_probes(probes_csv, kMaxProbePlots);
+    if (probes.plots.empty()) return "";
+    std::string html = "<section><h2>Probes</h2><div class=\"plots\">" + plots_html(probes.plots) + "</div>";
+    if (probes.left_out > 0) html += fmt::format("<p>{} more probes are in probes.csv.</p>", probes.left_out);
+    return html + "</section>";
+}
+
+std::string scene_value(const ordered_json& value)
+{
+    std::string text = value.is_string() ? value.get<std::string>()
+                                         : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+    if (text.size() <= kMaxSceneValue) return escape_html(text);
+    // Not inside a character of several bytes.
+    std::size_t end = kMaxSceneValue;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+    return escape_html(text.substr(0, end)) +
+           fmt::format(" … <i>({} characters; whole in report.json)</i>", text.size());
+}
+
+// Tables and arrays of tables row by row, under dotted keys as --set takes them. Scenes nest a few levels
+// deep.
+void append_scene_rows(const std::string& key, const ordered_json& value, std::string& html)
+{
+    const bool is_tables = value.is_array() && !value.empty() && value.front().is_object();
+    if (!value.is_object() && !is_tables) {
+        html +=
+            "<tr><th scope=\"row\">" + escape_html(key) + "</th><td>" + scene_value(value) + "</td></tr>\n";
+        return;
+    }
+    const std::string prefix = key.empty() ? "" : key + ".";
+    std::size_t index = 0;
+    for (const auto& [name, child] : value.items())
+        append_scene_rows(prefix + (is_tables ? std::to_string(index++) : name), child, html);
+}
+
+std::string scene_html(const ordered_json& scene)
+{
+    std::string html;
+    append_scene_rows("", scene, html);
+    return html;
+}
+
+std::string title_of(const RunReport& report)
+{
+    const auto title = report.scene.find("title");
+    const bool has_title =
+        title != report.scene.end() && title->is_string() && !title->get<std::string>().empty();
+    return has_title ? title->get<std::string>() : "Untitled scene";
+}
+
+std::optional<double> tolerance_of(const RunReport& report)
+{
+    const ordered_json::json_pointer key("/solver/tolerance");
+    if (!report.scene.contains(key) || !report.scene[key].is_number()) return std::nullopt;
+    return report.scene[key].get<double>();
+}
+
+}  // namespace
+
+void write_report_html(const std::string& run_dir, const RunReport& report)
+{
+    const std::optional<double> tolerance = tolerance_of(report);
+    const std::string page = fill_template(
+        embedded::report_template(), {{"title", escape_html(title_of(report))},
+                                      {"status", status_html(report)},
+                                      {"facts", facts_html(report, tolerance)},
+                                      {"effects", effects_html(report)},
+                                      {"warnings", warnings_html(report)},
+                                      {"phases", phases_html(report.totals)},
+                                      {"plots", plots_html(plot_steps(run_dir + "/steps.csv", tolerance))},
+                                      {"probes", probes_html(run_dir + "/probes.csv")},
+                                      {"scene", scene_html(report.scene)},
+                                      {"version", escape_html(report.version)}});
+    write_atomically(run_dir + "/report.html", page);
+}
+
+}  // namespace arris

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include "app/check.h"
+#include "app/export_frames.h"
+#include "app/interrupt.h"
+#include "app/printable.h"
+#include "app/progress.h"
+#include "app/report_html.h"
+#include "app/run_config.h"
+#include "app/run_directory.h"
+#include "app/state_readings.h"
+#include "app/timeline.h"
+#include "app/version.h"
+#include "geometry/input_error.h"
+#include "geometry/mesh_quality.h"
+#include "physics/inertia.h"
+#include "solver/step.h"
+#include "solver/stopwatch.h"
+
+namespace arris {
+
+namespace {
+
+/// How a run ended.
+struct Ending {
+    RunStatus status = RunStatus::Finished;
+    std::string message;
+};
+
+/// A run under way: what the loop below works on.
+struct Run {
+    const RunConfig& config;
+    const Timeline timeline;
+    RunDirectory files;
+    Checkpoint at;  ///< as it would be written now
+    Workspace work;
+    double cpu_told = process_cpu_seconds();
+
+    Run(const RunConfig& config_, RunDirectory files_, Checkpoint at_)
+        : config(config_), timeline(config_), files(std::move(files_)), at(std::move(at_))
+    {
+        prepare(config.scene, at.state, work);
+    }
+};
+
+StepRow make_row(const Run& run, const StepReport& report)
+{
+    const State& state = run.at.state;
+    const Scene& scene = run.config.scene;
+    const Energies energies = compute_energies(run.work.elements, run.work.terms, state.mesh.world);
+    StepRow row;
+    row.step = state.step;
+    row.time = state.time;
+    row.dt = report.dt;
+    row.vertices = state.mesh.vertex_count();
+    row.faces = state.mesh.face_count();
+    row.contacts = report.contacts;
+    row.kinetic_energy = kinetic_energy(scene.material.density, run.work.elements, state.velocity);
+    if (scene.gravity) row.gravity_energy = energies.gravity;
+    row.stretch_energy = energies.stretch;
+    if (scene.material.bending_stiffness > 0.0) row.bending_energy = energies.bending;
+    row.material_area = material_area(state.mesh);
+    row.min_angle = least_material_angle(state.mesh);
+    row.kkt_residual = report.kkt_residual;
+    row.factorisations = report.factorisations;
+    row.nlopt_evaluations = report.nlopt_evaluations;
+    row.seconds = report.seconds;
+    return row;
+}
+
+/// Frame, probes and row of the state as it is. The row comes last: where it is there, all of its step is.
+void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is_halved)
+{
+    const State& state = run.at.state;
+    StepRow row = make_row(run, report);
+    row.is_halved = is_halved;
+    if (const std::int64_t index = run.timeline.frame_at(state.time); index >= 0) {
+        run.files.write_frame(index, make_frame(state, run.work.elements, run.work.terms));
+        run.at.frames = index + 1;
+    }
+    run.files.append_probes(state.time, sample_probes(run.config.probes, state));
+    row.seconds.output += watch.lap();
+    const double cpu = process_cpu_seconds();
+    row.cpu_seconds = cpu - run.cpu_told;
+    run.cpu_told = cpu;
+    run.files.append_step(row);
+    ++run.at.rows;
+}
+
+Ending explain(const StepReport& report, double tolerance, const State& state)
+{
+    const std::string place = fmt::format("in the step after t = {} s (step {})", state.time, state.step);
+    switch (report.status) {
+        case StepStatus::NotFinite:
+            return {RunStatus::NotFinite, fmt::format("a number that is not finite {}, also with 64 times smaller steps", place)};
+        case StepStatus::Infeasible:
+            return {RunStatus::Infeasible, fmt::format("no velocity meets the constraints {}", place)};
+        default:
+            return {RunStatus::NotConverged,
+                    fmt::format("the velocity solve reached a residual of {:.1e} where {:.1e} is asked {}, also with 64 "
+                                "times smaller steps", report.kkt_residual, tolerance, place)};
+    }
+}
+
+/// One planned step, to its end; where it fails, the rest of it in twice as many equal parts, at most six times.
+std::optional<Ending> advance(Run& run)
+{
+    constexpr int kMostParts = 64;
+    State& state = run.at.state;
+    const double end = run.timeline.next_end(run.at.position);
+    if (run.timeline.jumps_at(state.time)) restart(state);
+    int parts = 1;  // of what is left
+    bool is_halved = false;
+    for (int shrink = 1; state.time < end;) {
+        Stopwatch watch;
+        const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
+        const StepReport report = step(run.config.scene, run.config.settings, part_end, state, run.work);
+        if (report.status != StepStatus::Done) {
+            if (shrink == kMostParts) return explain(report, run.config.settings.tolerance, state);
+            shrink *= 2;
+            parts *= 2;
+            is_halved = true;
+            continue;
+        }
+        watch.lap();
+        parts = std::max(parts - 1, 1);
+        write_outputs(run, report, watch, is_halved);
+    }
+    run.at.position = run.timeline.advance(run.at.position);
+    return std::nullopt;
+}
+
+/// Steps until the end, an interrupt or a step that cannot be made. A checkpoint at each frame, every two seconds of
+/// work and at the end.
+Ending simulate(Run& run, bool is_quiet)
+{
+    Progress progress(run.at.state.time, run.config.duration, is_quiet);
+    Ending ending;
+    constexpr double kCheckpointSeconds = 2.0;
+    Stopwatch watch;
+    double unsaved = 0.0;
+    while (!run.timeline.is_over(run.at.position)) {
+        if (is_interrupted()) {
+            ending = {RunStatus::Interrupted, fmt::format("interrupted at t = {} s", run.at.state.time)};
+            break;
+        }
+        if (const std::optional<Ending> failed = advance(run)) {
+            ending = *failed;
+            break;
+        }
+        unsaved += watch.lap();
+        if (unsaved > kCheckpointSeconds || run.timeline.frame_at(run.at.state.time) >= 0) {
+            run.files.write_checkpoint(run.at);
+            unsaved = 0.0;
+        }
+        progress.update(run.at.state.time, fmt::format("{} vertices", run.at.state.mesh.vertex_count()));
+    }
+    progress.finish();
+    run.files.write_checkpoint(run.at);
+    return ending;
+}
+
+RunReport make_report(const Run& run, const Ending& ending, int threads)
+{
+    RunReport report;
+    report.status = ending.status;
+    report.message = ending.message;
+    report.totals = sum_steps(steps_file(run.files.path()));
+    report.peak_memory_bytes = peak_memory_bytes();
+    for (const SceneEffect& effect : list_effects(run.config))
+        if (effect.is_on) report.effects.push_back(effect.name);
+    report.warnings = run.config.warnings;
+    report.scene = run.config.as_run;
+    report.version = kVersion;
+    report.threads = threads;
+    return report;
+}
+
+/// What is made once, when the steps are over: formats of the frames, reports. A disk that refuses is told in the
+/// report where that can still be written.
+Ending write_results(const Run& run, Ending ending, int threads)
+{
+    const std::string& dir = run.files.path();
+    try {
+        if (run.at.frames > 0 && !run.config.output.formats.empty())
+            export_frames(dir, run.config.output.formats, {run.config.title, run.config.output.frames_per_second});
+    } catch (const std::runtime_error& error) {  // the disk, or frames that a format cannot hold
+        ending = {RunStatus::IoError, error.what()};
+    }
+    const RunReport report = make_report(run, ending, threads);
+    write_report_json((std::filesystem::path(dir) / "report.json").string(), report);
+    write_report_html(dir, report);
+    return ending;
+}
+
+void tell_ending(const Run& run, const Ending& ending, bool is_quiet)
+{
+    const std::string dir = printable(run.files.path());
+    if (ending.status != RunStatus::Finished)
+        fmt::print(stderr, "arris: {}: {}\n", to_string(ending.status), printable(ending.message));
+    if (is_quiet) return;
+    if (run.at.frames > 0) fmt::print("frames  {}/frames ({})\n", dir, run.at.frames);
+    if (std::filesystem::exists(std::filesystem::path(run.files.path()) / "viewer.html"))
+        fmt::print("viewer  {}/viewer.html\n", dir);
+    fmt::print("report  {}/report.html\n", dir);
+    if (ending.status == RunStatus::Interrupted) fmt::print("go on   arris resume {}\n", dir);
+}
+
+/// From here on a run's end is told by its files, whatever it is.
+RunStatus run_to_the_end(Run& run, bool is_quiet, int threads)
+{
+    watch_for_interrupt();
+    Ending ending;
+    try {
+        ending = simulate(run, is_quiet);
+    } catch (const std::system_error& error) {
+        ending = {RunStatus::IoError, error.what()};
+    }
+    ending = write_results(run, ending, threads);
+    tell_ending(run, ending, is_quiet);
+    return ending.status;
+}
+
+std::string default_directory(const std::string& scene)
+{
+    return (std::filesystem::path("out") / std::filesystem::path(scene).stem()).string();
+}
+
+void tell_warnings(const RunConfig& config)
+{
+    for (const std::string& warning : config.warnings) fmt::print(stderr, "warning: {}\n", printable(warning));
+}
+
+/// Another duration: what is left is planned anew from where the run stands.
+void set_end(double until, Checkpoint& checkpoint)
+{
+    if (!(until > checkpoint.state.time) || !std::isfinite(until))
+        throw InputError(fmt::format("--until {}: the run has come to t = {} s; allowed: later times", until,
+                                     checkpoint.state.time));
+    checkpoint.source.overrides.push_back(fmt::format("duration={}", until));
+    checkpoint.position = {checkpoint.state.time, 0};
+}
+
+int thread_count(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
+
+}  // namespace
+
+RunStatus run(const RunRequest& request)
+{
+    const int threads = thread_count(request.threads);
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    Stopwatch watch;
+    Checkpoint start;
+    start.source = read_scene_source(request.scene, request.overrides);
+    const RunConfig config = load_scene(start.source);
+    start.source.path = std::filesystem::absolute(start.source.path).string();  // resume may be called from elsewhere
+    tell_warnings(config);
+    const std::string directory = request.directory.empty() ? default_directory(request.scene) : request.directory;
+    RunDirectory files = RunDirectory::create(directory, request.is_overwriting, config);
+
+    start.state = make_state(config.scene, config.cloth, config.cloth_velocity);
+    Run run(config, std::move(files), std::move(start));
+    StepReport initial;
+    initial.seconds.advance = watch.lap();  // loading
+    write_outputs(run, initial, watch, false);
+    run.files.write_checkpoint(run.at);
+    return run_to_the_end(run, request.is_quiet, threads);
+}
+
+RunStatus resume(const ResumeRequest& request)
+{
+    const int threads = thread_count(request.threads);
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    Checkpoint checkpoint = read_checkpoint(checkpoint_file(request.directory));
+    if (request.until) set_end(*request.until, checkpoint);
+    const RunConfig config = load_scene(checkpoint.source);
+    tell_warnings(config);
+    RunDirectory files = RunDirectory::reopen(request.directory, checkpoint, config);
+    Run run(config, std::move(files), std::move(checkpoint));
+    return run_to_the_end(run, request.is_quiet, threads);
+}
+
+}  // namespace arris

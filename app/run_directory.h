@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/checkpoint.h"
+#include "app/csv_table.h"
+#include "app/frame.h"
+#include "app/run_config.h"
+
+namespace arris {
+
+/// The files of a run while it runs: CSVs, frames and the checkpoint.
+class RunDirectory {
+  public:
+    /// Makes `path` for a new run. InputError where it holds a run already, unless `is_overwriting`; then what the
+    /// earlier run left is removed, and nothing else.
+    static RunDirectory create(const std::string& path, bool is_overwriting, const RunConfig& config);
+
+    /// Cuts the files of an earlier run back to its checkpoint.
+    static RunDirectory reopen(const std::string& path, const Checkpoint& checkpoint, const RunConfig& config);
+
+    const std::string& path() const { return path_; }
+
+    void append_step(const StepRow& row) { steps_.append(format_row(row)); }
+    void append_probes(double time, const std::vector<ProbeSample>& samples) { probes_.append(format_row(time, samples)); }
+    void write_frame(std::int64_t index, const Frame& frame);
+    void write_checkpoint(const Checkpoint& checkpoint);
+
+  private:
+    RunDirectory(std::string path, CsvWriter steps, CsvWriter probes);
+
+    std::string path_;
+    CsvWriter steps_, probes_;
+};
+
+/// <run_dir>/checkpoint, <run_dir>/steps.csv, <run_dir>/probes.csv
+std::string checkpoint_file(const std::string& run_dir);
+std::string steps_file(const std::string& run_dir);
+std::string probes_file(const std::string& run_dir);
+
+}  // namespace arris

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/cloth_grid.h"
+
+namespace arris {
+
+/// The size of a run before anything of it exists; doubles, so that absurd requests have an estimate too.
+struct SceneEstimate {
+    double vertices = 0.0;
+    double faces = 0.0;
+    double steps = 0.0;
+    double frames = 0.0;
+    double memory_bytes = 0.0;
+    double disk_bytes = 0.0;
+};
+
+// What a run may ask for.
+inline constexpr double kMaxVertices = 5e6;
+inline constexpr double kMaxSteps = 1e8;
+inline constexpr double kMaxFrames = 1e6;
+
+/// Vertices and faces of a grid: exact for the regular patterns unturned and without folds, else within some
+/// 20 %.
+void estimate_grid(const ClothGrid& grid, SceneEstimate& estimate);
+
+/// Frames from time 0 to `duration` (s), both included where a frame falls on them.
+double count_frames(double duration, double frames_per_second);
+
+/// Steps when each interval between frames, `jumps` (s, ascending) and the end is divided into
+/// ceil(interval / step - 1e-9) equal steps. Linear in frames and jumps: count the frames first.
+double count_steps(double duration, double step, double frames_per_second, const std::vector<double>& jumps);
+
+/// Fills `memory_bytes` and `disk_bytes` from the counts, for the given output formats.
+void estimate_bytes(const std::vector<std::string>& formats, SceneEstimate& estimate);
+
+/// What a run asks too much of, and how much there is, in words.
+struct Excess {
+    std::string wrong, allowed;
+};
+
+/// Empty where the expected memory fits into `available` bytes.
+std::optional<Excess> find_memory_excess(const SceneEstimate& estimate, double available);
+
+/// Physical memory of this machine; infinity where the system does not tell.
+double machine_memory_bytes();
+
+/// "1.5 GB".
+std::string human_bytes(double bytes);
+
+}  // namespace arris

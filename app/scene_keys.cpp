@@ -1,0 +1,502 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace arris {
+namespace {
+
+// Bounds no cloth comes near; they keep every product of two values finite.
+constexpr KeyRange kAnyNumber{-1e6, 1e6};
+constexpr KeyRange kPositive{0.0, 1e6, true};
+constexpr KeyRange kNotNegative{0.0, 1e6};
+constexpr KeyRange kSize{1e-6, 1e4};
+constexpr KeyRange kAngle{-360.0, 360.0};
+constexpr KeyRange kTitle{0.0, 200.0};
+constexpr KeyRange kPath{1.0, 4096.0};
+
+constexpr std::string_view kUnits = "m|cm|mm|in";
+constexpr std::string_view kAxes = "x|y|z";
+constexpr std::string_view kOrigin = "[0.0, 0.0, 0.0]";
+constexpr std::string_view kIdentity = R"({"axis": [0.0, 0.0, 1.0], "degrees": 0.0})";
+constexpr std::string_view kNever = "null";
+
+SceneKey table(std::string_view name, std::string_view fallback, std::string_view sentence)
+{
+    return {.name = name, .type = KeyType::Table, .fallback = fallback, .sentence = sentence};
+}
+
+SceneKey tables(std::string_view name, std::string_view sentence)
+{
+    return {.name = name, .type = KeyType::Tables, .sentence = sentence};
+}
+
+SceneKey number(std::string_view name, std::string_view unit, KeyRange range, std::string_view fallback,
+                std::string_view sentence)
+{
+    return {.name = name,
+            .type = KeyType::Number,
+            .unit = unit,
+            .range = range,
+            .fallback = fallback,
+            .sentence = sentence};
+}
+
+SceneKey integer(std::string_view name, KeyRange range, std::string_view fallback, std::string_view sentence)
+{
+    return {
+        .name = name, .type = KeyType::Integer, .range = range, .fallback = fallback, .sentence = sentence};
+}
+
+SceneKey numbers(std::string_view name, int count, std::string_view unit, KeyRange range,
+                 std::string_view fallback, std::string_view sentence)
+{
+    return {.name = name,
+            .type = KeyType::Numbers,
+            .unit = unit,
+            .range = range,
+            .count = count,
+            .fallback = fallback,
+            .sentence = sentence};
+}
+
+SceneKey points(std::string_view name, int least, std::string_view sentence)
+{
+    return {.name = name,
+            .type = KeyType::Points,
+            .unit = "m",
+            .range = kAnyNumber,
+            .count = least,
+            .sentence = sentence};
+}
+
+SceneKey box(std::string_view name, std::string_view sentence)
+{
+    return {.name = name,
+            .type = KeyType::Box,
+            .unit = "m",
+            .range = kAnyNumber,
+            .fallback = kRequired,
+            .sentence = sentence};
+}
+
+SceneKey text(std::string_view name, KeyType type, KeyRange range, std::string_view fallback,
+              std::string_view sentence)
+{
+    return {.name = name, .type = type, .range = range, .fallback = fallback, .sentence = sentence};
+}
+
+SceneKey axis(std::string_view name)
+{
+    return {.name = name,
+            .type = KeyType::Axis,
+            .range = kAnyNumber,
+            .count = 3,
+            .fallback = kRequired,
+            .sentence = "Axis of the rotation, of any length but zero."};
+}
+
+SceneKey choice(std::string_view name, std::string_view choices, std::string_view fallback,
+                std::string_view sentence)
+{
+    return {.name = name,
+            .type = KeyType::Choice,
+            .choices = choices,
+            .fallback = fallback,
+            .sentence = sentence};
+}
+
+SceneKey choices(std::string_view name, int least, std::string_view all, std::string_view fallback,
+                 std::string_view sentence)
+{
+    return {.name = name,
+            .type = KeyType::Choices,
+            .count = least,
+            .choices = all,
+            .fallback = fallback,
+            .sentence = sentence};
+}
+
+SceneKey boolean(std::string_view name, std::string_view fallback, std::string_view sentence)
+{
+    return {.name = name, .type = KeyType::Boolean, .fallback = fallback, .sentence = sentence};
+}
+
+/// Marks a key, and with it everything below, as belonging to a part that is not built yet.
+SceneKey not_built(SceneKey key)
+{
+    key.is_built = false;
+    return key;
+}
+
+/// Marks single values of a key as not built yet.
+SceneKey not_built(SceneKey key, std::string_view values)
+{
+    key.unbuilt_choices = values;
+    return key;
+}
+
+std::vector<SceneKey> make_scene_keys()
+{
+    return {
+        text("title", KeyType::Text, kTitle, "(the scene file's name)", "What the run is called in reports."),
+        number("duration", "s", kPositive, kRequired, "Simulated time."),
+
+        table("time", "{}", "How time advances."),
+        number("time.step", "s", kPositive, "0.005",
+               "The longest step; each interval between frames and events is divided into equal steps no "
+               "longer."),
+        choice("time.integrator", "bdf2|implicit_euler", R"("bdf2")",
+               "Second order (bdf2), or first order with more numerical damping (implicit_euler)."),
+
+        table("cloth", "{}", "The cloth: a rectangle to be meshed, or a mesh from a file."),
+        numbers("cloth.size", 2, "m", kSize, "",
+                "Sides of the material rectangle, u then v; required without `file`."),
+        {.name = "cloth.resolution",
+         .type = KeyType::Integers,
+         .range = {1.0, 5e6},
+         .count = 2,
+         .sentence = "Cells along u and v; required without `file`."},
+        choice("cloth.pattern", "diagonal|alternating|cross|unstructured", R"("cross")",
+               "How the cells are cut into triangles."),
+        number("cloth.pattern_angle", "degrees", kAngle, "0.0",
+               "Turn of the pattern inside the rectangle, to which it is clipped."),
+        tables("cloth.folds", "Folds of the cloth at the start, bent isometrically one after the other."),
+        {.name = "cloth.folds[].line",
+         .type = KeyType::Line,
+         .unit = "m",
+         .range = kAnyNumber,
+         .fallback = kRequired,
+         .sentence = "Two material points; the line through them is cut into the mesh, and what lies right "
+                     "of it is turned."},
+        number("cloth.folds[].degrees", "degrees", {-180.0, 180.0}, kRequired,
+               "How far the material right of the line is turned down about it."),
+        text("cloth.file", KeyType::Path, kPath, "",
+             "OBJ mesh used instead of a rectangle: its positions are the initial world positions, its UVs, "
+             "in metres, "
+             "the material coordinates (a flat mesh without UVs is its own chart)."),
+        choice("cloth.units", kUnits, R"("m")", "Unit of the file's positions."),
+        choice("cloth.up", kAxes, R"("z")", "The file's upward axis, turned to +z."),
+        numbers("cloth.translate", 3, "m", kAnyNumber, kOrigin,
+                "World position = translate + rotate(scale * (u, v, 0)); of a file, of its positions."),
+        table("cloth.rotate", kIdentity, "Rotation of the cloth at the start."),
+        axis("cloth.rotate.axis"),
+        number("cloth.rotate.degrees", "degrees", kAnyNumber, kRequired,
+               "Angle of the rotation, right-handed."),
+        number("cloth.scale", "", kPositive, "1.0",
+               "Scale of the world positions; the material keeps its size, so cloth scaled by other than 1 "
+               "starts strained."),
+        numbers("cloth.velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity of the whole cloth at the start."),
+
+        table("cloth.material", "{}", "What the cloth is made of."),
+        choice("cloth.material.preset", "cotton|silk|wool|denim|leather|rubber", R"("cotton")",
+               "A material to start from; the keys below override it one by one."),
+        number("cloth.material.density", "kg/m^2", {0.0, 1e4, true}, "(the preset's)", "Mass per area."),
+        number("cloth.material.youngs_modulus", "N/m", {0.0, 1e12, true}, "(the preset's)",
+               "Membrane stiffness: tension per width at unit strain."),
+        number("cloth.material.poisson_ratio", "", {0.0, 0.5}, "(the preset's)",
+               "How much the sheet narrows where it is stretched."),
+        number("cloth.material.bending_stiffness", "J", kNotNegative, "(the preset's)",
+               "K of the hinge energy; 0 leaves bending out."),
+        number("cloth.material.damping", "s", {0.0, 1e3}, "0.0",
+               "Damping proportional to the elastic stiffness; 0 leaves damping out."),
+        number("cloth.material.thickness", "m", {0.0, 1.0, true}, "0.001",
+               "The distance kept between the cloth's surface and obstacles."),
+
+        tables("pin", "Vertices that are held or moved; without one nothing holds the cloth."),
+        box("pin[].material", "Vertices whose material coordinates lie in this box are held (inclusive)."),
+        numbers("pin[].velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity at which the pin moves."),
+        numbers("pin[].angular_velocity", 3, "rad/s", kAnyNumber, kOrigin,
+                "Rotation of the pin about `pivot`, along its axis."),
+        numbers("pin[].pivot", 3, "m", kAnyNumber, kOrigin,
+                "World point that `angular_velocity` turns about."),
+        tables("pin[].keyframes",
+               "The pin's motion as placements in time instead: x(t) = translate + R x(0); translation "
+               "linear, rotation "
+               "slerp by the shorter arc, constant outside."),
+        number("pin[].keyframes[].time", "s", kNotNegative, kRequired,
+               "When; later than the keyframe before."),
+        numbers("pin[].keyframes[].translate", 3, "m", kAnyNumber, kOrigin, "Translation then."),
+        table("pin[].keyframes[].rotate", kIdentity, "Rotation then."),
+        axis("pin[].keyframes[].rotate.axis"),
+        number("pin[].keyframes[].rotate.degrees", "degrees", kAnyNumber, kRequired,
+               "Angle of the rotation, right-handed."),
+        not_built(
+            text("pin[].follow", KeyType::Name, {}, "", "Name of an obstacle the pin rides on instead.")),
+        choices("pin[].directions", 1, kAxes, R"(["x", "y", "z"])", "Which world components are held."),
+        number("pin[].release", "s", kNotNegative, kNever, "When the pin lets go."),
+
+        table("gravity", "", "Switches gravity on."),
+        numbers("gravity.acceleration", 3, "m/s^2", kAnyNumber, "[0.0, 0.0, -9.81]",
+                "Acceleration of free fall."),
+
+        table("wind", "",
+              "Switches wind on: a force rho/2 drag A |w_n| w_n n on every face, w = wind - material "
+              "velocity."),
+        numbers("wind.velocity", 3, "m/s", kAnyNumber, kRequired, "Velocity of the air."),
+        number("wind.air_density", "kg/m^3", kNotNegative, "1.2", "Density of the air."),
+        number("wind.drag", "", kNotNegative, "1.0", "Drag coefficient of a face, on its world area."),
+        table("wind.gust", "",
+              "Makes the wind vary: times 1 + amplitude sin(2 pi frequency t + phase(seed))."),
+        number("wind.gust.amplitude", "", kNotNegative, kRequired, "Share of the wind that varies."),
+        number("wind.gust.frequency", "Hz", kNotNegative, kRequired, "How often it varies."),
+        integer("wind.gust.seed", {0.0, 2147483647.0}, "0", "Chooses the phase."),
+
+        tables("pull",
+               "A force spread over a material box: by area, by length where it is a line, on the nearest "
+               "vertex for a point."),
+        box("pull[].material", "The part of the cloth that is pulled (inclusive)."),
+        numbers("pull[].force", 3, "N", {-1e9, 1e9}, kRequired, "The force in all."),
+        number("pull[].start", "s", kNotNegative, "0.0", "When the force begins."),
+        number("pull[].stop", "s", kPositive, kNever, "When the force ends; later than `start`."),
+
+        not_built(table("friction", "", "Switches friction with obstacles on.")),
+        number("friction.coefficient", "", {0.0, 100.0}, "0.3",
+               "Coulomb's coefficient; an obstacle's own overrides it."),
+
+        not_built(table("self_contact", "", "Switches contact of the cloth with itself on.")),
+
+        table("eol", "{}", "Eulerian-on-Lagrangian vertices on sharp features of obstacles."),
+        not_built(boolean("eol.enabled", "false",
+                          "Whether vertices are put exactly on sharp features, with the material flowing "
+                          "through them."),
+                  "true"),
+
+        not_built(table("remesh", "",
+                        "Switches adaptive refinement on; without it the mesh changes only near features.")),
+        numbers("remesh.edge_length", 2, "m", kPositive, "[0.01, 0.1]", "Smallest and largest edge."),
+        number("remesh.angle", "degrees", {0.0, 180.0, true}, "10.0", "Turn allowed over one edge."),
+        number("remesh.compression", "", {0.0, 1.0, true}, "0.005",
+               "Compressive strain allowed over one edge."),
+        number("remesh.velocity", "m/s", kPositive, "0.5", "Velocity difference allowed over one edge."),
+        number("remesh.aspect", "", {0.0, 0.8, true}, "0.2", "Least height of a face by its longest edge."),
+
+        not_built(tables("obstacle", "A rigid obstacle: one of `file`, `box`, `points`, `wire`, `teeth`.")),
+        text("obstacle[].name", KeyType::Name, {}, "(obstacle0, obstacle1, …)",
+             "What its frames are called; unique, not `cloth`."),
+        text("obstacle[].file", KeyType::Path, kPath, "",
+             "OBJ, STL, PLY, glTF/GLB, COLLADA, FBX, 3MF or 3DS mesh."),
+        choice("obstacle[].units", kUnits, "(what the file declares, else m)", "Unit of the file."),
+        choice("obstacle[].up", kAxes, "(what the file declares, else z)", "The file's upward axis."),
+        numbers("obstacle[].box", 3, "m", kSize, "", "A box of these sizes, centred on its origin."),
+        points("obstacle[].points", 1, "Nails: lone points."),
+        points("obstacle[].wire", 2, "A polyline."),
+        boolean("obstacle[].closed", "false", "Whether the wire's end is joined to its beginning."),
+        table("obstacle[].teeth", "", "A row of prisms along x, their ridges along y."),
+        integer("obstacle[].teeth.count", {1.0, 1e4}, kRequired, "How many."),
+        number("obstacle[].teeth.pitch", "m", kSize, kRequired, "Distance from ridge to ridge."),
+        number("obstacle[].teeth.height", "m", kSize, kRequired, "Height of the ridges."),
+        number("obstacle[].teeth.width", "m", kSize, kRequired, "Length of the ridges."),
+        number("obstacle[].teeth.tip_degrees", "degrees", {0.0, 180.0, true}, kRequired,
+               "Angle at the ridges."),
+        numbers("obstacle[].translate", 3, "m", kAnyNumber, kOrigin,
+                "World position = translate + rotate(scale * position)."),
+        table("obstacle[].rotate", kIdentity, "Rotation of the obstacle."),
+        axis("obstacle[].rotate.axis"),
+        number("obstacle[].rotate.degrees", "degrees", kAnyNumber, kRequired,
+               "Angle of the rotation, right-handed."),
+        number("obstacle[].scale", "", kPositive, "1.0", "Scale of the obstacle."),
+        number("obstacle[].feature_angle", "degrees", {0.0, 180.0, true}, "30.0",
+               "A convex edge whose faces turn by more is sharp."),
+        table("obstacle[].motion", "",
+              "p(t) = pivot + velocity tau + R(angular_velocity tau)(p0 - pivot), tau = clamp(t - start, 0, "
+              "stop - start)."),
+        numbers("obstacle[].motion.velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity."),
+        numbers("obstacle[].motion.angular_velocity", 3, "rad/s", kAnyNumber, kOrigin,
+                "Rotation about `pivot`."),
+        numbers("obstacle[].motion.pivot", 3, "m", kAnyNumber, kOrigin, "World point that is turned about."),
+        number("obstacle[].motion.start", "s", kNotNegative, "0.0", "When the motion begins."),
+        number("obstacle[].motion.stop", "s", kPositive, kNever, "When the motion ends."),
+        tables("obstacle[].keyframes", "Placements in time, instead of motion and placement."),
+        number("obstacle[].keyframes[].time", "s", kNotNegative, kRequired,
+               "When; later than the keyframe before."),
+        numbers("obstacle[].keyframes[].translate", 3, "m", kAnyNumber, kOrigin, "Translation then."),
+        table("obstacle[].keyframes[].rotate", kIdentity, "Rotation then."),
+        axis("obstacle[].keyframes[].rotate.axis"),
+        number("obstacle[].keyframes[].rotate.degrees", "degrees", kAnyNumber, kRequired,
+               "Angle of the rotation, right-handed."),
+        number("obstacle[].friction", "", {0.0, 100.0}, "",
+               "Coulomb's coefficient of this obstacle; without [friction] it switches friction on for it."),
+
+        tables("probe", "A material point whose path is written to probes.csv."),
+        text("probe[].name", KeyType::Name, {}, kRequired,
+             "What its columns are called; unique, not `cloth`."),
+        numbers("probe[].material", 2, "m", kAnyNumber, kRequired, "The material point, u and v."),
+
+        table("solver", "{}", "Numbers of the solver."),
+        number("solver.tolerance", "", {1e-14, 1e-2}, "1e-9", "Greatest relative KKT residual accepted."),
+        not_built(choice("solver.kernel", "exact|fast", R"("exact")",
+                         "Exact or plain floating-point geometric predicates."),
+                  "fast"),
+
+        table("output", "{}", "What a run leaves behind."),
+        number("output.frames_per_second", "1/s", kNotNegative, "24.0",
+               "Frames a second of simulated time; 0: no frames."),
+        not_built(choices("output.formats", 0, "obj|usd|vtk|viewer|gltf|pc2", R"(["viewer"])",
+                          "Formats made from the frames, besides the PLY frames that are always written."),
+                  "vtk|gltf|pc2"),
+    };
+}
+
+/// "cloth.folds[]" of "cloth.folds[].line"; "" of "title".
+std::string_view parent_name(std::string_view name)
+{
+    const std::size_t dot = name.rfind('.');
+    return dot == std::string_view::npos ? std::string_view() : name.substr(0, dot);
+}
+
+std::string number_range(const SceneKey& key)
+{
+    const KeyRange& range = key.range;
+    std::string words = range.excludes_least ? fmt::format("> {} and <= {}", range.least, range.greatest)
+                                             : fmt::format("from {} to {}", range.least, range.greatest);
+    if (!key.unit.empty()) words += fmt::format(" ({})", key.unit);
+    return words;
+}
+
+std::string choice_words(const SceneKey& key)
+{
+    const std::vector<std::string_view> unbuilt = split_choices(key.unbuilt_choices);
+    std::string words;
+    for (const std::string_view word : split_choices(key.choices)) {
+        if (std::find(unbuilt.begin(), unbuilt.end(), word) != unbuilt.end()) continue;
+        words += fmt::format("{}\"{}\"", words.empty() ? "" : ", ", word);
+    }
+    return words;
+}
+
+}  // namespace
+
+const std::vector<SceneKey>& scene_keys()
+{
+    static const std::vector<SceneKey> keys = make_scene_keys();
+    return keys;
+}
+
+const SceneKey* find_scene_key(std::string_view name)
+{
+    for (const SceneKey& key : scene_keys())
+        if (key.name == name) return &key;
+    return nullptr;
+}
+
+std::vector<const SceneKey*> child_keys(std::string_view parent)
+{
+    std::vector<const SceneKey*> children;
+    for (const SceneKey& key : scene_keys())
+        if (parent_name(key.name) == parent) children.push_back(&key);
+    return children;
+}
+
+std::string child_names(std::string_view parent)
+{
+    std::string names;
+    for (const SceneKey* key : child_keys(parent))
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", leaf_name(key->name));
+    return names;
+}
+
+std::string_view leaf_name(std::string_view name)
+{
+    return name.substr(name.rfind('.') + 1);  // npos + 1 is 0
+}
+
+bool is_built(const SceneKey& key)
+{
+    if (!key.is_built && key.unbuilt_choices.empty()) return false;
+    std::string_view parent = parent_name(key.name);
+    if (parent.ends_with("[]")) parent.remove_suffix(2);
+    return parent.empty() || is_built(*find_scene_key(parent));
+}
+
+std::vector<std::string_view> split_choices(std::string_view choices)
+{
+    std::vector<std::string_view> words;
+    while (!choices.empty()) {
+        const std::size_t end = std::min(choices.find('|'), choices.size());
+        words.push_back(choices.substr(0, end));
+        choices.remove_prefix(std::min(end + 1, choices.size()));
+    }
+    return words;
+}
+
+std::string allowed_values(const SceneKey& key)
+{
+    switch (key.type) {
+        case KeyType::Table:
+            return fmt::format("a table, [{}]", key.name);
+        case KeyType::Tables:
+            return fmt::format("tables, [[{}]]", key.name);
+        case KeyType::Number:
+            return fmt::format("a number {}", number_range(key));
+        case KeyType::Integer:
+            return fmt::format("an integer {}", number_range(key));
+        case KeyType::Boolean:
+            return key.unbuilt_choices == "true" ? "false" : "true or false";
+        case KeyType::Text:
+            return fmt::format("a text of at most {} characters", key.range.greatest);
+        case KeyType::Name:
+            return "a letter or _, then at most 63 letters, digits or _";
+        case KeyType::Path:
+            return "the path of a file, relative to the scene file";
+        case KeyType::Choice:
+            return choice_words(key);
+        case KeyType::Choices:
+            return fmt::format("{} of {}", key.count > 0 ? "one or more" : "any", choice_words(key));
+        case KeyType::Numbers:
+            return fmt::format("{} numbers {}", key.count, number_range(key));
+        case KeyType::Axis:
+            return fmt::format("{} numbers {}, not all nearly 0", key.count, number_range(key));
+        case KeyType::Integers:
+            return fmt::format("{} integers {}", key.count, number_range(key));
+        case KeyType::Box:
+            return fmt::format("[[u, v], [u, v]], least then greatest, numbers {}", number_range(key));
+        case KeyType::Line:
+            return fmt::format("two different points, [[u, v], [u, v]], numbers {}", number_range(key));
+        case KeyType::Points:
+            return fmt::format("{} or more points [x, y, z], numbers {}", key.count, number_range(key));
+    }
+    return {};
+}
+
+int edit_distance(std::string_view a, std::string_view b)
+{
+    // Three rows of the usual table: two back for swaps, one back, and the one being filled.
+    std::vector<int> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<int>(j);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        before.swap(last);
+        last.swap(row);
+        row[0] = static_cast<int>(i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            const bool is_swap = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+            if (is_swap) row[j] = std::min(row[j], before[j - 2] + 1);
+        }
+    }
+    return row[b.size()];
+}
+
+std::string closest_key(std::string_view parent, std::string_view leaf)
+{
+    constexpr std::size_t kLongestWord = 64;  // longer ones are near no key
+    if (leaf.size() > kLongestWord) return {};
+    const SceneKey* closest = nullptr;
+    int closest_distance = std::max(1, static_cast<int>(leaf.size()) / 3) + 1;
+    for (const SceneKey* key : child_keys(parent)) {
+        const int distance = edit_distance(leaf, leaf_name(key->name));
+        if (distance < closest_distance) {
+            closest = key;
+            closest_distance = distance;
+        }
+    }
+    if (closest) return std::string(leaf_name(closest->name));
+    for (const SceneKey& key : scene_keys())
+        if (leaf_name(key.name) == leaf) return std::string(key.name);
+    return {};
+}
+
+}  // namespace arris

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a scene file to a RunConfig, in the order in which mistakes are cheapest to find: each key by itself
+// (scene_values), rules between keys (scene_rules), how large the run would be (scene_estimate), and only
+// then the cloth, and what pins, pulls and probes meet of it.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <limits>
+#include <optional>
+
+#include "app/run_config.h"
+#include "app/scene_document.h"
+#include "app/scene_estimate.h"
+#include "app/scene_rules.h"
+#include "app/scene_values.h"
+#include "app/scene_warnings.h"
+#include "geometry/cloth_file.h"
+#include "geometry/cloth_grid.h"
+#include "geometry/input_error.h"
+
+namespace arris {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// ---- JSON to plain types
+
+double to_double(const Json& value)
+{
+    return value.get<double>();
+}
+
+Vec2 to_vec2(const Json& value)
+{
+    return {to_double(value[0]), to_double(value[1])};
+}
+
+Vec3 to_vec3(const Json& value)
+{
+    return {to_double(value[0]), to_double(value[1]), to_double(value[2])};
+}
+
+MaterialBox to_box(const Json& value)
+{
+    return {to_vec2(value[0]), to_vec2(value[1])};
+}
+
+/// Seconds, where null is never.
+double to_time(const Json& value)
+{
+    return value.is_null() ? std::numeric_limits<double>::infinity() : to_double(value);
+}
+
+Mat3 to_rotation(const Json& rotate)
+{
+    return rotation_about(to_vec3(rotate["axis"]).stableNormalized(), to_double(rotate["degrees"]));
+}
+
+RigidMotion to_pin_motion(const Json& pin)
+{
+    RigidMotion motion;
+    if (pin.contains("keyframes")) {
+        for (const Json& keyframe : pin["keyframes"])
+            motion.keyframes.push_back({to_double(keyframe["time"]), to_vec3(keyframe["translate"]),
+                                        Eigen::Quaterniond(to_rotation(keyframe["rotate"]))});
+        return motion;
+    }
+    motion.velocity = to_vec3(pin["velocity"]);
+    motion.angular_velocity = to_vec3(pin["angular_velocity"]);
+    motion.pivot = to_vec3(pin["pivot"]);
+    return motion;
+}
+
+Pin to_pin(const Json& json)
+{
+    Pin pin;
+    pin.material = to_box(json["material"]);
+    pin.motion = to_pin_motion(json);
+    pin.held = {false, false, false};
+    for (const Json& direction : json["directions"]) pin.held[direction.get<std::string>()[0] - 'x'] = true;
+    pin.release = to_time(json["release"]);
+    return pin;
+}
+
+Wind to_wind(const Json& json)
+{
+    Wind wind;
+    wind.velocity = to_vec3(json["velocity"]);
+    wind.air_density = to_double(json["air_density"]);
+    wind.drag = to_double(json["drag"]);
+    if (json.contains("gust"))
+        wind.gust = Gust{to_double(json["gust"]["amplitude"]), to_double(json["gust"]["frequency"]),
+                         json["gust"]["seed"].get<long>()};
+    return wind;
+}
+
+Material to_material(const Json& json)
+{
+    return {to_double(json["density"]),       to_double(json["youngs_modulus"]),
+            to_double(json["poisson_ratio"]), to_double(json["bending_stiffness"]),
+            to_double(json["damping"]),       to_double(json["thickness"])};
+}
+
+Scene to_scene(const Json& json)
+{
+    Scene scene;
+    scene.material = to_material(json["cloth"]["material"]);
+    if (json.contains("gravity")) scene.gravity = Gravity{to_vec3(json["gravity"]["acceleration"])};
+    if (json.contains("wind")) scene.wind = to_wind(json["wind"]);
+    for (const Json& pull : json.value("pull", Json::array()))
+        scene.pulls.push_back({to_box(pull["material"]), to_vec3(pull["force"]), to_double(pull["start"]),
+                               to_time(pull["stop"])});
+    for (const Json& pin : json.value("pin", Json::array())) scene.pins.push_back(to_pin(pin));
+    return scene;
+}
+
+Settings to_settings(const Json& json)
+{
+    Settings settings;
+    settings.integrator = json["time"]["integrator"] == "bdf2" ? Integrator::Bdf2 : Integrator::ImplicitEuler;
+    settings.step = to_double(json["time"]["step"]);
+    settings.tolerance = to_double(json["solver"]["tolerance"]);
+    return settings;
+}
+
+// ---- how large
+
+[[noreturn]] void refuse_estimate(const SceneDocument& document, const std::string& key, double count,
+                                  const std::string& what, double most)
+{
+    document.fail(key, fmt::format("the run would have about {:.7g} {}", count, what),
+                  fmt::format("at most {:.7g} {}", most, what));
+}
+
+void check_size(const SceneDocument& document, const RunConfig& config, SceneEstimate& estimate)
+{
+    const std::string cloth_key = document.find("cloth.file") ? "cloth.file" : "cloth.resolution";
+    if (estimate.vertices > kMaxVertices)
+        refuse_estimate(document, cloth_key, estimate.vertices, "vertices", kMaxVertices);
+    estimate_bytes(config.output.formats, estimate);
+    if (const std::optional<Excess> excess = find_memory_excess(estimate, machine_memory_bytes()))
+        document.fail(cloth_key, excess->wrong, excess->allowed);
+}
+
+void check_length(const SceneDocument& document, const RunConfig& config, SceneEstimate& estimate)
+{
+    // The key a person would change: the one that was written.
+    const auto written = [&](const std::string& key) { return document.find(key) ? key : "duration"; };
+    const double fps = config.output.frames_per_second, step = config.settings.step;
+    estimate.frames = count_frames(config.duration, fps);
+    if (estimate.frames > kMaxFrames)
+        refuse_estimate(document, written("output.frames_per_second"), estimate.frames, "frames", kMaxFrames);
+    estimate.steps = config.duration / step;
+    if (estimate.steps <= kMaxSteps)
+        estimate.steps = count_steps(config.duration, step, fps, input_jumps(config.scene));
+    if (estimate.steps > kMaxSteps)
+        refuse_estimate(document, written("time.step"), estimate.steps, "steps", kMaxSteps);
+}
+
+// ---- the cloth
+
+ClothGrid to_grid(const Json& cloth)
+{
+    ClothGrid grid;
+    grid.size = to_vec2(cloth["size"]);
+    grid.resolution = {cloth["resolution"][0].get<int>(), cloth["resolution"][1].get<int>()};
+    const std::string pattern = cloth["pattern"].get<std::string>();
+    grid.pattern = pattern == "diagonal"      ? GridPattern::Diagonal
+                   : pattern == "alternating" ? GridPattern::Alternating
+                   : pattern == "cross"       ? GridPattern::Cross
+                                              : GridPattern::Unstructured;
+    grid.pattern_angle = to_double(cloth["pattern_angle"]);
+    for (const Json& fold : cloth.value("folds", Json::array()))
+        grid.folds.push_back(
+            {{to_vec2(fold["line"][0]), to_vec2(fold["line"][1])}, to_double(fold["degrees"])});
+    return grid;
+}
+
+/// Runs `build`; what it finds wrong with its input is the fault of `key`.
+template <typename Build>
+auto blame(const SceneDocument& document, const std::string& key, const Build& build)
+{
+    try {
+        return build();
+    } catch (const InputError& error) {
+        document.fail(document.find(key) ? key : "cloth", error.what());
+    }
+}
+
+ClothMesh make_rectangle(const SceneDocument& document, const ClothGrid& grid)
+{
+    return blame(document, "cloth.folds", [&] {
+        ClothMesh mesh = make_cloth_grid(grid);
+        fold_cloth(grid.folds, mesh);
+        return mesh;
+    });
+}
+
+ClothMesh read_cloth(const SceneDocument& document, const Json& cloth, std::vector<std::string>& warnings)
+{
+    const std::filesystem::path name(cloth["file"].get<std::string>());
+    const std::string path = (std::filesystem::path(document.path()).parent_path() / name).string();
+    const std::string unit = cloth["units"].get<std::string>();
+    const double metres = unit == "m" ? 1.0 : unit == "cm" ? 0.01 : unit == "mm" ? 0.001 : 0.0254;
+    std::string extension = name.extension().string();
+    for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    if (extension != ".obj")
+        document.fail("cloth.file", "a cloth of this format is not built yet in this version",
+                      "an .obj file");
+    ClothFile file = blame(document, "cloth.file",
+                           [&] { return read_cloth_file(path, metres, cloth["up"].get<std::string>()[0]); });
+    for (const std::string& warning : file.warnings)
+        warnings.push_back(fmt::format("{}: {}", document.describe("cloth.file"), warning));
+    return std::move(file.mesh);
+}
+
+ClothMesh make_cloth(const SceneDocument& document, RunConfig& config)
+{
+    const Json& cloth = config.as_run["cloth"];
+    SceneEstimate estimate;
+    ClothMesh mesh;
+    if (cloth.contains("file")) {
+        mesh = read_cloth(document, cloth, config.warnings);
+        estimate.vertices = mesh.vertex_count();
+        check_size(document, config, estimate);
+    } else {
+        const ClothGrid grid = to_grid(cloth);
+        estimate_grid(grid, estimate);
+        check_size(document, config, estimate);
+        mesh = make_rectangle(document, grid);
+    }
+    const double scale = to_double(cloth["scale"]);
+    const Placement placement = {to_rotation(cloth["rotate"]), to_vec3(cloth["translate"])};
+    for (Vec3& x : mesh.world) x = placement(scale * x);
+    return mesh;
+}
+
+// ---- what meets the cloth
+
+[[noreturn]] void refuse_miss(const SceneDocument& document, const std::string& key, const ClothMesh& cloth,
+                              std::string_view wrong)
+{
+    Vec2 least = cloth.material.front(), greatest = least;
+    for (const Vec2& X : cloth.material) {
+        least = least.cwiseMin(X);
+        greatest = greatest.cwiseMax(X);
+    }
+    document.fail(
+        key, wrong,
+        fmt::format("material coordinates of the cloth, within [[{:.6g}, {:.6g}], [{:.6g}, {:.6g}]] (m)",
+                    least.x(), least.y(), greatest.x(), greatest.y()));
+}
+
+/// Moves what keyframes hold to where they have it at time 0.
+void apply_first_keyframes(const SceneDocument& document, RunConfig& config)
+{
+    const std::vector<Vec3> placed = config.cloth.world;
+    const double tolerance = 1e-12 * (1.0 + material_size(config.cloth.material));
+    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
+        const Pin& pin = config.scene.pins[i];
+        if (pin.motion.keyframes.empty() || !(pin.release > 0.0)) continue;
+        const Placement first = pin.motion.at(0.0);
+        int moved = 0;
+        for (const int v : vertices_in_box(config.cloth, pin.material)) {
+            const Vec3 target = first(placed[v]);
+            Vec3& x = config.cloth.world[v];
+            for (int d = 0; d < 3; ++d)
+                if (pin.held[d]) x[d] = target[d];
+            if ((x - placed[v]).norm() > tolerance) ++moved;
+        }
+        if (moved > 0)
+            config.warnings.push_back(
+                fmt::format("{}: moves {} vertices from where the cloth is placed, at time 0",
+                            document.describe(fmt::format("pin.{}.keyframes", i)), moved));
+    }
+}
+
+void check_meetings(const SceneDocument& document, const RunConfig& config)
+{
+    const ClothMesh& cloth = config.cloth;
+    for (std::size_t i = 0; i < config.scene.pins.size(); ++i)
+        if (vertices_in_box(cloth, config.scene.pins[i].material).empty())
+            refuse_miss(document, fmt::format("pin.{}.material", i), cloth, "holds no vertex of the cloth");
+    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i)
+        if (spread_over_box(cloth, config.scene.pulls[i].material).empty())
+            refuse_miss(document, fmt::format("pull.{}.material", i), cloth, "meets no cloth");
+    for (std::size_t i = 0; i < config.probes.size(); ++i)
+        if (locate(cloth, config.probes[i].material).face < 0)
+            refuse_miss(document, fmt::format("probe.{}.material", i), cloth, "meets no cloth");
+}
+
+}  // namespace
+
+SceneSource read_scene_source(const std::string& path, const std::vector<std::string>& overrides)
+{
+    return {path, read_scene_text(path), overrides};
+}
+
+RunConfig load_scene(const SceneSource& source)
+{
+    SceneDocument document(source.path, source.text);
+    for (const std::string& assignment : source.overrides) document.set(assignment);
+
+    RunConfig config;
+    config.as_run = complete_scene(document);
+    apply_scene_rules(document, config.as_run);
+
+    const Json& json = config.as_run;
+    config.title = json["title"].get<std::string>();
+    config.duration = to_double(json["duration"]);
+    config.scene = to_scene(json);
+    config.settings = to_settings(json);
+    config.output.frames_per_second = to_double(json["output"]["frames_per_second"]);
+    config.output.formats = json["output"]["formats"].get<std::vector<std::string>>();
+    for (const Json& probe : json.value("probe", Json::array()))
+        config.probes.push_back({probe["name"].get<std::string>(), to_vec2(probe["material"])});
+
+    SceneEstimate length;
+    check_length(document, config, length);
+    config.cloth = make_cloth(document, config);
+    config.cloth_velocity = to_vec3(json["cloth"]["velocity"]);
+    check_meetings(document, config);
+    apply_first_keyframes(document, config);
+
+    const std::vector<std::string> ineffective = find_ineffective_keys(document, config);
+    config.warnings.insert(config.warnings.end(), ineffective.begin(), ineffective.end());
+    return config;
+}
+
+}  // namespace arris

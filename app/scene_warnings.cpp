@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "app/scene_estimate.h"
+#include "geometry/mesh_topology.h"
+
+namespace arris {
+namespace {
+
+/// Collects warnings about keys that are written.
+class Warnings {
+  public:
+    explicit Warnings(const SceneDocument& document) : document_(document) {}
+
+    bool is_written(const std::string& key) const { return document_.find(key) != nullptr; }
+
+    void add(const std::string& key, const std::string& why)
+    {
+        if (is_written(key))
+            lines_.push_back(fmt::format("{}: has no effect: {}", document_.describe(key), why));
+    }
+
+    /// `key` does what it says, and something surprising follows from it.
+    void note(const std::string& key, const std::string& what)
+    {
+        lines_.push_back(fmt::format("{}: {}", document_.describe(key), what));
+    }
+
+    std::vector<std::string> lines_;
+
+  private:
+    const SceneDocument& document_;
+};
+
+// Inputs, not results: a value that was written as 0 is exactly 0.
+bool is_zero(double value)
+{
+    return !(value < 0.0) && !(value > 0.0);
+}
+bool is_zero(const Vec3& value)
+{
+    return is_zero(value.squaredNorm());
+}
+
+void check_cloth(const RunConfig& config, Warnings& warnings)
+{
+    if (!warnings.is_written("cloth.file")) {
+        warnings.add("cloth.units", "the cloth is not from a file");
+        warnings.add("cloth.up", "the cloth is not from a file");
+    }
+    if (config.as_run["cloth"].value("pattern", "") == "unstructured")
+        warnings.add("cloth.pattern_angle", "an unstructured mesh has no direction");
+
+    const Material& material = config.scene.material;
+    constexpr std::array kPresetKeys = {"density", "youngs_modulus", "poisson_ratio", "bending_stiffness"};
+    const bool overrides_all = std::all_of(kPresetKeys.begin(), kPresetKeys.end(), [&](const char* key) {
+        return warnings.is_written(std::string("cloth.material.") + key);
+    });
+    if (overrides_all) warnings.add("cloth.material.preset", "all its values are overridden");
+    if (material.bending_stiffness > 0.0 &&
+        make_topology(config.cloth.vertex_count(), config.cloth.faces).hinges.empty())
+        warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
+    if (!config.scene.floor)
+        warnings.add("cloth.material.thickness", "there is no obstacle to keep away from");
+}
+
+void check_wind(const RunConfig& config, Warnings& warnings)
+{
+    if (config.scene.gravity && is_zero(config.scene.gravity->acceleration))
+        warnings.add("gravity.acceleration", "it is zero");
+    if (!config.scene.wind) return;
+    const Wind& wind = *config.scene.wind;
+    if (is_zero(wind.drag) || is_zero(wind.air_density))
+        warnings.add("wind", is_zero(wind.drag) ? "its drag is zero" : "its air_density is zero");
+    if (!wind.gust) return;
+    if (is_zero(wind.velocity))
+        warnings.add("wind.gust", "the wind's velocity is zero");
+    else if (is_zero(wind.gust->amplitude))
+        warnings.add("wind.gust", "its amplitude is zero");
+}
+
+void check_pulls(const RunConfig& config, Warnings& warnings)
+{
+    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i) {
+        const Pull& pull = config.scene.pulls[i];
+        const std::string path = fmt::format("pull.{}", i);
+        if (is_zero(pull.force)) warnings.add(path + ".force", "it is zero");
+        if (pull.start >= config.duration)
+            warnings.add(path + ".start", "the pull starts after the end of the run");
+        else if (pull.stop >= config.duration)
+            warnings.add(path + ".stop", "the run ends before");
+    }
+}
+
+void check_pin_motion(const RunConfig& config, const Pin& pin, const std::string& path, Warnings& warnings)
+{
+    for (int d = 0; d < 3; ++d)
+        if (!pin.held[d] && !is_zero(pin.motion.velocity[d]))
+            warnings.add(path + ".velocity", fmt::format("the pin does not hold {}", "xyz"[d]));
+    if (is_zero(pin.motion.angular_velocity))
+        warnings.add(path + ".pivot", "there is no angular_velocity about it");
+    // A keyframe counts as long as the one before it is in time.
+    const auto& keyframes = pin.motion.keyframes;
+    for (std::size_t k = 1; k < keyframes.size(); ++k)
+        if (keyframes[k - 1].time >= std::min(config.duration, pin.release))
+            warnings.add(fmt::format("{}.keyframes.{}.time", path, k),
+                         "the one before is at the end of the run already");
+}
+
+void check_pins(const RunConfig& config, Warnings& warnings)
+{
+    // Which pin held a vertex's direction last: where pins overlap, the last one moves it.
+    std::map<std::pair<int, int>, std::size_t> holder;
+    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
+        const Pin& pin = config.scene.pins[i];
+        const std::string path = fmt::format("pin.{}", i);
+        check_pin_motion(config, pin, path, warnings);
+        if (is_zero(pin.release))
+            warnings.add(path + ".release", "the pin is released before it holds anything");
+        else if (pin.release >= config.duration)
+            warnings.add(path + ".release", "the run ends before");
+
+        std::map<std::size_t, int> shared;
+        for (const int v : vertices_in_box(config.cloth, pin.material))
+            for (int d = 0; d < 3; ++d) {
+                if (!pin.held[d]) continue;
+                const auto [other, is_first] = holder.try_emplace({v, d}, i);
+                if (!is_first) ++shared[other->second];
+                other->second = i;
+            }
+        for (const auto& [other, count] : shared)
+            if (config.scene.pins[other].motion.is_moving() || pin.motion.is_moving())
+                warnings.note(
+                    path + ".material",
+                    fmt::format(
+                        "holds {} vertex directions that pin.{} holds too; there pin.{} alone decides", count,
+                        other, i));
+    }
+}
+
+void check_time(const RunConfig& config, Warnings& warnings)
+{
+    const double fps = config.output.frames_per_second;
+    if (is_zero(fps) && !config.output.formats.empty())
+        warnings.add("output.formats", "with frames_per_second = 0 there are no frames to make them from");
+    const double longest = fps > 0.0 ? std::min(config.duration, 1.0 / fps) : config.duration;
+    if (config.settings.step > longest * (1.0 + 1e-9))
+        warnings.add("time.step", fmt::format("no interval between frames is longer than {:.6g} s", longest));
+}
+
+}  // namespace
+
+std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config)
+{
+    Warnings warnings(document);
+    check_time(config, warnings);
+    check_cloth(config, warnings);
+    check_pins(config, warnings);
+    check_wind(config, warnings);
+    check_pulls(config, warnings);
+    return warnings.lines_;
+}
+
+}  // namespace arris

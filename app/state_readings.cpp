@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/state_readings.h"
+
+#include <algorithm>
+
+namespace arris {
+
+Frame make_frame(const State& state, const ClothElements& elements, const Terms& terms)
+{
+    Frame frame;
+    frame.world = state.mesh.world;
+    frame.material = state.mesh.material;
+    frame.vertex_velocity = state.velocity;
+    frame.material_velocity = state.velocity;  // material does not flow through Lagrangian vertices
+    frame.ids = state.ids;
+    frame.eol.assign(state.ids.size(), 0);
+    frame.contact.assign(state.ids.size(), 0);
+    for (const ActiveBound& bound : state.active) {
+        const auto vertex = std::lower_bound(state.ids.begin(), state.ids.end(), bound.vertex_id);
+        frame.contact[vertex - state.ids.begin()] = 1;
+    }
+    frame.faces = state.mesh.faces;
+    FaceReadings readings = compute_face_readings(elements, terms, state.mesh.world);
+    frame.strain = std::move(readings.strain);
+    frame.stretch_energy = std::move(readings.stretch_energy);
+    frame.bending_energy = std::move(readings.bending_energy);
+    return frame;
+}
+
+std::vector<ProbeSample> sample_probes(const std::vector<Probe>& probes, const State& state)
+{
+    std::vector<ProbeSample> samples;
+    for (const Probe& probe : probes) {
+        const MaterialLocation at = locate(state.mesh, probe.material);
+        ProbeSample sample;
+        for (int k = 0; k < 3 && at.face >= 0; ++k) {
+            const int v = state.mesh.faces[at.face][k];
+            sample.position += at.weights[k] * state.mesh.world[v];
+            sample.velocity += at.weights[k] * state.velocity[v];
+        }
+        samples.push_back(sample);
+    }
+    return samples;
+}
+
+}  // namespace arris

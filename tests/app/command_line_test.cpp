@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command_line.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/app/program.h"
+
+namespace arris {
+namespace {
+
+constexpr const char* kScene = "duration = 0.02\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";
+
+TEST(CommandLine, BadArgumentsAreOneLineAndStatusTwo)
+{
+    const TemporaryDirectory folder;
+    const std::string scene = folder / "scene.toml";
+    write_bytes(scene, kScene);
+    const std::vector<std::vector<std::string>> wrong = {
+        {},
+        {"fly"},
+        {"run"},
+        {"run", scene, "--fast"},
+        {"run", scene, scene},
+        {"run", folder / "missing.toml"},
+        {"run", scene, "--threads", "0"},
+        {"run", scene, "--threads", "many"},
+        {"run", scene, "--set"},
+        {"run", scene, "--set", "time.stap=0.1"},
+        {"run", scene, "-o", scene},
+        {"run", scene, "-o", "/proc/none/here"},
+        {"check", folder.path()},
+        {"resume", folder.path()},
+        {"resume", folder / "none"},
+        {"export", folder.path(), "--formats", "obj"},
+        {"export", folder.path(), "--formats", "stl"},
+        {"docs", "everything"},
+    };
+    for (const std::vector<std::string>& arguments : wrong) {
+        std::string call;
+        for (const std::string& argument : arguments) call += " " + argument;
+        Program program(folder, arguments);
+        EXPECT_EQ(program.wait(), 2) << call;
+        const std::string err = program.err();
+        EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << call << ": " << err;
+        EXPECT_EQ(err.rfind("arris: ", 0), 0u) << call << ": " << err;
+        EXPECT_EQ(program.out(), "") << call;
+    }
+}
+
+TEST(CommandLine, HelpAndVersionAreNoErrors)
+{
+    const TemporaryDirectory folder;
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{"--help"}, {"--version"}, {"run", "--help"}, {"docs", "scene"}}) {
+        Program program(folder, arguments);
+        EXPECT_EQ(program.wait(), 0);
+        EXPECT_GT(program.out().size(), 5u);
+        EXPECT_EQ(program.err(), "");
+    }
+}
+
+TEST(CommandLine, CheckWritesNothing)
+{
+    const TemporaryDirectory folder;
+    write_bytes(folder / "scene.toml", kScene);
+    Program program(folder, {"check", folder / "scene.toml"});
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    EXPECT_NE(program.out().find("1 x 1 m"), std::string::npos) << program.out();
+    EXPECT_EQ(folder.entry_count(), 3u) << "the scene and the two files of this test";
+}
+
+TEST(CommandLine, OutputThatIsNoTerminalHasNoProgressBar)
+{
+    const TemporaryDirectory folder;
+    write_bytes(folder / "scene.toml", kScene);
+    Program program(folder, {"run", folder / "scene.toml", "-o", folder / "run"});
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    EXPECT_EQ(program.out().find('\r'), std::string::npos);
+    EXPECT_EQ(program.out().find('\x1b'), std::string::npos);
+    Program quiet(folder, {"run", folder / "scene.toml", "-o", folder / "run", "--overwrite", "--quiet"});
+    EXPECT_EQ(quiet.wait(), 0);
+    EXPECT_EQ(quiet.out(), "");
+}
+
+TEST(CommandLine, ControlCharactersOfFilesAreEscaped)
+{
+    const TemporaryDirectory folder;
+    write_bytes(folder / "scene.toml", std::string("title = \"a\\u001b[31mred\"\n") + kScene);
+    Program program(folder, {"check", folder / "scene.toml"});
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    EXPECT_EQ(program.out().find('\x1b'), std::string::npos);
+}
+
+TEST(CommandLine, ExportMakesWhatTheRunDidNot)
+{
+    const TemporaryDirectory folder;
+    write_bytes(folder / "scene.toml", kScene);
+    Program program(folder, {"run", folder / "scene.toml", "-o", folder / "run", "--quiet"});
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    EXPECT_FALSE(std::filesystem::exists(folder / "run/cloth.usda"));
+    Program exported(folder, {"export", folder / "run", "--formats", "usd,obj"});
+    EXPECT_EQ(exported.wait(), 0) << exported.err();
+    EXPECT_TRUE(std::filesystem::exists(folder / "run/cloth.usda"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "run/frames/cloth_00000.obj"));
+}
+
+}  // namespace
+}  // namespace arris

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/csv_table.h"
+#include "geometry/input_error.h"
+#include "tests/app/temporary_directory.h"
+
+namespace arris {
+namespace {
+
+using nlohmann::ordered_json;
+
+StepRow make_row(std::int64_t step)
+{
+    StepRow row;
+    row.step = step;
+    row.time = 0.25 * static_cast<double>(step);
+    row.kkt_residual = step == 2 ? 1e-11 : 1e-13;
+    row.max_penetration = step == 1 ? 0.125 : 0.0;
+    row.crossings = step >= 2 ? 3 : 0;
+    row.is_halved = step == 3;
+    row.cpu_seconds = 2.0;
+    row.seconds = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+    return row;
+}
+
+std::string write_steps(const TemporaryDirectory& dir, std::int64_t last_step)
+{
+    CsvWriter writer = CsvWriter::create(dir / "steps.csv", step_header());
+    for (std::int64_t step = 0; step <= last_step; ++step) writer.append(format_row(make_row(step)));
+    return dir / "steps.csv";
+}
+
+TEST(Report, SumsWhatTheStepsSay)
+{
+    const TemporaryDirectory dir;
+    const StepTotals totals = sum_steps(write_steps(dir, 4));
+    EXPECT_EQ(totals.steps, 4);
+    EXPECT_EQ(totals.simulated_seconds, 1.0);
+    EXPECT_EQ(totals.wall_seconds, 5.0 * 55.0);  // the initial row too: its output took time
+    EXPECT_EQ(totals.cpu_seconds, 10.0);
+    EXPECT_EQ(totals.max_penetration, 0.125);
+    EXPECT_EQ(totals.crossings, 3);
+    EXPECT_EQ(totals.max_kkt_residual, 1e-11);
+    EXPECT_EQ(totals.halved_steps, 1);
+    const std::vector<NamedSeconds> phases = list_phases(totals.phases);
+    ASSERT_EQ(phases.size(), 10U);
+    for (std::size_t i = 0; i < phases.size(); ++i)
+        EXPECT_EQ(phases[i].seconds, 5.0 * static_cast<double>(i + 1));
+}
+
+TEST(Report, NamesPhasesAsTheColumnsOfSteps)
+{
+    for (const NamedSeconds& phase : list_phases({}))
+        EXPECT_THAT(step_header(), ::testing::HasSubstr("," + std::string(phase.name) + "_s,"));
+}
+
+TEST(Report, SumsARunWithoutStepsAndATornOne)
+{
+    const TemporaryDirectory dir;
+    EXPECT_EQ(sum_steps(write_steps(dir, 0)).steps, 0);
+    write_bytes(dir / "steps.csv", step_header() + "\n");
+    EXPECT_EQ(sum_steps(dir / "steps.csv").wall_seconds, 0.0);
+    write_steps(dir, 2);
+    write_bytes(dir / "steps.csv", read_bytes(dir / "steps.csv") + "3,0.75,0.2");
+    EXPECT_EQ(sum_steps(dir / "steps.csv").steps, 2);
+}
+
+TEST(Report, DoesNotLoseAResidualThatIsNotANumber)
+{
+    const TemporaryDirectory dir;
+    CsvWriter writer = CsvWriter::create(dir / "steps.csv", step_header());
+    StepRow row = make_row(1);
+    row.kkt_residual = std::nan("");
+    writer.append(format_row(row));
+    EXPECT_TRUE(std::isnan(sum_steps(dir / "steps.csv").max_kkt_residual));
+}
+
+TEST(Report, RefusesATableThatIsNotOfSteps)
+{
+    const TemporaryDirectory dir;
+    write_bytes(dir / "a.csv", "t,x\n0,1\n");
+    EXPECT_THROW(sum_steps(dir / "a.csv"), InputError);
+    std::string row = format_row(make_row(1));
+    write_bytes(dir / "a.csv", step_header() + "\n" + row.substr(row.find(',')) + "\n");  // no step number
+    EXPECT_THROW(sum_steps(dir / "a.csv"), InputError);
+}
+
+TEST(Report, WritesEveryFieldOfTheContract)
+{
+    const TemporaryDirectory dir;
+    RunReport report;
+    report.status = RunStatus::NotConverged;
+    report.message = "why";
+    report.totals = sum_steps(write_steps(dir, 4));
+    report.peak_memory_bytes = 1LL << 40;
+    report.effects = {"gravity", "obstacle"};
+    report.warnings = {"a warning"};
+    report.scene = {{"title", "T"}, {"time", {{"step", 0.1}}}};
+    report.version = "0.1.0";
+    report.threads = 2;
+    write_report_json(dir / "report.json", report);
+
+    const ordered_json json = ordered_json::parse(read_bytes(dir / "report.json"));
+    EXPECT_EQ(json["status"], "not_converged");
+    EXPECT_EQ(json["message"], "why");
+    EXPECT_EQ(json["steps"], 4);
+    EXPECT_EQ(json["simulated_seconds"], 1.0);
+    EXPECT_EQ(json["wall_seconds"], 275.0);
+    EXPECT_EQ(json["cpu_seconds"], 10.0);
+    EXPECT_EQ(json["peak_memory_bytes"], 1LL << 40);
+    EXPECT_EQ(json["max_penetration"], 0.125);
+    EXPECT_EQ(json["crossings"], 3);
+    EXPECT_EQ(json["max_kkt_residual"], 1e-11);
+    EXPECT_EQ(json["halved_steps"], 1);
+    EXPECT_EQ(json["effects"], (ordered_json{"gravity", "obstacle"}));
+    EXPECT_EQ(json["phases"]["solve"], 35.0);
+    EXPECT_EQ(json["phases"].size(), 10U);
+    EXPECT_EQ(json["warnings"], ordered_json::array({"a warning"}));
+    EXPECT_EQ(json["scene"], report.scene);
+    EXPECT_EQ(json["version"], "0.1.0");
+    EXPECT_EQ(json["threads"], 2);
+    EXPECT_EQ(json.size(), 17U);
+}
+
+TEST(Report, WritesEmptyListsAsLists)
+{
+    const ordered_json json = to_json(RunReport{});
+    EXPECT_TRUE(json["effects"].is_array());
+    EXPECT_TRUE(json["warnings"].is_array());
+    EXPECT_TRUE(json["scene"].is_object());
+    EXPECT_EQ(json["status"], "finished");
+}
+
+TEST(Report, NamesEveryStatus)
+{
+    using enum RunStatus;
+    const std::vector<std::pair<RunStatus, std::string>> names = {
+        {Finished, "finished"},       {Interrupted, "interrupted"},
+        {Infeasible, "infeasible"},   {NotConverged, "not_converged"},
+        {Penetration, "penetration"}, {NotFinite, "not_finite"},
+        {IoError, "io_error"}};
+    for (const auto& [status, name] : names) EXPECT_EQ(to_string(status), name);
+}
+
+TEST(Report, SurvivesTextThatIsNotUtf8)
+{
+    const TemporaryDirectory dir;
+    RunReport report;
+    report.message = "cannot write out/\xff\xfe.ply";
+    write_report_json(dir / "report.json", report);
+    EXPECT_THAT(ordered_json::parse(read_bytes(dir / "report.json"))["message"].get<std::string>(),
+                ::testing::StartsWith("cannot write out/"));
+}
+
+TEST(Report, MeasuresThisProcess)
+{
+    EXPECT_GT(peak_memory_bytes(), 1 << 20);
+    const double before = process_cpu_seconds();
+    volatile double sink = 0.0;
+    for (int i = 0; i < 10000000; ++i) sink = sink + 1.0;
+    EXPECT_GT(process_cpu_seconds(), before);
+}
+
+}  // namespace
+}  // namespace arris

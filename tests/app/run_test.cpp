@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole runs with the program itself.
+#include "app/run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+
+#include "app/csv_table.h"
+#include "app/frame.h"
+#include "tests/app/program.h"
+
+namespace arris {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScene = R"(
+title = "Flag"
+duration = 0.5
+[cloth]
+size = [1.0, 0.6]
+resolution = [8, 5]
+rotate = { axis = [1, 0, 0], degrees = 90 }
+[cloth.material]
+damping = 0.001
+[[pin]]
+material = [[0, 0], [0, 0.6]]
+angular_velocity = [0, 0, 1]
+release = 0.4
+[[pull]]
+material = [[1, 0.6], [1, 0.6]]
+force = [0, 0, -0.1]
+start = 0.1
+stop = 0.21
+[gravity]
+[wind]
+velocity = [2, 1, 0]
+gust = { amplitude = 0.5, frequency = 2, seed = 3 }
+[[probe]]
+name = "tip"
+material = [1, 0]
+[output]
+formats = ["obj", "usd", "viewer"]
+)";
+
+/// All of a file but what is seconds, memory or threads.
+std::string timeless(const fs::path& file)
+{
+    const std::string bytes = read_bytes(file.string());
+    if (file.filename() == "report.html") return "";  // the same as report.json, for a person
+    if (file.filename() == "report.json") {
+        nlohmann::json report = nlohmann::json::parse(bytes);
+        for (const char* key : {"wall_seconds", "cpu_seconds", "peak_memory_bytes", "phases", "threads"})
+            report.erase(key);
+        return report.dump();
+    }
+    if (file.filename() != "steps.csv") return bytes;
+    std::istringstream lines(bytes);
+    std::string line, kept;
+    std::vector<bool> is_seconds;
+    while (std::getline(lines, line)) {
+        std::istringstream cells(line);
+        std::string cell;
+        for (std::size_t k = 0; std::getline(cells, cell, ','); ++k) {
+            if (kept.find('\n') == std::string::npos) is_seconds.push_back(cell.ends_with("_s"));
+            if (!is_seconds[k]) kept += cell + ",";
+        }
+        kept += "\n";
+    }
+    return kept;
+}
+
+void expect_same_run(const std::string& a, const std::string& b)
+{
+    std::vector<std::string> files_a, files_b;
+    for (const auto& entry : fs::recursive_directory_iterator(a))
+        if (entry.is_regular_file()) files_a.push_back(fs::relative(entry.path(), a).string());
+    for (const auto& entry : fs::recursive_directory_iterator(b))
+        if (entry.is_regular_file()) files_b.push_back(fs::relative(entry.path(), b).string());
+    std::sort(files_a.begin(), files_a.end());
+    std::sort(files_b.begin(), files_b.end());
+    EXPECT_EQ(files_a, files_b);
+    for (const std::string& file : files_a) EXPECT_TRUE(timeless(fs::path(a) / file) == timeless(fs::path(b) / file)) << file;
+}
+
+class Run : public testing::Test {
+  protected:
+    Run() { write_bytes(scene, kScene); }
+
+    std::string run_through(const std::string& name, const std::vector<std::string>& more = {})
+    {
+        std::vector<std::string> arguments = {"run", scene, "-o", folder / name};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        Program program(folder, arguments);
+        EXPECT_EQ(program.wait(), 0) << program.err();
+        return folder / name;
+    }
+
+    TemporaryDirectory folder;
+    std::string scene = folder / "scene.toml";
+};
+
+TEST_F(Run, LeavesEveryFileOfTheContract)
+{
+    const std::string dir = run_through("through");
+    for (const char* name : {"steps.csv", "probes.csv", "report.json", "report.html", "viewer.html", "cloth.usda",
+                             "checkpoint", "frames/cloth_00000.ply", "frames/cloth_00012.ply", "frames/cloth_00012.obj"})
+        EXPECT_TRUE(fs::is_regular_file(fs::path(dir) / name)) << name;
+    EXPECT_FALSE(fs::exists(fs::path(dir) / "frames/cloth_00013.ply"));
+
+    const nlohmann::json report = nlohmann::json::parse(read_bytes(dir + "/report.json"));
+    EXPECT_EQ(report["status"], "finished");
+    EXPECT_EQ(report["effects"], nlohmann::json({"bending", "damping", "gravity", "wind", "pull", "pin"}));
+    const CsvTable steps = read_csv(dir + "/steps.csv");
+    EXPECT_EQ(report["steps"].get<std::size_t>() + 1, steps.row_count());
+    EXPECT_EQ(steps.column("time").back(), 0.5);
+    EXPECT_LE(report["max_kkt_residual"].get<double>(), 1e-9);
+    for (const double area : steps.column("material_area")) EXPECT_NEAR(area, 0.6, 0.6e-12);
+
+    // The probe sits on a vertex: the last frame has it where probes.csv says.
+    const CsvTable probes = read_csv(dir + "/probes.csv");
+    EXPECT_EQ(probes.row_count(), steps.row_count());
+    const Frame last = read_frame(dir + "/frames/cloth_00012.ply");
+    for (std::size_t v = 0; v < last.world.size(); ++v)
+        if (last.material[v] == Vec2(1, 0)) {
+            EXPECT_DOUBLE_EQ(last.world[v].x(), probes.column("tip_x").back());
+            EXPECT_DOUBLE_EQ(last.vertex_velocity[v].z(), probes.column("tip_vz").back());
+        }
+}
+
+TEST_F(Run, AnAbsentEffectHasEmptyColumns)
+{
+    write_bytes(scene, "duration = 0.02\n[cloth]\nsize=[1,1]\nresolution=[2,2]\n[cloth.material]\nbending_stiffness=0\n");
+    const CsvTable steps = read_csv(run_through("bare") + "/steps.csv");
+    for (const char* column : {"gravity_energy", "bending_energy", "eol_vertices", "feature_rows"})
+        for (const double cell : steps.column(column)) EXPECT_TRUE(std::isnan(cell)) << column;
+    for (const double cell : steps.column("kinetic_energy")) EXPECT_EQ(cell, 0.0);
+}
+
+TEST_F(Run, IsBitIdenticalForAnyNumberOfThreads)
+{
+    const std::string one = run_through("one", {"--threads", "1"});
+    expect_same_run(one, run_through("two", {"--threads", "2"}));
+    expect_same_run(one, run_through("four", {"--threads", "4"}));
+}
+
+TEST_F(Run, KilledAtRandomMomentsAndResumedItIsTheSameRun)
+{
+    const std::string through = run_through("through");
+    std::mt19937 random(5);
+    int kills = 0;
+    for (int trial = 0; trial < 3; ++trial) {
+        const std::string dir = folder / ("killed" + std::to_string(trial));
+        std::vector<std::string> arguments = {"run", scene, "-o", dir};
+        for (int part = 0; part < 100; ++part) {
+            Program program(folder, arguments);
+            const int delay = std::uniform_int_distribution<int>(20, 60 + 40 * part)(random);
+            const int status = program.stop_after(std::chrono::milliseconds(delay), SIGKILL);
+            if (status == 0) break;
+            ASSERT_EQ(status, -SIGKILL) << program.err();
+            ++kills;
+            arguments = fs::exists(dir + "/checkpoint")
+                            ? std::vector<std::string>{"resume", dir}
+                            : std::vector<std::string>{"run", scene, "-o", dir, "--overwrite"};
+        }
+        expect_same_run(through, dir);
+    }
+    EXPECT_GT(kills, 3);
+}
+
+TEST_F(Run, CtrlCLeavesACheckpointToGoOnFrom)
+{
+    const std::string through = run_through("through", {"--set", "duration=2"});
+    const std::string dir = folder / "stopped";
+    Program program(folder, {"run", scene, "-o", dir, "--set", "duration=2"});
+    while (!fs::exists(dir + "/frames/cloth_00002.ply")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ASSERT_EQ(program.stop_after(std::chrono::milliseconds(0), SIGINT), 130);
+    EXPECT_NE(program.err().find("interrupted"), std::string::npos);
+    EXPECT_EQ(nlohmann::json::parse(read_bytes(dir + "/report.json"))["status"], "interrupted");
+    EXPECT_TRUE(fs::exists(dir + "/viewer.html"));
+
+    Program resumed(folder, {"resume", dir});
+    EXPECT_EQ(resumed.wait(), 0) << resumed.err();
+    expect_same_run(through, dir);
+}
+
+TEST_F(Run, UntilGoesOnPastTheEnd)
+{
+    const std::string dir = run_through("through");
+    Program program(folder, {"resume", dir, "--until", "0.75"});
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    EXPECT_EQ(read_csv(dir + "/steps.csv").column("time").back(), 0.75);
+    EXPECT_TRUE(fs::exists(dir + "/frames/cloth_00018.ply"));
+    Program back(folder, {"resume", dir, "--until", "0.6"});
+    EXPECT_EQ(back.wait(), 2);
+    EXPECT_NE(back.err().find("--until 0.6"), std::string::npos) << back.err();
+}
+
+TEST_F(Run, AFolderWithARunIsRefusedWithoutOverwrite)
+{
+    const std::string dir = run_through("through");
+    write_bytes(dir + "/notes.txt", "mine");
+    Program again(folder, {"run", scene, "-o", dir});
+    EXPECT_EQ(again.wait(), 2);
+    EXPECT_NE(again.err().find("--overwrite"), std::string::npos) << again.err();
+    Program over(folder, {"run", scene, "-o", dir, "--overwrite", "--set", "duration=0.1"});
+    EXPECT_EQ(over.wait(), 0) << over.err();
+    EXPECT_FALSE(fs::exists(dir + "/frames/cloth_00005.ply")) << "frames of the earlier run";
+    EXPECT_EQ(read_bytes(dir + "/notes.txt"), "mine");
+}
+
+TEST_F(Run, NumbersThatOverflowEndItWithItsStateKept)
+{
+    const std::string dir = folder / "wild";
+    Program program(folder, {"run", scene, "-o", dir, "--set", "cloth.material.density=1e-300", "--set",
+                             "cloth.material.youngs_modulus=1e-300", "--set", "pull.0.force=[0,0,1e9]"});
+    EXPECT_EQ(program.wait(), 1) << program.err();
+    const nlohmann::json report = nlohmann::json::parse(read_bytes(dir + "/report.json"));
+    EXPECT_EQ(report["status"], "not_finite") << report["message"];
+    EXPECT_TRUE(fs::exists(dir + "/checkpoint"));
+    EXPECT_TRUE(fs::exists(dir + "/viewer.html"));
+}
+
+}  // namespace
+}  // namespace arris

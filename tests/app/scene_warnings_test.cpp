@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene_warnings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace arris {
+namespace {
+
+const std::string kBase = "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";  // 4 lines
+const std::string kPin = "[[pin]]\nmaterial = [[0, 0], [0, 1]]\n";
+const std::string kPull = "[[pull]]\nmaterial = [[1, 0], [1, 1]]\n";
+
+struct IneffectiveKey {
+    std::string name;
+    std::string text;  ///< after kBase
+    std::string warning;
+};
+
+void PrintTo(const IneffectiveKey& key, std::ostream* out)
+{
+    *out << key.name;
+}
+
+class IneffectiveKeyTest : public ::testing::TestWithParam<IneffectiveKey> {};
+
+TEST_P(IneffectiveKeyTest, IsTheOneWarning)
+{
+    const RunConfig config = load_scene(SceneSource{"s.toml", kBase + GetParam().text, {}});
+    EXPECT_THAT(config.warnings, ::testing::ElementsAre("s.toml:" + GetParam().warning));
+}
+
+const std::vector<IneffectiveKey> kIneffectiveKeys = {
+    {"Units", "units = \"cm\"\n", "5: cloth.units = \"cm\": has no effect: the cloth is not from a file"},
+    {"Up", "up = \"y\"\n", "5: cloth.up = \"y\": has no effect: the cloth is not from a file"},
+    {"PatternAngle", "pattern = \"unstructured\"\npattern_angle = 10\n",
+     "6: cloth.pattern_angle = 10: has no effect: an unstructured mesh has no direction"},
+    {"Preset",
+     "[cloth.material]\npreset = \"silk\"\ndensity = 1\nyoungs_modulus = 1\npoisson_ratio = "
+     "0\nbending_stiffness = 0\n",
+     "6: cloth.material.preset = \"silk\": has no effect: all its values are overridden"},
+    {"Thickness", "[cloth.material]\nthickness = 1e-3\n",
+     "6: cloth.material.thickness = 1e-3: has no effect: there is no obstacle to keep away from"},
+    {"Gravity", "[gravity]\nacceleration = [0, 0, 0]\n",
+     "6: gravity.acceleration = [0, 0, 0]: has no effect: it is zero"},
+    {"Drag", "[wind]\nvelocity = [1, 0, 0]\ndrag = 0\n", "5: wind: has no effect: its drag is zero"},
+    {"AirDensity", "[wind]\nvelocity = [1, 0, 0]\nair_density = 0\n",
+     "5: wind: has no effect: its air_density is zero"},
+    {"GustAmplitude", "[wind]\nvelocity = [1, 0, 0]\ngust = { amplitude = 0, frequency = 1 }\n",
+     "7: wind.gust = { amplitude = 0, frequency = 1 }: has no effect: its amplitude is zero"},
+    {"GustOfStillAir", "[wind]\nvelocity = [0, 0, 0]\n[wind.gust]\namplitude = 1\nfrequency = 1\n",
+     "7: wind.gust: has no effect: the wind's velocity is zero"},
+    {"Force", kPull + "force = [0, 0, 0]\n", "7: pull.0.force = [0, 0, 0]: has no effect: it is zero"},
+    {"LateStart", kPull + "force = [0, 0, 1]\nstart = 1\n",
+     "8: pull.0.start = 1: has no effect: the pull starts after the end of the run"},
+    {"LateStop", kPull + "force = [0, 0, 1]\nstop = 1\n",
+     "8: pull.0.stop = 1: has no effect: the run ends before"},
+    {"LateRelease", kPin + "release = 1.5\n", "7: pin.0.release = 1.5: has no effect: the run ends before"},
+    {"EarlyRelease", kPin + "release = 0\n",
+     "7: pin.0.release = 0: has no effect: the pin is released before it holds anything"},
+    {"Pivot", kPin + "pivot = [0, 0, 1]\n",
+     "7: pin.0.pivot = [0, 0, 1]: has no effect: there is no angular_velocity about it"},
+    {"VelocityAcross", kPin + "velocity = [1, 0, 0]\ndirections = [\"z\"]\n",
+     "7: pin.0.velocity = [1, 0, 0]: has no effect: the pin does not hold x"},
+    {"LateKeyframe", kPin + "keyframes = [ { time = 0 }, { time = 1 }, { time = 1.5 } ]\n",
+     "7: pin.0.keyframes.2.time = 1.5: has no effect: the one before is at the end of the run already"},
+    {"Formats", "[output]\nframes_per_second = 0\nformats = [\"obj\"]\n",
+     "7: output.formats = [\"obj\"]: has no effect: with frames_per_second = 0 there are no frames to make "
+     "them from"},
+    {"LongStep", "[time]\nstep = 0.1\n[output]\nframes_per_second = 20\n",
+     "6: time.step = 0.1: has no effect: no interval between frames is longer than 0.05 s"},
+    {"OverlappingPins", kPin + "velocity = [0, 0, 1]\n[[pin]]\nmaterial = [[0, 0], [1, 0]]\n",
+     "9: pin.1.material = [[0, 0], [1, 0]]: holds 3 vertex directions that pin.0 holds too; there pin.1 "
+     "alone decides"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Scene, IneffectiveKeyTest, ::testing::ValuesIn(kIneffectiveKeys),
+                         [](const auto& key) { return key.param.name; });
+
+TEST(SceneWarnings, AreNotGivenForDefaultsOfTheSameValue)
+{
+    const RunConfig config =
+        load_scene(SceneSource{"s.toml", kBase + kPin + "[output]\nframes_per_second = 0\n", {}});
+    EXPECT_TRUE(config.warnings.empty());
+}
+
+TEST(SceneWarnings, AreNotGivenForKeysThatWork)
+{
+    const std::string text =
+        kBase + "[time]\nstep = 0.05\n[output]\nframes_per_second = 20\n" + kPin +
+        "velocity = [0, 0, 1]\nangular_velocity = [0, 0, 1]\npivot = [0, 0, 1]\nrelease = 0.5\n" + kPull +
+        "force = [0, 0, 1]\nstart = 0.5\nstop = 0.9\n[cloth.material]\npreset = \"silk\"\ndensity = 1\n";
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", text, {}}).warnings, ::testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace arris
