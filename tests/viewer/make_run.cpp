@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// make_run DIR TITLE FRAMES CELLS [MOST_BYTES]: a run without a simulation, for looking at the viewer and
+// testing it. A square cloth waves and folds over a sharp edge that wanders along it: EOL edges and mesh
+// change with time.
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <numbers>
+#include <string>
+
+#include "app/frame.h"
+#include "app/viewer_html.h"
+
+namespace arris {
+namespace {
+
+constexpr double kFramesPerSecond = 24.0;
+constexpr double kSize = 1.0;  // m
+
+/// Bends a flat point at `edge` on the u axis: beyond it the cloth hangs down steeply.
+Vec3 fold(double u, double v, double edge, double wave)
+{
+    const double over = std::max(0.0, u - edge);
+    const double drop = 1.35;  // rad
+    return {std::min(u, edge) + over * std::cos(drop), v, 0.6 + wave - over * std::sin(drop)};
+}
+
+Frame make_frame(int number, int frames, int cells)
+{
+    Frame frame;
+    const double phase = 2.0 * std::numbers::pi * number / std::max(frames, 1);
+    // The column of vertices on the edge follows it; where it passes a column it takes the next one.
+    const double edge = 0.62 + 0.12 * std::sin(phase);
+    const int column = static_cast<int>(std::lround(edge * cells));
+    const bool is_folded = number >= frames / 3;
+    for (int i = 0; i <= cells; ++i) {
+        for (int j = 0; j <= cells; ++j) {
+            const double u = is_folded && i == column ? edge : kSize * i / cells;
+            const double v = kSize * j / cells;
+            const double free = is_folded ? std::max(0.0, edge - u) : u;
+            const double wave = 0.16 * free * std::sin(9.0 * free - 2.0 * phase) +
+                                0.03 * std::cos(7.0 * v + phase) * std::abs(u - edge);
+            frame.world.push_back(fold(u, v, is_folded ? edge : 9.0, wave));
+            frame.material.emplace_back(u, v);
+            const bool is_on_edge = is_folded && i == column;
+            frame.eol.push_back(is_on_edge ? (j == 0 || j == cells ? 2 : 1) : 0);
+            frame.contact.push_back(is_on_edge || (is_folded && i > column - 5 && i < column) ? 1 : 0);
+        }
+    }
+    const auto vertex = [&](int i, int j) { return i * (cells + 1) + j; };
+    for (int i = 0; i < cells; ++i) {
+        for (int j = 0; j < cells; ++j) {
+            frame.faces.push_back({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)});
+            frame.faces.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+        }
+    }
+    if (is_folded)
+        for (int j = 0; j < cells; ++j) frame.eol_edges.push_back({vertex(column, j), vertex(column, j + 1)});
+    for (const Face& face : frame.faces) {
+        const Vec2 middle =
+            (frame.material[face[0]] + frame.material[face[1]] + frame.material[face[2]]) / 3.0;
+        frame.strain.push_back(0.06 * std::exp(-40.0 * std::pow(middle.x() - edge, 2)) +
+                               0.01 * std::sin(12.0 * middle.y() + phase));
+    }
+    const std::size_t n = frame.world.size(), m = frame.faces.size();
+    frame.vertex_velocity.assign(n, Vec3::Zero());
+    frame.material_velocity.assign(n, Vec3::Zero());
+    for (std::size_t v = 0; v < n; ++v) frame.ids.push_back(static_cast<std::uint32_t>(v));
+    frame.stretch_energy.assign(m, 0.0);
+    frame.bending_energy.assign(m, 0.0);
+    return frame;
+}
+
+void make_run(const std::string& directory, int frames, int cells, const ViewerOptions& options)
+{
+    std::filesystem::create_directories(directory + "/frames");
+    for (int number = 0; number < frames; ++number) {
+        std::string digits = std::to_string(number);
+        digits.insert(0, 5 - digits.size(), '0');
+        write_frame(directory + "/frames/cloth_" + digits + ".ply", make_frame(number, frames, cells));
+    }
+    write_viewer(directory, options);
+}
+
+}  // namespace
+}  // namespace arris
+
+int main(int argc, char** argv)
+{
+    if (argc < 5 || argc > 6) {
+        std::fputs("usage: make_run DIR TITLE FRAMES CELLS [MOST_BYTES]\n", stderr);
+        return 2;
+    }
+    try {
+        arris::ViewerOptions options{argv[2], arris::kFramesPerSecond};
+        if (argc == 6) options.most_bytes = std::stoul(argv[5]);
+        arris::make_run(argv[1], std::stoi(argv[3]), std::stoi(argv[4]), options);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "make_run: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// The page's reader against the frames on disk, without a browser.
+
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { test } from "node:test";
+import { deflateSync, inflateSync } from "node:zlib";
+import { BrokenData, Run, normalGroups } from "../../viewer/src/run.js";
+import { documentOf, makeRun, pageOf, readPly } from "./support.mjs";
+
+const kFloatRounding = 1e-7; // of single precision, relative to the run's extent
+const run = makeRun("reader", { frames: 30, cells: 12 });
+const page = pageOf(run);
+const open = (text) => new Run(documentOf(text));
+const frameFile = (index) => join(run, "frames", `cloth_${String(index).padStart(5, "0")}.ply`);
+
+test("every frame is what is on disk, to half a level of its box", async () => {
+  const reader = open(page);
+  assert.equal(reader.frames.length, 30);
+  for (const position of [29, 0, 10, 11, 9, 10, 20]) {
+    const [frame, truth, { size, strain }] =
+      [await reader.load(position), readPly(frameFile(position)), reader.frames[position]];
+    assert.equal(frame.positions.length, truth.positions.length);
+    truth.positions.forEach((value, i) => {
+      const error = Math.abs(frame.positions[i] + reader.origin[i % 3] - value);
+      assert.ok(error <= 0.5001 * size[i % 3] / 65535 + kFloatRounding, `coordinate ${i}: ${error}`);
+    });
+    truth.strain.forEach((value, f) =>
+      assert.ok(Math.abs(frame.strain[f] - value) <= 0.5001 * strain[1] / 65535 + kFloatRounding));
+    truth.contact.forEach((value, v) => assert.equal((frame.contact[v >> 3] >> (v & 7)) & 1, value));
+    assert.deepEqual([...frame.topology.faces], truth.faces);
+    assert.deepEqual([...frame.topology.edges], truth.edges);
+  }
+});
+
+test("frames are found by time and by number", () => {
+  const reader = open(page);
+  assert.equal(reader.time(29), 29 / 24);
+  for (const rate of [24, 29.97, 1000 / 7, 0.3]) {
+    const other = open(page.replace('"frames_per_second":24.0', `"frames_per_second":${rate}`));
+    for (let k = 0; k < 30; ++k) assert.equal(other.positionAt(other.time(k)), k, `frame ${k} at ${rate} a second`);
+  }
+  assert.equal(reader.positionAt(12.9 / 24), 12);
+  assert.equal(reader.positionAt(1e9), 29);
+  assert.equal(reader.positionAt(-1), 0);
+  const thin = open(pageOf(makeRun("thin", { frames: 30, cells: 12, mostBytes: 12000 })));
+  assert.ok(thin.stride >= 4, `stride ${thin.stride}`);
+  assert.equal(thin.frames.at(-1).index, 29);
+  const indices = thin.frames.map((frame) => frame.index);
+  for (let k = 0; k < 30; ++k) {
+    const nearest = Math.min(...indices.map((index) => Math.abs(index - k)));
+    assert.equal(Math.abs(indices[thin.positionOf(k)] - k), nearest, `frame ${k}`);
+  }
+});
+
+test("normals are shared within the cloth and split along EOL edges", () => {
+  // A fan of four faces around vertex 4, in the middle of the square 0 1 2 3.
+  const faces = new Uint32Array([0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4]);
+  const middle = [2, 5, 8, 11];
+  const groupsOf = (edges) => middle.map((corner) => normalGroups(faces, new Uint32Array(edges), 5).groups[corner]);
+  assert.equal(new Set(groupsOf([])).size, 1);
+  assert.equal(new Set(groupsOf([0, 4])).size, 1, "an edge that ends at the vertex does not part its faces");
+  const [a, b, c, d] = groupsOf([1, 4, 4, 3]);
+  assert.ok(b === c && d === a && a !== b, "two edges part them in two");
+  const { groups, groupCount } = normalGroups(faces, new Uint32Array([1, 4, 4, 3]), 5);
+  assert.ok(groups.every((group) => group < groupCount));
+});
+
+const kBreaks = {
+  "no meta": (text) => text.replace('id="arris-meta"', 'id="other"'),
+  "meta cut off": (text) => text.replace('"run_frames"', ""),
+  "another format": (text) => text.replace('"format":1', '"format":2'),
+  "no frames": (text) => text.replace(/"frames":\[.*\]\}<\/script>/, '"frames":[]}</script>'),
+  "a box that is no number": (text) => text.replace(/"least":\[[^\]]*\]/, '"least":[0,0,null]'),
+  "a mesh that is not listed": (text) => text.replace('"topology":0', '"topology":77'),
+  "no frames a second": (text) => text.replace('"frames_per_second":24.0', '"frames_per_second":0'),
+};
+for (const [name, damage] of Object.entries(kBreaks)) {
+  test(`a list with ${name} is refused in words`, () => {
+    assert.notEqual(damage(page), page);
+    assert.throws(() => open(damage(page)), (error) => error instanceof BrokenData && error.message.length > 20);
+  });
+}
+
+const block = /(id="arris-frame-0">)([^<]*)/;
+const kFrameBreaks = {
+  "missing data": (text) => text.replace('id="arris-frame-0"', 'id="other"'),
+  "data that are no base64": (text) => text.replace(block, "$1*$2"),
+  "data cut off": (text) => text.replace(block, (_, head, data) => head + data.slice(0, 400)),
+  "no data": (text) => text.replace(block, "$1"),
+  "damaged data": (text) => text.replace(block, (_, head, data) => `${head}${data.slice(0, 200)}AAAA${data.slice(204)}`),
+  "another frame's length": (text) => text.replace('"vertices":169', '"vertices":170'),
+  "too few vertices for its mesh": (text) => text.replace('"vertices":169', '"vertices":168'),
+  "a missing mesh": (text) => text.replace('id="arris-topology-0"', 'id="other"'),
+};
+/** The first corner's vertex, 0, becomes 200 of 169; all other corners follow, as they are stored as differences. */
+kFrameBreaks["a mesh that names vertices that do not exist"] = (text) =>
+  text.replace(/(id="arris-topology-0">)([^<]*)/, (_, head, data) => {
+    const bytes = inflateSync(Buffer.from(data, "base64"));
+    const count = bytes.length / 4;
+    bytes[2 * count] = 400 >> 8;
+    bytes[3 * count] = 400 & 255;
+    return head + deflateSync(bytes).toString("base64");
+  });
+
+for (const [name, damage] of Object.entries(kFrameBreaks)) {
+  test(`a frame with ${name} is refused by name, and the others are shown`, async () => {
+    assert.notEqual(damage(page), page);
+    const reader = open(damage(page));
+    await assert.rejects(reader.load(0), (error) => error instanceof BrokenData && /^Frame 0 cannot be shown/.test(error.message));
+    await reader.load(29);
+  });
+}

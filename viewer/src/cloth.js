@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+// The cloth of one frame as three.js objects: lit faces, EOL edges and EOL corners.
+//
+// Every face has its own three corners, so that strain is shown as computed, one value a face, and a normal may jump
+// across an EOL edge. Mesh edges are drawn by the faces' shader from the distance to the face's sides: of even
+// width on the screen, hidden where the cloth hides them, and without a second geometry.
+
+import {
+  BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Group, Mesh, MeshStandardMaterial, Points,
+  PointsMaterial,
+} from "three";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
+import { kBeyond, kRamp, linear, palette } from "./colours.js";
+
+const kMode = { none: 0, strain: 1, contact: 2 };
+
+const kVertexHead = `
+attribute float value;
+varying float vValue;
+varying vec3 vBarycentric;
+`;
+const kVertexBody = `
+vValue = value;
+int corner = gl_VertexID % 3;
+vBarycentric = vec3(corner == 0, corner == 1, corner == 2);
+`;
+const kFragmentHead = `
+uniform int uMode;
+uniform float uTop;
+uniform vec3 uFront, uBack, uBeyond, uContact, uFree, uEdge;
+uniform float uEdges;
+uniform vec3 uRamp[${kRamp.length}];
+varying float vValue;
+varying vec3 vBarycentric;
+
+vec3 strainColour(float strain) {
+  if (strain > uTop) return uBeyond;
+  float place = clamp(strain / uTop, 0.0, 1.0) * float(${kRamp.length - 1});
+  int step = min(int(place), ${kRamp.length - 2});
+  return mix(uRamp[step], uRamp[step + 1], place - float(step));
+}
+`;
+// The back of a coloured cloth is a little darker, so that its sides are told apart without changing the hue.
+const kFragmentColour = `
+float side = gl_FrontFacing ? 1.0 : 0.8;
+if (uMode == ${kMode.strain}) diffuseColor.rgb = side * strainColour(vValue);
+else if (uMode == ${kMode.contact}) diffuseColor.rgb = side * mix(uFree, uContact, smoothstep(0.25, 0.75, vValue));
+else diffuseColor.rgb = gl_FrontFacing ? uFront : uBack;
+`;
+// Distances to the three sides in pixels; edges fade out where faces are only a few pixels high.
+const kFragmentEdges = `
+vec3 slope = max(fwidth(vBarycentric), vec3(1e-9));
+vec3 pixels = vBarycentric / slope;
+float height = 1.0 / max(slope.x, max(slope.y, slope.z));
+float edge = 1.0 - smoothstep(0.3, 1.1, min(pixels.x, min(pixels.y, pixels.z)));
+outgoingLight = mix(outgoingLight, uEdge, edge * uEdges * smoothstep(2.0, 7.0, height));
+`;
+
+function makeFaceMaterial(uniforms) {
+  const material = new MeshStandardMaterial({
+    side: DoubleSide, roughness: 0.82, metalness: 0, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2,
+  });
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, uniforms);
+    const insert = (source, chunk, before, after) => {
+      if (!source.includes(chunk)) throw new Error(`three.js has no ${chunk} any more`);
+      return source.replace(chunk, `${before}\n${chunk}\n${after}`);
+    };
+    shader.vertexShader = insert(kVertexHead + shader.vertexShader, "#include <begin_vertex>", "", kVertexBody);
+    shader.fragmentShader = kFragmentHead + shader.fragmentShader;
+    shader.fragmentShader = insert(shader.fragmentShader, "#include <color_fragment>", "", kFragmentColour);
+    shader.fragmentShader = insert(shader.fragmentShader, "#include <opaque_fragment>", kFragmentEdges, "");
+  };
+  return material;
+}
+
+function makeDotMaterial() {
+  const material = new PointsMaterial({ size: 9, sizeAttenuation: false });
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace(
+      "#include <clipping_planes_fragment>",
+      "#include <clipping_planes_fragment>\nif (length(gl_PointCoord - 0.5) > 0.5) discard;");
+  };
+  return material;
+}
+
+/** Unit normals of the groups of corners, weighted by area. */
+function computeNormals(positions, faces, groups, groupCount) {
+  const normals = new Float32Array(3 * groupCount);
+  for (let c = 0; c < faces.length; c += 3) {
+    const [a, b, d] = [3 * faces[c], 3 * faces[c + 1], 3 * faces[c + 2]];
+    const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1], uz = positions[b + 2] - positions[a + 2];
+    const vx = positions[d] - positions[a], vy = positions[d + 1] - positions[a + 1], vz = positions[d + 2] - positions[a + 2];
+    const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    for (let k = 0; k < 3; ++k) {
+      const group = 3 * groups[c + k];
+      normals[group] += nx;
+      normals[group + 1] += ny;
+      normals[group + 2] += nz;
+    }
+  }
+  for (let g = 0; g < normals.length; g += 3) {
+    const length = Math.hypot(normals[g], normals[g + 1], normals[g + 2]);
+    const scale = length > 0 ? 1 / length : 0;
+    for (let k = 0; k < 3; ++k) normals[g + k] *= scale;
+  }
+  return normals;
+}
+
+export class Cloth {
+  group = new Group();
+  #mode = "none";
+  #frame = null;
+  #uniforms = {
+    uMode: { value: 0 }, uTop: { value: 1 }, uEdges: { value: 0 }, uFront: { value: null }, uBack: { value: null },
+    uBeyond: { value: linear(kBeyond) }, uContact: { value: null }, uFree: { value: null }, uEdge: { value: null },
+    uRamp: { value: kRamp.map(linear) },
+  };
+  #faces = new Mesh(new BufferGeometry(), makeFaceMaterial(this.#uniforms));
+  #lines = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ linewidth: 3 }));
+  #dots = new Points(new BufferGeometry(), makeDotMaterial());
+
+  constructor() {
+    this.#faces.castShadow = this.#faces.receiveShadow = true;
+    for (const object of [this.#faces, this.#lines, this.#dots]) {
+      object.frustumCulled = false;
+      object.visible = false;
+      this.group.add(object);
+    }
+    this.usePalette();
+  }
+
+  usePalette() {
+    const colours = palette();
+    this.#uniforms.uFront.value = linear(colours.front);
+    this.#uniforms.uBack.value = linear(colours.back);
+    this.#uniforms.uContact.value = linear(colours.contact);
+    this.#uniforms.uFree.value = linear(colours.free);
+    this.#uniforms.uEdge.value = linear(colours.edge);
+    this.#lines.material.color.set(colours.eol);
+    this.#dots.material.color.set(colours.eol);
+  }
+
+  /** What the faces' colour shows: "none", "strain" or "contact". */
+  setMode(mode) {
+    this.#mode = mode;
+    this.#uniforms.uMode.value = kMode[mode];
+    if (this.#frame) this.#fillValues();
+  }
+
+  setStrainTop(top) {
+    this.#uniforms.uTop.value = top;
+  }
+
+  setEdges(areShown) {
+    this.#uniforms.uEdges.value = areShown ? 0.62 : 0;
+  }
+
+  hide() {
+    this.#frame = null;
+    this.#faces.visible = this.#lines.visible = this.#dots.visible = false;
+  }
+
+  show(frame) {
+    this.#frame = frame;
+    const { faces, groups, groupCount, edges, corners } = frame.topology;
+    this.#reserve(faces.length);
+    const position = this.#faces.geometry.attributes.position;
+    const normal = this.#faces.geometry.attributes.normal;
+    const normals = computeNormals(frame.positions, faces, groups, groupCount);
+    for (let c = 0, out = 0; c < faces.length; ++c) {
+      const [vertex, group] = [3 * faces[c], 3 * groups[c]];
+      for (let k = 0; k < 3; ++k, ++out) {
+        position.array[out] = frame.positions[vertex + k];
+        normal.array[out] = normals[group + k];
+      }
+    }
+    for (const attribute of [position, normal]) this.#upload(attribute, 3 * faces.length);
+    this.#fillValues();
+    this.#faces.geometry.setDrawRange(0, faces.length);
+    this.#faces.visible = true;
+    this.#showFeatures(frame.positions, edges, corners);
+  }
+
+  /** Room for `corners` corners, a quarter more than needed, as adaptive meshes grow by a few faces at a time. */
+  #reserve(corners) {
+    const old = this.#faces.geometry;
+    if (old.attributes.position?.count >= corners) return;
+    const room = 3 * Math.ceil(corners / 3 * 1.25);
+    old.dispose();
+    const geometry = new BufferGeometry();
+    for (const [name, size] of [["position", 3], ["normal", 3], ["value", 1]])
+      geometry.setAttribute(name, new BufferAttribute(new Float32Array(size * room), size).setUsage(DynamicDrawUsage));
+    this.#faces.geometry = geometry;
+  }
+
+  #upload(attribute, count) {
+    attribute.clearUpdateRanges();
+    attribute.addUpdateRange(0, count);
+    attribute.needsUpdate = true;
+  }
+
+  #fillValues() {
+    const { topology: { faces }, strain, contact } = this.#frame;
+    const value = this.#faces.geometry.attributes.value;
+    if (this.#mode === "strain") {
+      for (let c = 0; c < faces.length; ++c) value.array[c] = strain[(c / 3) | 0];
+    } else if (this.#mode === "contact") {
+      for (let c = 0; c < faces.length; ++c) value.array[c] = (contact[faces[c] >> 3] >> (faces[c] & 7)) & 1;
+    } else {
+      return;
+    }
+    this.#upload(value, faces.length);
+  }
+
+  #showFeatures(positions, edges, corners) {
+    const gather = (vertices) => {
+      const result = new Float32Array(3 * vertices.length);
+      vertices.forEach((vertex, i) => result.set(positions.subarray(3 * vertex, 3 * vertex + 3), 3 * i));
+      return result;
+    };
+    this.#lines.visible = edges.length > 0;
+    this.#dots.visible = corners.length > 0;
+    this.#lines.geometry.dispose();
+    this.#lines.geometry = new LineSegmentsGeometry();
+    if (edges.length > 0) this.#lines.geometry.setPositions(gather(edges));
+    this.#dots.geometry.dispose();
+    this.#dots.geometry = new BufferGeometry();
+    this.#dots.geometry.setAttribute("position", new BufferAttribute(gather(corners), 3));
+  }
+}

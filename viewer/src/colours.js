@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The colours of the cloth, its lines and the strain scale, for a light and a dark page.
+
+import { Color } from "three";
+
+/**
+ * The strain scale, in even steps of lightness from the grey of cloth at rest to a deep red: lightness falls all the
+ * way (so it is read without telling hues apart) and begins high, which leaves room for light and shadow at rest.
+ */
+export const kRamp = ["#e9e6df", "#f6deaa", "#fbc672", "#f8a44a", "#ee7d35", "#d8562b", "#b53329", "#8a1a2c", "#5e0d2b"];
+export const kBeyond = "#3b35e6"; // strains above the scale's top
+
+const kLight = { front: "#4f8fc9", back: "#e0a458", edge: "#0d1b2a", eol: "#d4008c", contact: "#0a9b63",
+                 free: "#c9ced6", sky: "#ffffff", floor: "#d8d0c6", gridLine: "#39424f", gridStrength: 0.3, shadow: 0.18 };
+const kDark = { front: "#5b9bd8", back: "#dba055", edge: "#05090f", eol: "#ff3db5", contact: "#14b877",
+                free: "#b4bac4", sky: "#eaf0fa", floor: "#8f8a84", gridLine: "#aab6c6", gridStrength: 0.24, shadow: 0.42 };
+
+const kScheme = window.matchMedia("(prefers-color-scheme: dark)");
+
+export function palette() {
+  return kScheme.matches ? kDark : kLight;
+}
+
+export function onPaletteChange(listener) {
+  kScheme.addEventListener("change", listener);
+}
+
+/** `colour` as the three linear components that shaders calculate with. */
+export function linear(colour) {
+  return new Color(colour);
+}
+
+const kRoundSteps = [1, 1.2, 1.6, 2, 2.4, 3, 4, 5, 6, 8, 10]; // their quarters are short too
+
+/** The next round number, not below `value`. */
+export function roundUp(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return power * (kRoundSteps.find((step) => step * power >= value * (1 - 1e-9)) ?? 10);
+}

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+// The page: opens the run, then on every screen refresh lets the clock say which frame is due, decodes it and draws.
+// The address may say what to show first: viewer.html#frame=12&colour=strain&edges=1&ui=0 (see ../README.md).
+
+import { Clock } from "./clock.js";
+import { Cloth } from "./cloth.js";
+import { onPaletteChange } from "./colours.js";
+import {
+  firstStrainTop, hideMessage, showAxes, showFacts, showHeading, showLegend, showMessage, showMoment,
+} from "./panels.js";
+import { BrokenData, Run } from "./run.js";
+import { Stage } from "./stage.js";
+
+const kModes = ["none", "strain", "contact"];
+const kAhead = 4; // frames decoded before they are due
+const kPlayIcon = "M4 2.5v11l9-5.5z";
+const kPauseIcon = "M3.5 2.5h3.2v11H3.5zM9.3 2.5h3.2v11H9.3z";
+
+const byId = (id) => document.getElementById(id);
+
+class Viewer {
+  #run = new Run(document);
+  #stage = this.#openStage();
+  #cloth = new Cloth();
+  #clock = new Clock(this.#run.time(this.#run.frames.length - 1), this.#run.stride / this.#run.framesPerSecond);
+  #wanted = 0; // position in the run's list of frames
+  #shown = -1;
+  #isLoading = false;
+  #mode = "none";
+  #hasEdges = false;
+  #strainTop = firstStrainTop(this.#run);
+
+  start() {
+    this.#stage.add(this.#cloth.group);
+    this.#cloth.setStrainTop(this.#strainTop);
+    showHeading(this.#run);
+    byId("scrub").max = this.#run.frames.length - 1;
+    this.#connect();
+    this.#resize();
+    if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches && this.#run.frames.length > 1)
+      this.#clock.play();
+    this.#applyAddress();
+    requestAnimationFrame((now) => this.#tick(now));
+  }
+
+  #openStage() {
+    try {
+      return new Stage(byId("stage"), this.#run);
+    } catch (error) {
+      throw new BrokenData("This browser gives the page no WebGL 2, which it needs to draw. Another browser, or " +
+                           `hardware acceleration in this browser's settings, may help.\n\n(${error.message})`);
+    }
+  }
+
+  #tick(now) {
+    requestAnimationFrame((next) => this.#tick(next));
+    this.#clock.tick(now);
+    if (this.#clock.isPlaying) this.#wanted = this.#run.positionAt(this.#clock.time);
+    this.#showPlaying();
+    this.#bringFrame();
+    if (this.#stage.draw()) showAxes(this.#stage.axes());
+    const marks = document.documentElement.dataset; // for scripts that watch the page
+    marks.wanted = this.#run.frames[this.#wanted].index;
+    marks.frame = this.#shown < 0 ? "" : this.#run.frames[this.#shown].index;
+  }
+
+  /** Shows the wanted frame if it is decoded; else decodes it, and the frame shown stays until then. */
+  #bringFrame() {
+    if (this.#wanted === this.#shown || this.#isLoading) return;
+    const frame = this.#run.peek(this.#wanted);
+    if (frame) {
+      this.#showFrame(this.#wanted, frame);
+      this.#decodeAhead();
+      return;
+    }
+    const position = this.#wanted;
+    this.#isLoading = true;
+    this.#run.load(position)
+      .then((loaded) => this.#showFrame(position, loaded), (error) => this.#showBroken(position, error))
+      .finally(() => (this.#isLoading = false));
+  }
+
+  #decodeAhead() {
+    if (!this.#clock.isPlaying) return;
+    for (let step = 1; step <= kAhead; ++step) {
+      const due = this.#clock.time + (step * Math.max(this.#clock.speed, 1) * this.#run.stride) / this.#run.framesPerSecond;
+      const position = this.#run.positionAt(due);
+      // A damaged frame is reported when it is due, not before.
+      if (!this.#run.peek(position)) this.#run.load(position).catch(() => {});
+    }
+  }
+
+  #showFrame(position, frame) {
+    this.#shown = position;
+    this.#cloth.show(frame);
+    this.#stage.aimShadow(this.#run.frames[position]);
+    showMoment(this.#run, position);
+    showFacts(this.#run, frame, this.#stage.cell);
+    this.#showLegend();
+    hideMessage();
+  }
+
+  #showBroken(position, error) {
+    this.#shown = position;
+    this.#cloth.hide();
+    this.#stage.isStale = true;
+    showMoment(this.#run, position);
+    showMessage(error.message);
+  }
+
+  /** Only where something in it changed: a rebuilt input would lose what is being typed. */
+  #legendState = "";
+  #showLegend(isForced = false) {
+    const topology = this.#run.peek(this.#shown)?.topology;
+    const features = { edges: topology?.edges.length > 0, corners: topology?.corners.length > 0 };
+    const state = JSON.stringify([this.#mode, this.#strainTop, features]);
+    if (state === this.#legendState && !isForced) return;
+    this.#legendState = state;
+    showLegend(this.#run, this.#mode, this.#strainTop, features, (top) => this.#setStrainTop(top));
+  }
+
+  #showPlaying() {
+    const isPlaying = this.#clock.isPlaying;
+    const play = byId("play");
+    if (play.dataset.playing === String(isPlaying)) return;
+    play.dataset.playing = isPlaying;
+    play.setAttribute("aria-label", isPlaying ? "Pause" : "Play");
+    byId("play-icon").setAttribute("d", isPlaying ? kPauseIcon : kPlayIcon);
+  }
+
+  #goTo(position) {
+    this.#clock.pause();
+    this.#wanted = Math.min(Math.max(position, 0), this.#run.frames.length - 1);
+    this.#clock.time = this.#run.time(this.#wanted);
+  }
+
+  #togglePlay() {
+    if (this.#clock.isPlaying) this.#clock.pause();
+    else this.#clock.play();
+  }
+
+  #setLoop(isLooping) {
+    this.#clock.isLooping = isLooping;
+    byId("loop").setAttribute("aria-pressed", isLooping);
+  }
+
+  #setMode(mode) {
+    this.#mode = mode;
+    byId("colour").value = mode;
+    this.#cloth.setMode(mode);
+    this.#stage.isStale = true;
+    this.#showLegend();
+  }
+
+  #setStrainTop(top) {
+    this.#strainTop = top;
+    this.#cloth.setStrainTop(top);
+    this.#stage.isStale = true;
+    this.#showLegend(true);
+  }
+
+  #setEdges(areShown) {
+    this.#hasEdges = areShown;
+    byId("edges").setAttribute("aria-pressed", areShown);
+    this.#cloth.setEdges(areShown);
+    this.#stage.isStale = true;
+  }
+
+  #fit(view) {
+    this.#stage.fit(this.#run.frames[this.#wanted], view);
+  }
+
+  #resize() {
+    this.#stage.resize(window.innerWidth, window.innerHeight, window.devicePixelRatio);
+  }
+
+  #connect() {
+    const actions = {
+      play: () => this.#togglePlay(),
+      back: () => this.#goTo(this.#wanted - 1),
+      on: () => this.#goTo(this.#wanted + 1),
+      loop: () => this.#setLoop(!this.#clock.isLooping),
+      edges: () => this.#setEdges(!this.#hasEdges),
+      fit: () => this.#fit(),
+    };
+    for (const [id, action] of Object.entries(actions)) byId(id).addEventListener("click", action);
+    byId("scrub").addEventListener("input", (event) => this.#goTo(event.target.valueAsNumber));
+    byId("speed").addEventListener("change", (event) => (this.#clock.speed = Number(event.target.value)));
+    byId("colour").addEventListener("change", (event) => this.#setMode(event.target.value));
+    window.addEventListener("keydown", (event) => this.#onKey(event, actions));
+    window.addEventListener("resize", () => this.#resize());
+    window.addEventListener("hashchange", () => this.#applyAddress());
+    byId("stage").addEventListener("webglcontextlost", () =>
+      showMessage("The browser took the graphics context away. Reload the page to go on."));
+    onPaletteChange(() => {
+      this.#cloth.usePalette();
+      this.#stage.usePalette();
+      this.#showLegend(true);
+    });
+  }
+
+  #onKey(event, actions) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    // Fields keep their keys, and the space bar presses the button that has the focus.
+    const { target } = event;
+    if (target.matches("select, input[type=number]")) return;
+    if (event.key === " " && target.matches("button, summary")) return;
+    const keys = {
+      " ": actions.play, ArrowLeft: actions.back, ArrowRight: actions.on, e: actions.edges, f: actions.fit,
+      l: actions.loop, c: () => this.#setMode(kModes[(kModes.indexOf(this.#mode) + 1) % kModes.length]),
+      Home: () => this.#goTo(0), End: () => this.#goTo(this.#run.frames.length - 1),
+    };
+    const action = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  }
+
+  /** What the address asks for; values that make no sense are left out. */
+  #applyAddress() {
+    const asked = new URLSearchParams(window.location.hash.slice(1));
+    const number = (name) => {
+      const text = asked.get(name);
+      return text !== null && text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : undefined;
+    };
+    if (number("frame") !== undefined) this.#goTo(this.#run.positionOf(number("frame")));
+    if (asked.get("play") === "0") this.#clock.pause();
+    if (kModes.includes(asked.get("colour"))) this.#setMode(asked.get("colour"));
+    if (number("top") > 0) this.#setStrainTop(number("top") / 100);
+    if (asked.has("edges")) this.#setEdges(asked.get("edges") === "1");
+    document.body.classList.toggle("bare", asked.get("ui") === "0");
+    const zoom = number("zoom") > 0 ? Math.min(Math.max(number("zoom"), 0.01), 100) : undefined;
+    const view = { azimuth: number("azimuth"), elevation: number("elevation"), zoom };
+    if (asked.get("fit") === "frame") this.#fit(view);
+    else if (Object.values(view).some((value) => value !== undefined)) this.#stage.fit(this.#run.bounds, view);
+  }
+}
+
+function fail(error) {
+  document.documentElement.dataset.problem = error.message;
+  showMessage(error instanceof BrokenData ? error.message : `The viewer met an error of its own: ${error.message}`);
+}
+
+window.addEventListener("error", (event) => fail(event.error ?? new Error(event.message)));
+window.addEventListener("unhandledrejection", (event) => fail(event.reason));
+document.addEventListener("DOMContentLoaded", () => {
+  if (!("DecompressionStream" in window))
+    throw new BrokenData("This browser is too old for this page: it cannot unpack the frames (DecompressionStream).");
+  new Viewer().start();
+});

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// What stands around the picture: read-outs, legend, axes. All of a run's words are set as text, never as markup.
+
+import { kBeyond, kRamp, palette, roundUp } from "./colours.js";
+
+const byId = (id) => document.getElementById(id);
+
+function element(name, properties = {}, ...children) {
+  const result = document.createElement(name);
+  Object.assign(result, properties);
+  result.append(...children);
+  return result;
+}
+
+/** A number of digits fit for reading: 3 significant ones, without an exponent where it is not needed. */
+function readable(value) {
+  return String(Number(value.toPrecision(3))).replace("-", "\u2212");
+}
+
+export function percent(strain) {
+  return `${readable(100 * strain)} %`;
+}
+
+function metres(length) {
+  if (length >= 1) return `${readable(length)} m`;
+  if (length >= 0.01) return `${readable(100 * length)} cm`;
+  return `${readable(1000 * length)} mm`;
+}
+
+export function showHeading(run) {
+  const title = run.title.trim() || "Untitled run";
+  document.title = `${title} – Arris`;
+  byId("title").textContent = title;
+  if (run.stride === 1) return;
+  byId("notice").textContent =
+    `Shows ${run.frames.length} of ${run.runFrames} frames (one in ${run.stride}, and the last): ` +
+    "all of them would take more memory than a page should.";
+  byId("notice").hidden = false;
+}
+
+export function showFacts(run, frame, cell) {
+  const { faces, edges } = frame.topology;
+  const count = (number) => number.toLocaleString("en");
+  const facts = [`${count(frame.positions.length / 3)} vertices`, `${count(faces.length / 3)} faces`];
+  if (edges.length > 0) facts.push(`${count(edges.length / 2)} EOL edges`);
+  facts.push(`grid ${metres(cell)}`);
+  byId("facts").textContent = facts.join(" · ");
+}
+
+export function showMoment(run, position) {
+  const digits = run.framesPerSecond > 100 ? 4 : 3;
+  const end = run.time(run.frames.length - 1);
+  byId("time").textContent = `${run.time(position).toFixed(digits)} / ${end.toFixed(digits)} s`;
+  byId("frame").textContent = `frame ${run.frames[position].index} / ${run.runFrames - 1}`;
+  byId("scrub").value = position;
+  byId("scrub").setAttribute("aria-valuetext", `frame ${run.frames[position].index}`);
+}
+
+export function showMessage(text, isProblem = true) {
+  byId("message").textContent = text;
+  byId("message").classList.toggle("problem", isProblem);
+  byId("message").hidden = false;
+}
+
+export function hideMessage() {
+  byId("message").hidden = true;
+}
+
+/** The top of the strain scale that the page starts with: round, and few faces of the run are above it. */
+export function firstStrainTop(run) {
+  return roundUp(run.strain.typical > 0 ? run.strain.typical : Math.max(run.strain.greatest, 1e-3));
+}
+
+function key(className, colour, text) {
+  const swatch = element("span", { className: `swatch ${className}` });
+  swatch.style.background = colour;
+  return element("div", { className: "key" }, swatch, text);
+}
+
+function strainScale(run, top, onTop) {
+  const bar = element("div", { className: "bar" });
+  bar.style.backgroundImage = `linear-gradient(to top, ${kRamp.join(", ")})`;
+  const ticks = element("div", { className: "ticks" });
+  for (const part of [1, 0.75, 0.5, 0.25, 0]) ticks.append(element("span", { textContent: percent(part * top) }));
+  return [
+    element("h2", { textContent: "Greatest principal strain" }),
+    key("", kBeyond, `above ${percent(top)}`),
+    element("div", { className: "scale" }, bar, ticks),
+    element("label", { className: "faint" }, "scale up to ", topInput(top, onTop), " %"),
+    element("div", { className: "faint",
+      textContent: `in this run ${percent(run.strain.least)} to ${percent(run.strain.greatest)}` }),
+  ];
+}
+
+/** The top of the scale may be typed over; what is not a positive number is put back. */
+function topInput(top, onTop) {
+  const input = element("input", { type: "number", min: "0", step: "any", value: Number((100 * top).toPrecision(3)) });
+  input.id = "strain-top";
+  input.setAttribute("aria-label", "Top of the strain scale, percent");
+  input.addEventListener("change", () => onTop(input.valueAsNumber > 0 ? input.valueAsNumber / 100 : top));
+  return input;
+}
+
+/** `mode`: what colours the cloth; `features`: { edges, corners } of EOL in the frame shown. */
+export function showLegend(run, mode, top, features, onTop) {
+  const colours = palette();
+  const parts = mode === "strain" ? strainScale(run, top, onTop) : [];
+  if (mode === "contact") parts.push(key("", colours.contact, "pressed by a contact"), key("", colours.free, "free"));
+  if (mode === "none") parts.push(key("", colours.front, "front"), key("", colours.back, "back"));
+  if (features.edges) parts.push(key("line", colours.eol, "EOL edge"));
+  if (features.corners) parts.push(key("dot", colours.eol, "EOL vertex on a corner"));
+  byId("legend").replaceChildren(...parts);
+}
+
+const kAxisColours = ["#d8433b", "#3f9142", "#3a76d0"];
+
+/** `axes`: see Stage.axes. The ones that point away are drawn first and fainter. */
+export function showAxes(axes) {
+  const make = (name, attributes) => {
+    const result = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [attribute, value] of Object.entries(attributes)) result.setAttribute(attribute, value);
+    return result;
+  };
+  const order = [0, 1, 2].sort((a, b) => axes[a][2] - axes[b][2]);
+  const parts = order.flatMap((axis) => {
+    const [x, y, z] = axes[axis];
+    const opacity = z < -0.2 ? 0.55 : 1;
+    const text = make("text", { x: 29 * x, y: -29 * y, fill: kAxisColours[axis], opacity });
+    text.textContent = "xyz"[axis];
+    return [make("line", { x1: 0, y1: 0, x2: 21 * x, y2: -21 * y, stroke: kAxisColours[axis], opacity }), text];
+  });
+  byId("axes").replaceChildren(...parts);
+}

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// The space the cloth is in: camera and its control, lights, ground. Up is z; positions are relative to the run's centre.
+
+import {
+  DirectionalLight, DoubleSide, HemisphereLight, Mesh, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Scene,
+  ShaderMaterial, ShadowMaterial, Vector3, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { linear, palette } from "./colours.js";
+
+const kFieldOfView = 32; // degrees, vertical
+const kAzimuth = -62; // degrees from +x of the first view
+const kElevation = 24; // degrees above the horizon
+const kKeyLight = new Vector3(-0.8, -0.55, 1.15).normalize();
+const kMargin = 0.84; // how much of the view's half width or height a fitted box may take
+
+/** A box { least, size } as its centre and the radius of the ball around it, at least 1 mm, relative to `origin`. */
+function ballAround(box, origin) {
+  const centre = new Vector3(...box.least.map((least, axis) => least + box.size[axis] / 2 - origin[axis]));
+  return { centre, radius: Math.max(Math.hypot(...box.size) / 2, 5e-4) };
+}
+
+const kGridShader = {
+  vertexShader: `
+    varying vec2 vPlace;
+    void main() {
+      vPlace = position.xy;
+      gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    }`,
+  fragmentShader: `
+    uniform float uCell, uReach, uStrength;
+    uniform vec3 uColour;
+    uniform vec2 uOffset;
+    varying vec2 vPlace;
+    float lines(vec2 place, float cell) {
+      vec2 at = (place + uOffset) / cell;
+      vec2 slope = max(fwidth(at), vec2(1e-9));
+      vec2 distance = abs(fract(at - 0.5) - 0.5) / slope;
+      vec2 line = (1.0 - smoothstep(0.2, 1.2, distance)) * (1.0 - smoothstep(0.15, 0.5, slope));
+      return max(line.x, line.y);
+    }
+    void main() {
+      float strength = max(0.4 * lines(vPlace, uCell), lines(vPlace, 10.0 * uCell));
+      float fade = 1.0 - smoothstep(0.35, 1.0, length(vPlace) / uReach);
+      gl_FragColor = vec4(uColour, strength * fade * uStrength * (gl_FrontFacing ? 1.0 : 0.4));
+      #include <colorspace_fragment>
+    }`,
+};
+
+export class Stage {
+  #renderer;
+  #scene = new Scene();
+  #camera = new PerspectiveCamera(kFieldOfView, 1, 0.01, 100);
+  #controls;
+  #run;
+  #sky = new HemisphereLight(0xffffff, 0xffffff, 1.25);
+  #key = new DirectionalLight(0xffffff, 2.2);
+  #fill = new DirectionalLight(0xffffff, 0.8);
+  #grid;
+  #floor;
+  isStale = true;
+
+  /** Throws where the browser gives no WebGL 2. */
+  constructor(canvas, run) {
+    this.#run = run;
+    this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.#renderer.shadowMap.enabled = true;
+    this.#renderer.shadowMap.type = PCFShadowMap;
+    this.#camera.up.set(0, 0, 1);
+    this.#controls = new OrbitControls(this.#camera, canvas);
+    this.#controls.enableDamping = true;
+    this.#controls.dampingFactor = 0.16;
+    this.#controls.zoomToCursor = true;
+    this.#controls.addEventListener("change", () => (this.isStale = true));
+    this.#addLights();
+    this.#addGround();
+    this.usePalette();
+    this.fit(run.bounds, { azimuth: kAzimuth, elevation: kElevation });
+  }
+
+  /** The grid's spacing in metres, for the read-out. */
+  get cell() {
+    return this.#grid.material.uniforms.uCell.value;
+  }
+
+  add(object) {
+    this.#scene.add(object);
+  }
+
+  usePalette() {
+    const colours = palette();
+    this.#sky.color.set(colours.sky);
+    this.#sky.groundColor.set(colours.floor);
+    this.#grid.material.uniforms.uColour.value = linear(colours.gridLine);
+    this.#grid.material.uniforms.uStrength.value = colours.gridStrength;
+    this.#floor.material.opacity = colours.shadow;
+    this.isStale = true;
+  }
+
+  /**
+   * Looks at a box { least, size } so that it fills the view; from the present direction unless `azimuth` (degrees
+   * from +x about z) and `elevation` (degrees) are given. `zoom` above 1 comes nearer.
+   */
+  fit(box, { azimuth, elevation, zoom = 1 } = {}) {
+    const { centre, radius } = ballAround(box, this.#run.origin);
+    const direction = this.#camera.position.clone().sub(this.#controls.target).normalize();
+    if (azimuth !== undefined || elevation !== undefined) {
+      const a = ((azimuth ?? kAzimuth) * Math.PI) / 180;
+      const e = (Math.min(Math.max(elevation ?? kElevation, -89.9), 89.9) * Math.PI) / 180;
+      direction.set(Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e));
+    }
+    const distance = Math.max(this.#distanceFor(box.size, direction), 2 * radius) / zoom;
+    this.#controls.target.copy(centre);
+    this.#camera.position.copy(centre).addScaledVector(direction, distance);
+    this.#controls.update();
+    this.isStale = true;
+  }
+
+  /** How far from its centre a box of this size is seen whole, looking against `direction`. */
+  #distanceFor(size, direction) {
+    const right = this.#camera.up.clone().cross(direction).normalize();
+    const up = direction.clone().cross(right);
+    const slope = kMargin * Math.tan((kFieldOfView * Math.PI) / 360);
+    let distance = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = new Vector3(...size.map((length, axis) => ((corner >> axis) & 1 ? length : -length) / 2));
+      const needed = Math.max(Math.abs(at.dot(right)) / (slope * this.#camera.aspect), Math.abs(at.dot(up)) / slope);
+      distance = Math.max(distance, needed + at.dot(direction));
+    }
+    return distance;
+  }
+
+  /** Shadows fall from the cloth of this frame; the light's view is as large as it and its way to the ground. */
+  aimShadow(box) {
+    const { centre, radius } = ballAround(box, this.#run.origin);
+    const camera = this.#key.shadow.camera;
+    this.#key.position.copy(centre).addScaledVector(kKeyLight, 2 * radius);
+    this.#key.target.position.copy(centre);
+    camera.left = camera.bottom = -radius;
+    camera.right = camera.top = radius;
+    camera.near = 0.5 * radius;
+    camera.far = 3.5 * radius + 3 * Math.hypot(...this.#run.bounds.size);
+    camera.updateProjectionMatrix();
+    this.#key.shadow.normalBias = 0.006 * radius;
+    this.isStale = true;
+  }
+
+  resize(width, height, pixelRatio) {
+    this.#camera.aspect = width / Math.max(height, 1);
+    this.#camera.updateProjectionMatrix();
+    this.#renderer.setPixelRatio(Math.min(pixelRatio, 2));
+    this.#renderer.setSize(width, height, false);
+    this.isStale = true;
+  }
+
+  /** Draws if anything has changed; returns whether it did. */
+  draw() {
+    this.#controls.update();
+    if (!this.isStale) return false;
+    const distance = this.#camera.position.distanceTo(this.#controls.target);
+    const reach = Math.hypot(...this.#run.bounds.size) + this.#camera.position.length();
+    this.#camera.near = 0.01 * distance;
+    this.#camera.far = 8 * reach + distance;
+    this.#camera.updateProjectionMatrix();
+    this.#renderer.render(this.#scene, this.#camera);
+    this.isStale = false;
+    return true;
+  }
+
+  /** Where the unit vectors of x, y, z point on the screen: [right, up, towards the viewer] each. */
+  axes() {
+    const view = this.#camera.matrixWorldInverse;
+    return [0, 1, 2].map((axis) => new Vector3().setComponent(axis, 1).transformDirection(view).toArray());
+  }
+
+  #addLights() {
+    this.#sky.position.set(0, 0, 1);
+    this.#key.castShadow = true;
+    this.#key.shadow.mapSize.set(2048, 2048);
+    this.#key.shadow.bias = -0.0006;
+    this.#key.shadow.radius = 2.5;
+    this.#fill.position.set(0.6, 0.2, 1); // from beside the camera, so that no view is flat
+    this.#camera.add(this.#fill, this.#fill.target);
+    this.#fill.target.position.set(0, 0, -1);
+    this.#scene.add(this.#sky, this.#key, this.#key.target, this.#camera);
+  }
+
+  /** A grid and the shadow at the run's lowest z, a hair below so that cloth lying there is not cut by it. */
+  #addGround() {
+    const { least } = this.#run.bounds;
+    const { radius } = ballAround(this.#run.bounds, this.#run.origin);
+    const reach = 5 * radius;
+    const cell = 10 ** Math.floor(Math.log10(radius / 1.5));
+    const [x, y] = this.#run.origin;
+    // World zero is on a line: the offset, modulo the coarse cells, in double precision.
+    const offset = [x, y].map((value) => value - Math.floor(value / (10 * cell)) * 10 * cell);
+    this.#grid = new Mesh(new PlaneGeometry(2 * reach, 2 * reach), new ShaderMaterial({
+      ...kGridShader, transparent: true, depthWrite: false, side: DoubleSide,
+      uniforms: {
+        uCell: { value: cell }, uReach: { value: reach }, uStrength: { value: 1 }, uColour: { value: null },
+        uOffset: { value: offset },
+      },
+    }));
+    this.#floor = new Mesh(new PlaneGeometry(2 * reach, 2 * reach), new ShadowMaterial({ depthWrite: false }));
+    this.#floor.receiveShadow = true;
+    this.#floor.renderOrder = -1;
+    for (const plane of [this.#grid, this.#floor]) {
+      plane.position.z = least[2] - this.#run.origin[2] - 1e-3 * radius;
+      this.#scene.add(plane);
+    }
+  }
+}
