@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/mesh_quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace arris {
+
+double material_area(const ClothMesh& mesh)
+{
+    double doubled = 0.0;
+    for (const Face& f : mesh.faces)
+        doubled += twice_area(mesh.material[f[0]], mesh.material[f[1]], mesh.material[f[2]]);
+    return 0.5 * doubled;
+}
+
+double least_material_angle(const ClothMesh& mesh)
+{
+    // At each corner tan = cross / dot; atan2 needs no division and no clamp.
+    double least = mesh.faces.empty() ? 0.0 : std::numbers::pi;
+    for (const Face& f : mesh.faces) {
+        const double doubled = twice_area(mesh.material[f[0]], mesh.material[f[1]], mesh.material[f[2]]);
+        for (int k = 0; k < 3; ++k) {
+            const Vec2& apex = mesh.material[f[k]];
+            const Vec2 to_next = mesh.material[f[(k + 1) % 3]] - apex;
+            const Vec2 to_last = mesh.material[f[(k + 2) % 3]] - apex;
+            least = std::min(least, std::atan2(doubled, to_next.dot(to_last)));
+        }
+    }
+    return least * 180.0 / std::numbers::pi;
+}
+
+}  // namespace arris

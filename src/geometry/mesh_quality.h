@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "geometry/cloth_mesh.h"
+
+namespace arris {
+
+/// Sum of the faces' material areas, m^2.
+double material_area(const ClothMesh& mesh);
+
+/// Least angle of any face in material space, degrees; 0 for an empty mesh.
+double least_material_angle(const ClothMesh& mesh);
+
+}  // namespace arris

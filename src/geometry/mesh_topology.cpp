@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/mesh_topology.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <tuple>
+
+#include "geometry/cgal.h"
+
+namespace arris {
+namespace {
+
+// One side of a face: from corner `corner` to the next. `low` < `high` are its vertices.
+struct Side {
+    int low, high;
+    int face, corner;
+    bool is_forward;  // runs from low to high
+};
+
+std::vector<Side> sorted_sides(const std::vector<Face>& faces)
+{
+    std::vector<Side> sides;
+    sides.reserve(3 * faces.size());
+    for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
+        for (int k = 0; k < 3; ++k) {
+            const int a = faces[f][k];
+            const int b = faces[f][(k + 1) % 3];
+            sides.push_back({std::min(a, b), std::max(a, b), f, k, a < b});
+        }
+    }
+    const auto key = [](const Side& s) { return std::tuple(s.low, s.high, !s.is_forward, s.face); };
+    std::sort(sides.begin(), sides.end(), [&](const Side& s, const Side& t) { return key(s) < key(t); });
+    return sides;
+}
+
+bool same_edge(const Side& s, const Side& t)
+{
+    return s.low == t.low && s.high == t.high;
+}
+
+int opposite_vertex(const std::vector<Face>& faces, const Side& side)
+{
+    return faces[side.face][(side.corner + 2) % 3];
+}
+
+std::string find_bad_index(const ClothMesh& mesh)
+{
+    const int n = mesh.vertex_count();
+    if (mesh.material.size() != mesh.world.size())
+        return fmt::format("{} material but {} world coordinates", mesh.material.size(), mesh.world.size());
+    std::vector<char> is_used(mesh.world.size(), 0);
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        const Face& face = mesh.faces[f];
+        for (const int v : face) {
+            if (v < 0 || v >= n) return fmt::format("face {} names vertex {} of {}", f, v, n);
+            is_used[v] = 1;
+        }
+        if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
+            return fmt::format("face {} names a vertex twice ({}, {}, {})", f, face[0], face[1], face[2]);
+    }
+    for (int v = 0; v < n; ++v)
+        if (is_used[v] == 0) return fmt::format("vertex {} belongs to no face", v);
+    return {};
+}
+
+std::string find_bad_coordinate(const ClothMesh& mesh)
+{
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+        const Vec2& X = mesh.material[v];
+        const Vec3& x = mesh.world[v];
+        if (!X.allFinite())
+            return fmt::format("vertex {} has material coordinates ({}, {})", v, X.x(), X.y());
+        if (!x.allFinite()) return fmt::format("vertex {} is at ({}, {}, {})", v, x.x(), x.y(), x.z());
+    }
+    return {};
+}
+
+std::string find_bad_edge(const std::vector<Side>& sides)
+{
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+        const Side& s = sides[i];
+        const Side& t = sides[i + 1];
+        if (!same_edge(s, t)) continue;
+        if (i + 2 < sides.size() && same_edge(s, sides[i + 2]))
+            return fmt::format("edge ({}, {}) has more than two faces ({}, {}, {})", s.low, s.high, s.face,
+                               t.face, sides[i + 2].face);
+        if (s.is_forward == t.is_forward)
+            return fmt::format("faces {} and {} run along edge ({}, {}) the same way", s.face, t.face, s.low,
+                               s.high);
+    }
+    return {};
+}
+
+// Faces around a vertex must be one fan: corners joined through the vertex's edges are one set.
+std::string find_bow_tie(const ClothMesh& mesh, const std::vector<Side>& sides)
+{
+    std::vector<int> parent(3 * mesh.faces.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](int c) {
+        while (parent[c] != c) c = parent[c] = parent[parent[c]];
+        return c;
+    };
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+        const Side& s = sides[i];
+        const Side& t = sides[i + 1];
+        if (!same_edge(s, t)) continue;
+        // Where s starts, t ends.
+        parent[root(3 * s.face + s.corner)] = root(3 * t.face + (t.corner + 1) % 3);
+        parent[root(3 * s.face + (s.corner + 1) % 3)] = root(3 * t.face + t.corner);
+    }
+    std::vector<int> fan(mesh.world.size(), -1);
+    for (int c = 0; c < static_cast<int>(parent.size()); ++c) {
+        const int v = mesh.faces[c / 3][c % 3];
+        if (fan[v] < 0) fan[v] = root(c);
+        if (fan[v] != root(c))
+            return fmt::format("vertex {} joins parts of the cloth in a single point (faces {} and {})", v,
+                               fan[v] / 3, c / 3);
+    }
+    return {};
+}
+
+std::string find_bad_orientation(const ClothMesh& mesh)
+{
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        const auto& [a, b, c] = mesh.faces[f];
+        const int turn = exact_orientation(mesh.material[a], mesh.material[b], mesh.material[c]);
+        if (turn < 0) return fmt::format("face {} is clockwise in material space", f);
+        if (turn == 0) return fmt::format("face {} has no material area", f);
+    }
+    return {};
+}
+
+}  // namespace
+
+MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces)
+{
+    MeshTopology topology;
+    topology.is_border.assign(vertex_count, 0);
+    const std::vector<Side> sides = sorted_sides(faces);
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const Side& s = sides[i];
+        if (i + 1 == sides.size() || !same_edge(s, sides[i + 1])) {
+            topology.edges.push_back({s.low, s.high, s.face, -1});
+            topology.is_border[s.low] = topology.is_border[s.high] = 1;
+            continue;
+        }
+        const Side& t = sides[++i];
+        assert(s.is_forward && !t.is_forward && "faces must form an oriented manifold");
+        topology.edges.push_back({s.low, s.high, s.face, t.face});
+        topology.hinges.push_back(
+            {s.low, s.high, opposite_vertex(faces, s), opposite_vertex(faces, t), s.face, t.face});
+    }
+    return topology;
+}
+
+std::string validate(const ClothMesh& mesh)
+{
+    if (std::string wrong = find_bad_index(mesh); !wrong.empty()) return wrong;
+    if (std::string wrong = find_bad_coordinate(mesh); !wrong.empty()) return wrong;
+    const std::vector<Side> sides = sorted_sides(mesh.faces);
+    if (std::string wrong = find_bad_edge(sides); !wrong.empty()) return wrong;
+    if (std::string wrong = find_bow_tie(mesh, sides); !wrong.empty()) return wrong;
+    return find_bad_orientation(mesh);
+}
+
+}  // namespace arris

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/cloth_mesh.h"
+
+namespace arris {
+
+/// An interior edge (a, b) with the two vertices across it: faces (a, b, c) and (b, a, d).
+struct Hinge {
+    int a, b, c, d;
+    int face_c, face_d;
+};
+
+/// An edge a < b; `face_right` is -1 on the cloth's border.
+struct MeshEdge {
+    int a, b;
+    int face_left, face_right;
+};
+
+/// Connectivity derived from the faces. Edges ascend by (a, b), hinges follow the order of their edges.
+struct MeshTopology {
+    std::vector<MeshEdge> edges;
+    std::vector<Hinge> hinges;
+    std::vector<char> is_border;  ///< one a vertex
+};
+
+/// Linear in face count (a sort). Faces must form an oriented 2-manifold: `validate` checks that.
+MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces);
+
+/// Names what is wrong with a cloth mesh: empty string if indices are in range, every vertex is used, the faces
+/// form an oriented manifold, coordinates are finite and every material orientation is positive by an exact
+/// predicate; else one sentence naming the element.
+std::string validate(const ClothMesh& mesh);
+
+}  // namespace arris

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Geometry>
+#include <limits>
+#include <vector>
+
+#include "geometry/vectors.h"
+
+namespace arris {
+
+/// p -> rotation p + translation.
+struct Placement {
+    Mat3 rotation = Mat3::Identity();
+    Vec3 translation = Vec3::Zero();
+
+    Vec3 operator()(const Vec3& p) const { return rotation * p + translation; }
+    Vec3 inverse(const Vec3& p) const { return rotation.transpose() * (p - translation); }
+};
+
+/// A rotation by `degrees` about `axis` (any length but zero).
+Mat3 rotation_about(const Vec3& axis, double degrees);
+
+struct Keyframe {
+    double time = 0.0;  ///< s
+    Vec3 translate = Vec3::Zero();
+    Eigen::Quaterniond rotate = Eigen::Quaterniond::Identity();
+};
+
+/// How a rigid thing moves in time: p(t) = pivot + velocity tau + R(angular_velocity tau)(p(0) - pivot),
+/// tau = clamp(t - start, 0, stop - start); or, where there are keyframes, p(t) = translate(t) + R(t) p(0)
+/// with linear translation and slerp by the shorter arc between them, constant outside.
+struct RigidMotion {
+    Vec3 velocity = Vec3::Zero();          ///< m/s
+    Vec3 angular_velocity = Vec3::Zero();  ///< rad/s
+    Vec3 pivot = Vec3::Zero();             ///< m, world
+    double start = 0.0;                    ///< s
+    double stop = std::numeric_limits<double>::infinity();
+    std::vector<Keyframe> keyframes;       ///< ascending in time
+
+    /// Maps a point's place at time 0 (keyframes: in its own frame) to its place at `time`.
+    Placement at(double time) const;
+
+    /// Velocity (m/s) just after `time` of the point that is at `place` (world) then.
+    Vec3 velocity_after(double time, const Vec3& place) const;
+
+    /// Whether anything ever moves.
+    bool is_moving() const;
+
+    /// Times after 0 at which the velocity jumps: start, stop, keyframes. Ascending.
+    std::vector<double> jumps() const;
+};
+
+}  // namespace arris
