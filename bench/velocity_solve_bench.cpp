@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the constrained velocity solve costs in units of one numeric factorisation of its matrix (`ratio`,
+// both the least of their runs), on a cloth resting on a wavy floor with 20-30 % of its vertices in contact.
+// All times are CPU seconds of this thread. The first argument is the number of vertices along one side.
+//   warm    guess of a slightly different step (second argument: difference of speeds, mm/s); `wrong` counts
+//   its errors spoilt  guess with so many per mille (second argument) replaced at random: false pins anywhere
+//   cold    no guess
+// factorise/*: one numeric factorisation and one analysis by each ordering, against the ordering in use.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "bench/thread_clock.h"
+#include "solver/factorization.h"
+#include "tests/solver/cloth_system.h"
+
+namespace arris {
+namespace {
+
+/// Runs `work` for each iteration of `state`; returns the least time.
+template <class Work>
+double measure(benchmark::State& state, Work work)
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (auto _ : state) {
+        const double start = thread_seconds();
+        work();
+        const double seconds = thread_seconds() - start;
+        least = std::min(least, seconds);
+        state.SetIterationTime(seconds);
+    }
+    return least;
+}
+
+struct RestingCloth {
+    testing::OwnedProblem owned;
+    std::vector<int> active;
+    double factorisation;  ///< s
+};
+
+double time_factorisation(const testing::OwnedProblem& owned)
+{
+    Factorization factorization;
+    factorization.analyse(owned.matrix);
+    double least = std::numeric_limits<double>::infinity();
+    for (int run = 0; run < 5; ++run) {
+        const double start = thread_seconds();
+        benchmark::DoNotOptimize(factorization.factorise(owned.matrix, owned.problem.is_fixed));
+        least = std::min(least, thread_seconds() - start);
+    }
+    return least;
+}
+
+const RestingCloth& resting_cloth(int side)
+{
+    static std::map<int, RestingCloth> made;
+    const auto found = made.find(side);
+    if (found != made.end()) return found->second;
+    testing::ClothShape shape;
+    shape.side = side;
+    RestingCloth cloth = {testing::make_resting_cloth(shape, 0.3), {}, 0.0};
+    cloth.active = testing::active_coordinates(VelocitySolver().solve(cloth.owned.problem, Settings()));
+    cloth.factorisation = time_factorisation(cloth.owned);
+    return made.emplace(side, std::move(cloth)).first->second;
+}
+
+void solve(benchmark::State& state, const RestingCloth& cloth, const std::vector<int>& guess)
+{
+    testing::OwnedProblem owned = cloth.owned;
+    owned.problem.guess = guess;
+    VelocitySolver solver;
+    VelocitySolution solution = solver.solve(owned.problem, Settings());  // analyses the pattern
+    const double least = measure(state, [&] { solution = solver.solve(owned.problem, Settings()); });
+    if (solution.status != SolveStatus::Certified) state.SkipWithError("not certified");
+
+    std::vector<int> wrong;
+    std::set_symmetric_difference(guess.begin(), guess.end(), cloth.active.begin(), cloth.active.end(),
+                                  std::back_inserter(wrong));
+    state.counters["ratio"] = least / cloth.factorisation;
+    state.counters["active"] = static_cast<double>(cloth.active.size());
+    state.counters["wrong"] = static_cast<double>(wrong.size());
+    state.counters["factorisations"] = solution.factorisations;
+    state.counters["nlopt_evaluations"] = solution.nlopt_evaluations;
+    state.counters["kkt_residual"] = solution.kkt_residual;
+}
+
+/// The active set of the same cloth with smooth ripples of `speed` (m/s) on top.
+std::vector<int> guess_of_another_step(const RestingCloth& cloth, int side, double speed)
+{
+    testing::OwnedProblem other = cloth.owned;
+    const double mass = testing::ClothShape().density / ((side - 1.0) * (side - 1.0));
+    for (int vertex = 0; vertex < side * side; ++vertex) {
+        const double x = vertex % side / (side - 1.0), y = vertex / side / (side - 1.0);
+        other.rhs[3 * vertex + 2] += speed * mass * std::sin(25 * x + 3 * y) * std::sin(20 * y);
+    }
+    other.problem.guess = cloth.active;
+    return testing::active_coordinates(VelocitySolver().solve(other.problem, Settings()));
+}
+
+void warm(benchmark::State& state)
+{
+    const int side = static_cast<int>(state.range(0));
+    const RestingCloth& cloth = resting_cloth(side);
+    solve(state, cloth, guess_of_another_step(cloth, side, 1e-3 * static_cast<double>(state.range(1))));
+}
+
+void spoilt(benchmark::State& state)
+{
+    const RestingCloth& cloth = resting_cloth(static_cast<int>(state.range(0)));
+    std::mt19937 random(1);
+    const double share = 1e-3 * static_cast<double>(state.range(1));
+    solve(state, cloth, testing::spoil_guess(cloth.owned.problem, cloth.active, share, random));
+}
+
+void cold(benchmark::State& state)
+{
+    solve(state, resting_cloth(static_cast<int>(state.range(0))), {});
+}
+
+void factorise(benchmark::State& state, VertexOrdering ordering)
+{
+    const RestingCloth& cloth = resting_cloth(static_cast<int>(state.range(0)));
+    Factorization factorization(ordering);
+    const double start = thread_seconds();
+    factorization.analyse(cloth.owned.matrix);
+    const double analysis = thread_seconds() - start;
+    const double least = measure(state, [&] {
+        benchmark::DoNotOptimize(factorization.factorise(cloth.owned.matrix, cloth.owned.problem.is_fixed));
+    });
+    state.counters["ratio"] = least / cloth.factorisation;
+    state.counters["analysis"] = analysis / cloth.factorisation;
+    state.counters["nonzeros"] = factorization.nonzeros();
+}
+
+const std::vector<std::int64_t> kSides = {32, 100, 224};  // about 1, 10 and 50 thousand vertices
+
+void of_every_size(benchmark::internal::Benchmark* benchmark)
+{
+    benchmark->ArgsProduct({kSides})->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK(warm)->ArgsProduct({kSides, {0, 1, 3, 10}})->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(spoilt)->ArgsProduct({kSides, {5, 20, 50}})->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(cold)->Apply(of_every_size);
+BENCHMARK_CAPTURE(factorise, metis, VertexOrdering::Metis)->Apply(of_every_size);
+BENCHMARK_CAPTURE(factorise, nested_dissection, VertexOrdering::NestedDissection)->Apply(of_every_size);
+BENCHMARK_CAPTURE(factorise, amd, VertexOrdering::Amd)->Apply(of_every_size);
+
+}  // namespace
+}  // namespace arris
+
+BENCHMARK_MAIN();

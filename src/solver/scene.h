@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "geometry/half_space.h"
+#include "geometry/material_box.h"
+#include "geometry/rigid_motion.h"
+#include "physics/effects.h"
+#include "physics/material.h"
+
+namespace arris {
+
+/// Cloth vertices whose material coordinates lie in `material` are held in `held` world directions and moved.
+struct Pin {
+    MaterialBox material;
+    RigidMotion motion;
+    std::array<bool, 3> held = {true, true, true};              ///< x, y, z
+    double release = std::numeric_limits<double>::infinity();  ///< s
+
+    bool holds_until(double end) const { return end <= release; }
+};
+
+/// What is simulated: const while stepping. An effect that is absent here costs nothing.
+struct Scene {
+    Material material;
+    std::optional<Gravity> gravity;
+    std::optional<Wind> wind;
+    std::vector<Pull> pulls;
+    std::vector<Pin> pins;
+    std::optional<HalfSpace> floor;  ///< a plane under the cloth, for tests and benchmarks
+};
+
+/// Times after 0 at which the input jumps (motion starts or stops, keyframe, release, pull): ascending, unique.
+/// Steps end on them, and the step after one is implicit Euler.
+std::vector<double> input_jumps(const Scene& scene);
+
+}  // namespace arris

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/cloth_mesh.h"
+
+namespace arris {
+
+/// A bound that was active at the end of a step, with its multiplier: the next solve's warm start.
+struct ActiveBound {
+    std::uint32_t vertex_id;
+    double multiplier;  ///< N s
+};
+
+/// Exactly what a resumed run needs, and nothing that could be computed from it.
+struct State {
+    double time = 0.0;  ///< s
+    std::int64_t step = 0;
+    ClothMesh mesh;
+    std::vector<std::uint32_t> ids;  ///< persistent, one a vertex, ascending
+    std::uint32_t next_id = 0;
+    std::vector<Vec3> velocity;      ///< v_k, m/s
+
+    // One step back, for BDF2; meaningless where `previous_dt` is 0 (first step, after a jump of the input).
+    double previous_dt = 0.0;  ///< s
+    std::vector<Vec3> previous_world;
+    std::vector<Vec3> previous_velocity;
+
+    std::vector<ActiveBound> active;  ///< ascending by vertex_id
+};
+
+}  // namespace arris

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Implicit Euler, q' = q + h v', and variable-step BDF2: with w = h_k / h_(k-1),
+//
+//   q~ = ((1+w)^2 q_k - w^2 q_(k-1)) / (1+2w),   v~ alike,   gamma = h (1+w)/(1+2w),   q' = q~ + gamma v'.
+//
+// Forces are linearised at q^ = q~ + gamma v^ with v^ = v_k (BDF2) or 0 (implicit Euler): at q~ any stiffness that is
+// not the true Hessian would make BDF2 first order, as q' - q~ is O(h) where q' - q^ is O(h^2).
+#pragma once
+
+#include <vector>
+
+#include "solver/settings.h"
+#include "solver/state.h"
+
+namespace arris {
+
+/// Where a step starts from, one entry a vertex.
+struct Prediction {
+    double gamma = 0.0;          ///< s
+    bool has_history = false;    ///< BDF2 with a step behind it; else implicit Euler
+    std::vector<Vec3> position;  ///< q~, m
+    std::vector<Vec3> velocity;  ///< v~, m/s
+};
+
+/// BDF2 is implicit Euler where there is no step behind it, or one so short that variable-step BDF2 were not stable.
+Prediction predict(const State& state, Integrator integrator, double dt);
+
+}  // namespace arris

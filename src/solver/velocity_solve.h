@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <memory>
+#include <vector>
+
+#include "solver/settings.h"
+
+namespace arris {
+
+/// min 1/2 u^T A u - b^T u subject to u >= lower, u = 0 where fixed. Three unknowns a vertex.
+struct VelocityProblem {
+    const Eigen::SparseMatrix<double>* matrix = nullptr;  ///< A, SPD: lower triangle, and whole 3x3 diagonal blocks
+    const Eigen::VectorXd* rhs = nullptr;                 ///< b
+    Eigen::VectorXd lower;                                ///< -infinity where there is no bound
+    std::vector<char> is_fixed;                           ///< pinned: u = 0, whatever the bound
+    std::vector<int> guess;                               ///< coordinates expected active, ascending (warm start)
+};
+
+enum class SolveStatus { Certified, NotConverged, NotFinite };
+
+/// The answer and how it was reached. `kkt_residual` is recomputed from A, b and the bounds alone.
+struct VelocitySolution {
+    SolveStatus status = SolveStatus::NotConverged;
+    Eigen::VectorXd velocity;     ///< u
+    Eigen::VectorXd multipliers;  ///< lambda >= 0, one a coordinate, 0 where no bound is active
+    double kkt_residual = 0.0;
+    int factorisations = 0;
+    int nlopt_evaluations = 0;
+    double factorise_seconds = 0.0;  ///< wall, numeric factorisation
+    double solve_seconds = 0.0;      ///< wall, all else, symbolic analysis included
+};
+
+/// Solves the constrained velocity step by the working-set method: the guess's coordinates are pinned in one
+/// sparse factorisation, violators are collected, NLopt solves the condensed dense problem on them, a
+/// KKT certificate accepts. Keeps the symbolic analysis between solves while the pattern stays.
+class VelocitySolver {
+  public:
+    VelocitySolver();
+    ~VelocitySolver();
+    VelocitySolver(VelocitySolver&&) noexcept;
+    VelocitySolver& operator=(VelocitySolver&&) noexcept;
+
+    VelocitySolution solve(const VelocityProblem& problem, const Settings& settings);
+
+  private:
+    struct Cache;
+    std::unique_ptr<Cache> cache_;
+};
+
+}  // namespace arris
