@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Layout, little-endian: magic, length-prefixed version, length-prefixed body, CRC-32 of the body. In the body every
-// array is a 64-bit count and its elements.
+// Layout, little-endian: magic, length-prefixed version, length-prefixed body, CRC-32 of the body. In the
+// body every array is a 64-bit count and its elements.
 #include "app/checkpoint.h"
 
 #include <fmt/format.h>
@@ -97,7 +97,9 @@ class Reader {
 
 void write_vectors(Writer& out, const std::vector<Vec3>& vectors)
 {
-    out.list(vectors, [&](const Vec3& v) { for (const double c : v) out.number(c); });
+    out.list(vectors, [&](const Vec3& v) {
+        for (const double c : v) out.number(c);
+    });
 }
 
 std::vector<Vec3> read_vectors(Reader& in)
@@ -113,9 +115,13 @@ void write_state(Writer& out, const State& state)
 {
     out.number(state.time);
     out.number(state.step);
-    out.list(state.mesh.material, [&](const Vec2& X) { for (const double c : X) out.number(c); });
+    out.list(state.mesh.material, [&](const Vec2& X) {
+        for (const double c : X) out.number(c);
+    });
     write_vectors(out, state.mesh.world);
-    out.list(state.mesh.faces, [&](const Face& face) { for (const int v : face) out.number(static_cast<std::int32_t>(v)); });
+    out.list(state.mesh.faces, [&](const Face& face) {
+        for (const int v : face) out.number(static_cast<std::int32_t>(v));
+    });
     out.list(state.ids, [&](std::uint32_t id) { out.number(id); });
     out.number(state.next_id);
     write_vectors(out, state.velocity);
@@ -172,8 +178,9 @@ std::string find_defect(const Checkpoint& checkpoint)
             return fmt::format("vertex {} is not finite", v);
     for (std::size_t k = 1; k < state.active.size(); ++k)
         if (state.active[k].vertex_id <= state.active[k - 1].vertex_id) return "active bounds do not ascend";
-    if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) || !std::isfinite(checkpoint.position.begin) ||
-        checkpoint.position.begin < 0.0 || checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1)
+    if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) ||
+        !std::isfinite(checkpoint.position.begin) || checkpoint.position.begin < 0.0 ||
+        checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1)
         return "its times or counts cannot be";
     return validate(state.mesh);
 }
@@ -215,11 +222,13 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
 Checkpoint read_checkpoint(const std::string& path)
 {
     const std::string bytes = read_bytes(path);
-    if (!bytes.starts_with(kMagic)) throw InputError(fmt::format("{}: is not a checkpoint of arris", printable(path)));
+    if (!bytes.starts_with(kMagic))
+        throw InputError(fmt::format("{}: is not a checkpoint of arris", printable(path)));
     Reader file(std::string_view(bytes).substr(kMagic.size()), path);
     const std::string version = file.text();
     if (version != kVersion)
-        file.fail(fmt::format("was written by version {}; this is version {}", printable(version, 40), kVersion));
+        file.fail(
+            fmt::format("was written by version {}; this is version {}", printable(version, 40), kVersion));
     const std::string body = file.text();
     if (file.number<std::uint32_t>() != checksum(body)) file.fail("is damaged: its checksum differs");
 
@@ -234,8 +243,7 @@ Checkpoint read_checkpoint(const std::string& path)
     checkpoint.frames = in.number<std::int64_t>();
     checkpoint.rows = in.number<std::int64_t>();
     if (!in.is_at_end()) in.fail("is damaged: it is longer than it says");
-    if (const std::string defect = find_defect(checkpoint); !defect.empty())
-        in.fail("is damaged: " + defect);
+    if (const std::string defect = find_defect(checkpoint); !defect.empty()) in.fail("is damaged: " + defect);
     return checkpoint;
 }
 

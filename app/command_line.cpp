@@ -21,9 +21,12 @@ namespace {
 int exit_status(RunStatus status)
 {
     switch (status) {
-        case RunStatus::Finished: return 0;
-        case RunStatus::Interrupted: return 130;
-        default: return 1;
+        case RunStatus::Finished:
+            return 0;
+        case RunStatus::Interrupted:
+            return 130;
+        default:
+            return 1;
     }
 }
 
@@ -49,7 +52,8 @@ int run_command_line(int argc, char** argv)
     RunRequest run_request;
     CLI::App* run_command = app.add_subcommand("run", "Simulate a scene");
     run_command->add_option("scene", run_request.scene, "Scene file (TOML)")->required();
-    run_command->add_option("-o,--output", run_request.directory, "Folder for the results; default out/<scene>");
+    run_command->add_option("-o,--output", run_request.directory,
+                            "Folder for the results; default out/<scene>");
     run_command->add_flag("--overwrite", run_request.is_overwriting, "Replace the run that the folder holds");
     run_command->add_option("--set", run_request.overrides, "KEY=VALUE: any dotted scene key, VALUE as TOML")
         ->allow_extra_args(false);
@@ -68,7 +72,8 @@ int run_command_line(int argc, char** argv)
 
     std::string check_scene;
     std::vector<std::string> check_overrides;
-    CLI::App* check_command = app.add_subcommand("check", "Load a scene, say what it would simulate, write nothing");
+    CLI::App* check_command =
+        app.add_subcommand("check", "Load a scene, say what it would simulate, write nothing");
     check_command->add_option("scene", check_scene, "Scene file (TOML)")->required();
     check_command->add_option("--set", check_overrides, "KEY=VALUE, as for run")->allow_extra_args(false);
 
@@ -96,7 +101,8 @@ int run_command_line(int argc, char** argv)
         return exit_status(resume(resume_request));
     }
     if (*check_command) {
-        for (const std::string& line : describe_scene(load_scene(check_scene, check_overrides))) fmt::print("{}\n", line);
+        for (const std::string& line : describe_scene(load_scene(check_scene, check_overrides)))
+            fmt::print("{}\n", line);
         return 0;
     }
     if (*export_command) {

@@ -24,6 +24,9 @@ void watch_for_interrupt()
     std::signal(SIGTERM, on_signal);
 }
 
-bool is_interrupted() { return interrupted != 0; }
+bool is_interrupted()
+{
+    return interrupted != 0;
+}
 
 }  // namespace arris

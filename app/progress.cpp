@@ -23,8 +23,13 @@ std::string format_duration(double seconds)
 }  // namespace
 
 Progress::Progress(double from, double to, bool is_quiet)
-    : from_(from), to_(to), is_quiet_(is_quiet), is_terminal_(isatty(STDOUT_FILENO) == 1), start_(Clock::now())
-{}
+    : from_(from),
+      to_(to),
+      is_quiet_(is_quiet),
+      is_terminal_(isatty(STDOUT_FILENO) == 1),
+      start_(Clock::now())
+{
+}
 
 void Progress::update(double time, const std::string& detail)
 {

@@ -6,7 +6,8 @@
 
 namespace arris {
 
-/// Tells on standard output how far a run is: a bar with the time left on a terminal, else a plain line each tenth.
+/// Tells on standard output how far a run is: a bar with the time left on a terminal, else a plain line each
+/// tenth.
 class Progress {
   public:
     /// `from` and `to` in simulated seconds. Says nothing at all where `is_quiet`.

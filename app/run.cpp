@@ -101,17 +101,22 @@ Ending explain(const StepReport& report, double tolerance, const State& state)
     const std::string place = fmt::format("in the step after t = {} s (step {})", state.time, state.step);
     switch (report.status) {
         case StepStatus::NotFinite:
-            return {RunStatus::NotFinite, fmt::format("a number that is not finite {}, also with 64 times smaller steps", place)};
+            return {RunStatus::NotFinite,
+                    fmt::format("a number that is not finite {}, also with 64 times smaller steps", place)};
         case StepStatus::Infeasible:
             return {RunStatus::Infeasible, fmt::format("no velocity meets the constraints {}", place)};
         default:
-            return {RunStatus::NotConverged,
-                    fmt::format("the velocity solve reached a residual of {:.1e} where {:.1e} is asked {}, also with 64 "
-                                "times smaller steps", report.kkt_residual, tolerance, place)};
+            return {
+                RunStatus::NotConverged,
+                fmt::format(
+                    "the velocity solve reached a residual of {:.1e} where {:.1e} is asked {}, also with 64 "
+                    "times smaller steps",
+                    report.kkt_residual, tolerance, place)};
     }
 }
 
-/// One planned step, to its end; where it fails, the rest of it in twice as many equal parts, at most six times.
+/// One planned step, to its end; where it fails, the rest of it in twice as many equal parts, at most six
+/// times.
 std::optional<Ending> advance(Run& run)
 {
     constexpr int kMostParts = 64;
@@ -139,8 +144,8 @@ std::optional<Ending> advance(Run& run)
     return std::nullopt;
 }
 
-/// Steps until the end, an interrupt or a step that cannot be made. A checkpoint at each frame, every two seconds of
-/// work and at the end.
+/// Steps until the end, an interrupt or a step that cannot be made. A checkpoint at each frame, every two
+/// seconds of work and at the end.
 Ending simulate(Run& run, bool is_quiet)
 {
     Progress progress(run.at.state.time, run.config.duration, is_quiet);
@@ -185,14 +190,15 @@ RunReport make_report(const Run& run, const Ending& ending, int threads)
     return report;
 }
 
-/// What is made once, when the steps are over: formats of the frames, reports. A disk that refuses is told in the
-/// report where that can still be written.
+/// What is made once, when the steps are over: formats of the frames, reports. A disk that refuses is told in
+/// the report where that can still be written.
 Ending write_results(const Run& run, Ending ending, int threads)
 {
     const std::string& dir = run.files.path();
     try {
         if (run.at.frames > 0 && !run.config.output.formats.empty())
-            export_frames(dir, run.config.output.formats, {run.config.title, run.config.output.frames_per_second});
+            export_frames(dir, run.config.output.formats,
+                          {run.config.title, run.config.output.frames_per_second});
     } catch (const std::runtime_error& error) {  // the disk, or frames that a format cannot hold
         ending = {RunStatus::IoError, error.what()};
     }
@@ -237,7 +243,8 @@ std::string default_directory(const std::string& scene)
 
 void tell_warnings(const RunConfig& config)
 {
-    for (const std::string& warning : config.warnings) fmt::print(stderr, "warning: {}\n", printable(warning));
+    for (const std::string& warning : config.warnings)
+        fmt::print(stderr, "warning: {}\n", printable(warning));
 }
 
 /// Another duration: what is left is planned anew from where the run stands.
@@ -250,7 +257,10 @@ void set_end(double until, Checkpoint& checkpoint)
     checkpoint.position = {checkpoint.state.time, 0};
 }
 
-int thread_count(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
+int thread_count(int asked)
+{
+    return asked > 0 ? asked : tbb::info::default_concurrency();
+}
 
 }  // namespace
 
@@ -262,9 +272,11 @@ RunStatus run(const RunRequest& request)
     Checkpoint start;
     start.source = read_scene_source(request.scene, request.overrides);
     const RunConfig config = load_scene(start.source);
-    start.source.path = std::filesystem::absolute(start.source.path).string();  // resume may be called from elsewhere
+    start.source.path =
+        std::filesystem::absolute(start.source.path).string();  // resume may be called from elsewhere
     tell_warnings(config);
-    const std::string directory = request.directory.empty() ? default_directory(request.scene) : request.directory;
+    const std::string directory =
+        request.directory.empty() ? default_directory(request.scene) : request.directory;
     RunDirectory files = RunDirectory::create(directory, request.is_overwriting, config);
 
     start.state = make_state(config.scene, config.cloth, config.cloth_velocity);

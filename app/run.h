@@ -25,8 +25,9 @@ struct ResumeRequest {
     int threads = 0;
 };
 
-/// Simulate a scene, or go on from a checkpoint; write all that SCENE promises. However a run ends, what was computed
-/// and a checkpoint are kept. Throw InputError for bad input, std::system_error where nothing can be written at all.
+/// Simulate a scene, or go on from a checkpoint; write all that SCENE promises. However a run ends, what was
+/// computed and a checkpoint are kept. Throw InputError for bad input, std::system_error where nothing can be
+/// written at all.
 RunStatus run(const RunRequest& request);
 RunStatus resume(const ResumeRequest& request);
 

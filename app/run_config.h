@@ -30,7 +30,7 @@ struct RunConfig {
     OutputOptions output;
     std::vector<Probe> probes;
 
-    ClothMesh cloth;               ///< at time 0: placed, folded, pins' keyframes at 0 applied
+    ClothMesh cloth;                     ///< at time 0: placed, folded, pins' keyframes at 0 applied
     Vec3 cloth_velocity = Vec3::Zero();  ///< m/s, initial
 
     std::vector<std::string> warnings;

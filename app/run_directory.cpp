@@ -41,7 +41,8 @@ void remove_frames(const std::string& dir, std::int64_t first)
     for (const fs::directory_entry& entry : fs::directory_iterator(frames_directory(dir))) {
         const std::string stem = entry.path().stem().string();
         const std::size_t digits = stem.find_last_not_of("0123456789") + 1;
-        if (digits == stem.size() || digits == 0 || stem[digits - 1] != '_' || stem.size() - digits > 12) continue;
+        if (digits == stem.size() || digits == 0 || stem[digits - 1] != '_' || stem.size() - digits > 12)
+            continue;
         if (std::stoll(stem.substr(digits)) >= first) fs::remove(entry.path());
     }
 }
@@ -55,13 +56,23 @@ void make_folders(const std::string& path)
 
 }  // namespace
 
-std::string checkpoint_file(const std::string& run_dir) { return (fs::path(run_dir) / "checkpoint").string(); }
-std::string steps_file(const std::string& run_dir) { return (fs::path(run_dir) / "steps.csv").string(); }
-std::string probes_file(const std::string& run_dir) { return (fs::path(run_dir) / "probes.csv").string(); }
+std::string checkpoint_file(const std::string& run_dir)
+{
+    return (fs::path(run_dir) / "checkpoint").string();
+}
+std::string steps_file(const std::string& run_dir)
+{
+    return (fs::path(run_dir) / "steps.csv").string();
+}
+std::string probes_file(const std::string& run_dir)
+{
+    return (fs::path(run_dir) / "probes.csv").string();
+}
 
 RunDirectory::RunDirectory(std::string path, CsvWriter steps, CsvWriter probes)
     : path_(std::move(path)), steps_(std::move(steps)), probes_(std::move(probes))
-{}
+{
+}
 
 RunDirectory RunDirectory::create(const std::string& path, bool is_overwriting, const RunConfig& config)
 {
@@ -69,8 +80,8 @@ RunDirectory RunDirectory::create(const std::string& path, bool is_overwriting, 
         throw InputError(fmt::format("-o {}: is not a folder", printable(path)));
     if (holds_run(path)) {
         if (!is_overwriting)
-            throw InputError(fmt::format("-o {}: holds a run already; --overwrite replaces it, another -o keeps it",
-                                         printable(path)));
+            throw InputError(fmt::format(
+                "-o {}: holds a run already; --overwrite replaces it, another -o keeps it", printable(path)));
         for (const char* name : kRunFiles) fs::remove(fs::path(path) / name);
         remove_frames(path, 0);
     }
@@ -79,7 +90,8 @@ RunDirectory RunDirectory::create(const std::string& path, bool is_overwriting, 
             CsvWriter::create(probes_file(path), probe_header(probe_names(config)))};
 }
 
-RunDirectory RunDirectory::reopen(const std::string& path, const Checkpoint& checkpoint, const RunConfig& config)
+RunDirectory RunDirectory::reopen(const std::string& path, const Checkpoint& checkpoint,
+                                  const RunConfig& config)
 {
     truncate_csv(steps_file(path), checkpoint.rows);
     truncate_csv(probes_file(path), checkpoint.rows);

@@ -16,17 +16,21 @@ namespace arris {
 /// The files of a run while it runs: CSVs, frames and the checkpoint.
 class RunDirectory {
   public:
-    /// Makes `path` for a new run. InputError where it holds a run already, unless `is_overwriting`; then what the
-    /// earlier run left is removed, and nothing else.
+    /// Makes `path` for a new run. InputError where it holds a run already, unless `is_overwriting`; then
+    /// what the earlier run left is removed, and nothing else.
     static RunDirectory create(const std::string& path, bool is_overwriting, const RunConfig& config);
 
     /// Cuts the files of an earlier run back to its checkpoint.
-    static RunDirectory reopen(const std::string& path, const Checkpoint& checkpoint, const RunConfig& config);
+    static RunDirectory reopen(const std::string& path, const Checkpoint& checkpoint,
+                               const RunConfig& config);
 
     const std::string& path() const { return path_; }
 
     void append_step(const StepRow& row) { steps_.append(format_row(row)); }
-    void append_probes(double time, const std::vector<ProbeSample>& samples) { probes_.append(format_row(time, samples)); }
+    void append_probes(double time, const std::vector<ProbeSample>& samples)
+    {
+        probes_.append(format_row(time, samples));
+    }
     void write_frame(std::int64_t index, const Frame& frame);
     void write_checkpoint(const Checkpoint& checkpoint);
 

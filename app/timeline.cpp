@@ -11,7 +11,8 @@ Timeline::Timeline(const RunConfig& config)
       step_(config.settings.step),
       frames_per_second_(config.output.frames_per_second),
       jumps_(input_jumps(config.scene))
-{}
+{
+}
 
 double Timeline::interval_end(double begin) const
 {
@@ -47,7 +48,10 @@ TimelinePosition Timeline::advance(const TimelinePosition& at) const
     return {at.begin, at.done + 1};
 }
 
-bool Timeline::jumps_at(double time) const { return std::binary_search(jumps_.begin(), jumps_.end(), time); }
+bool Timeline::jumps_at(double time) const
+{
+    return std::binary_search(jumps_.begin(), jumps_.end(), time);
+}
 
 std::int64_t Timeline::frame_at(double time) const
 {

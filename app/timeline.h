@@ -14,8 +14,8 @@ struct TimelinePosition {
     std::int64_t done = 0;
 };
 
-/// The plan of a run's steps. Frame times, jumps of the input and the duration cut it into intervals, and each
-/// interval into ceil(length / step - 1e-9) equal steps, so that steps end exactly on all of these.
+/// The plan of a run's steps. Frame times, jumps of the input and the duration cut it into intervals, and
+/// each interval into ceil(length / step - 1e-9) equal steps, so that steps end exactly on all of these.
 class Timeline {
   public:
     explicit Timeline(const RunConfig& config);

@@ -37,7 +37,8 @@ struct MaterialLocation {
     Vec3 weights = Vec3::Zero();
 };
 
-/// The face that contains `point` (tolerance 1e-9 of `material_size`; the nearest such face, lowest index on ties).
+/// The face that contains `point` (tolerance 1e-9 of `material_size`; the nearest such face, lowest index on
+/// ties).
 MaterialLocation locate(const ClothMesh& mesh, const Vec2& point);
 
 }  // namespace arris

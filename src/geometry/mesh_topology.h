@@ -30,9 +30,9 @@ struct MeshTopology {
 /// Linear in face count (a sort). Faces must form an oriented 2-manifold: `validate` checks that.
 MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces);
 
-/// Names what is wrong with a cloth mesh: empty string if indices are in range, every vertex is used, the faces
-/// form an oriented manifold, coordinates are finite and every material orientation is positive by an exact
-/// predicate; else one sentence naming the element.
+/// Names what is wrong with a cloth mesh: empty string if indices are in range, every vertex is used, the
+/// faces form an oriented manifold, coordinates are finite and every material orientation is positive by an
+/// exact predicate; else one sentence naming the element.
 std::string validate(const ClothMesh& mesh);
 
 }  // namespace arris

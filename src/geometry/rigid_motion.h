@@ -36,7 +36,7 @@ struct RigidMotion {
     Vec3 pivot = Vec3::Zero();             ///< m, world
     double start = 0.0;                    ///< s
     double stop = std::numeric_limits<double>::infinity();
-    std::vector<Keyframe> keyframes;       ///< ascending in time
+    std::vector<Keyframe> keyframes;  ///< ascending in time
 
     /// Maps a point's place at time 0 (keyframes: in its own frame) to its place at `time`.
     Placement at(double time) const;

@@ -10,7 +10,7 @@ namespace arris {
 namespace {
 
 struct Normals {
-    Vec3 c, d;                ///< unit, of faces (a, b, c) and (b, a, d)
+    Vec3 c, d;                  ///< unit, of faces (a, b, c) and (b, a, d)
     double length_c, length_d;  ///< of the unnormalised ones: twice the areas
 };
 
@@ -25,7 +25,8 @@ std::optional<Normals> find_normals(const std::array<Vec3, 4>& x)
 
     constexpr double kCollapsed = 1e-12;  // of the squared size: the normal's direction is round-off below
     const double squared_size = e.squaredNorm() + to_c.squaredNorm() + to_d.squaredNorm();
-    if (!(n.length_c > kCollapsed * squared_size && n.length_d > kCollapsed * squared_size)) return std::nullopt;
+    if (!(n.length_c > kCollapsed * squared_size && n.length_d > kCollapsed * squared_size))
+        return std::nullopt;
     n.c /= n.length_c;
     n.d /= n.length_d;
     return n;
@@ -56,14 +57,16 @@ void Bending::add(const HingeState& hinge, HingeSystem& system) const
     gradient[0] = -(1.0 - at_c) * gradient[2] - (1.0 - at_d) * gradient[3];
     gradient[1] = -at_c * gradient[2] - at_d * gradient[3];
 
-    // dV/dtheta = K w sin(theta/2) cos(theta/2) = K w sin(theta) / 2;  2 K w (cos(theta/2) / 2)^2 for the stiffness.
+    // dV/dtheta = K w sin(theta/2) cos(theta/2) = K w sin(theta) / 2;  2 K w (cos(theta/2) / 2)^2 for the
+    // stiffness.
     const double scale = stiffness_ * hinge.element.weight;
     const double sin_theta = n->c.cross(n->d).dot(e) / length;
     const double squared_cos_half = 0.25 * (n->c + n->d).squaredNorm();
     for (int i = 0; i < 4; ++i) {
         system.add_force(i, -0.5 * scale * sin_theta * gradient[i]);
         for (int j = 0; j <= i; ++j)
-            system.add_stiffness(i, j, 0.5 * scale * squared_cos_half * gradient[i] * gradient[j].transpose());
+            system.add_stiffness(i, j,
+                                 0.5 * scale * squared_cos_half * gradient[i] * gradient[j].transpose());
     }
 }
 

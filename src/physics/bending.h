@@ -5,10 +5,10 @@
 
 namespace arris {
 
-/// Hinge bending: V = K 3 |e|^2 / A sin^2(theta/2), e the shared edge and A the area of both faces in material
-/// space, theta the angle between the faces' normals (the report, section 2.4). The stiffness is Gauss-Newton in
-/// sin(theta/2), so positive semi-definite: 2 K w grad s grad s^T, s = sin(theta/2).
-/// A hinge with a face collapsed to a line has no angle: it exerts no force.
+/// Hinge bending: V = K 3 |e|^2 / A sin^2(theta/2), e the shared edge and A the area of both faces in
+/// material space, theta the angle between the faces' normals (the report, section 2.4). The stiffness is
+/// Gauss-Newton in sin(theta/2), so positive semi-definite: 2 K w grad s grad s^T, s = sin(theta/2). A hinge
+/// with a face collapsed to a line has no angle: it exerts no force.
 class Bending : public HingeTerm {
   public:
     explicit Bending(double stiffness) : stiffness_(stiffness) {}

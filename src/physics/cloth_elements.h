@@ -17,17 +17,17 @@ struct FaceElement {
     std::array<Vec2, 3> gradients;
 };
 
-/// Two faces (a, b, c), (b, a, d) that share the edge (a, b). `weight` = 3 |e|^2 / A, e the edge and A the area
-/// of both faces, in material space.
+/// Two faces (a, b, c), (b, a, d) that share the edge (a, b). `weight` = 3 |e|^2 / A, e the edge and A the
+/// area of both faces, in material space.
 struct HingeElement {
     std::array<int, 4> vertices;
     std::array<int, 2> faces;
     double weight = 0.0;
 };
 
-/// Elements in classes ("colours") that share no vertex: those of one class can be added to a system in parallel
-/// without a race, and the sum a matrix entry receives is the same for any number of threads.
-/// Class k holds order[start[k]] .. order[start[k + 1] - 1].
+/// Elements in classes ("colours") that share no vertex: those of one class can be added to a system in
+/// parallel without a race, and the sum a matrix entry receives is the same for any number of threads. Class
+/// k holds order[start[k]] .. order[start[k + 1] - 1].
 struct ElementColors {
     std::vector<int> order;
     std::vector<int> start;

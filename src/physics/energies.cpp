@@ -10,15 +10,19 @@ namespace {
 double& energy_of(Energies& energies, EnergyKind kind)
 {
     switch (kind) {
-        case EnergyKind::Gravity: return energies.gravity;
-        case EnergyKind::Bending: return energies.bending;
-        default: return energies.stretch;
+        case EnergyKind::Gravity:
+            return energies.gravity;
+        case EnergyKind::Bending:
+            return energies.bending;
+        default:
+            return energies.stretch;
     }
 }
 
 }  // namespace
 
-Energies compute_energies(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& position)
+Energies compute_energies(const ClothElements& elements, const Terms& terms,
+                          const std::vector<Vec3>& position)
 {
     Energies energies;
     for (const auto& term : terms.faces) {

@@ -12,7 +12,8 @@ struct Energies {
     double gravity = 0.0, stretch = 0.0, bending = 0.0;
 };
 
-Energies compute_energies(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& position);
+Energies compute_energies(const ClothElements& elements, const Terms& terms,
+                          const std::vector<Vec3>& position);
 
 /// What a frame stores of each face: greatest principal strain, energies in J (a hinge's bending is halved
 /// between its faces).

@@ -79,11 +79,13 @@ void LinearSystem::make_pattern(const ClothElements& elements)
         int k = 0;
         for (std::size_t i = 1; i < vertices.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
-                blocks[k++] = find_block(std::max(vertices[i], vertices[j]), std::min(vertices[i], vertices[j]));
+                blocks[k++] =
+                    find_block(std::max(vertices[i], vertices[j]), std::min(vertices[i], vertices[j]));
     };
     face_blocks_.resize(elements.faces.size());
     hinge_blocks_.resize(elements.hinges.size());
-    for (std::size_t f = 0; f < elements.faces.size(); ++f) find_blocks(elements.faces[f].vertices, face_blocks_[f]);
+    for (std::size_t f = 0; f < elements.faces.size(); ++f)
+        find_blocks(elements.faces[f].vertices, face_blocks_[f]);
     for (std::size_t h = 0; h < elements.hinges.size(); ++h)
         find_blocks(elements.hinges[h].vertices, hinge_blocks_[h]);
 }

@@ -11,15 +11,17 @@
 
 namespace arris {
 
-/// A u = b of a step, three unknowns a vertex. `matrix` holds the lower triangle and whole 3x3 diagonal blocks; its
-/// pattern follows from the mesh alone, and where each element's blocks lie is looked up once a mesh.
+/// A u = b of a step, three unknowns a vertex. `matrix` holds the lower triangle and whole 3x3 diagonal
+/// blocks; its pattern follows from the mesh alone, and where each element's blocks lie is looked up once a
+/// mesh.
 class LinearSystem {
   public:
     /// The pattern of every pair of vertices that share a face or a hinge, values zero. O(n log n).
     void make_pattern(const ClothElements& elements);
 
     /// Sums all terms at `at`. The result does not depend on the number of threads.
-    void assemble(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms, const Linearization& at);
+    void assemble(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,
+                  const Linearization& at);
 
     const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
     const Eigen::VectorXd& rhs() const { return rhs_; }
@@ -31,7 +33,7 @@ class LinearSystem {
 
     Eigen::SparseMatrix<double> matrix_;
     Eigen::VectorXd rhs_;
-    std::vector<int> column_height_;            ///< entries in each column of a vertex
+    std::vector<int> column_height_;                ///< entries in each column of a vertex
     std::vector<std::array<int, 3>> face_blocks_;   ///< first entry of blocks (1,0), (2,0), (2,1)
     std::vector<std::array<int, 6>> hinge_blocks_;  ///< ... (1,0), (2,0), (2,1), (3,0), (3,1), (3,2)
 };

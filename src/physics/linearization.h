@@ -19,14 +19,14 @@ namespace arris {
 
 /// Where, when and with which weights a step's forces are linearised. All vectors have one entry a vertex.
 struct Linearization {
-    double time = 0.0;     ///< s, the step's end: forces are taken then
-    double begin = 0.0;    ///< s, the step's start
-    double gamma = 0.0;    ///< s
-    double damping = 0.0;  ///< s, stiffness-proportional
-    std::vector<Vec3> position;       ///< q^, m
-    std::vector<Vec3> v_predicted;    ///< v~, m/s
-    std::vector<Vec3> v_expansion;    ///< v^, m/s
-    std::vector<Vec3> v_last;         ///< v_k, m/s
+    double time = 0.0;              ///< s, the step's end: forces are taken then
+    double begin = 0.0;             ///< s, the step's start
+    double gamma = 0.0;             ///< s
+    double damping = 0.0;           ///< s, stiffness-proportional
+    std::vector<Vec3> position;     ///< q^, m
+    std::vector<Vec3> v_predicted;  ///< v~, m/s
+    std::vector<Vec3> v_expansion;  ///< v^, m/s
+    std::vector<Vec3> v_last;       ///< v_k, m/s
 
     // The vertex's coordinates: v' = drift + basis u.
     std::vector<Vec3> drift;  ///< m/s

@@ -9,8 +9,8 @@ namespace arris {
 
 /// What the cloth is made of. All values are those of a sheet, so areal where a solid's would be volumetric.
 struct Material {
-    double density = 0.0;            ///< areal, kg/m^2
-    double youngs_modulus = 0.0;     ///< membrane, N/m
+    double density = 0.0;         ///< areal, kg/m^2
+    double youngs_modulus = 0.0;  ///< membrane, N/m
     double poisson_ratio = 0.0;
     double bending_stiffness = 0.0;  ///< K of the hinge energy, J; 0 leaves bending out
     double damping = 0.0;            ///< s, stiffness-proportional; 0 leaves damping out

@@ -35,8 +35,8 @@ Stretch decompose(const Mat32& F)
     const double J = cross.norm();
     const double squared = F.squaredNorm();
 
-    // A face collapsed to a line or a point has no normal: any one across it serves, as every choice gives the
-    // same energy and a limit of the force.
+    // A face collapsed to a line or a point has no normal: any one across it serves, as every choice gives
+    // the same energy and a limit of the force.
     constexpr double kCollapsed = 1e-14;  // of |F|^2: the direction of f1 x f2 is round-off below
     Stretch s;
     s.n = J > kCollapsed * squared ? Vec3(cross / J)
@@ -90,7 +90,8 @@ Mat2 out_of_plane_stiffness(const Mat32& F, const Stretch& s, double mu, double 
 Membrane::Membrane(double youngs_modulus, double poisson_ratio)
     : mu_(youngs_modulus / (2.0 * (1.0 + poisson_ratio))),
       lambda_(youngs_modulus * poisson_ratio / (1.0 - poisson_ratio * poisson_ratio))
-{}
+{
+}
 
 double Membrane::energy(const FaceState& face) const
 {
@@ -123,9 +124,10 @@ void Membrane::add(const FaceState& face, FaceSystem& system) const
     }
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j <= i; ++j)
-            system.add_stiffness(i, j,
-                                 area * (2.0 * mu_ * b[i].dot(b[j]) * plane + lambda_ * Rb[i] * Rb[j].transpose() +
-                                         k * Tb[i] * Tb[j].transpose() + b[i].dot(W * b[j]) * normal));
+            system.add_stiffness(
+                i, j,
+                area * (2.0 * mu_ * b[i].dot(b[j]) * plane + lambda_ * Rb[i] * Rb[j].transpose() +
+                        k * Tb[i] * Tb[j].transpose() + b[i].dot(W * b[j]) * normal));
 }
 
 Vec2 principal_stretches(const Mat32& F)

@@ -41,7 +41,8 @@ void LocalSystem<N>::add_mass(int i, int j, double mass)
 }
 
 template <int N>
-void LocalSystem<N>::add_block(int i, int j, double weight, const Mat3& block, const std::array<Vec3, N>& times)
+void LocalSystem<N>::add_block(int i, int j, double weight, const Mat3& block,
+                               const std::array<Vec3, N>& times)
 {
     matrix_[i * (i + 1) / 2 + j] += weight * block;
     rhs_[i] += block * times[j];

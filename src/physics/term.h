@@ -15,8 +15,9 @@
 
 namespace arris {
 
-/// One element's part of the linear system, in the velocities of its N corners (see linearization.h). A term adds
-/// its force, mass, stiffness and viscosity; the right-hand side that goes with each is kept up here, once for all.
+/// One element's part of the linear system, in the velocities of its N corners (see linearization.h). A term
+/// adds its force, mass, stiffness and viscosity; the right-hand side that goes with each is kept up here,
+/// once for all.
 template <int N>
 class LocalSystem {
   public:
@@ -25,8 +26,8 @@ class LocalSystem {
     double time() const { return time_; }
     const Vec3& v_last(int i) const { return v_last_[i]; }  ///< m/s, of corner i
 
-    void add_force(int i, const Vec3& force);             ///< N
-    void add_mass(int i, int j, double mass);             ///< kg; i >= j, the other half is implied
+    void add_force(int i, const Vec3& force);                   ///< N
+    void add_mass(int i, int j, double mass);                   ///< kg; i >= j, the other half is implied
     void add_stiffness(int i, int j, const Mat3& minus_df_dx);  ///< N/m; i >= j
     void add_viscosity(int i, int j, const Mat3& minus_df_dv);  ///< N s/m; i >= j
 
@@ -101,7 +102,8 @@ struct Terms {
     std::vector<std::unique_ptr<const LoadTerm>> loads;
 };
 
-/// Inertia and membrane always; the others where their effect is there. Adding a term is one file and one line here.
+/// Inertia and membrane always; the others where their effect is there. Adding a term is one file and one
+/// line here.
 Terms make_terms(const Material& material, const std::optional<Gravity>& gravity,
                  const std::optional<Wind>& wind, const std::vector<Pull>& pulls);
 

@@ -33,7 +33,8 @@ void WindForce::add(const FaceState& face, FaceSystem& system) const
 
     const Vec3 material = (system.v_last(0) + system.v_last(1) + system.v_last(2)) / 3.0;
     const double w_n = n.dot(velocity_at(system.time()) - material);
-    const double pressure_per_speed = 0.5 * wind_.air_density * wind_.drag * 0.5 * twice_world_area * std::abs(w_n);
+    const double pressure_per_speed =
+        0.5 * wind_.air_density * wind_.drag * 0.5 * twice_world_area * std::abs(w_n);
     const Mat3 viscosity = 2.0 * pressure_per_speed / 9.0 * n * n.transpose();
     for (int i = 0; i < 3; ++i) {
         system.add_force(i, pressure_per_speed / 3.0 * w_n * n);

@@ -5,9 +5,10 @@
 
 namespace arris {
 
-/// Drag of the air on each face: f = rho/2 drag A |w_n| w_n n, A and n its world area and normal, w_n = n . w and
-/// w the wind less the material's velocity, taken at the face's middle. Linear in the velocity to first order:
-/// -df/dv = rho drag A |w_n| n n^T, which damps. How f changes as the face turns is left to the next step.
+/// Drag of the air on each face: f = rho/2 drag A |w_n| w_n n, A and n its world area and normal, w_n = n . w
+/// and w the wind less the material's velocity, taken at the face's middle. Linear in the velocity to first
+/// order: -df/dv = rho drag A |w_n| n n^T, which damps. How f changes as the face turns is left to the next
+/// step.
 class WindForce : public FaceTerm {
   public:
     explicit WindForce(const Wind& wind);

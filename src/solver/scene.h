@@ -18,7 +18,7 @@ namespace arris {
 struct Pin {
     MaterialBox material;
     RigidMotion motion;
-    std::array<bool, 3> held = {true, true, true};              ///< x, y, z
+    std::array<bool, 3> held = {true, true, true};             ///< x, y, z
     double release = std::numeric_limits<double>::infinity();  ///< s
 
     bool holds_until(double end) const { return end <= release; }
@@ -34,8 +34,8 @@ struct Scene {
     std::optional<HalfSpace> floor;  ///< a plane under the cloth, for tests and benchmarks
 };
 
-/// Times after 0 at which the input jumps (motion starts or stops, keyframe, release, pull): ascending, unique.
-/// Steps end on them, and the step after one is implicit Euler.
+/// Times after 0 at which the input jumps (motion starts or stops, keyframe, release, pull): ascending,
+/// unique. Steps end on them, and the step after one is implicit Euler.
 std::vector<double> input_jumps(const Scene& scene);
 
 }  // namespace arris

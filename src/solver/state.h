@@ -21,7 +21,7 @@ struct State {
     ClothMesh mesh;
     std::vector<std::uint32_t> ids;  ///< persistent, one a vertex, ascending
     std::uint32_t next_id = 0;
-    std::vector<Vec3> velocity;      ///< v_k, m/s
+    std::vector<Vec3> velocity;  ///< v_k, m/s
 
     // One step back, for BDF2; meaningless where `previous_dt` is 0 (first step, after a jump of the input).
     double previous_dt = 0.0;  ///< s

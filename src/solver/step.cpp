@@ -155,18 +155,27 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     report.dt = end - state.time;
     Stopwatch watch;
 
-    prepare(scene, state, work);                   // elements of a mesh that changed
-    move_pins(scene, settings, end, state, work);  // 1. where pins will be, q~ and v~
+    // 1. Elements of a mesh that changed; where pins will be; q~ and v~ of the integrator.
+    prepare(scene, state, work);
+    move_pins(scene, settings, end, state, work);
     report.seconds.move += watch.lap();
-    work.contacts = find_contacts(scene, state, work.prediction);  // 2. what the cloth may touch
+
+    // 2. What the cloth may touch; history that ran into it is flattened.
+    work.contacts = find_contacts(scene, state, work.prediction);
     report.seconds.contacts += watch.lap();
-    build_constraints(work.held, work.contacts, work.prediction, state, work.at, work.problem);  // 3. bounds
-    assemble(scene, end, state, work);                                                           // 4. A, b
+
+    // 3. Each vertex's coordinates, in which pins are known and contacts are bounds; A and b in them.
+    build_constraints(work.held, work.contacts, work.prediction, state, work.at, work.problem);
+    assemble(scene, end, state, work);
     report.seconds.assemble += watch.lap();
-    solve_velocity(settings, work, report);  // 5. constrained velocity, with its certificate
+
+    // 4. The constrained velocity, with its certificate.
+    solve_velocity(settings, work, report);
     watch.lap();
-    propose(work);                     // 6. q' = q~ + gamma v', not committed
-    commit(end, work, state, report);  // 7. swaps it in, or leaves the state
+
+    // 5. q' = q~ + gamma v'; swapped in, or the state stays as it was.
+    propose(work);
+    commit(end, work, state, report);
     report.seconds.advance += watch.lap();
     return report;
 }

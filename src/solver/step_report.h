@@ -7,13 +7,13 @@ enum class StepStatus { Done, NotConverged, Infeasible, NotFinite };
 
 /// Wall seconds of one step by phase.
 struct PhaseSeconds {
-    double move = 0, contacts = 0, conform = 0, transfer = 0, assemble = 0, factorise = 0, solve = 0, check = 0,
-           advance = 0, output = 0;
+    double move = 0, contacts = 0, conform = 0, transfer = 0, assemble = 0, factorise = 0, solve = 0,
+           check = 0, advance = 0, output = 0;
 };
 
 struct StepReport {
     StepStatus status = StepStatus::Done;
-    double dt = 0.0;  ///< s
+    double dt = 0.0;   ///< s
     int contacts = 0;  ///< constraints with a positive multiplier
     double kkt_residual = 0.0;
     int factorisations = 0;

@@ -6,7 +6,8 @@ namespace arris {
 Prediction predict(const State& state, Integrator integrator, double dt)
 {
     Prediction prediction;
-    constexpr double kGreatestRatio = 2.4142135623730951;  // 1 + sqrt 2: beyond, variable-step BDF2 is not zero-stable
+    constexpr double kGreatestRatio =
+        2.4142135623730951;  // 1 + sqrt 2: beyond, variable-step BDF2 is not zero-stable
     prediction.has_history = integrator == Integrator::Bdf2 && dt <= kGreatestRatio * state.previous_dt;
     if (!prediction.has_history) {
         prediction.gamma = dt;

@@ -3,8 +3,8 @@
 //
 //   q~ = ((1+w)^2 q_k - w^2 q_(k-1)) / (1+2w),   v~ alike,   gamma = h (1+w)/(1+2w),   q' = q~ + gamma v'.
 //
-// Forces are linearised at q^ = q~ + gamma v^ with v^ = v_k (BDF2) or 0 (implicit Euler): at q~ any stiffness that is
-// not the true Hessian would make BDF2 first order, as q' - q~ is O(h) where q' - q^ is O(h^2).
+// Forces are linearised at q^ = q~ + gamma v^ with v^ = v_k (BDF2) or 0 (implicit Euler): at q~ any stiffness
+// that is not the true Hessian would make BDF2 first order, as q' - q~ is O(h) where q' - q^ is O(h^2).
 #pragma once
 
 #include <vector>
@@ -22,7 +22,8 @@ struct Prediction {
     std::vector<Vec3> velocity;  ///< v~, m/s
 };
 
-/// BDF2 is implicit Euler where there is no step behind it, or one so short that variable-step BDF2 were not stable.
+/// BDF2 is implicit Euler where there is no step behind it, or one so short that variable-step BDF2 were not
+/// stable.
 Prediction predict(const State& state, Integrator integrator, double dt);
 
 }  // namespace arris

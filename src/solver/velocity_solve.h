@@ -11,11 +11,12 @@ namespace arris {
 
 /// min 1/2 u^T A u - b^T u subject to u >= lower, u = 0 where fixed. Three unknowns a vertex.
 struct VelocityProblem {
-    const Eigen::SparseMatrix<double>* matrix = nullptr;  ///< A, SPD: lower triangle, and whole 3x3 diagonal blocks
-    const Eigen::VectorXd* rhs = nullptr;                 ///< b
-    Eigen::VectorXd lower;                                ///< -infinity where there is no bound
-    std::vector<char> is_fixed;                           ///< pinned: u = 0, whatever the bound
-    std::vector<int> guess;                               ///< coordinates expected active, ascending (warm start)
+    const Eigen::SparseMatrix<double>* matrix =
+        nullptr;                           ///< A, SPD: lower triangle, and whole 3x3 diagonal blocks
+    const Eigen::VectorXd* rhs = nullptr;  ///< b
+    Eigen::VectorXd lower;                 ///< -infinity where there is no bound
+    std::vector<char> is_fixed;            ///< pinned: u = 0, whatever the bound
+    std::vector<int> guess;                ///< coordinates expected active, ascending (warm start)
 };
 
 enum class SolveStatus { Certified, NotConverged, NotFinite };

@@ -17,7 +17,7 @@ struct Workspace {
     Terms terms;
     ClothElements elements;
     LinearSystem system;
-    std::vector<Face> faces_of_elements;     ///< of the mesh `elements` was made for
+    std::vector<Face> faces_of_elements;  ///< of the mesh `elements` was made for
     std::vector<Vec2> material_of_elements;
 
     // move_obstacles, find_contacts, build_constraints

@@ -105,7 +105,8 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("history", [&](Checkpoint& c) { c.state.previous_world[0].x() = INFINITY; });
     refused("ids", [](Checkpoint& c) { std::swap(c.state.ids[0], c.state.ids[1]); });
     refused("lengths", [](Checkpoint& c) { c.state.velocity.pop_back(); });
-    refused("orientation", [](Checkpoint& c) { std::swap(c.state.mesh.faces[0][1], c.state.mesh.faces[0][2]); });
+    refused("orientation",
+            [](Checkpoint& c) { std::swap(c.state.mesh.faces[0][1], c.state.mesh.faces[0][2]); });
     refused("time", [&](Checkpoint& c) { c.state.time = kNan; });
     refused("previous step", [&](Checkpoint& c) { c.state.previous_dt = -1.0; });
     refused("rows", [](Checkpoint& c) { c.rows = 0; });

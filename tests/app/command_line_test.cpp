@@ -53,8 +53,8 @@ TEST(CommandLine, BadArgumentsAreOneLineAndStatusTwo)
 TEST(CommandLine, HelpAndVersionAreNoErrors)
 {
     const TemporaryDirectory folder;
-    for (const std::vector<std::string>& arguments :
-         std::vector<std::vector<std::string>>{{"--help"}, {"--version"}, {"run", "--help"}, {"docs", "scene"}}) {
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"--help"}, {"--version"}, {"run", "--help"}, {"docs", "scene"}}) {
         Program program(folder, arguments);
         EXPECT_EQ(program.wait(), 0);
         EXPECT_GT(program.out().size(), 5u);

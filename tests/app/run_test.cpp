@@ -85,7 +85,8 @@ void expect_same_run(const std::string& a, const std::string& b)
     std::sort(files_a.begin(), files_a.end());
     std::sort(files_b.begin(), files_b.end());
     EXPECT_EQ(files_a, files_b);
-    for (const std::string& file : files_a) EXPECT_TRUE(timeless(fs::path(a) / file) == timeless(fs::path(b) / file)) << file;
+    for (const std::string& file : files_a)
+        EXPECT_TRUE(timeless(fs::path(a) / file) == timeless(fs::path(b) / file)) << file;
 }
 
 class Run : public testing::Test {
@@ -108,8 +109,9 @@ class Run : public testing::Test {
 TEST_F(Run, LeavesEveryFileOfTheContract)
 {
     const std::string dir = run_through("through");
-    for (const char* name : {"steps.csv", "probes.csv", "report.json", "report.html", "viewer.html", "cloth.usda",
-                             "checkpoint", "frames/cloth_00000.ply", "frames/cloth_00012.ply", "frames/cloth_00012.obj"})
+    for (const char* name :
+         {"steps.csv", "probes.csv", "report.json", "report.html", "viewer.html", "cloth.usda", "checkpoint",
+          "frames/cloth_00000.ply", "frames/cloth_00012.ply", "frames/cloth_00012.obj"})
         EXPECT_TRUE(fs::is_regular_file(fs::path(dir) / name)) << name;
     EXPECT_FALSE(fs::exists(fs::path(dir) / "frames/cloth_00013.ply"));
 
@@ -135,7 +137,9 @@ TEST_F(Run, LeavesEveryFileOfTheContract)
 
 TEST_F(Run, AnAbsentEffectHasEmptyColumns)
 {
-    write_bytes(scene, "duration = 0.02\n[cloth]\nsize=[1,1]\nresolution=[2,2]\n[cloth.material]\nbending_stiffness=0\n");
+    write_bytes(
+        scene,
+        "duration = 0.02\n[cloth]\nsize=[1,1]\nresolution=[2,2]\n[cloth.material]\nbending_stiffness=0\n");
     const CsvTable steps = read_csv(run_through("bare") + "/steps.csv");
     for (const char* column : {"gravity_energy", "bending_energy", "eol_vertices", "feature_rows"})
         for (const double cell : steps.column(column)) EXPECT_TRUE(std::isnan(cell)) << column;
@@ -178,7 +182,8 @@ TEST_F(Run, CtrlCLeavesACheckpointToGoOnFrom)
     const std::string through = run_through("through", {"--set", "duration=2"});
     const std::string dir = folder / "stopped";
     Program program(folder, {"run", scene, "-o", dir, "--set", "duration=2"});
-    while (!fs::exists(dir + "/frames/cloth_00002.ply")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (!fs::exists(dir + "/frames/cloth_00002.ply"))
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ASSERT_EQ(program.stop_after(std::chrono::milliseconds(0), SIGINT), 130);
     EXPECT_NE(program.err().find("interrupted"), std::string::npos);
     EXPECT_EQ(nlohmann::json::parse(read_bytes(dir + "/report.json"))["status"], "interrupted");

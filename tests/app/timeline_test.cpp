@@ -72,7 +72,8 @@ TEST(Timeline, StepsEndExactlyOnFramesJumpsAndTheDuration)
                 EXPECT_TRUE(timeline.jumps_at(event));
             }
             for (std::int64_t k = 1; k < frames; ++k)
-                EXPECT_TRUE(std::find(ends.begin(), ends.end(), static_cast<double>(k) / fps) != ends.end()) << k;
+                EXPECT_TRUE(std::find(ends.begin(), ends.end(), static_cast<double>(k) / fps) != ends.end())
+                    << k;
         }
     }
 }

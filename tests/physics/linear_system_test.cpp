@@ -35,7 +35,8 @@ Sheet make_sheet(std::array<int, 2> resolution, GridPattern pattern)
     const int n = sheet.mesh.vertex_count();
     sheet.elements = make_elements(sheet.mesh, make_topology(n, sheet.mesh.faces));
     Material material{0.15, 500.0, 0.3, 1e-4, 0.01, 1e-3};
-    sheet.terms = make_terms(material, Gravity{}, Wind{Vec3(1, 2, 3), 1.2, 1.0, {}}, {Pull{{Vec2(0, 0), Vec2(0.5, 1)}, Vec3(1, 0, 0)}});
+    sheet.terms = make_terms(material, Gravity{}, Wind{Vec3(1, 2, 3), 1.2, 1.0, {}},
+                             {Pull{{Vec2(0, 0), Vec2(0.5, 1)}, Vec3(1, 0, 0)}});
     Linearization& at = sheet.at;
     at.time = at.gamma = 0.005;
     at.damping = 0.01;
@@ -68,7 +69,8 @@ TEST(LinearSystem, IsTheSumOfItsElements)
             rhs.segment<3>(3 * vertices[i]) += local.rhs(i);
             for (int j = 0; j <= i; ++j) {
                 matrix.block<3, 3>(3 * vertices[i], 3 * vertices[j]) += local.matrix(i, j);
-                if (i != j) matrix.block<3, 3>(3 * vertices[j], 3 * vertices[i]) += local.matrix(i, j).transpose();
+                if (i != j)
+                    matrix.block<3, 3>(3 * vertices[j], 3 * vertices[i]) += local.matrix(i, j).transpose();
             }
         }
     };
@@ -131,7 +133,8 @@ TEST(LinearSystem, DriftIsWhatAShiftOfTheUnknownWouldBe)
         drift.segment<3>(3 * v) = sheet.at.drift[v];
     }
     sheet.system.assemble(sheet.mesh, sheet.elements, sheet.terms, sheet.at);
-    EXPECT_LT((sheet.system.rhs() - (rhs - matrix * drift)).norm(), 1e-12 * (rhs.norm() + (matrix * drift).norm()));
+    EXPECT_LT((sheet.system.rhs() - (rhs - matrix * drift)).norm(),
+              1e-12 * (rhs.norm() + (matrix * drift).norm()));
 }
 
 TEST(LinearSystem, IsBitIdenticalForAnyNumberOfThreads)
@@ -155,7 +158,8 @@ TEST(ElementColors, NoTwoElementsOfAColorShareAVertex)
     ClothMesh fan;
     const int spokes = 200;
     fan.material.push_back(Vec2::Zero());
-    for (int k = 0; k < spokes; ++k) fan.material.push_back(Vec2(std::cos(2 * M_PI * k / spokes), std::sin(2 * M_PI * k / spokes)));
+    for (int k = 0; k < spokes; ++k)
+        fan.material.push_back(Vec2(std::cos(2 * M_PI * k / spokes), std::sin(2 * M_PI * k / spokes)));
     for (int k = 0; k < spokes; ++k) fan.faces.push_back({0, 1 + k, 1 + (k + 1) % spokes});
     fan.world.resize(fan.material.size());
     for (const ClothMesh& mesh : {fan, make_sheet({7, 5}, GridPattern::Alternating).mesh}) {

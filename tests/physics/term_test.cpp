@@ -20,8 +20,8 @@
 namespace arris {
 namespace {
 
-constexpr double kStep = 1e-6;          // of central differences; positions and sizes are about 1
-constexpr double kFdTolerance = 2e-8;   // truncation h^2 f''' and round-off eps / h, relative to the stiffness
+constexpr double kStep = 1e-6;         // of central differences; positions and sizes are about 1
+constexpr double kFdTolerance = 2e-8;  // truncation h^2 f''' and round-off eps / h, relative to the stiffness
 constexpr double kRoundOff = 1e-12;
 
 using Generator = std::mt19937_64;
@@ -39,7 +39,8 @@ Vec3 random_vector(Generator& random, double size)
 Mat3 random_rotation(Generator& random)
 {
     return Eigen::Quaterniond(Eigen::Vector4d(uniform(random, -1, 1), uniform(random, -1, 1),
-                                              uniform(random, -1, 1), uniform(random, -1, 1)).normalized())
+                                              uniform(random, -1, 1), uniform(random, -1, 1))
+                                  .normalized())
         .toRotationMatrix();
 }
 
@@ -81,10 +82,7 @@ struct Element<4> {
     static constexpr int kCorners = 4;
     using Term = HingeTerm;
     using State = HingeState;
-    static HingeElement make(Generator& random)
-    {
-        return {{0, 1, 2, 3}, {0, 1}, uniform(random, 1.0, 5.0)};
-    }
+    static HingeElement make(Generator& random) { return {{0, 1, 2, 3}, {0, 1}, uniform(random, 1.0, 5.0)}; }
     static std::vector<Vec3> rest(const HingeElement&)
     {
         return {Vec3(0, -0.5, 0), Vec3(0, 0.5, 0), Vec3(-0.8, 0.1, 0), Vec3(0.9, -0.2, 0)};
@@ -135,19 +133,57 @@ struct Shape {
 
 const std::vector<Shape> kShapes = {
     {"rest", true, [](Generator&, auto&) {}},
-    {"noise 1e-3", true, [](Generator& g, auto& x) { for (Vec3& p : x) p += random_vector(g, 1e-3); }},
-    {"noise 0.2", true, [](Generator& g, auto& x) { for (Vec3& p : x) p += random_vector(g, 0.2); }},
-    {"stretched 3 x", true, [](Generator& g, auto& x) { for (Vec3& p : x) p = 3.0 * p + random_vector(g, 0.1); }},
-    {"squeezed 0.5 x", true, [](Generator& g, auto& x) { for (Vec3& p : x) p = 0.5 * p + random_vector(g, 0.02); }},
+    {"noise 1e-3", true,
+     [](Generator& g, auto& x) {
+         for (Vec3& p : x) p += random_vector(g, 1e-3);
+     }},
+    {"noise 0.2", true,
+     [](Generator& g, auto& x) {
+         for (Vec3& p : x) p += random_vector(g, 0.2);
+     }},
+    {"stretched 3 x", true,
+     [](Generator& g, auto& x) {
+         for (Vec3& p : x) p = 3.0 * p + random_vector(g, 0.1);
+     }},
+    {"squeezed 0.5 x", true,
+     [](Generator& g, auto& x) {
+         for (Vec3& p : x) p = 0.5 * p + random_vector(g, 0.02);
+     }},
     {"squeezed along one direction", true,
-     [](Generator& g, auto& x) { for (Vec3& p : x) { p.x() *= 0.4; p += random_vector(g, 0.01); } }},
-    {"far from the origin", false, [](Generator&, auto& x) { for (Vec3& p : x) p += Vec3(1e6, -1e6, 1e6); }},
-    {"huge", false, [](Generator&, auto& x) { for (Vec3& p : x) p *= 1e6; }},
-    {"tiny", false, [](Generator&, auto& x) { for (Vec3& p : x) p *= 1e-6; }},
-    {"collapsed to a line", false, [](Generator&, auto& x) { for (Vec3& p : x) p.x() = p.z() = 0.0; }},
-    {"collapsed to a point", false, [](Generator&, auto& x) { for (Vec3& p : x) p.setZero(); }},
-    {"sliver", false, [](Generator&, auto& x) { for (Vec3& p : x) p.x() *= 1e-9; }},
-    {"turned over", false, [](Generator&, auto& x) { for (Vec3& p : x) p.x() = -p.x(); }},
+     [](Generator& g, auto& x) {
+         for (Vec3& p : x) {
+             p.x() *= 0.4;
+             p += random_vector(g, 0.01);
+         }
+     }},
+    {"far from the origin", false,
+     [](Generator&, auto& x) {
+         for (Vec3& p : x) p += Vec3(1e6, -1e6, 1e6);
+     }},
+    {"huge", false,
+     [](Generator&, auto& x) {
+         for (Vec3& p : x) p *= 1e6;
+     }},
+    {"tiny", false,
+     [](Generator&, auto& x) {
+         for (Vec3& p : x) p *= 1e-6;
+     }},
+    {"collapsed to a line", false,
+     [](Generator&, auto& x) {
+         for (Vec3& p : x) p.x() = p.z() = 0.0;
+     }},
+    {"collapsed to a point", false,
+     [](Generator&, auto& x) {
+         for (Vec3& p : x) p.setZero();
+     }},
+    {"sliver", false,
+     [](Generator&, auto& x) {
+         for (Vec3& p : x) p.x() *= 1e-9;
+     }},
+    {"turned over", false,
+     [](Generator&, auto& x) {
+         for (Vec3& p : x) p.x() = -p.x();
+     }},
 };
 
 enum class Stiffness { Exact, GaussNewton };
@@ -234,8 +270,9 @@ void expect_stiffness_is_the_projected_hessian(const Case<N>& c)
             hessian.col(i) = -(force_at(kStep) - force_at(-kStep)) / (2 * kStep);
         }
         EXPECT_LT((hessian - hessian.transpose()).norm(), kFdTolerance * (size + 1.0));
-        // Projection only takes negative eigenvalues away (those of the element in its deformation gradient, so the
-        // corners' matrix is not the corners' projection): the same where there are none, never less elsewhere.
+        // Projection only takes negative eigenvalues away (those of the element in its deformation gradient,
+        // so the corners' matrix is not the corners' projection): the same where there are none, never less
+        // elsewhere.
         const Matrix symmetric = 0.5 * (hessian + hessian.transpose());
         const Matrix difference = analytic.matrix - symmetric;
         const double tolerance = 10 * kFdTolerance * (size + 1.0);
@@ -274,16 +311,34 @@ void expect_rigid_invariance(const Case<N>& c)
 }
 
 class FaceTerms : public testing::TestWithParam<Case<3>> {};
-TEST_P(FaceTerms, ForceIsMinusTheGradient) { expect_force_is_minus_the_gradient(GetParam()); }
-TEST_P(FaceTerms, StiffnessIsTheProjectedHessian) { expect_stiffness_is_the_projected_hessian(GetParam()); }
-TEST_P(FaceTerms, RigidMotionChangesNothing) { expect_rigid_invariance(GetParam()); }
+TEST_P(FaceTerms, ForceIsMinusTheGradient)
+{
+    expect_force_is_minus_the_gradient(GetParam());
+}
+TEST_P(FaceTerms, StiffnessIsTheProjectedHessian)
+{
+    expect_stiffness_is_the_projected_hessian(GetParam());
+}
+TEST_P(FaceTerms, RigidMotionChangesNothing)
+{
+    expect_rigid_invariance(GetParam());
+}
 INSTANTIATE_TEST_SUITE_P(All, FaceTerms, testing::ValuesIn(kFaceTerms),
                          [](const auto& i) { return "n" + std::to_string(i.index); });
 
 class HingeTerms : public testing::TestWithParam<Case<4>> {};
-TEST_P(HingeTerms, ForceIsMinusTheGradient) { expect_force_is_minus_the_gradient(GetParam()); }
-TEST_P(HingeTerms, StiffnessIsTheProjectedHessian) { expect_stiffness_is_the_projected_hessian(GetParam()); }
-TEST_P(HingeTerms, RigidMotionChangesNothing) { expect_rigid_invariance(GetParam()); }
+TEST_P(HingeTerms, ForceIsMinusTheGradient)
+{
+    expect_force_is_minus_the_gradient(GetParam());
+}
+TEST_P(HingeTerms, StiffnessIsTheProjectedHessian)
+{
+    expect_stiffness_is_the_projected_hessian(GetParam());
+}
+TEST_P(HingeTerms, RigidMotionChangesNothing)
+{
+    expect_rigid_invariance(GetParam());
+}
 INSTANTIATE_TEST_SUITE_P(All, HingeTerms, testing::ValuesIn(kHingeTerms),
                          [](const auto& i) { return "n" + std::to_string(i.index); });
 
@@ -317,7 +372,8 @@ TEST(Membrane, UniformStretchAnswersWithEPerWidth)
         ClothMesh mesh;
         mesh.material = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
         mesh.faces = {Face{0, 1, 2}, Face{0, 2, 3}};
-        for (const Vec2& X : mesh.material) mesh.world.emplace_back(X.x() * (1 + e), X.y() * (1 - nu * e), 0.0);
+        for (const Vec2& X : mesh.material)
+            mesh.world.emplace_back(X.x() * (1 + e), X.y() * (1 - nu * e), 0.0);
         const ClothElements elements = make_elements(mesh, make_topology(4, mesh.faces));
         Terms terms;
         terms.faces.push_back(std::make_unique<Membrane>(E, nu));
@@ -367,7 +423,8 @@ TEST(WindForce, ViscosityIsMinusTheDerivativeByVelocity)
         };
         const Evaluation<3> analytic = evaluate<3>(force, face, at);
         for (int i = 0; i < 9; ++i) {
-            const Eigen::Matrix<double, 9, 1> difference = -(force_at(i, kStep) - force_at(i, -kStep)) / (2 * kStep);
+            const Eigen::Matrix<double, 9, 1> difference =
+                -(force_at(i, kStep) - force_at(i, -kStep)) / (2 * kStep);
             EXPECT_LT((difference - analytic.matrix.col(i)).norm(), 1e-7 * (1.0 + analytic.matrix.norm()));
         }
         using Matrix9 = Eigen::Matrix<double, 9, 9>;

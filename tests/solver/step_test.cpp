@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "geometry/cloth_grid.h"
 #include "physics/inertia.h"
@@ -58,6 +59,158 @@ TEST(Step, FreeFallIsTheParabola)
         const Vec3 momentum = linear_momentum(0.05, work.elements, state.velocity);
         EXPECT_LT((momentum - 0.05 * Vec3(1.0, 0.0, 2.0 - 9.81 * 0.5)).norm(), 1e-13);
     }
+}
+
+/// A sheet held along one edge that falls onto a floor: pins, contacts, history.
+Scene make_draped_scene()
+{
+    Scene scene;
+    scene.material = soft_cloth();
+    scene.gravity = Gravity{};
+    scene.floor = HalfSpace{};
+    Pin pin;
+    pin.material = {Vec2(0, 0), Vec2(0, 1)};
+    scene.pins = {pin};
+    return scene;
+}
+
+ClothMesh make_raised_sheet()
+{
+    ClothMesh mesh = make_sheet(Vec2(1, 1), {8, 8});
+    for (Vec3& x : mesh.world) x.z() = 0.05 + 0.01 * std::sin(9.0 * x.x() + 4.0 * x.y());
+    return mesh;
+}
+
+void expect_same(const State& a, const State& b)
+{
+    EXPECT_TRUE(a.mesh.world == b.mesh.world);
+    EXPECT_TRUE(a.velocity == b.velocity);
+    EXPECT_TRUE(a.previous_world == b.previous_world);
+    ASSERT_EQ(a.active.size(), b.active.size());
+    for (std::size_t k = 0; k < a.active.size(); ++k) {
+        EXPECT_EQ(a.active[k].vertex_id, b.active[k].vertex_id);
+        EXPECT_EQ(a.active[k].multiplier, b.active[k].multiplier);
+    }
+}
+
+TEST(Step, ClearingTheWorkspaceChangesNothing)
+{
+    const Scene scene = make_draped_scene();
+    const Settings settings;
+    State kept = make_state(scene, make_raised_sheet(), Vec3::Zero()), cleared = kept;
+    Workspace work;
+    for (int k = 1; k <= 60; ++k) {
+        step(scene, settings, 0.005 * k, kept, work);
+        Workspace fresh;
+        step(scene, settings, 0.005 * k, cleared, fresh);
+        ASSERT_NO_FATAL_FAILURE(expect_same(kept, cleared));
+    }
+    EXPECT_GT(kept.active.size(), 10u) << "the sheet lies on the floor";
+}
+
+TEST(Step, AFailedStepLeavesTheStateAsItWas)
+{
+    const Scene scene = make_draped_scene();
+    State state = make_state(scene, make_raised_sheet(), Vec3::Zero());
+    Workspace work;
+    advance(scene, Settings(), 0.1, state, work);
+    Scene broken = make_draped_scene();
+    broken.gravity->acceleration.z() = std::numeric_limits<double>::quiet_NaN();
+    Workspace broken_work;
+    const State before = state;
+    EXPECT_EQ(step(broken, Settings(), 0.105, state, broken_work).status, StepStatus::NotFinite);
+    EXPECT_EQ(state.time, before.time);
+    EXPECT_EQ(state.step, before.step);
+    expect_same(state, before);
+}
+
+TEST(Step, PinsAreExactlyWhereTheirMotionSays)
+{
+    Scene scene;
+    scene.material = soft_cloth();
+    scene.gravity = Gravity{};
+    Pin turning;
+    turning.material = {Vec2(0, 0), Vec2(0, 1)};
+    turning.motion.angular_velocity = Vec3(0, 0, 2);
+    turning.motion.velocity = Vec3(0.1, 0, 0);
+    turning.motion.pivot = Vec3(0, 0.5, 0);
+    Pin sliding;  // held in z alone
+    sliding.material = {Vec2(1, 0), Vec2(1, 0)};
+    sliding.held = {false, false, true};
+    sliding.motion.velocity = Vec3(5, 5, 0.3);
+    scene.pins = {turning, sliding};
+    for (const Integrator integrator : {Integrator::ImplicitEuler, Integrator::Bdf2}) {
+        Settings settings;
+        settings.integrator = integrator;
+        const ClothMesh mesh = make_sheet(Vec2(1, 1), {6, 6});
+        State state = make_state(scene, mesh, Vec3::Zero());
+        Workspace work;
+        for (int k = 1; k <= 100; ++k) {
+            ASSERT_EQ(step(scene, settings, 0.005 * k, state, work).status, StepStatus::Done);
+            const Placement place = turning.motion.at(state.time);
+            for (const int v : vertices_in_box(mesh, turning.material))
+                ASSERT_LT((state.mesh.world[v] - place(mesh.world[v])).norm(), 1e-13);
+            const int corner = vertices_in_box(mesh, sliding.material)[0];
+            ASSERT_NEAR(state.mesh.world[corner].z(), 0.3 * state.time, 1e-14);
+        }
+        const int corner = vertices_in_box(mesh, sliding.material)[0];
+        EXPECT_GT((state.mesh.world[corner] - mesh.world[corner]).head<2>().norm(), 0.01) << "free in x and y";
+    }
+}
+
+TEST(Step, AVertexHeldSidewaysStillRestsOnATiltedFloor)
+{
+    // Held in x, a vertex meets a plane tilted about y: its normal's part across the pin carries the contact.
+    Scene scene = make_draped_scene();
+    scene.floor->normal = Vec3(0.5, 0.0, std::sqrt(0.75));
+    scene.floor->offset = -0.2;
+    scene.pins[0].held = {true, false, false};
+    State state = make_state(scene, make_raised_sheet(), Vec3::Zero());
+    Workspace work;
+    for (int k = 1; k <= 200; ++k) {
+        ASSERT_EQ(step(scene, Settings(), 0.005 * k, state, work).status, StepStatus::Done);
+        for (const Vec3& x : state.mesh.world)
+            ASSERT_GT(scene.floor->normal.dot(x) - scene.floor->offset - scene.material.thickness, -1e-13);
+    }
+    bool is_held_vertex_in_contact = false;
+    for (const int v : vertices_in_box(state.mesh, scene.pins[0].material)) {
+        EXPECT_NEAR(state.mesh.world[v].x(), 0.0, 1e-14);
+        for (const ActiveBound& bound : state.active)
+            is_held_vertex_in_contact = is_held_vertex_in_contact || bound.vertex_id == state.ids[v];
+    }
+    EXPECT_TRUE(is_held_vertex_in_contact);
+}
+
+TEST(Step, AStepMuchLongerThanTheLastOneIsImplicitEuler)
+{
+    const Scene scene = make_draped_scene();
+    State state = make_state(scene, make_raised_sheet(), Vec3::Zero());
+    state.previous_dt = 1e-3;
+    EXPECT_TRUE(predict(state, Integrator::Bdf2, 2.4e-3).has_history);
+    EXPECT_FALSE(predict(state, Integrator::Bdf2, 2.5e-3).has_history);
+    EXPECT_FALSE(predict(state, Integrator::ImplicitEuler, 1e-3).has_history);
+    restart(state);
+    EXPECT_FALSE(predict(state, Integrator::Bdf2, 1e-3).has_history);
+}
+
+TEST(InputJumps, AreTheTimesAtWhichTheSceneChanges)
+{
+    Scene scene;
+    Pin pin;
+    pin.motion.velocity = Vec3(1, 0, 0);
+    pin.motion.start = 0.5;
+    pin.motion.stop = 0.75;
+    pin.release = 1.5;
+    Pin keyed;
+    keyed.motion.keyframes = {Keyframe{0.0, Vec3::Zero(), Eigen::Quaterniond::Identity()},
+                              Keyframe{0.5, Vec3::UnitX(), Eigen::Quaterniond::Identity()},
+                              Keyframe{2.0, Vec3::Zero(), Eigen::Quaterniond::Identity()}};
+    scene.pins = {pin, keyed};
+    Pull pull;
+    pull.start = 0.0;
+    pull.stop = 1.0;
+    scene.pulls = {pull};
+    EXPECT_EQ(input_jumps(scene), (std::vector<double>{0.5, 0.75, 1.0, 1.5, 2.0}));
 }
 
 }  // namespace

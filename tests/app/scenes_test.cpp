@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every scene of data/scenes, coarse and short.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/csv_table.h"
+#include "tests/app/program.h"
+
+namespace arris {
+namespace {
+
+std::vector<std::string> scene_files()
+{
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(ARRIS_SOURCE_DIR "/data/scenes"))
+        if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+class Scenes : public testing::TestWithParam<std::string> {};
+
+TEST_P(Scenes, FinishWithoutAWarningAndKeepTheirMaterial)
+{
+    const TemporaryDirectory folder;
+    const std::string dir = folder / "run";
+    Program program(folder, {"run", GetParam(), "-o", dir, "--set", "cloth.resolution=[10, 8]", "--set",
+                             "duration=0.5", "--set", "output.formats=[]"});
+    ASSERT_EQ(program.wait(), 0) << program.err();
+    const nlohmann::json report = nlohmann::json::parse(read_bytes(dir + "/report.json"));
+    EXPECT_EQ(report["status"], "finished");
+    EXPECT_LE(report["max_kkt_residual"].get<double>(), 1e-9);
+    EXPECT_EQ(report["halved_steps"], 0);
+
+    const CsvTable steps = read_csv(dir + "/steps.csv");
+    const std::vector<double>& area = steps.column("material_area");
+    EXPECT_NEAR(area.back(), area.front(), 1e-12 * area.front());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(scene_files()), [](const auto& scene) {
+    return std::filesystem::path(scene.param).stem().string();
+});
+
+}  // namespace
+}  // namespace arris
