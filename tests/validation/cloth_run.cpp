@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cloth_run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace arris {
+
+ClothMesh make_sheet(Vec2 size, std::array<int, 2> resolution, GridPattern pattern, double pattern_angle)
+{
+    ClothGrid grid;
+    grid.size = size;
+    grid.resolution = resolution;
+    grid.pattern = pattern;
+    grid.pattern_angle = pattern_angle;
+    return make_cloth_grid(grid);
+}
+
+ClothRun::ClothRun(Scene a_scene, ClothMesh mesh, const Vec3& velocity)
+    : scene(std::move(a_scene)), state(make_state(scene, std::move(mesh), velocity))
+{
+    prepare(scene, state, work);
+}
+
+StepReport ClothRun::advance(double dt)
+{
+    const StepReport report = step(scene, settings, state.time + dt, state, work);
+    EXPECT_EQ(report.status, StepStatus::Done) << "at " << state.time << " s";
+    EXPECT_LE(report.kkt_residual, settings.tolerance);
+    return report;
+}
+
+void ClothRun::advance(double duration, double dt)
+{
+    const double begin = state.time;
+    const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
+    for (int k = 1; k <= steps && !testing::Test::HasFailure(); ++k)
+        advance(begin + duration * k / steps - state.time);
+}
+
+void settle(ClothRun& run)
+{
+    constexpr double kStill = 1e-10;  // of the cloth's size, moved by one step
+    constexpr double kGentle = 0.02;  // of the cloth's size: what a step may move while steps still grow
+    constexpr int kMostSteps = 3000;
+    const double size = material_size(run.state.mesh.material);
+    run.settings.integrator = Integrator::ImplicitEuler;
+    double dt = 1e-3, moved = 0.0;
+    for (int k = 0; k < kMostSteps; ++k) {
+        const std::vector<Vec3> before = run.state.mesh.world;
+        run.state.time = 0.0;
+        std::fill(run.state.velocity.begin(), run.state.velocity.end(), Vec3::Zero());
+        run.advance(dt);
+        if (testing::Test::HasFailure()) return;
+        moved = 0.0;
+        for (std::size_t v = 0; v < before.size(); ++v)
+            moved = std::max(moved, (run.state.mesh.world[v] - before[v]).norm());
+        constexpr double kLongest = 1e4;
+        if (moved < kStill * size && dt >= kLongest) return;
+        if (moved < kGentle * size)
+            dt = std::min(2.0 * dt, kLongest);
+        else if (moved > 4.0 * kGentle * size)
+            dt *= 0.5;
+    }
+    FAIL() << "still moving by " << moved << " m a step";
+}
+
+}  // namespace arris

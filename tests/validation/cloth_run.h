@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+
+#include "geometry/cloth_grid.h"
+#include "solver/step.h"
+
+namespace arris {
+
+ClothMesh make_sheet(Vec2 size, std::array<int, 2> resolution, GridPattern pattern,
+                     double pattern_angle = 0.0);
+
+/// Everything a run needs. Cloth at rest unless `velocity` (m/s) says otherwise.
+struct ClothRun {
+    Scene scene;
+    Settings settings;
+    State state;
+    Workspace work;
+
+    ClothRun(Scene a_scene, ClothMesh mesh, const Vec3& velocity = Vec3::Zero());
+
+    /// One step of `dt` (s). A step that does not end well fails the test.
+    StepReport advance(double dt);
+
+    /// Equal steps of about `dt`, the last one ending `duration` from now.
+    void advance(double duration, double dt);
+};
+
+/// Brings the cloth to where its forces balance: implicit Euler steps that each start from rest, and grow
+/// until they are Newton's. Fails the test where it is not still after a bounded number of them.
+void settle(ClothRun& run);
+
+}  // namespace arris

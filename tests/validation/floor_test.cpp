@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cloth on a plane: sliding down it without friction, and falling onto it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "cloth_run.h"
+#include "physics/inertia.h"
+#include "refinement.h"
+
+namespace arris {
+namespace {
+
+constexpr std::array kIntegrators = {Integrator::ImplicitEuler, Integrator::Bdf2};
+constexpr double kG = 9.81;
+constexpr double kThickness = 1e-3;
+
+/// A scene whose floor leans by `angle` about x, through a point far from where the normal meets the origin.
+Scene make_scene(double angle, bool has_gravity)
+{
+    Scene scene;
+    scene.material = {0.05, 200.0, 0.3, 1e-4, 0.0, kThickness};
+    if (has_gravity) scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
+    scene.floor = HalfSpace{Vec3(0.0, std::sin(angle), std::cos(angle)), 0.37};
+    return scene;
+}
+
+/// A flat sheet parallel to the floor, `gap` above its stand-off.
+ClothMesh place_above(const HalfSpace& floor, double gap)
+{
+    ClothMesh mesh = make_sheet(Vec2(0.5, 0.5), {5, 5}, GridPattern::Cross);
+    const Eigen::Quaterniond lean = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), floor.normal);
+    for (Vec3& x : mesh.world) x = lean * x + (floor.offset + kThickness + gap) * floor.normal;
+    return mesh;
+}
+
+TEST(Incline, AcceleratesByGTimesTheSine)
+{
+    Table table("incline", {"integrator", "angle", "from", "a / (g sin) - 1"});
+    for (const Integrator integrator : kIntegrators)
+        for (const double degrees : {5.0, 20.0, 45.0})
+            for (const bool is_crumpled : {false, true}) {
+                const double angle = degrees * std::numbers::pi / 180.0;
+                const Scene scene = make_scene(angle, true);
+                ClothMesh mesh = place_above(*scene.floor, is_crumpled ? 0.03 : 0.0);
+                if (is_crumpled) {  // it falls, and its contacts come and go
+                    std::mt19937_64 random(9);
+                    std::uniform_real_distribution<double> noise(-0.01, 0.01);
+                    for (Vec3& x : mesh.world) x += Vec3(noise(random), noise(random), noise(random));
+                }
+                ClothRun run(scene, mesh);
+                run.settings.integrator = integrator;
+                const Vec3 down(0.0, std::cos(angle), -std::sin(angle));
+                double most_contacts = 0.0;
+                const double t = 0.5, h = 0.005;
+                for (int k = 0; k < 100; ++k)
+                    most_contacts = std::max<double>(most_contacts, run.advance(h).contacts);
+                EXPECT_GT(most_contacts, 0.0);
+                const double mass = 0.05 * 0.25;
+                const double speed =
+                    linear_momentum(0.05, run.work.elements, run.state.velocity).dot(down) / mass;
+                const double error = speed / (kG * std::sin(angle) * t) - 1.0;
+                EXPECT_LT(std::abs(error), 1e-3);
+                if (!is_crumpled) {  // the path too, up to the integrator's own lag on a parabola
+                    const double lag = integrator == Integrator::Bdf2 ? 0.75 * h * h : 0.5 * h * t;
+                    const double path = kG * std::sin(angle) * (0.5 * t * t + lag);
+                    for (std::size_t v = 0; v < mesh.world.size(); ++v)
+                        EXPECT_NEAR((run.state.mesh.world[v] - mesh.world[v]).dot(down) / path, 1.0, 1e-9);
+                }
+                table.add({integrator == Integrator::Bdf2 ? "BDF2" : "implicit Euler",
+                           fmt::format("{:g}", degrees), is_crumpled ? "crumpled, 3 cm above" : "rest",
+                           fmt::format("{:.1e}", error)});
+            }
+}
+
+struct Impact {
+    double rebound = 0.0;      ///< greatest speed off the floor after the first contact, over V
+    double jump = 0.0;         ///< greatest distance from the stand-off after it, m
+    double penetration = 0.0;  ///< greatest ever, m
+    double energy_rise = 0.0;  ///< greatest of a step, over the first kinetic energy
+};
+
+Impact drop(Integrator integrator, double speed, double phase, bool has_gravity)
+{
+    const double h = 0.005;
+    const Scene scene = make_scene(0.3, has_gravity);
+    const Vec3& n = scene.floor->normal;
+    ClothRun run(scene, place_above(*scene.floor, (3.0 + phase) * h * speed), -speed * n);
+    run.settings.integrator = integrator;
+    const auto energy = [&] { return kinetic_energy(0.05, run.work.elements, run.state.velocity); };
+    const double first = energy();
+    Impact impact;
+    bool has_met = false;
+    double before = first;
+    for (int k = 0; k < 40; ++k) {
+        has_met = run.advance(h).contacts > 0 || has_met;
+        if (testing::Test::HasFailure()) break;
+        for (int v = 0; v < run.state.mesh.vertex_count(); ++v) {
+            const double gap = n.dot(run.state.mesh.world[v]) - scene.floor->offset - kThickness;
+            // Before round-off is put back, too: the bound itself must close the gap and no more.
+            const Vec3 proposed =
+                run.work.prediction.position[v] + run.work.prediction.gamma * run.state.velocity[v];
+            const double proposed_gap = n.dot(proposed) - scene.floor->offset - kThickness;
+            impact.penetration = std::max({impact.penetration, -gap, -proposed_gap});
+            if (!has_met) continue;
+            impact.jump = std::max(impact.jump, std::abs(gap));
+            impact.rebound = std::max(impact.rebound, n.dot(run.state.velocity[v]) / speed);
+        }
+        impact.energy_rise = std::max(impact.energy_rise, (energy() - before) / first);
+        before = energy();
+    }
+    EXPECT_TRUE(has_met);
+    return impact;
+}
+
+TEST(Impact, NeverReboundsOrJumpsAtAnyPhaseOfTheStep)
+{
+    Table table("impact", {"integrator", "V", "gravity", "rebound / V", "off the stand-off", "penetration",
+                           "rise of kinetic energy"});
+    constexpr double kRoundOff = 1e-13;  // m, positions are about 1
+    for (const Integrator integrator : kIntegrators)
+        for (const bool has_gravity : {false, true})
+            for (const double speed : {0.1, 1.0, 5.0}) {
+                Impact worst;
+                for (int k = 0; k < 20; ++k) {
+                    const Impact impact = drop(integrator, speed, k / 20.0, has_gravity);
+                    ASSERT_FALSE(HasFailure()) << "phase " << k;
+                    worst.rebound = std::max(worst.rebound, impact.rebound);
+                    worst.jump = std::max(worst.jump, impact.jump);
+                    worst.penetration = std::max(worst.penetration, impact.penetration);
+                    worst.energy_rise = std::max(worst.energy_rise, impact.energy_rise);
+                }
+                EXPECT_LT(worst.rebound, 0.01);
+                EXPECT_LT(worst.penetration, kRoundOff);
+                EXPECT_LT(worst.jump, kRoundOff);
+                if (!has_gravity) {
+                    EXPECT_LT(worst.energy_rise, 1e-12);
+                }
+                table.add({integrator == Integrator::Bdf2 ? "BDF2" : "implicit Euler",
+                           fmt::format("{:g} m/s", speed), has_gravity ? "yes" : "no",
+                           fmt::format("{:.1e}", worst.rebound), fmt::format("{:.1e} m", worst.jump),
+                           fmt::format("{:.1e} m", worst.penetration),
+                           has_gravity ? "" : fmt::format("{:.1e}", worst.energy_rise)});
+            }
+}
+
+}  // namespace
+}  // namespace arris
