@@ -14,6 +14,7 @@
 #include <iterator>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "app/atomic_file.h"
 #include "app/printable.h"
@@ -128,6 +129,11 @@ void write_state(Writer& out, const State& state)
     out.number(state.previous_dt);
     write_vectors(out, state.previous_world);
     write_vectors(out, state.previous_velocity);
+    out.list(state.anchors, [&](const PinAnchor& anchor) {
+        out.number(anchor.pin);
+        out.number(anchor.vertex_id);
+        for (const double c : anchor.origin) out.number(c);
+    });
     out.list(state.active, [&](const ActiveBound& bound) {
         out.number(bound.vertex_id);
         out.number(bound.multiplier);
@@ -155,6 +161,13 @@ State read_state(Reader& in)
     state.previous_dt = in.number<double>();
     state.previous_world = read_vectors(in);
     state.previous_velocity = read_vectors(in);
+    state.anchors = in.list<PinAnchor>(2 * sizeof(std::uint32_t) + 3 * sizeof(double), [&] {
+        PinAnchor anchor;
+        anchor.pin = in.number<std::uint32_t>();
+        anchor.vertex_id = in.number<std::uint32_t>();
+        for (double& c : anchor.origin) c = in.number<double>();
+        return anchor;
+    });
     state.active = in.list<ActiveBound>(sizeof(std::uint32_t) + sizeof(double), [&] {
         const std::uint32_t id = in.number<std::uint32_t>();
         return ActiveBound{id, in.number<double>()};
@@ -178,6 +191,13 @@ std::string find_defect(const Checkpoint& checkpoint)
             return fmt::format("vertex {} is not finite", v);
     for (std::size_t k = 1; k < state.active.size(); ++k)
         if (state.active[k].vertex_id <= state.active[k - 1].vertex_id) return "active bounds do not ascend";
+    for (std::size_t k = 0; k < state.anchors.size(); ++k) {
+        const PinAnchor& anchor = state.anchors[k];
+        if (!anchor.origin.allFinite()) return fmt::format("anchor {} is not finite", k);
+        if (k > 0 && std::pair(anchor.pin, anchor.vertex_id) <=
+                         std::pair(state.anchors[k - 1].pin, state.anchors[k - 1].vertex_id))
+            return "anchors do not ascend";
+    }
     if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) ||
         !std::isfinite(checkpoint.position.begin) || checkpoint.position.begin < 0.0 ||
         checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1)
@@ -206,6 +226,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
     body.text(checkpoint.source.path);
     body.text(checkpoint.source.text);
     body.list(checkpoint.source.overrides, [&](const std::string& item) { body.text(item); });
+    body.list(checkpoint.warnings, [&](const std::string& item) { body.text(item); });
     write_state(body, checkpoint.state);
     body.number(checkpoint.position.begin);
     body.number(checkpoint.position.done);
@@ -232,11 +253,13 @@ Checkpoint read_checkpoint(const std::string& path)
     const std::string body = file.text();
     if (file.number<std::uint32_t>() != checksum(body)) file.fail("is damaged: its checksum differs");
 
+    if (!file.is_at_end()) file.fail("is damaged: it is longer than it says");
     Reader in(body, path);
     Checkpoint checkpoint;
     checkpoint.source.path = in.text();
     checkpoint.source.text = in.text();
     checkpoint.source.overrides = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
+    checkpoint.warnings = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
     checkpoint.state = read_state(in);
     checkpoint.position.begin = in.number<double>();
     checkpoint.position.done = in.number<std::int64_t>();

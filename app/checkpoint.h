@@ -14,6 +14,7 @@ namespace arris {
 /// All that `resume` needs. Holds no seconds, so that a resumed run's equals one run through to the byte.
 struct Checkpoint {
     SceneSource source;
+    std::vector<std::string> warnings;  ///< of loading the scene
     State state;
     TimelinePosition position;
     std::int64_t frames = 0;  ///< written so far

@@ -35,6 +35,8 @@ int tell_parse_error(const CLI::App& app, const CLI::ParseError& error)
 {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::string line = error.what();
+    if (error.get_name() == "RequiredError" && app.get_subcommands().empty())
+        line = "a command is missing or unknown; allowed: run, resume, check, export, docs";
     for (char& c : line)
         if (c == '\n') c = ' ';
     fmt::print(stderr, "arris: {} (arris --help tells more)\n", printable(line));
@@ -55,8 +57,10 @@ int run_command_line(int argc, char** argv)
     run_command->add_option("-o,--output", run_request.directory,
                             "Folder for the results; default out/<scene>");
     run_command->add_flag("--overwrite", run_request.is_overwriting, "Replace the run that the folder holds");
-    run_command->add_option("--set", run_request.overrides, "KEY=VALUE: any dotted scene key, VALUE as TOML")
-        ->allow_extra_args(false);
+    run_command
+        ->add_option("--set", run_request.overrides, "Any dotted scene key, VALUE as TOML; once for each key")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
     run_command->add_option("--threads", run_request.threads, "Default: as many as the machine has")
         ->check(CLI::Range(1, 1024));
     run_command->add_flag("--quiet", run_request.is_quiet, "Say nothing but warnings and errors");
@@ -75,13 +79,18 @@ int run_command_line(int argc, char** argv)
     CLI::App* check_command =
         app.add_subcommand("check", "Load a scene, say what it would simulate, write nothing");
     check_command->add_option("scene", check_scene, "Scene file (TOML)")->required();
-    check_command->add_option("--set", check_overrides, "KEY=VALUE, as for run")->allow_extra_args(false);
+    check_command->add_option("--set", check_overrides, "As for run")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
 
     std::string export_directory;
     std::vector<std::string> export_formats;
     CLI::App* export_command = app.add_subcommand("export", "Make further formats from a run's frames");
     export_command->add_option("dir", export_directory, "Folder of the run")->required();
-    export_command->add_option("--formats", export_formats, "obj,usd,viewer")->required()->delimiter(',');
+    export_command->add_option("--formats", export_formats, "obj,usd,viewer")
+        ->required()
+        ->delimiter(',')
+        ->type_name("FORMAT,...");
 
     std::string topic;
     CLI::App* docs_command = app.add_subcommand("docs", "Print the reference of scene keys");
@@ -108,6 +117,8 @@ int run_command_line(int argc, char** argv)
     if (*export_command) {
         require_known_formats(export_formats);
         export_frames(export_directory, export_formats, read_export_options(export_directory));
+        for (const std::string& format : export_formats)
+            fmt::print("{:<7} {}\n", format, printable(exported_path(export_directory, format)));
         return 0;
     }
     fmt::print("{}", topic == "scene" ? scene_markdown() : scene_schema());

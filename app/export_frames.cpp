@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,7 @@
 #include "app/export_usd.h"
 #include "app/frame.h"
 #include "app/frame_files.h"
+#include "app/run_directory.h"
 #include "app/viewer_html.h"
 #include "geometry/input_error.h"
 
@@ -44,29 +46,35 @@ void export_viewer(const std::string& run_dir, std::int64_t, const ExportOptions
 struct Format {
     const char* name;
     void (*make)(const std::string& run_dir, std::int64_t frame_count, const ExportOptions&);
+    const char* place;  ///< in the run's folder
 };
 
 constexpr Format kFormats[] = {
-    {"obj", export_obj}, {"usd", export_usd}, {"viewer", export_viewer},
-    {"vtk", nullptr},    {"gltf", nullptr},   {"pc2", nullptr},
+    {"obj", export_obj, "frames/cloth_*.obj"},
+    {"usd", export_usd, "cloth.usda"},
+    {"viewer", export_viewer, "viewer.html"},
+    {"vtk", nullptr, ""},
+    {"gltf", nullptr, ""},
+    {"pc2", nullptr, ""},
 };
 
 const Format& find_format(const std::string& name)
 {
     std::vector<std::string> built;
+    bool is_planned = false;
     for (const Format& format : kFormats) {
-        if (name == format.name && format.make == nullptr)
-            throw InputError(fmt::format("formats: \"{}\" is not built yet", name));
-        if (name == format.name) return format;
         if (format.make != nullptr) built.push_back(format.name);
+        if (name == format.name && format.make != nullptr) return format;
+        is_planned = is_planned || name == format.name;
     }
-    throw InputError(fmt::format("formats: \"{}\" is not one of: {}", name, fmt::join(built, ", ")));
+    throw InputError(fmt::format("formats: \"{}\" is {}; allowed: {}", name,
+                                 is_planned ? "not built yet" : "unknown", fmt::join(built, ", ")));
 }
 
 nlohmann::ordered_json read_report(const std::string& path)
 {
     std::ifstream in(path);
-    if (!in) throw InputError(path + ": not found: this directory holds no run that came to an end");
+    if (!in) throw InputError(path + ": not found: this directory holds no run");
     nlohmann::ordered_json report = nlohmann::ordered_json::parse(in, nullptr, /*allow_exceptions=*/false);
     if (!report.is_object() || !report.contains("scene") || !report["scene"].is_object())
         throw InputError(path + ": not a run's report: it has no scene");
@@ -75,9 +83,20 @@ nlohmann::ordered_json read_report(const std::string& path)
 
 }  // namespace
 
+std::string exported_path(const std::string& run_dir, const std::string& format)
+{
+    return (std::filesystem::path(run_dir) / find_format(format).place).string();
+}
+
 ExportOptions read_export_options(const std::string& run_dir)
 {
     const std::string path = run_dir + "/report.json";
+    if (!std::filesystem::exists(path) && std::filesystem::exists(checkpoint_file(run_dir))) {
+        // A run that was killed before its first report.
+        const Checkpoint checkpoint = read_checkpoint(checkpoint_file(run_dir));
+        const RunConfig config = load_scene(checkpoint.source, &checkpoint.state.mesh);
+        return {config.title, config.output.frames_per_second};
+    }
     const nlohmann::ordered_json report = read_report(path);
     const nlohmann::ordered_json& scene = report["scene"];
 

@@ -12,9 +12,13 @@ struct ExportOptions {
     double frames_per_second = 24.0;  ///< > 0
 };
 
-/// Read from run_dir/report.json. InputError naming the file if run_dir holds no finished or stopped run, the
-/// report is not one, or the run was asked for no frames.
+/// Read from run_dir/report.json, or from the checkpoint of a run that was killed before it had one.
+/// InputError naming the file if run_dir holds no finished or stopped run, the report is not one, or the run
+/// was asked for no frames.
 ExportOptions read_export_options(const std::string& run_dir);
+
+/// Where a format's files are: a file, or the folder of one a frame.
+std::string exported_path(const std::string& run_dir, const std::string& format);
 
 /// InputError, naming the format and what is allowed, unless every one can be made by export_frames.
 void require_known_formats(const std::vector<std::string>& formats);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/interrupt.h"
 
+#include <unistd.h>
+
 #include <csignal>
 
 namespace arris {
@@ -13,6 +15,9 @@ void on_signal(int signal)
 {
     interrupted = 1;
     std::signal(signal, SIG_DFL);
+    constexpr char kMessage[] =
+        "\narris: stopping after this step; again to end at once (arris resume goes on either way)\n";
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
 }
 
 }  // namespace
@@ -22,6 +27,7 @@ void watch_for_interrupt()
     interrupted = 0;
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+    std::signal(SIGHUP, on_signal);
 }
 
 bool is_interrupted()

@@ -3,8 +3,8 @@
 
 namespace arris {
 
-/// From here on the first Ctrl-C (or SIGTERM) asks the run to stop at the end of its step; a second one ends
-/// the process at once, as by default.
+/// From here on the first Ctrl-C (or SIGTERM, SIGHUP) asks the run to stop at the end of its step and says
+/// so; a second one ends the process at once, as by default: the last checkpoint is there all the same.
 void watch_for_interrupt();
 
 bool is_interrupted();

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 
 #include "app/command_line.h"
@@ -9,8 +13,17 @@
 
 int main(int argc, char** argv)
 {
+    // A closed pipe and a file that may not grow are errors of a write, not reasons to vanish.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
-        return arris::run_command_line(argc, argv);
+        const int status = arris::run_command_line(argc, argv);
+        // Output that went nowhere was not given.
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+            fmt::print(stderr, "arris: standard output: {}\n", std::strerror(errno));
+            return 1;
+        }
+        return status;
     } catch (const arris::InputError& error) {
         fmt::print(stderr, "arris: {}\n", arris::printable(error.what()));
         return 2;

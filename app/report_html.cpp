@@ -94,16 +94,21 @@ std::string facts_html(const RunReport& report, std::optional<double> tolerance)
     const std::string a_step =
         totals.steps > 0 ? format_seconds(totals.wall_seconds / static_cast<double>(totals.steps)) + " a step"
                          : "";
+    // Without an obstacle there is nothing that the cloth could have passed through.
+    const bool has_obstacles =
+        std::find(report.effects.begin(), report.effects.end(), "obstacle") != report.effects.end();
+    const std::string obstacles =
+        has_obstacles ? fact("Greatest penetration", fmt::format("{:.3g} m", totals.max_penetration), "",
+                             totals.max_penetration > 0) +
+                            fact("Crossings", fmt::format("{}", totals.crossings), "", totals.crossings > 0)
+                      : "";
     const std::string allowed = tolerance ? fmt::format("{:.3g} allowed", *tolerance) : "";
     return fact("Simulated", fmt::format("{:.6g} s", totals.simulated_seconds)) +
            fact("Steps", fmt::format("{}", totals.steps), halved) +
            fact("Wall time", format_seconds(totals.wall_seconds), a_step) +
            fact("CPU time", format_seconds(totals.cpu_seconds),
                 fmt::format("{} thread{}", report.threads, report.threads == 1 ? "" : "s")) +
-           fact("Peak memory", format_bytes(report.peak_memory_bytes)) +
-           fact("Greatest penetration", fmt::format("{:.3g} m", totals.max_penetration), "",
-                totals.max_penetration > 0) +
-           fact("Crossings", fmt::format("{}", totals.crossings), "", totals.crossings > 0) +
+           fact("Peak memory", format_bytes(report.peak_memory_bytes)) + obstacles +
            fact("Greatest KKT residual", fmt::format("{:.2e}", totals.max_kkt_residual), allowed,
                 tolerance && !(totals.max_kkt_residual <= *tolerance));
 }

@@ -69,7 +69,7 @@ const std::vector<PlotSpec>& step_plots()
         {"Contacts",
          "",
          kLines,
-         Shown::Always,
+         Shown::IfPositive,
          1.0,
          {{"pressing constraints", {"contacts"}},
           {"EOL vertices", {"eol_vertices"}},

@@ -104,14 +104,20 @@ Ending explain(const StepReport& report, double tolerance, const State& state)
             return {RunStatus::NotFinite,
                     fmt::format("a number that is not finite {}, also with 64 times smaller steps", place)};
         case StepStatus::Infeasible:
-            return {RunStatus::Infeasible, fmt::format("no velocity meets the constraints {}", place)};
+            return {RunStatus::Infeasible,
+                    fmt::format("pins drive vertex {} into an obstacle {}", report.infeasible_vertex, place)};
         default:
+            if (!std::isfinite(report.kkt_residual))
+                return {
+                    RunStatus::NotConverged,
+                    fmt::format("the velocity's system cannot be factorised {}: stiffness and mass are too "
+                                "many orders of magnitude apart, also with 64 times smaller steps",
+                                place)};
             return {
                 RunStatus::NotConverged,
-                fmt::format(
-                    "the velocity solve reached a residual of {:.1e} where {:.1e} is asked {}, also with 64 "
-                    "times smaller steps",
-                    report.kkt_residual, tolerance, place)};
+                fmt::format("the velocity solve reached a residual of {:.1e} where {:.1e} is asked {}, also "
+                            "with 64 times smaller steps",
+                            report.kkt_residual, tolerance, place)};
     }
 }
 
@@ -155,7 +161,7 @@ Ending simulate(Run& run, bool is_quiet)
     double unsaved = 0.0;
     while (!run.timeline.is_over(run.at.position)) {
         if (is_interrupted()) {
-            ending = {RunStatus::Interrupted, fmt::format("interrupted at t = {} s", run.at.state.time)};
+            ending = {RunStatus::Interrupted, fmt::format("stopped at t = {:.6g} s", run.at.state.time)};
             break;
         }
         if (const std::optional<Ending> failed = advance(run)) {
@@ -174,12 +180,15 @@ Ending simulate(Run& run, bool is_quiet)
     return ending;
 }
 
-RunReport make_report(const Run& run, const Ending& ending, int threads)
+RunReport make_report(const Run& run, const Ending& ending, double export_seconds, int threads)
 {
     RunReport report;
     report.status = ending.status;
     report.message = ending.message;
     report.totals = sum_steps(steps_file(run.files.path()));
+    report.totals.phases.output += export_seconds;
+    report.totals.wall_seconds += export_seconds;
+    report.totals.cpu_seconds += process_cpu_seconds() - run.cpu_told;
     report.peak_memory_bytes = peak_memory_bytes();
     for (const SceneEffect& effect : list_effects(run.config))
         if (effect.is_on) report.effects.push_back(effect.name);
@@ -195,6 +204,7 @@ RunReport make_report(const Run& run, const Ending& ending, int threads)
 Ending write_results(const Run& run, Ending ending, int threads)
 {
     const std::string& dir = run.files.path();
+    Stopwatch watch;
     try {
         if (run.at.frames > 0 && !run.config.output.formats.empty())
             export_frames(dir, run.config.output.formats,
@@ -202,7 +212,7 @@ Ending write_results(const Run& run, Ending ending, int threads)
     } catch (const std::runtime_error& error) {  // the disk, or frames that a format cannot hold
         ending = {RunStatus::IoError, error.what()};
     }
-    const RunReport report = make_report(run, ending, threads);
+    const RunReport report = make_report(run, ending, watch.lap(), threads);
     write_report_json((std::filesystem::path(dir) / "report.json").string(), report);
     write_report_html(dir, report);
     return ending;
@@ -228,7 +238,7 @@ RunStatus run_to_the_end(Run& run, bool is_quiet, int threads)
     Ending ending;
     try {
         ending = simulate(run, is_quiet);
-    } catch (const std::system_error& error) {
+    } catch (const std::exception& error) {  // the disk, or memory for a factor that does not fit
         ending = {RunStatus::IoError, error.what()};
     }
     ending = write_results(run, ending, threads);
@@ -247,14 +257,24 @@ void tell_warnings(const RunConfig& config)
         fmt::print(stderr, "warning: {}\n", printable(warning));
 }
 
-/// Another duration: what is left is planned anew from where the run stands.
-void set_end(double until, Checkpoint& checkpoint)
+/// The scene of a checkpoint, to end at `until` where that is given. What is left is planned anew where the
+/// new end changes the interval that the run stands in.
+RunConfig load_resumed(const std::optional<double>& until, Checkpoint& checkpoint)
 {
-    if (!(until > checkpoint.state.time) || !std::isfinite(until))
-        throw InputError(fmt::format("--until {}: the run has come to t = {} s; allowed: later times", until,
-                                     checkpoint.state.time));
-    checkpoint.source.overrides.push_back(fmt::format("duration={}", until));
-    checkpoint.position = {checkpoint.state.time, 0};
+    RunConfig config = load_scene(checkpoint.source, &checkpoint.state.mesh);
+    if (until) {
+        if (!(*until > checkpoint.state.time) || !std::isfinite(*until))
+            throw InputError(fmt::format("--until {}: the run has come to t = {} s; allowed: later times",
+                                         *until, checkpoint.state.time));
+        const double begin = checkpoint.position.begin;
+        const double planned_end = Timeline(config).interval_end(begin);
+        checkpoint.source.overrides.push_back(fmt::format("duration={}", *until));
+        config = load_scene(checkpoint.source, &checkpoint.state.mesh);
+        if (Timeline(config).interval_end(begin) != planned_end)
+            checkpoint.position = {checkpoint.state.time, 0};
+    }
+    config.warnings = checkpoint.warnings;
+    return config;
 }
 
 int thread_count(int asked)
@@ -279,6 +299,7 @@ RunStatus run(const RunRequest& request)
         request.directory.empty() ? default_directory(request.scene) : request.directory;
     RunDirectory files = RunDirectory::create(directory, request.is_overwriting, config);
 
+    start.warnings = config.warnings;
     start.state = make_state(config.scene, config.cloth, config.cloth_velocity);
     Run run(config, std::move(files), std::move(start));
     StepReport initial;
@@ -293,8 +314,7 @@ RunStatus resume(const ResumeRequest& request)
     const int threads = thread_count(request.threads);
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     Checkpoint checkpoint = read_checkpoint(checkpoint_file(request.directory));
-    if (request.until) set_end(*request.until, checkpoint);
-    const RunConfig config = load_scene(checkpoint.source);
+    const RunConfig config = load_resumed(request.until, checkpoint);
     tell_warnings(config);
     RunDirectory files = RunDirectory::reopen(request.directory, checkpoint, config);
     Run run(config, std::move(files), std::move(checkpoint));

@@ -30,7 +30,7 @@ struct RunConfig {
     OutputOptions output;
     std::vector<Probe> probes;
 
-    ClothMesh cloth;                     ///< at time 0: placed, folded, pins' keyframes at 0 applied
+    ClothMesh cloth;                     ///< placed and folded, before pins take hold
     Vec3 cloth_velocity = Vec3::Zero();  ///< m/s, initial
 
     std::vector<std::string> warnings;
@@ -47,8 +47,9 @@ struct SceneSource {
 /// Reads a scene file. Throws InputError in one line: missing, no regular file, larger than 16 MiB.
 SceneSource read_scene_source(const std::string& path, const std::vector<std::string>& overrides);
 
-/// Loads and validates a scene once, its overrides applied. Throws InputError.
-RunConfig load_scene(const SceneSource& source);
+/// Loads and validates a scene once, its overrides applied. Throws InputError. Where `cloth` is given it is
+/// taken instead of making the scene's (a resumed run has its mesh, whatever became of the file).
+RunConfig load_scene(const SceneSource& source, const ClothMesh* cloth = nullptr);
 inline RunConfig load_scene(const std::string& path, const std::vector<std::string>& overrides)
 {
     return load_scene(read_scene_source(path, overrides));

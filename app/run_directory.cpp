@@ -3,11 +3,21 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <array>
+#include <cerrno>
+#include <charconv>
 #include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "app/frame_files.h"
 #include "app/printable.h"
+#include "app/report.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -27,23 +37,27 @@ std::vector<std::string> probe_names(const RunConfig& config)
     return names;
 }
 
-bool holds_run(const fs::path& dir)
+bool holds_run(const std::string& dir)
 {
-    for (const char* name : kRunFiles)
-        if (fs::exists(dir / name)) return true;
-    return fs::exists(frames_directory(dir.string()));
+    return fs::exists(checkpoint_file(dir)) || fs::exists(steps_file(dir));
 }
 
-/// Files of frames whose index is `first` or more, in every format and of every object.
+/// Files of the cloth's frames whose index is `first` or more, in every format; what else is there is the
+/// user's.
 void remove_frames(const std::string& dir, std::int64_t first)
 {
     if (!fs::is_directory(frames_directory(dir))) return;
     for (const fs::directory_entry& entry : fs::directory_iterator(frames_directory(dir))) {
-        const std::string stem = entry.path().stem().string();
-        const std::size_t digits = stem.find_last_not_of("0123456789") + 1;
-        if (digits == stem.size() || digits == 0 || stem[digits - 1] != '_' || stem.size() - digits > 12)
-            continue;
-        if (std::stoll(stem.substr(digits)) >= first) fs::remove(entry.path());
+        const std::string name = entry.path().filename().string();
+        constexpr std::string_view kPrefix = "cloth_";
+        std::int64_t index = -1;
+        const char* end = name.data() + name.size();
+        if (!name.starts_with(kPrefix)) continue;
+        const auto [rest, error] = std::from_chars(name.data() + kPrefix.size(), end, index);
+        const std::string_view extension(rest, static_cast<std::size_t>(end - rest));
+        const bool is_frame =
+            extension == ".ply" || extension == ".obj" || extension == ".ply.tmp" || extension == ".obj.tmp";
+        if (error == std::errc() && is_frame && index >= first) fs::remove(entry.path());
     }
 }
 
@@ -69,8 +83,24 @@ std::string probes_file(const std::string& run_dir)
     return (fs::path(run_dir) / "probes.csv").string();
 }
 
-RunDirectory::RunDirectory(std::string path, CsvWriter steps, CsvWriter probes)
-    : path_(std::move(path)), steps_(std::move(steps)), probes_(std::move(probes))
+FolderLock::FolderLock(const std::string& path)
+    : descriptor_(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+{
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), path);
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    close(descriptor_);
+    throw InputError(fmt::format("{}: another arris is running there", printable(path)));
+}
+
+FolderLock::FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+FolderLock::~FolderLock()
+{
+    if (descriptor_ >= 0) close(descriptor_);
+}
+
+RunDirectory::RunDirectory(std::string path, FolderLock lock, CsvWriter steps, CsvWriter probes)
+    : path_(std::move(path)), lock_(std::move(lock)), steps_(std::move(steps)), probes_(std::move(probes))
 {
 }
 
@@ -78,26 +108,32 @@ RunDirectory RunDirectory::create(const std::string& path, bool is_overwriting, 
 {
     if (fs::exists(path) && !fs::is_directory(path))
         throw InputError(fmt::format("-o {}: is not a folder", printable(path)));
+    if (holds_run(path) && !is_overwriting)
+        throw InputError(fmt::format(
+            "-o {}: holds a run already; --overwrite replaces it, another -o keeps it", printable(path)));
+    make_folders(path);
+    FolderLock lock(path);
     if (holds_run(path)) {
-        if (!is_overwriting)
-            throw InputError(fmt::format(
-                "-o {}: holds a run already; --overwrite replaces it, another -o keeps it", printable(path)));
         for (const char* name : kRunFiles) fs::remove(fs::path(path) / name);
         remove_frames(path, 0);
     }
-    make_folders(path);
-    return {path, CsvWriter::create(steps_file(path), step_header()),
+    return {path, std::move(lock), CsvWriter::create(steps_file(path), step_header()),
             CsvWriter::create(probes_file(path), probe_header(probe_names(config)))};
 }
 
 RunDirectory RunDirectory::reopen(const std::string& path, const Checkpoint& checkpoint,
                                   const RunConfig& config)
 {
+    FolderLock lock(path);
+    if (const std::int64_t frames = count_frames(path); frames < checkpoint.frames)
+        throw InputError(fmt::format("{}: holds {} frames where its checkpoint tells of {}",
+                                     printable(frames_directory(path)), frames, checkpoint.frames));
     truncate_csv(steps_file(path), checkpoint.rows);
     truncate_csv(probes_file(path), checkpoint.rows);
+    sum_steps(steps_file(path));  // a damaged row is told now, not when the rest has been simulated
     remove_frames(path, checkpoint.frames);
     make_folders(path);
-    return {path, CsvWriter::append_to(steps_file(path), step_header()),
+    return {path, std::move(lock), CsvWriter::append_to(steps_file(path), step_header()),
             CsvWriter::append_to(probes_file(path), probe_header(probe_names(config)))};
 }
 

@@ -13,6 +13,19 @@
 
 namespace arris {
 
+/// Keeps a second process from writing the same run, for as long as it lives. InputError where one does
+/// already.
+class FolderLock {
+  public:
+    explicit FolderLock(const std::string& path);
+    FolderLock(FolderLock&& other) noexcept;
+    FolderLock& operator=(FolderLock&&) = delete;
+    ~FolderLock();
+
+  private:
+    int descriptor_;
+};
+
 /// The files of a run while it runs: CSVs, frames and the checkpoint.
 class RunDirectory {
   public:
@@ -35,9 +48,10 @@ class RunDirectory {
     void write_checkpoint(const Checkpoint& checkpoint);
 
   private:
-    RunDirectory(std::string path, CsvWriter steps, CsvWriter probes);
+    RunDirectory(std::string path, FolderLock lock, CsvWriter steps, CsvWriter probes);
 
     std::string path_;
+    FolderLock lock_;
     CsvWriter steps_, probes_;
 };
 

@@ -29,8 +29,8 @@ Every key can be given on the command line too, arrays of tables by index:
 `--set time.step=0.001 --set pin.0.release=1.5`. The value is TOML; what is not TOML is a string; the next free index
 appends.
 
-An unknown key, a value of the wrong type, out of range or not finite, and keys that contradict each other are errors, one
-line each: `FILE:LINE: key = value: what is wrong; allowed: ...`. A valid key that can have no effect in the scene is a
+An unknown key, a value of the wrong type, out of range or not finite, and keys that contradict each other are errors. The
+first one found is told in one line: `FILE:LINE: key = value: what is wrong; allowed: ...`. A valid key that can have no effect in the scene is a
 warning. A scene of more than 5e6 vertices, 1e8 steps, 1e6 frames, or more memory than the machine has is an error that
 states the estimate. Keys marked *not built yet* are errors in this version.
 

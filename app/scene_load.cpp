@@ -15,6 +15,7 @@
 #include "app/scene_rules.h"
 #include "app/scene_values.h"
 #include "app/scene_warnings.h"
+#include "app/timeline.h"
 #include "geometry/cloth_file.h"
 #include "geometry/cloth_grid.h"
 #include "geometry/input_error.h"
@@ -252,10 +253,9 @@ ClothMesh make_cloth(const SceneDocument& document, RunConfig& config)
                     least.x(), least.y(), greatest.x(), greatest.y()));
 }
 
-/// Moves what keyframes hold to where they have it at time 0.
-void apply_first_keyframes(const SceneDocument& document, RunConfig& config)
+/// Keyframes that have the cloth elsewhere at time 0 than where it is placed.
+void warn_of_first_keyframes(const SceneDocument& document, RunConfig& config)
 {
-    const std::vector<Vec3> placed = config.cloth.world;
     const double tolerance = 1e-12 * (1.0 + material_size(config.cloth.material));
     for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
         const Pin& pin = config.scene.pins[i];
@@ -263,11 +263,10 @@ void apply_first_keyframes(const SceneDocument& document, RunConfig& config)
         const Placement first = pin.motion.at(0.0);
         int moved = 0;
         for (const int v : vertices_in_box(config.cloth, pin.material)) {
-            const Vec3 target = first(placed[v]);
-            Vec3& x = config.cloth.world[v];
+            Vec3 way = first(config.cloth.world[v]) - config.cloth.world[v];
             for (int d = 0; d < 3; ++d)
-                if (pin.held[d]) x[d] = target[d];
-            if ((x - placed[v]).norm() > tolerance) ++moved;
+                if (!pin.held[d]) way[d] = 0.0;
+            if (way.norm() > tolerance) ++moved;
         }
         if (moved > 0)
             config.warnings.push_back(
@@ -297,7 +296,7 @@ SceneSource read_scene_source(const std::string& path, const std::vector<std::st
     return {path, read_scene_text(path), overrides};
 }
 
-RunConfig load_scene(const SceneSource& source)
+RunConfig load_scene(const SceneSource& source, const ClothMesh* cloth)
 {
     SceneDocument document(source.path, source.text);
     for (const std::string& assignment : source.overrides) document.set(assignment);
@@ -316,12 +315,13 @@ RunConfig load_scene(const SceneSource& source)
     for (const Json& probe : json.value("probe", Json::array()))
         config.probes.push_back({probe["name"].get<std::string>(), to_vec2(probe["material"])});
 
+    merge_events(config);
     SceneEstimate length;
     check_length(document, config, length);
-    config.cloth = make_cloth(document, config);
+    config.cloth = cloth ? *cloth : make_cloth(document, config);
     config.cloth_velocity = to_vec3(json["cloth"]["velocity"]);
     check_meetings(document, config);
-    apply_first_keyframes(document, config);
+    warn_of_first_keyframes(document, config);
 
     const std::vector<std::string> ineffective = find_ineffective_keys(document, config);
     config.warnings.insert(config.warnings.end(), ineffective.begin(), ineffective.end());

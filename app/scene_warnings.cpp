@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "app/scene_estimate.h"
 #include "geometry/mesh_topology.h"
+#include "physics/cloth_elements.h"
+#include "physics/membrane.h"
 
 namespace arris {
 namespace {
@@ -151,7 +154,49 @@ void check_time(const RunConfig& config, Warnings& warnings)
         warnings.add("output.formats", "with frames_per_second = 0 there are no frames to make them from");
     const double longest = fps > 0.0 ? std::min(config.duration, 1.0 / fps) : config.duration;
     if (config.settings.step > longest * (1.0 + 1e-9))
-        warnings.add("time.step", fmt::format("no interval between frames is longer than {:.6g} s", longest));
+        warnings.note("time.step",
+                      fmt::format("acts as {:.6g} s: steps end on frames and on the duration", longest));
+}
+
+/// Greatest angle between neighbours that slerp can mean; what was written as more turns the other way, or
+/// not at all.
+void check_turns(const SceneDocument& document, const RunConfig& config, Warnings& warnings)
+{
+    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
+        const std::string key = fmt::format("pin.{}.keyframes", i);
+        const auto& keyframes = config.as_run["pin"][i].value("keyframes", nlohmann::ordered_json::array());
+        for (std::size_t k = 1; k < keyframes.size(); ++k) {
+            const auto &from = keyframes[k - 1]["rotate"], &to = keyframes[k]["rotate"];
+            const double turn = to["degrees"].get<double>() - from["degrees"].get<double>();
+            if (from["axis"] != to["axis"] || !(std::abs(turn) > 180.0) || document.find(key) == nullptr)
+                continue;
+            warnings.note(
+                key, fmt::format(
+                         "turns by {:.6g} degrees from {} to {}: it takes the shorter arc; write keyframes "
+                         "at most 180 degrees apart",
+                         turn, k - 1, k));
+        }
+    }
+}
+
+/// A cloth that starts far from its material's size is mostly one whose UVs are not in metres.
+void check_strain(const RunConfig& config, Warnings& warnings)
+{
+    constexpr double kSurprising = 0.1;
+    const ClothElements elements =
+        make_elements(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces));
+    double least = 1.0, greatest = 1.0;
+    for (const FaceElement& face : elements.faces) {
+        const Vec2 stretches = principal_stretches(FaceState(face, config.cloth.world).F);
+        greatest = std::max(greatest, stretches[0]);
+        least = std::min(least, stretches[1]);
+    }
+    if (greatest - 1.0 > kSurprising || 1.0 - least > kSurprising)
+        warnings.note(
+            "cloth",
+            fmt::format("starts strained, from {:.3g} % to {:+.3g} %: material coordinates are metres, and "
+                        "the cloth will pull itself to their size",
+                        100.0 * (least - 1.0), 100.0 * (greatest - 1.0)));
 }
 
 }  // namespace
@@ -164,6 +209,8 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_pins(config, warnings);
     check_wind(config, warnings);
     check_pulls(config, warnings);
+    check_turns(document, config, warnings);
+    check_strain(config, warnings);
     return warnings.lines_;
 }
 

@@ -6,6 +6,44 @@
 
 namespace arris {
 
+namespace {
+
+/// Every time at which the scene's input may jump.
+std::vector<double*> event_times(Scene& scene)
+{
+    std::vector<double*> times;
+    for (Pin& pin : scene.pins) {
+        times.insert(times.end(), {&pin.release, &pin.motion.start, &pin.motion.stop});
+        for (Keyframe& keyframe : pin.motion.keyframes) times.push_back(&keyframe.time);
+    }
+    for (Pull& pull : scene.pulls) times.insert(times.end(), {&pull.start, &pull.stop});
+    std::erase_if(times, [](const double* t) { return !std::isfinite(*t); });
+    return times;
+}
+
+}  // namespace
+
+void merge_events(RunConfig& config)
+{
+    const double tolerance = 1e-9 * config.settings.step;
+    const double fps = config.output.frames_per_second;
+    const auto snap = [&](double& time, double to) {
+        if (std::abs(time - to) <= tolerance) time = to;
+    };
+    const auto snap_to_frame = [&](double& time) {
+        if (fps > 0.0) snap(time, std::round(time * fps) / fps);
+    };
+
+    snap_to_frame(config.duration);
+    std::vector<double*> times = event_times(config.scene);
+    for (double* time : times) {
+        snap_to_frame(*time);
+        snap(*time, config.duration);
+    }
+    std::sort(times.begin(), times.end(), [](const double* a, const double* b) { return *a < *b; });
+    for (std::size_t k = 1; k < times.size(); ++k) snap(*times[k], *times[k - 1]);
+}
+
 Timeline::Timeline(const RunConfig& config)
     : duration_(config.duration),
       step_(config.settings.step),

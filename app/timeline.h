@@ -8,6 +8,11 @@
 
 namespace arris {
 
+/// Moves times of the scene that all but fall on a frame, on the end of the run or on each other (nearer than
+/// 1e-9 of the longest step) onto them, so that what wrote 0.30000000000000004 for 0.3 does not make a step
+/// of 5e-17 s. All that asks whether something acts at a time must see the moved ones, so this comes first.
+void merge_events(RunConfig& config);
+
 /// Where a run stands in its plan: `done` steps of the interval that starts at `begin` (s).
 struct TimelinePosition {
     double begin = 0.0;
@@ -35,8 +40,10 @@ class Timeline {
     /// Frames over the whole run, the one at time 0 included.
     std::int64_t frame_count() const;
 
-  private:
+    /// End of the interval that starts at `begin`: the next frame, jump or the duration.
     double interval_end(double begin) const;
+
+  private:
     std::int64_t interval_steps(double begin, double end) const;
 
     double duration_, step_, frames_per_second_;

@@ -2,6 +2,7 @@
 #include "physics/bending.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -12,6 +13,7 @@ namespace {
 struct Normals {
     Vec3 c, d;                  ///< unit, of faces (a, b, c) and (b, a, d)
     double length_c, length_d;  ///< of the unnormalised ones: twice the areas
+    double softening;           ///< 1, less where a face is all but collapsed
 };
 
 std::optional<Normals> find_normals(const std::array<Vec3, 4>& x)
@@ -27,6 +29,11 @@ std::optional<Normals> find_normals(const std::array<Vec3, 4>& x)
     const double squared_size = e.squaredNorm() + to_c.squaredNorm() + to_d.squaredNorm();
     if (!(n.length_c > kCollapsed * squared_size && n.length_d > kCollapsed * squared_size))
         return std::nullopt;
+    // grad theta grows as one over the altitude. Below this the true stiffness would drown the mass; ours
+    // stays, and the force fades to none where the face has collapsed. One factor for all corners, so that no
+    // torque is made.
+    constexpr double kThin = 1e-4;
+    n.softening = std::min({1.0, n.length_c / (kThin * squared_size), n.length_d / (kThin * squared_size)});
     n.c /= n.length_c;
     n.d /= n.length_d;
     return n;
@@ -54,6 +61,9 @@ void Bending::add(const HingeState& hinge, HingeSystem& system) const
     std::array<Vec3, 4> gradient;
     gradient[2] = -length / n->length_c * n->c;
     gradient[3] = -length / n->length_d * n->d;
+    const double softening = n->softening;
+    gradient[2] *= softening;
+    gradient[3] *= softening;
     gradient[0] = -(1.0 - at_c) * gradient[2] - (1.0 - at_d) * gradient[3];
     gradient[1] = -at_c * gradient[2] - at_d * gradient[3];
 

@@ -51,6 +51,18 @@ int contact_coordinate(const std::vector<char>& is_fixed, int vertex)
     return -1;
 }
 
+std::optional<int> find_crushed_vertex(const std::vector<Contact>& contacts, double depth,
+                                       const Linearization& at, const VelocityProblem& problem)
+{
+    for (const Contact& contact : contacts) {
+        const int v = contact.vertex;
+        const bool is_dropped =
+            !(problem.lower.segment<3>(3 * v).maxCoeff() > -std::numeric_limits<double>::max());
+        if (is_dropped && contact.gap + at.gamma * contact.normal.dot(at.drift[v]) < -depth) return v;
+    }
+    return std::nullopt;
+}
+
 void build_constraints(const std::vector<HeldVertex>& held, const std::vector<Contact>& contacts,
                        const Prediction& prediction, const State& state, Linearization& at,
                        VelocityProblem& problem)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "physics/linearization.h"
@@ -17,6 +18,11 @@ namespace arris {
 void build_constraints(const std::vector<HeldVertex>& held, const std::vector<Contact>& contacts,
                        const Prediction& prediction, const State& state, Linearization& at,
                        VelocityProblem& problem);
+
+/// A vertex (index) whose contact was dropped, as pins hold all of its directions, and which they drive more
+/// than `depth` (m) past the stand-off during the step: nothing can meet that.
+std::optional<int> find_crushed_vertex(const std::vector<Contact>& contacts, double depth,
+                                       const Linearization& at, const VelocityProblem& problem);
 
 /// The coordinate of `vertex` (0, 1, 2) that a contact bounds: the first one that no pin holds; -1 where all
 /// are held.

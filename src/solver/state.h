@@ -14,6 +14,13 @@ struct ActiveBound {
     double multiplier;  ///< N s
 };
 
+/// Where a vertex that a pin holds was at time 0: the pin's motion maps this to where it must be.
+struct PinAnchor {
+    std::uint32_t pin;  ///< index in the scene
+    std::uint32_t vertex_id;
+    Vec3 origin;  ///< x(0), m
+};
+
 /// Exactly what a resumed run needs, and nothing that could be computed from it.
 struct State {
     double time = 0.0;  ///< s
@@ -28,6 +35,7 @@ struct State {
     std::vector<Vec3> previous_world;
     std::vector<Vec3> previous_velocity;
 
+    std::vector<PinAnchor> anchors;   ///< ascending by (pin, vertex_id)
     std::vector<ActiveBound> active;  ///< ascending by vertex_id
 };
 

@@ -95,6 +95,27 @@ std::vector<ActiveBound> active_bounds(const State& state, const Workspace& work
     return active;
 }
 
+/// What pins hold goes where they have it at time 0, and moves as they do.
+void take_hold(const Scene& scene, State& state)
+{
+    const std::vector<Vec3> placed = state.mesh.world;
+    for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
+        const Pin& pin = scene.pins[p];
+        if (!(pin.release > 0.0)) continue;
+        const Placement place = pin.motion.at(0.0);
+        for (const int v : vertices_in_box(state.mesh, pin.material)) {
+            state.anchors.push_back({p, state.ids[v], placed[v]});
+            const Vec3 target = place(placed[v]);
+            const Vec3 moving = pin.motion.velocity_after(0.0, target);
+            for (int d = 0; d < 3; ++d) {
+                if (!pin.held[d]) continue;
+                state.mesh.world[v][d] = target[d];
+                state.velocity[v][d] = moving[d];
+            }
+        }
+    }
+}
+
 /// Swaps the new state in, or leaves the old one where the solve failed.
 void commit(double end, Workspace& work, State& state, StepReport& report)
 {
@@ -123,12 +144,7 @@ State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity)
     state.velocity.assign(n, velocity);
     state.previous_world.assign(n, Vec3::Zero());
     state.previous_velocity.assign(n, Vec3::Zero());
-    for (const Pin& pin : scene.pins)
-        for (const int v : vertices_in_box(state.mesh, pin.material)) {
-            const Vec3 moving = pin.motion.velocity_after(0.0, state.mesh.world[v]);
-            for (int d = 0; d < 3; ++d)
-                if (pin.held[d]) state.velocity[v][d] = moving[d];
-        }
+    take_hold(scene, state);
     return state;
 }
 
@@ -167,6 +183,12 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     // 3. Each vertex's coordinates, in which pins are known and contacts are bounds; A and b in them.
     build_constraints(work.held, work.contacts, work.prediction, state, work.at, work.problem);
     assemble(scene, end, state, work);
+    if (const auto crushed =
+            find_crushed_vertex(work.contacts, scene.material.thickness, work.at, work.problem)) {
+        report.status = StepStatus::Infeasible;
+        report.infeasible_vertex = state.ids[*crushed];
+        return report;
+    }
     report.seconds.assemble += watch.lap();
 
     // 4. The constrained velocity, with its certificate.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+
 namespace arris {
 
 enum class StepStatus { Done, NotConverged, Infeasible, NotFinite };
@@ -13,8 +15,9 @@ struct PhaseSeconds {
 
 struct StepReport {
     StepStatus status = StepStatus::Done;
-    double dt = 0.0;   ///< s
-    int contacts = 0;  ///< constraints with a positive multiplier
+    double dt = 0.0;                      ///< s
+    std::int64_t infeasible_vertex = -1;  ///< id of one whose pins and contacts no velocity meets
+    int contacts = 0;                     ///< constraints with a positive multiplier
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;

@@ -20,7 +20,7 @@ struct Workspace {
     std::vector<Face> faces_of_elements;  ///< of the mesh `elements` was made for
     std::vector<Vec2> material_of_elements;
 
-    // move_obstacles, find_contacts, build_constraints
+    // move_pins, find_contacts, build_constraints
     Prediction prediction;
     std::vector<HeldVertex> held;
     std::vector<Contact> contacts;

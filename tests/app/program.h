@@ -18,8 +18,10 @@ namespace arris {
 /// The arris program as a child process, its output in files.
 class Program {
   public:
-    Program(const TemporaryDirectory& folder, const std::vector<std::string>& arguments)
-        : out_(folder / "stdout.txt"), err_(folder / "stderr.txt")
+    /// `name`: of its output's files; two at once need two.
+    Program(const TemporaryDirectory& folder, const std::vector<std::string>& arguments,
+            const std::string& name = "program")
+        : out_(folder / (name + ".out")), err_(folder / (name + ".err"))
     {
         child_ = fork();
         if (child_ != 0) return;

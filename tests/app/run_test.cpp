@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -182,7 +183,7 @@ TEST_F(Run, CtrlCLeavesACheckpointToGoOnFrom)
     const std::string through = run_through("through", {"--set", "duration=2"});
     const std::string dir = folder / "stopped";
     Program program(folder, {"run", scene, "-o", dir, "--set", "duration=2"});
-    while (!fs::exists(dir + "/frames/cloth_00002.ply"))
+    for (int k = 0; k < 20000 && !fs::exists(dir + "/frames/cloth_00002.ply"); ++k)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ASSERT_EQ(program.stop_after(std::chrono::milliseconds(0), SIGINT), 130);
     EXPECT_NE(program.err().find("interrupted"), std::string::npos);
@@ -206,6 +207,64 @@ TEST_F(Run, UntilGoesOnPastTheEnd)
     EXPECT_NE(back.err().find("--until 0.6"), std::string::npos) << back.err();
 }
 
+TEST_F(Run, UntilInTheMiddleOfAnIntervalIsTheRunOfThatDuration)
+{
+    const std::string through = run_through("through", {"--set", "duration=0.75"});
+    const std::string dir = folder / "stopped";
+    Program program(folder, {"run", scene, "-o", dir, "--set", "duration=5"});
+    for (int k = 0; k < 20000 && !fs::exists(dir + "/frames/cloth_00002.ply"); ++k)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ASSERT_EQ(program.stop_after(std::chrono::milliseconds(7), SIGINT), 130);
+    Program resumed(folder, {"resume", dir, "--until", "0.75"});
+    ASSERT_EQ(resumed.wait(), 0) << resumed.err();
+    for (const char* file :
+         {"probes.csv", "frames/cloth_00003.ply", "frames/cloth_00010.ply", "frames/cloth_00018.ply"})
+        EXPECT_TRUE(read_bytes(through + "/" + file) == read_bytes(dir + "/" + file)) << file;
+}
+
+TEST_F(Run, AConstantForceThatStartsAndStopsMovesFreeClothAsNewtonSays)
+{
+    // Each jump restarts the integrator: implicit Euler is ahead by a h^2 / 2 in the step after it, and BDF2
+    // exact from there for constant force. Without the restart the jump would be smeared over both steps.
+    write_bytes(scene,
+                "duration = 1\n[time]\nstep = 0.01\n[cloth]\nsize = [1, 1]\nresolution = [1, 1]\n"
+                "[cloth.material]\ndensity = 0.5\n[[pull]]\nmaterial = [[0, 0], [1, 1]]\nforce = [0, 0, 2]\n"
+                "start = 0.2\nstop = 0.6\n[[probe]]\nname = \"p\"\nmaterial = [0.5, 0.5]\n"
+                "[output]\nframes_per_second = 0\nformats = []\n");
+    const CsvTable probes = read_csv(run_through("pulled") + "/probes.csv");
+    const std::vector<double>& time = probes.column("time");
+    const double a = 4.0, h = 0.01;
+    for (std::size_t k = 0; k < time.size(); ++k) {
+        const double acting = std::clamp(time[k] - 0.2, 0.0, 0.4), after = std::max(time[k] - 0.6, 0.0);
+        const double exact = 0.5 * a * acting * acting + a * 0.4 * after;
+        EXPECT_NEAR(probes.column("p_vz")[k], a * acting, 1e-12) << time[k];
+        EXPECT_NEAR(probes.column("p_z")[k], exact, 0.76 * a * h * h) << time[k];
+    }
+}
+
+TEST_F(Run, TwoProcessesDoNotWriteOneRun)
+{
+    const std::string dir = folder / "shared";
+    Program first(folder, {"run", scene, "-o", dir, "--set", "duration=20"});
+    for (int k = 0; k < 20000 && !fs::exists(dir + "/frames/cloth_00001.ply"); ++k)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    Program second(folder, {"resume", dir}, "second");
+    EXPECT_EQ(second.wait(), 2);
+    EXPECT_NE(second.err().find("another arris"), std::string::npos) << second.err();
+    EXPECT_EQ(first.stop_after(std::chrono::milliseconds(0), SIGTERM), 130) << first.err();
+}
+
+TEST_F(Run, FilesOfTheUserStayInTheFramesFolder)
+{
+    const std::string dir = run_through("through");
+    write_bytes(dir + "/frames/render_0007.png", "mine");
+    write_bytes(dir + "/frames/photo_2024.jpg", "mine");
+    Program over(folder, {"run", scene, "-o", dir, "--overwrite", "--set", "duration=0.1"});
+    EXPECT_EQ(over.wait(), 0) << over.err();
+    EXPECT_EQ(read_bytes(dir + "/frames/render_0007.png"), "mine");
+    EXPECT_EQ(read_bytes(dir + "/frames/photo_2024.jpg"), "mine");
+}
+
 TEST_F(Run, AFolderWithARunIsRefusedWithoutOverwrite)
 {
     const std::string dir = run_through("through");
@@ -226,7 +285,7 @@ TEST_F(Run, NumbersThatOverflowEndItWithItsStateKept)
                              "cloth.material.youngs_modulus=1e-300", "--set", "pull.0.force=[0,0,1e9]"});
     EXPECT_EQ(program.wait(), 1) << program.err();
     const nlohmann::json report = nlohmann::json::parse(read_bytes(dir + "/report.json"));
-    EXPECT_TRUE(report["status"] == "not_finite" || report["status"] == "not_converged") << report["message"];
+    EXPECT_EQ(report["status"], "not_converged") << report["message"];
     EXPECT_NE(report["message"].get<std::string>().find("step"), std::string::npos);
     EXPECT_TRUE(fs::exists(dir + "/checkpoint"));
     EXPECT_TRUE(fs::exists(dir + "/viewer.html"));

@@ -68,7 +68,7 @@ const std::vector<IneffectiveKey> kIneffectiveKeys = {
      "7: output.formats = [\"obj\"]: has no effect: with frames_per_second = 0 there are no frames to make "
      "them from"},
     {"LongStep", "[time]\nstep = 0.1\n[output]\nframes_per_second = 20\n",
-     "6: time.step = 0.1: has no effect: no interval between frames is longer than 0.05 s"},
+     "6: time.step = 0.1: acts as 0.05 s: steps end on frames and on the duration"},
     {"OverlappingPins", kPin + "velocity = [0, 0, 1]\n[[pin]]\nmaterial = [[0, 0], [1, 0]]\n",
      "9: pin.1.material = [[0, 0], [1, 0]]: holds 3 vertex directions that pin.0 holds too; there pin.1 "
      "alone decides"},
@@ -76,6 +76,26 @@ const std::vector<IneffectiveKey> kIneffectiveKeys = {
 
 INSTANTIATE_TEST_SUITE_P(Scene, IneffectiveKeyTest, ::testing::ValuesIn(kIneffectiveKeys),
                          [](const auto& key) { return key.param.name; });
+
+TEST(SceneWarnings, TellOfAClothThatStartsStrained)
+{
+    const RunConfig config = load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=3"}});
+    ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
+    EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("starts strained, from 0 % to +200 %"));
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=1.05"}}).warnings, ::testing::IsEmpty());
+}
+
+TEST(SceneWarnings, TellOfATurnThatSlerpCannotMean)
+{
+    const auto turned = [](const std::string& degrees) {
+        return kBase + kPin + "keyframes = [ { time = 0 }, { time = 0.5, rotate = { axis = [0, 0, 1], degrees = " +
+               degrees + " } } ]\n";
+    };
+    const RunConfig config = load_scene(SceneSource{"s.toml", turned("360"), {}});
+    ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
+    EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("turns by 360 degrees"));
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", turned("180"), {}}).warnings, ::testing::IsEmpty());
+}
 
 TEST(SceneWarnings, AreNotGivenForDefaultsOfTheSameValue)
 {

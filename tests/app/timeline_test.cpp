@@ -95,5 +95,32 @@ TEST(Timeline, ARoundedUpQuotientDoesNotAddAStep)
     EXPECT_EQ(step_ends(Timeline(make_config(0.6, 0.2, 0.0))).size(), 3u);
 }
 
+TEST(Timeline, TimesThatAllButMeetAreOne)
+{
+    // 0.1 + 0.2 and a script's t += 1 / 24 are an ulp or two off the frames they mean.
+    RunConfig config = make_config(0.1 + 0.2 + 0.7, 0.005, 10.0);
+    Pin pin;
+    pin.release = 0.1 + 0.2;
+    Pin keyed;
+    double t = 0.0;
+    for (int k = 0; k < 10; ++k, t += 1.0 / 10.0)
+        keyed.motion.keyframes.push_back({t, Vec3(k, 0, 0), Eigen::Quaterniond::Identity()});
+    config.scene.pins = {pin, keyed};
+    Pull pull;
+    pull.start = 0.123;
+    pull.stop = 0.123 * (1 + 4e-16) + 0.5 - 0.5;
+    config.scene.pulls = {pull};
+    merge_events(config);
+    EXPECT_EQ(config.duration, 1.0);
+    EXPECT_EQ(config.scene.pins[0].release, 3.0 / 10.0);
+    EXPECT_EQ(config.scene.pulls[0].stop, config.scene.pulls[0].start);
+    double begin = 0.0;
+    for (const double end : step_ends(Timeline(config))) {
+        EXPECT_GT(end - begin, 1e-3);
+        begin = end;
+    }
+    EXPECT_EQ(begin, 1.0);
+}
+
 }  // namespace
 }  // namespace arris

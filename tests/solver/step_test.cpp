@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -154,8 +155,78 @@ TEST(Step, PinsAreExactlyWhereTheirMotionSays)
             ASSERT_NEAR(state.mesh.world[corner].z(), 0.3 * state.time, 1e-14);
         }
         const int corner = vertices_in_box(mesh, sliding.material)[0];
-        EXPECT_GT((state.mesh.world[corner] - mesh.world[corner]).head<2>().norm(), 0.01) << "free in x and y";
+        EXPECT_GT((state.mesh.world[corner] - mesh.world[corner]).head<2>().norm(), 0.01)
+            << "free in x and y";
     }
+}
+
+TEST(Step, APartlyHeldVertexFollowsItsPlaceAtTimeZero)
+{
+    // x(t) = R x(0) for the held components, whatever the free ones do: turned by 90 degrees about z, what
+    // was at (1, 0) has x = 0, though y was free to go where it liked.
+    Scene scene;
+    scene.material = soft_cloth();
+    scene.gravity = Gravity{Vec3(0, -3, -9.81)};
+    Pin pin;
+    pin.material = {Vec2(1, 0), Vec2(1, 0)};
+    pin.held = {true, false, true};
+    pin.motion.keyframes = {
+        Keyframe{0.0, Vec3::Zero(), Eigen::Quaterniond::Identity()},
+        Keyframe{1.0, Vec3::Zero(), Eigen::Quaterniond(rotation_about(Vec3::UnitZ(), 90.0))}};
+    scene.pins = {pin};
+    for (const double h : {0.005, 0.02}) {
+        State state = make_state(scene, make_sheet(Vec2(1, 1), {4, 4}), Vec3::Zero());
+        Workspace work;
+        const int steps = static_cast<int>(std::lround(1.0 / h));
+        for (int k = 1; k <= steps; ++k)
+            ASSERT_EQ(step(scene, Settings(), static_cast<double>(k) / steps, state, work).status,
+                      StepStatus::Done);
+        const Vec3& x = state.mesh.world[vertices_in_box(state.mesh, pin.material)[0]];
+        EXPECT_NEAR(x.x(), 0.0, 1e-13);
+        EXPECT_NEAR(x.z(), 0.0, 1e-13);
+        EXPECT_GT(std::abs(x.y() - 1.0), 0.1) << "free";
+    }
+}
+
+TEST(Step, KeyframesAtTimeZeroPlaceWhatTheyHold)
+{
+    Scene scene;
+    scene.material = soft_cloth();
+    Pin pin;
+    pin.material = {Vec2(0, 0), Vec2(0, 1)};
+    pin.motion.keyframes = {Keyframe{0.0, Vec3(0.5, 0, 0), Eigen::Quaterniond::Identity()},
+                            Keyframe{1.0, Vec3(1.5, 0, 0), Eigen::Quaterniond::Identity()}};
+    Pin over;  // released before it holds anything
+    over.material = {Vec2(1, 0), Vec2(1, 1)};
+    over.motion.velocity = Vec3(5, 0, 0);
+    over.release = 0.0;
+    scene.pins = {pin, over};
+    const State state = make_state(scene, make_sheet(Vec2(1, 1), {2, 2}), Vec3::Zero());
+    for (const int v : vertices_in_box(state.mesh, pin.material)) {
+        EXPECT_EQ(state.mesh.world[v].x(), 0.5);
+        EXPECT_EQ(state.velocity[v], Vec3(1, 0, 0));
+    }
+    for (const int v : vertices_in_box(state.mesh, over.material))
+        EXPECT_EQ(state.velocity[v], Vec3(Vec3::Zero()));
+}
+
+TEST(Step, APinThatDrivesClothIntoTheFloorIsInfeasibleAndNamed)
+{
+    Scene scene = make_draped_scene();
+    scene.pins[0].motion.velocity = Vec3(0, 0, -1);
+    ClothMesh mesh = make_raised_sheet();
+    State state = make_state(scene, mesh, Vec3::Zero());
+    Workspace work;
+    StepReport report;
+    int k = 0;
+    while (report.status == StepStatus::Done && k < 100)
+        report = step(scene, Settings(), 0.005 * ++k, state, work);
+    ASSERT_EQ(report.status, StepStatus::Infeasible);
+    const std::vector<int> held = vertices_in_box(mesh, scene.pins[0].material);
+    EXPECT_TRUE(std::find(held.begin(), held.end(), report.infeasible_vertex) != held.end());
+    // Held cloth may yield the stand-off, but not the surface.
+    EXPECT_GE(state.mesh.world[report.infeasible_vertex].z(), 0.0);
+    EXPECT_LT(state.mesh.world[report.infeasible_vertex].z(), 0.005);
 }
 
 TEST(Step, AVertexHeldSidewaysStillRestsOnATiltedFloor)
