@@ -122,6 +122,20 @@ void LinearSystem::scatter(const std::array<int, N>& vertices, const int* blocks
     }
 }
 
+template <typename State, int N, typename Element, typename Blocks, typename ElementTerms>
+void LinearSystem::add_elements(const ElementColors& colors, const std::vector<Element>& elements,
+                                const Blocks& blocks, const ElementTerms& terms, const Linearization& at)
+{
+    for_each_by_color(colors, [&](int e) {
+        const Element& element = elements[e];
+        LocalSystem<N> local(at, element.vertices);
+        const State state(element, at.position);
+        for (const auto& term : terms) term->add(state, local);
+        reduce<N>(element.vertices, at, local);
+        scatter<N>(element.vertices, blocks[e].data(), local);
+    });
+}
+
 void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,
                             const Linearization& at)
 {
@@ -133,23 +147,9 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
     for (int v = 0; v < elements.vertex_count; ++v)
         rhs_.segment<3>(3 * v) = at.basis[v].transpose() * (at.gamma * load[v]);
 
-    for_each_by_color(elements.face_colors, [&](int f) {
-        const FaceElement& face = elements.faces[f];
-        FaceSystem local(at, face.vertices);
-        const FaceState state(face, at.position);
-        for (const auto& term : terms.faces) term->add(state, local);
-        reduce<3>(face.vertices, at, local);
-        scatter<3>(face.vertices, face_blocks_[f].data(), local);
-    });
-    if (terms.hinges.empty()) return;
-    for_each_by_color(elements.hinge_colors, [&](int h) {
-        const HingeElement& hinge = elements.hinges[h];
-        HingeSystem local(at, hinge.vertices);
-        const HingeState state(hinge, at.position);
-        for (const auto& term : terms.hinges) term->add(state, local);
-        reduce<4>(hinge.vertices, at, local);
-        scatter<4>(hinge.vertices, hinge_blocks_[h].data(), local);
-    });
+    add_elements<FaceState, 3>(elements.face_colors, elements.faces, face_blocks_, terms.faces, at);
+    if (!terms.hinges.empty())
+        add_elements<HingeState, 4>(elements.hinge_colors, elements.hinges, hinge_blocks_, terms.hinges, at);
 }
 
 }  // namespace arris

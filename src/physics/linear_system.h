@@ -31,6 +31,10 @@ class LinearSystem {
     template <int N>
     void scatter(const std::array<int, N>& vertices, const int* blocks, const LocalSystem<N>& local);
 
+    template <typename State, int N, typename Element, typename Blocks, typename ElementTerms>
+    void add_elements(const ElementColors& colors, const std::vector<Element>& elements, const Blocks& blocks,
+                      const ElementTerms& terms, const Linearization& at);
+
     Eigen::SparseMatrix<double> matrix_;
     Eigen::VectorXd rhs_;
     std::vector<int> column_height_;                ///< entries in each column of a vertex
