@@ -94,9 +94,12 @@ void build_constraints(const std::vector<HeldVertex>& held, const std::vector<Co
         const double closing = -std::max(contact.gap, 0.0) / prediction.gamma;
         problem.lower[coordinate] = (closing - contact.normal.dot(at.drift[v])) / scale;
 
+        // Expected active: what pressed in the last step, and what would pass the stand-off at its last
+        // velocity.
         while (active != state.active.end() && active->vertex_id < state.ids[v]) ++active;
-        if (active != state.active.end() && active->vertex_id == state.ids[v])
-            problem.guess.push_back(coordinate);
+        const bool was_active = active != state.active.end() && active->vertex_id == state.ids[v];
+        const bool is_arriving = contact.gap + prediction.gamma * contact.normal.dot(state.velocity[v]) < 0.0;
+        if (was_active || is_arriving) problem.guess.push_back(coordinate);
     }
 }
 

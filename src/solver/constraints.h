@@ -13,8 +13,8 @@ namespace arris {
 /// Gives every vertex its coordinates, v' = drift + basis u, in which pins are u = 0 and contacts are u >=
 /// bound: pinned directions come first, then the contact's normal (its part across the pins), completed to a
 /// basis. Fills `at.drift`, `at.basis`, `at.has_basis` and of `problem` the bounds, what is fixed, and the
-/// guess (coordinates of `state.active`). Bounds let a gap close and no more, u >= -gap / gamma; a penetrated
-/// gap is not pushed out.
+/// guess (coordinates of `state.active`, and of what would arrive at its last velocity). Bounds let a gap
+/// close and no more, u >= -gap / gamma; a penetrated gap is not pushed out.
 void build_constraints(const std::vector<HeldVertex>& held, const std::vector<Contact>& contacts,
                        const Prediction& prediction, const State& state, Linearization& at,
                        VelocityProblem& problem);
