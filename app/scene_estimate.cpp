@@ -34,11 +34,9 @@ constexpr double kCheckpointBytes = 200.0;  // a vertex
 
 void estimate_grid(const ClothGrid& grid, SceneEstimate& estimate)
 {
-    const double nu = grid.resolution[0], nv = grid.resolution[1];
-    const double corners = (nu + 1.0) * (nv + 1.0);
-    const bool has_middles = grid.pattern == GridPattern::Cross;
-    estimate.vertices = corners + (has_middles ? nu * nv : 0.0);
-    estimate.faces = (has_middles ? 4.0 : 2.0) * nu * nv;
+    const GridCount count = estimate_cloth_grid(grid);
+    estimate.vertices = count.vertices;
+    estimate.faces = count.faces;
 }
 
 double count_frames(double duration, double frames_per_second)

@@ -20,12 +20,11 @@ struct SceneEstimate {
 };
 
 // What a run may ask for.
-inline constexpr double kMaxVertices = 5e6;
+inline constexpr double kMaxVertices = kMostGridVertices;
 inline constexpr double kMaxSteps = 1e8;
 inline constexpr double kMaxFrames = 1e6;
 
-/// Vertices and faces of a grid: exact for the regular patterns unturned and without folds, else within some
-/// 20 %.
+/// Vertices and faces of a grid, before it is made; throws what estimate_cloth_grid throws.
 void estimate_grid(const ClothGrid& grid, SceneEstimate& estimate);
 
 /// Frames from time 0 to `duration` (s), both included where a frame falls on them.

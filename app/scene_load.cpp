@@ -227,7 +227,7 @@ ClothMesh make_cloth(const SceneDocument& document, RunConfig& config)
         check_size(document, config, estimate);
     } else {
         const ClothGrid grid = to_grid(cloth);
-        estimate_grid(grid, estimate);
+        blame(document, "cloth.folds", [&] { estimate_grid(grid, estimate); });
         check_size(document, config, estimate);
         mesh = make_rectangle(document, grid);
     }

@@ -48,7 +48,7 @@ std::string tick_label(const Axis& axis, double tick)
 {
     if (axis.is_log) return fmt::format("1e{:g}", tick);
     const double step = axis.ticks.size() < 2 ? std::abs(tick) : axis.ticks[1] - axis.ticks[0];
-    if (std::abs(tick) < 1e-6 * step) return "0";
+    if (std::abs(tick) <= 1e-6 * step) return "0";  // 0 alone as well, where the step is 0
     const double greatest = std::max(std::abs(axis.ticks.front()), std::abs(axis.ticks.back()));
     constexpr double kLeastPlain = 1e-3, kGreatestPlain = 1e7;
     if (step >= kLeastPlain && greatest < kGreatestPlain)
@@ -93,13 +93,15 @@ void include_near_zero(Range& range)
     if (range.least > 0.0 && range.least < 0.5 * range.greatest) range.include(0.0);
 }
 
-// Time fills the width: the axis ends with the data, not at a tick.
+// Time fills the width: the axis ends with the data, not at a tick; but for a range too small to have its
+// own.
 Axis make_x_axis(const std::vector<PlotLine>& lines)
 {
     Range range = range_of(lines, 0);
     include_near_zero(range);
     Axis axis{range, round_ticks(range.least, range.greatest, 6), kLeft, kWidth - kRight};
-    if (!(range.greatest > range.least)) axis.range = {axis.ticks.front(), axis.ticks.back()};
+    const double step = axis.ticks[1] - axis.ticks[0];
+    if (!(range.greatest - range.least > step)) axis.range = {axis.ticks.front(), axis.ticks.back()};
     const double slack = 1e-6 * (axis.range.greatest - axis.range.least);
     std::erase_if(axis.ticks, [&](double tick) {
         return tick < axis.range.least - slack || tick > axis.range.greatest + slack;

@@ -13,6 +13,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <tuple>
 
@@ -29,10 +30,7 @@ namespace {
 // Cloth farther out or larger than this is in the wrong unit.
 constexpr double kLargestCoordinate = 1e6;  // m
 
-// assimp keeps single precision, 6e-8 of a coordinate: with a farther origin the cloth's shape suffers.
-constexpr double kFarOrigin = 1e4;  // distance from the origin over size
-
-// A mesh is flat within this share of its size: single precision, with some room.
+// A mesh is flat within this share of its size: files are often written in single precision.
 constexpr double kFlat = 1e-6;
 
 // Takes assimp's warnings and errors for as long as it lives.
@@ -66,18 +64,51 @@ class LogCapture : public Assimp::LogStream {
 
 // A corner of a face as the file has it.
 struct FileVertex {
-    aiVector3D position;
-    aiVector3D uv;
+    Vec3 position;
+    Vec2 uv;
 
-    auto key() const { return std::tuple(position.x, position.y, position.z, uv.x, uv.y); }
-    auto place() const { return std::tuple(position.x, position.y, position.z); }
+    auto place() const { return std::tuple(position.x(), position.y(), position.z()); }
+    auto key() const { return std::tuple_cat(place(), std::tuple(uv.x(), uv.y())); }
 };
 
 struct FileMesh {
     std::vector<FileVertex> vertices;
+    std::vector<int> numbers;  // counted from 1, of the `v` statement of each vertex (the first of several)
     std::vector<Face> faces;
+    std::vector<int> lines;  // of the file, that of each face
     bool has_uv = false;
 };
+
+// assimp keeps coordinates in single precision, and not their order: each corner's number travels as its UVs,
+// in two parts that single precision holds exactly.
+constexpr int kNumberBase = 1 << 12;
+
+// The faces of an outline as text for assimp, near the origin so that single precision tells vertices apart.
+std::string numbered_text(const ObjOutline& outline)
+{
+    const Vec3 origin = outline.vertices[outline.corners.front().vertex].place;
+    std::string text;
+    for (const ObjCorner& corner : outline.corners) {
+        const Vec3 p = outline.vertices[corner.vertex].place - origin;
+        fmt::format_to(std::back_inserter(text), "v {} {} {}\n", p.x(), p.y(), p.z());
+    }
+    const int count = static_cast<int>(outline.corners.size());
+    for (int c = 0; c < count; ++c)
+        fmt::format_to(std::back_inserter(text), "vt {} {}\n", c % kNumberBase, c / kNumberBase);
+    int corner = 0;
+    for (const int corners : outline.corner_counts) {
+        text += 'f';
+        for (int k = 0; k < corners; ++k, ++corner)
+            fmt::format_to(std::back_inserter(text), " {}/{}", corner + 1, corner + 1);
+        text += '\n';
+    }
+    return text;
+}
+
+int number_of_corner(const aiVector3D& uv)
+{
+    return static_cast<int>(uv.x) + kNumberBase * static_cast<int>(uv.y);
+}
 
 class ClothReader {
   public:
@@ -90,10 +121,11 @@ class ClothReader {
     ClothFile read()
     {
         require_regular_obj();
-        const ObjOutline outline = read_obj_outline(path_);
-        if (outline.face_count == 0) refuse("no faces");
+        outline_ = read_obj_outline(path_);
+        file_.has_uv = outline_.corners.front().uv >= 0;
+        for (const ObjCorner& corner : outline_.corners) require_finite(corner);
         import();
-        warn_about(outline);
+        warn_about_dropped();
         require_single_uvs();
         place_in_world();
         require_distinct_faces();
@@ -137,72 +169,84 @@ class ClothReader {
     {
         LogCapture log;
         Assimp::Importer importer;
-        const aiScene* scene = importer.ReadFile(
-            path_, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_ValidateDataStructure);
+        const std::string text = numbered_text(outline_);
+        const aiScene* scene = importer.ReadFileFromMemory(
+            text.data(), text.size(), aiProcess_Triangulate | aiProcess_ValidateDataStructure, "obj");
         if (scene == nullptr) refuse(std::string("cannot be imported: ") + importer.GetErrorString());
         warnings_ = log.lines;
         collect(*scene);
-        if (file_.faces.empty()) refuse("no faces");
+        const std::size_t expected = outline_.corners.size() - 2 * outline_.corner_counts.size();
+        if (file_.faces.size() != expected)
+            refuse(fmt::format(
+                "its polygons should make {} triangles but made {}: one crosses itself or has no area",
+                expected, file_.faces.size()));
     }
 
     void collect(const aiScene& scene)
     {
         std::map<decltype(FileVertex().key()), int> index;
-        int with_uv = 0;
-        int without_uv = 0;
         for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
             const aiMesh& part = *scene.mMeshes[m];
-            // Triangulated polygons carry a flag besides.
-            if ((part.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0u) continue;
-            ++(part.HasTextureCoords(0) ? with_uv : without_uv);
             for (unsigned f = 0; f < part.mNumFaces; ++f) {
                 Face face;
-                for (unsigned k = 0; k < 3; ++k)
-                    face[k] = weld(vertex_of(part, part.mFaces[f].mIndices[k]), index);
+                int line = 0;
+                for (unsigned k = 0; k < 3; ++k) {
+                    const aiVector3D& number = part.mTextureCoords[0][part.mFaces[f].mIndices[k]];
+                    const ObjCorner& corner = outline_.corners[number_of_corner(number)];
+                    face[k] = weld(corner, index);
+                    line = corner.line;
+                }
                 file_.faces.push_back(face);
+                file_.lines.push_back(line);
             }
         }
-        if (with_uv > 0 && without_uv > 0) refuse("some faces have UVs and some have none");
-        file_.has_uv = with_uv > 0;
     }
 
-    FileVertex vertex_of(const aiMesh& part, unsigned v) const
+    FileVertex vertex_at(const ObjCorner& corner) const
     {
-        const FileVertex vertex{part.mVertices[v],
-                                part.HasTextureCoords(0) ? part.mTextureCoords[0][v] : aiVector3D()};
-        require_finite(vertex);  // before it is a key: NaN has no order
-        return vertex;
+        return {outline_.vertices[corner.vertex].place,
+                corner.uv < 0 ? Vec2(Vec2::Zero()) : outline_.uvs[corner.uv].place};
     }
 
     template <class Index>
-    int weld(const FileVertex& vertex, Index& index)
+    int weld(const ObjCorner& corner, Index& index)
     {
+        const FileVertex vertex = vertex_at(corner);
         const auto [found, is_new] = index.emplace(vertex.key(), static_cast<int>(file_.vertices.size()));
-        if (is_new) file_.vertices.push_back(vertex);
+        if (is_new) {
+            file_.vertices.push_back(vertex);
+            file_.numbers.push_back(corner.vertex + 1);
+        }
         return found->second;
     }
 
-    void warn_about(const ObjOutline& outline)
+    void warn_about_dropped()
     {
-        if (outline.unused_vertex_count > 0)
+        if (outline_.unused_vertex_count > 0)
             warnings_.push_back(fmt::format("{}: {} of {} vertices belong to no face and were dropped", path_,
-                                            outline.unused_vertex_count, outline.vertex_count));
-        if (outline.line_and_point_count > 0)
+                                            outline_.unused_vertex_count, outline_.vertices.size()));
+        if (outline_.line_and_point_count > 0)
             warnings_.push_back(fmt::format("{}: {} lines and points are no cloth and were dropped", path_,
-                                            outline.line_and_point_count));
+                                            outline_.line_and_point_count));
     }
 
-    void require_finite(const FileVertex& vertex) const
+    [[noreturn]] void refuse_line(int line, const std::string& why) const
     {
-        const auto& [p, uv] = vertex;
-        for (const double c : {p.x, p.y, p.z})
-            if (!std::isfinite(c) || !(std::abs(c) * unit_ <= kLargestCoordinate))
-                refuse(fmt::format("vertex ({}, {}, {}) must be finite and within {:g} m of the origin", p.x,
-                                   p.y, p.z, kLargestCoordinate));
-        for (const double c : {uv.x, uv.y})
-            if (!std::isfinite(c) || !(std::abs(c) <= kLargestCoordinate))
-                refuse(fmt::format("UV ({}, {}) must be finite and within {:g} m", uv.x, uv.y,
-                                   kLargestCoordinate));
+        throw InputError(fmt::format("{}, line {}: {}", path_, line, why));
+    }
+
+    void require_finite(const ObjCorner& corner) const
+    {
+        const auto& [p, line] = outline_.vertices[corner.vertex];
+        if (!p.allFinite() || !(p.cwiseAbs().maxCoeff() * unit_ <= kLargestCoordinate))
+            refuse_line(
+                line, fmt::format("vertex ({}, {}, {}) must be finite and within {:g} m of the origin", p.x(),
+                                  p.y(), p.z(), kLargestCoordinate));
+        if (corner.uv < 0) return;
+        const auto& [uv, uv_line] = outline_.uvs[corner.uv];
+        if (!uv.allFinite() || !(uv.cwiseAbs().maxCoeff() <= kLargestCoordinate))
+            refuse_line(uv_line, fmt::format("UV ({}, {}) must be finite and within {:g} m", uv.x(), uv.y(),
+                                             kLargestCoordinate));
     }
 
     // A place with two UVs is a seam: the cloth would come apart there.
@@ -218,23 +262,15 @@ class ClothReader {
         const FileVertex& a = file_.vertices[*twin];
         const FileVertex& b = file_.vertices[*(twin + 1)];
         refuse(fmt::format("vertex ({}, {}, {}) has two UVs, ({}, {}) and ({}, {}): UV seams are not allowed",
-                           a.position.x, a.position.y, a.position.z, a.uv.x, a.uv.y, b.uv.x, b.uv.y));
+                           a.position.x(), a.position.y(), a.position.z(), a.uv.x(), a.uv.y(), b.uv.x(),
+                           b.uv.y()));
     }
 
     void place_in_world()
     {
         mesh_.faces = file_.faces;
-        double farthest = 0.0;
-        for (const FileVertex& vertex : file_.vertices) {
-            const Vec3 p(vertex.position.x, vertex.position.y, vertex.position.z);
-            mesh_.world.push_back(to_z_up_ * (unit_ * p));
-            farthest = std::max(farthest, mesh_.world.back().cwiseAbs().maxCoeff());
-        }
-        if (farthest > kFarOrigin * world_size())
-            warnings_.push_back(
-                fmt::format("{}: lies {:.3g} m from the origin but is only {:.3g} m large: single "
-                            "precision leaves it {:.1g} m of detail",
-                            path_, farthest, world_size(), 6e-8 * farthest));
+        for (const FileVertex& vertex : file_.vertices)
+            mesh_.world.push_back(to_z_up_ * (unit_ * vertex.position));
     }
 
     double world_size() const
@@ -251,7 +287,8 @@ class ClothReader {
     std::string describe(int face) const
     {
         const Vec3& a = mesh_.world[mesh_.faces[face][0]];
-        return fmt::format("triangle {} (at {:.6g}, {:.6g}, {:.6g} m)", face, a.x(), a.y(), a.z());
+        return fmt::format("the face of line {} (at {:.6g}, {:.6g}, {:.6g} m)", file_.lines[face], a.x(),
+                           a.y(), a.z());
     }
 
     // No face without area in the world, and none twice, in whichever direction.
@@ -267,13 +304,14 @@ class ClothReader {
             std::sort(key.begin(), key.end());
             const auto [first, is_new] = seen.emplace(key, f);
             if (!is_new)
-                refuse(fmt::format("{} is there twice, first as triangle {}", describe(f), first->second));
+                refuse(fmt::format("{} is there twice, first in line {}", describe(f),
+                                   file_.lines[first->second]));
         }
     }
 
     void take_uvs()
     {
-        for (const FileVertex& vertex : file_.vertices) mesh_.material.emplace_back(vertex.uv.x, vertex.uv.y);
+        for (const FileVertex& vertex : file_.vertices) mesh_.material.push_back(vertex.uv);
     }
 
     // Twice the area vector of the largest face.
@@ -345,8 +383,9 @@ class ClothReader {
 
     void require_manifold() const
     {
-        if (const std::string wrong = validate(mesh_); !wrong.empty())
-            refuse(wrong + " (triangles and welded vertices counted from 0)");
+        const ElementNumbers numbers = {file_.numbers, file_.lines};
+        if (const std::string wrong = validate(mesh_, numbers); !wrong.empty())
+            refuse(wrong + " (vertices as the file numbers them, counted from 1, and faces by their line)");
     }
 
     void require_no_overlap() const
@@ -359,6 +398,7 @@ class ClothReader {
     std::string path_;
     double unit_;
     Mat3 to_z_up_;
+    ObjOutline outline_;
     FileMesh file_;
     ClothMesh mesh_;
     std::vector<std::string> warnings_;

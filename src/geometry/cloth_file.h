@@ -16,12 +16,13 @@ struct ClothFile {
 
 /// Reads a mesh (polygons are triangulated): positions become the initial world positions, UVs (in metres)
 /// the material coordinates; a flat mesh without UVs is its own chart. `unit_in_metres` scales positions (not
-/// UVs), `up` is 'x', 'y' or 'z': the file's up axis, turned to +z about a single axis. Formats today: OBJ,
-/// whose coordinates the importer keeps in single precision (a relative 6e-8). Several pieces are allowed if
-/// their charts are apart. Vertices are numbered in the order in which faces first name them; a chart that is
-/// mirrored as a whole is turned round with a warning. Throws InputError naming the file for whatever cannot
-/// be cloth: unreadable, truncated, no faces, non-finite or out-of-range, non-manifold, duplicate faces or
-/// faces without area, UV seams (a place with two UVs), overlapping or folded charts, curved without UVs.
+/// UVs), `up` is 'x', 'y' or 'z': the file's up axis, turned to +z about a single axis. Formats today: OBJ;
+/// coordinates are the doubles nearest to the file's numbers (times `unit_in_metres`). Several pieces are
+/// allowed if their charts are apart. Vertices are numbered in the order in which faces first name them; a
+/// chart that is mirrored as a whole is turned round with a warning. Throws InputError naming the file for
+/// whatever cannot be cloth: unreadable, truncated, no faces, non-finite or out-of-range, non-manifold,
+/// duplicate faces or faces without area, UV seams (a place with two UVs), overlapping or folded charts,
+/// curved without UVs.
 ClothFile read_cloth_file(const std::string& path, double unit_in_metres, char up);
 
 }  // namespace arris

@@ -17,6 +17,9 @@ struct Fold {
     double degrees = 0.0;
 };
 
+/// A grid of more vertices than this is refused: SI sizes and cells that make one are a slip of the pen.
+inline constexpr double kMostGridVertices = 5e6;
+
 /// A rectangle of cloth [0, size_u] x [0, size_v] to be meshed.
 struct ClothGrid {
     Vec2 size = Vec2::Ones();                ///< m
@@ -35,8 +38,21 @@ struct ClothGrid {
 /// (measured, all angles); with folds 25 where nothing forces less (lines that meet or pass near each other,
 /// or near a corner, do); unstructured 20.7 likewise. Other cells: judged in cell coordinates. Border
 /// vertices have exactly 0 or the size as coordinate. Throws InputError for sizes or resolutions that are not
-/// positive, for more than 5e6 vertices, and for a fold whose line misses the rectangle.
+/// positive, for more than kMostGridVertices (by the estimate before it is made, and when it is made), and
+/// for a fold whose line misses the rectangle.
 ClothMesh make_cloth_grid(const ClothGrid& grid);
+
+struct GridCount {
+    double vertices = 0.0;
+    double faces = 0.0;
+};
+
+/// How many vertices and faces make_cloth_grid would make, in no time and for any numbers: exact for a
+/// regular pattern unturned and without folds; else measured within 20 % (from 10 cells on), or 40 % for
+/// "unstructured" on a rectangle narrower than its cells' mean side. What folds force of "unstructured" is
+/// not in it. Throws InputError for what is no rectangle of cells and, for a regular pattern, for folds that
+/// miss it.
+GridCount estimate_cloth_grid(const ClothGrid& grid);
 
 /// Bends a flat mesh isometrically along `folds`, in order, each turning what lies right of its line about
 /// where the line is by then. A line that an earlier fold laid back on itself (180 degrees) is still

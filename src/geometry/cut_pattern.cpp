@@ -11,6 +11,8 @@
 //      kept    o---o---o---o---o         All this happens in cell coordinates, where a cell is a unit square.
 #include "geometry/cut_pattern.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,6 +20,7 @@
 #include "geometry/cgal.h"
 #include "geometry/crease_graph.h"
 #include "geometry/delaunay.h"
+#include "geometry/input_error.h"
 #include "geometry/pattern_lattice.h"
 
 namespace arris {
@@ -358,7 +361,14 @@ ClothMesh make_unstructured(const ClothGrid& grid)
         }
         outline.edges.push_back({last, b});
     }
-    const RefinedTriangulation refined = refine(outline, 1.5 * side);
+    const RefinedTriangulation refined =
+        refine(outline, 1.5 * side, static_cast<std::size_t>(kMostGridVertices));
+    if (!refined.is_complete)
+        throw InputError(fmt::format(
+            "unstructured cloth would have more than the {:.0e} vertices that are allowed: around ({:.6g}, "
+            "{:.6g}) m "
+            "it needs sides of {:.2g} m, as folds, or a fold and the border, come that near one another",
+            kMostGridVertices, refined.crowded.x(), refined.crowded.y(), refined.shortest));
     ClothMesh mesh;
     mesh.material = refined.points;
     mesh.faces = refined.faces;

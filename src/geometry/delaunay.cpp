@@ -12,6 +12,7 @@
 #include <CGAL/spatial_sort.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -110,6 +111,18 @@ void number_new_vertices(Triangulation& triangulation, std::vector<Vec2>& points
     }
 }
 
+void find_crowded(const Triangulation& triangulation, RefinedTriangulation& refined)
+{
+    refined.shortest = std::numeric_limits<double>::infinity();
+    for (const auto& [face, k] : triangulation.finite_edges()) {
+        const Vec2 a = to_eigen(face->vertex(Triangulation::cw(k))->point());
+        const Vec2 b = to_eigen(face->vertex(Triangulation::ccw(k))->point());
+        if (!((b - a).norm() < refined.shortest)) continue;
+        refined.shortest = (b - a).norm();
+        refined.crowded = 0.5 * (a + b);
+    }
+}
+
 bool has_side_in(const FaceHandle& face, const std::set<std::array<int, 2>>& directed)
 {
     const Face f = indices_of(face);
@@ -139,14 +152,22 @@ std::vector<Face> triangulate(const PlanarGraph& graph, const std::vector<std::a
     return faces;
 }
 
-RefinedTriangulation refine(const PlanarGraph& graph, double size)
+RefinedTriangulation refine(const PlanarGraph& graph, double size, std::size_t most_points)
 {
     Triangulation triangulation = build(graph);
     using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Triangulation>;
     CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(kAngleBound, size));
-    mesher.refine_mesh();
+    mesher.init();
+    while (triangulation.number_of_vertices() <= most_points)
+        if (!mesher.step_by_step_refine_mesh()) break;
 
-    RefinedTriangulation refined{graph.points, {}};
+    RefinedTriangulation refined;
+    refined.is_complete = triangulation.number_of_vertices() <= most_points;
+    if (!refined.is_complete) {
+        find_crowded(triangulation, refined);
+        return refined;
+    }
+    refined.points = graph.points;
     number_new_vertices(triangulation, refined.points);
     for (const FaceHandle face : triangulation.finite_face_handles())
         if (face->is_in_domain()) refined.faces.push_back(indices_of(face));

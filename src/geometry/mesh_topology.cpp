@@ -41,12 +41,20 @@ bool same_edge(const Side& s, const Side& t)
     return s.low == t.low && s.high == t.high;
 }
 
+// What the sentences call vertices and faces.
+struct Names {
+    const ElementNumbers& numbers;
+
+    int vertex(int v) const { return numbers.vertices.empty() ? v : numbers.vertices[v]; }
+    int face(int f) const { return numbers.faces.empty() ? f : numbers.faces[f]; }
+};
+
 int opposite_vertex(const std::vector<Face>& faces, const Side& side)
 {
     return faces[side.face][(side.corner + 2) % 3];
 }
 
-std::string find_bad_index(const ClothMesh& mesh)
+std::string find_bad_index(const ClothMesh& mesh, const Names& names)
 {
     const int n = mesh.vertex_count();
     if (mesh.material.size() != mesh.world.size())
@@ -55,47 +63,50 @@ std::string find_bad_index(const ClothMesh& mesh)
     for (int f = 0; f < mesh.face_count(); ++f) {
         const Face& face = mesh.faces[f];
         for (const int v : face) {
-            if (v < 0 || v >= n) return fmt::format("face {} names vertex {} of {}", f, v, n);
+            if (v < 0 || v >= n) return fmt::format("face {} names vertex {} of {}", names.face(f), v, n);
             is_used[v] = 1;
         }
         if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
-            return fmt::format("face {} names a vertex twice ({}, {}, {})", f, face[0], face[1], face[2]);
+            return fmt::format("face {} names a vertex twice ({}, {}, {})", names.face(f),
+                               names.vertex(face[0]), names.vertex(face[1]), names.vertex(face[2]));
     }
     for (int v = 0; v < n; ++v)
-        if (is_used[v] == 0) return fmt::format("vertex {} belongs to no face", v);
+        if (is_used[v] == 0) return fmt::format("vertex {} belongs to no face", names.vertex(v));
     return {};
 }
 
-std::string find_bad_coordinate(const ClothMesh& mesh)
+std::string find_bad_coordinate(const ClothMesh& mesh, const Names& names)
 {
     for (int v = 0; v < mesh.vertex_count(); ++v) {
         const Vec2& X = mesh.material[v];
         const Vec3& x = mesh.world[v];
         if (!X.allFinite())
-            return fmt::format("vertex {} has material coordinates ({}, {})", v, X.x(), X.y());
-        if (!x.allFinite()) return fmt::format("vertex {} is at ({}, {}, {})", v, x.x(), x.y(), x.z());
+            return fmt::format("vertex {} has material coordinates ({}, {})", names.vertex(v), X.x(), X.y());
+        if (!x.allFinite())
+            return fmt::format("vertex {} is at ({}, {}, {})", names.vertex(v), x.x(), x.y(), x.z());
     }
     return {};
 }
 
-std::string find_bad_edge(const std::vector<Side>& sides)
+std::string find_bad_edge(const std::vector<Side>& sides, const Names& names)
 {
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
         const Side& s = sides[i];
         const Side& t = sides[i + 1];
         if (!same_edge(s, t)) continue;
         if (i + 2 < sides.size() && same_edge(s, sides[i + 2]))
-            return fmt::format("edge ({}, {}) has more than two faces ({}, {}, {})", s.low, s.high, s.face,
-                               t.face, sides[i + 2].face);
+            return fmt::format("edge ({}, {}) has more than two faces ({}, {}, {})", names.vertex(s.low),
+                               names.vertex(s.high), names.face(s.face), names.face(t.face),
+                               names.face(sides[i + 2].face));
         if (s.is_forward == t.is_forward)
-            return fmt::format("faces {} and {} run along edge ({}, {}) the same way", s.face, t.face, s.low,
-                               s.high);
+            return fmt::format("faces {} and {} run along edge ({}, {}) the same way", names.face(s.face),
+                               names.face(t.face), names.vertex(s.low), names.vertex(s.high));
     }
     return {};
 }
 
 // Faces around a vertex must be one fan: corners joined through the vertex's edges are one set.
-std::string find_bow_tie(const ClothMesh& mesh, const std::vector<Side>& sides)
+std::string find_bow_tie(const ClothMesh& mesh, const std::vector<Side>& sides, const Names& names)
 {
     std::vector<int> parent(3 * mesh.faces.size());
     std::iota(parent.begin(), parent.end(), 0);
@@ -116,19 +127,19 @@ std::string find_bow_tie(const ClothMesh& mesh, const std::vector<Side>& sides)
         const int v = mesh.faces[c / 3][c % 3];
         if (fan[v] < 0) fan[v] = root(c);
         if (fan[v] != root(c))
-            return fmt::format("vertex {} joins parts of the cloth in a single point (faces {} and {})", v,
-                               fan[v] / 3, c / 3);
+            return fmt::format("vertex {} joins parts of the cloth in a single point (faces {} and {})",
+                               names.vertex(v), names.face(fan[v] / 3), names.face(c / 3));
     }
     return {};
 }
 
-std::string find_bad_orientation(const ClothMesh& mesh)
+std::string find_bad_orientation(const ClothMesh& mesh, const Names& names)
 {
     for (int f = 0; f < mesh.face_count(); ++f) {
         const auto& [a, b, c] = mesh.faces[f];
         const int turn = exact_orientation(mesh.material[a], mesh.material[b], mesh.material[c]);
-        if (turn < 0) return fmt::format("face {} is clockwise in material space", f);
-        if (turn == 0) return fmt::format("face {} has no material area", f);
+        if (turn < 0) return fmt::format("face {} is clockwise in material space", names.face(f));
+        if (turn == 0) return fmt::format("face {} has no material area", names.face(f));
     }
     return {};
 }
@@ -156,14 +167,15 @@ MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces)
     return topology;
 }
 
-std::string validate(const ClothMesh& mesh)
+std::string validate(const ClothMesh& mesh, const ElementNumbers& numbers)
 {
-    if (std::string wrong = find_bad_index(mesh); !wrong.empty()) return wrong;
-    if (std::string wrong = find_bad_coordinate(mesh); !wrong.empty()) return wrong;
+    const Names names{numbers};
+    if (std::string wrong = find_bad_index(mesh, names); !wrong.empty()) return wrong;
+    if (std::string wrong = find_bad_coordinate(mesh, names); !wrong.empty()) return wrong;
     const std::vector<Side> sides = sorted_sides(mesh.faces);
-    if (std::string wrong = find_bad_edge(sides); !wrong.empty()) return wrong;
-    if (std::string wrong = find_bow_tie(mesh, sides); !wrong.empty()) return wrong;
-    return find_bad_orientation(mesh);
+    if (std::string wrong = find_bad_edge(sides, names); !wrong.empty()) return wrong;
+    if (std::string wrong = find_bow_tie(mesh, sides, names); !wrong.empty()) return wrong;
+    return find_bad_orientation(mesh, names);
 }
 
 }  // namespace arris

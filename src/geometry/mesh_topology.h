@@ -30,9 +30,15 @@ struct MeshTopology {
 /// Linear in face count (a sort). Faces must form an oriented 2-manifold: `validate` checks that.
 MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces);
 
+/// What a sentence calls a mesh's vertices and faces; where empty, their indices, counted from 0.
+struct ElementNumbers {
+    std::vector<int> vertices;
+    std::vector<int> faces;
+};
+
 /// Names what is wrong with a cloth mesh: empty string if indices are in range, every vertex is used, the
 /// faces form an oriented manifold, coordinates are finite and every material orientation is positive by an
-/// exact predicate; else one sentence naming the element.
-std::string validate(const ClothMesh& mesh);
+/// exact predicate; else one sentence naming the element by its number.
+std::string validate(const ClothMesh& mesh, const ElementNumbers& numbers = {});
 
 }  // namespace arris

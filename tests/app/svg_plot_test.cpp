@@ -88,6 +88,20 @@ TEST(SvgPlot, KeepsEveryPointInsideTheDrawing)
         }
 }
 
+TEST(SvgPlot, HasTicksOnEveryRangeHoweverSmall)
+{
+    constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+    for (const double last : {kTiny, 1e-300, 1e-291, 1e-20, 1.0})
+        for (const double first : {0.0, -last, 0.3 * last, 0.9 * last}) {
+            const std::string html = draw_plot(plot_of({{first, first}, {last, last}}));
+            const std::regex tick("<text class=\"tick\"");
+            const auto ticks = std::distance(std::sregex_iterator(html.begin(), html.end(), tick), {});
+            EXPECT_GE(ticks, 5) << first << " " << last;  // two of each axis, and the label
+            EXPECT_THAT(html, Not(HasSubstr("nan")));
+            EXPECT_THAT(html, Not(HasSubstr("inf")));
+        }
+}
+
 TEST(SvgPlot, DrawsGreaterValuesHigherUp)
 {
     for (const PlotKind kind : {PlotKind::Lines, PlotKind::LogLines, PlotKind::Stacked}) {

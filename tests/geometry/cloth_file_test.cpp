@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/cloth_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <Eigen/LU>
@@ -10,6 +11,7 @@
 #include <fstream>
 
 #include "geometry/input_error.h"
+#include "geometry/material_box.h"
 #include "geometry/mesh_topology.h"
 
 namespace arris {
@@ -18,8 +20,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// assimp keeps single precision.
-constexpr double kSingle = 1e-7;
+constexpr double kRounding = 1e-15;  // of coordinates about 1
 
 // A folder of its own for each test.
 class ClothFileTest : public ::testing::Test {
@@ -81,8 +82,8 @@ TEST_F(ClothFileTest, ReadsPositionsAndUvs)
     for (int v = 0; v < 4; ++v) {
         const Vec2& X = file.mesh.material[v];
         const Vec3& x = file.mesh.world[v];
-        EXPECT_LT((X - 1.1 * x.head<2>()).norm(), kSingle);
-        EXPECT_NEAR(x.z(), std::abs(x.x() - x.y()) * 0.5, kSingle);
+        EXPECT_LT((X - 1.1 * x.head<2>()).norm(), kRounding);
+        EXPECT_NEAR(x.z(), std::abs(x.x() - x.y()) * 0.5, kRounding);
     }
 }
 
@@ -90,7 +91,7 @@ TEST_F(ClothFileTest, UnitScalesPositionsAndNotUvs)
 {
     const ClothFile file = read(kSquare, 0.01);
     for (int v = 0; v < 4; ++v)
-        EXPECT_LT((file.mesh.material[v] - 110.0 * file.mesh.world[v].head<2>()).norm(), kSingle);
+        EXPECT_LT((file.mesh.material[v] - 110.0 * file.mesh.world[v].head<2>()).norm(), kRounding);
 }
 
 TEST_F(ClothFileTest, UpAxisIsTurnedToZ)
@@ -125,7 +126,7 @@ TEST_F(ClothFileTest, FlatMeshWithoutUvsIsItsOwnChart)
         EXPECT_EQ(validate(file.mesh), "");
         for (const auto& [a, b, c] : file.mesh.faces)
             EXPECT_NEAR(twice_area(file.mesh.material[a], file.mesh.material[b], file.mesh.material[c]), 1.0,
-                        10 * kSingle);
+                        10 * kRounding);
     }
 }
 
@@ -195,11 +196,85 @@ TEST_F(ClothFileTest, CountsWhatItDrops)
     EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("2 lines and points")));
 }
 
-TEST_F(ClothFileTest, WarnsWhereSinglePrecisionIsCoarse)
+// Seventeen digits, which tell every double apart.
+std::string digits(double value)
 {
-    const ClothFile file = read("v 60000 0 0\nv 60001 0 0\nv 60001 1 0\nf 1 2 3\n");
-    ASSERT_EQ(file.warnings.size(), 1u);
-    EXPECT_THAT(file.warnings[0], HasSubstr("single precision"));
+    return fmt::format("{:.17g}", value);
+}
+
+TEST_F(ClothFileTest, CoordinatesAreTheDoublesOfTheFile)
+{
+    const std::vector<Vec3> world = {{1.0 / 3.0, 0.7, 1e-7},
+                                     {1.0 + 1.0 / 3.0, 0.7, -1e-7},
+                                     {1.1, 1.7000000000000002, 5e-324},
+                                     {0.1, 1.9, 2e-7}};
+    const std::vector<Vec2> material = {
+        {0.7, 1e-7}, {1.7, 1.0 / 3.0}, {1.7000000000000002, 4.0 / 3.0}, {0.7, 1.1}};
+    std::string text;
+    for (const Vec3& x : world)
+        text += "v " + digits(x.x()) + " " + digits(x.y()) + " " + digits(x.z()) + "\n";
+    for (const Vec2& X : material) text += "vt " + digits(X.x()) + " +" + digits(X.y()) + " 0\n";
+    for (const char* faces : {"f 1/1 2/2 3/3 4/4\n", "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n"}) {
+        const ClothFile file = read(text + faces);
+        EXPECT_EQ(file.mesh.world, world);
+        EXPECT_EQ(file.mesh.material, material);
+    }
+}
+
+TEST_F(ClothFileTest, PinBoxHoldsTheVerticesOfItsNumbers)
+{
+    const ClothFile file = read(
+        "v 0 0 0\nv 0.7 0 0\nv 0.7 0.7 0\nv 0 0.7 0\nvt 0 0\nvt 0.7 0\nvt 0.7 0.7\nvt 0 0.7\n"
+        "f 1/1 2/2 3/3 4/4\n");
+    EXPECT_THAT(vertices_in_box(file.mesh, {{0.7, 0.0}, {0.7, 1.0}}), ::testing::ElementsAre(1, 2));
+}
+
+TEST_F(ClothFileTest, PlacesOfOneSingleAndTwoDoublesStayApart)
+{
+    // All corners are the same in single precision.
+    const std::vector<Vec3> corners = {
+        {1, 1, 0}, {1 + 1e-12, 1, 0}, {1 + 1e-12, 1 + 1e-12, 0}, {1, 1 + 1e-12, 0}};
+    std::string text;
+    for (const Vec3& x : corners) text += "v " + digits(x.x()) + " " + digits(x.y()) + " 0\n";
+    for (const char* faces : {"f 1 2 3\nf 1 3 4\n", "f 1 2 3 4\n"}) {
+        const ClothFile file = read(text + faces);
+        EXPECT_EQ(file.mesh.world, corners);
+        EXPECT_EQ(validate(file.mesh), "");
+    }
+}
+
+TEST_F(ClothFileTest, ManyCornersKeepTheirPlaces)
+{
+    const int n = 60;
+    std::string text;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) text += "v " + digits(i / 7.0) + " " + digits(j / 11.0) + " 0\n";
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const int a = j * (n + 1) + i + 1;
+            text += fmt::format("f {} {} {} {}\n", a, a + 1, a + n + 2, a + n + 1);
+        }
+    const ClothFile file = read(text);
+    ASSERT_EQ(file.mesh.vertex_count(), (n + 1) * (n + 1));
+    ASSERT_EQ(file.mesh.face_count(), 2 * n * n);
+    EXPECT_EQ(validate(file.mesh), "");
+    EXPECT_EQ(file.mesh.world.back(), Vec3(n / 7.0, n / 11.0, 0.0));
+}
+
+TEST_F(ClothFileTest, FarFromItsOriginClothKeepsItsShape)
+{
+    const ClothFile file =
+        read("v 60000.1 0 0\nv 60001.1 0 0\nv 60001.1 0.1 0\nv 60000.1 0.1 0\nf 1 2 3 4\n");
+    EXPECT_THAT(file.warnings, IsEmpty());
+    EXPECT_EQ(file.mesh.world[0].x(), 60000.1);
+    EXPECT_EQ(file.mesh.world[1].x(), 60001.1);
+}
+
+TEST_F(ClothFileTest, WeightDividesAndColourDoesNot)
+{
+    const ClothFile file = read("v 2 0 0 2\nv 2 0 0 0.5 0.5 0.5\nv 2 2 0\nf 1 2 3\n");
+    EXPECT_EQ(file.mesh.world[0], Vec3(1, 0, 0));
+    EXPECT_EQ(file.mesh.world[1], Vec3(2, 0, 0));
 }
 
 // What cannot be cloth: the text of a file, and what the error must say.
@@ -221,13 +296,26 @@ std::vector<Defect> defects()
                      "ELF\0\1\2\xff\xfe garbage \0 f",
                      25),
          ""},
-        {"text", "this is not a mesh\nat all\n", "no faces"},
-        {"no faces", kCorners, "no faces"},
+        {"text", "this is not a mesh\nat all\n", "no faces among 0 vertices, 0 lines and points and 2 other"},
+        {"text says what is allowed", "this is not a mesh\nat all\n",
+         "allowed: vertices as 'v x y z' and faces"},
+        {"no faces", kCorners, "no faces among 4 vertices"},
+        {"word for a number", "v 0 0 0\nv 1 0 zero\nv 1 1 0\nf 1 2 3\n",
+         "line 2: 'v 1 0 zero': 'zero' is no number; allowed: 'v x y z'"},
+        {"number with a tail", "v 0 0 0\nv 1 0 0x\nv 1 1 0\nf 1 2 3\n",
+         "line 2: 'v 1 0 0x': '0x' is no number"},
+        {"word for a uv", kCorners + "vt 0 zero\nf 1/1 2/1 3/1\n",
+         "line 5: 'vt 0 zero': 'zero' is no number"},
+        {"uv of one number", kCorners + "vt 0\nf 1/1 2/1 3/1\n", "line 5: 'vt 0': 1 numbers, but a UV has 2"},
+        {"after a continued line", "v 0 \\\n0 0\nv 1 0 zero\nv 1 1 0\nf 1 2 3\n", "line 3: 'v 1 0 zero'"},
+        {"beyond double", "v 0 0 0\nv 1e999 0 0\nv 1 1 0\nf 1 2 3\n", "'1e999' is beyond double precision"},
+        {"weight of nothing", "v 0 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", "line 1: vertex ("},
         {"lines only", kCorners + "l 1 2 3\n", "no faces"},
         {"points only", kCorners + "p 1\n", "no faces"},
-        {"truncated face", kCorners + "f 1 2 3\nf 1 3", "line 6: a face of 2 corners"},
-        {"truncated vertex", "v 0 0 0\nv 1 0 0\nv 1 1\nf 1 2 3\n", ""},
-        {"truncated count", "v 0 0 0\nv 1 0 0\nf 1 2 3\nv 1", ""},
+        {"truncated face", kCorners + "f 1 2 3\nf 1 3", "line 6: 'f 1 3': a face of 2 corners"},
+        {"truncated vertex", "v 0 0 0\nv 1 0 0\nv 1 1\nf 1 2 3\n",
+         "line 3: 'v 1 1': 2 numbers, but a vertex has 3"},
+        {"truncated count", "v 0 0 0\nv 1 0 0\nf 1 2 3\nv 1", "line 4"},
         {"face before its vertices are there", "f 1 2 3\nv 0 0 0\nv 1 0 0\n",
          "names vertex 3, but there are 2"},
         {"nan", "v 0 0 0\nv nan 0 0\nv 1 1 0\nf 1 2 3\n", "finite"},
@@ -237,11 +325,12 @@ std::vector<Defect> defects()
         {"huge", "v 0 0 0\nv 1e20 0 0\nv 1 1e20 0\nf 1 2 3\n", "within 1e+06 m"},
         {"nan uv", kCorners + "vt 0 0\nvt nan 0\nvt 1 1\nf 1/1 2/2 3/3\n", "UV"},
         {"huge uv", kCorners + "vt 0 0\nvt 1e30 0\nvt 1 1\nf 1/1 2/2 3/3\n", "UV"},
-        {"index 0", kCorners + "f 0 1 2\n", "line 5: a face names vertex 0"},
+        {"index 0", kCorners + "f 0 1 2\n", "line 5: 'f 0 1 2': a face names vertex 0"},
         {"index out of range", kCorners + "f 1 2 5\n", "names vertex 5, but there are 4"},
         {"negative index out of range", kCorners + "f -1 -2 -5\n", "line 5"},
         {"index of a billion", kCorners + "f 1 2 1000000000000\n", "names vertex 1000000000000"},
-        {"index that is none", kCorners + "f 1 2 x\n", "'x' is no index"},
+        {"index that is none", kCorners + "f 1 2 x\n",
+         "line 5: 'f 1 2 x': 'x' is no index; allowed: 'f' and at least 3"},
         {"uv index out of range", kCorners + kUvs + "f 1/1 2/2 3/9\n",
          "line 9: a face names UV 9, but there are 4"},
         {"seam", kCorners + kUvs + "vt 5 5\nvt 6 6\nf 1/1 2/2 3/3\nf 1/5 3/6 4/4\n", "two UVs"},
@@ -264,9 +353,11 @@ std::vector<Defect> defects()
         {"three faces on a curved edge",
          "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nvt 0 -1\nvt 0 2\n"
          "f 1/1 2/2 3/3\nf 2/2 1/1 4/4\nf 1/1 2/2 5/5\n",
-         "edge (0, 1) has more than two faces"},
-        {"bow-tie", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 1 4 5\n", "single point"},
-        {"duplicate face", kCorners + "f 1 2 3\nf 1 3 4\nf 3 1 2\n", "is there twice"},
+         "edge (1, 2) has more than two faces (11, 13, 12) (vertices as the file numbers them"},
+        {"bow-tie", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 1 4 5\n",
+         "vertex 1 joins parts of the cloth in a single point (faces 6 and 7)"},
+        {"duplicate face", kCorners + "f 1 2 3\nf 1 3 4\nf 3 1 2\n",
+         "line 7 (at 1, 1, 0 m) is there twice, first in line 5"},
         {"duplicate face turned over", kCorners + "f 1 2 3\nf 1 3 4\nf 1 3 2\n", "is there twice"},
         {"no area in the world", kCorners + "v 2 0 0\n" + kUvs + "vt 2 5\nf 1/1 2/2 3/3\nf 1/1 2/2 5/5\n",
          "has no area"},

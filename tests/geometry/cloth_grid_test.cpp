@@ -387,6 +387,70 @@ TEST(ClothGrid, IsAFunctionOfItsArguments)
     }
 }
 
+// --- counts
+
+std::string refusal_of(const ClothGrid& grid)
+{
+    try {
+        make_cloth_grid(grid);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+TEST(GridEstimate, IsExactForRegularPatterns)
+{
+    for (const GridPattern pattern : kRegular) {
+        for (const auto& resolution : {std::array{1, 1}, std::array{7, 3}, std::array{2, 20}}) {
+            const ClothGrid grid = make_grid({1, 2}, resolution, pattern);
+            const ClothMesh mesh = make_cloth_grid(grid);
+            EXPECT_EQ(estimate_cloth_grid(grid).vertices, mesh.vertex_count());
+            EXPECT_EQ(estimate_cloth_grid(grid).faces, mesh.face_count());
+        }
+    }
+    const int many = std::numeric_limits<int>::max();
+    EXPECT_GT(estimate_cloth_grid(make_grid({1, 1}, {many, many}, GridPattern::Cross)).vertices, 9e18);
+}
+
+TEST(GridEstimate, IsNearForWhatIsCutOrUnstructured)
+{
+    const auto expect_near = [&](const ClothGrid& grid, double share = 0.2) {
+        const ClothMesh mesh = make_cloth_grid(grid);
+        const GridCount count = estimate_cloth_grid(grid);
+        SCOPED_TRACE(::testing::Message()
+                     << static_cast<int>(grid.pattern) << " " << grid.size.transpose() << ", "
+                     << grid.resolution[0] << " x " << grid.resolution[1] << ", " << grid.pattern_angle
+                     << " degrees, " << grid.folds.size() << " folds");
+        EXPECT_NEAR(count.vertices, mesh.vertex_count(), share * mesh.vertex_count());
+        EXPECT_NEAR(count.faces, mesh.face_count(), share * mesh.face_count());
+    };
+    for (const GridPattern pattern : kAll) {
+        for (const double angle : {0.0, 10.0, 30.0, 45.0, 90.0}) {
+            for (const auto& resolution : {std::array{12, 12}, std::array{30, 20}, std::array{40, 10}}) {
+                ClothGrid grid = make_grid({1.5, 1.0}, resolution, pattern, angle);
+                expect_near(grid);
+                grid.folds = {fold_along({0.2, 0.1}, {1.3, 0.9}), fold_along({0.1, 0.55}, {1.0, 0.6})};
+                expect_near(grid);
+            }
+        }
+    }
+    // Cells so long that the border has more vertices than the pattern.
+    for (const GridPattern pattern : kRegular) expect_near(make_grid({25, 0.01}, {2, 20}, pattern, 30.0));
+    // Narrower than a cell's mean side: sides are halves of halves, so within a factor of the root of 2.
+    for (const auto& resolution : {std::array{2, 20}, std::array{30, 20}, std::array{100, 100}})
+        expect_near(make_grid({25, 0.01}, resolution, GridPattern::Unstructured), 0.4);
+}
+
+TEST(GridEstimate, RefusesATurnedPatternWhoseBorderIsTooLong)
+{
+    // Cells of 125 m by 0.1 mm.
+    ClothGrid grid = make_grid({250, 0.01}, {2, 100}, GridPattern::Cross, 30.0);
+    EXPECT_GT(estimate_cloth_grid(grid).vertices, 2e6);
+    grid.resolution = {2, 300};
+    EXPECT_THAT(refusal_of(grid), ::testing::HasSubstr("would have about 7.5e+06 vertices; at most 5e+06"));
+}
+
 TEST(ClothGrid, RefusesWhatHasNoMesh)
 {
     const auto refused = [](const ClothGrid& grid) { EXPECT_THROW(make_cloth_grid(grid), InputError); };
