@@ -294,7 +294,7 @@ std::vector<Defect> defects()
         {"garbage",
          std::string("\x7f"
                      "ELF\0\1\2\xff\xfe garbage \0 f",
-                     25),
+                     21),
          ""},
         {"text", "this is not a mesh\nat all\n", "no faces among 0 vertices, 0 lines and points and 2 other"},
         {"text says what is allowed", "this is not a mesh\nat all\n",
