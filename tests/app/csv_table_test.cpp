@@ -9,23 +9,13 @@
 #include <limits>
 
 #include "geometry/input_error.h"
+#include "tests/app/error_of.h"
 #include "tests/app/temporary_directory.h"
 
 namespace arris {
 namespace {
 
 using ::testing::HasSubstr;
-
-template <class Action>
-std::string error_of(Action action)
-{
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 StepRow make_row()
 {

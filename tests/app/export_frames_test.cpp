@@ -8,6 +8,7 @@
 #include "app/report.h"
 #include "geometry/input_error.h"
 #include "tests/app/example_frame.h"
+#include "tests/app/error_of.h"
 #include "tests/app/temporary_directory.h"
 
 namespace arris {
@@ -15,17 +16,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-template <class Action>
-std::string error_of(Action action)
-{
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 /// A cloth that a viewer can show: the example's greatest doubles have no finite bounding box.
 Frame make_tame_frame(int i)
