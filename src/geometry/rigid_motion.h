@@ -16,7 +16,14 @@ struct Placement {
 
     Vec3 operator()(const Vec3& p) const { return rotation * p + translation; }
     Vec3 inverse(const Vec3& p) const { return rotation.transpose() * (p - translation); }
+    Placement inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
 };
+
+/// `second` after `first`.
+inline Placement operator*(const Placement& second, const Placement& first)
+{
+    return {second.rotation * first.rotation, second(first.translation)};
+}
 
 /// A rotation by `degrees` about `axis` (any length but zero).
 Mat3 rotation_about(const Vec3& axis, double degrees);

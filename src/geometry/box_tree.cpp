@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/box_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+namespace arris {
+namespace {
+
+constexpr int kLeafSize = 4;
+constexpr int kMostPending = 64;  // halves of 2^31 items at most, one pending a level
+
+}  // namespace
+
+BoxTree::BoxTree(const std::vector<Box>& boxes)
+{
+    items_.reserve(boxes.size());
+    for (int i = 0; i < static_cast<int>(boxes.size()); ++i) items_.push_back({boxes[i], i});
+    if (!items_.empty()) build(0, static_cast<int>(items_.size()));
+}
+
+void BoxTree::build(int first, int last)
+{
+    const int self = static_cast<int>(nodes_.size());
+    nodes_.emplace_back();
+    Box centres;
+    for (int i = first; i < last; ++i) {
+        nodes_[self].box.extend(items_[i].box);
+        centres.extend(items_[i].box.center());
+    }
+    if (last - first <= kLeafSize) {
+        nodes_[self].right = first;
+        nodes_[self].count = last - first;
+        return;
+    }
+    // Halves along the longest side; ties by index, so that the tree is a function of the boxes.
+    int axis = 0;
+    centres.sizes().maxCoeff(&axis);
+    const int middle = first + (last - first) / 2;
+    std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last,
+                     [axis](const Item& a, const Item& b) {
+                         const double x = a.box.min()[axis] + a.box.max()[axis];
+                         const double y = b.box.min()[axis] + b.box.max()[axis];
+                         return x != y ? x < y : a.index < b.index;
+                     });
+    build(first, middle);
+    nodes_[self].right = static_cast<int>(nodes_.size());
+    build(middle, last);
+}
+
+void BoxTree::find(const Box& box, std::vector<int>& found) const
+{
+    found.clear();
+    if (nodes_.empty()) return;
+    std::array<int, kMostPending> pending;
+    int pending_count = 0;
+    int at = 0;
+    while (true) {
+        const Node& node = nodes_[at];
+        const bool is_met = node.box.intersects(box);
+        if (is_met && node.count == 0) {
+            assert(pending_count < kMostPending);
+            pending[pending_count++] = node.right;
+            ++at;
+            continue;
+        }
+        if (is_met)
+            for (int i = node.right; i < node.right + node.count; ++i)
+                if (items_[i].box.intersects(box)) found.push_back(items_[i].index);
+        if (pending_count == 0) break;
+        at = pending[--pending_count];
+    }
+    std::sort(found.begin(), found.end());
+}
+
+}  // namespace arris

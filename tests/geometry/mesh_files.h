@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "geometry/obstacle_mesh.h"
+
+// Mesh files as bytes, of triangles, written from the formats' descriptions.
+namespace arris::mesh_files {
+
+std::string obj(const ObstacleMesh& mesh);
+std::string ascii_stl(const ObstacleMesh& mesh);
+std::string binary_stl(const ObstacleMesh& mesh);
+std::string ascii_ply(const ObstacleMesh& mesh);
+std::string binary_ply(const ObstacleMesh& mesh, bool is_big_endian = false);
+
+/// Little-endian buffer of a glTF mesh: float positions, then uint16 indices.
+std::string gltf_buffer(const ObstacleMesh& mesh);
+
+/// JSON of a glTF 2 file; `uri` of its buffer (empty: none, as in GLB); `node` are further members of its
+/// node, such as ",\"scale\":[-1,1,1]".
+std::string gltf_json(const ObstacleMesh& mesh, const std::string& uri, const std::string& node = "");
+std::string glb(const ObstacleMesh& mesh, const std::string& node = "");
+
+/// `asset` are the lines for unit and up axis; `matrix` a row-major placement of its node, or empty.
+std::string dae(const ObstacleMesh& mesh, const std::string& asset, const std::string& matrix = "");
+
+/// Text form, version 7400, with these global settings.
+std::string fbx(const ObstacleMesh& mesh, int up_axis, double centimetres_per_unit);
+
+std::string three_ds(const ObstacleMesh& mesh);
+
+/// An uncompressed archive; `attributes` of its model, such as " unit=\"inch\"".
+std::string three_mf(const ObstacleMesh& mesh, const std::string& attributes);
+
+}  // namespace arris::mesh_files
