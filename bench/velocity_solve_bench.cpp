@@ -6,6 +6,9 @@
 //   warm    guess of a slightly different step (second argument: difference of speeds, mm/s); `wrong` counts
 //   its errors spoilt  guess with so many per mille (second argument) replaced at random: false pins anywhere
 //   cold    no guess
+//   rows_*  the same cloth, its bounds guessed, with so many rows (second argument) spread over it, in a
+//   patch, or as 40 faces of many points, which may be nearly equal; warm: the rows that press are guessed
+//   from a solve with a slightly different b; resume: what it costs to append them to a problem just solved
 // factorise/*: one numeric factorisation and one analysis by each ordering, against the ordering in use.
 #include <benchmark/benchmark.h>
 
@@ -19,6 +22,7 @@
 #include "bench/thread_clock.h"
 #include "solver/factorization.h"
 #include "tests/solver/cloth_system.h"
+#include "tests/solver/row_problems.h"
 
 namespace arris {
 namespace {
@@ -123,6 +127,59 @@ void cold(benchmark::State& state)
     solve(state, resting_cloth(static_cast<int>(state.range(0))), {});
 }
 
+enum class Rows { Cold, Warm, Resume };
+
+std::vector<int> positions_of_positive(const Eigen::VectorXd& multipliers)
+{
+    std::vector<int> positions;
+    for (int k = 0; k < multipliers.size(); ++k)
+        if (multipliers[k] > 0.0) positions.push_back(k);
+    return positions;
+}
+
+/// Both guesses from a step that differs by smooth ripples of 1 mm/s.
+void guess_rows(testing::OwnedProblem& owned, int side)
+{
+    const Eigen::VectorXd rhs = owned.rhs;
+    const double mass = testing::ClothShape().density / ((side - 1.0) * (side - 1.0));
+    for (int i = 2; i < rhs.size(); i += 3) owned.rhs[i] += 1e-3 * mass * std::sin(0.9 * (i % (3 * side)));
+    const VelocitySolution other = VelocitySolver().solve(owned.problem, Settings());
+    owned.problem.guess = testing::active_coordinates(other);
+    owned.problem.row_guess = positions_of_positive(other.row_multipliers);
+    owned.rhs = rhs;
+}
+
+void rows(benchmark::State& state, testing::RowPattern pattern, Rows kind)
+{
+    const int side = static_cast<int>(state.range(0));
+    const RestingCloth& cloth = resting_cloth(side);
+    testing::OwnedProblem owned = cloth.owned;
+    owned.problem.guess = cloth.active;
+    VelocitySolver solver;
+    VelocitySolution solution = solver.solve(owned.problem, Settings());
+    const std::vector<ConstraintRow> made =
+        testing::make_rows(testing::ClothShape{.side = side}, solution.velocity, pattern,
+                           static_cast<int>(state.range(1)), 0.01, 1);
+    VelocityProblem bounds_only = owned.problem;
+    owned.problem.rows = made;
+    if (kind == Rows::Warm) guess_rows(owned, side);
+    double least = std::numeric_limits<double>::infinity();
+    for (auto _ : state) {
+        if (kind == Rows::Resume) solver.solve(bounds_only, Settings());
+        const double start = thread_seconds();
+        solution = kind == Rows::Resume ? solver.resume(owned.problem, Settings())
+                                        : solver.solve(owned.problem, Settings());
+        least = std::min(least, thread_seconds() - start);
+        state.SetIterationTime(thread_seconds() - start);
+    }
+    if (solution.status != SolveStatus::Certified) state.SkipWithError("not certified");
+    state.counters["ratio"] = least / cloth.factorisation;
+    state.counters["pressing"] = static_cast<double>(positions_of_positive(solution.row_multipliers).size());
+    state.counters["factorisations"] = solution.factorisations;
+    state.counters["nlopt_evaluations"] = solution.nlopt_evaluations;
+    state.counters["kkt_residual"] = solution.kkt_residual;
+}
+
 void factorise(benchmark::State& state, VertexOrdering ordering)
 {
     const RestingCloth& cloth = resting_cloth(static_cast<int>(state.range(0)));
@@ -148,6 +205,26 @@ void of_every_size(benchmark::internal::Benchmark* benchmark)
 BENCHMARK(warm)->ArgsProduct({kSides, {0, 1, 3, 10}})->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(spoilt)->ArgsProduct({kSides, {5, 20, 50}})->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(cold)->Apply(of_every_size);
+
+void of_every_count(benchmark::internal::Benchmark* benchmark)
+{
+    benchmark->ArgsProduct({{32, 100}, {10, 100, 300, 1000}})->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+
+void of_a_thousand(benchmark::internal::Benchmark* benchmark)
+{
+    benchmark->ArgsProduct({{32, 100}, {1000}})->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK_CAPTURE(rows, spread_cold, testing::RowPattern::Spread, Rows::Cold)->Apply(of_every_count);
+BENCHMARK_CAPTURE(rows, spread_warm, testing::RowPattern::Spread, Rows::Warm)->Apply(of_every_count);
+BENCHMARK_CAPTURE(rows, spread_resume, testing::RowPattern::Spread, Rows::Resume)->Apply(of_every_count);
+BENCHMARK_CAPTURE(rows, patch_cold, testing::RowPattern::Patch, Rows::Cold)->Apply(of_every_count);
+BENCHMARK_CAPTURE(rows, patch_warm, testing::RowPattern::Patch, Rows::Warm)->Apply(of_every_count);
+BENCHMARK_CAPTURE(rows, clusters_cold, testing::RowPattern::Clusters, Rows::Cold)->Apply(of_a_thousand);
+BENCHMARK_CAPTURE(rows, clusters_warm, testing::RowPattern::Clusters, Rows::Warm)->Apply(of_a_thousand);
+BENCHMARK_CAPTURE(rows, equal_cold, testing::RowPattern::NearlyEqual, Rows::Cold)->Apply(of_a_thousand);
+BENCHMARK_CAPTURE(rows, equal_warm, testing::RowPattern::NearlyEqual, Rows::Warm)->Apply(of_a_thousand);
 BENCHMARK_CAPTURE(factorise, metis, VertexOrdering::Metis)->Apply(of_every_size);
 BENCHMARK_CAPTURE(factorise, nested_dissection, VertexOrdering::NestedDissection)->Apply(of_every_size);
 BENCHMARK_CAPTURE(factorise, amd, VertexOrdering::Amd)->Apply(of_every_size);

@@ -92,4 +92,17 @@ ActivePrediction predict_active_bounds(const VelocityProblem& problem, const Eig
     return prediction;
 }
 
+ActivePrediction predict_active_bounds(const VelocityProblem& problem, const ConstraintRows& constraints,
+                                       const Iterate& iterate)
+{
+    if (constraints.rows.empty()) return predict_active_bounds(problem, iterate.velocity);
+    Eigen::VectorXd rhs = *problem.rhs;
+    for (std::size_t k = 0; k < constraints.rows.size(); ++k)
+        for (const auto& [coordinate, coefficient] : constraints.rows[k].entries)
+            rhs[coordinate] += coefficient * iterate.row_multipliers[static_cast<Eigen::Index>(k)];
+    VelocityProblem pushed = problem;
+    pushed.rhs = &rhs;
+    return predict_active_bounds(pushed, iterate.velocity);
+}
+
 }  // namespace arris

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "solver/pinned_base.h"
 #include "solver/velocity_solve.h"
 
 namespace arris {
@@ -14,5 +15,9 @@ struct ActivePrediction {
 /// problem itself from `start` moved into its bounds; active is then where u - gradient / diagonal <= lower.
 /// First-order accurate.
 ActivePrediction predict_active_bounds(const VelocityProblem& problem, const Eigen::VectorXd& start);
+
+/// The same from `iterate`, whose rows push on as they do there: NLopt's method knows bounds alone.
+ActivePrediction predict_active_bounds(const VelocityProblem& problem, const ConstraintRows& constraints,
+                                       const Iterate& iterate);
 
 }  // namespace arris

@@ -2,54 +2,35 @@
 #pragma once
 
 #include "solver/condensed_qp.h"
-#include "solver/factorization.h"
 #include "solver/forward_columns.h"
-#include "solver/velocity_solve.h"
+#include "solver/pinned_base.h"
 
 namespace arris {
 
-/// A velocity, which bounds it takes as active (u = lower there), and what is left of the equations.
-struct Iterate {
-    Eigen::VectorXd velocity;
-    std::vector<char> is_active;
-    Eigen::VectorXd gradient;   ///< A u - b: the multiplier where active, a residual where free
-    Eigen::VectorXd magnitude;  ///< |A||u| + |b|: what round-off in `gradient` is measured by
-};
-
-/// The problem with chosen bounds pinned, solved by one factorisation:
-/// u = lower where pinned, 0 where fixed, and A_FF u_F = b_F - A_FP u_P on the free coordinates F.
-struct PinnedBase {
-    const VelocityProblem* problem;
-    const Factorization* factorization;
-    std::vector<char> is_pinned;  ///< a guessed bound or a fixed coordinate: not in the factor
-    Eigen::VectorXd forward;      ///< f = L^-1 P (b_F - A_FP u_P)
-    Iterate iterate;
-};
-
-/// The gradient and magnitude that belong to `iterate.velocity`.
-void evaluate_gradient(const VelocityProblem& problem, Iterate& iterate);
-
-/// What the factor leaves out when these bounds are active: them and the fixed coordinates.
-std::vector<char> find_pinned(const VelocityProblem& problem, const std::vector<char>& is_active);
-
-/// `factorization` is the matrix's with `find_pinned(problem, is_active)`.
-PinnedBase solve_pinned(const VelocityProblem& problem, const std::vector<char>& is_active,
-                        const Factorization& factorization);
-
-/// The coordinates U whose bounds may have to change sides against the base: pins to be released (R) and free
-/// coordinates to be stopped (a). Everything else is eliminated by the base's factor: with W = L^-1 P A_FR
-/// and Y = L^-1 P E_a, of which `columns` holds the Gram matrix, the base's solution changes by
+/// The constraints U that may have to change sides against the base: pins to be released (R), free
+/// coordinates to be stopped and rows (together a). Everything else is eliminated by the base's factor: with
+/// W = L^-1 P A_FR and Y = L^-1 P g_F, where g is a row's coefficients or a unit vector, and of which
+/// `columns` holds the Gram matrix, the base's solution changes by
 ///   gradient_R = gradient0_R + C dR + B lambda_a,   C = A_RR - W^T W  (compliance^-1 of the released)
-///   gap_a      = gap0_a - B^T dR + Y^T Y lambda_a,   B = W^T Y
-/// with dR = u_R - lower_R. Solved for (dR, gap_a) it is w = S lambda + q, where S = ((A_F+R)^-1)_UU is SPD:
-/// the condensed problem. U only grows. A general row would be one more column Y = L^-1 P g_F.
+///   gap_a      = gap0_a - B^T dR + Y^T Y lambda_a,   B = W^T Y - g_R
+/// with dR = u_R - lower_R. Solved for (dR, gap_a) it is w = S lambda + q, where S = g^T (A_F+R)^-1 g, SPD
+/// but for rows that depend on others: the condensed problem. U only grows. With a row its pinned coordinates
+/// are released: S_kk of a row that stands on pins alone would be zero.
 class WorkingSet {
   public:
     explicit WorkingSet(const PinnedBase& base);
 
     int size() const { return static_cast<int>(members_.size()); }
+    int row_count() const { return row_count_; }
+    int coordinate_count() const { return size() - row_count_ - followers_; }  ///< without rows' pins
     bool contains(int coordinate) const { return is_member_[coordinate]; }
-    void extend(std::vector<int> coordinates);
+    bool contains_row(int row) const { return is_row_member_[row]; }
+
+    /// The coordinates and rows, none of which is a member yet, and the pins that the rows stand on.
+    void extend(const std::vector<int>& coordinates, const std::vector<int>& rows = {});
+
+    /// Takes notice that the base's constraints have got further rows.
+    void see_new_rows();
 
     /// Finds multipliers on U, and with them the velocity. False where the dense problem is not positive
     /// definite to working precision or does not end; the working set is of no use then.
@@ -58,20 +39,41 @@ class WorkingSet {
     /// One step of iterative refinement of the equations of the present active set; false as above.
     bool refine(Iterate& iterate) const;
 
+    /// Solves for U once more from a refined `iterate`, relative to its true gaps and multipliers: what
+    /// round-off in S has put on the wrong side changes it. For working sets with rows; false as above.
+    bool correct(Iterate& iterate);
+
   private:
+    enum class Kind { Released, Stopped, Row };
     struct Member {
-        int coordinate;
-        bool is_released;  ///< else stopped
+        Kind kind;
+        int index;  ///< coordinate, or row
     };
+    void enter(std::vector<Member>& added, Member member);
+    void release_pins_of(const std::vector<int>& rows, std::vector<Member>& added);
+    int position_of(const Member& member) const;
     std::vector<SparseVector> right_hand_sides(const std::vector<Member>& added);
+    void add_row(int member, const std::vector<int>& place, SparseVector& column);
+    void add_released(int first, const std::vector<int>& place, std::vector<SparseVector>& columns);
+    const ScaledRow& row_of(const Member& member) const { return base_->constraints->rows[member.index]; }
+
     std::optional<CondensedQp> condense() const;
+    Eigen::VectorXd caps() const;
+    double gap_of(const Member& member, const Eigen::VectorXd& velocity) const;
+    void set_member(int k, const CondensedAnswer& answer, Iterate& iterate) const;
+    void set_members(const CondensedAnswer& answer, const Eigen::VectorXd& free, Iterate& iterate) const;
     double mixed(int i, int j) const;
+    bool is_equation(const Member& member, const Iterate& iterate) const;
+    Eigen::VectorXd step_of(const std::vector<int>& equations, const Iterate& iterate,
+                            const Eigen::VectorXd& forward) const;
 
     const PinnedBase* base_;
-    std::vector<char> is_member_;  ///< by coordinate
+    std::vector<char> is_member_;      ///< by coordinate
+    std::vector<char> is_row_member_;  ///< by row
     std::vector<Member> members_;
+    int row_count_ = 0, followers_ = 0;
     ForwardColumns columns_;
-    Eigen::MatrixXd released_;  ///< A_ij where both are released, 0 elsewhere; U x U
+    Eigen::MatrixXd direct_;  ///< U x U: A_ij of two released, g_i of a released and a row, 0 elsewhere
     Eigen::VectorXd multipliers_;
 };
 

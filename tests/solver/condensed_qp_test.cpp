@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -20,10 +21,10 @@ CondensedQp make_random_qp(int size, std::mt19937& random)
             Eigen::VectorXd::NullaryExpr(size, [&] { return normal(random); })};
 }
 
-std::vector<char> make_random_set(int size, std::mt19937& random)
+std::vector<Stand> make_random_set(int size, std::mt19937& random)
 {
-    std::vector<char> set(static_cast<std::size_t>(size));
-    for (char& member : set) member = static_cast<char>(random() % 2);
+    std::vector<Stand> set(static_cast<std::size_t>(size));
+    for (Stand& member : set) member = random() % 2 ? Stand::Between : Stand::AtZero;
     return set;
 }
 
@@ -36,7 +37,7 @@ void expect_solved(const CondensedQp& qp, const std::optional<CondensedAnswer>& 
     EXPECT_LE((w - answer->w).lpNorm<Eigen::Infinity>(), kComplementary * scale);
     EXPECT_GE(w.minCoeff(), -kComplementary * scale);
     for (int i = 0; i < w.size(); ++i)
-        EXPECT_TRUE(answer->is_positive[i] ? answer->w[i] <= 0.0 : answer->z[i] <= 0.0);
+        EXPECT_TRUE(answer->stand[i] == Stand::Between ? answer->w[i] <= 0.0 : answer->z[i] <= 0.0);
 }
 
 /// From the empty set, exchanging all that is wrong goes {} -> {1,3} -> {0,1,2,3} -> {0,1} -> {} for ever.
@@ -65,7 +66,7 @@ TEST(CondensedQp, PivotingEndsInTheSameAnswerFromAnySet)
             solve_by_pivoting(qp, make_random_set(static_cast<int>(qp.linear.size()), random));
         expect_solved(qp, answer);
         ASSERT_TRUE(expected);
-        EXPECT_EQ(answer->is_positive, expected->is_positive);
+        EXPECT_EQ(answer->stand, expected->stand);
     }
 }
 
@@ -73,8 +74,8 @@ TEST(CondensedQp, PivotingLeavesACycleOfBlockExchanges)
 {
     const CondensedQp qp = make_cycling_qp();
     for (int set = 0; set < 16; ++set) {
-        std::vector<char> start;
-        for (int i = 0; i < 4; ++i) start.push_back(static_cast<char>(set >> i & 1));
+        std::vector<Stand> start;
+        for (int i = 0; i < 4; ++i) start.push_back(set >> i & 1 ? Stand::Between : Stand::AtZero);
         expect_solved(qp, solve_by_pivoting(qp, start));
     }
 }
@@ -90,7 +91,7 @@ TEST(CondensedQp, UnitsChangeNothing)
         const auto answer = solve_condensed_qp({qp.hessian, qp.linear * unit}, Eigen::VectorXd::Zero(20));
         ASSERT_TRUE(expected && answer);
         EXPECT_GT(answer->nlopt_evaluations, 3);
-        EXPECT_EQ(answer->is_positive, expected->is_positive);
+        EXPECT_EQ(answer->stand, expected->stand);
         EXPECT_LE((answer->z / unit - expected->z).lpNorm<Eigen::Infinity>(), 1e-12);
         const auto stiffer = solve_condensed_qp({qp.hessian * unit, qp.linear}, Eigen::VectorXd::Zero(20));
         ASSERT_TRUE(stiffer);
@@ -143,7 +144,64 @@ TEST(CondensedQp, RejectsWhatIsNotFiniteOrNotPositive)
     }
     EXPECT_FALSE(solve_condensed_qp({Eigen::Vector2d(1.0, 0.0).asDiagonal(), q}, zero));
     const Eigen::Matrix2d indefinite{{1.0, 2.0}, {2.0, 1.0}};
-    EXPECT_FALSE(solve_by_pivoting({indefinite, q}, {1, 1}));
+    EXPECT_FALSE(solve_by_pivoting({indefinite, q}, {Stand::Between, Stand::Between}));
+}
+
+/// w = S z + q as the stands and caps ask for, to `precision` of the largest q.
+void expect_solved_with_caps(const CondensedQp& qp, const std::optional<CondensedAnswer>& answer,
+                             double precision)
+{
+    ASSERT_TRUE(answer);
+    const Eigen::VectorXd w = qp.hessian * answer->z + qp.linear;
+    const double slack = precision * qp.linear.lpNorm<Eigen::Infinity>();
+    for (int i = 0; i < w.size(); ++i) {
+        EXPECT_GE(answer->z[i], 0.0);
+        EXPECT_LE(answer->z[i], qp.cap[i]);
+        EXPECT_TRUE(answer->z[i] >= qp.cap[i] || w[i] >= -slack) << i << " " << w[i];
+        EXPECT_TRUE(answer->z[i] <= 0.0 || w[i] <= slack) << i << " " << w[i];
+    }
+}
+
+TEST(CondensedQp, KeepsToItsCaps)
+{
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> chance;
+    int capped = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        CondensedQp qp = make_random_qp(1 + trial % 40, random);
+        qp.cap = Eigen::VectorXd::NullaryExpr(qp.linear.size(), [&] { return 2.0 * chance(random); });
+        qp.cap[0] = std::numeric_limits<double>::infinity();
+        const Eigen::VectorXd zero = Eigen::VectorXd::Zero(qp.linear.size());
+        const auto answer = solve_condensed_qp(qp, zero);
+        expect_solved_with_caps(qp, answer, kComplementary);
+        expect_solved_with_caps(qp, solve_by_descent(qp, zero, qp.linear), kComplementary);
+        expect_solved_with_caps(qp,
+                                solve_by_pivoting(qp, make_random_set(static_cast<int>(zero.size()), random)),
+                                kComplementary);
+        capped += static_cast<int>(std::count(answer->stand.begin(), answer->stand.end(), Stand::AtCap));
+    }
+    EXPECT_GT(capped, 300);
+}
+
+TEST(CondensedQp, IsSolvedWhereConstraintsDependOnEachOther)
+{
+    // S = G^T G of more columns than rows, some of them opposite or nearly equal: without caps unbounded.
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    for (int trial = 0; trial < 100; ++trial) {
+        const int rank = 1 + trial % 8, size = 4 * rank + 2;
+        Eigen::MatrixXd g = Eigen::MatrixXd::NullaryExpr(rank, size, [&] { return normal(random); });
+        g.col(1) = -g.col(0);
+        for (int i = 2; i < rank + 2; ++i)
+            g.col(i + rank) =
+                (1.0 + std::pow(10.0, -(trial % 16))) * g.col(i) + Eigen::VectorXd::Constant(rank, 1e-9);
+        CondensedQp qp = {g.transpose() * g,
+                          Eigen::VectorXd::NullaryExpr(size, [&] { return normal(random); }),
+                          Eigen::VectorXd::Constant(size, 100.0)};
+        const auto answer = solve_condensed_qp(qp, Eigen::VectorXd::Zero(size));
+        expect_solved_with_caps(qp, answer, 1e-8);  // what is known of w is 1e-15 of S z, with z up to 100
+        expect_solved_with_caps(qp, solve_by_descent(qp, Eigen::VectorXd::Zero(size), qp.linear), 1e-8);
+    }
 }
 
 }  // namespace

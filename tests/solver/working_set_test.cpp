@@ -29,7 +29,7 @@ class WorkingSetOfACloth : public ::testing::Test {
         }
         factorization.analyse(owned.matrix);
         ASSERT_TRUE(factorization.factorise(owned.matrix, find_pinned(owned.problem, is_active)));
-        base.emplace(solve_pinned(owned.problem, is_active, factorization));
+        base.emplace(solve_pinned(owned.problem, constraints, is_active, factorization));
     }
 
     static testing::ClothShape shape()
@@ -49,6 +49,7 @@ class WorkingSetOfACloth : public ::testing::Test {
     }
 
     testing::OwnedProblem owned = testing::make_resting_cloth(shape(), 0.6);
+    ConstraintRows constraints;
     testing::DenseAnswer reference;
     std::vector<int> bounded;
     Factorization factorization;
@@ -105,7 +106,7 @@ TEST_F(WorkingSetOfACloth, RefinementTakesAnErrorOutAtOnce)
     ASSERT_TRUE(set.solve(iterate, evaluations));
     for (int i = 0; i < iterate.velocity.size(); ++i)
         if (!owned.problem.is_fixed[i] && !iterate.is_active[i]) iterate.velocity[i] += 1e-3 * std::cos(i);
-    evaluate_gradient(owned.problem, iterate);
+    evaluate_gradient(owned.problem, constraints, iterate);
     ASSERT_GT(worst_residual_of_the_free(iterate), 1e-4);
     ASSERT_TRUE(set.refine(iterate));
     EXPECT_LE(worst_residual_of_the_free(iterate), kRoundOff);
