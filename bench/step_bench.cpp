@@ -14,6 +14,7 @@
 #include "geometry/cloth_grid.h"
 #include "solver/factorization.h"
 #include "solver/step.h"
+#include "tests/solver/floor.h"
 
 namespace arris {
 namespace {
@@ -89,7 +90,7 @@ Drop& dropped(const benchmark::State& bench)
     Drop& drop = made[key];
     drop.scene.material = {0.15, 500.0, 0.3, 1e-5, 0.0, 1e-3};
     drop.scene.gravity = Gravity{};
-    drop.scene.floor = HalfSpace{};
+    drop.scene.obstacles.push_back(make_floor());
     if (bench.range(1) == Draped)
         drape(static_cast<int>(bench.range(0)), drop);
     else

@@ -2,70 +2,113 @@
 #include "solver/constraints.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace arris {
 
 namespace {
 
-/// Columns: the held axes, then the part of `normal` across them, then what completes an orthonormal basis.
-/// Empty where the pins leave no direction with a part along the normal.
-std::optional<Mat3> find_basis(const std::array<bool, 3>& held, const Vec3& normal)
-{
-    constexpr double kLeastPart = 0.1;  // of the normal: with less a bound would amplify its round-off
-    Mat3 basis;
-    int columns = 0;
-    Vec3 free_normal = normal;
-    for (int d = 0; d < 3; ++d)
-        if (held[d]) {
-            basis.col(columns++) = Vec3::Unit(d);
-            free_normal[d] = 0.0;
-        }
-    if (columns == 3 || free_normal.norm() < kLeastPart) return std::nullopt;
-    basis.col(columns++) = free_normal.normalized();
-    if (columns == 1) {
-        basis.col(1) = basis.col(0).unitOrthogonal();
-        ++columns;
+/// Rows of a vertex's coordinates as they are chosen: pinned axes, then normals.
+struct Frame {
+    Mat3 rows = Mat3::Zero();
+    Mat3 span = Mat3::Zero();  ///< orthonormal, of the same span
+    int count = 0;
+
+    /// Adds a unit direction where its part across those chosen is large enough to divide by.
+    bool add(const Vec3& direction)
+    {
+        constexpr double kLeastPart = 0.2;  // with less the basis would amplify round-off and stiffness alike
+        Vec3 across = direction;
+        for (int k = 0; k < count; ++k) across -= span.row(k).dot(direction) * span.row(k).transpose();
+        if (count == 3 || across.norm() < kLeastPart) return false;
+        rows.row(count) = direction;
+        span.row(count++) = across.normalized();
+        return true;
     }
-    if (columns == 2) basis.col(2) = basis.col(0).cross(basis.col(1));
-    return basis;
+
+    /// Columns: v - drift = basis u.
+    Mat3 basis() const
+    {
+        Mat3 all = rows;
+        if (count == 1) {
+            all.row(1) = span.row(0).unitOrthogonal();
+            all.row(2) = span.row(0).cross(all.row(1));
+        } else if (count == 2) {
+            all.row(2) = span.row(0).cross(span.row(1));
+        }
+        return count == 1 ? Mat3(all.transpose()) : Mat3(all.inverse());
+    }
+};
+
+/// Takes hold of the pinned directions: their axes come first, and their u is 0.
+void hold(const std::vector<HeldVertex>& held, const Prediction& prediction, std::vector<Frame>& frames,
+          Linearization& at, VelocityProblem& problem)
+{
+    for (const HeldVertex& vertex : held) {
+        const int v = vertex.vertex;
+        const Vec3 drift = (vertex.target - prediction.position[v]) / prediction.gamma;
+        for (int d = 0; d < 3; ++d) {
+            if (!vertex.held[d]) continue;
+            at.drift[v][d] = drift[d];
+            problem.is_fixed[3 * v + frames[v].count] = 1;
+            frames[v].add(Vec3::Unit(d));
+        }
+    }
 }
 
-void hold(const HeldVertex& vertex, const Prediction& prediction, Linearization& at, VelocityProblem& problem)
+/// Contacts in the order in which they may become bounds: what pressed comes first.
+std::vector<std::size_t> order_of(const std::vector<Contact>& contacts)
 {
-    const Vec3 drift = (vertex.target - prediction.position[vertex.vertex]) / prediction.gamma;
-    for (int d = 0; d < 3; ++d) {
-        if (!vertex.held[d]) continue;
-        at.drift[vertex.vertex][d] = drift[d];
-        problem.is_fixed[3 * vertex.vertex + d] = 1;
+    std::vector<std::size_t> order(contacts.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_partition(order.begin(), order.end(), [&](std::size_t c) { return contacts[c].was_active; });
+    return order;
+}
+
+/// Expected active: what pressed in the last step, and what would pass its plane at its last velocity.
+bool is_expected(const Contact& contact, const Prediction& prediction, const State& state)
+{
+    double closing = 0.0;
+    for (int i = 0; i < 3 && contact.in_frame.vertices[i] >= 0; ++i)
+        closing +=
+            contact.in_frame.weights[i] * contact.normal.dot(state.velocity[contact.in_frame.vertices[i]]);
+    return contact.was_active || contact.gap + prediction.gamma * closing < 0.0;
+}
+
+ConstraintRow make_row(const Contact& contact, const Prediction& prediction, const Linearization& at)
+{
+    ConstraintRow row;
+    row.lower = -contact.gap / prediction.gamma;
+    const ObstacleContact& local = contact.in_frame;
+    for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
+        const int v = local.vertices[i];
+        const Vec3 gradient = local.weights[i] * (at.basis[v].transpose() * contact.normal);
+        row.lower -= local.weights[i] * contact.normal.dot(at.drift[v]);
+        for (int d = 0; d < 3; ++d) {
+            row.coordinate[row.count] = 3 * v + d;
+            row.coefficient[row.count++] = gradient[d];
+        }
     }
+    row.group = local.vertices[0];
+    return row;
 }
 
 }  // namespace
 
-int contact_coordinate(const std::vector<char>& is_fixed, int vertex)
+void append_rows(const Prediction& prediction, const Linearization& at, std::size_t first,
+                 std::vector<Contact>& contacts, VelocityProblem& problem)
 {
-    for (int d = 0; d < 3; ++d)
-        if (!is_fixed[3 * vertex + d]) return 3 * vertex + d;
-    return -1;
-}
-
-std::optional<int> find_crushed_vertex(const std::vector<Contact>& contacts, double depth,
-                                       const Linearization& at, const VelocityProblem& problem)
-{
-    for (const Contact& contact : contacts) {
-        const int v = contact.vertex;
-        const bool is_dropped =
-            !(problem.lower.segment<3>(3 * v).maxCoeff() > -std::numeric_limits<double>::max());
-        if (is_dropped && contact.gap + at.gamma * contact.normal.dot(at.drift[v]) < -depth) return v;
+    for (std::size_t c = first; c < contacts.size(); ++c) {
+        contacts[c].row = static_cast<int>(problem.rows.size());
+        problem.rows.push_back(make_row(contacts[c], prediction, at));
     }
-    return std::nullopt;
 }
 
-void build_constraints(const std::vector<HeldVertex>& held, const std::vector<Contact>& contacts,
-                       const Prediction& prediction, const State& state, Linearization& at,
-                       VelocityProblem& problem)
+void build_constraints(const std::vector<HeldVertex>& held, const Prediction& prediction, const State& state,
+                       std::vector<Contact>& contacts, Linearization& at, VelocityProblem& problem)
 {
     const std::size_t n = state.mesh.world.size();
     at.drift.assign(n, Vec3::Zero());
@@ -74,33 +117,45 @@ void build_constraints(const std::vector<HeldVertex>& held, const std::vector<Co
     problem.lower = Eigen::VectorXd::Constant(3 * n, -std::numeric_limits<double>::infinity());
     problem.is_fixed.assign(3 * n, 0);
     problem.guess.clear();
-    for (const HeldVertex& vertex : held) hold(vertex, prediction, at, problem);
+    problem.rows.clear();
+    problem.row_guess.clear();
 
-    auto active = state.active.begin();
-    for (const Contact& contact : contacts) {
-        const int v = contact.vertex;
-        std::array<bool, 3> is_held;
-        for (int d = 0; d < 3; ++d) is_held[d] = problem.is_fixed[3 * v + d];
-        const std::optional<Mat3> basis = find_basis(is_held, contact.normal);
-        if (!basis) continue;
-
-        // The pinned axes are coordinates 0.. in the new basis, so what is fixed moves to the front.
-        at.basis[v] = *basis;
-        at.has_basis[v] = 1;
-        const int fixed = static_cast<int>(std::count(is_held.begin(), is_held.end(), true));
-        for (int d = 0; d < 3; ++d) problem.is_fixed[3 * v + d] = d < fixed;
-        const int coordinate = 3 * v + fixed;
-        const double scale = contact.normal.dot(basis->col(fixed));
-        const double closing = -std::max(contact.gap, 0.0) / prediction.gamma;
-        problem.lower[coordinate] = (closing - contact.normal.dot(at.drift[v])) / scale;
-
-        // Expected active: what pressed in the last step, and what would pass the stand-off at its last
-        // velocity.
-        while (active != state.active.end() && active->vertex_id < state.ids[v]) ++active;
-        const bool was_active = active != state.active.end() && active->vertex_id == state.ids[v];
-        const bool is_arriving = contact.gap + prediction.gamma * contact.normal.dot(state.velocity[v]) < 0.0;
-        if (was_active || is_arriving) problem.guess.push_back(coordinate);
+    // Bounds: as many of a vertex's contacts as have independent normals.
+    std::vector<Frame> frames(n);
+    hold(held, prediction, frames, at, problem);
+    for (const std::size_t c : order_of(contacts)) {
+        Contact& contact = contacts[c];
+        const int v = contact.in_frame.vertices[0];
+        contact.bound = contact.row = -1;
+        if (!contact.is_vertex() || !frames[v].add(contact.normal)) continue;
+        contact.bound = 3 * v + frames[v].count - 1;
+        problem.lower[contact.bound] = -contact.gap / prediction.gamma - contact.normal.dot(at.drift[v]);
+        if (is_expected(contact, prediction, state)) problem.guess.push_back(contact.bound);
     }
+    std::sort(problem.guess.begin(), problem.guess.end());
+    for (std::size_t v = 0; v < n; ++v) {
+        if (frames[v].count == 0) continue;
+        at.basis[v] = frames[v].basis();
+        at.has_basis[v] = at.basis[v] != Mat3::Identity();
+    }
+
+    // Rows: the rest.
+    for (Contact& contact : contacts) {
+        if (contact.bound >= 0) continue;
+        contact.row = static_cast<int>(problem.rows.size());
+        problem.rows.push_back(make_row(contact, prediction, at));
+        if (is_expected(contact, prediction, state)) problem.row_guess.push_back(contact.row);
+    }
+}
+
+std::vector<double> contact_multipliers(const std::vector<Contact>& contacts,
+                                        const VelocitySolution& solution)
+{
+    std::vector<double> multiplier;
+    for (const Contact& contact : contacts)
+        multiplier.push_back(contact.bound >= 0 ? solution.multipliers[contact.bound]
+                                                : solution.row_multipliers[contact.row]);
+    return multiplier;
 }
 
 }  // namespace arris

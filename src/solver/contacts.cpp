@@ -2,74 +2,320 @@
 #include "solver/contacts.h"
 
 #include <algorithm>
-#include <utility>
+#include <tuple>
 
 namespace arris {
 
 namespace {
 
-/// Where the vertex was at time 0; for one that was inserted later, where the pin's motion would have had it.
-Vec3 find_origin(const State& state, std::uint32_t pin, int vertex, const Placement& now)
+using VertexIds = std::array<std::uint32_t, 3>;
+
+VertexIds ids_of(const State& state, const std::array<int, 3>& vertices)
 {
-    const std::pair<std::uint32_t, std::uint32_t> key(pin, state.ids[vertex]);
-    const auto anchor = std::lower_bound(
-        state.anchors.begin(), state.anchors.end(), key,
-        [](const PinAnchor& a, const auto& wanted) { return std::pair(a.pin, a.vertex_id) < wanted; });
-    if (anchor != state.anchors.end() && std::pair(anchor->pin, anchor->vertex_id) == key)
-        return anchor->origin;
-    return now.inverse(state.mesh.world[vertex]);
+    VertexIds ids;
+    for (int i = 0; i < 3; ++i) ids[i] = vertices[i] < 0 ? ActiveContact::kNoVertex : state.ids[vertices[i]];
+    return ids;
+}
+
+auto key_of(const ActiveContact& contact)
+{
+    return std::tuple(contact.vertex_ids, contact.obstacle, contact.kind, contact.element);
+}
+
+/// Whether the contact is one of `state.active`: of an edge or face with the same element of the obstacle, of
+/// a vertex with about the same normal, as a vertex slides from face to face.
+bool find_active(const State& state, const Contact& contact)
+{
+    constexpr double kSameNormal = 0.7;
+    const VertexIds ids = ids_of(state, contact.in_frame.vertices);
+    const std::pair<VertexIds, std::int32_t> key(ids, contact.obstacle);
+    auto active = std::lower_bound(state.active.begin(), state.active.end(), key,
+                                   [](const ActiveContact& a, const auto& wanted) {
+                                       return std::pair(a.vertex_ids, a.obstacle) < wanted;
+                                   });
+    for (; active != state.active.end() && std::pair(active->vertex_ids, active->obstacle) == key; ++active)
+        if (active->kind == contact.in_frame.kind &&
+            (contact.is_vertex() ? active->normal.dot(contact.in_frame.normal) > kSameNormal
+                                 : active->element == contact.in_frame.element))
+            return true;
+    return false;
+}
+
+int index_of(const State& state, std::uint32_t id)
+{
+    const auto found = std::lower_bound(state.ids.begin(), state.ids.end(), id);
+    return found != state.ids.end() && *found == id ? static_cast<int>(found - state.ids.begin()) : -1;
+}
+
+/// Pairs of an edge or face that pressed at the end of the last step and that the search by features did not
+/// find again: the check after the solve had found them.
+class RememberedPairs {
+  public:
+    RememberedPairs(const Scene& scene, const State& state, const std::vector<ObstacleStep>& steps)
+        : scene_(scene), state_(state), steps_(steps)
+    {
+    }
+
+    void append(std::vector<ObstacleContact>& found, int obstacle)
+    {
+        const std::size_t known = found.size();
+        for (const ActiveContact& active : state_.active) {
+            if (active.obstacle != obstacle || active.kind == ContactKind::Vertex) continue;
+            std::array<int, 3> vertices = {-1, -1, -1};
+            bool is_there = true;
+            for (int i = 0; i < 3 && active.vertex_ids[i] != ActiveContact::kNoVertex; ++i) {
+                vertices[i] = index_of(state_, active.vertex_ids[i]);
+                is_there = is_there && vertices[i] >= 0;
+            }
+            const auto is_same = [&](const ObstacleContact& c) {
+                return c.kind == active.kind && c.vertices == vertices && c.element == active.element;
+            };
+            if (!is_there ||
+                std::any_of(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(known), is_same))
+                continue;
+            if (const auto contact = make(vertices, active)) found.push_back(*contact);
+        }
+    }
+
+  private:
+    std::optional<ObstacleContact> make(const std::array<int, 3>& vertices, const ActiveContact& active)
+    {
+        const Obstacle& obstacle = scene_.obstacles[active.obstacle];
+        const ObstacleStep& step = steps_[active.obstacle];
+        if (active.kind == ContactKind::Edge)
+            return make_edge_contact(obstacle, step.motion, step.reference, {vertices[0], vertices[1]},
+                                     active.element, scene_.material.thickness);
+        const int face = find_face(vertices);
+        if (face < 0) return std::nullopt;
+        return make_face_contact(obstacle, step.motion, step.reference, face, active.element,
+                                 scene_.material.thickness);
+    }
+
+    /// A face with these vertices, of which there may be two; -1 where the mesh has none any more.
+    int find_face(const std::array<int, 3>& vertices)
+    {
+        if (faces_at_.empty()) {
+            faces_at_.resize(state_.mesh.world.size());
+            for (int f = 0; f < state_.mesh.face_count(); ++f)
+                for (const int v : state_.mesh.faces[f]) faces_at_[v].push_back(f);
+        }
+        for (const int f : faces_at_[vertices[0]]) {
+            const Face& face = state_.mesh.faces[f];
+            const auto is_in_face = [&](int v) {
+                return v < 0 || std::find(face.begin(), face.end(), v) != face.end();
+            };
+            if (std::all_of(vertices.begin(), vertices.end(), is_in_face)) return f;
+        }
+        return -1;
+    }
+
+    const Scene& scene_;
+    const State& state_;
+    const std::vector<ObstacleStep>& steps_;
+    std::vector<std::vector<int>> faces_at_;  ///< of each vertex; made when it is first asked for
+};
+
+/// sum_i weights_i field_i of the contact's vertices.
+Vec3 weighted(const ObstacleContact& contact, const std::vector<Vec3>& field)
+{
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
+        sum += contact.weights[i] * field[contact.vertices[i]];
+    return sum;
+}
+
+/// Moves the contact's point by `distance` along its normal with the least change of its vertices.
+void push(const Contact& contact, double distance, std::vector<Vec3>& field)
+{
+    double squares = 0.0;
+    for (const double weight : contact.in_frame.weights) squares += weight * weight;
+    for (int i = 0; i < 3 && contact.in_frame.vertices[i] >= 0; ++i)
+        field[contact.in_frame.vertices[i]] +=
+            (contact.in_frame.weights[i] * distance / squares) * contact.normal;
+}
+
+void update_gap(const ObstacleStep& step, const Prediction& prediction, Contact& contact)
+{
+    const ObstacleContact& local = contact.in_frame;
+    contact.gap =
+        contact.normal.dot(weighted(local, prediction.position) - step.end(local.point)) - local.least_gap;
+}
+
+/// What q~ and v~ would be along the contact's normal if its point had ridden on the obstacle for two steps.
+struct RiddenHistory {
+    double position, velocity;
+};
+
+RiddenHistory find_ridden(const Obstacle& obstacle, const ObstacleStep& step, const State& state,
+                          double forward, const Contact& contact)
+{
+    const double previous_time = state.time - state.previous_dt;
+    Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
+    for (int i = 0; i < 3 && contact.in_frame.vertices[i] >= 0; ++i) {
+        const int v = contact.in_frame.vertices[i];
+        const Vec3& now = state.mesh.world[v];
+        const Vec3 before = step.before(step.motion.begin[v]);
+        const Vec3 gained =
+            obstacle.velocity_after(state.time, now) - obstacle.velocity_after(previous_time, before);
+        position += contact.in_frame.weights[i] * (now + forward * (now - before));
+        velocity += contact.in_frame.weights[i] * (state.velocity[v] + forward * gained);
+    }
+    return {contact.normal.dot(position), contact.normal.dot(velocity)};
+}
+
+/// Whether the extrapolated history runs into the contact, or the contact pressed.
+bool runs_into(const ObstacleStep& step, const Contact& contact, double shift)
+{
+    const ObstacleContact& local = contact.in_frame;
+    if (contact.was_active) return true;
+    const double now = local.normal.dot(weighted(local, step.motion.begin) - local.point);
+    const double end = local.normal.dot(weighted(local, step.motion.end) - local.point);
+    return now + shift < local.least_gap && end < local.least_gap;
 }
 
 }  // namespace
 
-std::vector<HeldVertex> find_held_vertices(const Scene& scene, const State& state, double end)
+std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
+                                         const std::vector<MeshEdge>& edges, const Prediction& prediction,
+                                         const std::vector<HeldVertex>& held, double end)
 {
-    std::vector<int> slot(state.mesh.world.size(), -1);
-    std::vector<HeldVertex> held;
-    for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
-        const Pin& pin = scene.pins[p];
-        if (!pin.holds_until(end)) continue;
-        const Placement now = pin.motion.at(state.time), then = pin.motion.at(end);
-        for (const int v : vertices_in_box(state.mesh, pin.material)) {
-            if (slot[v] < 0) {
-                slot[v] = static_cast<int>(held.size());
-                held.push_back({v, {false, false, false}, Vec3::Zero()});
-            }
-            const Vec3 target = then(find_origin(state, p, v, now));
-            for (int d = 0; d < 3; ++d) {
-                if (!pin.held[d]) continue;
-                held[slot[v]].held[d] = true;
-                held[slot[v]].target[d] = target[d];
-            }
+    std::vector<ObstacleStep> steps;
+    if (scene.obstacles.empty()) return steps;
+    const std::size_t n = state.mesh.world.size();
+    std::vector<Vec3> free_end(n);
+    for (std::size_t v = 0; v < n; ++v)
+        free_end[v] = prediction.position[v] + prediction.gamma * state.velocity[v];
+    for (const HeldVertex& vertex : held)
+        for (int d = 0; d < 3; ++d)
+            if (vertex.held[d]) free_end[vertex.vertex][d] = vertex.target[d];
+
+    for (const Obstacle& obstacle : scene.obstacles) {
+        ObstacleStep step;
+        step.before = obstacle.at(state.time - state.previous_dt);
+        step.begin = obstacle.at(state.time);
+        step.end = obstacle.at(end);
+        step.motion = {&state.mesh.faces, &edges, std::vector<Vec3>(n), std::vector<Vec3>(n)};
+        for (std::size_t v = 0; v < n; ++v) {
+            step.motion.begin[v] = step.begin.inverse(state.mesh.world[v]);
+            step.motion.end[v] = step.end.inverse(free_end[v]);
         }
+        steps.push_back(std::move(step));
     }
-    std::sort(held.begin(), held.end(),
-              [](const HeldVertex& a, const HeldVertex& b) { return a.vertex < b.vertex; });
-    return held;
+    return steps;
 }
 
-std::vector<Contact> find_contacts(const Scene& scene, const State& state, Prediction& prediction)
+Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
+                      const Prediction& prediction)
+{
+    Contact placed{contact, obstacle, step.end.rotation * contact.normal, 0.0, false, -1, -1};
+    update_gap(step, prediction, placed);
+    return placed;
+}
+
+std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
+                                   std::vector<ObstacleStep>& steps)
 {
     std::vector<Contact> contacts;
-    if (!scene.floor) return contacts;
-    const Vec3& n = scene.floor->normal;
-    const double stand_off = scene.floor->offset + scene.material.thickness;
-    contacts.reserve(state.mesh.world.size());
-    auto active = state.active.begin();
-    for (int v = 0; v < state.mesh.vertex_count(); ++v) {
-        while (active != state.active.end() && active->vertex_id < state.ids[v]) ++active;
-        const bool was_active = active != state.active.end() && active->vertex_id == state.ids[v];
-
-        Contact contact{v, n, n.dot(state.mesh.world[v]) - stand_off,
-                        n.dot(prediction.position[v]) - stand_off};
-        if (prediction.has_history && (contact.gap < 0.0 || was_active)) {
-            prediction.position[v] += (contact.gap_now - contact.gap) * n;
-            prediction.velocity[v] += n.dot(state.velocity[v] - prediction.velocity[v]) * n;
-            contact.gap = contact.gap_now;
+    const double thickness = scene.material.thickness;
+    for (std::size_t o = 0; o < steps.size(); ++o) {
+        const Obstacle& obstacle = scene.obstacles[o];
+        steps[o].reference = slide(obstacle, steps[o].motion, thickness);
+    }
+    RememberedPairs remembered(scene, state, steps);
+    for (std::size_t o = 0; o < steps.size(); ++o) {
+        const Obstacle& obstacle = scene.obstacles[o];
+        const ClothMotion& motion = steps[o].motion;
+        const std::vector<Vec3>& reference = steps[o].reference;
+        std::vector<ObstacleContact> found = find_edge_contacts(obstacle, motion, reference, thickness);
+        const std::vector<ObstacleContact> of_faces =
+            find_face_contacts(obstacle, motion, reference, thickness);
+        found.insert(found.end(), of_faces.begin(), of_faces.end());
+        remembered.append(found, static_cast<int>(o));
+        const std::vector<ObstacleContact> of_vertices =
+            find_vertex_contacts(obstacle, motion, reference, thickness);
+        found.insert(found.begin(), of_vertices.begin(), of_vertices.end());
+        for (const ObstacleContact& contact : found) {
+            contacts.push_back(place_contact(contact, static_cast<int>(o), steps[o], prediction));
+            contacts.back().was_active = find_active(state, contacts.back());
         }
-        contacts.push_back(contact);
     }
     return contacts;
+}
+
+std::optional<int> share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
+                              std::vector<Contact>& contacts)
+{
+    constexpr double kOpposite = -0.9;  // cosine between the normals
+    constexpr double kShared = 0.99;    // of the room, so that what shares it is not in each other's way
+    constexpr double kNoRoom = 1e-6;    // of the stand-offs: less is round-off
+    std::vector<Contact*> of_vertices;
+    for (Contact& contact : contacts)
+        if (contact.is_vertex()) of_vertices.push_back(&contact);
+    const auto vertex_of = [](const Contact* contact) { return contact->in_frame.vertices[0]; };
+    std::stable_sort(of_vertices.begin(), of_vertices.end(),
+                     [&](const Contact* a, const Contact* b) { return vertex_of(a) < vertex_of(b); });
+    std::optional<int> crushed;
+    for (std::size_t i = 0; i < of_vertices.size(); ++i)
+        for (std::size_t j = i + 1;
+             j < of_vertices.size() && vertex_of(of_vertices[j]) == vertex_of(of_vertices[i]); ++j) {
+            Contact &a = *of_vertices[i], &b = *of_vertices[j];
+            if (!(a.normal.dot(b.normal) < kOpposite)) continue;
+            const double wanted = a.in_frame.least_gap + b.in_frame.least_gap;
+            const double room = -a.normal.dot(steps[a.obstacle].end(a.in_frame.point)) -
+                                b.normal.dot(steps[b.obstacle].end(b.in_frame.point));
+            if (kShared * room >= wanted) continue;
+            if (!(room > kNoRoom * wanted) && !crushed) crushed = vertex_of(&a);
+            for (Contact* contact : {&a, &b}) {
+                contact->in_frame.least_gap *= std::max(kShared * room / wanted, 0.0);
+                update_gap(steps[contact->obstacle], prediction, *contact);
+            }
+        }
+    return crushed;
+}
+
+bool flatten_history(const Scene& scene, const State& state, const std::vector<ObstacleStep>& steps,
+                     std::size_t first, std::vector<Contact>& contacts, Prediction& prediction)
+{
+    constexpr int kPasses = 3;  // several contacts of one vertex disturb each other where they are not square
+    bool is_changed = false;
+    for (int pass = 0; prediction.has_history && pass < kPasses; ++pass)
+        for (std::size_t c = first; c < contacts.size(); ++c) {
+            const Contact& contact = contacts[c];
+            const ObstacleStep& step = steps[contact.obstacle];
+            const RiddenHistory ridden =
+                find_ridden(scene.obstacles[contact.obstacle], step, state, prediction.forward, contact);
+            const double shift =
+                contact.normal.dot(weighted(contact.in_frame, prediction.position)) - ridden.position;
+            if (!runs_into(step, contact, shift)) continue;
+            push(contact, -shift, prediction.position);
+            push(contact,
+                 ridden.velocity - contact.normal.dot(weighted(contact.in_frame, prediction.velocity)),
+                 prediction.velocity);
+            is_changed = true;
+        }
+    if (is_changed)
+        for (Contact& contact : contacts) update_gap(steps[contact.obstacle], prediction, contact);
+    return is_changed;
+}
+
+std::vector<ActiveContact> active_contacts(const State& state, const std::vector<Contact>& contacts,
+                                           const std::vector<double>& multiplier)
+{
+    std::vector<ActiveContact> active;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+        const ObstacleContact& local = contacts[c].in_frame;
+        if (multiplier[c] > 0.0)
+            active.push_back({ids_of(state, local.vertices), local.kind, contacts[c].obstacle, local.element,
+                              local.normal, multiplier[c]});
+    }
+    std::sort(active.begin(), active.end(), [](const ActiveContact& a, const ActiveContact& b) {
+        return key_of(a) < key_of(b) || (key_of(a) == key_of(b) && a.multiplier > b.multiplier);
+    });
+    const auto is_twin = [](const ActiveContact& a, const ActiveContact& b) {
+        return key_of(a) == key_of(b);
+    };
+    active.erase(std::unique(active.begin(), active.end(), is_twin), active.end());
+    return active;
 }
 
 }  // namespace arris

@@ -1,38 +1,66 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
+#include <optional>
 #include <vector>
 
+#include "geometry/obstacle_contact.h"
+#include "solver/held_vertices.h"
 #include "solver/scene.h"
 #include "solver/state.h"
 #include "solver/time_integration.h"
 
 namespace arris {
 
-/// A vertex that a pin holds, and where it must be at the step's end.
-struct HeldVertex {
-    int vertex;
-    std::array<bool, 3> held;  ///< x, y, z
-    Vec3 target;               ///< m; meaningful in held directions
+/// One obstacle during one step, and the cloth's way in its frame.
+struct ObstacleStep {
+    Placement before, begin, end;  ///< of its frame: a step ago, at the step's start and at its end
+    ClothMotion motion;            ///< ends where the cloth would be if nothing were in its way
+    std::vector<Vec3> reference;   ///< where it would be if it slid along what is
 };
 
-/// Vertices held during the step that ends at `end` (s), ascending. Where pins overlap, a direction follows
-/// the last pin that holds it.
-std::vector<HeldVertex> find_held_vertices(const Scene& scene, const State& state, double end);
-
-/// A vertex and a plane it must not pass: gap = distance left to the stand-off, m.
+/// A contact in the world, and which constraint of the velocity solve it is.
 struct Contact {
-    int vertex;
-    Vec3 normal;     ///< unit, out of the obstacle
-    double gap_now;  ///< at q_k
-    double gap;      ///< at q~, history flattened
+    ObstacleContact in_frame;
+    int obstacle;  ///< index in the scene
+    Vec3 normal;   ///< at the step's end
+    double gap;    ///< distance that q~ is past what it must keep at the step's end, m; negative inside
+    bool was_active;
+    int bound = -1;  ///< coordinate of the velocity solve, 3 a vertex
+    int row = -1;    ///< or row
+
+    bool is_vertex() const { return in_frame.kind == ContactKind::Vertex; }
 };
 
-/// Contacts with the scene's floor: every vertex has one, as a bound costs nothing until it is met. Flattens
-/// the history in `prediction` along the normal where the predicted position has passed the stand-off or the
-/// contact was active, so that gap(q~) = gap(q_k) and the normal part of v~ is v_k's. Otherwise what a vertex
-/// brought into an impact would be extrapolated through it, and it would rebound.
-std::vector<Contact> find_contacts(const Scene& scene, const State& state, Prediction& prediction);
+/// Where the scene's obstacles are during the step that ends at `end` (s), and how the cloth would move past
+/// them: with the velocity it has, pins where they will be.
+std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
+                                         const std::vector<MeshEdge>& edges, const Prediction& prediction,
+                                         const std::vector<HeldVertex>& held, double end);
+
+/// What the cloth may touch in the step: vertices, edges and faces against each obstacle, and the pairs that
+/// pressed at the end of the last step.
+std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
+                                   std::vector<ObstacleStep>& steps);
+
+/// The contact in the world, its gap that of the prediction.
+Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
+                      const Prediction& prediction);
+
+/// Between two obstacles, or two faces of one, with room for less than both stand-offs, a vertex's contacts
+/// share the room there is at the step's end. A vertex (index) for which there is none.
+std::optional<int> share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
+                              std::vector<Contact>& contacts);
+
+/// Flattens the history in `prediction` along the normals of those from `first` on, relative to the obstacle,
+/// where the extrapolated position would pass what the contact must keep and the cloth's velocity does not
+/// bring it out, or where it was active; and updates all gaps. Otherwise what a vertex brought into an impact
+/// would be extrapolated through it, and it would rebound. True where anything was flattened.
+bool flatten_history(const Scene& scene, const State& state, const std::vector<ObstacleStep>& steps,
+                     std::size_t first, std::vector<Contact>& contacts, Prediction& prediction);
+
+/// Those of `contacts` that press, for `State::active`; `multiplier` has one entry a contact (N s).
+std::vector<ActiveContact> active_contacts(const State& state, const std::vector<Contact>& contacts,
+                                           const std::vector<double>& multiplier);
 
 }  // namespace arris

@@ -6,14 +6,30 @@
 
 namespace arris {
 
+Vec3 pinned_place(const Scene& scene, const Pin& pin, double time, const Vec3& origin)
+{
+    if (!pin.follows) return pin.motion.at(time)(origin);
+    const Obstacle& obstacle = scene.obstacles[*pin.follows];
+    return obstacle.at(time)(obstacle.at(0.0).inverse(origin));
+}
+
+Vec3 pinned_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place)
+{
+    return pin.follows ? scene.obstacles[*pin.follows].velocity_after(time, place)
+                       : pin.motion.velocity_after(time, place);
+}
+
 std::vector<double> input_jumps(const Scene& scene)
 {
     std::vector<double> times;
-    for (const Pin& pin : scene.pins) {
-        const std::vector<double> jumps = pin.motion.jumps();
+    const auto add = [&](const std::vector<double>& jumps) {
         times.insert(times.end(), jumps.begin(), jumps.end());
+    };
+    for (const Pin& pin : scene.pins) {
+        if (!pin.follows) add(pin.motion.jumps());
         times.push_back(pin.release);
     }
+    for (const Obstacle& obstacle : scene.obstacles) add(obstacle.motion().jumps());
     for (const Pull& pull : scene.pulls) times.insert(times.end(), {pull.start, pull.stop});
 
     std::erase_if(times, [](double t) { return !(t > 0.0) || !std::isfinite(t); });

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/half_space.h"
 #include "geometry/material_box.h"
+#include "geometry/obstacle.h"
 #include "geometry/rigid_motion.h"
 #include "physics/effects.h"
 #include "physics/material.h"
@@ -20,6 +20,7 @@ struct Pin {
     RigidMotion motion;
     std::array<bool, 3> held = {true, true, true};             ///< x, y, z
     double release = std::numeric_limits<double>::infinity();  ///< s
+    std::optional<int> follows = {};  ///< an obstacle (index in the scene) on which they ride instead of `motion`
 
     bool holds_until(double end) const { return end <= release; }
 };
@@ -31,8 +32,14 @@ struct Scene {
     std::optional<Wind> wind;
     std::vector<Pull> pulls;
     std::vector<Pin> pins;
-    std::optional<HalfSpace> floor;  ///< a plane under the cloth, for tests and benchmarks
+    std::vector<Obstacle> obstacles;
 };
+
+/// Where `pin` has at `time` (s) what was at `origin` (world, m) at time 0.
+Vec3 pinned_place(const Scene& scene, const Pin& pin, double time, const Vec3& origin);
+
+/// Velocity (m/s) just after `time` of what `pin` holds at `place` then.
+Vec3 pinned_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place);
 
 /// Times after 0 at which the input jumps (motion starts or stops, keyframe, release, pull): ascending,
 /// unique. Steps end on them, and the step after one is implicit Euler.

@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "geometry/cloth_mesh.h"
+#include "geometry/obstacle_contact.h"
 
 namespace arris {
 
-/// A bound that was active at the end of a step, with its multiplier: the next solve's warm start.
-struct ActiveBound {
-    std::uint32_t vertex_id;
-    double multiplier;  ///< N s
+/// A contact that pressed at the end of a step, with its multiplier: the next solve's warm start, and what
+/// the next search looks at again.
+struct ActiveContact {
+    static constexpr std::uint32_t kNoVertex = 0xffffffffu;
+    std::array<std::uint32_t, 3>
+        vertex_ids;  ///< of the cloth's vertex, edge or face, ascending; rest kNoVertex
+    ContactKind kind;
+    std::int32_t obstacle;  ///< index in the scene
+    std::int32_t element;   ///< as ObstacleContact's
+    Vec3 normal;            ///< in the obstacle's frame
+    double multiplier;      ///< N s
 };
 
 /// Where a vertex that a pin holds was at time 0: the pin's motion maps this to where it must be.
@@ -35,8 +44,9 @@ struct State {
     std::vector<Vec3> previous_world;
     std::vector<Vec3> previous_velocity;
 
-    std::vector<PinAnchor> anchors;   ///< ascending by (pin, vertex_id)
-    std::vector<ActiveBound> active;  ///< ascending by vertex_id
+    std::vector<PinAnchor> anchors;     ///< ascending by (pin, vertex_id)
+    std::vector<ActiveContact> active;  ///< ascending by (vertex_ids, obstacle, kind, element)
+    std::int64_t crossings = 0;         ///< how often, so far, something passed through
 };
 
 }  // namespace arris

@@ -3,6 +3,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "solver/constraints.h"
 #include "solver/stopwatch.h"
@@ -11,16 +12,32 @@ namespace arris {
 
 namespace {
 
-/// Where pins will be at the step's end, and where the integrator starts from.
-void move_pins(const Scene& scene, const Settings& settings, double end, const State& state, Workspace& work)
+/// Where the integrator starts from, and where pins and obstacles will be.
+void move(const Scene& scene, const Settings& settings, double end, const State& state, Workspace& work)
 {
     work.prediction = predict(state, settings.integrator, end - state.time);
     work.held = find_held_vertices(scene, state, end);
+    work.obstacles = move_obstacles(scene, state, work.edges, work.prediction, work.held, end);
 }
 
-/// A, b in the vertices' coordinates.
+/// What the cloth may touch; history that runs into it is flattened. False where it would be crushed.
+bool find_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
+{
+    work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
+    const std::optional<int> crushed = share_room(work.obstacles, work.prediction, work.contacts);
+    flatten_history(scene, state, work.obstacles, 0, work.contacts, work.prediction);
+    work.has_system = false;
+    if (!crushed) return true;
+    report.status = StepStatus::Infeasible;
+    report.infeasible_vertex = state.ids[*crushed];
+    return false;
+}
+
+/// Each vertex's coordinates, in which pins are known and contacts are bounds or rows; A, b in them.
 void assemble(const Scene& scene, double end, const State& state, Workspace& work)
 {
+    if (work.has_system) return;
+    build_constraints(work.held, work.prediction, state, work.contacts, work.at, work.problem);
     Linearization& at = work.at;
     const Prediction& prediction = work.prediction;
     at.begin = state.time;
@@ -38,15 +55,18 @@ void assemble(const Scene& scene, double end, const State& state, Workspace& wor
     work.system.assemble(state.mesh, work.elements, work.terms, at);
 }
 
-/// Minimises 1/2 u^T A u - b^T u over the bounds.
+/// Minimises 1/2 u^T A u - b^T u over bounds and rows.
 void solve_velocity(const Settings& settings, Workspace& work, StepReport& report)
 {
     work.problem.matrix = &work.system.matrix();
     work.problem.rhs = &work.system.rhs();
-    work.solution = work.solver.solve(work.problem, settings);
+    work.solution = work.has_system ? work.solver.resume(work.problem, settings)
+                                    : work.solver.solve(work.problem, settings);
+    work.has_system = true;
+    ++report.solves;
     report.factorisations += work.solution.factorisations;
     report.nlopt_evaluations += work.solution.nlopt_evaluations;
-    report.kkt_residual = work.solution.kkt_residual;
+    report.kkt_residual = work.solution.kkt_residual;  // of the solve whose velocity is taken
     report.seconds.factorise += work.solution.factorise_seconds;
     report.seconds.solve += work.solution.solve_seconds;
     switch (work.solution.status) {
@@ -59,73 +79,102 @@ void solve_velocity(const Settings& settings, Workspace& work, StepReport& repor
         case SolveStatus::NotFinite:
             report.status = StepStatus::NotFinite;
             break;
+        case SolveStatus::Infeasible:
+            report.status = StepStatus::Infeasible;
+            break;
     }
 }
 
-/// q' = q~ + gamma v'; what round-off left beyond a stand-off is put back, velocity untouched.
-void propose(Workspace& work)
+/// q' = q~ + gamma v'. Where the cloth is nearer to an obstacle than its stand-off, it is moved out slowly.
+void propose(const Scene& scene, const State& state, double end, Workspace& work, const StepReport& report)
 {
+    constexpr double kGrowth = 0.1;  // m/s, of a gap on its way to the stand-off
     const std::size_t n = work.prediction.position.size();
-    work.next_world.resize(n);
-    work.next_velocity.resize(n);
+    work.proposal.world.resize(n);
+    work.proposal.velocity.resize(n);
     for (std::size_t v = 0; v < n; ++v) {
-        work.next_velocity[v] =
-            work.at.drift[v] + work.at.basis[v] * work.solution.velocity.segment<3>(3 * v);
-        work.next_world[v] = work.prediction.position[v] + work.prediction.gamma * work.next_velocity[v];
+        Vec3& velocity = work.proposal.velocity[v];
+        velocity = work.at.drift[v] + work.at.basis[v] * work.solution.velocity.segment<3>(3 * v);
+        work.proposal.world[v] = work.prediction.position[v] + work.prediction.gamma * velocity;
     }
-    for (const Contact& contact : work.contacts) {
-        const double gap =
-            contact.gap + work.prediction.gamma * contact.normal.dot(work.next_velocity[contact.vertex]);
-        if (gap < 0.0) work.next_world[contact.vertex] -= gap * contact.normal;
-    }
-    for (const HeldVertex& vertex : work.held)
-        for (int d = 0; d < 3; ++d)
-            if (vertex.held[d]) work.next_world[vertex.vertex][d] = vertex.target[d];
+    const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
+    restore_stand_off(work.contacts, work.obstacles, work.held, scene.material.thickness, growth,
+                      work.proposal);
 }
 
-std::vector<ActiveBound> active_bounds(const State& state, const Workspace& work)
+/// A contact that nothing could meet: the vertex to name.
+std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
 {
-    std::vector<ActiveBound> active;
-    for (const Contact& contact : work.contacts) {
-        const int coordinate = contact_coordinate(work.problem.is_fixed, contact.vertex);
-        if (coordinate < 0) continue;
-        const double multiplier = work.solution.multipliers[coordinate];
-        if (multiplier > 0.0) active.push_back({state.ids[contact.vertex], multiplier});
-    }
-    return active;
+    for (const Contact& contact : work.contacts)
+        if (!work.solution.infeasible_rows.empty() && contact.row == work.solution.infeasible_rows.front())
+            return state.ids[contact.in_frame.vertices[0]];
+    return -1;
 }
 
-/// What pins hold goes where they have it at time 0, and moves as they do.
-void take_hold(const Scene& scene, State& state)
+/// Rounds have run out, or the check names nothing that a row could mend.
+void give_up(const Scene& scene, double end, const State& state, Attempt attempt, Workspace& work,
+             StepReport& report)
 {
-    const std::vector<Vec3> placed = state.mesh.world;
-    for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
-        const Pin& pin = scene.pins[p];
-        if (!(pin.release > 0.0)) continue;
-        const Placement place = pin.motion.at(0.0);
-        for (const int v : vertices_in_box(state.mesh, pin.material)) {
-            state.anchors.push_back({p, state.ids[v], placed[v]});
-            const Vec3 target = place(placed[v]);
-            const Vec3 moving = pin.motion.velocity_after(0.0, target);
-            for (int d = 0; d < 3; ++d) {
-                if (!pin.held[d]) continue;
-                state.mesh.world[v][d] = target[d];
-                state.velocity[v][d] = moving[d];
-            }
-        }
-    }
+    if (report.status == StepStatus::Infeasible)
+        report.infeasible_vertex = find_infeasible_vertex(state, work);
+    else
+        report.status = StepStatus::Penetration;
+    if (attempt == Attempt::Ordinary) return;
+    const std::optional<int> rewound =
+        rewind(scene, state, work.held, work.prediction, end - state.time, work.obstacles, work.proposal);
+    if (!rewound) return;
+    report.rewound = *rewound;
+    report.status = StepStatus::Done;
 }
 
-/// Swaps the new state in, or leaves the old one where the solve failed.
+/// The exact check. What it finds becomes rows of the same system, or of a new one where history ran into it:
+/// true where the velocity is to be solved again. A contact that cannot keep its stand-off may yield as long
+/// as the surface stays free.
+bool add_violations(const Scene& scene, double end, const State& state, Attempt attempt, Workspace& work,
+                    StepReport& report)
+{
+    constexpr int kMostSolves = 10;
+    if (report.status != StepStatus::Done && report.status != StepStatus::Infeasible) return false;
+    const Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
+    if (violations.is_clean()) {
+        report.yielded = static_cast<int>(work.solution.infeasible_rows.size());
+        report.status = StepStatus::Done;
+        return false;
+    }
+    if (report.solves == kMostSolves || violations.contacts.empty()) {
+        give_up(scene, end, state, attempt, work, report);
+        return false;
+    }
+    const std::size_t first = work.contacts.size();
+    work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());
+    if (flatten_history(scene, state, work.obstacles, first, work.contacts, work.prediction))
+        work.has_system = false;
+    else
+        append_rows(work.prediction, work.at, first, work.contacts, work.problem);
+    return true;
+}
+
+int count_feature_rows(const std::vector<Contact>& contacts, const std::vector<double>& multiplier)
+{
+    int count = 0;
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+        if (!contacts[c].is_vertex() && multiplier[c] > 0.0) ++count;
+    return count;
+}
+
+/// Swaps the new state in, or leaves the old one where the step failed.
 void commit(double end, Workspace& work, State& state, StepReport& report)
 {
     if (report.status != StepStatus::Done) return;
-    state.active = active_bounds(state, work);
+    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
+    state.active = active_contacts(state, work.contacts, multiplier);
+    state.crossings += report.crossings;
     report.contacts = static_cast<int>(state.active.size());
+    report.feature_rows = count_feature_rows(work.contacts, multiplier);
     state.previous_world.swap(state.mesh.world);
     state.previous_velocity.swap(state.velocity);
-    state.mesh.world.swap(work.next_world);
-    state.velocity.swap(work.next_velocity);
+    state.mesh.world.swap(work.proposal.world);
+    state.velocity.swap(work.proposal.velocity);
     state.previous_dt = end - state.time;
     state.time = end;
     ++state.step;
@@ -159,44 +208,49 @@ void prepare(const Scene& scene, const State& state, Workspace& work)
         work.terms = make_terms(scene.material, scene.gravity, scene.wind, scene.pulls);
     if (work.faces_of_elements == state.mesh.faces && work.material_of_elements == state.mesh.material)
         return;
-    work.elements = make_elements(state.mesh, make_topology(state.mesh.vertex_count(), state.mesh.faces));
+    MeshTopology topology = make_topology(state.mesh.vertex_count(), state.mesh.faces);
+    work.elements = make_elements(state.mesh, topology);
+    work.edges = std::move(topology.edges);
     work.system.make_pattern(work.elements);
     work.faces_of_elements = state.mesh.faces;
     work.material_of_elements = state.mesh.material;
 }
 
-StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work)
+StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
+                Attempt attempt)
 {
     StepReport report;
     report.dt = end - state.time;
     Stopwatch watch;
 
-    // 1. Elements of a mesh that changed; where pins will be; q~ and v~ of the integrator.
+    // 1. Elements of a mesh that changed; q~ and v~ of the integrator; where pins and obstacles will be.
     prepare(scene, state, work);
-    move_pins(scene, settings, end, state, work);
+    move(scene, settings, end, state, work);
     report.seconds.move += watch.lap();
 
-    // 2. What the cloth may touch; history that ran into it is flattened.
-    work.contacts = find_contacts(scene, state, work.prediction);
+    // 2. What the cloth may touch: vertices, edges and faces; nothing can move where it has no room.
+    if (!find_contacts(scene, state, work, report)) return report;
     report.seconds.contacts += watch.lap();
 
-    // 3. Each vertex's coordinates, in which pins are known and contacts are bounds; A and b in them.
-    build_constraints(work.held, work.contacts, work.prediction, state, work.at, work.problem);
-    assemble(scene, end, state, work);
-    if (const auto crushed =
-            find_crushed_vertex(work.contacts, scene.material.thickness, work.at, work.problem)) {
-        report.status = StepStatus::Infeasible;
-        report.infeasible_vertex = state.ids[*crushed];
-        return report;
+    for (bool is_again = true; is_again;) {  // bounded rounds
+        // 3. A and b in the vertices' coordinates, in which contacts are bounds and rows.
+        assemble(scene, end, state, work);
+        report.seconds.assemble += watch.lap();
+
+        // 4. The constrained velocity, with its certificate.
+        solve_velocity(settings, work, report);
+        watch.lap();
+
+        // 5. q' = q~ + gamma v', not committed.
+        propose(scene, state, end, work, report);
+        report.seconds.advance += watch.lap();
+
+        // 6. The exact check of the whole way; what it finds becomes rows.
+        is_again = add_violations(scene, end, state, attempt, work, report);
+        report.seconds.check += watch.lap();
     }
-    report.seconds.assemble += watch.lap();
 
-    // 4. The constrained velocity, with its certificate.
-    solve_velocity(settings, work, report);
-    watch.lap();
-
-    // 5. q' = q~ + gamma v'; swapped in, or the state stays as it was.
-    propose(work);
+    // 7. Swapped in, or the state stays as it was.
     commit(end, work, state, report);
     report.seconds.advance += watch.lap();
     return report;

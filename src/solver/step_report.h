@@ -5,7 +5,7 @@
 
 namespace arris {
 
-enum class StepStatus { Done, NotConverged, Infeasible, NotFinite };
+enum class StepStatus { Done, NotConverged, Infeasible, NotFinite, Penetration };
 
 /// Wall seconds of one step by phase.
 struct PhaseSeconds {
@@ -18,6 +18,11 @@ struct StepReport {
     double dt = 0.0;                      ///< s
     std::int64_t infeasible_vertex = -1;  ///< id of one whose pins and contacts no velocity meets
     int contacts = 0;                     ///< constraints with a positive multiplier
+    int feature_rows = 0;                 ///< those of them at a sharp edge, corner, wire or point
+    int crossings = 0;                    ///< in this step
+    int solves = 0;                       ///< velocity solves: more than one where the check found violations
+    int yielded = 0;                      ///< contacts that could not keep their stand-off
+    int rewound = 0;                      ///< vertices put back on their way, so that nothing is passed
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;

@@ -19,6 +19,7 @@ Prediction predict(const State& state, Integrator integrator, double dt)
     // ((1+w)^2 a_k - w^2 a_(k-1)) / (1+2w) = a_k + w^2 / (1+2w) (a_k - a_(k-1))   exact for a resting vertex
     const double w = dt / state.previous_dt;
     const double forward = w * w / (1.0 + 2.0 * w);
+    prediction.forward = forward;
     prediction.gamma = dt * (1.0 + w) / (1.0 + 2.0 * w);
     const std::size_t n = state.mesh.world.size();
     prediction.position.resize(n);

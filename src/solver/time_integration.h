@@ -18,6 +18,7 @@ namespace arris {
 struct Prediction {
     double gamma = 0.0;          ///< s
     bool has_history = false;    ///< BDF2 with a step behind it; else implicit Euler
+    double forward = 0.0;        ///< q~ = q_k + forward (q_k - q_(k-1))
     std::vector<Vec3> position;  ///< q~, m
     std::vector<Vec3> velocity;  ///< v~, m/s
 };

@@ -7,6 +7,7 @@
 #include "physics/linear_system.h"
 #include "physics/term.h"
 #include "solver/contacts.h"
+#include "solver/proposal.h"
 #include "solver/velocity_solve.h"
 
 namespace arris {
@@ -19,20 +20,23 @@ struct Workspace {
     LinearSystem system;
     std::vector<Face> faces_of_elements;  ///< of the mesh `elements` was made for
     std::vector<Vec2> material_of_elements;
+    std::vector<MeshEdge> edges;
 
-    // move_pins, find_contacts, build_constraints
+    // move
     Prediction prediction;
     std::vector<HeldVertex> held;
+    std::vector<ObstacleStep> obstacles;
+
+    // find_contacts, build_constraints, add_violations
     std::vector<Contact> contacts;
     Linearization at;
     VelocityProblem problem;
+    bool has_system = false;  ///< of this step's prediction; rows may have been added since
 
-    // solve_velocity
+    // solve_velocity, propose
     VelocitySolver solver;
     VelocitySolution solution;
-
-    // propose
-    std::vector<Vec3> next_world, next_velocity;
+    Proposal proposal;
 };
 
 }  // namespace arris

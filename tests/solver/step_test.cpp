@@ -9,6 +9,7 @@
 
 #include "geometry/cloth_grid.h"
 #include "physics/inertia.h"
+#include "tests/solver/floor.h"
 
 namespace arris {
 namespace {
@@ -68,7 +69,7 @@ Scene make_draped_scene()
     Scene scene;
     scene.material = soft_cloth();
     scene.gravity = Gravity{};
-    scene.floor = HalfSpace{};
+    scene.obstacles.push_back(make_floor());
     Pin pin;
     pin.material = {Vec2(0, 0), Vec2(0, 1)};
     scene.pins = {pin};
@@ -89,7 +90,7 @@ void expect_same(const State& a, const State& b)
     EXPECT_TRUE(a.previous_world == b.previous_world);
     ASSERT_EQ(a.active.size(), b.active.size());
     for (std::size_t k = 0; k < a.active.size(); ++k) {
-        EXPECT_EQ(a.active[k].vertex_id, b.active[k].vertex_id);
+        EXPECT_EQ(a.active[k].vertex_ids, b.active[k].vertex_ids);
         EXPECT_EQ(a.active[k].multiplier, b.active[k].multiplier);
     }
 }
@@ -233,21 +234,21 @@ TEST(Step, AVertexHeldSidewaysStillRestsOnATiltedFloor)
 {
     // Held in x, a vertex meets a plane tilted about y: its normal's part across the pin carries the contact.
     Scene scene = make_draped_scene();
-    scene.floor->normal = Vec3(0.5, 0.0, std::sqrt(0.75));
-    scene.floor->offset = -0.2;
+    const Vec3 normal(0.5, 0.0, std::sqrt(0.75));
+    scene.obstacles = {make_floor(normal, -0.2)};
     scene.pins[0].held = {true, false, false};
     State state = make_state(scene, make_raised_sheet(), Vec3::Zero());
     Workspace work;
     for (int k = 1; k <= 200; ++k) {
         ASSERT_EQ(step(scene, Settings(), 0.005 * k, state, work).status, StepStatus::Done);
         for (const Vec3& x : state.mesh.world)
-            ASSERT_GT(scene.floor->normal.dot(x) - scene.floor->offset - scene.material.thickness, -1e-13);
+            ASSERT_GT(normal.dot(x) + 0.2 - scene.material.thickness, -1e-13);
     }
     bool is_held_vertex_in_contact = false;
     for (const int v : vertices_in_box(state.mesh, scene.pins[0].material)) {
         EXPECT_NEAR(state.mesh.world[v].x(), 0.0, 1e-14);
-        for (const ActiveBound& bound : state.active)
-            is_held_vertex_in_contact = is_held_vertex_in_contact || bound.vertex_id == state.ids[v];
+        for (const ActiveContact& contact : state.active)
+            is_held_vertex_in_contact = is_held_vertex_in_contact || contact.vertex_ids[0] == state.ids[v];
     }
     EXPECT_TRUE(is_held_vertex_in_contact);
 }

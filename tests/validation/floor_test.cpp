@@ -11,6 +11,7 @@
 #include "cloth_run.h"
 #include "physics/inertia.h"
 #include "refinement.h"
+#include "tests/solver/floor.h"
 
 namespace arris {
 namespace {
@@ -19,22 +20,29 @@ constexpr std::array kIntegrators = {Integrator::ImplicitEuler, Integrator::Bdf2
 constexpr double kG = 9.81;
 constexpr double kThickness = 1e-3;
 
+constexpr double kOffset = 0.37;  // m
+
+Vec3 normal_of(double angle)
+{
+    return {0.0, std::sin(angle), std::cos(angle)};
+}
+
 /// A scene whose floor leans by `angle` about x, through a point far from where the normal meets the origin.
 Scene make_scene(double angle, bool has_gravity)
 {
     Scene scene;
     scene.material = {0.05, 200.0, 0.3, 1e-4, 0.0, kThickness};
     if (has_gravity) scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
-    scene.floor = HalfSpace{Vec3(0.0, std::sin(angle), std::cos(angle)), 0.37};
+    scene.obstacles.push_back(make_floor(normal_of(angle), kOffset));
     return scene;
 }
 
 /// A flat sheet parallel to the floor, `gap` above its stand-off.
-ClothMesh place_above(const HalfSpace& floor, double gap)
+ClothMesh place_above(const Vec3& normal, double gap)
 {
     ClothMesh mesh = make_sheet(Vec2(0.5, 0.5), {5, 5}, GridPattern::Cross);
-    const Eigen::Quaterniond lean = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), floor.normal);
-    for (Vec3& x : mesh.world) x = lean * x + (floor.offset + kThickness + gap) * floor.normal;
+    const Eigen::Quaterniond lean = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal);
+    for (Vec3& x : mesh.world) x = lean * x + (kOffset + kThickness + gap) * normal;
     return mesh;
 }
 
@@ -46,7 +54,7 @@ TEST(Incline, AcceleratesByGTimesTheSine)
             for (const bool is_crumpled : {false, true}) {
                 const double angle = degrees * std::numbers::pi / 180.0;
                 const Scene scene = make_scene(angle, true);
-                ClothMesh mesh = place_above(*scene.floor, is_crumpled ? 0.03 : 0.0);
+                ClothMesh mesh = place_above(normal_of(angle), is_crumpled ? 0.03 : 0.0);
                 if (is_crumpled) {  // it falls, and its contacts come and go
                     std::mt19937_64 random(9);
                     std::uniform_real_distribution<double> noise(-0.01, 0.01);
@@ -88,8 +96,8 @@ Impact drop(Integrator integrator, double speed, double phase, bool has_gravity)
 {
     const double h = 0.005;
     const Scene scene = make_scene(0.3, has_gravity);
-    const Vec3& n = scene.floor->normal;
-    ClothRun run(scene, place_above(*scene.floor, (3.0 + phase) * h * speed), -speed * n);
+    const Vec3 n = normal_of(0.3);
+    ClothRun run(scene, place_above(n, (3.0 + phase) * h * speed), -speed * n);
     run.settings.integrator = integrator;
     const auto energy = [&] { return kinetic_energy(0.05, run.work.elements, run.state.velocity); };
     const double first = energy();
@@ -100,11 +108,11 @@ Impact drop(Integrator integrator, double speed, double phase, bool has_gravity)
         has_met = run.advance(h).contacts > 0 || has_met;
         if (testing::Test::HasFailure()) break;
         for (int v = 0; v < run.state.mesh.vertex_count(); ++v) {
-            const double gap = n.dot(run.state.mesh.world[v]) - scene.floor->offset - kThickness;
+            const double gap = n.dot(run.state.mesh.world[v]) - kOffset - kThickness;
             // Before round-off is put back, too: the bound itself must close the gap and no more.
             const Vec3 proposed =
                 run.work.prediction.position[v] + run.work.prediction.gamma * run.state.velocity[v];
-            const double proposed_gap = n.dot(proposed) - scene.floor->offset - kThickness;
+            const double proposed_gap = n.dot(proposed) - kOffset - kThickness;
             impact.penetration = std::max({impact.penetration, -gap, -proposed_gap});
             if (!has_met) continue;
             impact.jump = std::max(impact.jump, std::abs(gap));

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "solver/scene.h"
+#include "solver/state.h"
+
+namespace arris {
+
+/// A vertex that a pin holds, and where it must be at the step's end.
+struct HeldVertex {
+    int vertex;
+    std::array<bool, 3> held;  ///< x, y, z
+    Vec3 target;               ///< m; meaningful in held directions
+};
+
+/// Vertices held during the step that ends at `end` (s), ascending. Where pins overlap, a direction follows
+/// the last pin that holds it.
+std::vector<HeldVertex> find_held_vertices(const Scene& scene, const State& state, double end);
+
+/// What pins hold goes where they have it at time 0, and moves as they do.
+void take_hold(const Scene& scene, State& state);
+
+}  // namespace arris
