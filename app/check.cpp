@@ -2,7 +2,9 @@
 #include "app/check.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/printable.h"
@@ -78,10 +80,134 @@ void describe_effects(const RunConfig& config, Lines& lines)
         if (!effect.is_on) lines.push_back(fmt::format("  {}: {}", effect.name, effect.reason));
 }
 
-std::string pin_motion(const Pin& pin)
+std::string pin_motion(const Scene& scene, const Pin& pin)
 {
+    if (pin.follows) return "rides on " + scene.obstacles[static_cast<std::size_t>(*pin.follows)].name();
     if (!pin.motion.keyframes.empty()) return counted(pin.motion.keyframes.size(), "keyframe", "keyframes");
     return pin.motion.is_moving() ? "moving" : "at rest";
+}
+
+/// "box", "file table.obj".
+std::string shape_in_words(const nlohmann::ordered_json& obstacle)
+{
+    if (obstacle.contains("file")) return "file " + obstacle["file"].get<std::string>();
+    for (const char* shape : {"box", "points", "wire"})
+        if (obstacle.contains(shape)) return shape;
+    return "teeth";
+}
+
+/// "12 triangles (1 solid), 3 wire segments".
+std::string elements_in_words(const Obstacle& obstacle)
+{
+    const ObstacleMesh& mesh = obstacle.mesh();
+    const std::vector<char>& is_solid = obstacle.topology().is_solid;
+    const auto solids = static_cast<std::size_t>(
+        std::count_if(is_solid.begin(), is_solid.end(), [](char s) { return s != 0; }));
+    const std::size_t sheets = is_solid.size() - solids;
+    Lines parts;
+    if (!mesh.faces.empty()) {
+        Lines kinds;
+        if (solids > 0) kinds.push_back(counted(solids, "closed surface", "closed surfaces"));
+        if (sheets > 0) kinds.push_back(counted(sheets, "open sheet", "open sheets"));
+        parts.push_back(fmt::format("{} in {}", counted(mesh.faces.size(), "triangle", "triangles"),
+                                    fmt::join(kinds, " and ")));
+    }
+    if (!mesh.segments.empty())
+        parts.push_back(counted(mesh.segments.size(), "wire segment", "wire segments"));
+    if (!mesh.lone_points.empty())
+        parts.push_back(counted(mesh.lone_points.size(), "lone point", "lone points"));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+Box3 bounds_at(const Obstacle& obstacle, double time)
+{
+    const Placement placement = obstacle.at(time);
+    Box3 box;
+    for (const Vec3& point : obstacle.mesh().points) box.extend(placement(point));
+    return box;
+}
+
+std::string features_in_words(const Obstacle& obstacle)
+{
+    const ObstacleFeatures& features = obstacle.features();
+    double length = 0.0;
+    for (const FeatureEdge& feature : features.edges) {
+        const auto& [a, b] = obstacle.topology().edges[static_cast<std::size_t>(feature.edge)].points;
+        length += (obstacle.mesh().points[static_cast<std::size_t>(a)] -
+                   obstacle.mesh().points[static_cast<std::size_t>(b)])
+                      .norm();
+    }
+    Lines parts;
+    if (!features.edges.empty())
+        parts.push_back(
+            fmt::format("{} in {}, {:.6g} m", counted(features.edges.size(), "edge", "edges"),
+                        counted(static_cast<std::size_t>(features.polyline_count), "line", "lines"), length));
+    if (!features.corners.empty())
+        parts.push_back(counted(features.corners.size(), "corner or point", "corners or points"));
+    return parts.empty() ? "no sharp features" : fmt::format("sharp features: {}", fmt::join(parts, "; "));
+}
+
+std::string motion_in_words(const RigidMotion& motion)
+{
+    if (!motion.keyframes.empty())
+        return fmt::format("{} from {:g} s to {:g} s{}",
+                           counted(motion.keyframes.size(), "keyframe", "keyframes"),
+                           motion.keyframes.front().time, motion.keyframes.back().time,
+                           motion.is_moving() ? "" : ", at rest");
+    if (!motion.is_moving()) return "at rest";
+    std::string words = "moves";
+    if (motion.velocity.squaredNorm() > 0.0) words += fmt::format(" with {} m/s", in_words(motion.velocity));
+    if (motion.angular_velocity.squaredNorm() > 0.0)
+        words += fmt::format(" turning with {} rad/s about {}", in_words(motion.angular_velocity),
+                             in_words(motion.pivot));
+    words += fmt::format(" from {:g} s", motion.start);
+    return std::isfinite(motion.stop) ? words + fmt::format(" to {:g} s", motion.stop) : words + " on";
+}
+
+void describe_obstacles(const RunConfig& config, Lines& lines)
+{
+    for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
+        const Obstacle& obstacle = config.scene.obstacles[i];
+        const Box3 bounds = bounds_at(obstacle, 0.0);
+        const Vec3 sizes = bounds.sizes();
+        lines.push_back(fmt::format("obstacle {}: {}, {}", obstacle.name(),
+                                    shape_in_words(config.as_run["obstacle"][i]),
+                                    elements_in_words(obstacle)));
+        lines.push_back(fmt::format("  {:.6g} x {:.6g} x {:.6g} m, from {} to {} of the world at time 0",
+                                    sizes.x(), sizes.y(), sizes.z(), in_words(Vec3(bounds.min())),
+                                    in_words(Vec3(bounds.max()))));
+        lines.push_back("  " + features_in_words(obstacle));
+        lines.push_back("  " + motion_in_words(obstacle.motion()));
+    }
+    for (const std::string& intersection : config.intersections)
+        lines.push_back("intersection: " + intersection);
+    if (!config.scene.obstacles.empty() && config.intersections.empty())
+        lines.push_back("the cloth is clear of all obstacles at time 0");
+}
+
+SceneEffect obstacle_effect(const RunConfig& config)
+{
+    constexpr std::size_t kMostNames = 5;
+    const std::vector<Obstacle>& obstacles = config.scene.obstacles;
+    if (obstacles.empty()) return {"obstacle", false, "no [[obstacle]]"};
+    std::string names;
+    for (std::size_t i = 0; i < std::min(obstacles.size(), kMostNames); ++i)
+        names += (i > 0 ? ", " : "") + obstacles[i].name();
+    if (obstacles.size() > kMostNames) names += fmt::format(" and {} more", obstacles.size() - kMostNames);
+    return {"obstacle", true, names};
+}
+
+SceneEffect eol_effect(const RunConfig& config)
+{
+    const auto& obstacles = config.scene.obstacles;
+    const bool has_features = std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& obstacle) {
+        return !obstacle.features().edges.empty() || !obstacle.features().corners.empty();
+    });
+    return {"eol", false,
+            has_features
+                ? "not in this version: contacts keep the cloth's vertices, edges and faces off sharp "
+                  "features"
+                : "no obstacle has sharp features"};
 }
 
 void describe_meetings(const RunConfig& config, Lines& lines)
@@ -94,7 +220,7 @@ void describe_meetings(const RunConfig& config, Lines& lines)
         lines.push_back(
             fmt::format("pin.{}: {} in {}, {}{}", i,
                         counted(vertices_in_box(config.cloth, pin.material).size(), "vertex", "vertices"),
-                        in_words(pin.material), pin_motion(pin), until));
+                        in_words(pin.material), pin_motion(scene, pin), until));
     }
     for (std::size_t i = 0; i < scene.pulls.size(); ++i) {
         const Pull& pull = scene.pulls[i];
@@ -117,6 +243,7 @@ SceneEstimate estimate_run(const RunConfig& config)
     estimate.frames = count_frames(config.duration, config.output.frames_per_second);
     estimate.steps = count_steps(config.duration, config.settings.step, config.output.frames_per_second,
                                  input_jumps(config.scene));
+    add_obstacles(config.scene.obstacles, estimate);
     estimate_bytes(config.output.formats, estimate);
     return estimate;
 }
@@ -160,8 +287,8 @@ std::vector<SceneEffect> list_effects(const RunConfig& config)
         by_table(config, "wind", false),
         by_table(config, "pull", true),
         by_table(config, "pin", true),
-        by_table(config, "obstacle", true),
-        {"eol", false, "no obstacle has sharp features"},
+        obstacle_effect(config),
+        eol_effect(config),
         {"remesh", false, "no [remesh]; the mesh does not change"},
         by_table(config, "friction", false),
         {"self_contact", false, "not in this version: the cloth may pass through itself"},
@@ -172,9 +299,11 @@ std::vector<std::string> describe_scene(const RunConfig& config)
 {
     Lines lines = {fmt::format("title: {}", config.title)};
     describe_cloth(config, lines);
+    describe_obstacles(config, lines);
     describe_effects(config, lines);
     describe_meetings(config, lines);
     describe_run(config, lines);
+    for (const std::string& note : config.notes) lines.push_back(fmt::format("note: {}", note));
     for (const std::string& warning : config.warnings) lines.push_back(fmt::format("warning: {}", warning));
     for (std::string& line : lines) line = printable(line);
     return lines;

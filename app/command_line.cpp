@@ -13,6 +13,7 @@
 #include "app/run.h"
 #include "app/scene_docs.h"
 #include "app/version.h"
+#include "geometry/input_error.h"
 
 namespace arris {
 
@@ -110,8 +111,11 @@ int run_command_line(int argc, char** argv)
         return exit_status(resume(resume_request));
     }
     if (*check_command) {
-        for (const std::string& line : describe_scene(load_scene(check_scene, check_overrides)))
-            fmt::print("{}\n", line);
+        LoadOptions options;
+        options.tells_intersections = true;
+        const RunConfig config = load_scene(check_scene, check_overrides, options);
+        for (const std::string& line : describe_scene(config)) fmt::print("{}\n", line);
+        if (!config.intersections.empty()) throw InputError(config.intersections.front());
         return 0;
     }
     if (*export_command) {

@@ -79,6 +79,9 @@ const StepColumn kStepColumns[] = {
     {"output_s", [](const StepRow& row) { return cell(row.seconds.output); }},
     {"cpu_s", [](const StepRow& row) { return cell(row.cpu_seconds); }},
     {"halved", [](const StepRow& row) { return cell(row.is_halved); }},
+    {"solves", [](const StepRow& row) { return cell(row.solves); }},
+    {"rewound", [](const StepRow& row) { return cell(row.rewound); }},
+    {"yielded", [](const StepRow& row) { return cell(row.yielded); }},
 };
 
 std::string join(const std::vector<std::string>& cells)

@@ -29,9 +29,12 @@ struct StepRow {
     double min_angle = 0.0;        ///< degrees, material space
     double kkt_residual = 0.0;
     std::int64_t factorisations = 0, nlopt_evaluations = 0;
-    PhaseSeconds seconds;      ///< wall
-    double cpu_seconds = 0.0;  ///< of the process in this step, output included
-    bool is_halved = false;    ///< shorter than planned
+    PhaseSeconds seconds;                 ///< wall
+    double cpu_seconds = 0.0;             ///< of the process in this step, output included
+    bool is_halved = false;               ///< shorter than planned
+    std::int64_t solves = 0;              ///< velocity solves: more than one where the check found violations
+    std::optional<std::int64_t> rewound;  ///< vertices put back on their way, so that nothing is passed
+    std::optional<std::int64_t> yielded;  ///< contacts that could not keep their stand-off
 };
 
 /// A material point at one time: m, m/s.

@@ -14,6 +14,7 @@
 #include "app/export_usd.h"
 #include "app/frame.h"
 #include "app/frame_files.h"
+#include "app/obstacle_records.h"
 #include "app/run_directory.h"
 #include "app/viewer_html.h"
 #include "geometry/input_error.h"
@@ -21,31 +22,45 @@
 namespace arris {
 namespace {
 
-void export_obj(const std::string& run_dir, std::int64_t frame_count, const ExportOptions&)
+/// What the formats are made from.
+struct Source {
+    const std::string& run_dir;
+    std::int64_t frame_count;
+    const ExportOptions& options;
+    std::vector<ObstacleRecord> obstacles;
+
+    double time(std::int64_t frame) const { return static_cast<double>(frame) / options.frames_per_second; }
+};
+
+void export_obj(const Source& run)
 {
-    for (std::int64_t i = 0; i < frame_count; ++i)
-        write_obj(frame_file(run_dir, i, "obj"), read_frame(frame_file(run_dir, i, "ply")));
+    for (std::int64_t i = 0; i < run.frame_count; ++i)
+        write_obj(frame_file(run.run_dir, i, "obj"), read_frame(frame_file(run.run_dir, i, "ply")));
+    for (const ObstacleRecord& obstacle : run.obstacles)
+        for (std::int64_t i = 0; i < count_obstacle_frames(obstacle, run.frame_count); ++i)
+            write_obj(frame_file(run.run_dir, i, "obj", obstacle.name), obstacle, obstacle.at(run.time(i)));
 }
 
-void export_usd(const std::string& run_dir, std::int64_t frame_count, const ExportOptions& options)
+void export_usd(const Source& run)
 {
     std::vector<std::string> paths;
-    for (std::int64_t i = 0; i < frame_count; ++i) paths.push_back(frame_file(run_dir, i, "ply"));
-    write_usd(run_dir + "/cloth.usda", paths, {options.title, options.frames_per_second});
+    for (std::int64_t i = 0; i < run.frame_count; ++i) paths.push_back(frame_file(run.run_dir, i, "ply"));
+    write_usd(run.run_dir + "/cloth.usda", paths, {run.options.title, run.options.frames_per_second},
+              run.obstacles);
 }
 
-void export_viewer(const std::string& run_dir, std::int64_t, const ExportOptions& options)
+void export_viewer(const Source& run)
 {
     ViewerOptions viewer;
-    viewer.title = options.title;
-    viewer.frames_per_second = options.frames_per_second;
-    write_viewer(run_dir, viewer);
+    viewer.title = run.options.title;
+    viewer.frames_per_second = run.options.frames_per_second;
+    write_viewer(run.run_dir, viewer, run.obstacles);
 }
 
 /// A format's name and what makes it; one that is planned has no function yet.
 struct Format {
     const char* name;
-    void (*make)(const std::string& run_dir, std::int64_t frame_count, const ExportOptions&);
+    void (*make)(const Source&);
     const char* place;  ///< in the run's folder
 };
 
@@ -94,7 +109,11 @@ ExportOptions read_export_options(const std::string& run_dir)
     if (!std::filesystem::exists(path) && std::filesystem::exists(checkpoint_file(run_dir))) {
         // A run that was killed before its first report.
         const Checkpoint checkpoint = read_checkpoint(checkpoint_file(run_dir));
-        const RunConfig config = load_scene(checkpoint.source, &checkpoint.state.mesh);
+        const std::vector<ObstacleRecord> obstacles = read_obstacles(run_dir);
+        LoadOptions load;
+        load.cloth = &checkpoint.state.mesh;
+        load.obstacles = &obstacles;
+        const RunConfig config = load_scene(checkpoint.source, load);
         return {config.title, config.output.frames_per_second};
     }
     const nlohmann::ordered_json report = read_report(path);
@@ -123,7 +142,8 @@ void export_frames(const std::string& run_dir, const std::vector<std::string>& f
     require_known_formats(formats);
     const std::int64_t frame_count = count_frames(run_dir);
     if (frame_count == 0) throw InputError(frames_directory(run_dir) + ": no frames (cloth_00000.ply, ...)");
-    for (const std::string& name : formats) find_format(name).make(run_dir, frame_count, options);
+    const Source source{run_dir, frame_count, options, read_obstacles(run_dir)};
+    for (const std::string& name : formats) find_format(name).make(source);
 }
 
 }  // namespace arris

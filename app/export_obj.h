@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/frame.h"
+#include "app/obstacle_records.h"
 
 namespace arris {
 
@@ -11,5 +12,9 @@ namespace arris {
 /// and one a vertex, `f` triangles as v/vt, `l` EOL edges. Numbers read back to the same double. Whole or
 /// absent; throws std::system_error naming the path where the disk refuses.
 void write_obj(const std::string& path, const Frame& frame);
+
+/// An obstacle where `placement` (of its frame, in the world) has it: `v` world positions in metres, `f`
+/// triangles, `l` wires' segments, `p` lone points. Otherwise as above.
+void write_obj(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement);
 
 }  // namespace arris

@@ -75,6 +75,11 @@ void put(fmt::memory_buffer& out, double value)
     fmt::format_to(std::back_inserter(out), "{}", value);
 }
 
+void put(fmt::memory_buffer& out, const Face& face)
+{
+    fmt::format_to(std::back_inserter(out), "{}, {}, {}", face[0], face[1], face[2]);
+}
+
 template <class Vector>
 void put(fmt::memory_buffer& out, const Vector& vector)
 {
@@ -198,10 +203,113 @@ std::string stage_header(std::size_t frame_count, const UsdOptions& options)
         options.frames_per_second);
 }
 
+// ---- obstacles
+
+constexpr double kDrawnWidth = 0.002;  // m, of wires and points
+
+/// USD multiplies rows from the left: the transposed of ours.
+void put(fmt::memory_buffer& out, const Placement& placement)
+{
+    for (int column = 0; column < 3; ++column) {
+        const Vec3 axis = placement.rotation.col(column);
+        fmt::format_to(std::back_inserter(out), "{}({}, {}, {}, 0)", column == 0 ? "( " : ", ", axis[0],
+                       axis[1], axis[2]);
+    }
+    const Vec3& t = placement.translation;
+    fmt::format_to(std::back_inserter(out), ", ({}, {}, {}, 1) )", t[0], t[1], t[2]);
+}
+
+template <class Items>
+void put_line(fmt::memory_buffer& out, std::string_view declaration, const Items& items)
+{
+    put(out, declaration);
+    put_array(out, items);
+    put(out, std::string_view("\n"));
+}
+
+/// A prim's points, and the box around them.
+void put_points(fmt::memory_buffer& out, const std::vector<Vec3>& points)
+{
+    Vec3 least = points.front(), greatest = least;
+    for (const Vec3& point : points) {
+        least = least.cwiseMin(point);
+        greatest = greatest.cwiseMax(point);
+    }
+    put_line(out, "        point3f[] points = ", points);
+    put_line(out, "        float3[] extent = ", std::array{least, greatest});
+}
+
+void put_surface(fmt::memory_buffer& out, const ObstacleMesh& mesh)
+{
+    put(out, std::string_view("    def Mesh \"surface\"\n    {\n"
+                              "        uniform token subdivisionScheme = \"none\"\n"
+                              "        uniform token orientation = \"rightHanded\"\n"
+                              "        uniform bool doubleSided = 1\n"));
+    put_line(out, "        int[] faceVertexCounts = ", std::vector<int>(mesh.faces.size(), 3));
+    put_line(out, "        int[] faceVertexIndices = ", mesh.faces);
+    put_points(out, mesh.points);
+    put(out, std::string_view("    }\n"));
+}
+
+void put_widths(fmt::memory_buffer& out)
+{
+    fmt::format_to(std::back_inserter(out),
+                   "        float[] widths = [{}] (\n            interpolation = \"constant\"\n        )\n",
+                   kDrawnWidth);
+}
+
+void put_wires(fmt::memory_buffer& out, const ObstacleMesh& mesh)
+{
+    std::vector<Vec3> ends;
+    for (const auto& [a, b] : mesh.segments)
+        for (const int point : {a, b}) ends.push_back(mesh.points[static_cast<std::size_t>(point)]);
+    put(out, std::string_view("    def BasisCurves \"wires\"\n    {\n"
+                              "        uniform token type = \"linear\"\n"));
+    put_line(out, "        int[] curveVertexCounts = ", std::vector<int>(mesh.segments.size(), 2));
+    put_points(out, ends);
+    put_widths(out);
+    put(out, std::string_view("    }\n"));
+}
+
+void put_lone_points(fmt::memory_buffer& out, const ObstacleMesh& mesh)
+{
+    std::vector<Vec3> places;
+    for (const int point : mesh.lone_points) places.push_back(mesh.points[static_cast<std::size_t>(point)]);
+    put(out, std::string_view("    def Points \"points\"\n    {\n"));
+    put_points(out, places);
+    put_widths(out);
+    put(out, std::string_view("    }\n"));
+}
+
+void write_obstacle(AtomicFile& file, const ObstacleRecord& obstacle, std::size_t frame_count,
+                    double frames_per_second)
+{
+    const auto write = [&](const fmt::memory_buffer& text) { file.write({text.data(), text.size()}); };
+    file.write(fmt::format("\ndef Xform \"{}\"\n{{\n    matrix4d xformOp:transform", obstacle.name));
+    const bool is_moving = obstacle.motion.is_moving() && frame_count > 1;
+    file.write(is_moving ? ".timeSamples = {\n" : " = ");
+    for (std::size_t i = 0; i < (is_moving ? frame_count : 1); ++i) {
+        fmt::memory_buffer text;
+        if (is_moving) fmt::format_to(std::back_inserter(text), "        {}: ", i);
+        put(text, obstacle.at(static_cast<double>(i) / frames_per_second));
+        put(text, std::string_view(is_moving ? ",\n" : "\n"));
+        write(text);
+    }
+    file.write(is_moving ? "    }\n" : "");
+    file.write("    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n");
+
+    fmt::memory_buffer text;
+    if (!obstacle.mesh.faces.empty()) put_surface(text, obstacle.mesh);
+    if (!obstacle.mesh.segments.empty()) put_wires(text, obstacle.mesh);
+    if (!obstacle.mesh.lone_points.empty()) put_lone_points(text, obstacle.mesh);
+    write(text);
+    file.write("}\n");
+}
+
 }  // namespace
 
 void write_usd(const std::string& path, const std::vector<std::string>& frame_paths,
-               const UsdOptions& options)
+               const UsdOptions& options, const std::vector<ObstacleRecord>& obstacles)
 {
     const Changes changes = find_changes(frame_paths);
     AtomicFile file(path);
@@ -209,6 +317,8 @@ void write_usd(const std::string& path, const std::vector<std::string>& frame_pa
     for (const Attribute& attribute : attributes(frame_paths.size(), changes))
         write_attribute(file, frame_paths, attribute);
     file.write("}\n");
+    for (const ObstacleRecord& obstacle : obstacles)
+        write_obstacle(file, obstacle, frame_paths.size(), options.frames_per_second);
     file.commit();
 }
 

@@ -34,9 +34,10 @@ std::string frames_directory(const std::string& run_dir)
     return run_dir + "/frames";
 }
 
-std::string frame_file(const std::string& run_dir, std::int64_t index, const std::string& extension)
+std::string frame_file(const std::string& run_dir, std::int64_t index, const std::string& extension,
+                       const std::string& name)
 {
-    return fmt::format("{}/cloth_{:05}.{}", frames_directory(run_dir), index, extension);
+    return fmt::format("{}/{}_{:05}.{}", frames_directory(run_dir), name, index, extension);
 }
 
 std::int64_t count_frames(const std::string& run_dir)

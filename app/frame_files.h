@@ -9,8 +9,10 @@ namespace arris {
 /// Where a run keeps its frames: <run_dir>/frames.
 std::string frames_directory(const std::string& run_dir);
 
-/// <run_dir>/frames/cloth_%05d.<extension>; more digits where five do not do.
-std::string frame_file(const std::string& run_dir, std::int64_t index, const std::string& extension);
+/// <run_dir>/frames/cloth_%05d.<extension>; more digits where five do not do. `name`: of an obstacle, instead
+/// of the cloth.
+std::string frame_file(const std::string& run_dir, std::int64_t index, const std::string& extension,
+                       const std::string& name = "cloth");
 
 /// How many frames (cloth_%05d.ply) a run has; 0 if none. InputError naming the file if one is missing
 /// between.

@@ -10,12 +10,16 @@
 #include "app/command_line.h"
 #include "app/printable.h"
 #include "geometry/input_error.h"
+#include "geometry/obstacle_import.h"
 
 int main(int argc, char** argv)
 {
     // A closed pipe and a file that may not grow are errors of a write, not reasons to vanish.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+    // Not a command for people: the program starts itself with it to read a mesh file at arm's length.
+    if (argc > 1 && std::strcmp(argv[1], "import-obstacle") == 0)
+        return arris::import_obstacle_command(argc - 2, argv + 2);
     try {
         const int status = arris::run_command_line(argc, argv);
         // Output that went nowhere was not given.

@@ -5,6 +5,7 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
@@ -23,6 +24,7 @@
 #include "geometry/input_error.h"
 #include "geometry/mesh_quality.h"
 #include "physics/inertia.h"
+#include "solver/audit.h"
 #include "solver/step.h"
 #include "solver/stopwatch.h"
 
@@ -43,6 +45,7 @@ struct Run {
     RunDirectory files;
     Checkpoint at;  ///< as it would be written now
     Workspace work;
+    Audit audited;  ///< of the cloth as it is, where it is a frame
     double cpu_told = process_cpu_seconds();
 
     Run(const RunConfig& config_, RunDirectory files_, Checkpoint at_)
@@ -68,11 +71,19 @@ StepRow make_row(const Run& run, const StepReport& report)
     if (scene.gravity) row.gravity_energy = energies.gravity;
     row.stretch_energy = energies.stretch;
     if (scene.material.bending_stiffness > 0.0) row.bending_energy = energies.bending;
+    if (!scene.obstacles.empty()) {
+        row.feature_rows = report.feature_rows;
+        row.rewound = report.rewound;
+        row.yielded = report.yielded;
+    }
     row.material_area = material_area(state.mesh);
+    row.max_penetration = run.audited.found.depth;
+    row.crossings = state.crossings;
     row.min_angle = least_material_angle(state.mesh);
     row.kkt_residual = report.kkt_residual;
     row.factorisations = report.factorisations;
     row.nlopt_evaluations = report.nlopt_evaluations;
+    row.solves = report.solves;
     row.seconds = report.seconds;
     return row;
 }
@@ -81,6 +92,8 @@ StepRow make_row(const Run& run, const StepReport& report)
 void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is_halved)
 {
     const State& state = run.at.state;
+    const bool is_audited = run.timeline.frame_at(state.time) >= 0 || state.time >= run.config.duration;
+    run.audited = is_audited ? audit(run.config.scene, state) : Audit();
     StepRow row = make_row(run, report);
     row.is_halved = is_halved;
     if (const std::int64_t index = run.timeline.frame_at(state.time); index >= 0) {
@@ -104,8 +117,16 @@ Ending explain(const StepReport& report, double tolerance, const State& state)
             return {RunStatus::NotFinite,
                     fmt::format("a number that is not finite {}, also with 64 times smaller steps", place)};
         case StepStatus::Infeasible:
-            return {RunStatus::Infeasible,
-                    fmt::format("pins drive vertex {} into an obstacle {}", report.infeasible_vertex, place)};
+            return {
+                RunStatus::Infeasible,
+                fmt::format("nothing keeps vertex {} out of the obstacles {}: a pin drives it into one, or "
+                            "two leave it no room",
+                            report.infeasible_vertex, place)};
+        case StepStatus::Penetration:
+            return {RunStatus::Penetration,
+                    fmt::format("the cloth cannot be kept out of an obstacle {}, also with 64 times smaller "
+                                "steps",
+                                place)};
         default:
             if (!std::isfinite(report.kkt_residual))
                 return {
@@ -121,8 +142,19 @@ Ending explain(const StepReport& report, double tolerance, const State& state)
     }
 }
 
+/// What the steps' own check should have found.
+Ending explain(const Audit& audited, const Scene& scene, const State& state)
+{
+    const Vec3& place = audited.found.place;
+    return {
+        RunStatus::Penetration,
+        fmt::format("the cloth reaches {:.3g} m into {} at [{:.6g}, {:.6g}, {:.6g}], at t = {} s",
+                    audited.found.depth, scene.obstacles[static_cast<std::size_t>(audited.obstacle)].name(),
+                    place.x(), place.y(), place.z(), state.time)};
+}
+
 /// One planned step, to its end; where it fails, the rest of it in twice as many equal parts, at most six
-/// times.
+/// times; the last of them with the last resort.
 std::optional<Ending> advance(Run& run)
 {
     constexpr int kMostParts = 64;
@@ -134,7 +166,9 @@ std::optional<Ending> advance(Run& run)
     for (int shrink = 1; state.time < end;) {
         Stopwatch watch;
         const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
-        const StepReport report = step(run.config.scene, run.config.settings, part_end, state, run.work);
+        const Attempt attempt = shrink == kMostParts ? Attempt::Last : Attempt::Ordinary;
+        const StepReport report =
+            step(run.config.scene, run.config.settings, part_end, state, run.work, attempt);
         if (report.status != StepStatus::Done) {
             if (shrink == kMostParts) return explain(report, run.config.settings.tolerance, state);
             shrink *= 2;
@@ -145,6 +179,7 @@ std::optional<Ending> advance(Run& run)
         watch.lap();
         parts = std::max(parts - 1, 1);
         write_outputs(run, report, watch, is_halved);
+        if (run.audited.obstacle >= 0) return explain(run.audited, run.config.scene, state);
     }
     run.at.position = run.timeline.advance(run.at.position);
     return std::nullopt;
@@ -257,11 +292,46 @@ void tell_warnings(const RunConfig& config)
         fmt::print(stderr, "warning: {}\n", printable(warning));
 }
 
-/// The scene of a checkpoint, to end at `until` where that is given. What is left is planned anew where the
-/// new end changes the interval that the run stands in.
-RunConfig load_resumed(const std::optional<double>& until, Checkpoint& checkpoint)
+/// A checkpoint is untrusted input: what it names must be in its scene.
+void check_references(const std::string& directory, const State& state, const Scene& scene)
 {
-    RunConfig config = load_scene(checkpoint.source, &checkpoint.state.mesh);
+    const auto is_sound = [](std::int64_t index, std::size_t count) {
+        return index >= 0 && index < static_cast<std::int64_t>(count);
+    };
+    const bool has_pins =
+        std::all_of(state.anchors.begin(), state.anchors.end(),
+                    [&](const PinAnchor& anchor) { return is_sound(anchor.pin, scene.pins.size()); });
+    const auto is_there = [&](const ActiveContact& contact) {
+        if (!is_sound(contact.obstacle, scene.obstacles.size())) return false;
+        const Obstacle& obstacle = scene.obstacles[static_cast<std::size_t>(contact.obstacle)];
+        switch (contact.kind) {
+            case ContactKind::Vertex:
+                return true;  // its element only serves to compare
+            case ContactKind::Edge:
+                return is_sound(contact.element, obstacle.topology().edges.size());
+            case ContactKind::Triangle:
+                return is_sound(contact.element, obstacle.mesh().points.size());
+        }
+        return false;
+    };
+    const bool has_obstacles = std::all_of(state.active.begin(), state.active.end(), is_there);
+    if (!has_pins || !has_obstacles)
+        throw InputError(fmt::format("{}: is damaged: it names {} that its scene has not",
+                                     printable(checkpoint_file(directory)),
+                                     has_pins ? "parts of obstacles" : "pins"));
+}
+
+/// The scene of a checkpoint in `directory`, to end at `until` where that is given. What is left is planned
+/// anew where the new end changes the interval that the run stands in.
+RunConfig load_resumed(const std::string& directory, const std::optional<double>& until,
+                       Checkpoint& checkpoint)
+{
+    const std::vector<ObstacleRecord> obstacles = read_obstacles(directory);
+    LoadOptions options;
+    options.cloth = &checkpoint.state.mesh;
+    options.obstacles = &obstacles;
+    RunConfig config = load_scene(checkpoint.source, options);
+    check_references(directory, checkpoint.state, config.scene);
     if (until) {
         if (!(*until > checkpoint.state.time) || !std::isfinite(*until))
             throw InputError(fmt::format("--until {}: the run has come to t = {} s; allowed: later times",
@@ -269,7 +339,7 @@ RunConfig load_resumed(const std::optional<double>& until, Checkpoint& checkpoin
         const double begin = checkpoint.position.begin;
         const double planned_end = Timeline(config).interval_end(begin);
         checkpoint.source.overrides.push_back(fmt::format("duration={}", *until));
-        config = load_scene(checkpoint.source, &checkpoint.state.mesh);
+        config = load_scene(checkpoint.source, options);
         if (Timeline(config).interval_end(begin) != planned_end)
             checkpoint.position = {checkpoint.state.time, 0};
     }
@@ -314,7 +384,7 @@ RunStatus resume(const ResumeRequest& request)
     const int threads = thread_count(request.threads);
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     Checkpoint checkpoint = read_checkpoint(checkpoint_file(request.directory));
-    const RunConfig config = load_resumed(request.until, checkpoint);
+    const RunConfig config = load_resumed(request.directory, request.until, checkpoint);
     tell_warnings(config);
     RunDirectory files = RunDirectory::reopen(request.directory, checkpoint, config);
     Run run(config, std::move(files), std::move(checkpoint));

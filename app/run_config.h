@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/obstacle_records.h"
 #include "geometry/cloth_mesh.h"
 #include "solver/scene.h"
 #include "solver/settings.h"
@@ -21,7 +22,7 @@ struct OutputOptions {
     std::vector<std::string> formats = {"viewer"};
 };
 
-/// A scene file, loaded and validated: all that `run` needs.
+/// A scene file, loaded and validated: all that `run` needs. Movable only, as its scene is.
 struct RunConfig {
     std::string title;
     double duration = 0.0;  ///< s
@@ -30,11 +31,14 @@ struct RunConfig {
     OutputOptions output;
     std::vector<Probe> probes;
 
-    ClothMesh cloth;                     ///< placed and folded, before pins take hold
-    Vec3 cloth_velocity = Vec3::Zero();  ///< m/s, initial
+    ClothMesh cloth;                             ///< placed and folded, before pins take hold
+    Vec3 cloth_velocity = Vec3::Zero();          ///< m/s, initial
+    std::vector<Placement> obstacle_placements;  ///< of the scene's obstacles' frames, before their motions
+    std::vector<std::string> intersections;      ///< of the cloth with obstacles at time 0, a line each
 
     std::vector<std::string> warnings;
-    nlohmann::ordered_json as_run;  ///< the scene with every default written out, by key
+    std::vector<std::string> notes;  ///< of obstacles' files: what is legitimate but good to know
+    nlohmann::ordered_json as_run;   ///< the scene with every default written out, by key
 };
 
 /// A scene file as it was read, so that a run can be resumed whatever became of the file.
@@ -47,12 +51,29 @@ struct SceneSource {
 /// Reads a scene file. Throws InputError in one line: missing, no regular file, larger than 16 MiB.
 SceneSource read_scene_source(const std::string& path, const std::vector<std::string>& overrides);
 
-/// Loads and validates a scene once, its overrides applied. Throws InputError. Where `cloth` is given it is
-/// taken instead of making the scene's (a resumed run has its mesh, whatever became of the file).
-RunConfig load_scene(const SceneSource& source, const ClothMesh* cloth = nullptr);
-inline RunConfig load_scene(const std::string& path, const std::vector<std::string>& overrides)
+/// What load_scene takes from elsewhere than the scene.
+struct LoadOptions {
+    /// Of a run that is resumed, whatever became of the files: its cloth, and its obstacles' meshes. Nothing
+    /// is then said of time 0, which is over.
+    const ClothMesh* cloth = nullptr;
+    const std::vector<ObstacleRecord>* obstacles = nullptr;
+
+    /// Intersections with obstacles at time 0 are put into the config, instead of being an InputError.
+    bool tells_intersections = false;
+
+    /// The command that imports a mesh file, in a process of its own: this program.
+    std::vector<std::string> importer = {"/proc/self/exe", "import-obstacle"};
+};
+
+/// Loads and validates a scene once, its overrides applied. Throws InputError.
+RunConfig load_scene(const SceneSource& source, const LoadOptions& options = {});
+inline RunConfig load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                            const LoadOptions& options = {})
 {
-    return load_scene(read_scene_source(path, overrides));
+    return load_scene(read_scene_source(path, overrides), options);
 }
+
+/// The obstacles of a run as they are stored with it.
+std::vector<ObstacleRecord> record_obstacles(const RunConfig& config);
 
 }  // namespace arris

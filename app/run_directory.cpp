@@ -11,11 +11,14 @@
 #include <cerrno>
 #include <charconv>
 #include <filesystem>
+#include <optional>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "app/frame_files.h"
+#include "app/obstacle_records.h"
 #include "app/printable.h"
 #include "app/report.h"
 #include "geometry/input_error.h"
@@ -28,7 +31,7 @@ namespace fs = std::filesystem;
 
 /// What a run leaves besides its frames' folder.
 constexpr std::array kRunFiles = {"steps.csv",   "probes.csv", "report.json", "report.html",
-                                  "viewer.html", "cloth.usda", "checkpoint"};
+                                  "viewer.html", "cloth.usda", "checkpoint",  "obstacles"};
 
 std::vector<std::string> probe_names(const RunConfig& config)
 {
@@ -42,23 +45,48 @@ bool holds_run(const std::string& dir)
     return fs::exists(checkpoint_file(dir)) || fs::exists(steps_file(dir));
 }
 
-/// Files of the cloth's frames whose index is `first` or more, in every format; what else is there is the
-/// user's.
-void remove_frames(const std::string& dir, std::int64_t first)
+/// What a frame's file shows, and when: "table" and 7 of table_00007.obj.
+struct FrameName {
+    std::string_view subject;
+    std::int64_t index;
+};
+
+std::optional<FrameName> parse_frame_name(std::string_view name)
+{
+    const std::size_t digits = name.find_last_of('_') + 1;  // of npos 0
+    std::int64_t index = -1;
+    const char* end = name.data() + name.size();
+    const auto [rest, error] = std::from_chars(name.data() + digits, end, index);
+    const std::string_view extension(rest, static_cast<std::size_t>(end - rest));
+    const bool is_frame =
+        extension == ".ply" || extension == ".obj" || extension == ".ply.tmp" || extension == ".obj.tmp";
+    if (digits == 0 || error != std::errc() || !is_frame) return std::nullopt;
+    return FrameName{name.substr(0, digits - 1), index};
+}
+
+/// Files of frames whose index is `first` or more, in every format, of the cloth and of `obstacles`; what
+/// else is there is the user's.
+void remove_frames(const std::string& dir, std::int64_t first, const std::set<std::string>& obstacles)
 {
     if (!fs::is_directory(frames_directory(dir))) return;
     for (const fs::directory_entry& entry : fs::directory_iterator(frames_directory(dir))) {
-        const std::string name = entry.path().filename().string();
-        constexpr std::string_view kPrefix = "cloth_";
-        std::int64_t index = -1;
-        const char* end = name.data() + name.size();
-        if (!name.starts_with(kPrefix)) continue;
-        const auto [rest, error] = std::from_chars(name.data() + kPrefix.size(), end, index);
-        const std::string_view extension(rest, static_cast<std::size_t>(end - rest));
-        const bool is_frame =
-            extension == ".ply" || extension == ".obj" || extension == ".ply.tmp" || extension == ".obj.tmp";
-        if (error == std::errc() && is_frame && index >= first) fs::remove(entry.path());
+        const std::string file = entry.path().filename().string();
+        const std::optional<FrameName> name = parse_frame_name(file);
+        if (!name || name->index < first) continue;
+        if (name->subject == "cloth" || obstacles.contains(std::string(name->subject)))
+            fs::remove(entry.path());
     }
+}
+
+/// Names of the obstacles of the run that `dir` holds; none where they cannot be read.
+std::set<std::string> stored_names(const std::string& dir)
+{
+    std::set<std::string> names;
+    try {
+        for (const ObstacleRecord& record : read_obstacles(dir)) names.insert(record.name);
+    } catch (const InputError&) {  // that run is to be removed: what is wrong with it does not matter
+    }
+    return names;
 }
 
 void make_folders(const std::string& path)
@@ -114,11 +142,13 @@ RunDirectory RunDirectory::create(const std::string& path, bool is_overwriting, 
     make_folders(path);
     FolderLock lock(path);
     if (holds_run(path)) {
+        remove_frames(path, 0, stored_names(path));
         for (const char* name : kRunFiles) fs::remove(fs::path(path) / name);
-        remove_frames(path, 0);
     }
-    return {path, std::move(lock), CsvWriter::create(steps_file(path), step_header()),
-            CsvWriter::create(probes_file(path), probe_header(probe_names(config)))};
+    RunDirectory files(path, std::move(lock), CsvWriter::create(steps_file(path), step_header()),
+                       CsvWriter::create(probes_file(path), probe_header(probe_names(config))));
+    if (!config.scene.obstacles.empty()) write_obstacles(path, record_obstacles(config));
+    return files;
 }
 
 RunDirectory RunDirectory::reopen(const std::string& path, const Checkpoint& checkpoint,
@@ -131,7 +161,9 @@ RunDirectory RunDirectory::reopen(const std::string& path, const Checkpoint& che
     truncate_csv(steps_file(path), checkpoint.rows);
     truncate_csv(probes_file(path), checkpoint.rows);
     sum_steps(steps_file(path));  // a damaged row is told now, not when the rest has been simulated
-    remove_frames(path, checkpoint.frames);
+    std::set<std::string> obstacles;
+    for (const Obstacle& obstacle : config.scene.obstacles) obstacles.insert(obstacle.name());
+    remove_frames(path, checkpoint.frames, obstacles);
     make_folders(path);
     return {path, std::move(lock), CsvWriter::append_to(steps_file(path), step_header()),
             CsvWriter::append_to(probes_file(path), probe_header(probe_names(config)))};

@@ -30,6 +30,11 @@ constexpr FrameBytes kPlyBytes = {"ply", 94.0,
 constexpr double kRowBytes = 400.0;         // a row of steps.csv and probes.csv
 constexpr double kCheckpointBytes = 200.0;  // a vertex
 
+// Of an obstacle's triangle with its half of a point. Memory: mesh, topology, search trees.
+constexpr double kObstacleElementBytes = 600.0;
+constexpr double kStoredElementBytes = 24.0;
+constexpr double kObjElementBytes = 50.0;
+
 }  // namespace
 
 void estimate_grid(const ClothGrid& grid, SceneEstimate& estimate)
@@ -66,6 +71,17 @@ double count_steps(double duration, double step, double frames_per_second, const
     return steps;
 }
 
+void add_obstacles(const std::vector<Obstacle>& obstacles, SceneEstimate& estimate)
+{
+    for (const Obstacle& obstacle : obstacles) {
+        const ObstacleMesh& mesh = obstacle.mesh();
+        const auto elements =
+            static_cast<double>(mesh.faces.size() + mesh.segments.size() + mesh.lone_points.size());
+        estimate.obstacle_elements += elements;
+        if (obstacle.motion().is_moving()) estimate.moving_elements += elements;
+    }
+}
+
 void estimate_bytes(const std::vector<std::string>& formats, SceneEstimate& estimate)
 {
     // The Cholesky factor of a planar mesh under nested dissection has n log n entries. The constants are
@@ -75,7 +91,8 @@ void estimate_bytes(const std::vector<std::string>& formats, SceneEstimate& esti
     const double n = estimate.vertices;
     const double vertex_bytes =
         std::max(kFactorBytes, kFactorBytes * std::log2(std::max(n, 2.0)) - kSmallMeshBytes);
-    estimate.memory_bytes = kProgramBytes + n * vertex_bytes;
+    estimate.memory_bytes =
+        kProgramBytes + n * vertex_bytes + kObstacleElementBytes * estimate.obstacle_elements;
 
     const auto frame_bytes = [&](const FrameBytes& size) {
         return estimate.frames * (size.vertex * estimate.vertices + size.face * estimate.faces);
@@ -85,6 +102,10 @@ void estimate_bytes(const std::vector<std::string>& formats, SceneEstimate& esti
     for (const FrameBytes& size : kFormatBytes)
         if (std::find(formats.begin(), formats.end(), size.format) != formats.end())
             estimate.disk_bytes += frame_bytes(size);
+    estimate.disk_bytes += kStoredElementBytes * estimate.obstacle_elements;
+    if (std::find(formats.begin(), formats.end(), "obj") != formats.end())
+        estimate.disk_bytes += kObjElementBytes * (estimate.obstacle_elements - estimate.moving_elements +
+                                                   estimate.frames * estimate.moving_elements);
 }
 
 std::optional<Excess> find_memory_excess(const SceneEstimate& estimate, double available)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/cloth_grid.h"
+#include "geometry/obstacle.h"
 
 namespace arris {
 
@@ -15,6 +16,8 @@ struct SceneEstimate {
     double faces = 0.0;
     double steps = 0.0;
     double frames = 0.0;
+    double obstacle_elements = 0.0;  ///< triangles, wire segments and points of all obstacles
+    double moving_elements = 0.0;    ///< of those that move
     double memory_bytes = 0.0;
     double disk_bytes = 0.0;
 };
@@ -23,6 +26,7 @@ struct SceneEstimate {
 inline constexpr double kMaxVertices = kMostGridVertices;
 inline constexpr double kMaxSteps = 1e8;
 inline constexpr double kMaxFrames = 1e6;
+inline constexpr double kMaxObstacleElements = 5e6;
 
 /// Vertices and faces of a grid, before it is made; throws what estimate_cloth_grid throws.
 void estimate_grid(const ClothGrid& grid, SceneEstimate& estimate);
@@ -33,6 +37,9 @@ double count_frames(double duration, double frames_per_second);
 /// Steps when each interval between frames, `jumps` (s, ascending) and the end is divided into
 /// ceil(interval / step - 1e-9) equal steps. Linear in frames and jumps: count the frames first.
 double count_steps(double duration, double step, double frames_per_second, const std::vector<double>& jumps);
+
+/// Counts the elements of the obstacles.
+void add_obstacles(const std::vector<Obstacle>& obstacles, SceneEstimate& estimate);
 
 /// Fills `memory_bytes` and `disk_bytes` from the counts, for the given output formats.
 void estimate_bytes(const std::vector<std::string>& formats, SceneEstimate& estimate);

@@ -225,8 +225,8 @@ std::vector<SceneKey> make_scene_keys()
         axis("pin[].keyframes[].rotate.axis"),
         number("pin[].keyframes[].rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
-        not_built(
-            text("pin[].follow", KeyType::Name, {}, "", "Name of an obstacle the pin rides on instead.")),
+        text("pin[].follow", KeyType::Name, {}, "",
+             "Name of an obstacle that the pin rides on instead: what it holds moves as if fixed to it."),
         choices("pin[].directions", 1, kAxes, R"(["x", "y", "z"])", "Which world components are held."),
         number("pin[].release", "s", kNotNegative, kNever, "When the pin lets go."),
 
@@ -275,9 +275,9 @@ std::vector<SceneKey> make_scene_keys()
         number("remesh.velocity", "m/s", kPositive, "0.5", "Velocity difference allowed over one edge."),
         number("remesh.aspect", "", {0.0, 0.8, true}, "0.2", "Least height of a face by its longest edge."),
 
-        not_built(tables("obstacle", "A rigid obstacle: one of `file`, `box`, `points`, `wire`, `teeth`.")),
+        tables("obstacle", "A rigid obstacle: one of `file`, `box`, `points`, `wire`, `teeth`."),
         text("obstacle[].name", KeyType::Name, {}, "(obstacle0, obstacle1, …)",
-             "What its frames are called; unique, not `cloth`."),
+             "What its frames are called; unique among obstacles and probes, not `cloth`."),
         text("obstacle[].file", KeyType::Path, kPath, "",
              "OBJ, STL, PLY, glTF/GLB, COLLADA, FBX, 3MF or 3DS mesh."),
         choice("obstacle[].units", kUnits, "(what the file declares, else m)", "Unit of the file."),
@@ -285,11 +285,16 @@ std::vector<SceneKey> make_scene_keys()
         numbers("obstacle[].box", 3, "m", kSize, "", "A box of these sizes, centred on its origin."),
         points("obstacle[].points", 1, "Nails: lone points."),
         points("obstacle[].wire", 2, "A polyline."),
-        boolean("obstacle[].closed", "false", "Whether the wire's end is joined to its beginning."),
-        table("obstacle[].teeth", "", "A row of prisms along x, their ridges along y."),
+        boolean("obstacle[].closed", "false", "Whether the `wire`'s end is joined to its beginning."),
+        table("obstacle[].teeth", "",
+              "A row of prisms along x, their ridges along y, on a base: tips at z = height, valleys at z = "
+              "0, the "
+              "bottom at z = -height; centred in x and y."),
         integer("obstacle[].teeth.count", {1.0, 1e4}, kRequired, "How many."),
-        number("obstacle[].teeth.pitch", "m", kSize, kRequired, "Distance from ridge to ridge."),
-        number("obstacle[].teeth.height", "m", kSize, kRequired, "Height of the ridges."),
+        number("obstacle[].teeth.pitch", "m", kSize, kRequired,
+               "Distance from ridge to ridge; at least a ridge's width at its foot, 2 height tan(tip_degrees "
+               "/ 2)."),
+        number("obstacle[].teeth.height", "m", kSize, kRequired, "Height of the ridges above the valleys."),
         number("obstacle[].teeth.width", "m", kSize, kRequired, "Length of the ridges."),
         number("obstacle[].teeth.tip_degrees", "degrees", {0.0, 180.0, true}, kRequired,
                "Angle at the ridges."),
@@ -299,9 +304,9 @@ std::vector<SceneKey> make_scene_keys()
         axis("obstacle[].rotate.axis"),
         number("obstacle[].rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
-        number("obstacle[].scale", "", kPositive, "1.0", "Scale of the obstacle."),
+        number("obstacle[].scale", "", kPositive, "1.0", "Scale of the obstacle, about its origin."),
         number("obstacle[].feature_angle", "degrees", {0.0, 180.0, true}, "30.0",
-               "A convex edge whose faces turn by more is sharp."),
+               "A convex edge whose faces turn by more (+ 1e-6) is sharp."),
         table("obstacle[].motion", "",
               "p(t) = pivot + velocity tau + R(angular_velocity tau)(p0 - pivot), tau = clamp(t - start, 0, "
               "stop - start)."),
@@ -310,8 +315,11 @@ std::vector<SceneKey> make_scene_keys()
                 "Rotation about `pivot`."),
         numbers("obstacle[].motion.pivot", 3, "m", kAnyNumber, kOrigin, "World point that is turned about."),
         number("obstacle[].motion.start", "s", kNotNegative, "0.0", "When the motion begins."),
-        number("obstacle[].motion.stop", "s", kPositive, kNever, "When the motion ends."),
-        tables("obstacle[].keyframes", "Placements in time, instead of motion and placement."),
+        number("obstacle[].motion.stop", "s", kPositive, kNever, "When the motion ends; later than `start`."),
+        tables(
+            "obstacle[].keyframes",
+            "Placements in time, instead of `motion`, `translate` and `rotate`: translation linear, rotation "
+            "slerp by the shorter arc, constant outside."),
         number("obstacle[].keyframes[].time", "s", kNotNegative, kRequired,
                "When; later than the keyframe before."),
         numbers("obstacle[].keyframes[].translate", 3, "m", kAnyNumber, kOrigin, "Translation then."),
@@ -319,12 +327,13 @@ std::vector<SceneKey> make_scene_keys()
         axis("obstacle[].keyframes[].rotate.axis"),
         number("obstacle[].keyframes[].rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
-        number("obstacle[].friction", "", {0.0, 100.0}, "",
-               "Coulomb's coefficient of this obstacle; without [friction] it switches friction on for it."),
+        not_built(number(
+            "obstacle[].friction", "", {0.0, 100.0}, "",
+            "Coulomb's coefficient of this obstacle; without [friction] it switches friction on for it.")),
 
         tables("probe", "A material point whose path is written to probes.csv."),
         text("probe[].name", KeyType::Name, {}, kRequired,
-             "What its columns are called; unique, not `cloth`."),
+             "What its columns are called; unique among obstacles and probes, not `cloth`."),
         numbers("probe[].material", 2, "m", kAnyNumber, kRequired, "The material point, u and v."),
 
         table("solver", "{}", "Numbers of the solver."),
@@ -422,6 +431,17 @@ std::vector<std::string_view> split_choices(std::string_view choices)
         choices.remove_prefix(std::min(end + 1, choices.size()));
     }
     return words;
+}
+
+bool is_scene_name(std::string_view text)
+{
+    constexpr std::size_t kLongestName = 64;
+    const auto is_letter = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    };
+    const auto fits = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); };
+    return !text.empty() && text.size() <= kLongestName && is_letter(text[0]) &&
+           std::all_of(text.begin(), text.end(), fits);
 }
 
 std::string allowed_values(const SceneKey& key)

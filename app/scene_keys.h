@@ -74,6 +74,9 @@ bool is_built(const SceneKey& key);
 /// Splits "a|b|c".
 std::vector<std::string_view> split_choices(std::string_view choices);
 
+/// Whether `text` is [A-Za-z_][A-Za-z0-9_]{0,63}.
+bool is_scene_name(std::string_view text);
+
 /// What is allowed, in words: "a number > 0, <= 1e+06 (s)".
 std::string allowed_values(const SceneKey& key);
 

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a scene file to a RunConfig, in the order in which mistakes are cheapest to find: each key by itself
 // (scene_values), rules between keys (scene_rules), how large the run would be (scene_estimate), and only
-// then the cloth, and what pins, pulls and probes meet of it.
+// then the cloth, what pins, pulls and probes meet of it, and the obstacles.
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <optional>
+#include <utility>
 
 #include "app/run_config.h"
 #include "app/scene_document.h"
 #include "app/scene_estimate.h"
+#include "app/scene_json.h"
+#include "app/scene_obstacles.h"
 #include "app/scene_rules.h"
 #include "app/scene_values.h"
 #include "app/scene_warnings.h"
@@ -27,44 +29,12 @@ using Json = nlohmann::ordered_json;
 
 // ---- JSON to plain types
 
-double to_double(const Json& value)
-{
-    return value.get<double>();
-}
-
-Vec2 to_vec2(const Json& value)
-{
-    return {to_double(value[0]), to_double(value[1])};
-}
-
-Vec3 to_vec3(const Json& value)
-{
-    return {to_double(value[0]), to_double(value[1]), to_double(value[2])};
-}
-
-MaterialBox to_box(const Json& value)
-{
-    return {to_vec2(value[0]), to_vec2(value[1])};
-}
-
-/// Seconds, where null is never.
-double to_time(const Json& value)
-{
-    return value.is_null() ? std::numeric_limits<double>::infinity() : to_double(value);
-}
-
-Mat3 to_rotation(const Json& rotate)
-{
-    return rotation_about(to_vec3(rotate["axis"]).stableNormalized(), to_double(rotate["degrees"]));
-}
-
 RigidMotion to_pin_motion(const Json& pin)
 {
     RigidMotion motion;
+    if (pin.contains("follow")) return motion;
     if (pin.contains("keyframes")) {
-        for (const Json& keyframe : pin["keyframes"])
-            motion.keyframes.push_back({to_double(keyframe["time"]), to_vec3(keyframe["translate"]),
-                                        Eigen::Quaterniond(to_rotation(keyframe["rotate"]))});
+        motion.keyframes = to_keyframes(pin["keyframes"]);
         return motion;
     }
     motion.velocity = to_vec3(pin["velocity"]);
@@ -73,14 +43,23 @@ RigidMotion to_pin_motion(const Json& pin)
     return motion;
 }
 
-Pin to_pin(const Json& json)
+/// Index of the obstacle called `name`, which is there.
+int find_obstacle(const Json& obstacles, const Json& name)
+{
+    int index = 0;
+    while (obstacles[static_cast<std::size_t>(index)]["name"] != name) ++index;
+    return index;
+}
+
+Pin to_pin(const Json& scene, const Json& json)
 {
     Pin pin;
-    pin.material = to_box(json["material"]);
+    pin.material = to_material_box(json["material"]);
     pin.motion = to_pin_motion(json);
     pin.held = {false, false, false};
     for (const Json& direction : json["directions"]) pin.held[direction.get<std::string>()[0] - 'x'] = true;
     pin.release = to_time(json["release"]);
+    if (json.contains("follow")) pin.follows = find_obstacle(scene["obstacle"], json["follow"]);
     return pin;
 }
 
@@ -110,9 +89,9 @@ Scene to_scene(const Json& json)
     if (json.contains("gravity")) scene.gravity = Gravity{to_vec3(json["gravity"]["acceleration"])};
     if (json.contains("wind")) scene.wind = to_wind(json["wind"]);
     for (const Json& pull : json.value("pull", Json::array()))
-        scene.pulls.push_back({to_box(pull["material"]), to_vec3(pull["force"]), to_double(pull["start"]),
-                               to_time(pull["stop"])});
-    for (const Json& pin : json.value("pin", Json::array())) scene.pins.push_back(to_pin(pin));
+        scene.pulls.push_back({to_material_box(pull["material"]), to_vec3(pull["force"]),
+                               to_double(pull["start"]), to_time(pull["stop"])});
+    for (const Json& pin : json.value("pin", Json::array())) scene.pins.push_back(to_pin(json, pin));
     return scene;
 }
 
@@ -144,8 +123,23 @@ void check_size(const SceneDocument& document, const RunConfig& config, SceneEst
         document.fail(cloth_key, excess->wrong, excess->allowed);
 }
 
-void check_length(const SceneDocument& document, const RunConfig& config, SceneEstimate& estimate)
+/// Jumps of the input, with those of obstacles that are not in the scene yet.
+std::vector<double> all_jumps(const Scene& scene, const std::vector<ObstaclePlan>& plans)
 {
+    std::vector<double> times = input_jumps(scene);
+    for (const ObstaclePlan& plan : plans) {
+        const std::vector<double> jumps = plan.motion.jumps();
+        times.insert(times.end(), jumps.begin(), jumps.end());
+    }
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+}
+
+void check_length(const SceneDocument& document, const RunConfig& config,
+                  const std::vector<ObstaclePlan>& plans)
+{
+    SceneEstimate estimate;
     // The key a person would change: the one that was written.
     const auto written = [&](const std::string& key) { return document.find(key) ? key : "duration"; };
     const double fps = config.output.frames_per_second, step = config.settings.step;
@@ -154,7 +148,7 @@ void check_length(const SceneDocument& document, const RunConfig& config, SceneE
         refuse_estimate(document, written("output.frames_per_second"), estimate.frames, "frames", kMaxFrames);
     estimate.steps = config.duration / step;
     if (estimate.steps <= kMaxSteps)
-        estimate.steps = count_steps(config.duration, step, fps, input_jumps(config.scene));
+        estimate.steps = count_steps(config.duration, step, fps, all_jumps(config.scene, plans));
     if (estimate.steps > kMaxSteps)
         refuse_estimate(document, written("time.step"), estimate.steps, "steps", kMaxSteps);
 }
@@ -203,14 +197,14 @@ ClothMesh read_cloth(const SceneDocument& document, const Json& cloth, std::vect
     const std::filesystem::path name(cloth["file"].get<std::string>());
     const std::string path = (std::filesystem::path(document.path()).parent_path() / name).string();
     const std::string unit = cloth["units"].get<std::string>();
-    const double metres = unit == "m" ? 1.0 : unit == "cm" ? 0.01 : unit == "mm" ? 0.001 : 0.0254;
     std::string extension = name.extension().string();
     for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
     if (extension != ".obj")
         document.fail("cloth.file", "a cloth of this format is not built yet in this version",
                       "an .obj file");
-    ClothFile file = blame(document, "cloth.file",
-                           [&] { return read_cloth_file(path, metres, cloth["up"].get<std::string>()[0]); });
+    ClothFile file = blame(document, "cloth.file", [&] {
+        return read_cloth_file(path, metres_of(unit), cloth["up"].get<std::string>()[0]);
+    });
     for (const std::string& warning : file.warnings)
         warnings.push_back(fmt::format("{}: {}", document.describe("cloth.file"), warning));
     return std::move(file.mesh);
@@ -289,14 +283,35 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
             refuse_miss(document, fmt::format("probe.{}.material", i), cloth, "meets no cloth");
 }
 
+/// How the cloth stands to the obstacles at time 0.
+void check_start(const SceneDocument& document, const LoadOptions& options, RunConfig& config)
+{
+    config.intersections = find_intersections(document, config);
+    if (config.intersections.empty())
+        keep_stand_off(config);
+    else if (!options.tells_intersections)
+        throw InputError(config.intersections.front());
+}
+
 }  // namespace
+
+std::vector<ObstacleRecord> record_obstacles(const RunConfig& config)
+{
+    std::vector<ObstacleRecord> records;
+    for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
+        const Obstacle& obstacle = config.scene.obstacles[i];
+        records.push_back(
+            {obstacle.name(), obstacle.mesh(), config.obstacle_placements[i], obstacle.motion()});
+    }
+    return records;
+}
 
 SceneSource read_scene_source(const std::string& path, const std::vector<std::string>& overrides)
 {
     return {path, read_scene_text(path), overrides};
 }
 
-RunConfig load_scene(const SceneSource& source, const ClothMesh* cloth)
+RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
 {
     SceneDocument document(source.path, source.text);
     for (const std::string& assignment : source.overrides) document.set(assignment);
@@ -315,12 +330,16 @@ RunConfig load_scene(const SceneSource& source, const ClothMesh* cloth)
     for (const Json& probe : json.value("probe", Json::array()))
         config.probes.push_back({probe["name"].get<std::string>(), to_vec2(probe["material"])});
 
-    merge_events(config);
-    SceneEstimate length;
-    check_length(document, config, length);
-    config.cloth = cloth ? *cloth : make_cloth(document, config);
+    std::vector<ObstaclePlan> plans = plan_obstacles(json);
+    std::vector<RigidMotion*> motions;
+    for (ObstaclePlan& plan : plans) motions.push_back(&plan.motion);
+    merge_events(config, motions);
+    check_length(document, config, plans);
+    config.cloth = options.cloth ? *options.cloth : make_cloth(document, config);
     config.cloth_velocity = to_vec3(json["cloth"]["velocity"]);
     check_meetings(document, config);
+    load_obstacles(document, options, std::move(plans), config);
+    if (!options.cloth) check_start(document, options, config);
     warn_of_first_keyframes(document, config);
 
     const std::vector<std::string> ineffective = find_ineffective_keys(document, config);

@@ -86,15 +86,8 @@ Json complete_text(const Check& check, const SceneValue& value)
 
 Json complete_name(const Check& check, const SceneValue& value)
 {
-    constexpr std::size_t kLongestName = 64;
     const std::string& text = check.text(value);
-    const auto is_letter = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    };
-    const auto fits = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); };
-    const bool is_name = !text.empty() && text.size() <= kLongestName && is_letter(text[0]) &&
-                         std::all_of(text.begin(), text.end(), fits);
-    if (!is_name) check.fail("is not a name");
+    if (!is_scene_name(text)) check.fail("is not a name");
     return text;
 }
 

@@ -69,7 +69,7 @@ void check_cloth(const RunConfig& config, Warnings& warnings)
     if (material.bending_stiffness > 0.0 &&
         make_topology(config.cloth.vertex_count(), config.cloth.faces).hinges.empty())
         warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
-    if (!config.scene.floor)
+    if (config.scene.obstacles.empty())
         warnings.add("cloth.material.thickness", "there is no obstacle to keep away from");
 }
 
@@ -116,6 +116,45 @@ void check_pin_motion(const RunConfig& config, const Pin& pin, const std::string
                          "the one before is at the end of the run already");
 }
 
+bool is_moving(const Scene& scene, const Pin& pin)
+{
+    if (pin.follows) return scene.obstacles[static_cast<std::size_t>(*pin.follows)].motion().is_moving();
+    return pin.motion.is_moving();
+}
+
+void check_obstacle_motion(const RunConfig& config, const RigidMotion& motion, const std::string& path,
+                           Warnings& warnings)
+{
+    if (is_zero(motion.velocity) && is_zero(motion.angular_velocity))
+        warnings.add(path + ".motion", "it has no velocity");
+    else if (is_zero(motion.angular_velocity))
+        warnings.add(path + ".motion.pivot", "there is no angular_velocity about it");
+    if (motion.start >= config.duration)
+        warnings.add(path + ".motion.start", "it starts after the end of the run");
+    else if (motion.stop >= config.duration)
+        warnings.add(path + ".motion.stop", "the run ends before");
+    for (std::size_t k = 1; k < motion.keyframes.size(); ++k)
+        if (motion.keyframes[k - 1].time >= config.duration)
+            warnings.add(fmt::format("{}.keyframes.{}.time", path, k),
+                         "the one before is at the end of the run already");
+}
+
+void check_obstacles(const RunConfig& config, Warnings& warnings)
+{
+    for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
+        const Obstacle& obstacle = config.scene.obstacles[i];
+        const std::string path = fmt::format("obstacle.{}", i);
+        const auto& json = config.as_run["obstacle"][i];
+        if (!json.contains("file")) {
+            warnings.add(path + ".units", "the obstacle is not from a file");
+            warnings.add(path + ".up", "the obstacle is not from a file");
+        }
+        if (!json.contains("wire")) warnings.add(path + ".closed", "the obstacle is no wire");
+        if (obstacle.mesh().faces.empty()) warnings.add(path + ".feature_angle", "the obstacle has no faces");
+        check_obstacle_motion(config, obstacle.motion(), path, warnings);
+    }
+}
+
 void check_pins(const RunConfig& config, Warnings& warnings)
 {
     // Which pin held a vertex's direction last: where pins overlap, the last one moves it.
@@ -138,7 +177,7 @@ void check_pins(const RunConfig& config, Warnings& warnings)
                 other->second = i;
             }
         for (const auto& [other, count] : shared)
-            if (config.scene.pins[other].motion.is_moving() || pin.motion.is_moving())
+            if (is_moving(config.scene, config.scene.pins[other]) || is_moving(config.scene, pin))
                 warnings.note(
                     path + ".material",
                     fmt::format(
@@ -160,22 +199,28 @@ void check_time(const RunConfig& config, Warnings& warnings)
 
 /// Greatest angle between neighbours that slerp can mean; what was written as more turns the other way, or
 /// not at all.
-void check_turns(const SceneDocument& document, const RunConfig& config, Warnings& warnings)
+void check_turns(const std::string& key, const nlohmann::ordered_json& keyframes, Warnings& warnings)
 {
-    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
-        const std::string key = fmt::format("pin.{}.keyframes", i);
-        const auto& keyframes = config.as_run["pin"][i].value("keyframes", nlohmann::ordered_json::array());
-        for (std::size_t k = 1; k < keyframes.size(); ++k) {
-            const auto &from = keyframes[k - 1]["rotate"], &to = keyframes[k]["rotate"];
-            const double turn = to["degrees"].get<double>() - from["degrees"].get<double>();
-            if (from["axis"] != to["axis"] || !(std::abs(turn) > 180.0) || document.find(key) == nullptr)
-                continue;
-            warnings.note(
-                key, fmt::format(
-                         "turns by {:.6g} degrees from {} to {}: it takes the shorter arc; write keyframes "
-                         "at most 180 degrees apart",
-                         turn, k - 1, k));
-        }
+    for (std::size_t k = 1; k < keyframes.size(); ++k) {
+        const auto &from = keyframes[k - 1]["rotate"], &to = keyframes[k]["rotate"];
+        const double turn = to["degrees"].get<double>() - from["degrees"].get<double>();
+        if (from["axis"] != to["axis"] || !(std::abs(turn) > 180.0)) continue;
+        warnings.note(
+            key,
+            fmt::format("turns by {:.6g} degrees from {} to {}: it takes the shorter arc; write keyframes "
+                        "at most 180 degrees apart",
+                        turn, k - 1, k));
+    }
+}
+
+void check_turns(const RunConfig& config, Warnings& warnings)
+{
+    for (const char* table : {"pin", "obstacle"}) {
+        if (!config.as_run.contains(table)) continue;
+        const auto& elements = config.as_run[table];
+        for (std::size_t i = 0; i < elements.size(); ++i)
+            if (elements[i].contains("keyframes"))
+                check_turns(fmt::format("{}.{}.keyframes", table, i), elements[i]["keyframes"], warnings);
     }
 }
 
@@ -209,7 +254,8 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_pins(config, warnings);
     check_wind(config, warnings);
     check_pulls(config, warnings);
-    check_turns(document, config, warnings);
+    check_obstacles(config, warnings);
+    check_turns(config, warnings);
     check_strain(config, warnings);
     return warnings.lines_;
 }

@@ -15,10 +15,12 @@ Frame make_frame(const State& state, const ClothElements& elements, const Terms&
     frame.ids = state.ids;
     frame.eol.assign(state.ids.size(), 0);
     frame.contact.assign(state.ids.size(), 0);
-    for (const ActiveBound& bound : state.active) {
-        const auto vertex = std::lower_bound(state.ids.begin(), state.ids.end(), bound.vertex_id);
-        frame.contact[vertex - state.ids.begin()] = 1;
-    }
+    for (const ActiveContact& contact : state.active)
+        for (const std::uint32_t id : contact.vertex_ids) {
+            if (id == ActiveContact::kNoVertex) continue;
+            const auto vertex = std::lower_bound(state.ids.begin(), state.ids.end(), id);
+            frame.contact[vertex - state.ids.begin()] = 1;
+        }
     frame.faces = state.mesh.faces;
     FaceReadings readings = compute_face_readings(elements, terms, state.mesh.world);
     frame.strain = std::move(readings.strain);

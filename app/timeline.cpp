@@ -8,14 +8,21 @@ namespace arris {
 
 namespace {
 
-/// Every time at which the scene's input may jump.
-std::vector<double*> event_times(Scene& scene)
+void add_times(RigidMotion& motion, std::vector<double*>& times)
+{
+    times.insert(times.end(), {&motion.start, &motion.stop});
+    for (Keyframe& keyframe : motion.keyframes) times.push_back(&keyframe.time);
+}
+
+/// Every time at which the input may jump.
+std::vector<double*> event_times(Scene& scene, const std::vector<RigidMotion*>& motions)
 {
     std::vector<double*> times;
     for (Pin& pin : scene.pins) {
-        times.insert(times.end(), {&pin.release, &pin.motion.start, &pin.motion.stop});
-        for (Keyframe& keyframe : pin.motion.keyframes) times.push_back(&keyframe.time);
+        times.push_back(&pin.release);
+        add_times(pin.motion, times);
     }
+    for (RigidMotion* motion : motions) add_times(*motion, times);
     for (Pull& pull : scene.pulls) times.insert(times.end(), {&pull.start, &pull.stop});
     std::erase_if(times, [](const double* t) { return !std::isfinite(*t); });
     return times;
@@ -23,7 +30,7 @@ std::vector<double*> event_times(Scene& scene)
 
 }  // namespace
 
-void merge_events(RunConfig& config)
+void merge_events(RunConfig& config, const std::vector<RigidMotion*>& motions)
 {
     const double tolerance = 1e-9 * config.settings.step;
     const double fps = config.output.frames_per_second;
@@ -35,7 +42,7 @@ void merge_events(RunConfig& config)
     };
 
     snap_to_frame(config.duration);
-    std::vector<double*> times = event_times(config.scene);
+    std::vector<double*> times = event_times(config.scene, motions);
     for (double* time : times) {
         snap_to_frame(*time);
         snap(*time, config.duration);

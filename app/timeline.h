@@ -11,7 +11,8 @@ namespace arris {
 /// Moves times of the scene that all but fall on a frame, on the end of the run or on each other (nearer than
 /// 1e-9 of the longest step) onto them, so that what wrote 0.30000000000000004 for 0.3 does not make a step
 /// of 5e-17 s. All that asks whether something acts at a time must see the moved ones, so this comes first.
-void merge_events(RunConfig& config);
+/// `motions`: of obstacles that are not in the scene yet.
+void merge_events(RunConfig& config, const std::vector<RigidMotion*>& motions = {});
 
 /// Where a run stands in its plan: `done` steps of the interval that starts at `begin` (s).
 struct TimelinePosition {

@@ -5,15 +5,15 @@
 //
 //     frame      x y z of every vertex | strain of every face | contact of every vertex, one bit
 //     topology   vertices of every face | vertices of every EOL edge | EOL vertices on corners and points
+//     mesh       of an obstacle: x y z of every point | points of every face, wire segment | lone points
 //
 // A topology is stored where it changes. Numbers are differences to their predecessor, first all high bytes,
 // then all low ones: a mix of the two hardly deflates (positions of 10k vertices with wrinkles of 0.1 mm: 31
 // instead of 58 kB; smooth ones 10 instead of 56).
 #include "app/viewer_html.h"
 
-#include <zlib.h>
-
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -27,13 +27,13 @@
 #include "app/atomic_file.h"
 #include "app/frame.h"
 #include "app/frame_files.h"
+#include "app/viewer_block.h"
 #include "embedded/viewer_template.h"
 #include "geometry/input_error.h"
 
 namespace arris {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
 using nlohmann::ordered_json;
 
 constexpr std::string_view kDataMarker = "<!-- ARRIS-DATA -->";
@@ -56,6 +56,13 @@ struct TopologyBlock {
     Bytes data;
 };
 
+/// An obstacle, in its own frame about `centre`.
+struct MeshBlock {
+    const ObstacleRecord* obstacle;
+    Vec3 centre, size;  // of its bounding box, m
+    Bytes data;
+};
+
 struct FrameBlock {
     std::int64_t index;
     int topology;
@@ -69,59 +76,57 @@ struct Blocks {
     std::map<int, TopologyBlock> topologies;
     int newest_topology = -1;
     std::vector<FrameBlock> frames;
+    std::vector<MeshBlock> meshes;
+    std::vector<std::string> left_out;  ///< obstacles for which there is no room
     std::int64_t stride = 1;
-    std::size_t bytes = 0;
+    std::size_t mesh_bytes = 0;
+    std::size_t bytes = 0;  ///< of all blocks
     double least_strain = std::numeric_limits<double>::infinity();
     double greatest_strain = -std::numeric_limits<double>::infinity();
     double typical_strain = 0.0;
 };
 
-Bytes deflated(const Bytes& raw)
-{
-    uLongf size = compressBound(raw.size());
-    Bytes result(size);
-    if (compress2(result.data(), &size, raw.data(), raw.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
-        throw std::runtime_error("viewer.html: zlib ran out of memory");
-    result.resize(size);
-    result.shrink_to_fit();  // many are kept: their size is what counts, not its bound
-    return result;
-}
-
-/// Differences of successive numbers modulo 65536, first the high bytes of all, then the low ones.
-void append_planes(const std::vector<std::uint16_t>& numbers, Bytes& out)
-{
-    for (const int shift : {8, 0}) {
-        unsigned previous = 0;
-        for (const unsigned number : numbers) {
-            out.push_back(static_cast<std::uint8_t>((number - previous) >> shift));
-            previous = number;
-        }
-    }
-}
-
-/// An unsigned number for a signed difference, small where that is small: 0, -1, 1, -2, ... become 0, 1, 2,
-/// 3, ...
-std::uint32_t zigzag(std::int32_t difference)
-{
-    return (static_cast<std::uint32_t>(difference) << 1) ^ static_cast<std::uint32_t>(difference >> 31);
-}
-
 Bytes packed_topology(const Topology& topology)
 {
-    std::vector<std::uint32_t> numbers;
-    std::int32_t previous = 0;
-    const auto append = [&](int vertex) {
-        numbers.push_back(zigzag(vertex - previous));
-        previous = vertex;
-    };
-    for (const Face& face : topology.faces) std::for_each(face.begin(), face.end(), append);
-    for (const auto& edge : topology.eol_edges) std::for_each(edge.begin(), edge.end(), append);
-    std::for_each(topology.eol_corners.begin(), topology.eol_corners.end(), append);
-
     Bytes raw;
-    for (int shift = 24; shift >= 0; shift -= 8)
-        for (const std::uint32_t number : numbers) raw.push_back(static_cast<std::uint8_t>(number >> shift));
+    append_indices(topology.faces, topology.eol_edges, topology.eol_corners, raw);
     return deflated(raw);
+}
+
+MeshBlock make_mesh_block(const ObstacleRecord& obstacle)
+{
+    const ObstacleMesh& mesh = obstacle.mesh;
+    Vec3 least = mesh.points.front(), greatest = least;
+    for (const Vec3& point : mesh.points) {
+        least = least.cwiseMin(point);
+        greatest = greatest.cwiseMax(point);
+    }
+    MeshBlock block{&obstacle, (least + greatest) / 2.0, greatest - least, {}};
+    Bytes raw;
+    std::vector<std::uint32_t> numbers;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const Vec3& point : mesh.points)
+            numbers.push_back(
+                std::bit_cast<std::uint32_t>(static_cast<float>(point[axis] - block.centre[axis])));
+    append_planes(numbers, raw);
+    append_indices(mesh.faces, mesh.segments, mesh.lone_points, raw);
+    block.data = deflated(raw);
+    return block;
+}
+
+/// Those that fit into half of `most_bytes`, in their order.
+void store_meshes(const std::vector<ObstacleRecord>& obstacles, std::size_t most_bytes, Blocks& blocks)
+{
+    for (const ObstacleRecord& obstacle : obstacles) {
+        MeshBlock block = make_mesh_block(obstacle);
+        if (blocks.mesh_bytes + block.data.size() > most_bytes / 2) {
+            blocks.left_out.push_back(obstacle.name);
+            continue;
+        }
+        blocks.mesh_bytes += block.data.size();
+        blocks.meshes.push_back(std::move(block));
+    }
+    blocks.bytes = blocks.mesh_bytes;
 }
 
 /// `value` on a scale of 65536 steps from `least` to `least + range`; 0 where the range is.
@@ -197,7 +202,7 @@ void thin(std::int64_t last, Blocks& blocks)
         return frame.index % blocks.stride != 0 && frame.index != last;
     });
     std::set<int> used;
-    blocks.bytes = 0;
+    blocks.bytes = blocks.mesh_bytes;
     for (const FrameBlock& frame : blocks.frames) {
         used.insert(frame.topology);
         blocks.bytes += frame.data.size();
@@ -242,12 +247,14 @@ void check_magnitudes(const Frame& frame, const std::string& path)
 }
 
 /// Reads the run's frames one by one.
-Blocks pack_frames(const std::string& run_directory, std::size_t most_bytes)
+Blocks pack_run(const std::string& run_directory, std::size_t most_bytes,
+                const std::vector<ObstacleRecord>& obstacles)
 {
     const std::int64_t last = count_frames(run_directory) - 1;
     if (last < 0) throw InputError(frames_directory(run_directory) + ": no frames (cloth_00000.ply, ...)");
 
     Blocks blocks;
+    store_meshes(obstacles, most_bytes, blocks);
     Topology topology;
     for (std::int64_t index = 0; index <= last; ++index) {
         if (index % blocks.stride != 0 && index != last) continue;
@@ -264,6 +271,41 @@ Blocks pack_frames(const std::string& run_directory, std::size_t most_bytes)
 ordered_json vector_json(const Vec3& v)
 {
     return {v.x(), v.y(), v.z()};
+}
+
+/// Rows of the 3 x 4 matrix that takes a point of the obstacle's block to the world at `time`.
+ordered_json placement_json(const MeshBlock& mesh, double time)
+{
+    const Placement placement = mesh.obstacle->at(time);
+    const Vec3 centre = placement(mesh.centre);
+    ordered_json rows = ordered_json::array();
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) rows.push_back(placement.rotation(row, column));
+        rows.push_back(centre[row]);
+    }
+    return rows;
+}
+
+/// The obstacles; one that never moves has one placement, others one for each frame in the page.
+ordered_json meshes_json(const Blocks& blocks, double frames_per_second)
+{
+    ordered_json result = ordered_json::array();
+    for (const MeshBlock& mesh : blocks.meshes) {
+        const ObstacleMesh& shape = mesh.obstacle->mesh;
+        ordered_json placements = ordered_json::array();
+        for (const FrameBlock& frame : blocks.frames) {
+            placements.push_back(placement_json(mesh, static_cast<double>(frame.index) / frames_per_second));
+            if (!mesh.obstacle->motion.is_moving()) break;
+        }
+        result.push_back({{"name", mesh.obstacle->name},
+                          {"points", shape.points.size()},
+                          {"faces", shape.faces.size()},
+                          {"segments", shape.segments.size()},
+                          {"lone_points", shape.lone_points.size()},
+                          {"size", vector_json(mesh.size)},
+                          {"placements", placements}});
+    }
+    return result;
 }
 
 /// What viewer/src/run.js reads first. Keys it does not know it leaves alone.
@@ -292,6 +334,8 @@ ordered_json meta(const Blocks& blocks, const ViewerOptions& options)
                                     {"least", vector_json(frame.least)},
                                     {"size", vector_json(frame.size)},
                                     {"strain", {frame.least_strain, frame.strain_range}}});
+    result["meshes"] = meshes_json(blocks, options.frames_per_second);
+    if (!blocks.left_out.empty()) result["left_out"] = blocks.left_out;
     return result;
 }
 
@@ -301,22 +345,6 @@ std::string inert_json(const ordered_json& json)
     std::string result;
     for (const char c : json.dump(-1, ' ', true, ordered_json::error_handler_t::replace))
         c == '<' ? result.append("\\u003c") : result.append(1, c);
-    return result;
-}
-
-std::string base64(const Bytes& bytes)
-{
-    static constexpr std::string_view kDigits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string result;
-    result.reserve(4 * ((bytes.size() + 2) / 3));
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0U);
-        for (std::size_t k = 0; k < 4; ++k)
-            result.push_back(k <= count ? kDigits[group >> (18 - 6 * k) & 63U] : '=');
-    }
     return result;
 }
 
@@ -335,6 +363,8 @@ void write_page(const Blocks& blocks, const ViewerOptions& options, AtomicFile& 
                "</script>\n");
     for (const auto& [id, topology] : blocks.topologies)
         write_data("arris-topology-" + std::to_string(id), topology.data, file);
+    for (std::size_t i = 0; i < blocks.meshes.size(); ++i)
+        write_data("arris-mesh-" + std::to_string(i), blocks.meshes[i].data, file);
     for (const FrameBlock& frame : blocks.frames)
         write_data("arris-frame-" + std::to_string(frame.index), frame.data, file);
     file.write(page.substr(marker + kDataMarker.size()));
@@ -342,11 +372,12 @@ void write_page(const Blocks& blocks, const ViewerOptions& options, AtomicFile& 
 
 }  // namespace
 
-void write_viewer(const std::string& run_directory, const ViewerOptions& options)
+void write_viewer(const std::string& run_directory, const ViewerOptions& options,
+                  const std::vector<ObstacleRecord>& obstacles)
 {
     if (!(options.frames_per_second > 0.0) || !std::isfinite(options.frames_per_second))
         throw InputError(run_directory + ": a viewer needs frames_per_second above 0");
-    const Blocks blocks = pack_frames(run_directory, options.most_bytes);
+    const Blocks blocks = pack_run(run_directory, options.most_bytes, obstacles);
 
     AtomicFile file(run_directory + "/viewer.html");
     write_page(blocks, options, file);

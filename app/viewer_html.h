@@ -3,6 +3,9 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
+
+#include "app/obstacle_records.h"
 
 namespace arris {
 
@@ -19,9 +22,13 @@ struct ViewerOptions {
 /// fit, every second, fourth, ... frame is left out (the last one never is), and the page says so. Positions
 /// are kept to 1/65535 of the frame's bounding box in each direction, strains of the frame's range.
 ///
+/// `obstacles` are stored once, in single precision about their centre, and a placement for each frame of
+/// those that move. They take at most half of `most_bytes`: of the rest the page tells the names.
+///
 /// The page is replaced atomically: it is whole or as it was. Throws InputError naming the file where there
 /// is no frame, one is missing between others, or one cannot be read; std::system_error naming the path where
 /// the disk refuses.
-void write_viewer(const std::string& run_directory, const ViewerOptions& options);
+void write_viewer(const std::string& run_directory, const ViewerOptions& options,
+                  const std::vector<ObstacleRecord>& obstacles = {});
 
 }  // namespace arris

@@ -60,5 +60,38 @@ TEST(Check, EndsWithTheWarnings)
               "warning: s.toml:6: cloth.units = \"m\": has no effect: the cloth is not from a file");
 }
 
+TEST(Check, DescribesObstaclesWithTheirFeaturesAndMotion)
+{
+    const auto lines =
+        describe_scene(load("[[obstacle]]\nname = \"table\"\nbox = [1, 2, 0.5]\ntranslate = [0, 0, "
+                            "5]\nmotion = { velocity = [0, 0, "
+                            "1], start = 0.5 }\n"
+                            "[[obstacle]]\npoints = [[0, 0, 9], [1, 0, 9]]\n"
+                            "[[obstacle]]\nwire = [[0, 0, 9], [3, 0, 9]]\nkeyframes = [ { time = 0 }, { time "
+                            "= 0.5, translate = [0, "
+                            "0, 1] } ]\n"));
+    EXPECT_THAT(lines, Contains("obstacle table: box, 12 triangles in 1 closed surface"));
+    EXPECT_THAT(lines,
+                Contains("  1 x 2 x 0.5 m, from [-0.5, -1, 4.75] to [0.5, 1, 5.25] of the world at time 0"));
+    EXPECT_THAT(lines, Contains("  sharp features: 12 edges in 12 lines, 14 m; 8 corners or points"));
+    EXPECT_THAT(lines, Contains("  moves with [0, 0, 1] m/s from 0.5 s on"));
+    EXPECT_THAT(lines, Contains("obstacle obstacle1: points, 2 lone points"));
+    EXPECT_THAT(lines, Contains("  sharp features: 2 corners or points"));
+    EXPECT_THAT(lines, Contains("  at rest"));
+    EXPECT_THAT(lines, Contains("obstacle obstacle2: wire, 1 wire segment"));
+    EXPECT_THAT(lines, Contains("  2 keyframes from 0 s to 0.5 s"));
+    EXPECT_THAT(lines, Contains("the cloth is clear of all obstacles at time 0"));
+    EXPECT_THAT(lines, Contains("  obstacle: table, obstacle1, obstacle2"));
+    EXPECT_THAT(lines, Contains(HasSubstr("  eol: not in this version")));
+}
+
+TEST(Check, SaysWhatAPinRidesOn)
+{
+    const auto lines = describe_scene(
+        load("[[obstacle]]\nname = \"rod\"\nwire = [[0, 0, 9], [3, 0, 9]]\n[[pin]]\nmaterial = [[0, 0], [0, "
+             "0.5]]\nfollow = \"rod\"\n"));
+    EXPECT_THAT(lines, Contains("pin.0: 3 vertices in [[0, 0], [0, 0.5]], rides on rod"));
+}
+
 }  // namespace
 }  // namespace arris

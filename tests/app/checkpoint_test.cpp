@@ -24,7 +24,10 @@ Checkpoint make_checkpoint()
     checkpoint.state.time = 0.1;
     checkpoint.state.step = 17;
     checkpoint.state.previous_dt = 0.005;
-    checkpoint.state.active = {{2, 1e-7}, {5, 0.1}};
+    constexpr std::uint32_t kNo = ActiveContact::kNoVertex;
+    checkpoint.state.active = {{{2, 5, kNo}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1},
+                               {{2, kNo, kNo}, ContactKind::Vertex, 1, 7, Vec3::UnitZ(), 1e-7}};
+    checkpoint.state.crossings = 3;
     checkpoint.position = {0.0625, 3};
     checkpoint.frames = 4;
     checkpoint.rows = 18;
@@ -48,7 +51,12 @@ TEST(Checkpoint, ReadsBackToTheSameBytes)
     write_checkpoint(path, make_checkpoint());
     const Checkpoint read = read_checkpoint(path);
     EXPECT_EQ(read.source.overrides, make_checkpoint().source.overrides);
-    EXPECT_EQ(read.state.active[1].multiplier, 0.1);
+    EXPECT_EQ(read.state.active[0].multiplier, 0.1);
+    EXPECT_EQ(read.state.active[0].kind, ContactKind::Edge);
+    EXPECT_EQ(read.state.active[0].element, 3);
+    EXPECT_EQ(read.state.active[0].normal, Vec3::UnitX());
+    EXPECT_EQ(read.state.active[1].obstacle, 1);
+    EXPECT_EQ(read.state.crossings, 3);
     EXPECT_EQ(read.position.done, 3);
     write_checkpoint(path + "2", read);
     EXPECT_EQ(read_bytes(path), read_bytes(path + "2"));
@@ -110,7 +118,11 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("time", [&](Checkpoint& c) { c.state.time = kNan; });
     refused("previous step", [&](Checkpoint& c) { c.state.previous_dt = -1.0; });
     refused("rows", [](Checkpoint& c) { c.rows = 0; });
-    refused("active bounds", [](Checkpoint& c) { c.state.active[1].vertex_id = 2; });
+    refused("contacts", [](Checkpoint& c) { std::swap(c.state.active[0], c.state.active[1]); });
+    refused("contact", [](Checkpoint& c) { c.state.active[0].vertex_ids[1] = 99; });
+    refused("kind", [](Checkpoint& c) { c.state.active[0].kind = static_cast<ContactKind>(-1); });
+    refused("normal", [&](Checkpoint& c) { c.state.active[1].normal.z() = kNan; });
+    refused("crossings", [](Checkpoint& c) { c.state.crossings = -1; });
 }
 
 TEST(Checkpoint, AMissingOneOrAFolderIsOneInputError)

@@ -33,6 +33,8 @@ StepRow make_row()
     row.seconds.output = 10.0;
     row.cpu_seconds = 0.25;
     row.is_halved = true;
+    row.solves = 2;
+    row.yielded = 4;
     return row;
 }
 
@@ -45,7 +47,7 @@ TEST(CsvTable, HasTheColumnsOfStepsInTheirOrder)
             "stretch_energy,bending_energy,material_area,max_penetration,crossings,min_angle,kkt_residual,"
             "factorisations,nlopt_evaluations,move_s,contacts_s,conform_s,transfer_s,assemble_s,factorise_s,"
             "solve_s,check_s,advance_s,output_s"));
-    EXPECT_THAT(step_header(), ::testing::EndsWith(",output_s,cpu_s,halved"));
+    EXPECT_THAT(step_header(), ::testing::EndsWith(",output_s,cpu_s,halved,solves,rewound,yielded"));
 }
 
 TEST(CsvTable, HasSixColumnsForEachProbe)
@@ -78,6 +80,8 @@ TEST(CsvTable, ReadsNumbersBackToTheSameDouble)
     expect_bits("output_s", 10.0);
     expect_bits("cpu_s", 0.25);
     expect_bits("halved", 1.0);
+    expect_bits("solves", 2.0);
+    expect_bits("yielded", 4.0);
 }
 
 TEST(CsvTable, LeavesTheCellOfAnAbsentEffectEmpty)

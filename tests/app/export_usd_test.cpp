@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "geometry/input_error.h"
+#include "geometry/obstacle_shapes.h"
 #include "tests/app/example_frame.h"
 #include "tests/app/temporary_directory.h"
 #include "tests/app/usda_parser.h"
@@ -214,6 +215,60 @@ TEST(ExportUsd, HoldsNoMoreThanAFewFrames)
     getrusage(RUSAGE_SELF, &after);
     EXPECT_GT(std::filesystem::file_size(dir / "cloth.usda"), 50U << 20);
     EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kMostKibibytes);
+}
+
+TEST(ExportUsd, PlacesObstaclesByATransformThatIsSampledWhereTheyMove)
+{
+    ObstacleRecord table{"table", make_box({1.0, 2.0, 0.5}), {}, {}};
+    table.placement = {rotation_about(Vec3::UnitZ(), 90.0), {0.0, 0.0, 3.0}};
+    ObstacleRecord rope{
+        "rope", make_wire({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}}, false), {}, {}};
+    rope.motion.velocity = {24.0, 0.0, 0.0};
+    ObstacleRecord nails{"nails", make_points({{0.0, 0.0, 0.0}, {0.0, 0.0, 7.0}}), {}, {}};
+
+    const TemporaryDirectory dir;
+    const auto frames = write_frames(dir, {make_moved_frame(0), make_moved_frame(1), make_moved_frame(2)});
+    write_usd(dir / "cloth.usda", frames, {"A title", 24.0}, {table, rope, nails});
+    const UsdaParser usd(read_bytes(dir / "cloth.usda"));
+    EXPECT_EQ(usd.prim_name, "cloth");
+    ASSERT_EQ(usd.others.size(), 3U);
+
+    const UsdaPrim& first = usd.others[0];
+    EXPECT_EQ(first.type + " " + first.name, "Xform table");
+    EXPECT_EQ(first.attributes.at("xformOpOrder").value.at(0).items.at(0).text, "xformOp:transform");
+    const UsdaAttribute& placement = first.attributes.at("xformOp:transform");
+    EXPECT_EQ(placement.type, "matrix4d");
+    EXPECT_TRUE(placement.samples.empty());
+    // Rows are the images of the axes (x to y, y to -x), then the translation.
+    EXPECT_EQ(placement.value.at(0).numbers(),
+              (std::vector<double>{0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 3, 1}));
+    ASSERT_EQ(first.children.size(), 1U);
+    const UsdaPrim& surface = first.children[0];
+    EXPECT_EQ(surface.type, "Mesh");
+    EXPECT_EQ(surface.attributes.at("faceVertexCounts").value.at(0).numbers(), std::vector<double>(12, 3.0));
+    EXPECT_EQ(surface.attributes.at("faceVertexIndices").value.at(0).numbers().size(), 36U);
+    expect_same(surface.attributes.at("points").value.at(0), table.mesh.points);
+    EXPECT_EQ(surface.attributes.at("extent").value.at(0).numbers(),
+              (std::vector<double>{-0.5, -1, -0.25, 0.5, 1, 0.25}));
+
+    const UsdaPrim& second = usd.others[1];
+    const UsdaAttribute& moving = second.attributes.at("xformOp:transform");
+    EXPECT_THAT(times(moving), ElementsAre(0, 1, 2));
+    EXPECT_EQ(moving.samples.at(2).numbers().at(12), 2.0);
+    ASSERT_EQ(second.children.size(), 1U);
+    EXPECT_EQ(second.children[0].type, "BasisCurves");
+    EXPECT_EQ(second.children[0].attributes.at("curveVertexCounts").value.at(0).numbers(),
+              (std::vector<double>{2, 2}));
+    EXPECT_EQ(second.children[0].attributes.at("points").value.at(0).numbers(),
+              (std::vector<double>{0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0}));
+    EXPECT_EQ(second.children[0].attributes.at("type").value.at(0).text, "linear");
+
+    const UsdaPrim& third = usd.others[2];
+    ASSERT_EQ(third.children.size(), 1U);
+    EXPECT_EQ(third.children[0].type, "Points");
+    EXPECT_EQ(third.children[0].attributes.at("points").value.at(0).numbers(),
+              (std::vector<double>{0, 0, 0, 0, 0, 7}));
+    EXPECT_EQ(third.children[0].attributes.at("widths").metadata.at("interpolation").text, "constant");
 }
 
 }  // namespace

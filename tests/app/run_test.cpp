@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
@@ -289,6 +290,201 @@ TEST_F(Run, NumbersThatOverflowEndItWithItsStateKept)
     EXPECT_NE(report["message"].get<std::string>().find("step"), std::string::npos);
     EXPECT_TRUE(fs::exists(dir + "/checkpoint"));
     EXPECT_TRUE(fs::exists(dir + "/viewer.html"));
+}
+
+constexpr const char* kTableScene = R"(
+duration = 0.4
+[cloth]
+size = [1, 1]
+resolution = [6, 6]
+translate = [-0.5, -0.5, 0.16]
+[gravity]
+[[pin]]
+material = [[0, 0], [0, 1]]
+follow = "table"
+[[obstacle]]
+name = "table"
+file = "table.obj"
+motion = { velocity = [0.1, 0, 0.05], angular_velocity = [0, 0, 0.3], start = 0.05, stop = 0.3 }
+[[obstacle]]
+name = "nail"
+points = [[0.4, 0.4, 0]]
+[[obstacle]]
+name = "rope"
+wire = [[-1, -0.45, 0.1], [1, -0.45, 0.1]]
+[output]
+formats = ["obj", "usd", "viewer"]
+)";
+
+/// A box of 0.6 x 0.6 x 0.3 m as twelve triangles.
+constexpr const char* kTable =
+    "v -0.3 -0.3 -0.15\nv 0.3 -0.3 -0.15\nv 0.3 0.3 -0.15\nv -0.3 0.3 -0.15\n"
+    "v -0.3 -0.3 0.15\nv 0.3 -0.3 0.15\nv 0.3 0.3 0.15\nv -0.3 0.3 0.15\n"
+    "f 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 "
+    "5 8\n";
+
+class RunWithObstacles : public Run {
+  protected:
+    RunWithObstacles()
+    {
+        write_bytes(scene, kTableScene);
+        write_bytes(folder / "table.obj", kTable);
+    }
+};
+
+/// The `v` lines of an OBJ file.
+std::vector<Vec3> obj_points(const std::string& path)
+{
+    std::ifstream in(path);
+    std::vector<Vec3> points;
+    std::string word;
+    for (std::string line; std::getline(in, line);) {
+        std::istringstream cells(line);
+        Vec3 p;
+        if (cells >> word >> p[0] >> p[1] >> p[2] && word == "v") points.push_back(p);
+    }
+    return points;
+}
+
+TEST_F(RunWithObstacles, LeavesThemInEveryFormatAndInTheReport)
+{
+    const std::string dir = run_through("through");
+    const nlohmann::json report = nlohmann::json::parse(read_bytes(dir + "/report.json"));
+    EXPECT_EQ(report["status"], "finished") << report["message"];
+    EXPECT_EQ(report["effects"], nlohmann::json({"bending", "gravity", "pin", "obstacle"}));
+    EXPECT_EQ(report["max_penetration"], 0.0);
+    EXPECT_EQ(report["crossings"], 0);
+
+    const CsvTable steps = read_csv(dir + "/steps.csv");
+    double most_contacts = 0.0, most_feature_rows = 0.0;
+    for (std::size_t k = 0; k < steps.row_count(); ++k) {
+        EXPECT_EQ(steps.column("max_penetration")[k], 0.0);
+        EXPECT_EQ(steps.column("crossings")[k], 0.0);
+        EXPECT_LE(steps.column("feature_rows")[k], steps.column("contacts")[k]);
+        most_contacts = std::max(most_contacts, steps.column("contacts")[k]);
+        most_feature_rows = std::max(most_feature_rows, steps.column("feature_rows")[k]);
+        if (k > 0) {
+            EXPECT_GE(steps.column("solves")[k], 1.0);
+        }
+    }
+    EXPECT_GT(most_contacts, 5.0);
+    EXPECT_GT(most_feature_rows, 0.0);
+
+    EXPECT_TRUE(fs::exists(dir + "/frames/table_00009.obj"));
+    EXPECT_TRUE(fs::exists(dir + "/frames/nail_00000.obj"));
+    EXPECT_FALSE(fs::exists(dir + "/frames/nail_00001.obj"));
+    EXPECT_FALSE(fs::exists(dir + "/frames/rope_00001.obj"));
+    EXPECT_NE(read_bytes(dir + "/cloth.usda").find("def Xform \"table\""), std::string::npos);
+    EXPECT_NE(read_bytes(dir + "/viewer.html").find("\"name\":\"rope\""), std::string::npos);
+}
+
+TEST_F(RunWithObstacles, TheirFramesAreWhereTheirMotionHasThem)
+{
+    const std::string dir = run_through("through");
+    const std::vector<Vec3> first = obj_points(dir + "/frames/table_00000.obj"),
+                            last = obj_points(dir + "/frames/table_00009.obj");
+    ASSERT_EQ(last.size(), 8U);
+    const double tau = 0.25;  // start to stop
+    for (std::size_t i = 0; i < 8; ++i) {
+        const double c = std::cos(0.3 * tau), s = std::sin(0.3 * tau);
+        const Vec3 turned(c * first[i].x() - s * first[i].y(), s * first[i].x() + c * first[i].y(),
+                          first[i].z());
+        EXPECT_NEAR((last[i] - turned - tau * Vec3(0.1, 0.0, 0.05)).norm(), 0.0, 1e-14);
+    }
+    EXPECT_EQ(obj_points(dir + "/frames/nail_00000.obj"), std::vector<Vec3>{Vec3(0.4, 0.4, 0.0)});
+
+    // The pin rides along: distances between what it holds and the table do not change.
+    const Frame begin = read_frame(dir + "/frames/cloth_00000.ply"),
+                end = read_frame(dir + "/frames/cloth_00009.ply");
+    for (std::size_t v = 0; v < begin.world.size(); ++v) {
+        if (begin.material[v].x() > 0.0) continue;
+        for (std::size_t i = 0; i < 8; ++i)
+            EXPECT_NEAR((end.world[v] - last[i]).norm(), (begin.world[v] - first[i]).norm(), 1e-14);
+    }
+}
+
+TEST_F(RunWithObstacles, KilledAndResumedWithoutTheMeshFileItIsTheSameRun)
+{
+    const std::string through = run_through("through", {"--threads", "2"});
+    const std::string dir = folder / "killed";
+    for (int trial = 0; trial < 3 && !fs::exists(dir + "/report.json"); ++trial) {
+        Program program(folder, {"run", scene, "-o", dir, "--overwrite"});
+        for (int k = 0; k < 20000 && !fs::exists(dir + "/frames/cloth_00003.ply"); ++k)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        program.stop_after(std::chrono::milliseconds(0), SIGKILL);
+    }
+    write_bytes(folder / "table.obj", "v 0 0 0\n");  // another file by now
+    Program resumed(folder, {"resume", dir, "--threads", "1"});
+    EXPECT_EQ(resumed.wait(), 0) << resumed.err();
+    expect_same_run(through, dir);
+}
+
+TEST_F(RunWithObstacles, WithoutItsStoredObstaclesARunIsNotResumed)
+{
+    const std::string dir = run_through("through");
+    fs::remove(dir + "/obstacles");
+    Program resumed(folder, {"resume", dir, "--until", "0.5"});
+    EXPECT_EQ(resumed.wait(), 2);
+    EXPECT_NE(resumed.err().find("table is not among the obstacles"), std::string::npos) << resumed.err();
+}
+
+TEST_F(RunWithObstacles, FramesPastTheCheckpointAreCutBack)
+{
+    const std::string dir = run_through("through");
+    write_bytes(dir + "/frames/table_00044.obj", "stale");
+    write_bytes(dir + "/frames/chair_00044.obj", "mine");
+    Program resumed(folder, {"resume", dir, "--until", "0.45"});
+    EXPECT_EQ(resumed.wait(), 0) << resumed.err();
+    EXPECT_FALSE(fs::exists(dir + "/frames/table_00044.obj"));
+    EXPECT_TRUE(fs::exists(dir + "/frames/table_00010.obj"));
+    EXPECT_EQ(read_bytes(dir + "/frames/chair_00044.obj"), "mine");
+}
+
+TEST_F(RunWithObstacles, OverwritingRemovesThoseOfTheEarlierRun)
+{
+    const std::string dir = run_through("through");
+    write_bytes(
+        scene,
+        "duration = 0.05\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n[output]\nformats = [\"obj\"]\n");
+    run_through("through", {"--overwrite"});
+    for (const auto& entry : fs::recursive_directory_iterator(dir))
+        EXPECT_EQ(entry.path().filename().string().find("table"), std::string::npos) << entry.path();
+    EXPECT_FALSE(fs::exists(dir + "/obstacles"));
+}
+
+TEST_F(RunWithObstacles, ExportMakesTheSameFilesWithoutSceneOrMesh)
+{
+    const std::string dir = run_through("through");
+    const std::string frame = read_bytes(dir + "/frames/table_00007.obj"),
+                      usd = read_bytes(dir + "/cloth.usda"), viewer = read_bytes(dir + "/viewer.html");
+    fs::remove(dir + "/frames/table_00007.obj");
+    fs::remove(dir + "/cloth.usda");
+    fs::remove(scene);
+    fs::remove(folder / "table.obj");
+    fs::remove(dir + "/checkpoint");
+    Program program(folder, {"export", dir, "--formats", "obj,usd,viewer"});
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    EXPECT_TRUE(read_bytes(dir + "/frames/table_00007.obj") == frame);
+    EXPECT_TRUE(read_bytes(dir + "/cloth.usda") == usd);
+    EXPECT_TRUE(read_bytes(dir + "/viewer.html") == viewer);
+}
+
+TEST_F(RunWithObstacles, CheckAnswersWhatIntersectsAndRefuses)
+{
+    Program clear(folder, {"check", scene});
+    EXPECT_EQ(clear.wait(), 0) << clear.err();
+    EXPECT_NE(clear.out().find("the cloth is clear of all obstacles"), std::string::npos) << clear.out();
+
+    Program program(folder, {"check", scene, "--set", "cloth.translate=[-0.5,-0.5,0.1]"});
+    EXPECT_EQ(program.wait(), 2);
+    EXPECT_NE(program.out().find("intersection: "), std::string::npos) << program.out();
+    EXPECT_NE(program.out().find("m deep into table, at ["), std::string::npos) << program.out();
+    EXPECT_NE(program.out().find("expected: about"), std::string::npos) << "all else is said too";
+    EXPECT_NE(program.err().find("m deep into table"), std::string::npos) << program.err();
+    Program refused(folder,
+                    {"run", scene, "-o", folder / "none", "--set", "cloth.translate=[-0.5,-0.5,0.1]"});
+    EXPECT_EQ(refused.wait(), 2);
+    EXPECT_FALSE(fs::exists(folder / "none"));
 }
 
 }  // namespace

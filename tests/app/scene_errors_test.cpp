@@ -14,6 +14,14 @@ namespace {
 
 const std::string kCloth = "[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";
 const std::string kBase = "duration = 1\n" + kCloth;
+const std::string kNail = "[[obstacle]]\npoints = [[0, 0, 9]]\n";
+
+std::string many_nails(int count)
+{
+    std::string text;
+    for (int i = 0; i < count; ++i) text += kNail;
+    return text;
+}
 
 struct WrongScene {
     std::string name;
@@ -433,10 +441,217 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[[pull]]\nmaterial = [[0, 0], [0, 1]]\nforce = [0, 0, 1]\nstart = 0.5\nstop = 0.5\n",
      {},
      "s.toml:9: pull.0.stop = 0.5: is not later than the pull's start; allowed: a number > 0.5 (s)"},
-    {"Obstacle",
-     kBase + "[[obstacle]]\nbox = [1, 1, 1]\n",
+    {"ObstacleWithoutShape",
+     kBase + "[[obstacle]]\nname = \"table\"\n",
      {},
-     "s.toml:5: obstacle: is not built yet in this version; allowed: a scene without it"},
+     "s.toml:5: obstacle.0: has no shape; allowed: one of file, box, points, wire, teeth"},
+    {"TwoShapes",
+     kBase + "[[obstacle]]\nbox = [1, 1, 1]\nfile = \"table.obj\"\n",
+     {},
+     "s.toml:6: obstacle.0.box = [1, 1, 1]: contradicts obstacle.0.file; allowed: one of file, box, points, "
+     "wire, teeth"},
+    {"WireAndPoints",
+     kBase + "[[obstacle]]\nwire = [[0, 0, 0], [1, 0, 0]]\npoints = [[0, 0, 0]]\n",
+     {},
+     "s.toml:6: obstacle.0.wire = [[0, 0, 0], [1, 0, 0]]: contradicts obstacle.0.points; allowed: one of "
+     "file, box, points, wire, teeth"},
+    {"TeethAndBoxOfTheSecond",
+     kBase + kNail + kNail +
+         "[[obstacle]]\nbox = [1, 1, 1]\n[obstacle.teeth]\ncount = 1\npitch = 1\nheight = "
+         "1\nwidth = 1\ntip_degrees = 20\n",
+     {},
+     "s.toml:11: obstacle.2.teeth: contradicts obstacle.2.box; allowed: one of file, box, points, wire, "
+     "teeth"},
+    {"UnknownKeyOfObstacle",
+     kBase + kNail + "positon = [0, 0, 0]\n",
+     {},
+     "s.toml:7: obstacle.0.positon = [0, 0, 0]: unknown key; allowed: name, file, units, "
+     "up, box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, keyframes, "
+     "friction"},
+    {"ObstacleName",
+     kBase + kNail + "name = \"the table\"\n",
+     {},
+     "s.toml:7: obstacle.0.name = \"the table\": is not a name; allowed: a letter or _, then at most 63 "
+     "letters, digits or _"},
+    {"ObstacleCalledCloth",
+     kBase + kNail + "name = \"cloth\"\n",
+     {},
+     "s.toml:7: obstacle.0.name = \"cloth\": is the name of the cloth already; allowed: a name of its own, "
+     "not cloth"},
+    {"ObstacleNameTwice",
+     kBase + kNail + "name = \"nail\"\n" + kNail + "name = \"nail\"\n",
+     {},
+     "s.toml:10: obstacle.1.name = \"nail\": is the name of obstacle.0 already; allowed: a name of its own, "
+     "not cloth"},
+    {"ObstacleAndProbeOfOneName",
+     kBase + kNail + "name = \"nail\"\n[[probe]]\nname = \"nail\"\nmaterial = [0, 0]\n",
+     {},
+     "s.toml:9: probe.0.name = \"nail\": is the name of obstacle.0 already; allowed: a name of its own, not "
+     "cloth"},
+    {"ObstacleDefaultNameIsTaken",
+     kBase + kNail + "name = \"obstacle1\"\n" + kNail,
+     {},
+     "s.toml:8: obstacle.1.name: its default, obstacle1, is the name of obstacle.0 already; allowed: a name "
+     "of "
+     "its own, not cloth"},
+    {"FlatObstacleBox",
+     kBase + "[[obstacle]]\nbox = [1, 1, 0]\n",
+     {},
+     "s.toml:6: obstacle.0.box = [1, 1, 0]: is out of range; allowed: 3 numbers from 1e-06 to 10000 (m)"},
+    {"NoNails",
+     kBase + "[[obstacle]]\npoints = []\n",
+     {},
+     "s.toml:6: obstacle.0.points = []: has too few points; allowed: 1 or more points [x, y, z], numbers "
+     "from "
+     "-1000000 to 1000000 (m)"},
+    {"FlatNails",
+     kBase + "[[obstacle]]\npoints = [[1, 2]]\n",
+     {},
+     "s.toml:6: obstacle.0.points = [[1, 2]]: has the wrong number of entries; allowed: 1 or more points [x, "
+     "y, z], numbers from -1000000 to 1000000 (m)"},
+    {"InfiniteNail",
+     kBase + "[[obstacle]]\npoints = [[1, 2, inf]]\n",
+     {},
+     "s.toml:6: obstacle.0.points = [[1, 2, inf]]: is not finite; allowed: 1 or more points [x, y, z], "
+     "numbers "
+     "from -1000000 to 1000000 (m)"},
+    {"NailTwice",
+     kBase + "[[obstacle]]\npoints = [[1, 2, 3], [1, 2, 3]]\n",
+     {},
+     "s.toml:6: obstacle.0.points = [[1, 2, 3], [1, 2, 3]]: "},
+    {"WireOfOnePoint",
+     kBase + "[[obstacle]]\nwire = [[0, 0, 0]]\n",
+     {},
+     "s.toml:6: obstacle.0.wire = [[0, 0, 0]]: has too few points; allowed: 2 or more points [x, y, z], "
+     "numbers from -1000000 to 1000000 (m)"},
+    {"WireThatStandsStill",
+     kBase + "[[obstacle]]\nwire = [[0, 0, 2], [0, 0, 2]]\n",
+     {},
+     "s.toml:6: obstacle.0.wire = [[0, 0, 2], [0, 0, 2]]: "},
+    {"ClosedWireOfTwoPoints",
+     kBase + "[[obstacle]]\nwire = [[0, 0, 2], [1, 0, 2]]\nclosed = true\n",
+     {},
+     "s.toml:6: obstacle.0.wire = [[0, 0, 2], [1, 0, 2]]: "},
+    {"TeethWithoutPitch",
+     kBase + "[[obstacle]]\nteeth = { count = 5, height = 0.1, width = 0.6, tip_degrees = 60 }\n",
+     {},
+     "s.toml:6: obstacle.0.teeth.pitch: is required and missing; allowed: a number from 1e-06 to 10000 (m)"},
+    {"TeethThatOverlap",
+     kBase + kNail +
+         "[[obstacle]]\nteeth = { count = 5, pitch = 0.1, height = 1, width = 0.6, tip_degrees = 120 }\n",
+     {},
+     "s.toml:8: obstacle.1.teeth = { count = 5, pitch = 0.1, height = 1, width = 0.6, "
+     "tip_degre\342\200\246: "},
+    {"HalfATooth",
+     kBase +
+         "[[obstacle]]\nteeth = { count = 1.5, pitch = 1, height = 0.1, width = 0.6, tip_degrees = 60 }\n",
+     {},
+     "s.toml:6: obstacle.0.teeth.count = 1.5: is not an integer; allowed: an integer from 1 to 10000"},
+    {"TextForClosed",
+     kBase + "[[obstacle]]\nwire = [[0, 0, 2], [1, 0, 2]]\nclosed = \"no\"\n",
+     {},
+     "s.toml:7: obstacle.0.closed = \"no\": is not a boolean; allowed: true or false"},
+    {"Units",
+     kBase + "[[obstacle]]\nfile = \"table.obj\"\nunits = \"feet\"\n",
+     {},
+     "s.toml:7: obstacle.0.units = \"feet\": is none of the choices; allowed: \"m\", \"cm\", \"mm\", \"in\""},
+    {"Up",
+     kBase + "[[obstacle]]\nfile = \"table.obj\"\nup = \"-z\"\n",
+     {},
+     "s.toml:7: obstacle.0.up = \"-z\": is none of the choices; allowed: \"x\", \"y\", \"z\""},
+    {"ObstacleScale",
+     kBase + kNail + "scale = -1\n",
+     {},
+     "s.toml:7: obstacle.0.scale = -1: is out of range; allowed: a number > 0 and <= 1000000"},
+    {"ObstacleBeyondTheWorld",
+     kBase + "[[obstacle]]\nbox = [1e4, 1, 1]\nscale = 1e3\n",
+     {},
+     "s.toml:7: obstacle.0.scale = 1e3: makes the obstacle reach beyond 1e+06 m; allowed: a smaller scale"},
+    {"FeatureAngle",
+     kBase + kNail + "feature_angle = 0\n",
+     {},
+     "s.toml:7: obstacle.0.feature_angle = 0: is out of range; allowed: a number > 0 and <= 180 (degrees)"},
+    {"WideFeatureAngle",
+     kBase + kNail + "feature_angle = 181\n",
+     {},
+     "s.toml:7: obstacle.0.feature_angle = 181: is out of range; allowed: a number > 0 and <= 180 (degrees)"},
+    {"MotionAndKeyframes",
+     kBase + kNail + "keyframes = [ { time = 0 } ]\nmotion = { velocity = [1, 0, 0] }\n",
+     {},
+     "s.toml:8: obstacle.0.motion = { velocity = [1, 0, 0] }: contradicts obstacle.0.keyframes; allowed: "
+     "either motion, translate and rotate, or keyframes"},
+    {"TranslateAndKeyframes",
+     kBase + kNail + "keyframes = [ { time = 0 } ]\ntranslate = [1, 0, 0]\n",
+     {},
+     "s.toml:8: obstacle.0.translate = [1, 0, 0]: contradicts obstacle.0.keyframes; allowed: either motion, "
+     "translate and rotate, or keyframes"},
+    {"RotateAndKeyframes",
+     kBase + kNail + "keyframes = [ { time = 0 } ]\nrotate = { axis = [0, 0, 1], degrees = 5 }\n",
+     {},
+     "s.toml:8: obstacle.0.rotate = { axis = [0, 0, 1], degrees = 5 }: contradicts obstacle.0.keyframes; "
+     "allowed: either motion, translate and rotate, or keyframes"},
+    {"NoObstacleKeyframes",
+     kBase + kNail + "keyframes = []\n",
+     {},
+     "s.toml:7: obstacle.0.keyframes = []: is empty; allowed: one or more keyframes"},
+    {"ObstacleKeyframesOutOfOrder",
+     kBase + kNail + "keyframes = [ { time = 1 }, { time = 0.5 } ]\n",
+     {},
+     "s.toml:7: obstacle.0.keyframes.1.time = 0.5: is not later than the keyframe before; allowed: a number "
+     "> "
+     "1 (s)"},
+    {"MotionStopsBeforeItStarts",
+     kBase + kNail + "motion = { velocity = [1, 0, 0], start = 0.5, stop = 0.25 }\n",
+     {},
+     "s.toml:7: obstacle.0.motion.stop = 0.25: is not later than the motion's start; allowed: a number > 0.5 "
+     "(s)"},
+    {"ObstacleFriction",
+     kBase + kNail + "friction = 0.5\n",
+     {},
+     "s.toml:7: obstacle.0.friction = 0.5: is not built yet in this version; allowed: a scene without it"},
+    {"TooManyObstacles",
+     kBase + many_nails(1001),
+     {},
+     "s.toml:2005: obstacle.1000: is one of 1001 obstacles; allowed: at most 1000; one file, or one list of "
+     "points, may hold many things"},
+    {"FollowNobody",
+     kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nfollow = \"table\"\n",
+     {},
+     "s.toml:7: pin.0.follow = \"table\": is no obstacle; allowed: the name of an [[obstacle]]; this scene "
+     "has "
+     "none"},
+    {"FollowAnotherName",
+     kBase + kNail + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nfollow = \"table\"\n",
+     {},
+     "s.toml:9: pin.0.follow = \"table\": is no obstacle; allowed: the name of an obstacle: obstacle0"},
+    {"FollowAndVelocity",
+     kBase + kNail + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nvelocity = [0, 0, 1]\nfollow = \"obstacle0\"\n",
+     {},
+     "s.toml:9: pin.0.velocity = [0, 0, 1]: contradicts pin.0.follow; allowed: either follow, or velocity, "
+     "angular_velocity and pivot, or keyframes"},
+    {"FollowAndKeyframes",
+     kBase + kNail +
+         "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nkeyframes = [ { time = 0 } ]\nfollow = "
+         "\"obstacle0\"\n",
+     {},
+     "s.toml:9: pin.0.keyframes = [ { time = 0 } ]: contradicts pin.0.follow; allowed: either follow, or "
+     "velocity, angular_velocity and pivot, or keyframes"},
+    {"ClothInABox",
+     kBase + "[[obstacle]]\nname = \"crate\"\nbox = [0.4, 0.4, 0.4]\ntranslate = [0.5, 0.5, 0.1]\n",
+     {},
+     "s.toml:5: obstacle.0: at time 0 the cloth reaches 0.1 m deep into crate, at [0.5, 0.5, 0] (m); "
+     "allowed: "
+     "cloth that starts clear of every obstacle"},
+    {"ClothThroughAWire",
+     kBase + "[[obstacle]]\nwire = [[0.3, 0.3, -1], [0.3, 0.3, 1]]\n",
+     {},
+     "s.toml:5: obstacle.0: at time 0 the cloth intersects obstacle0, at [0.3, 0.3, 0] (m); allowed: cloth "
+     "that starts clear of every obstacle"},
+    {"ClothOnANail",
+     kBase + "[[obstacle]]\npoints = [[0.25, 0.25, 0]]\n",
+     {},
+     "s.toml:5: obstacle.0: at time 0 the cloth intersects obstacle0, at [0.25, 0.25, 0] (m); allowed: cloth "
+     "that starts clear of every obstacle"},
     {"Friction",
      kBase + "[friction]\n",
      {},
@@ -453,10 +668,6 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[remesh]\nangle = 10\n",
      {},
      "s.toml:5: remesh: is not built yet in this version; allowed: a scene without it"},
-    {"Follow",
-     kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nfollow = \"table\"\n",
-     {},
-     "s.toml:7: pin.0.follow = \"table\": is not built yet in this version; allowed: a scene without it"},
     {"FastKernel",
      kBase + "[solver]\nkernel = \"fast\"\n",
      {},
@@ -585,8 +796,15 @@ const std::vector<WrongScene> kWrongScenes = {
      "--set wind.velocity=[1,0,0]: line 1 of the file gives wind another type; allowed: a table, [wind]"},
     {"SetNotBuilt",
      kBase,
-     {"obstacle.0.box=[1,1,1]"},
-     "--set obstacle.0.box=[1,1,1]: obstacle: is not built yet in this version; allowed: a scene without it"},
+     {"friction.coefficient=0.5"},
+     "--set friction.coefficient=0.5: friction: is not built yet in this version; allowed: a scene without "
+     "it"},
+    {"SetObstacle",
+     kBase,
+     {"obstacle.0.box=[1,1]"},
+     "--set obstacle.0.box=[1,1]: obstacle.0.box = [1,1]: has the wrong number of entries; allowed: 3 "
+     "numbers "
+     "from 1e-06 to 10000 (m)"},
     {"SetEol",
      kBase,
      {"eol.enabled=true"},

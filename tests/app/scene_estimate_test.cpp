@@ -121,6 +121,30 @@ TEST(SceneEstimate, CountsEveryFormatOnDisk)
     }
 }
 
+TEST(SceneEstimate, CountsObstaclesOnceOrInEveryFrameIfTheyMove)
+{
+    const auto estimate = [](const std::string& motion) {
+        const RunConfig config = load_scene(
+            SceneSource{"s.toml",
+                        "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n[[obstacle]]\nbox = "
+                        "[1, 1, 1]\ntranslate = [0, 0, 9]\n" +
+                            motion + "[[obstacle]]\nwire = [[0, 0, 9], [1, 0, 9], [2, 0, 9]]\n",
+                        {}});
+        SceneEstimate result;
+        result.frames = 25.0;
+        add_obstacles(config.scene.obstacles, result);
+        return result;
+    };
+    SceneEstimate resting = estimate(""), moving = estimate("motion = { velocity = [0, 0, 1] }\n");
+    EXPECT_EQ(resting.obstacle_elements, 14.0);
+    EXPECT_EQ(resting.moving_elements, 0.0);
+    EXPECT_EQ(moving.moving_elements, 12.0);
+    estimate_bytes({"obj"}, resting);
+    estimate_bytes({"obj"}, moving);
+    EXPECT_GT(moving.disk_bytes, resting.disk_bytes + 24 * 12 * 20.0);  // 20: no line is shorter
+    EXPECT_EQ(moving.memory_bytes, resting.memory_bytes);
+}
+
 TEST(HumanBytes, KeepsThreeDigits)
 {
     EXPECT_EQ(human_bytes(0.0), "0 B");

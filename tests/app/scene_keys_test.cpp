@@ -75,9 +75,10 @@ TEST(SceneKeys, AreBuiltOnlyBelowBuiltTables)
 {
     EXPECT_TRUE(is_built(*find_scene_key("pin[].release")));
     EXPECT_TRUE(is_built(*find_scene_key("eol.enabled")));
-    EXPECT_FALSE(is_built(*find_scene_key("obstacle")));
-    EXPECT_FALSE(is_built(*find_scene_key("obstacle[].teeth.pitch")));
-    EXPECT_FALSE(is_built(*find_scene_key("pin[].follow")));
+    EXPECT_TRUE(is_built(*find_scene_key("obstacle[].teeth.pitch")));
+    EXPECT_FALSE(is_built(*find_scene_key("obstacle[].friction")));
+    EXPECT_FALSE(is_built(*find_scene_key("remesh")));
+    EXPECT_FALSE(is_built(*find_scene_key("remesh.angle")));
 }
 
 TEST(EditDistance, CountsChangesAndSwaps)

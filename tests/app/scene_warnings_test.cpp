@@ -9,6 +9,7 @@ namespace {
 
 const std::string kBase = "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";  // 4 lines
 const std::string kPin = "[[pin]]\nmaterial = [[0, 0], [0, 1]]\n";
+const std::string kBox = "[[obstacle]]\nbox = [1, 1, 1]\ntranslate = [0, 0, 9]\n";
 const std::string kPull = "[[pull]]\nmaterial = [[1, 0], [1, 1]]\n";
 
 struct IneffectiveKey {
@@ -64,6 +65,24 @@ const std::vector<IneffectiveKey> kIneffectiveKeys = {
      "7: pin.0.velocity = [1, 0, 0]: has no effect: the pin does not hold x"},
     {"LateKeyframe", kPin + "keyframes = [ { time = 0 }, { time = 1 }, { time = 1.5 } ]\n",
      "7: pin.0.keyframes.2.time = 1.5: has no effect: the one before is at the end of the run already"},
+    {"ObstacleUnits", kBox + "units = \"cm\"\n",
+     "8: obstacle.0.units = \"cm\": has no effect: the obstacle is not from a file"},
+    {"ObstacleUp", kBox + "up = \"y\"\n",
+     "8: obstacle.0.up = \"y\": has no effect: the obstacle is not from a file"},
+    {"Closed", kBox + "closed = true\n",
+     "8: obstacle.0.closed = true: has no effect: the obstacle is no wire"},
+    {"FeatureAngle", "[[obstacle]]\npoints = [[0, 0, 9]]\nfeature_angle = 20\n",
+     "7: obstacle.0.feature_angle = 20: has no effect: the obstacle has no faces"},
+    {"Motion", kBox + "motion = {}\n", "8: obstacle.0.motion = {}: has no effect: it has no velocity"},
+    {"MotionPivot", kBox + "motion = { velocity = [0, 0, 1], pivot = [1, 1, 1] }\n",
+     "8: obstacle.0.motion.pivot = [1, 1, 1]: has no effect: there is no angular_velocity about it"},
+    {"MotionStart", kBox + "motion = { velocity = [0, 0, 1], start = 1 }\n",
+     "8: obstacle.0.motion.start = 1: has no effect: it starts after the end of the run"},
+    {"MotionStop", kBox + "motion = { velocity = [0, 0, 1], stop = 2 }\n",
+     "8: obstacle.0.motion.stop = 2: has no effect: the run ends before"},
+    {"LateObstacleKeyframe",
+     "[[obstacle]]\nbox = [1, 1, 1]\nkeyframes = [ { time = 1, translate = [0, 0, 9] }, { time = 2 } ]\n",
+     "7: obstacle.0.keyframes.1.time = 2: has no effect: the one before is at the end of the run already"},
     {"Formats", "[output]\nframes_per_second = 0\nformats = [\"obj\"]\n",
      "7: output.formats = [\"obj\"]: has no effect: with frames_per_second = 0 there are no frames to make "
      "them from"},
@@ -82,14 +101,16 @@ TEST(SceneWarnings, TellOfAClothThatStartsStrained)
     const RunConfig config = load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=3"}});
     ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
     EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("starts strained, from 0 % to +200 %"));
-    EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=1.05"}}).warnings, ::testing::IsEmpty());
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=1.05"}}).warnings,
+                ::testing::IsEmpty());
 }
 
 TEST(SceneWarnings, TellOfATurnThatSlerpCannotMean)
 {
     const auto turned = [](const std::string& degrees) {
-        return kBase + kPin + "keyframes = [ { time = 0 }, { time = 0.5, rotate = { axis = [0, 0, 1], degrees = " +
-               degrees + " } } ]\n";
+        return kBase + kPin +
+               "keyframes = [ { time = 0 }, { time = 0.5, rotate = { axis = [0, 0, 1], degrees = " + degrees +
+               " } } ]\n";
     };
     const RunConfig config = load_scene(SceneSource{"s.toml", turned("360"), {}});
     ASSERT_THAT(config.warnings, ::testing::SizeIs(1));

@@ -36,26 +36,32 @@ struct UsdaAttribute {
     std::map<std::string, UsdaValue> metadata;
 };
 
-/// What a text stage with one prim says, read by the grammar of the format and not by that of our writer:
-/// white space, order and trailing commas are free. Throws std::runtime_error with the place of an error.
+struct UsdaPrim {
+    std::string type, name;
+    std::map<std::string, UsdaAttribute> attributes;
+    std::vector<UsdaPrim> children;
+};
+
+/// What a text stage says, its first prim's attributes at hand, read by the grammar of the format and not by
+/// that of our writer: white space, order and trailing commas are free. Throws std::runtime_error with the
+/// place of an error.
 class UsdaParser {
   public:
     std::map<std::string, UsdaValue> stage;
     std::string prim_type, prim_name;
     std::map<std::string, UsdaAttribute> attributes;
+    std::vector<UsdaPrim> others;  ///< prims after the first
 
     explicit UsdaParser(std::string text) : text_(std::move(text))
     {
         if (text_.rfind("#usda 1.0\n", 0) != 0) fail("no #usda header");
         at_ = 10;
         if (skips("(")) stage = parse_metadata();
-        expect("def");
-        prim_type = parse_word();
-        prim_name = parse_string();
-        expect("{");
-        while (!skips("}")) parse_attribute();
-        skip_space();
-        if (at_ != text_.size()) fail("something follows the prim");
+        const UsdaPrim first = parse_prim();
+        prim_type = first.type;
+        prim_name = first.name;
+        attributes = first.attributes;
+        for (skip_space(); at_ != text_.size(); skip_space()) others.push_back(parse_prim());
     }
 
   private:
@@ -159,13 +165,30 @@ class UsdaParser {
         return metadata;
     }
 
-    void parse_attribute()
+    UsdaPrim parse_prim()
+    {
+        UsdaPrim prim;
+        expect("def ");
+        prim.type = parse_word();
+        prim.name = parse_string();
+        expect("{");
+        while (!skips("}")) {
+            skip_space();
+            if (text_.compare(at_, 4, "def ") == 0)
+                prim.children.push_back(parse_prim());
+            else
+                parse_attribute(prim);
+        }
+        return prim;
+    }
+
+    void parse_attribute(UsdaPrim& prim)
     {
         std::string type = parse_word();
         if (type == "uniform") type += " " + parse_word();
         if (skips("[]")) type += "[]";
         const std::string name = parse_word();
-        UsdaAttribute& attribute = attributes[name];
+        UsdaAttribute& attribute = prim.attributes[name];
         if (!attribute.type.empty() && attribute.type != type) fail(name + " has two types");
         attribute.type = type;
         if (skips(".timeSamples")) {

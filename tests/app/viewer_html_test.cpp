@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -21,6 +22,7 @@
 
 #include "app/frame.h"
 #include "geometry/input_error.h"
+#include "geometry/obstacle_shapes.h"
 
 namespace arris {
 namespace {
@@ -320,6 +322,85 @@ TEST_F(ViewerHtml, LeavesFramesOutWhereTheyDoNotFitAndSaysSo)
     EXPECT_EQ(strides, (std::set<int>{1, 2, 4, 8, 16, 32}));
     write_viewer(run_, {"long", 24.0, 1});
     EXPECT_EQ(meta(page())["frames"].size(), 2U) << "the first and the last are always there";
+}
+
+/// Points of the k-th obstacle where the page has them at a frame of its list, m.
+std::vector<Vec3> mesh_points(const std::string& page, std::size_t k, std::size_t position)
+{
+    const json all = meta(page);
+    const json& mesh = all["meshes"].at(k);
+    const json& placements = mesh["placements"];
+    const json& rows = placements.at(placements.size() == 1 ? 0 : position);
+    const std::size_t n = mesh["points"], indices = 3 * mesh["faces"].get<std::size_t>() +
+                                                    2 * mesh["segments"].get<std::size_t>() +
+                                                    mesh["lone_points"].get<std::size_t>();
+    const auto bytes = unpacked(page, fmt::format("arris-mesh-{}", k), 4 * (3 * n + indices));
+    std::vector<Vec3> points(n);
+    for (std::size_t p = 0; p < n; ++p) {
+        Vec3 local;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            std::uint32_t bits = 0;
+            for (std::size_t plane = 0; plane < 4; ++plane)
+                bits = bits << 8 | bytes[plane * 3 * n + axis * n + p];
+            float value = 0.0F;
+            std::memcpy(&value, &bits, sizeof value);
+            local[static_cast<Eigen::Index>(axis)] = value;
+        }
+        for (std::size_t row = 0; row < 3; ++row)
+            points[p][static_cast<Eigen::Index>(row)] =
+                rows[4 * row].get<double>() * local.x() + rows[4 * row + 1].get<double>() * local.y() +
+                rows[4 * row + 2].get<double>() * local.z() + rows[4 * row + 3].get<double>();
+    }
+    return points;
+}
+
+TEST_F(ViewerHtml, HoldsObstaclesOnceAndWhereTheyAreInEveryFrame)
+{
+    for (int i = 0; i < 5; ++i) write_frame(frame_path(i), make_strip(3, 7U));
+    ObstacleRecord table{"table", make_box({1.0, 2.0, 0.5}), {}, {}};
+    table.placement = {rotation_about({1.0, 2.0, 3.0}, 40.0), {100.0, 0.5, -2.0}};
+    ObstacleRecord rope{
+        "rope", make_wire({{9.0, 0.0, 0.0}, {10.0, 0.0, 0.0}, {10.0, 1.0, 0.3}}, true), {}, {}};
+    rope.motion.velocity = {1.0, 0.0, 0.0};
+    rope.motion.angular_velocity = {0.0, 0.0, 3.0};
+    const std::vector<ObstacleRecord> obstacles = {
+        table, rope, {"nails", make_points({{0.0, 0.0, 1.0}, {2.0, 0.0, 1.0}}), {}, {}}};
+    write_viewer(run_, {"obstacles", 24.0}, obstacles);
+
+    const std::string written = page();
+    constexpr double kSingle = 1e-7;  // of 1 m about the middle of an obstacle
+    ASSERT_EQ(meta(written)["meshes"].size(), 3U);
+    EXPECT_FALSE(meta(written).contains("left_out"));
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(meta(written)["meshes"][k]["name"], obstacles[k].name);
+        EXPECT_EQ(meta(written)["meshes"][k]["placements"].size(), k == 1 ? 5U : 1U);
+        for (const std::size_t position : {0U, 4U}) {
+            const std::vector<Vec3> points = mesh_points(written, k, position);
+            ASSERT_EQ(points.size(), obstacles[k].mesh.points.size());
+            const Placement placement = obstacles[k].at(static_cast<double>(position) / 24.0);
+            for (std::size_t p = 0; p < points.size(); ++p)
+                EXPECT_NEAR((points[p] - placement(obstacles[k].mesh.points[p])).norm(), 0.0, 2.0 * kSingle);
+        }
+    }
+    EXPECT_EQ(meta(written)["meshes"][0]["size"], json({1.0, 2.0, 0.5}));
+}
+
+TEST_F(ViewerHtml, LeavesObstaclesOutThatTakeMoreThanHalfThePage)
+{
+    for (int i = 0; i < 3; ++i) write_frame(frame_path(i), make_strip(3, 7U));
+    std::vector<Vec3> many;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-0.5, 0.5);
+    for (int i = 0; i < 2000; ++i) many.emplace_back(unit(random), unit(random), unit(random));
+    ViewerOptions options{"crowded", 24.0};
+    options.most_bytes = 10000;
+    write_viewer(run_, options,
+                 {{"many", make_points(many), {}, {}}, {"box", make_box({1.0, 1.0, 1.0}), {}, {}}});
+    const json all = meta(page());
+    EXPECT_EQ(all["left_out"], json({"many"}));
+    ASSERT_EQ(all["meshes"].size(), 1U);
+    EXPECT_EQ(all["meshes"][0]["name"], "box");
+    EXPECT_EQ(all["frames"].size(), 3U);
 }
 
 TEST_F(ViewerHtml, TakesTitlesAsDataWhateverTheyHold)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// make_run DIR TITLE FRAMES CELLS [MOST_BYTES]: a run without a simulation, for looking at the viewer and
-// testing it. A square cloth waves and folds over a sharp edge that wanders along it: EOL edges and mesh
-// change with time.
+// make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles]]: a run without a simulation, for looking at the
+// viewer and testing it. A square cloth waves and folds over a sharp edge that wanders along it: EOL edges
+// and mesh change with time. With obstacles there are a table at rest, a wire that turns, and nails that
+// rise.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -11,6 +12,7 @@
 
 #include "app/frame.h"
 #include "app/viewer_html.h"
+#include "geometry/obstacle_shapes.h"
 
 namespace arris {
 namespace {
@@ -72,7 +74,23 @@ Frame make_frame(int number, int frames, int cells)
     return frame;
 }
 
-void make_run(const std::string& directory, int frames, int cells, const ViewerOptions& options)
+std::vector<ObstacleRecord> make_obstacles()
+{
+    ObstacleRecord table{"table", make_box({0.5, 1.2, 0.1}), {}, {}};
+    table.placement.translation = {0.3, 0.5, 0.35};
+    ObstacleRecord wire{
+        "wire", make_wire({{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.3, 1.0, 0.1}}, false), {}, {}};
+    wire.placement.translation = {1.1, 0.0, 0.4};
+    wire.motion.angular_velocity = {0.0, 0.0, 0.5};
+    wire.motion.pivot = {1.1, 0.5, 0.0};
+    ObstacleRecord nails{"nails", make_points({{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}}), {}, {}};
+    nails.placement.translation = {-0.1, 0.0, 0.4};
+    nails.motion.velocity = {0.0, 0.0, 0.2};
+    return {table, wire, nails};
+}
+
+void make_run(const std::string& directory, int frames, int cells, const ViewerOptions& options,
+              bool has_obstacles)
 {
     std::filesystem::create_directories(directory + "/frames");
     for (int number = 0; number < frames; ++number) {
@@ -80,7 +98,7 @@ void make_run(const std::string& directory, int frames, int cells, const ViewerO
         digits.insert(0, 5 - digits.size(), '0');
         write_frame(directory + "/frames/cloth_" + digits + ".ply", make_frame(number, frames, cells));
     }
-    write_viewer(directory, options);
+    write_viewer(directory, options, has_obstacles ? make_obstacles() : std::vector<ObstacleRecord>());
 }
 
 }  // namespace
@@ -88,14 +106,14 @@ void make_run(const std::string& directory, int frames, int cells, const ViewerO
 
 int main(int argc, char** argv)
 {
-    if (argc < 5 || argc > 6) {
-        std::fputs("usage: make_run DIR TITLE FRAMES CELLS [MOST_BYTES]\n", stderr);
+    if (argc < 5 || argc > 7) {
+        std::fputs("usage: make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles]]\n", stderr);
         return 2;
     }
     try {
         arris::ViewerOptions options{argv[2], arris::kFramesPerSecond};
-        if (argc == 6) options.most_bytes = std::stoul(argv[5]);
-        arris::make_run(argv[1], std::stoi(argv[3]), std::stoi(argv[4]), options);
+        if (argc >= 6) options.most_bytes = std::stoul(argv[5]);
+        arris::make_run(argv[1], std::stoi(argv[3]), std::stoi(argv[4]), options, argc == 7);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "make_run: %s\n", error.what());
         return 1;

@@ -222,6 +222,39 @@ test("the page follows the reader's light or dark scheme", async () => {
   await page.close();
 });
 
+const kGrey = "r > g && g > b && r < 1.12 * b && r > 60 && r < 200"; // an obstacle's face, warmer than the page's greys
+const kDark = "r < 95 && r > b && r < 1.6 * b"; // its wires and dots
+
+test("obstacles are drawn where the frame has them", async () => {
+  const crowded = makeRun("crowded", { frames: 25, hasObstacles: true });
+  const page = await open("play=0&frame=0&ui=0", join(crowded, "viewer.html"));
+  await page.until(shows(0));
+  const [blue, grey, dark] = await shares(page, [kBlue, kGrey, kDark]);
+  assert.ok(blue > 0.03 && grey > 0.01 && dark > 0.0005, `${[blue, grey, dark]}`);
+  const first = await page.screenshot();
+  await page.evaluate("location.hash = 'frame=24&play=0&ui=0'");
+  await page.until(shows(24));
+  assert.ok((await shares(page, [kGrey]))[0] > 0.01);
+  assert.notDeepEqual(await page.screenshot(), first);
+  await page.close();
+
+  const bare = await openFrame(0, "ui=0");
+  const [none] = await shares(bare, [kGrey]);
+  assert.ok(none < grey / 10, `${none} without obstacles, ${grey} with them`);
+  await bare.close();
+});
+
+test("a damaged obstacle is named, and all else is shown", async () => {
+  const crowded = pageOf(makeRun("damaged", { frames: 5, hasObstacles: true }));
+  const path = writePage("damaged_page", crowded.replace('id="arris-mesh-0"', 'id="other"'));
+  const page = await open("play=0&frame=0", path);
+  await page.until(shows(0));
+  assert.match(await page.evaluate(text("notice")), /^The obstacle table cannot be shown/);
+  assert.equal(await page.evaluate(kMessage), false);
+  assert.ok((await shares(page, [kBlue]))[0] > 0.03);
+  await page.close();
+});
+
 test("a thinned run says so", async () => {
   const thin = makeRun("thin", { frames: 40, cells: 30, mostBytes: 60000 });
   const page = await open("play=0&frame=0", join(thin, "viewer.html"));

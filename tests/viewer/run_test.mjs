@@ -111,3 +111,82 @@ for (const [name, damage] of Object.entries(kFrameBreaks)) {
     await reader.load(29);
   });
 }
+
+const obstaclesPage = pageOf(makeRun("obstacles", { frames: 25, cells: 6, hasObstacles: true }));
+
+test("obstacles are where make_run puts them", async () => {
+  const reader = open(obstaclesPage);
+  assert.deepEqual(reader.meshes.map(({ name, placements }) => [name, placements.length]),
+                   [["table", 1], ["wire", 25], ["nails", 25]]);
+  /** World positions of an obstacle's points at a frame. */
+  const pointsAt = (index, { positions }, position) => {
+    const m = reader.placement(reader.meshes[index], position);
+    return Array.from({ length: positions.length / 3 }, (_, p) => [0, 1, 2].map((row) =>
+      reader.origin[row] + m[4 * row + 3] +
+      [0, 1, 2].reduce((sum, column) => sum + m[4 * row + column] * positions[3 * p + column], 0)));
+  };
+  const assertNear = (value, truth) => assert.ok(Math.abs(value - truth) < 1e-6, `${value}, not ${truth}`);
+
+  const table = await reader.loadMesh(0);
+  assert.equal(table.faces.length, 36);
+  for (const position of [0, 24])
+    for (const [x, y, z] of pointsAt(0, table, position)) {
+      assertNear(Math.abs(x - 0.3), 0.25);
+      assertNear(Math.abs(y - 0.5), 0.6);
+      assertNear(Math.abs(z - 0.35), 0.05);
+    }
+
+  const wire = await reader.loadMesh(1);
+  assert.deepEqual([...wire.segments], [0, 1, 1, 2]);
+  // 24 frames a second: the last frame is at 1 s, turned by 0.5 rad about (1.1, 0.5).
+  const [x, y, z] = pointsAt(1, wire, 24)[0];
+  assertNear(x, 1.1 + 0.5 * Math.sin(0.5));
+  assertNear(y, 0.5 - 0.5 * Math.cos(0.5));
+  assertNear(z, 0.4);
+
+  const nails = await reader.loadMesh(2);
+  assert.deepEqual([...nails.lonePoints], [0, 1]);
+  assertNear(pointsAt(2, nails, 12)[1][2], 0.5);
+});
+
+test("a view shows the cloth and what is near of the obstacles", () => {
+  const plain = open(page);
+  assert.deepEqual(plain.surroundings, plain.bounds);
+  const { surroundings, bounds } = open(obstaclesPage);
+  assert.ok(surroundings.least[1] <= -0.1 + 1e-9, "the table's end is in it");
+  const far = open(obstaclesPage.replace(/"size":\[0.5,1.2,0.1\d*\]/, '"size":[1e4,1e4,0.1]'));
+  assert.notDeepEqual(far.surroundings, surroundings);
+  const diagonal = Math.hypot(...bounds.size);
+  assert.ok(Math.hypot(...far.surroundings.size) < 3 * diagonal, "a floor does not make the cloth a dot");
+});
+
+const kMeshBreaks = {
+  "a placement that is none": (text) => text.replace(/"placements":\[\[[^,]*,/, '"placements":[[null,'),
+  "too few placements": (text) => text.replace(/("name":"wire".*?"placements":\[)\[[^\]]*\],/, "$1"),
+  "no points": (text) => text.replace('"points":8', '"points":0'),
+};
+for (const [name, damage] of Object.entries(kMeshBreaks)) {
+  test(`a list of obstacles with ${name} is refused in words`, () => {
+    assert.notEqual(damage(obstaclesPage), obstaclesPage);
+    assert.throws(() => open(damage(obstaclesPage)), /obstacles is damaged/);
+  });
+}
+
+test("a damaged obstacle is refused by name, and the others are shown", async () => {
+  for (const damage of [
+    (text) => text.replace('id="arris-mesh-0"', 'id="other"'),
+    (text) => text.replace('"points":8', '"points":7'),
+    (text) => text.replace('"points":8,"faces":12', '"points":4,"faces":16'),
+  ]) {
+    assert.notEqual(damage(obstaclesPage), obstaclesPage);
+    const reader = open(damage(obstaclesPage));
+    await assert.rejects(reader.loadMesh(0), (error) => error instanceof BrokenData && /^The obstacle table/.test(error.message));
+    await reader.loadMesh(1);
+  }
+});
+
+test("obstacles too large for a page are named, and do not cost the cloth its frames", () => {
+  const reader = open(pageOf(makeRun("small", { frames: 5, cells: 6, hasObstacles: true, mostBytes: 120 })));
+  assert.ok(reader.leftOut.includes("table"), reader.leftOut.join());
+  assert.equal(reader.frames.at(-1).index, 4);
+});

@@ -76,8 +76,9 @@ function makeFaceMaterial(uniforms) {
   return material;
 }
 
-function makeDotMaterial() {
-  const material = new PointsMaterial({ size: 9, sizeAttenuation: false });
+/** Round dots, `size` pixels wide. */
+export function makeDotMaterial(size) {
+  const material = new PointsMaterial({ size, sizeAttenuation: false });
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace(
       "#include <clipping_planes_fragment>",
@@ -120,7 +121,7 @@ export class Cloth {
   };
   #faces = new Mesh(new BufferGeometry(), makeFaceMaterial(this.#uniforms));
   #lines = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ linewidth: 3 }));
-  #dots = new Points(new BufferGeometry(), makeDotMaterial());
+  #dots = new Points(new BufferGeometry(), makeDotMaterial(9));
 
   constructor() {
     this.#faces.castShadow = this.#faces.receiveShadow = true;

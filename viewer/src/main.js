@@ -6,8 +6,9 @@ import { Clock } from "./clock.js";
 import { Cloth } from "./cloth.js";
 import { onPaletteChange } from "./colours.js";
 import {
-  firstStrainTop, hideMessage, showAxes, showFacts, showHeading, showLegend, showMessage, showMoment,
+  addNotice, firstStrainTop, hideMessage, showAxes, showFacts, showHeading, showLegend, showMessage, showMoment,
 } from "./panels.js";
+import { Obstacles } from "./obstacles.js";
 import { BrokenData, Run } from "./run.js";
 import { Stage } from "./stage.js";
 
@@ -22,16 +23,21 @@ class Viewer {
   #run = new Run(document);
   #stage = this.#openStage();
   #cloth = new Cloth();
+  #obstacles = new Obstacles(this.#run);
   #clock = new Clock(this.#run.time(this.#run.frames.length - 1), this.#run.stride / this.#run.framesPerSecond);
   #wanted = 0; // position in the run's list of frames
   #shown = -1;
-  #isLoading = false;
+  #isLoading = true; // the obstacles, then one frame at a time
   #mode = "none";
   #hasEdges = false;
   #strainTop = firstStrainTop(this.#run);
 
   start() {
     this.#stage.add(this.#cloth.group);
+    this.#stage.add(this.#obstacles.group);
+    this.#obstacles.load()
+      .catch((error) => addNotice(error.message))
+      .finally(() => (this.#isLoading = false));
     this.#cloth.setStrainTop(this.#strainTop);
     showHeading(this.#run);
     byId("scrub").max = this.#run.frames.length - 1;
@@ -93,6 +99,7 @@ class Viewer {
   #showFrame(position, frame) {
     this.#shown = position;
     this.#cloth.show(frame);
+    this.#obstacles.show(position);
     this.#stage.aimShadow(this.#run.frames[position]);
     showMoment(this.#run, position);
     showFacts(this.#run, frame, this.#stage.cell);
@@ -103,6 +110,7 @@ class Viewer {
   #showBroken(position, error) {
     this.#shown = position;
     this.#cloth.hide();
+    this.#obstacles.show(position);
     this.#stage.isStale = true;
     showMoment(this.#run, position);
     showMessage(error.message);
@@ -194,6 +202,7 @@ class Viewer {
       showMessage("The browser took the graphics context away. Reload the page to go on."));
     onPaletteChange(() => {
       this.#cloth.usePalette();
+      this.#obstacles.usePalette();
       this.#stage.usePalette();
       this.#showLegend(true);
     });
@@ -232,7 +241,7 @@ class Viewer {
     const zoom = number("zoom") > 0 ? Math.min(Math.max(number("zoom"), 0.01), 100) : undefined;
     const view = { azimuth: number("azimuth"), elevation: number("elevation"), zoom };
     if (asked.get("fit") === "frame") this.#fit(view);
-    else if (Object.values(view).some((value) => value !== undefined)) this.#stage.fit(this.#run.bounds, view);
+    else if (Object.values(view).some((value) => value !== undefined)) this.#stage.fit(this.#run.surroundings, view);
   }
 }
 

@@ -31,10 +31,18 @@ export function showHeading(run) {
   const title = run.title.trim() || "Untitled run";
   document.title = `${title} – Arris`;
   byId("title").textContent = title;
-  if (run.stride === 1) return;
-  byId("notice").textContent =
-    `Shows ${run.frames.length} of ${run.runFrames} frames (one in ${run.stride}, and the last): ` +
-    "all of them would take more memory than a page should.";
+  const notices = [];
+  if (run.stride !== 1)
+    notices.push(`Shows ${run.frames.length} of ${run.runFrames} frames (one in ${run.stride}, and the last): ` +
+                 "all of them would take more memory than a page should.");
+  if (run.leftOut.length > 0)
+    notices.push(`Without ${run.leftOut.join(", ")}: obstacles too large for a page.`);
+  notices.forEach(addNotice);
+}
+
+/** What a person should know of the whole run, below its title. */
+export function addNotice(text) {
+  byId("notice").textContent = `${byId("notice").textContent} ${text}`.trim();
   byId("notice").hidden = false;
 }
 

@@ -5,6 +5,7 @@
 const kFormat = 1;
 const kCacheBytes = 64e6;
 const kLevels = 65535;
+const kNear = 0.2; // of the cloth's diagonal: obstacles are shown that far around it
 
 /** What is wrong with the data, in words for the person who opened the page. */
 export class BrokenData extends Error {}
@@ -16,6 +17,14 @@ function require(condition, what) {
 const isCount = (value) => Number.isSafeInteger(value) && value >= 0;
 const isNumbers = (value, count) =>
   Array.isArray(value) && value.length === count && value.every((number) => Number.isFinite(number));
+
+/** An obstacle: one placement where it never moves, else one a frame. */
+function isMesh(mesh, frameCount) {
+  return typeof mesh?.name === "string" && isCount(mesh.points) && mesh.points > 0 && isCount(mesh.faces) &&
+    isCount(mesh.segments) && isCount(mesh.lone_points) && isNumbers(mesh.size, 3) && Array.isArray(mesh.placements) &&
+    (mesh.placements.length === 1 || mesh.placements.length === frameCount) &&
+    mesh.placements.every((placement) => isNumbers(placement, 12));
+}
 
 /** The JSON element, checked: nothing behind this function meets a value of another kind than the format says. */
 function readMeta(document) {
@@ -42,6 +51,11 @@ function readMeta(document) {
     require(isCount(frame.index) && known.has(frame.topology) &&
             isNumbers(frame.least, 3) && isNumbers(frame.size, 3) && isNumbers(frame.strain, 2),
     "The list of frames is damaged.");
+  meta.meshes ??= [];
+  meta.left_out ??= [];
+  require(Array.isArray(meta.meshes) && meta.meshes.every((mesh) => isMesh(mesh, meta.frames.length)) &&
+          Array.isArray(meta.left_out) && meta.left_out.every((name) => typeof name === "string"),
+  "The list of obstacles is damaged.");
   return meta;
 }
 
@@ -85,14 +99,20 @@ function unpack16(bytes, offset, count, result) {
   }
 }
 
-/** Zigzag differences of vertex numbers in four planes of bytes. */
-function unpackIndices(bytes, count) {
+/** Numbers of 32 bits in four planes of bytes, the highest first. */
+function unpack32(bytes, count) {
   const result = new Uint32Array(count);
+  for (let i = 0; i < count; ++i)
+    result[i] = (bytes[i] << 24) | (bytes[count + i] << 16) | (bytes[2 * count + i] << 8) | bytes[3 * count + i];
+  return result;
+}
+
+/** Zigzag differences of vertex numbers. */
+function unpackIndices(bytes, count) {
+  const result = unpack32(bytes, count);
   let value = 0;
   for (let i = 0; i < count; ++i) {
-    const code = ((bytes[i] << 24) | (bytes[count + i] << 16) | (bytes[2 * count + i] << 8) |
-                  bytes[3 * count + i]) >>> 0;
-    value += (code >>> 1) ^ -(code & 1);
+    value += (result[i] >>> 1) ^ -(result[i] & 1);
     result[i] = value;
   }
   return result;
@@ -193,6 +213,68 @@ export class Run {
     this.#topologies = new Map(meta.topologies.map((topology) => [topology.id, topology]));
     this.bounds = this.#computeBounds();
     this.origin = this.bounds.least.map((least, axis) => least + this.bounds.size[axis] / 2);
+    this.meshes = meta.meshes;
+    this.leftOut = meta.left_out;
+    this.surroundings = this.#computeSurroundings();
+  }
+
+  /** The box { least, size } of an obstacle's box where the `position`-th frame has it. */
+  #meshBox(mesh, position) {
+    const placement = mesh.placements[mesh.placements.length === 1 ? 0 : position];
+    const half = [0, 1, 2].map((row) =>
+      mesh.size.reduce((sum, size, column) => sum + (Math.abs(placement[4 * row + column]) * size) / 2, 0));
+    return { least: half.map((value, row) => placement[4 * row + 3] - value), size: half.map((value) => 2 * value) };
+  }
+
+  /** The cloth's box with what is near of the obstacles, at the first frame and at the last: all that a view shows. */
+  #computeSurroundings() {
+    const reach = kNear * Math.hypot(...this.bounds.size);
+    const least = [...this.bounds.least];
+    const most = least.map((value, axis) => value + this.bounds.size[axis]);
+    const [low, high] = [least.map((value) => value - reach), most.map((value) => value + reach)];
+    for (const mesh of this.meshes) {
+      for (const position of [0, this.frames.length - 1]) {
+        const box = this.#meshBox(mesh, position);
+        const isNear = low.every((value, axis) =>
+          box.least[axis] < high[axis] && box.least[axis] + box.size[axis] > value);
+        if (!isNear) continue;
+        for (let axis = 0; axis < 3; ++axis) {
+          least[axis] = Math.min(least[axis], Math.max(box.least[axis], low[axis]));
+          most[axis] = Math.max(most[axis], Math.min(box.least[axis] + box.size[axis], high[axis]));
+        }
+      }
+    }
+    return { least, size: most.map((value, axis) => value - least[axis]) };
+  }
+
+  /** Where the `position`-th frame has an obstacle: 3 x 4 numbers by rows, relative to `origin`. */
+  placement(mesh, position) {
+    const placement = [...mesh.placements[mesh.placements.length === 1 ? 0 : position]];
+    for (let row = 0; row < 3; ++row) placement[4 * row + 3] -= this.origin[row];
+    return placement;
+  }
+
+  /** An obstacle's points about the middle of its box, and its faces, segments and lone points; BrokenData names it. */
+  async loadMesh(index) {
+    const { name, points, faces, segments, lone_points: lonePoints } = this.meshes[index];
+    try {
+      const indexCount = 3 * faces + 2 * segments + lonePoints;
+      const bytes = await readBlock(this.#document, `arris-mesh-${index}`, 4 * (3 * points + indexCount));
+      const axes = new Float32Array(unpack32(bytes, 3 * points).buffer);
+      const positions = new Float32Array(3 * points);
+      for (let p = 0; p < points; ++p)
+        for (let axis = 0; axis < 3; ++axis) positions[3 * p + axis] = axes[axis * points + p];
+      const indices = unpackIndices(bytes.subarray(12 * points), indexCount);
+      require(indices.every((point) => point < points), "it names points that do not exist");
+      return {
+        name, positions, faces: indices.subarray(0, 3 * faces),
+        segments: indices.subarray(3 * faces, 3 * faces + 2 * segments),
+        lonePoints: indices.subarray(3 * faces + 2 * segments),
+      };
+    } catch (error) {
+      const reason = error instanceof BrokenData ? error.message : `its data are damaged: ${error.message}`;
+      throw new BrokenData(`The obstacle ${name} cannot be shown: ${reason}.`);
+    }
   }
 
   #computeBounds() {

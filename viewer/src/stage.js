@@ -75,7 +75,7 @@ export class Stage {
     this.#addLights();
     this.#addGround();
     this.usePalette();
-    this.fit(run.bounds, { azimuth: kAzimuth, elevation: kElevation });
+    this.fit(run.surroundings, { azimuth: kAzimuth, elevation: kElevation });
   }
 
   /** The grid's spacing in metres, for the read-out. */
@@ -139,7 +139,7 @@ export class Stage {
     camera.left = camera.bottom = -radius;
     camera.right = camera.top = radius;
     camera.near = 0.5 * radius;
-    camera.far = 3.5 * radius + 3 * Math.hypot(...this.#run.bounds.size);
+    camera.far = 3.5 * radius + 3 * Math.hypot(...this.#run.surroundings.size);
     camera.updateProjectionMatrix();
     this.#key.shadow.normalBias = 0.006 * radius;
     this.isStale = true;
@@ -158,7 +158,7 @@ export class Stage {
     this.#controls.update();
     if (!this.isStale) return false;
     const distance = this.#camera.position.distanceTo(this.#controls.target);
-    const reach = Math.hypot(...this.#run.bounds.size) + this.#camera.position.length();
+    const reach = Math.hypot(...this.#run.surroundings.size) + this.#camera.position.length();
     this.#camera.near = 0.01 * distance;
     this.#camera.far = 8 * reach + distance;
     this.#camera.updateProjectionMatrix();
@@ -185,9 +185,9 @@ export class Stage {
     this.#scene.add(this.#sky, this.#key, this.#key.target, this.#camera);
   }
 
-  /** A grid and the shadow at the run's lowest z, a hair below so that cloth lying there is not cut by it. */
+  /** A grid and the shadow at the lowest z of the run's view, a hair below so that what lies there is not cut by it. */
   #addGround() {
-    const { least } = this.#run.bounds;
+    const { least } = this.#run.surroundings;
     const { radius } = ballAround(this.#run.bounds, this.#run.origin);
     const reach = 5 * radius;
     const cell = 10 ** Math.floor(Math.log10(radius / 1.5));

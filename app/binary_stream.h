@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "geometry/vectors.h"
+
+namespace arris {
+
+static_assert(std::endian::native == std::endian::little, "numbers are stored as they are in memory");
+
+/// Appends numbers, texts and arrays to a string of bytes, little-endian; texts and arrays are a 64-bit count
+/// and their elements.
+class BinaryWriter {
+  public:
+    template <typename Number>
+    void number(Number value)
+    {
+        static_assert(std::is_arithmetic_v<Number>);
+        bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    void text(std::string_view value);
+    template <typename Item, typename Write>
+    void list(const std::vector<Item>& items, const Write& write)
+    {
+        number(static_cast<std::uint64_t>(items.size()));
+        for (const Item& item : items) write(item);
+    }
+    void vector(const Vec3& value);
+    void vectors(const std::vector<Vec3>& values);
+    const std::string& bytes() const { return bytes_; }
+
+  private:
+    std::string bytes_;
+};
+
+/// Reads what a BinaryWriter wrote, from `path`. Untrusted input: lengths are checked before anything is
+/// allocated; InputError naming the file where they cannot be.
+class BinaryReader {
+  public:
+    /// Neither is copied: `bytes` must outlive the reader.
+    BinaryReader(std::string_view bytes, const std::string& path) : left_(bytes), path_(path) {}
+
+    template <typename Number>
+    Number number()
+    {
+        Number value;
+        const std::string_view bytes = take(sizeof value);
+        std::memcpy(&value, bytes.data(), sizeof value);
+        return value;
+    }
+    std::string text() { return std::string(take(number<std::uint64_t>())); }
+
+    /// `item_size`: bytes of the smallest item that `read` reads.
+    template <typename Item, typename Read>
+    std::vector<Item> list(std::size_t item_size, const Read& read)
+    {
+        const std::uint64_t count = number<std::uint64_t>();
+        if (count > left_.size() / item_size) fail("is truncated or damaged");
+        std::vector<Item> items;
+        items.reserve(count);
+        for (std::uint64_t k = 0; k < count; ++k) items.push_back(read());
+        return items;
+    }
+    Vec3 vector();
+    std::vector<Vec3> vectors();
+    std::string_view take(std::uint64_t size);
+    bool is_at_end() const { return left_.empty(); }
+    [[noreturn]] void fail(std::string_view what) const;
+
+  private:
+    std::string_view left_;
+    std::string path_;
+};
+
+/// What a file of this program calls itself.
+struct FileKind {
+    std::string_view magic;    ///< its first bytes
+    std::string_view version;  ///< another one is refused
+    std::string_view missing;  ///< "there is no checkpoint to resume from"
+    std::string_view other;    ///< "is not a checkpoint of arris"
+};
+
+/// Magic, version, body, CRC-32 of the body. Replaced atomically; std::system_error naming the path where the
+/// disk refuses.
+void write_sealed(const std::string& path, const FileKind& kind, const std::string& body);
+
+/// The body of such a file. InputError naming the file where it is missing, not of this kind, of another
+/// version (named), or damaged.
+std::string read_sealed(const std::string& path, const FileKind& kind);
+
+}  // namespace arris
