@@ -153,6 +153,28 @@ Ending explain(const Audit& audited, const Scene& scene, const State& state)
                     place.x(), place.y(), place.z(), state.time)};
 }
 
+/// What attempts cost, the failed ones of a step included: told in the row of the one that succeeds.
+struct Cost {
+    PhaseSeconds seconds;
+    int factorisations = 0, nlopt_evaluations = 0, solves = 0;
+
+    void add(const StepReport& report)
+    {
+        seconds += report.seconds;
+        factorisations += report.factorisations;
+        nlopt_evaluations += report.nlopt_evaluations;
+        solves += report.solves;
+    }
+    void put_into(StepReport& report)
+    {
+        report.seconds = seconds;
+        report.factorisations = factorisations;
+        report.nlopt_evaluations = nlopt_evaluations;
+        report.solves = solves;
+        *this = Cost();
+    }
+};
+
 /// One planned step, to its end; where it fails, the rest of it in twice as many equal parts, at most six
 /// times; the last of them with the last resort.
 std::optional<Ending> advance(Run& run)
@@ -163,12 +185,13 @@ std::optional<Ending> advance(Run& run)
     if (run.timeline.jumps_at(state.time)) restart(state);
     int parts = 1;  // of what is left
     bool is_halved = false;
+    Cost cost;
     for (int shrink = 1; state.time < end;) {
         Stopwatch watch;
         const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
         const Attempt attempt = shrink == kMostParts ? Attempt::Last : Attempt::Ordinary;
-        const StepReport report =
-            step(run.config.scene, run.config.settings, part_end, state, run.work, attempt);
+        StepReport report = step(run.config.scene, run.config.settings, part_end, state, run.work, attempt);
+        cost.add(report);
         if (report.status != StepStatus::Done) {
             if (shrink == kMostParts) return explain(report, run.config.settings.tolerance, state);
             shrink *= 2;
@@ -177,6 +200,7 @@ std::optional<Ending> advance(Run& run)
             continue;
         }
         watch.lap();
+        cost.put_into(report);
         parts = std::max(parts - 1, 1);
         write_outputs(run, report, watch, is_halved);
         if (run.audited.obstacle >= 0) return explain(run.audited, run.config.scene, state);

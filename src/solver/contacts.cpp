@@ -173,6 +173,31 @@ bool runs_into(const ObstacleStep& step, const Contact& contact, double shift)
     return now + shift < local.least_gap && end < local.least_gap;
 }
 
+/// Of two contacts of one vertex whose normals oppose each other.
+SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction, Contact& a,
+                      Contact& b)
+{
+    constexpr double kOpposite = -0.9;       // cosine between the normals
+    constexpr double kFacing = -1.0 + 1e-9;  // where they face each other exactly
+    constexpr double kShared = 0.99;         // of the room, so that what shares it is not in each other's way
+    constexpr double kNoRoom = 1e-6;         // of the stand-offs: less is round-off
+    const double cosine = a.normal.dot(b.normal);
+    const double wanted = a.in_frame.least_gap + b.in_frame.least_gap;
+    if (!(cosine < kOpposite) || !(wanted > 0.0)) return {};
+    // Seen from the vertex: planes that do not face each other exactly have no distance of their own.
+    const Vec3 place = steps[a.obstacle].end(steps[a.obstacle].reference[a.in_frame.vertices[0]]);
+    const double room = a.normal.dot(place - steps[a.obstacle].end(a.in_frame.point)) +
+                        b.normal.dot(place - steps[b.obstacle].end(b.in_frame.point));
+    if (kShared * room >= wanted) return {};
+    for (Contact* contact : {&a, &b}) {
+        contact->in_frame.least_gap *= std::max(kShared * room / wanted, 0.0);
+        contact->may_grow = false;
+        update_gap(steps[contact->obstacle], prediction, *contact);
+    }
+    const bool is_crushed = !(room > kNoRoom * wanted) && cosine < kFacing;
+    return {true, is_crushed ? std::optional(a.in_frame.vertices[0]) : std::nullopt};
+}
+
 }  // namespace
 
 std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
@@ -207,7 +232,7 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
 Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
                       const Prediction& prediction)
 {
-    Contact placed{contact, obstacle, step.end.rotation * contact.normal, 0.0, false, -1, -1};
+    Contact placed{contact, obstacle, step.end.rotation * contact.normal, 0.0, false, true, -1, -1};
     update_gap(step, prediction, placed);
     return placed;
 }
@@ -242,35 +267,38 @@ std::vector<Contact> find_contacts(const Scene& scene, const State& state, const
     return contacts;
 }
 
-std::optional<int> share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
-                              std::vector<Contact>& contacts)
+SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
+                      std::vector<Contact>& contacts)
 {
-    constexpr double kOpposite = -0.9;  // cosine between the normals
-    constexpr double kShared = 0.99;    // of the room, so that what shares it is not in each other's way
-    constexpr double kNoRoom = 1e-6;    // of the stand-offs: less is round-off
     std::vector<Contact*> of_vertices;
     for (Contact& contact : contacts)
         if (contact.is_vertex()) of_vertices.push_back(&contact);
     const auto vertex_of = [](const Contact* contact) { return contact->in_frame.vertices[0]; };
     std::stable_sort(of_vertices.begin(), of_vertices.end(),
                      [&](const Contact* a, const Contact* b) { return vertex_of(a) < vertex_of(b); });
-    std::optional<int> crushed;
+    SharedRoom shared;
     for (std::size_t i = 0; i < of_vertices.size(); ++i)
         for (std::size_t j = i + 1;
              j < of_vertices.size() && vertex_of(of_vertices[j]) == vertex_of(of_vertices[i]); ++j) {
-            Contact &a = *of_vertices[i], &b = *of_vertices[j];
-            if (!(a.normal.dot(b.normal) < kOpposite)) continue;
-            const double wanted = a.in_frame.least_gap + b.in_frame.least_gap;
-            const double room = -a.normal.dot(steps[a.obstacle].end(a.in_frame.point)) -
-                                b.normal.dot(steps[b.obstacle].end(b.in_frame.point));
-            if (kShared * room >= wanted) continue;
-            if (!(room > kNoRoom * wanted) && !crushed) crushed = vertex_of(&a);
-            for (Contact* contact : {&a, &b}) {
-                contact->in_frame.least_gap *= std::max(kShared * room / wanted, 0.0);
-                update_gap(steps[contact->obstacle], prediction, *contact);
-            }
+            const SharedRoom pair = share_room(steps, prediction, *of_vertices[i], *of_vertices[j]);
+            shared.is_changed = shared.is_changed || pair.is_changed;
+            if (!shared.crushed) shared.crushed = pair.crushed;
         }
-    return crushed;
+    return shared;
+}
+
+bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& prediction, double thickness,
+                     Contact& contact)
+{
+    constexpr double kNothingLeft = 1e-3;  // of the thickness
+    const ObstacleStep& step = steps[contact.obstacle];
+    ObstacleContact& local = contact.in_frame;
+    const double now = local.normal.dot(weighted(local, step.motion.begin) - local.point);
+    if (!(local.least_gap > kNothingLeft * thickness)) return false;
+    local.least_gap = now < local.least_gap ? now : 0.5 * local.least_gap;
+    contact.may_grow = false;
+    update_gap(step, prediction, contact);
+    return true;
 }
 
 bool flatten_history(const Scene& scene, const State& state, const std::vector<ObstacleStep>& steps,

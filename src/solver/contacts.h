@@ -26,8 +26,9 @@ struct Contact {
     Vec3 normal;   ///< at the step's end
     double gap;    ///< distance that q~ is past what it must keep at the step's end, m; negative inside
     bool was_active;
-    int bound = -1;  ///< coordinate of the velocity solve, 3 a vertex
-    int row = -1;    ///< or row
+    bool may_grow = true;  ///< its gap, towards the stand-off; not where it has yielded
+    int bound = -1;        ///< coordinate of the velocity solve, 3 a vertex
+    int row = -1;          ///< or row
 
     bool is_vertex() const { return in_frame.kind == ContactKind::Vertex; }
 };
@@ -47,10 +48,23 @@ std::vector<Contact> find_contacts(const Scene& scene, const State& state, const
 Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
                       const Prediction& prediction);
 
+/// What `share_room` did: whether a contact keeps less now, and a vertex (index) that has no room at all.
+struct SharedRoom {
+    bool is_changed = false;
+    std::optional<int> crushed;
+};
+
 /// Between two obstacles, or two faces of one, with room for less than both stand-offs, a vertex's contacts
-/// share the room there is at the step's end. A vertex (index) for which there is none.
-std::optional<int> share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
-                              std::vector<Contact>& contacts);
+/// share the room there is at the step's end. There is none between two planes that face each other exactly;
+/// from between any others it could slip out sideways.
+SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
+                      std::vector<Contact>& contacts);
+
+/// Lets a contact whose row could not be met with the others yield: it keeps no more than the gap it has,
+/// which riding on the obstacle keeps, or, where it kept only that, half of it. False where it has nothing to
+/// yield.
+bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& prediction, double thickness,
+                     Contact& contact);
 
 /// Flattens the history in `prediction` along the normals of those from `first` on, relative to the obstacle,
 /// where the extrapolated position would pass what the contact must keep and the cloth's velocity does not

@@ -85,7 +85,8 @@ void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<O
             gap += local.weights[i] * contact.normal.dot(proposal.world[local.vertices[i]]);
             squares += local.weights[i] * local.weights[i];
         }
-        const double missing = std::min(thickness, local.least_gap + growth) - gap;
+        const double wanted = local.least_gap + (contact.may_grow ? growth : 0.0);
+        const double missing = std::min(thickness, wanted) - gap;
         if (!(missing > 0.0)) continue;
         for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i)
             proposal.world[local.vertices[i]] += (local.weights[i] * missing / squares) * contact.normal;

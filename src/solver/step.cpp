@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/step.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <optional>
@@ -24,9 +25,10 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
 bool find_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
 {
     work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
-    const std::optional<int> crushed = share_room(work.obstacles, work.prediction, work.contacts);
+    const std::optional<int> crushed = share_room(work.obstacles, work.prediction, work.contacts).crushed;
     flatten_history(scene, state, work.obstacles, 0, work.contacts, work.prediction);
     work.has_system = false;
+    work.yielded = 0;
     if (!crushed) return true;
     report.status = StepStatus::Infeasible;
     report.infeasible_vertex = state.ids[*crushed];
@@ -85,10 +87,10 @@ void solve_velocity(const Settings& settings, Workspace& work, StepReport& repor
     }
 }
 
-/// q' = q~ + gamma v'. Where the cloth is nearer to an obstacle than its stand-off, it is moved out slowly.
-void propose(const Scene& scene, const State& state, double end, Workspace& work, const StepReport& report)
+/// q' = q~ + gamma v'. Where the cloth is nearer to an obstacle than its stand-off, it is moved out by up to
+/// `growth` (m).
+void propose(const Scene& scene, double growth, Workspace& work)
 {
-    constexpr double kGrowth = 0.1;  // m/s, of a gap on its way to the stand-off
     const std::size_t n = work.prediction.position.size();
     work.proposal.world.resize(n);
     work.proposal.velocity.resize(n);
@@ -97,18 +99,42 @@ void propose(const Scene& scene, const State& state, double end, Workspace& work
         velocity = work.at.drift[v] + work.at.basis[v] * work.solution.velocity.segment<3>(3 * v);
         work.proposal.world[v] = work.prediction.position[v] + work.prediction.gamma * velocity;
     }
-    const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
     restore_stand_off(work.contacts, work.obstacles, work.held, scene.material.thickness, growth,
                       work.proposal);
 }
 
-/// A contact that nothing could meet: the vertex to name.
+/// A contact that nothing could meet: the vertex to name, one that a pin holds where there is one.
 std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
 {
-    for (const Contact& contact : work.contacts)
-        if (!work.solution.infeasible_rows.empty() && contact.row == work.solution.infeasible_rows.front())
-            return state.ids[contact.in_frame.vertices[0]];
-    return -1;
+    const auto is_held = [&](int v) {
+        return std::any_of(work.held.begin(), work.held.end(),
+                           [v](const HeldVertex& held) { return held.vertex == v; });
+    };
+    std::int64_t named = -1;
+    for (const int row : work.solution.infeasible_rows)
+        for (const Contact& contact : work.contacts)
+            for (const int v : contact.in_frame.vertices) {
+                if (contact.row != row || v < 0) continue;
+                if (is_held(v)) return state.ids[v];
+                if (named < 0) named = state.ids[v];
+            }
+    return named;
+}
+
+/// Contacts that cannot be met together keep less, in a new system; false where none can. The impulses of a
+/// solution that meets them as well as it can are no contact forces: it is not used.
+bool yield_infeasible(const Scene& scene, Workspace& work)
+{
+    bool is_changed = false;
+    for (Contact& contact : work.contacts) {
+        const std::vector<int>& rows = work.solution.infeasible_rows;
+        if (contact.row < 0 || std::find(rows.begin(), rows.end(), contact.row) == rows.end()) continue;
+        if (!yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, contact)) continue;
+        ++work.yielded;
+        is_changed = true;
+    }
+    work.has_system = work.has_system && !is_changed;
+    return is_changed;
 }
 
 /// Rounds have run out, or the check names nothing that a row could mend.
@@ -127,31 +153,63 @@ void give_up(const Scene& scene, double end, const State& state, Attempt attempt
     report.status = StepStatus::Done;
 }
 
-/// The exact check. What it finds becomes rows of the same system, or of a new one where history ran into it:
-/// true where the velocity is to be solved again. A contact that cannot keep its stand-off may yield as long
-/// as the surface stays free.
-bool add_violations(const Scene& scene, double end, const State& state, Attempt attempt, Workspace& work,
-                    StepReport& report)
+/// The proposal of a certified velocity, checked. Where only moving cloth out to its stand-off would pass
+/// something, it is not moved.
+Violations propose_and_check(const Scene& scene, double growth, Workspace& work)
 {
-    constexpr int kMostSolves = 10;
-    if (report.status != StepStatus::Done && report.status != StepStatus::Infeasible) return false;
-    const Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
-    if (violations.is_clean()) {
-        report.yielded = static_cast<int>(work.solution.infeasible_rows.size());
-        report.status = StepStatus::Done;
-        return false;
-    }
-    if (report.solves == kMostSolves || violations.contacts.empty()) {
-        give_up(scene, end, state, attempt, work, report);
-        return false;
-    }
+    propose(scene, growth, work);
+    Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
+    if (violations.is_clean() || growth <= 0.0) return violations;
+    propose(scene, 0.0, work);
+    return check_proposal(scene, work.proposal, work.prediction, work.obstacles);
+}
+
+/// What the check has found becomes rows of the same system, or of a new one where history ran into it. False
+/// where it names nothing that a row could mend.
+bool add_violations(const Scene& scene, const State& state, const Violations& violations, Workspace& work)
+{
+    if (violations.contacts.empty()) return false;
     const std::size_t first = work.contacts.size();
     work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());
-    if (flatten_history(scene, state, work.obstacles, first, work.contacts, work.prediction))
+    const bool is_shared = share_room(work.obstacles, work.prediction, work.contacts).is_changed;
+    if (flatten_history(scene, state, work.obstacles, first, work.contacts, work.prediction) || is_shared)
         work.has_system = false;
     else
         append_rows(work.prediction, work.at, first, work.contacts, work.problem);
     return true;
+}
+
+/// Steps 3 to 5 once; true where the velocity is to be solved again.
+bool solve_and_check(const Scene& scene, const Settings& settings, double end, const State& state,
+                     Attempt attempt, Workspace& work, StepReport& report)
+{
+    constexpr int kMostSolves = 12;
+    constexpr double kGrowth = 0.1;  // m/s, of a gap on its way to the stand-off
+    Stopwatch watch;
+
+    // 3. A and b in the vertices' coordinates, in which contacts are bounds and rows.
+    assemble(scene, end, state, work);
+    report.seconds.assemble += watch.lap();
+
+    // 4. The constrained velocity, with its certificate. What cannot be met together yields.
+    solve_velocity(settings, work, report);
+    watch.lap();
+    if (report.status == StepStatus::Infeasible && report.solves < kMostSolves &&
+        yield_infeasible(scene, work))
+        return true;
+    if (report.status != StepStatus::Done && report.status != StepStatus::Infeasible) return false;
+
+    // 5. q' = q~ + gamma v', not committed, and the exact check of the whole way.
+    const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
+    const Violations violations = propose_and_check(scene, growth, work);
+    const bool is_done = report.status == StepStatus::Done && violations.is_clean();
+    const bool is_again = !is_done && report.status == StepStatus::Done && report.solves < kMostSolves &&
+                          add_violations(scene, state, violations, work);
+    if (!is_done && !is_again) give_up(scene, end, state, attempt, work, report);
+    report.crossings = is_again || report.rewound > 0 ? 0 : violations.crossings;
+    report.yielded = work.yielded;
+    report.seconds.check += watch.lap();
+    return is_again;
 }
 
 int count_feature_rows(const std::vector<Contact>& contacts, const std::vector<double>& multiplier)
@@ -175,7 +233,7 @@ void commit(double end, Workspace& work, State& state, StepReport& report)
     state.previous_velocity.swap(state.velocity);
     state.mesh.world.swap(work.proposal.world);
     state.velocity.swap(work.proposal.velocity);
-    state.previous_dt = end - state.time;
+    state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // put back by hand: no history
     state.time = end;
     ++state.step;
 }
@@ -232,25 +290,11 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     if (!find_contacts(scene, state, work, report)) return report;
     report.seconds.contacts += watch.lap();
 
-    for (bool is_again = true; is_again;) {  // bounded rounds
-        // 3. A and b in the vertices' coordinates, in which contacts are bounds and rows.
-        assemble(scene, end, state, work);
-        report.seconds.assemble += watch.lap();
+    // 3 - 5. Solve, propose, check: what the check finds becomes rows, in bounded rounds.
+    while (solve_and_check(scene, settings, end, state, attempt, work, report)) continue;
+    watch.lap();
 
-        // 4. The constrained velocity, with its certificate.
-        solve_velocity(settings, work, report);
-        watch.lap();
-
-        // 5. q' = q~ + gamma v', not committed.
-        propose(scene, state, end, work, report);
-        report.seconds.advance += watch.lap();
-
-        // 6. The exact check of the whole way; what it finds becomes rows.
-        is_again = add_violations(scene, end, state, attempt, work, report);
-        report.seconds.check += watch.lap();
-    }
-
-    // 7. Swapped in, or the state stays as it was.
+    // 6. Swapped in, or the state stays as it was.
     commit(end, work, state, report);
     report.seconds.advance += watch.lap();
     return report;

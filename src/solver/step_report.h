@@ -11,6 +11,16 @@ enum class StepStatus { Done, NotConverged, Infeasible, NotFinite, Penetration }
 struct PhaseSeconds {
     double move = 0, contacts = 0, conform = 0, transfer = 0, assemble = 0, factorise = 0, solve = 0,
            check = 0, advance = 0, output = 0;
+
+    PhaseSeconds& operator+=(const PhaseSeconds& other)
+    {
+        for (const auto phase :
+             {&PhaseSeconds::move, &PhaseSeconds::contacts, &PhaseSeconds::conform, &PhaseSeconds::transfer,
+              &PhaseSeconds::assemble, &PhaseSeconds::factorise, &PhaseSeconds::solve, &PhaseSeconds::check,
+              &PhaseSeconds::advance, &PhaseSeconds::output})
+            this->*phase += other.*phase;
+        return *this;
+    }
 };
 
 struct StepReport {

@@ -31,6 +31,7 @@ struct Workspace {
     std::vector<Contact> contacts;
     Linearization at;
     VelocityProblem problem;
+    int yielded = 0;
     bool has_system = false;  ///< of this step's prediction; rows may have been added since
 
     // solve_velocity, propose
