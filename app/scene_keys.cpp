@@ -296,7 +296,7 @@ std::vector<SceneKey> make_scene_keys()
                "/ 2)."),
         number("obstacle[].teeth.height", "m", kSize, kRequired, "Height of the ridges above the valleys."),
         number("obstacle[].teeth.width", "m", kSize, kRequired, "Length of the ridges."),
-        number("obstacle[].teeth.tip_degrees", "degrees", {0.0, 180.0, true}, kRequired,
+        number("obstacle[].teeth.tip_degrees", "degrees", {0.0, 179.0, true}, kRequired,
                "Angle at the ridges."),
         numbers("obstacle[].translate", 3, "m", kAnyNumber, kOrigin,
                 "World position = translate + rotate(scale * position)."),

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -154,6 +155,19 @@ std::vector<ObstaclePlan> plan_obstacles(const Json& scene)
     return plans;
 }
 
+/// A step sees only where an obstacle is at its ends: one that turns by more than a quarter between them
+/// would sweep past cloth unseen.
+void check_turn(const SceneDocument& document, const std::string& path, const Json& json, double step,
+                const RigidMotion& motion)
+{
+    constexpr double kMostTurn = std::numbers::pi / 2.0;
+    const double turn = motion.fastest_turn() * step;
+    if (!(turn > kMostTurn * (1.0 + 1e-9))) return;
+    document.fail(path + (json.contains("keyframes") ? ".keyframes" : ".motion"),
+                  fmt::format("turns by {:.3g} rad in a step of {} s", turn, step),
+                  "at most a quarter turn (1.57 rad) in a step; a shorter time.step allows more");
+}
+
 void load_obstacles(const SceneDocument& document, const LoadOptions& options,
                     std::vector<ObstaclePlan> plans, RunConfig& config)
 {
@@ -161,6 +175,7 @@ void load_obstacles(const SceneDocument& document, const LoadOptions& options,
         const Json& json = config.as_run["obstacle"][i];
         const std::string path = fmt::format("obstacle.{}", i);
         const std::string key = fmt::format("{}.{}", path, shape_of(json));
+        check_turn(document, path, json, config.settings.step, plans[i].motion);
         ObstacleMesh mesh;
         if (options.obstacles) {
             mesh = stored_mesh(document, options, i, plans[i]);

@@ -125,6 +125,18 @@ bool RigidMotion::is_moving() const
     return fastest > 0.0 && stop > start;
 }
 
+double RigidMotion::fastest_turn() const
+{
+    if (keyframes.empty()) return stop > start ? angular_velocity.stableNorm() : 0.0;
+    double fastest = 0.0;
+    for (std::size_t k = 1; k < keyframes.size(); ++k) {
+        const double turn =
+            keyframes[k - 1].rotate.normalized().angularDistance(keyframes[k].rotate.normalized());
+        fastest = std::max(fastest, turn / (keyframes[k].time - keyframes[k - 1].time));
+    }
+    return fastest;
+}
+
 std::vector<double> RigidMotion::jumps() const
 {
     std::vector<double> times;

@@ -54,6 +54,9 @@ struct RigidMotion {
     /// Whether anything ever moves.
     bool is_moving() const;
 
+    /// The greatest angular speed at any time, rad/s.
+    double fastest_turn() const;
+
     /// Times after 0 at which the velocity jumps: start, stop, keyframes. Ascending.
     std::vector<double> jumps() const;
 };

@@ -600,6 +600,12 @@ const std::vector<WrongScene> kWrongScenes = {
      "s.toml:7: obstacle.0.keyframes.1.time = 0.5: is not later than the keyframe before; allowed: a number "
      "> "
      "1 (s)"},
+    {"ObstacleTurnsTooFarInAStep",
+     kBase + kNail + "motion = { angular_velocity = [0, 0, 320] }\n",
+     {},
+     "s.toml:7: obstacle.0.motion = { angular_velocity = [0, 0, 320] }: turns by 1.6 rad in a step of 0.005 "
+     "s; "
+     "allowed: at most a quarter turn (1.57 rad) in a step; a shorter time.step allows more"},
     {"MotionStopsBeforeItStarts",
      kBase + kNail + "motion = { velocity = [1, 0, 0], start = 0.5, stop = 0.25 }\n",
      {},

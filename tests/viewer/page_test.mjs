@@ -155,7 +155,7 @@ test("it plays by itself, in time, and pauses", async () => {
   const paused = await page.evaluate("document.documentElement.dataset.wanted");
   await new Promise((resolve) => setTimeout(resolve, 300));
   assert.equal(await page.evaluate("document.documentElement.dataset.wanted"), paused);
-  assert.equal(await page.evaluate(`document.getElementById("play").getAttribute("aria-label")`), "Play");
+  await page.until(`document.getElementById("play").getAttribute("aria-label") === "Play"`);
   await page.close();
 });
 
