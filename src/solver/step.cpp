@@ -205,7 +205,9 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
     const bool is_again = !is_done && report.status == StepStatus::Done && report.solves < kMostSolves &&
                           add_violations(scene, state, violations, work);
-    if (!is_done && !is_again) give_up(scene, end, state, attempt, work, report);
+    const bool is_certified = report.kkt_residual <= settings.tolerance;
+    if (!is_done && !is_again)
+        give_up(scene, end, state, is_certified ? attempt : Attempt::Ordinary, work, report);
     report.crossings = is_again || report.rewound > 0 ? 0 : violations.crossings;
     report.yielded = work.yielded;
     report.seconds.check += watch.lap();

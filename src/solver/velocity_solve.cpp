@@ -30,6 +30,10 @@ namespace {
 /// Two answers certified at 1e-9 can differ in soft modes: below this they no longer do.
 constexpr double kAccurate = 1e-12;
 
+/// What cannot be met is named at fewer digits than a velocity is accepted at: capped multipliers stand a
+/// thousandfold above others.
+constexpr double kNaming = 1e-6;
+
 constexpr int kRefinements = 2;
 
 /// Of dense problems with rows: each takes out what round-off in S has put on the wrong side.
@@ -193,8 +197,11 @@ VelocitySolution Search::run_bases()
     best_.infeasible_rows = find_infeasible_rows();
     for (std::size_t k = 0; k < constraints_.rows.size(); ++k)
         best_.row_multipliers[static_cast<Eigen::Index>(k)] /= constraints_.rows[k].scale;
-    if (best_.kkt_residual <= tolerance_)
-        best_.status = best_.infeasible_rows.empty() ? SolveStatus::Certified : SolveStatus::Infeasible;
+    if (best_.infeasible_rows.empty()) {
+        if (best_.kkt_residual <= tolerance_) best_.status = SolveStatus::Certified;
+    } else if (best_.kkt_residual <= std::max(tolerance_, kNaming)) {
+        best_.status = SolveStatus::Infeasible;
+    }
     return best_;
 }
 

@@ -158,8 +158,9 @@ TEST(ObstacleFeatures, ReflexEdgesAreNoneButTheirEndsAreCorners)
     EXPECT_EQ(count(features, FeatureKind::Convex), 27);
     EXPECT_THAT(corner_points(features), ElementsAre(0, 1, 2, 3, 4, 5, 18, 19, 20, 21, 22, 23));
     EXPECT_THAT(polyline_lengths(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 3, 3, 3, 3, 3));
+    const ObstacleTopology topology = make_topology(mesh);
     for (const FeatureEdge& edge : features.edges) {
-        const std::array<int, 2>& ends = make_topology(mesh).edges[edge.edge].points;
+        const std::array<int, 2>& ends = topology.edges[edge.edge].points;
         EXPECT_FALSE(ends[0] % 6 == 3 && ends[1] % 6 == 3);  // the reflex line
     }
 }
