@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 
@@ -17,9 +18,10 @@ int main(int argc, char** argv)
     // A closed pipe and a file that may not grow are errors of a write, not reasons to vanish.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
-    // Not a command for people: the program starts itself with it to read a mesh file at arm's length.
+    // Not a command for people: the program starts itself with it to read a mesh file at arm's length. It
+    // ends without tidying up: what the import library has left behind of a broken file is nobody's business.
     if (argc > 1 && std::strcmp(argv[1], "import-obstacle") == 0)
-        return arris::import_obstacle_command(argc - 2, argv + 2);
+        std::_Exit(arris::import_obstacle_command(argc - 2, argv + 2));
     try {
         const int status = arris::run_command_line(argc, argv);
         // Output that went nowhere was not given.

@@ -70,7 +70,7 @@ void reply_wrong_mesh(const std::string& how)
 int main(int argc, char** argv)
 {
     const std::string mode = argc > 1 ? argv[1] : "";
-    if (mode == "import-obstacle") return arris::import_obstacle_command(argc - 2, argv + 2);
+    if (mode == "import-obstacle") std::_Exit(arris::import_obstacle_command(argc - 2, argv + 2));
     if (mode == "abort") std::abort();
     if (mode == "raise") std::raise(std::atoi(argv[2]));
     if (mode == "sleep") ::sleep(1000);
