@@ -93,7 +93,7 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
 {
     const State& state = run.at.state;
     const bool is_audited = run.timeline.frame_at(state.time) >= 0 || state.time >= run.config.duration;
-    run.audited = is_audited ? audit(run.config.scene, state) : Audit();
+    run.audited = is_audited ? audit(run.config.scene, state.mesh, state.time) : Audit();
     StepRow row = make_row(run, report);
     row.is_halved = is_halved;
     if (const std::int64_t index = run.timeline.frame_at(state.time); index >= 0) {

@@ -14,7 +14,7 @@
 #include "geometry/obstacle_file.h"
 #include "geometry/obstacle_shapes.h"
 #include "geometry/obstacle_topology.h"
-#include "geometry/penetration.h"
+#include "solver/audit.h"
 #include "solver/clearance.h"
 #include "solver/step.h"
 
@@ -195,22 +195,17 @@ std::vector<std::string> find_intersections(const SceneDocument& document, const
     std::vector<std::string> lines;
     if (config.scene.obstacles.empty()) return lines;
     const ClothMesh start = make_state(config.scene, config.cloth, config.cloth_velocity).mesh;
-    std::vector<Vec3> positions(start.world.size());
-    for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
-        const Obstacle& obstacle = config.scene.obstacles[i];
-        const Placement placement = obstacle.at(0.0);
-        for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = placement.inverse(start.world[v]);
-        const Penetration found = find_penetration(obstacle, positions, start.faces);
-        if (!found.is_any()) continue;
-        const Vec3 place = placement(found.place);
-        const std::string how = found.depth > 0.0 ? fmt::format("reaches {:.3g} m deep into", found.depth)
-                                                  : std::string("intersects");
+    for (const Audit& audited : find_penetrations(config.scene, start, 0.0)) {
+        const auto i = static_cast<std::size_t>(audited.obstacle);
+        const auto& [depth, place] = std::pair(audited.found.depth, audited.found.place);
+        const std::string how =
+            depth > 0.0 ? fmt::format("reaches {:.3g} m deep into", depth) : std::string("intersects");
         lines.push_back(
             fmt::format("{}: at time 0 the cloth {} {}, at [{:.6g}, {:.6g}, {:.6g}] (m); allowed: cloth that "
                         "starts clear "
                         "of every obstacle",
-                        document.describe(fmt::format("obstacle.{}", i)), how, obstacle.name(), place.x(),
-                        place.y(), place.z()));
+                        document.describe(fmt::format("obstacle.{}", i)), how,
+                        config.scene.obstacles[i].name(), place.x(), place.y(), place.z()));
     }
     return lines;
 }

@@ -28,13 +28,8 @@ ObstacleContact make_contact(const ClothMotion& motion, ContactKind kind, const 
 {
     const double before = normal.dot(cloth_point.at(motion.begin) - point);
     const double after = normal.dot(cloth_point.at(motion.end) - point);
-    ObstacleContact contact{kind,
-                            cloth_point.vertices,
-                            cloth_point.weights,
-                            element,
-                            normal,
-                            point,
-                            std::min(thickness, std::max(before, after))};
+    ObstacleContact contact{cloth_point, kind,  element,
+                            normal,      point, std::min(thickness, std::max(before, after))};
     // Ascending, unused ones last.
     const auto swap_if = [&](int i, int j) {
         const int a = contact.vertices[i], b = contact.vertices[j];

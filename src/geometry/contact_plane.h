@@ -28,20 +28,6 @@ inline constexpr double kReachThicknesses = 3.0;
 inline constexpr double kReachShareOfWay = 0.25;
 double longest_reach(const ClothMotion& motion, std::span<const int> vertices, double thickness);
 
-/// A point of the cloth: weights on up to three vertices, unused ones -1.
-struct ClothPoint {
-    std::array<int, 3> vertices;
-    std::array<double, 3> weights;
-
-    Vec3 at(const std::vector<Vec3>& positions) const
-    {
-        Vec3 sum = Vec3::Zero();
-        for (int i = 0; i < 3; ++i)
-            if (vertices[i] >= 0) sum += weights[i] * positions[vertices[i]];
-        return sum;
-    }
-};
-
 /// Fills in vertices in ascending order and `least_gap`.
 ObstacleContact make_contact(const ClothMotion& motion, ContactKind kind, const ClothPoint& cloth_point,
                              int element, const Vec3& normal, const Vec3& point, double thickness);

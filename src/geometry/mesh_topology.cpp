@@ -167,6 +167,14 @@ MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces)
     return topology;
 }
 
+std::vector<std::vector<int>> faces_at_vertices(int vertex_count, const std::vector<Face>& faces)
+{
+    std::vector<std::vector<int>> faces_at(static_cast<std::size_t>(vertex_count));
+    for (int f = 0; f < static_cast<int>(faces.size()); ++f)
+        for (const int v : faces[f]) faces_at[v].push_back(f);
+    return faces_at;
+}
+
 std::string validate(const ClothMesh& mesh, const ElementNumbers& numbers)
 {
     const Names names{numbers};

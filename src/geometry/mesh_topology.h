@@ -30,6 +30,9 @@ struct MeshTopology {
 /// Linear in face count (a sort). Faces must form an oriented 2-manifold: `validate` checks that.
 MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces);
 
+/// The faces at each vertex, ascending.
+std::vector<std::vector<int>> faces_at_vertices(int vertex_count, const std::vector<Face>& faces);
+
 /// What a sentence calls a mesh's vertices and faces; where empty, their indices, counted from 0.
 struct ElementNumbers {
     std::vector<int> vertices;

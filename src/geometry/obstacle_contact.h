@@ -22,17 +22,39 @@ struct ClothMotion {
 
 enum class ContactKind { Vertex, Edge, Triangle };  ///< which element of the cloth meets the obstacle
 
+/// A point of the cloth: weights on up to three vertices.
+struct ClothPoint {
+    std::array<int, 3> vertices;    ///< -1 where there are fewer
+    std::array<double, 3> weights;  ///< >= 0, sum 1
+
+    Vec3 at(const std::vector<Vec3>& field) const
+    {
+        Vec3 sum = Vec3::Zero();
+        for (int i = 0; i < 3; ++i)
+            if (vertices[i] >= 0) sum += weights[i] * field[vertices[i]];
+        return sum;
+    }
+
+    /// Changes `field` at the point by `change`, with the least change at its vertices.
+    void shift(const Vec3& change, std::vector<Vec3>& field) const
+    {
+        double squares = 0.0;
+        for (int i = 0; i < 3; ++i)
+            if (vertices[i] >= 0) squares += weights[i] * weights[i];
+        for (int i = 0; i < 3; ++i)
+            if (vertices[i] >= 0) field[vertices[i]] += (weights[i] / squares) * change;
+    }
+};
+
 /// A point of the cloth that must keep its distance from a plane that touches the obstacle:
 /// normal . (sum_i weights_i x_i' - point) >= least_gap at the step's end, in the obstacle's frame.
-struct ObstacleContact {
+struct ObstacleContact : ClothPoint {  // vertices ascending, unused ones last
     ContactKind kind;
-    std::array<int, 3> vertices;    ///< ascending; -1 where there are fewer
-    std::array<double, 3> weights;  ///< >= 0, sum 1
     int element;  ///< of the obstacle: Vertex: a face, or with no face a feature edge or corner of
                   ///< `features()` (they only serve to compare); Edge: an edge of the topology; Triangle: a
                   ///< point of the mesh
-    Vec3 normal;       ///< unit, from the obstacle to the cloth
-    Vec3 point;        ///< on the obstacle
+    Vec3 normal;  ///< unit, from the obstacle to the cloth
+    Vec3 point;   ///< on the obstacle
     double least_gap;  ///< m: the thickness, or less where the cloth was nearer and nothing brings it out:
                        ///< min(thickness, max(gap at begin, gap at end))
 };

@@ -287,7 +287,7 @@ int chain(const ObstacleTopology& topology, const std::vector<EdgesAt>& at,
 std::vector<int> find_patches(const ObstacleMesh& mesh, const ObstacleTopology& topology,
                               const FacePlanes& planes, double diagonal)
 {
-    std::vector<int> patch(mesh.faces.size(), -1), open;
+    std::vector<int> patch(mesh.faces.size(), -1);
     int count = 0;
     for (int seed = 0; seed < static_cast<int>(mesh.faces.size()); ++seed) {
         if (patch[seed] >= 0) continue;
@@ -300,19 +300,7 @@ std::vector<int> find_patches(const ObstacleMesh& mesh, const ObstacleTopology& 
                        return std::abs(normal.dot(mesh.points[p] - origin)) <= kPlanarDistance * diagonal;
                    });
         };
-        patch[seed] = count;
-        open.assign(1, seed);
-        while (!open.empty()) {
-            const int f = open.back();
-            open.pop_back();
-            for (int i = 0; i < 3; ++i) {
-                const int g = topology.neighbour(f, i);
-                if (g < 0 || patch[g] >= 0 || !is_in_plane(g)) continue;
-                patch[g] = count;
-                open.push_back(g);
-            }
-        }
-        ++count;
+        label_connected(topology, seed, count++, is_in_plane, patch);
     }
     return patch;
 }

@@ -69,28 +69,18 @@ Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c)
 
 void make_components(const ObstacleMesh& mesh, ObstacleTopology& topology)
 {
+    const int count = static_cast<int>(mesh.faces.size());
     topology.component.assign(mesh.faces.size(), -1);
-    std::vector<int> open;
-    for (int seed = 0; seed < static_cast<int>(mesh.faces.size()); ++seed) {
+    for (int seed = 0; seed < count; ++seed) {
         if (topology.component[seed] >= 0) continue;
-        const int component = static_cast<int>(topology.is_solid.size());
+        label_connected(
+            topology, seed, static_cast<int>(topology.is_solid.size()), [](int) { return true; },
+            topology.component);
         topology.is_solid.push_back(1);
-        topology.component[seed] = component;
-        open.assign(1, seed);
-        while (!open.empty()) {
-            const int f = open.back();
-            open.pop_back();
-            for (int i = 0; i < 3; ++i) {
-                const int g = topology.neighbour(f, i);
-                if (g < 0) {
-                    topology.is_solid[component] = 0;
-                } else if (topology.component[g] < 0) {
-                    topology.component[g] = component;
-                    open.push_back(g);
-                }
-            }
-        }
     }
+    for (int f = 0; f < count; ++f)
+        for (int i = 0; i < 3; ++i)
+            if (topology.neighbour(f, i) < 0) topology.is_solid[topology.component[f]] = 0;
 }
 
 std::string find_bad_index(const ObstacleMesh& mesh)

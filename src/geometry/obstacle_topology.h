@@ -38,6 +38,26 @@ struct ObstacleTopology {
     }
 };
 
+/// Gives `seed` and the faces joined to it through unlabelled ones that may be entered (a function of the
+/// face) this label; -1 is none.
+template <typename MayEnter>
+void label_connected(const ObstacleTopology& topology, int seed, int label, const MayEnter& may_enter,
+                     std::vector<int>& labels)
+{
+    std::vector<int> open(1, seed);
+    labels[seed] = label;
+    while (!open.empty()) {
+        const int f = open.back();
+        open.pop_back();
+        for (int i = 0; i < 3; ++i) {
+            const int g = topology.neighbour(f, i);
+            if (g < 0 || labels[g] >= 0 || !may_enter(g)) continue;
+            labels[g] = label;
+            open.push_back(g);
+        }
+    }
+}
+
 /// Linear in the mesh but for a sort. The mesh must pass `validate`.
 ObstacleTopology make_topology(const ObstacleMesh& mesh);
 

@@ -25,6 +25,15 @@ inline Placement operator*(const Placement& second, const Placement& first)
     return {second.rotation * first.rotation, second(first.translation)};
 }
 
+/// Where points of the world are in the frame that `placement` places.
+inline std::vector<Vec3> to_frame(const Placement& placement, const std::vector<Vec3>& world)
+{
+    std::vector<Vec3> points;
+    points.reserve(world.size());
+    for (const Vec3& x : world) points.push_back(placement.inverse(x));
+    return points;
+}
+
 /// A rotation by `degrees` about `axis` (any length but zero).
 Mat3 rotation_about(const Vec3& axis, double degrees);
 

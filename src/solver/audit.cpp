@@ -3,18 +3,24 @@
 
 namespace arris {
 
-Audit audit(const Scene& scene, const State& state)
+std::vector<Audit> find_penetrations(const Scene& scene, const ClothMesh& mesh, double time)
+{
+    std::vector<Audit> penetrations;
+    for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
+        const Placement frame = scene.obstacles[o].at(time);
+        Penetration found = find_penetration(scene.obstacles[o], to_frame(frame, mesh.world), mesh.faces);
+        if (!found.is_any()) continue;
+        found.place = frame(found.place);
+        penetrations.push_back({static_cast<int>(o), found});
+    }
+    return penetrations;
+}
+
+Audit audit(const Scene& scene, const ClothMesh& mesh, double time)
 {
     Audit deepest;
-    std::vector<Vec3> positions(state.mesh.world.size());
-    for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
-        const Placement frame = scene.obstacles[o].at(state.time);
-        for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = frame.inverse(state.mesh.world[v]);
-        Penetration found = find_penetration(scene.obstacles[o], positions, state.mesh.faces);
-        if (!found.is_any() || (deepest.obstacle >= 0 && found.depth <= deepest.found.depth)) continue;
-        found.place = frame(found.place);
-        deepest = {static_cast<int>(o), found};
-    }
+    for (const Audit& one : find_penetrations(scene, mesh, time))
+        if (deepest.obstacle < 0 || one.found.depth > deepest.found.depth) deepest = one;
     return deepest;
 }
 

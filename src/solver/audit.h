@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "geometry/penetration.h"
 #include "solver/scene.h"
-#include "solver/state.h"
 
 namespace arris {
 
@@ -12,8 +13,11 @@ struct Audit {
     Penetration found;  ///< of that obstacle; `place` in the world
 };
 
-/// The deepest penetration of the cloth as it is. Classifies the surface anew and knows nothing of how the
-/// steps got there, so it would find what their own check had missed.
-Audit audit(const Scene& scene, const State& state);
+/// Every obstacle that the cloth is in at `time` (s). Classifies the surface anew and knows nothing of how it
+/// got there, so it finds what a step's own check would have missed.
+std::vector<Audit> find_penetrations(const Scene& scene, const ClothMesh& mesh, double time);
+
+/// The deepest of them.
+Audit audit(const Scene& scene, const ClothMesh& mesh, double time);
 
 }  // namespace arris

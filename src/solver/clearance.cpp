@@ -31,14 +31,9 @@ bool push_out(const ObstacleContact& contact, const ObstacleStep& step, double t
 {
     constexpr double kRoundOff = 1e-9;  // of the thickness
     const Vec3 normal = step.end.rotation * contact.normal;
-    double gap = -normal.dot(step.end(contact.point)), squares = 0.0;
-    for (int i = 0; i < 3 && contact.vertices[i] >= 0; ++i) {
-        gap += contact.weights[i] * normal.dot(world[contact.vertices[i]]);
-        squares += contact.weights[i] * contact.weights[i];
-    }
+    const double gap = normal.dot(contact.at(world) - step.end(contact.point));
     if (gap >= (1.0 - kRoundOff) * thickness) return false;
-    for (int i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
-        world[contact.vertices[i]] += (contact.weights[i] * (thickness - gap) / squares) * normal;
+    contact.shift((thickness - gap) * normal, world);
     return true;
 }
 
@@ -62,8 +57,7 @@ bool is_free_way(const Scene& scene, const std::vector<MeshEdge>& edges, const C
 {
     std::vector<ObstacleStep> steps = stand_still(scene, from, edges);
     for (std::size_t o = 0; o < steps.size(); ++o) {
-        for (std::size_t v = 0; v < to.world.size(); ++v)
-            steps[o].motion.end[v] = steps[o].end.inverse(to.world[v]);
+        steps[o].motion.end = to_frame(steps[o].end, to.world);
         if (!check_sweep(scene.obstacles[o], steps[o].motion, scene.material.thickness).is_clean())
             return false;
     }

@@ -71,14 +71,12 @@ std::vector<std::size_t> order_of(const std::vector<Contact>& contacts)
 /// Expected active: what pressed in the last step, and what would pass its plane at its last velocity.
 bool is_expected(const Contact& contact, const Prediction& prediction, const State& state)
 {
-    double closing = 0.0;
-    for (int i = 0; i < 3 && contact.in_frame.vertices[i] >= 0; ++i)
-        closing +=
-            contact.in_frame.weights[i] * contact.normal.dot(state.velocity[contact.in_frame.vertices[i]]);
+    const double closing = contact.normal.dot(contact.in_frame.at(state.velocity));
     return contact.was_active || contact.gap + prediction.gamma * closing < 0.0;
 }
 
-ConstraintRow make_row(const Contact& contact, const Prediction& prediction, const Linearization& at)
+void add_row(const Prediction& prediction, const Linearization& at, Contact& contact,
+             VelocityProblem& problem)
 {
     ConstraintRow row;
     row.lower = -contact.gap / prediction.gamma;
@@ -93,7 +91,8 @@ ConstraintRow make_row(const Contact& contact, const Prediction& prediction, con
         }
     }
     row.group = local.vertices[0];
-    return row;
+    contact.row = static_cast<int>(problem.rows.size());
+    problem.rows.push_back(row);
 }
 
 }  // namespace
@@ -102,8 +101,7 @@ void append_rows(const Prediction& prediction, const Linearization& at, std::siz
                  std::vector<Contact>& contacts, VelocityProblem& problem)
 {
     for (std::size_t c = first; c < contacts.size(); ++c) {
-        contacts[c].row = static_cast<int>(problem.rows.size());
-        problem.rows.push_back(make_row(contacts[c], prediction, at));
+        add_row(prediction, at, contacts[c], problem);
     }
 }
 
@@ -142,8 +140,7 @@ void build_constraints(const std::vector<HeldVertex>& held, const Prediction& pr
     // Rows: the rest.
     for (Contact& contact : contacts) {
         if (contact.bound >= 0) continue;
-        contact.row = static_cast<int>(problem.rows.size());
-        problem.rows.push_back(make_row(contact, prediction, at));
+        add_row(prediction, at, contact, problem);
         if (is_expected(contact, prediction, state)) problem.row_guess.push_back(contact.row);
     }
 }

@@ -94,11 +94,7 @@ class RememberedPairs {
     /// A face with these vertices, of which there may be two; -1 where the mesh has none any more.
     int find_face(const std::array<int, 3>& vertices)
     {
-        if (faces_at_.empty()) {
-            faces_at_.resize(state_.mesh.world.size());
-            for (int f = 0; f < state_.mesh.face_count(); ++f)
-                for (const int v : state_.mesh.faces[f]) faces_at_[v].push_back(f);
-        }
+        if (faces_at_.empty()) faces_at_ = faces_at_vertices(state_.mesh.vertex_count(), state_.mesh.faces);
         for (const int f : faces_at_[vertices[0]]) {
             const Face& face = state_.mesh.faces[f];
             const auto is_in_face = [&](int v) {
@@ -115,30 +111,10 @@ class RememberedPairs {
     std::vector<std::vector<int>> faces_at_;  ///< of each vertex; made when it is first asked for
 };
 
-/// sum_i weights_i field_i of the contact's vertices.
-Vec3 weighted(const ObstacleContact& contact, const std::vector<Vec3>& field)
-{
-    Vec3 sum = Vec3::Zero();
-    for (int i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
-        sum += contact.weights[i] * field[contact.vertices[i]];
-    return sum;
-}
-
-/// Moves the contact's point by `distance` along its normal with the least change of its vertices.
-void push(const Contact& contact, double distance, std::vector<Vec3>& field)
-{
-    double squares = 0.0;
-    for (const double weight : contact.in_frame.weights) squares += weight * weight;
-    for (int i = 0; i < 3 && contact.in_frame.vertices[i] >= 0; ++i)
-        field[contact.in_frame.vertices[i]] +=
-            (contact.in_frame.weights[i] * distance / squares) * contact.normal;
-}
-
 void update_gap(const ObstacleStep& step, const Prediction& prediction, Contact& contact)
 {
     const ObstacleContact& local = contact.in_frame;
-    contact.gap =
-        contact.normal.dot(weighted(local, prediction.position) - step.end(local.point)) - local.least_gap;
+    contact.gap = contact.normal.dot(local.at(prediction.position) - step.end(local.point)) - local.least_gap;
 }
 
 /// What q~ and v~ would be along the contact's normal if its point had ridden on the obstacle for two steps.
@@ -168,8 +144,8 @@ bool runs_into(const ObstacleStep& step, const Contact& contact, double shift)
 {
     const ObstacleContact& local = contact.in_frame;
     if (contact.was_active) return true;
-    const double now = local.normal.dot(weighted(local, step.motion.begin) - local.point);
-    const double end = local.normal.dot(weighted(local, step.motion.end) - local.point);
+    const double now = local.normal.dot(local.at(step.motion.begin) - local.point);
+    const double end = local.normal.dot(local.at(step.motion.end) - local.point);
     return now + shift < local.least_gap && end < local.least_gap;
 }
 
@@ -210,20 +186,15 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
     std::vector<Vec3> free_end(n);
     for (std::size_t v = 0; v < n; ++v)
         free_end[v] = prediction.position[v] + prediction.gamma * state.velocity[v];
-    for (const HeldVertex& vertex : held)
-        for (int d = 0; d < 3; ++d)
-            if (vertex.held[d]) free_end[vertex.vertex][d] = vertex.target[d];
+    hold_in_place(held, free_end);
 
     for (const Obstacle& obstacle : scene.obstacles) {
         ObstacleStep step;
         step.before = obstacle.at(state.time - state.previous_dt);
         step.begin = obstacle.at(state.time);
         step.end = obstacle.at(end);
-        step.motion = {&state.mesh.faces, &edges, std::vector<Vec3>(n), std::vector<Vec3>(n)};
-        for (std::size_t v = 0; v < n; ++v) {
-            step.motion.begin[v] = step.begin.inverse(state.mesh.world[v]);
-            step.motion.end[v] = step.end.inverse(free_end[v]);
-        }
+        step.motion = {&state.mesh.faces, &edges, to_frame(step.begin, state.mesh.world),
+                       to_frame(step.end, free_end)};
         steps.push_back(std::move(step));
     }
     return steps;
@@ -293,7 +264,7 @@ bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& p
     constexpr double kNothingLeft = 1e-3;  // of the thickness
     const ObstacleStep& step = steps[contact.obstacle];
     ObstacleContact& local = contact.in_frame;
-    const double now = local.normal.dot(weighted(local, step.motion.begin) - local.point);
+    const double now = local.normal.dot(local.at(step.motion.begin) - local.point);
     if (!(local.least_gap > kNothingLeft * thickness)) return false;
     local.least_gap = now < local.least_gap ? now : 0.5 * local.least_gap;
     contact.may_grow = false;
@@ -313,12 +284,12 @@ bool flatten_history(const Scene& scene, const State& state, const std::vector<O
             const RiddenHistory ridden =
                 find_ridden(scene.obstacles[contact.obstacle], step, state, prediction.forward, contact);
             const double shift =
-                contact.normal.dot(weighted(contact.in_frame, prediction.position)) - ridden.position;
+                contact.normal.dot(contact.in_frame.at(prediction.position)) - ridden.position;
             if (!runs_into(step, contact, shift)) continue;
-            push(contact, -shift, prediction.position);
-            push(contact,
-                 ridden.velocity - contact.normal.dot(weighted(contact.in_frame, prediction.velocity)),
-                 prediction.velocity);
+            contact.in_frame.shift(-shift * contact.normal, prediction.position);
+            const double gained =
+                ridden.velocity - contact.normal.dot(contact.in_frame.at(prediction.velocity));
+            contact.in_frame.shift(gained * contact.normal, prediction.velocity);
             is_changed = true;
         }
     if (is_changed)

@@ -20,6 +20,9 @@ struct HeldVertex {
 /// the last pin that holds it.
 std::vector<HeldVertex> find_held_vertices(const Scene& scene, const State& state, double end);
 
+/// Puts held vertices where they must be, in the directions in which they are held.
+void hold_in_place(const std::vector<HeldVertex>& held, std::vector<Vec3>& world);
+
 /// What pins hold goes where they have it at time 0, and moves as they do.
 void take_hold(const Scene& scene, State& state);
 

@@ -9,23 +9,17 @@ namespace arris {
 
 namespace {
 
-void hold_in_place(const std::vector<HeldVertex>& held, std::vector<Vec3>& world)
-{
-    for (const HeldVertex& vertex : held)
-        for (int d = 0; d < 3; ++d)
-            if (vertex.held[d]) world[vertex.vertex][d] = vertex.target[d];
-}
-
 /// Halves the share of its way that every vertex of these faces goes, down to nothing below a sixteenth; then
 /// grows the patch by the vertices of the faces around. True where anything changed.
 class Shares {
   public:
     Shares(const std::vector<Face>& faces, const std::vector<HeldVertex>& held, std::size_t count)
-        : faces_(faces), share_(count, 1.0), is_held_(count, 0), faces_at_(count)
+        : faces_(faces),
+          share_(count, 1.0),
+          is_held_(count, 0),
+          faces_at_(faces_at_vertices(static_cast<int>(count), faces))
     {
         for (const HeldVertex& vertex : held) is_held_[vertex.vertex] = 1;
-        for (int f = 0; f < static_cast<int>(faces.size()); ++f)
-            for (const int v : faces[f]) faces_at_[v].push_back(f);
     }
 
     double operator[](std::size_t v) const { return share_[v]; }
@@ -80,16 +74,11 @@ void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<O
 {
     for (const Contact& contact : contacts) {
         const ObstacleContact& local = contact.in_frame;
-        double gap = -contact.normal.dot(steps[contact.obstacle].end(local.point)), squares = 0.0;
-        for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
-            gap += local.weights[i] * contact.normal.dot(proposal.world[local.vertices[i]]);
-            squares += local.weights[i] * local.weights[i];
-        }
+        const double gap =
+            contact.normal.dot(local.at(proposal.world) - steps[contact.obstacle].end(local.point));
         const double wanted = local.least_gap + (contact.may_grow ? growth : 0.0);
         const double missing = std::min(thickness, wanted) - gap;
-        if (!(missing > 0.0)) continue;
-        for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i)
-            proposal.world[local.vertices[i]] += (local.weights[i] * missing / squares) * contact.normal;
+        if (missing > 0.0) local.shift(missing * contact.normal, proposal.world);
     }
     hold_in_place(held, proposal.world);
 }
@@ -105,8 +94,7 @@ Violations check_proposal(const Scene& scene, const Proposal& proposal, const Pr
     Violations violations;
     for (std::size_t o = 0; o < steps.size(); ++o) {
         ObstacleStep& step = steps[o];
-        for (std::size_t v = 0; v < proposal.world.size(); ++v)
-            step.motion.end[v] = step.end.inverse(proposal.world[v]);
+        step.motion.end = to_frame(step.end, proposal.world);
         SweepReport report = check_sweep(scene.obstacles[o], step.motion, scene.material.thickness);
         for (const ObstacleContact& contact : report.violations)
             violations.contacts.push_back(place_contact(contact, static_cast<int>(o), step, prediction));

@@ -6,14 +6,14 @@
 
 namespace arris {
 
-Vec3 pinned_place(const Scene& scene, const Pin& pin, double time, const Vec3& origin)
+Placement pin_placement(const Scene& scene, const Pin& pin, double time)
 {
-    if (!pin.follows) return pin.motion.at(time)(origin);
+    if (!pin.follows) return pin.motion.at(time);
     const Obstacle& obstacle = scene.obstacles[*pin.follows];
-    return obstacle.at(time)(obstacle.at(0.0).inverse(origin));
+    return obstacle.at(time) * obstacle.at(0.0).inverse();
 }
 
-Vec3 pinned_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place)
+Vec3 pin_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place)
 {
     return pin.follows ? scene.obstacles[*pin.follows].velocity_after(time, place)
                        : pin.motion.velocity_after(time, place);

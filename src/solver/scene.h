@@ -20,7 +20,8 @@ struct Pin {
     RigidMotion motion;
     std::array<bool, 3> held = {true, true, true};             ///< x, y, z
     double release = std::numeric_limits<double>::infinity();  ///< s
-    std::optional<int> follows = {};  ///< an obstacle (index in the scene) on which they ride instead of `motion`
+    std::optional<int> follows =
+        {};  ///< an obstacle (index in the scene) on which they ride instead of `motion`
 
     bool holds_until(double end) const { return end <= release; }
 };
@@ -35,11 +36,11 @@ struct Scene {
     std::vector<Obstacle> obstacles;
 };
 
-/// Where `pin` has at `time` (s) what was at `origin` (world, m) at time 0.
-Vec3 pinned_place(const Scene& scene, const Pin& pin, double time, const Vec3& origin);
+/// Maps where something that `pin` holds was at time 0 to where it has it at `time` (s).
+Placement pin_placement(const Scene& scene, const Pin& pin, double time);
 
 /// Velocity (m/s) just after `time` of what `pin` holds at `place` then.
-Vec3 pinned_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place);
+Vec3 pin_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place);
 
 /// Times after 0 at which the input jumps (motion starts or stops, keyframe, release, pull): ascending,
 /// unique. Steps end on them, and the step after one is implicit Euler.

@@ -33,18 +33,18 @@ struct Laid {
 
 TEST(Audit, FreeClothHasNone)
 {
-    EXPECT_EQ(audit(Laid(0.11).scene, Laid(0.11).state).obstacle, -1);
+    EXPECT_EQ(audit(Laid(0.11).scene, Laid(0.11).state.mesh, 0.0).obstacle, -1);
 }
 
 TEST(Audit, FindsTheObstacleTheClothIsDeepestIn)
 {
     Laid laid(0.09);  // 1 cm inside the table, however it came there
-    const Audit first = audit(laid.scene, laid.state);
+    const Audit first = audit(laid.scene, laid.state.mesh, laid.state.time);
     EXPECT_EQ(first.obstacle, 0);
     EXPECT_NEAR(first.found.depth, 0.01, 1e-4);
     laid.state.time =
         0.875;  // the lid reaches from 0.025 to 0.225: the cloth is 0.05 m inside from its sides
-    const Audit second = audit(laid.scene, laid.state);
+    const Audit second = audit(laid.scene, laid.state.mesh, laid.state.time);
     EXPECT_EQ(second.obstacle, 1);
     EXPECT_NEAR(second.found.depth, 0.05, 1e-3);
     EXPECT_NEAR(second.found.place.z(), 0.09, 1e-9) << "in the world";
