@@ -20,17 +20,6 @@ Vec3 edge_direction(const Obstacle& obstacle, int edge)
     return (obstacle.mesh().points[b] - obstacle.mesh().points[a]).normalized();
 }
 
-// Unit, in the face, perpendicular to the edge.
-Vec3 into_face(const Obstacle& obstacle, int face, int edge)
-{
-    const ObstacleTopology& topology = obstacle.topology();
-    const std::array<int, 3>& edges = topology.face_edges[face];
-    const int i = static_cast<int>(std::find(edges.begin(), edges.end(), edge) - edges.begin());
-    const Face& corners = obstacle.mesh().faces[face];
-    const Vec3 along = obstacle.mesh().points[corners[(i + 1) % 3]] - obstacle.mesh().points[corners[i]];
-    return topology.face_normals[face].cross(along.normalized());
-}
-
 double angle_at(const Obstacle& obstacle, int face, int point)
 {
     const Face& corners = obstacle.mesh().faces[face];
@@ -50,6 +39,16 @@ Vec3 cone_bound(const Obstacle& obstacle, int face, const Vec3& direction)
 }
 
 }  // namespace
+
+Vec3 into_face(const Obstacle& obstacle, int face, int edge)
+{
+    const ObstacleTopology& topology = obstacle.topology();
+    const std::array<int, 3>& edges = topology.face_edges[face];
+    const int i = static_cast<int>(std::find(edges.begin(), edges.end(), edge) - edges.begin());
+    const Face& corners = obstacle.mesh().faces[face];
+    const Vec3 along = obstacle.mesh().points[corners[(i + 1) % 3]] - obstacle.mesh().points[corners[i]];
+    return topology.face_normals[face].cross(along.normalized());
+}
 
 bool is_in_edge_cone(const Obstacle& obstacle, int edge, const Vec3& direction)
 {

@@ -24,6 +24,9 @@ bool is_in_point_cone(const Obstacle& obstacle, int point, const Vec3& direction
 /// the edge.
 Vec3 clamp_to_edge_cone(const Obstacle& obstacle, int edge, const Vec3& direction);
 
+/// Unit, in `face` and perpendicular to its edge `edge` (topology), towards the face's inside.
+Vec3 into_face(const Obstacle& obstacle, int face, int edge);
+
 /// Away from the obstacle: along the sum of the normals of an edge's faces, of a point's by their angles;
 /// zero on wires and lone points, from a sheet's border away from the sheet.
 Vec3 outward_of_edge(const Obstacle& obstacle, int edge);

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "geometry/obstacle.h"
+
+namespace arris {
+
+// Where a vertex that is on a sharp feature may go in the world: along the feature, and away from it by one
+// direction chosen so that moving along it opens the gap to every face beside the feature. All in the
+// obstacle's frame.
+
+struct FeatureFrame {
+    Vec3 point;    ///< of the feature, nearest to the vertex
+    Vec3 tangent;  ///< unit, along an edge; zero at corners
+    Vec3 outward;  ///< unit, perpendicular to the tangent
+    double mitre;  ///< distance along `outward` that keeps distance 1 to the faces beside; at most 2
+};
+
+/// The cloth around the vertex, which alone tells which way is outward of a wire or point.
+struct ClothAround {
+    Vec3 normal;   ///< sum of unit normals of its faces there, as they are oriented
+    Vec3 leaving;  ///< sum of unit directions in which the cloth leaves the feature, in its faces
+    Vec3 side;     ///< any vector from the feature to the cloth's side on which it has been
+};
+
+/// On feature edge `edge` (index in features().edges). Convex: the bisector of its faces' normals; border:
+/// the outward conormal; wire: the cloth's mean normal on its side, or, where the cloth turns by more than 90
+/// degrees, against where it leaves. Nothing where a wire's cloth tells no direction.
+std::optional<FeatureFrame> find_edge_frame(const Obstacle& obstacle, int edge, const Vec3& place,
+                                            const ClothAround& cloth);
+
+/// On corner `corner` (index in features().corners). On a solid the direction whose least part along the
+/// normals of its patches is greatest, on a sheet the same against its edges; wires' nodes and lone points as
+/// a wire. Nothing where that least part is below 0.1 (a saddle: no direction opens all gaps).
+std::optional<FeatureFrame> find_corner_frame(const Obstacle& obstacle, int corner, const Vec3& place,
+                                              const ClothAround& cloth);
+
+/// The unit vector whose least scalar product with unit `directions` is greatest, where that is positive:
+/// that of the point of their convex hull nearest to the origin.
+std::optional<Vec3> find_middle(const std::vector<Vec3>& directions);
+
+}  // namespace arris
