@@ -20,13 +20,26 @@ namespace {
 constexpr FileKind kKind = {"ARRIS checkpoint\n", kVersion, "there is no checkpoint to resume from",
                             "is not a checkpoint of arris"};
 
+void write_vectors(BinaryWriter& out, const std::vector<Vec2>& vectors)
+{
+    out.list(vectors, [&](const Vec2& X) {
+        for (const double c : X) out.number(c);
+    });
+}
+
+std::vector<Vec2> read_vectors(BinaryReader& in)
+{
+    return in.list<Vec2>(2 * sizeof(double), [&] {
+        const double u = in.number<double>();
+        return Vec2(u, in.number<double>());
+    });
+}
+
 void write_state(BinaryWriter& out, const State& state)
 {
     out.number(state.time);
     out.number(state.step);
-    out.list(state.mesh.material, [&](const Vec2& X) {
-        for (const double c : X) out.number(c);
-    });
+    write_vectors(out, state.mesh.material);
     out.vectors(state.mesh.world);
     out.list(state.mesh.faces, [&](const Face& face) {
         for (const int v : face) out.number(static_cast<std::int32_t>(v));
@@ -34,9 +47,20 @@ void write_state(BinaryWriter& out, const State& state)
     out.list(state.ids, [&](std::uint32_t id) { out.number(id); });
     out.number(state.next_id);
     out.vectors(state.velocity);
+    write_vectors(out, state.material_velocity);
     out.number(state.previous_dt);
     out.vectors(state.previous_world);
     out.vectors(state.previous_velocity);
+    write_vectors(out, state.previous_material);
+    write_vectors(out, state.previous_material_velocity);
+    out.list(state.eol, [&](const EolVertex& vertex) {
+        out.number(vertex.vertex_id);
+        out.number(vertex.obstacle);
+        out.number(static_cast<std::int32_t>(vertex.is_corner));
+        out.number(vertex.feature);
+        out.vector(vertex.outward);
+        out.number(vertex.idle);
+    });
     out.list(state.anchors, [&](const PinAnchor& anchor) {
         out.number(anchor.pin);
         out.number(anchor.vertex_id);
@@ -58,10 +82,7 @@ State read_state(BinaryReader& in)
     State state;
     state.time = in.number<double>();
     state.step = in.number<std::int64_t>();
-    state.mesh.material = in.list<Vec2>(2 * sizeof(double), [&] {
-        const double u = in.number<double>();
-        return Vec2(u, in.number<double>());
-    });
+    state.mesh.material = read_vectors(in);
     state.mesh.world = in.vectors();
     state.mesh.faces = in.list<Face>(3 * sizeof(std::int32_t), [&] {
         Face face;
@@ -71,9 +92,23 @@ State read_state(BinaryReader& in)
     state.ids = in.list<std::uint32_t>(sizeof(std::uint32_t), [&] { return in.number<std::uint32_t>(); });
     state.next_id = in.number<std::uint32_t>();
     state.velocity = in.vectors();
+    state.material_velocity = read_vectors(in);
     state.previous_dt = in.number<double>();
     state.previous_world = in.vectors();
     state.previous_velocity = in.vectors();
+    state.previous_material = read_vectors(in);
+    state.previous_material_velocity = read_vectors(in);
+    constexpr std::size_t kEolBytes = 5 * sizeof(std::int32_t) + 3 * sizeof(double);
+    state.eol = in.list<EolVertex>(kEolBytes, [&] {
+        EolVertex vertex;
+        vertex.vertex_id = in.number<std::uint32_t>();
+        vertex.obstacle = in.number<std::int32_t>();
+        vertex.is_corner = in.number<std::int32_t>() != 0;
+        vertex.feature = in.number<std::int32_t>();
+        vertex.outward = in.vector();
+        vertex.idle = in.number<std::int32_t>();
+        return vertex;
+    });
     state.anchors = in.list<PinAnchor>(2 * sizeof(std::uint32_t) + 3 * sizeof(double), [&] {
         PinAnchor anchor;
         anchor.pin = in.number<std::uint32_t>();
@@ -117,21 +152,37 @@ std::string find_defect(const std::vector<ActiveContact>& contacts, const std::v
     return {};
 }
 
+/// What is wrong with vertices on features; empty if nothing.
+std::string find_defect(const std::vector<EolVertex>& eol, const std::vector<std::uint32_t>& ids)
+{
+    for (std::size_t k = 0; k < eol.size(); ++k) {
+        if (k > 0 && eol[k].vertex_id <= eol[k - 1].vertex_id) return "EOL vertices do not ascend";
+        if (!eol[k].outward.allFinite() || eol[k].idle < 0) return fmt::format("EOL vertex {} cannot be", k);
+        if (!std::binary_search(ids.begin(), ids.end(), eol[k].vertex_id))
+            return fmt::format("EOL vertex {} is on no vertex", k);
+    }
+    return {};
+}
+
 /// What no run could have written; empty if nothing.
 std::string find_defect(const Checkpoint& checkpoint)
 {
     const State& state = checkpoint.state;
     const std::size_t n = state.mesh.world.size();
     if (state.ids.size() != n || state.velocity.size() != n || state.previous_world.size() != n ||
-        state.previous_velocity.size() != n || state.mesh.material.size() != n)
+        state.previous_velocity.size() != n || state.mesh.material.size() != n ||
+        state.material_velocity.size() != n || state.previous_material.size() != n ||
+        state.previous_material_velocity.size() != n)
         return "its arrays differ in length";
     for (std::size_t v = 1; v < n; ++v)
         if (state.ids[v] <= state.ids[v - 1]) return "vertex ids do not ascend";
     for (std::size_t v = 0; v < n; ++v)
         if (!state.velocity[v].allFinite() || !state.previous_world[v].allFinite() ||
-            !state.previous_velocity[v].allFinite())
+            !state.previous_velocity[v].allFinite() || !state.material_velocity[v].allFinite() ||
+            !state.previous_material[v].allFinite() || !state.previous_material_velocity[v].allFinite())
             return fmt::format("vertex {} is not finite", v);
     if (const std::string defect = find_defect(state.active, state.ids); !defect.empty()) return defect;
+    if (const std::string defect = find_defect(state.eol, state.ids); !defect.empty()) return defect;
     for (std::size_t k = 0; k < state.anchors.size(); ++k) {
         const PinAnchor& anchor = state.anchors[k];
         if (!anchor.origin.allFinite()) return fmt::format("anchor {} is not finite", k);

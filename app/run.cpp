@@ -338,7 +338,14 @@ void check_references(const std::string& directory, const State& state, const Sc
         }
         return false;
     };
-    const bool has_obstacles = std::all_of(state.active.begin(), state.active.end(), is_there);
+    const auto is_on_feature = [&](const EolVertex& vertex) {
+        if (!is_sound(vertex.obstacle, scene.obstacles.size())) return false;
+        const ObstacleFeatures& features =
+            scene.obstacles[static_cast<std::size_t>(vertex.obstacle)].features();
+        return is_sound(vertex.feature, vertex.is_corner ? features.corners.size() : features.edges.size());
+    };
+    const bool has_obstacles = std::all_of(state.active.begin(), state.active.end(), is_there) &&
+                               std::all_of(state.eol.begin(), state.eol.end(), is_on_feature);
     if (!has_pins || !has_obstacles)
         throw InputError(fmt::format("{}: is damaged: it names {} that its scene has not",
                                      printable(checkpoint_file(directory)),

@@ -23,6 +23,16 @@ struct ActiveContact {
     double multiplier;      ///< N s
 };
 
+/// A vertex on a sharp feature of an obstacle, through which the material flows (Eulerian on Lagrangian).
+struct EolVertex {
+    std::uint32_t vertex_id;
+    std::int32_t obstacle;  ///< index in the scene
+    bool is_corner;
+    std::int32_t feature;  ///< index in the obstacle's features().corners or .edges
+    Vec3 outward;          ///< unit, from the feature, in the obstacle's frame
+    std::int32_t idle;     ///< steps in a row at whose end it did not press
+};
+
 /// Where a vertex that a pin holds was at time 0: the pin's motion maps this to where it must be.
 struct PinAnchor {
     std::uint32_t pin;  ///< index in the scene
@@ -37,13 +47,17 @@ struct State {
     ClothMesh mesh;
     std::vector<std::uint32_t> ids;  ///< persistent, one a vertex, ascending
     std::uint32_t next_id = 0;
-    std::vector<Vec3> velocity;  ///< v_k, m/s
+    std::vector<Vec3> velocity;           ///< v_k, m/s
+    std::vector<Vec2> material_velocity;  ///< V_k, m/s: with which X moves; zero but at EOL vertices
 
     // One step back, for BDF2; meaningless where `previous_dt` is 0 (first step, after a jump of the input).
     double previous_dt = 0.0;  ///< s
     std::vector<Vec3> previous_world;
     std::vector<Vec3> previous_velocity;
+    std::vector<Vec2> previous_material;
+    std::vector<Vec2> previous_material_velocity;
 
+    std::vector<EolVertex> eol;         ///< ascending by vertex_id
     std::vector<PinAnchor> anchors;     ///< ascending by (pin, vertex_id)
     std::vector<ActiveContact> active;  ///< ascending by (vertex_ids, obstacle, kind, element)
     std::int64_t crossings = 0;         ///< how often, so far, something passed through

@@ -235,6 +235,8 @@ void commit(double end, Workspace& work, State& state, StepReport& report)
     state.previous_velocity.swap(state.velocity);
     state.mesh.world.swap(work.proposal.world);
     state.velocity.swap(work.proposal.velocity);
+    state.previous_material = state.mesh.material;
+    state.previous_material_velocity = state.material_velocity;
     state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // put back by hand: no history
     state.time = end;
     ++state.step;
@@ -253,6 +255,9 @@ State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity)
     state.velocity.assign(n, velocity);
     state.previous_world.assign(n, Vec3::Zero());
     state.previous_velocity.assign(n, Vec3::Zero());
+    state.material_velocity.assign(n, Vec2::Zero());
+    state.previous_material = state.mesh.material;
+    state.previous_material_velocity.assign(n, Vec2::Zero());
     take_hold(scene, state);
     return state;
 }

@@ -16,11 +16,13 @@ namespace arris {
 
 /// Where a step starts from, one entry a vertex.
 struct Prediction {
-    double gamma = 0.0;          ///< s
-    bool has_history = false;    ///< BDF2 with a step behind it; else implicit Euler
-    double forward = 0.0;        ///< q~ = q_k + forward (q_k - q_(k-1))
-    std::vector<Vec3> position;  ///< q~, m
-    std::vector<Vec3> velocity;  ///< v~, m/s
+    double gamma = 0.0;                   ///< s
+    bool has_history = false;             ///< BDF2 with a step behind it; else implicit Euler
+    double forward = 0.0;                 ///< q~ = q_k + forward (q_k - q_(k-1))
+    std::vector<Vec3> position;           ///< q~, m
+    std::vector<Vec3> velocity;           ///< v~, m/s
+    std::vector<Vec2> material;           ///< X~, m
+    std::vector<Vec2> material_velocity;  ///< V~, m/s
 };
 
 /// BDF2 is implicit Euler where there is no step behind it, or one so short that variable-step BDF2 were not

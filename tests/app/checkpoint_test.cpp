@@ -27,6 +27,8 @@ Checkpoint make_checkpoint()
     constexpr std::uint32_t kNo = ActiveContact::kNoVertex;
     checkpoint.state.active = {{{2, 5, kNo}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1},
                                {{2, kNo, kNo}, ContactKind::Vertex, 1, 7, Vec3::UnitZ(), 1e-7}};
+    checkpoint.state.eol = {{1, 0, false, 4, Vec3::UnitZ(), 0}, {5, 1, true, 2, Vec3::UnitX(), 2}};
+    checkpoint.state.material_velocity[1] = Vec2(0.25, -1e-310);
     checkpoint.state.crossings = 3;
     checkpoint.position = {0.0625, 3};
     checkpoint.frames = 4;
@@ -56,6 +58,12 @@ TEST(Checkpoint, ReadsBackToTheSameBytes)
     EXPECT_EQ(read.state.active[0].element, 3);
     EXPECT_EQ(read.state.active[0].normal, Vec3::UnitX());
     EXPECT_EQ(read.state.active[1].obstacle, 1);
+    EXPECT_EQ(read.state.eol[1].vertex_id, 5u);
+    EXPECT_TRUE(read.state.eol[1].is_corner);
+    EXPECT_EQ(read.state.eol[1].feature, 2);
+    EXPECT_EQ(read.state.eol[1].idle, 2);
+    EXPECT_EQ(read.state.eol[0].outward, Vec3::UnitZ());
+    EXPECT_EQ(read.state.material_velocity[1], Vec2(0.25, -1e-310));
     EXPECT_EQ(read.state.crossings, 3);
     EXPECT_EQ(read.position.done, 3);
     write_checkpoint(path + "2", read);
@@ -122,6 +130,12 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("contact", [](Checkpoint& c) { c.state.active[0].vertex_ids[1] = 99; });
     refused("kind", [](Checkpoint& c) { c.state.active[0].kind = static_cast<ContactKind>(-1); });
     refused("normal", [&](Checkpoint& c) { c.state.active[1].normal.z() = kNan; });
+    refused("material velocity", [&](Checkpoint& c) { c.state.material_velocity[2].x() = kNan; });
+    refused("material history", [](Checkpoint& c) { c.state.previous_material.pop_back(); });
+    refused("EOL order", [](Checkpoint& c) { std::swap(c.state.eol[0], c.state.eol[1]); });
+    refused("EOL vertex", [](Checkpoint& c) { c.state.eol[1].vertex_id = 99; });
+    refused("EOL direction", [&](Checkpoint& c) { c.state.eol[0].outward.x() = kNan; });
+    refused("EOL count", [](Checkpoint& c) { c.state.eol[0].idle = -1; });
     refused("crossings", [](Checkpoint& c) { c.state.crossings = -1; });
 }
 
