@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/velocity_fit.h"
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace arris {
+
+namespace {
+
+double cross(const Vec2& a, const Vec2& b)
+{
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+/// A convex polygon of up to nine corners: two triangles overlap in at most six, rounding may add a few.
+struct Polygon {
+    std::array<Vec2, 12> corners;
+    int count = 0;
+
+    void add(const Vec2& corner)
+    {
+        if (count < static_cast<int>(corners.size())) corners[count++] = corner;
+    }
+};
+
+/// What of the polygon lies left of the line from a to b.
+Polygon clip(const Polygon& polygon, const Vec2& a, const Vec2& b)
+{
+    Polygon kept;
+    for (int i = 0; i < polygon.count; ++i) {
+        const Vec2& p = polygon.corners[i];
+        const Vec2& q = polygon.corners[(i + 1) % polygon.count];
+        const double of_p = cross(b - a, p - a), of_q = cross(b - a, q - a);
+        if (of_p >= 0.0) kept.add(p);
+        if ((of_p > 0.0 && of_q < 0.0) || (of_p < 0.0 && of_q > 0.0))
+            kept.add(p + of_p / (of_p - of_q) * (q - p));
+    }
+    return kept;
+}
+
+Polygon overlap(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b)
+{
+    Polygon polygon;
+    for (const Vec2& corner : a) polygon.add(corner);
+    for (int i = 0; i < 3 && polygon.count > 0; ++i) polygon = clip(polygon, b[i], b[(i + 1) % 3]);
+    return polygon;
+}
+
+Vec3 barycentric(const std::array<Vec2, 3>& triangle, const Vec2& p)
+{
+    const double area = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+    const double second = cross(p - triangle[0], triangle[2] - triangle[0]) / area;
+    const double third = cross(triangle[1] - triangle[0], p - triangle[0]) / area;
+    return {1.0 - second - third, second, third};
+}
+
+Vec3 at(const std::array<Vec3, 3>& corners, const Vec3& weights)
+{
+    return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+}
+
+bool boxes_touch(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b)
+{
+    for (int d = 0; d < 2; ++d) {
+        const auto [a_low, a_high] = std::minmax({a[0][d], a[1][d], a[2][d]});
+        const auto [b_low, b_high] = std::minmax({b[0][d], b[1][d], b[2][d]});
+        if (a_low > b_high || b_low > a_high) return false;
+    }
+    return true;
+}
+
+/// Integrals over a new triangle of its shape functions times the old velocity, times density.
+std::array<Vec3, 3> integrate_old(double density, const VelocityField& old,
+                                  const std::array<Vec2, 3>& triangle)
+{
+    std::array<Vec3, 3> sums = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    for (std::size_t t = 0; t < old.triangles.size(); ++t) {
+        if (!boxes_touch(triangle, old.triangles[t])) continue;
+        const Polygon common = overlap(triangle, old.triangles[t]);
+        for (int k = 2; k < common.count; ++k) {
+            // Products of linear functions: the three middles of the sides are exact.
+            const Vec2 &p = common.corners[0], &q = common.corners[k - 1], &r = common.corners[k];
+            const double weight = density * 0.5 * cross(q - p, r - p) / 3.0;
+            for (const Vec2& middle : {Vec2(0.5 * (p + q)), Vec2(0.5 * (q + r)), Vec2(0.5 * (r + p))}) {
+                const Vec3 velocity = at(old.velocity[t], barycentric(old.triangles[t], middle));
+                const Vec3 shape = barycentric(triangle, middle);
+                for (int i = 0; i < 3; ++i) sums[i] += weight * shape[i] * velocity;
+            }
+        }
+    }
+    return sums;
+}
+
+double energy_of(double mass, const std::array<Vec3, 3>& v)
+{
+    // 1/2 sum m_ij v_i . v_j,  m_ij = mass / 12 (1 + delta_ij)
+    return mass / 24.0 *
+           (v[0].squaredNorm() + v[1].squaredNorm() + v[2].squaredNorm() +
+            (v[0] + v[1] + v[2]).squaredNorm());
+}
+
+struct NewFace {
+    std::array<Vec2, 3> X;
+    Mat32 F;
+    double mass;
+};
+
+NewFace make_face(double density, const FitPatch& patch, const Face& face)
+{
+    NewFace made;
+    for (int i = 0; i < 3; ++i) made.X[i] = patch.material[face[i]];
+    Mat2 DX;
+    Mat32 Dx;
+    DX << made.X[1] - made.X[0], made.X[2] - made.X[0];
+    Dx << patch.world[face[1]] - patch.world[face[0]], patch.world[face[2]] - patch.world[face[0]];
+    made.F = Dx * DX.inverse();
+    made.mass = density * 0.5 * cross(made.X[1] - made.X[0], made.X[2] - made.X[0]);
+    return made;
+}
+
+/// The normal equations, with three multipliers of momentum behind the unknowns.
+class NormalEquations {
+  public:
+    NormalEquations(const FitPatch& patch) : patch_(patch), slot_(patch.material.size(), -1)
+    {
+        for (std::size_t v = 0; v < slot_.size(); ++v)
+            if (patch.is_free[v]) slot_[v] = 3 * free_count_++;
+        matrix_.setZero(size(), size());
+        rhs_.setZero(size());
+    }
+
+    bool is_empty() const { return free_count_ == 0; }
+
+    void add(const Face& vertices, const NewFace& face, const std::array<Vec3, 3>& old)
+    {
+        std::array<Mat3, 3> G;
+        std::array<Vec3, 3> known;  // corner velocity but for the unknowns
+        for (int i = 0; i < 3; ++i) {
+            const int v = vertices[i];
+            G[i] = patch_.basis[v] - face.F * patch_.material_basis[v];
+            known[i] = patch_.drift[v] - face.F * patch_.material_drift[v];
+        }
+        for (int i = 0; i < 3; ++i) {
+            Vec3 missing = old[i];
+            for (int j = 0; j < 3; ++j) missing -= weight(face, i, j) * known[j];
+            rhs_.tail<3>() += missing;
+            const int row = slot_[vertices[i]];
+            if (row < 0) continue;
+            rhs_.segment<3>(row) += G[i].transpose() * missing;
+            const Mat3 carried = face.mass / 3.0 * G[i];
+            matrix_.block<3, 3>(size() - 3, row) += carried;
+            matrix_.block<3, 3>(row, size() - 3) += carried.transpose();
+            for (int j = 0; j < 3; ++j)
+                if (const int column = slot_[vertices[j]]; column >= 0)
+                    matrix_.block<3, 3>(row, column) += weight(face, i, j) * G[i].transpose() * G[j];
+        }
+    }
+
+    /// u of each vertex, zero where it is not free.
+    std::optional<std::vector<Vec3>> solve() const
+    {
+        const Eigen::VectorXd x = matrix_.partialPivLu().solve(rhs_);
+        constexpr double kSolved = 1e-9;
+        if (!x.allFinite() || (matrix_ * x - rhs_).norm() > kSolved * rhs_.norm()) return std::nullopt;
+        std::vector<Vec3> u(slot_.size(), Vec3::Zero());
+        for (std::size_t v = 0; v < slot_.size(); ++v)
+            if (slot_[v] >= 0) u[v] = x.segment<3>(slot_[v]);
+        return u;
+    }
+
+  private:
+    int size() const { return 3 * free_count_ + 3; }
+    static double weight(const NewFace& face, int i, int j) { return face.mass / (i == j ? 6.0 : 12.0); }
+
+    const FitPatch& patch_;
+    std::vector<int> slot_;
+    int free_count_ = 0;
+    Eigen::MatrixXd matrix_;
+    Eigen::VectorXd rhs_;
+};
+
+double energy_before(double density, const VelocityField& old)
+{
+    double energy = 0.0;
+    for (std::size_t t = 0; t < old.triangles.size(); ++t) {
+        const std::array<Vec2, 3>& X = old.triangles[t];
+        energy += energy_of(density * 0.5 * cross(X[1] - X[0], X[2] - X[0]), old.velocity[t]);
+    }
+    return energy;
+}
+
+}  // namespace
+
+std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old, const FitPatch& patch)
+{
+    NormalEquations equations(patch);
+    if (equations.is_empty()) return std::nullopt;
+    std::vector<NewFace> faces;
+    for (const Face& face : patch.faces) {
+        faces.push_back(make_face(density, patch, face));
+        equations.add(face, faces.back(), integrate_old(density, old, faces.back().X));
+    }
+    const std::optional<std::vector<Vec3>> u = equations.solve();
+    if (!u) return std::nullopt;
+
+    VelocityFit fit;
+    for (std::size_t v = 0; v < u->size(); ++v) {
+        fit.velocity.push_back(patch.drift[v] + patch.basis[v] * (*u)[v]);
+        fit.material_velocity.push_back(patch.material_drift[v] + patch.material_basis[v] * (*u)[v]);
+    }
+    fit.energy = energy_before(density, old);
+    fit.energy_gain = -fit.energy;
+    for (std::size_t f = 0; f < patch.faces.size(); ++f) {
+        std::array<Vec3, 3> corner;
+        for (int i = 0; i < 3; ++i) {
+            const int v = patch.faces[f][i];
+            corner[i] = fit.velocity[v] - faces[f].F * fit.material_velocity[v];
+        }
+        fit.energy_gain += energy_of(faces[f].mass, corner);
+    }
+    return fit;
+}
+
+}  // namespace arris

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The velocity of a patch of cloth whose mesh was changed: of all fields that the new mesh can carry, the one
+// nearest to the old in the norm of kinetic energy that has the same linear momentum.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "geometry/vectors.h"
+
+namespace arris {
+
+/// Material velocity on the triangles of a patch before its mesh was changed, linear on each. It may jump
+/// between them, as it does where material flows over a fold.
+struct VelocityField {
+    std::vector<std::array<Vec2, 3>> triangles;  ///< X of the corners, m, counter-clockwise
+    std::vector<std::array<Vec3, 3>> velocity;   ///< m/s, of the corners
+};
+
+/// The patch after the change: as VelocityField's triangles it covers the same part of the cloth.
+struct FitPatch {
+    std::vector<Face> faces;  ///< of the vertices below
+    std::vector<Vec2> material;
+    std::vector<Vec3> world;
+
+    // Velocity xdot = drift + basis u, Xdot = material_basis u; where `is_free` is 0 it stays xdot = drift,
+    // Xdot = material_drift.
+    std::vector<char> is_free;
+    std::vector<Vec3> drift;
+    std::vector<Vec2> material_drift;
+    std::vector<Mat3> basis;
+    std::vector<Mat23> material_basis;
+};
+
+struct VelocityFit {
+    std::vector<Vec3> velocity;           ///< xdot, m/s
+    std::vector<Vec2> material_velocity;  ///< Xdot, m/s
+    double energy_gain = 0.0;             ///< kinetic, J: after minus before
+    double energy = 0.0;                  ///< kinetic, J: before
+};
+
+/// Minimises the integral of density / 2 |new - old|^2 over the patch under equality of linear momentum.
+/// `density` is areal, kg/m^2. Nothing where no vertex is free or the system is singular (a patch folded so
+/// that a vertex's coordinates move no material). Exact integrals over the overlay of both meshes; cost is
+/// the product of face counts plus a sparse factorisation.
+std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old, const FitPatch& patch);
+
+}  // namespace arris
