@@ -82,6 +82,7 @@ const StepColumn kStepColumns[] = {
     {"solves", [](const StepRow& row) { return cell(row.solves); }},
     {"rewound", [](const StepRow& row) { return cell(row.rewound); }},
     {"yielded", [](const StepRow& row) { return cell(row.yielded); }},
+    {"energy_rise", [](const StepRow& row) { return cell(row.energy_rise); }},
 };
 
 std::string join(const std::vector<std::string>& cells)

@@ -24,6 +24,7 @@
 #include "geometry/input_error.h"
 #include "geometry/mesh_quality.h"
 #include "physics/inertia.h"
+#include "solver/advance.h"
 #include "solver/audit.h"
 #include "solver/step.h"
 #include "solver/stopwatch.h"
@@ -76,6 +77,7 @@ StepRow make_row(const Run& run, const StepReport& report)
         row.rewound = report.rewound;
         row.yielded = report.yielded;
     }
+    row.energy_rise = report.energy_rise;
     row.material_area = material_area(state.mesh);
     row.max_penetration = run.audited.found.depth;
     row.crossings = state.crossings;
@@ -153,58 +155,21 @@ Ending explain(const Audit& audited, const Scene& scene, const State& state)
                     place.x(), place.y(), place.z(), state.time)};
 }
 
-/// What attempts cost, the failed ones of a step included: told in the row of the one that succeeds.
-struct Cost {
-    PhaseSeconds seconds;
-    int factorisations = 0, nlopt_evaluations = 0, solves = 0;
-
-    void add(const StepReport& report)
-    {
-        seconds += report.seconds;
-        factorisations += report.factorisations;
-        nlopt_evaluations += report.nlopt_evaluations;
-        solves += report.solves;
-    }
-    void put_into(StepReport& report)
-    {
-        report.seconds = seconds;
-        report.factorisations = factorisations;
-        report.nlopt_evaluations = nlopt_evaluations;
-        report.solves = solves;
-        *this = Cost();
-    }
-};
-
-/// One planned step, to its end; where it fails, the rest of it in twice as many equal parts, at most six
-/// times; the last of them with the last resort.
+/// One planned step, to its end, with a row for each of its parts.
 std::optional<Ending> advance(Run& run)
 {
-    constexpr int kMostParts = 64;
     State& state = run.at.state;
-    const double end = run.timeline.next_end(run.at.position);
     if (run.timeline.jumps_at(state.time)) restart(state);
-    int parts = 1;  // of what is left
-    bool is_halved = false;
-    Cost cost;
-    for (int shrink = 1; state.time < end;) {
+    const auto accept = [&run](const StepReport& report, bool is_halved) {
         Stopwatch watch;
-        const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
-        const Attempt attempt = shrink == kMostParts ? Attempt::Last : Attempt::Ordinary;
-        StepReport report = step(run.config.scene, run.config.settings, part_end, state, run.work, attempt);
-        cost.add(report);
-        if (report.status != StepStatus::Done) {
-            if (shrink == kMostParts) return explain(report, run.config.settings.tolerance, state);
-            shrink *= 2;
-            parts *= 2;
-            is_halved = true;
-            continue;
-        }
-        watch.lap();
-        cost.put_into(report);
-        parts = std::max(parts - 1, 1);
         write_outputs(run, report, watch, is_halved);
-        if (run.audited.obstacle >= 0) return explain(run.audited, run.config.scene, state);
-    }
+        return run.audited.obstacle < 0;
+    };
+    const double end = run.timeline.next_end(run.at.position);
+    if (const std::optional<StepReport> failed =
+            advance(run.config.scene, run.config.settings, end, state, run.work, accept))
+        return explain(*failed, run.config.settings.tolerance, state);
+    if (run.audited.obstacle >= 0) return explain(run.audited, run.config.scene, state);
     run.at.position = run.timeline.advance(run.at.position);
     return std::nullopt;
 }

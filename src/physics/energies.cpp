@@ -19,6 +19,21 @@ double& energy_of(Energies& energies, EnergyKind kind)
     }
 }
 
+/// The impulse (N s) on a corner that moves with `velocity`: b - A v' of one term alone.
+Vec3 impulse_on(int i, const FaceSystem& system, const FaceElement& face, const Linearization& at,
+                const std::vector<Vec3>& velocity)
+{
+    Vec3 impulse = system.rhs(i);
+    for (int j = 0; j < 3; ++j) {
+        const Vec3 relative = velocity[face.vertices[j]] - at.drift[face.vertices[j]];
+        if (j <= i)
+            impulse -= system.matrix(i, j) * relative;
+        else
+            impulse -= system.matrix(j, i).transpose() * relative;
+    }
+    return impulse;
+}
+
 }  // namespace
 
 Energies compute_energies(const ClothElements& elements, const Terms& terms,
@@ -36,6 +51,27 @@ Energies compute_energies(const ClothElements& elements, const Terms& terms,
         for (const HingeElement& hinge : elements.hinges) sum += term->energy(HingeState(hinge, position));
     }
     return energies;
+}
+
+double compute_load_work(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,
+                         const Linearization& at, const std::vector<Vec3>& velocity,
+                         const std::vector<Vec3>& displacement)
+{
+    std::vector<Vec3> load(displacement.size(), Vec3::Zero());
+    for (const auto& term : terms.loads) term->add(mesh, at, load);
+    double sum = 0.0;
+    for (std::size_t v = 0; v < load.size(); ++v) sum += load[v].dot(displacement[v]);
+    for (const auto& term : terms.faces) {
+        if (!term->is_drive()) continue;
+        for (const FaceElement& face : elements.faces) {
+            FaceSystem system(at, face.vertices);
+            term->add(FaceState(face, at.position), system);
+            for (int i = 0; i < 3; ++i)
+                sum += impulse_on(i, system, face, at, velocity).dot(displacement[face.vertices[i]]) /
+                       at.gamma;
+        }
+    }
+    return sum;
 }
 
 FaceReadings compute_face_readings(const ClothElements& elements, const Terms& terms,

@@ -75,6 +75,7 @@ class FaceTerm {
     virtual ~FaceTerm() = default;
     virtual EnergyKind energy_kind() const { return EnergyKind::None; }
     virtual double energy(const FaceState&) const { return 0.0; }  ///< J
+    virtual bool is_drive() const { return false; }  ///< without an energy, but may do work on the cloth
     virtual void add(const FaceState& face, FaceSystem& system) const = 0;
 };
 

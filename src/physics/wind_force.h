@@ -12,6 +12,7 @@ namespace arris {
 class WindForce : public FaceTerm {
   public:
     explicit WindForce(const Wind& wind);
+    bool is_drive() const override { return true; }
     void add(const FaceState& face, FaceSystem& system) const override;
 
     /// Of the air at `time` (s), m/s, the gust included.

@@ -72,7 +72,7 @@ std::vector<std::size_t> order_of(const std::vector<Contact>& contacts)
 bool is_expected(const Contact& contact, const Prediction& prediction, const State& state)
 {
     const double closing = contact.normal.dot(contact.in_frame.at(state.velocity));
-    return contact.was_active || contact.gap + prediction.gamma * closing < 0.0;
+    return contact.was_active || contact.is_pressing || contact.gap + prediction.gamma * closing < 0.0;
 }
 
 void add_row(const Prediction& prediction, const Linearization& at, Contact& contact,

@@ -203,7 +203,7 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
 Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
                       const Prediction& prediction)
 {
-    Contact placed{contact, obstacle, step.end.rotation * contact.normal, 0.0, false, true, -1, -1};
+    Contact placed{contact, obstacle, step.end.rotation * contact.normal, 0.0, false, false, true, -1, -1};
     update_gap(step, prediction, placed);
     return placed;
 }

@@ -7,16 +7,23 @@
 #include <optional>
 
 #include "solver/constraints.h"
+#include "solver/energy_balance.h"
 #include "solver/stopwatch.h"
 
 namespace arris {
 
 namespace {
 
+constexpr int kMostSolves = 12;  // of one step
+
 /// Where the integrator starts from, and where pins and obstacles will be.
 void move(const Scene& scene, const Settings& settings, double end, const State& state, Workspace& work)
 {
     work.prediction = predict(state, settings.integrator, end - state.time);
+    work.expansion = state.velocity;
+    if (!work.prediction.has_history) work.expansion.assign(state.velocity.size(), Vec3::Zero());
+    work.energy = compute_cloth_energy(scene, work, state.mesh.world, state.velocity);
+    work.is_least_taken = false;
     work.held = find_held_vertices(scene, state, end);
     work.obstacles = move_obstacles(scene, state, work.edges, work.prediction, work.held, end);
 }
@@ -48,12 +55,8 @@ void assemble(const Scene& scene, double end, const State& state, Workspace& wor
     at.damping = scene.material.damping;
     at.v_predicted = prediction.velocity;
     at.v_last = state.velocity;
-    at.v_expansion.assign(state.velocity.size(), Vec3::Zero());
-    at.position = prediction.position;
-    if (prediction.has_history) {
-        at.v_expansion = state.velocity;
-        for (std::size_t v = 0; v < at.position.size(); ++v) at.position[v] += at.gamma * state.velocity[v];
-    }
+    at.v_expansion = work.expansion;
+    at.position = find_end(prediction, work.expansion);
     work.system.assemble(state.mesh, work.elements, work.terms, at);
 }
 
@@ -154,10 +157,11 @@ void give_up(const Scene& scene, double end, const State& state, Attempt attempt
 }
 
 /// The proposal of a certified velocity, checked. Where only moving cloth out to its stand-off would pass
-/// something, it is not moved.
-Violations propose_and_check(const Scene& scene, double growth, Workspace& work)
+/// something, or strains stiff cloth, it is not moved.
+Violations propose_and_check(const Scene& scene, double dt, double growth, Workspace& work)
 {
     propose(scene, growth, work);
+    if (growth > 0.0 && is_push_costly(scene, dt, work)) propose(scene, growth = 0.0, work);
     Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
     if (violations.is_clean() || growth <= 0.0) return violations;
     propose(scene, 0.0, work);
@@ -179,11 +183,57 @@ bool add_violations(const Scene& scene, const State& state, const Violations& vi
     return true;
 }
 
+/// v^ goes to the velocity found, or part of the way where that has more of what the step minimises.
+void relinearise(const Scene& scene, Workspace& work, StepReport& report)
+{
+    constexpr double kShortest = 0.1;  // wind and pulls are not in the objective: never stay
+    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
+    for (std::size_t c = 0; c < work.contacts.size(); ++c)
+        work.contacts[c].is_pressing = multiplier[c] > 0.0;
+
+    std::vector<Vec3> next = work.proposal.velocity;
+    if (report.relinearisations > 0) {  // the first v^ keeps no contact: no measure
+        const double now = compute_step_objective(scene, work, work.expansion);
+        for (double share = 1.0; compute_step_objective(scene, work, next) > now && share > kShortest;) {
+            share *= 0.5;
+            for (std::size_t v = 0; v < next.size(); ++v) next[v] = 0.5 * (next[v] + work.expansion[v]);
+        }
+    }
+    work.expansion = std::move(next);
+    work.has_system = false;
+    ++report.relinearisations;
+}
+
+/// Whether the proposal pushes energy in: then forces are linearised again, where it has been found, and true
+/// means solve again. With the last attempt the least there was is taken.
+bool keep_energy(const Scene& scene, const State& state, Attempt attempt, Workspace& work, StepReport& report)
+{
+    constexpr int kMostRelinearisations = 4;  // one does nearly always, three have where they help at all
+    const double rise = find_energy_rise(scene, state, work);
+    report.energy_rise = rise;
+    if (!(rise > 0.0) || work.is_least_taken) return false;
+    if (report.relinearisations == 0 || rise < work.least_rise) {
+        work.least_rise = rise;
+        work.least_at = work.expansion;
+    }
+    if (report.relinearisations < kMostRelinearisations && report.solves < kMostSolves) {
+        relinearise(scene, work, report);
+        return true;
+    }
+    if (attempt == Attempt::Ordinary) {
+        report.status = StepStatus::EnergyRise;
+        return false;
+    }
+    work.expansion = work.least_at;
+    work.has_system = false;
+    work.is_least_taken = true;
+    return true;
+}
+
 /// Steps 3 to 5 once; true where the velocity is to be solved again.
 bool solve_and_check(const Scene& scene, const Settings& settings, double end, const State& state,
                      Attempt attempt, Workspace& work, StepReport& report)
 {
-    constexpr int kMostSolves = 12;
     constexpr double kGrowth = 0.1;  // m/s, of a gap on its way to the stand-off
     Stopwatch watch;
 
@@ -201,8 +251,9 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
 
     // 5. q' = q~ + gamma v', not committed, and the exact check of the whole way.
     const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
-    const Violations violations = propose_and_check(scene, growth, work);
+    const Violations violations = propose_and_check(scene, end - state.time, growth, work);
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
+    if (is_done && keep_energy(scene, state, attempt, work, report)) return true;
     const bool is_again = !is_done && report.status == StepStatus::Done && report.solves < kMostSolves &&
                           add_violations(scene, state, violations, work);
     const bool is_certified = report.kkt_residual <= settings.tolerance;

@@ -5,7 +5,7 @@
 
 namespace arris {
 
-enum class StepStatus { Done, NotConverged, Infeasible, NotFinite, Penetration };
+enum class StepStatus { Done, NotConverged, Infeasible, NotFinite, Penetration, EnergyRise };
 
 /// Wall seconds of one step by phase.
 struct PhaseSeconds {
@@ -31,6 +31,8 @@ struct StepReport {
     int feature_rows = 0;                 ///< those of them at a sharp edge, corner, wire or point
     int crossings = 0;                    ///< in this step
     int solves = 0;                       ///< velocity solves: more than one where the check found violations
+    int relinearisations = 0;             ///< solves of forces linearised again, where energy would have risen
+    double energy_rise = 0.0;             ///< J, what was pushed in by a step that nothing mended
     int yielded = 0;                      ///< contacts that could not keep their stand-off
     int rewound = 0;                      ///< vertices put back on their way, so that nothing is passed
     double kkt_residual = 0.0;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "physics/cloth_elements.h"
+#include "physics/energies.h"
 #include "physics/linear_system.h"
 #include "physics/term.h"
 #include "solver/contacts.h"
@@ -11,6 +12,14 @@
 #include "solver/velocity_solve.h"
 
 namespace arris {
+
+/// What the cloth has at one moment, J.
+struct ClothEnergy {
+    double kinetic = 0.0;
+    Energies potential;
+
+    double sum() const { return kinetic + potential.sum(); }
+};
 
 /// Caches and scratch of the step, grouped by the phase that writes them. Clearing it changes no result.
 struct Workspace {
@@ -30,6 +39,7 @@ struct Workspace {
     // find_contacts, build_constraints, add_violations
     std::vector<Contact> contacts;
     Linearization at;
+    std::vector<Vec3> expansion;  ///< v^, m/s
     VelocityProblem problem;
     int yielded = 0;
     bool has_system = false;  ///< of this step's prediction; rows may have been added since
@@ -38,6 +48,12 @@ struct Workspace {
     VelocitySolver solver;
     VelocitySolution solution;
     Proposal proposal;
+
+    // keep_energy
+    ClothEnergy energy;            ///< at the step's start
+    double least_rise = 0.0;       ///< J, of this step's linearisations so far
+    std::vector<Vec3> least_at;    ///< v^ of that one, m/s
+    bool is_least_taken = false;   ///< whatever it is
 };
 
 }  // namespace arris

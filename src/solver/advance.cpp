@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/advance.h"
+
+#include <algorithm>
+
+#include "solver/step.h"
+
+namespace arris {
+
+namespace {
+
+/// What attempts cost, the failed ones included.
+struct Cost {
+    PhaseSeconds seconds;
+    int factorisations = 0, nlopt_evaluations = 0, solves = 0;
+
+    void add(const StepReport& report)
+    {
+        seconds += report.seconds;
+        factorisations += report.factorisations;
+        nlopt_evaluations += report.nlopt_evaluations;
+        solves += report.solves;
+    }
+    void put_into(StepReport& report)
+    {
+        report.seconds = seconds;
+        report.factorisations = factorisations;
+        report.nlopt_evaluations = nlopt_evaluations;
+        report.solves = solves;
+        *this = Cost();
+    }
+};
+
+}  // namespace
+
+std::optional<StepReport> advance(const Scene& scene, const Settings& settings, double end, State& state,
+                                  Workspace& work, const AcceptPart& accept)
+{
+    constexpr int kMostParts = 64;
+    int shrink = 1, parts = 1;  // how much shorter parts have become; how many are left
+    Cost cost;
+    while (state.time < end) {
+        const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
+        const Attempt attempt = shrink == kMostParts ? Attempt::Last : Attempt::Ordinary;
+        StepReport report = step(scene, settings, part_end, state, work, attempt);
+        cost.add(report);
+        if (report.status == StepStatus::Done) {
+            cost.put_into(report);
+            parts = std::max(parts - 1, 1);
+            if (!accept(report, shrink > 1)) return std::nullopt;
+        } else if (report.status == StepStatus::EnergyRise && work.prediction.has_history) {
+            restart(state);
+        } else if (shrink == kMostParts) {
+            return report;
+        } else {
+            shrink *= 2;
+            parts *= 2;
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace arris

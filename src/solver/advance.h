@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "solver/scene.h"
+#include "solver/settings.h"
+#include "solver/state.h"
+#include "solver/step_report.h"
+#include "solver/workspace.h"
+
+namespace arris {
+
+/// Called when a part of a step has been made; its report counts the attempts that failed before it, too.
+/// False: stop here.
+using AcceptPart = std::function<bool(const StepReport& report, bool is_halved)>;
+
+/// Advances `state` to `end` (s) in one step. Where that fails because energy would rise, it is tried without
+/// history; where it fails otherwise, the rest of it is made in twice as many equal parts, at most six times,
+/// the last of them with the last resort. Returns the report of what failed even so; `state` is then where
+/// the last accepted part left it.
+std::optional<StepReport> advance(const Scene& scene, const Settings& settings, double end, State& state,
+                                  Workspace& work, const AcceptPart& accept);
+
+}  // namespace arris

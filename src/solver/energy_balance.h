@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A step's velocity solves equations that are linear around q^. Where contact or a pin stops what q^ had
+// extrapolated freely, stiff cloth at q' has an energy that these equations know nothing of. Here is how that
+// is seen.
+//
+// Implicit Euler at a solution of the equations themselves, f with potential V, R the forces of pins and
+// contacts:
+//
+//   M (v' - v_k) = h (f(q') + R),  q' - q_k = h v'
+//   T' - T_k = (q' - q_k) . (f(q') + R) - 1/2 |v' - v_k|_M^2
+//   V' - V_k <= -(q' - q_k) . f(q')                           V convex
+//
+// so T + V rises by no more than the work of R, and of what has no potential, over the step, and of R only
+// what moves with its own motion counts: a fixed pin does none, and a contact that closes takes some. Cloth's
+// V is not convex under compression, and BDF2's energy is monotone only in a norm of two steps; but both
+// damp, and what they leave is far below kRise.
+#pragma once
+
+#include <vector>
+
+#include "solver/scene.h"
+#include "solver/state.h"
+#include "solver/workspace.h"
+
+namespace arris {
+
+ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, const std::vector<Vec3>& position,
+                                 const std::vector<Vec3>& velocity);
+
+/// Where the cloth is (m) at the step's end, if it moves with `velocity` (m/s).
+std::vector<Vec3> find_end(const Prediction& prediction, const std::vector<Vec3>& velocity);
+
+/// Work, J, that moving pins, moving obstacles, pulls and wind do on the cloth in the step from `state` to
+/// the velocity in `work.solution`, with the forces that this has found. Negative where they are driven.
+double compute_driven_work(const State& state, const Workspace& work);
+
+/// By how much, J, the step proposed in `work` raises the cloth's energy beyond the work that drives it,
+/// where that is more than a step may; else 0.
+double find_energy_rise(const Scene& scene, const State& state, const Workspace& work);
+
+/// Whether moving the proposal's positions from where its velocity leads, as out to a stand-off in
+/// `dt` (s), has cost more elastic energy than a push at that speed could give, and a share of what there is.
+bool is_push_costly(const Scene& scene, double dt, const Workspace& work);
+
+/// 1/2 |v - v~|_M^2 + V(q~ + gamma v), J: what the step minimises, but for wind, pulls and damping.
+double compute_step_objective(const Scene& scene, const Workspace& work, const std::vector<Vec3>& velocity);
+
+}  // namespace arris

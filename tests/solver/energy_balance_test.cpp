@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/energy_balance.h"
+
+#include <gtest/gtest.h>
+
+#include "geometry/cloth_grid.h"
+#include "geometry/mesh_quality.h"
+#include "solver/step.h"
+#include "tests/solver/floor.h"
+
+namespace arris {
+namespace {
+
+constexpr double kStep = 0.01;        // s
+constexpr double kRoundOff = 1e-10;   // relative: the certificate's residual, squared nowhere
+const Vec3 kEverywhere(0, 0, 1e-3);   // m, the sheet's place: at its stand-off above z = 0
+
+ClothMesh make_sheet(const Vec3& at = kEverywhere)
+{
+    ClothGrid grid;
+    grid.size = {0.5, 0.4};
+    grid.resolution = {5, 4};
+    ClothMesh mesh = make_cloth_grid(grid);
+    for (Vec3& x : mesh.world) x += at;
+    return mesh;
+}
+
+/// One step of implicit Euler of a sheet at rest, and what it left behind.
+struct OneStep {
+    Scene scene;
+    Settings settings;
+    State state, before;
+    Workspace work;
+
+    explicit OneStep(Scene a_scene, const Vec3& at = kEverywhere, double start = 0.0) : scene(std::move(a_scene))
+    {
+        scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+        settings.integrator = Integrator::ImplicitEuler;
+        state = make_state(scene, make_sheet(at), Vec3::Zero());
+        state.time = start;
+        before = state;
+        EXPECT_EQ(step(scene, settings, start + kStep, state, work).status, StepStatus::Done);
+        work.proposal.velocity = state.velocity;  // the commit has taken it away
+    }
+
+    double mass() const { return scene.material.density * material_area(state.mesh); }
+    double driven() const { return compute_driven_work(before, work); }
+};
+
+/// Starts to move at `velocity` (m/s) at t = 1 s.
+RigidMotion start_off(const Vec3& velocity)
+{
+    RigidMotion motion;
+    motion.velocity = velocity;
+    motion.start = 1.0;
+    return motion;
+}
+
+// From rest to V in one step: the impulse m V over the way h V / h does m V^2, twice what the cloth has then.
+
+TEST(DrivenWork, OfPinsIsTheirImpulseTimesTheirWay)
+{
+    for (const std::array<bool, 3>& held : {std::array{true, true, true}, std::array{false, true, true}}) {
+        Scene scene;
+        Pin pin;
+        pin.material = {Vec2(0, 0), Vec2(0.5, 0.4)};
+        pin.held = held;
+        pin.motion = start_off(Vec3(0, 0.4, -0.3));
+        scene.pins = {pin};
+        const OneStep one(scene, kEverywhere, 1.0);
+        EXPECT_NEAR(one.driven() / (one.mass() * 0.25), 1.0, kRoundOff);
+    }
+}
+
+TEST(DrivenWork, OfAnObstacleIsItsPressureTimesItsWay)
+{
+    Scene scene;
+    ObstacleMesh slab = make_floor().mesh();
+    scene.obstacles.push_back(Obstacle("lift", slab, {}, start_off(Vec3(0.7, 0, 0.5)), 30.0));
+    const OneStep one(scene, kEverywhere, 1.0);
+    EXPECT_NEAR(one.driven() / (one.mass() * 0.25), 1.0, kRoundOff);
+}
+
+TEST(DrivenWork, OfAPinAgainstAFixedObstacleIsThePinsAlone)
+{
+    Scene scene;
+    scene.gravity = Gravity{};
+    scene.obstacles.push_back(make_floor());
+    Pin pin;
+    pin.material = {Vec2(0, 0), Vec2(0.5, 0.4)};
+    pin.held = {true, false, false};
+    pin.motion = start_off(Vec3(0.5, 0, 0));
+    scene.pins = {pin};
+    const OneStep one(scene, kEverywhere, 1.0);
+    EXPECT_NEAR(one.driven() / (one.mass() * 0.25), 1.0, kRoundOff);
+}
+
+TEST(DrivenWork, OfAPullIsItsForceTimesTheWay)
+{
+    Scene scene;
+    Pull pull;
+    pull.material = {Vec2(0, 0), Vec2(0.5, 0.4)};
+    pull.force = Vec3(0.02, 0.01, 0.0);
+    scene.pulls = {pull};
+    const OneStep one(scene);
+    const double way = pull.force.norm() / one.mass() * kStep * kStep;
+    EXPECT_NEAR(one.driven() / (pull.force.norm() * way), 1.0, kRoundOff);
+}
+
+TEST(DrivenWork, OfWindIsItsForceAtTheNewVelocityTimesTheWay)
+{
+    Scene scene;
+    scene.wind = Wind{Vec3(0, 0, 4.0), 1.2, 1.0, std::nullopt};
+    const OneStep one(scene);
+    const double c = 0.5 * 1.2 * 0.2, w = 4.0;  // f = c w^2 - 2 c w v,   v = h f / m
+    const double force = c * w * w / (1.0 + 2.0 * c * w * kStep / one.mass());
+    const double way = force / one.mass() * kStep * kStep;
+    EXPECT_NEAR(one.driven() / (force * way), 1.0, kRoundOff);
+}
+
+TEST(DrivenWork, OfWhatDoesNotMoveIsNothing)
+{
+    Scene scene;
+    scene.gravity = Gravity{};
+    scene.obstacles.push_back(make_floor());
+    Pin pin;
+    pin.material = {Vec2(0, 0), Vec2(0, 0.4)};
+    scene.pins = {pin};
+    EXPECT_EQ(OneStep(scene).driven(), 0.0);
+}
+
+TEST(EnergyRise, IsWhatNothingHasDriven)
+{
+    OneStep one{Scene()};
+    EXPECT_EQ(find_energy_rise(one.scene, one.before, one.work), 0.0);
+    for (Vec3& v : one.work.proposal.velocity) v = Vec3(0.3, 0, 0.4);
+    EXPECT_NEAR(find_energy_rise(one.scene, one.before, one.work) / (0.125 * one.mass()), 1.0, kRoundOff);
+}
+
+TEST(EnergyRise, IsNoRoundOffOfASheetThatHangsFarAway)
+{
+    Scene scene;
+    scene.gravity = Gravity{};
+    Pin pin;
+    pin.material = {Vec2(0, 0), Vec2(0.5, 0.4)};
+    scene.pins = {pin};
+    for (const double far : {1.0, 1e3, 1e6}) {
+        OneStep one(scene, Vec3(far, -far, far));
+        std::vector<Vec3>& v = one.work.proposal.velocity;  // as round-off of a place so far away would do
+        for (std::size_t i = 0; i < v.size(); ++i) v[i].z() = 1e-16 * far / kStep;
+        EXPECT_EQ(find_energy_rise(one.scene, one.before, one.work), 0.0) << far;
+    }
+}
+
+TEST(Push, IsCostlyWhereItStrainsAndFreeWhereItDoesNot)
+{
+    OneStep one{Scene()};
+    std::vector<Vec3>& world = one.work.proposal.world;
+    world = find_end(one.work.prediction, one.work.proposal.velocity);
+    EXPECT_FALSE(is_push_costly(one.scene, kStep, one.work)) << "nothing is moved";
+    const std::vector<Vec3> flat = world;
+    for (Vec3& x : world) x.z() += 1e-3;
+    EXPECT_FALSE(is_push_costly(one.scene, kStep, one.work)) << "as a whole";
+    world = flat;
+    world[7].z() += 1e-4;
+    EXPECT_FALSE(is_push_costly(one.scene, kStep, one.work)) << "one vertex, out of the plane";
+    world = flat;
+    world[7].x() += 1e-3;
+    EXPECT_TRUE(is_push_costly(one.scene, kStep, one.work)) << "one vertex, in the plane";
+    for (Vec3& v : one.work.proposal.velocity) v = Vec3(10, 0, 0);
+    for (std::size_t v = 0; v < flat.size(); ++v) world[v].x() += one.work.prediction.gamma * 10.0;
+    EXPECT_FALSE(is_push_costly(one.scene, kStep, one.work)) << "little beside what is in motion";
+}
+
+}  // namespace
+}  // namespace arris
