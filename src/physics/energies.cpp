@@ -40,15 +40,18 @@ Energies compute_energies(const ClothElements& elements, const Terms& terms,
                           const std::vector<Vec3>& position)
 {
     Energies energies;
-    for (const auto& term : terms.faces) {
-        if (term->energy_kind() == EnergyKind::None) continue;
-        double& sum = energy_of(energies, term->energy_kind());
-        for (const FaceElement& face : elements.faces) sum += term->energy(FaceState(face, position));
+    for (const FaceElement& element : elements.faces) {
+        const FaceState face(element, position);
+        for (const auto& term : terms.faces)
+            if (const EnergyKind kind = term->energy_kind(); kind != EnergyKind::None)
+                energy_of(energies, kind) += term->energy(face);
     }
-    for (const auto& term : terms.hinges) {
-        if (term->energy_kind() == EnergyKind::None) continue;
-        double& sum = energy_of(energies, term->energy_kind());
-        for (const HingeElement& hinge : elements.hinges) sum += term->energy(HingeState(hinge, position));
+    if (terms.hinges.empty()) return energies;
+    for (const HingeElement& element : elements.hinges) {
+        const HingeState hinge(element, position);
+        for (const auto& term : terms.hinges)
+            if (const EnergyKind kind = term->energy_kind(); kind != EnergyKind::None)
+                energy_of(energies, kind) += term->energy(hinge);
     }
     return energies;
 }

@@ -34,12 +34,18 @@ std::vector<Vec3> find_end(const Prediction& prediction, const std::vector<Vec3>
 /// the velocity in `work.solution`, with the forces that this has found. Negative where they are driven.
 double compute_driven_work(const State& state, const Workspace& work);
 
-/// By how much, J, the step proposed in `work` raises the cloth's energy beyond the work that drives it,
-/// where that is more than a step may; else 0.
+/// `work.energy` at the step's start, as the last step left it where that is known.
+void weigh_start(const Scene& scene, const State& state, Workspace& work);
+
+/// `work.solved_energy` and `work.proposed_energy` of a proposal after `dt` (s).
+void weigh_proposal(const Scene& scene, double dt, Workspace& work);
+
+/// By how much, J, the proposal in `work`, before anything was moved out to its stand-off, raises the cloth's
+/// energy beyond the work that drives it, where that is more than a step may; else 0. Weigh it first.
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work);
 
-/// Whether moving the proposal's positions from where its velocity leads, as out to a stand-off in
-/// `dt` (s), has cost more elastic energy than a push at that speed could give, and a share of what there is.
+/// Whether moving the proposal's positions out to their stand-off in `dt` (s) has cost more elastic energy
+/// than a push at that speed could give, and a share of what there is. Weigh it first.
 bool is_push_costly(const Scene& scene, double dt, const Workspace& work);
 
 /// 1/2 |v - v~|_M^2 + V(q~ + gamma v), J: what the step minimises, but for wind, pulls and damping.

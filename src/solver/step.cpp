@@ -22,7 +22,7 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
     work.prediction = predict(state, settings.integrator, end - state.time);
     work.expansion = state.velocity;
     if (!work.prediction.has_history) work.expansion.assign(state.velocity.size(), Vec3::Zero());
-    work.energy = compute_cloth_energy(scene, work, state.mesh.world, state.velocity);
+    weigh_start(scene, state, work);
     work.is_least_taken = false;
     work.held = find_held_vertices(scene, state, end);
     work.obstacles = move_obstacles(scene, state, work.edges, work.prediction, work.held, end);
@@ -160,11 +160,15 @@ void give_up(const Scene& scene, double end, const State& state, Attempt attempt
 /// something, or strains stiff cloth, it is not moved.
 Violations propose_and_check(const Scene& scene, double dt, double growth, Workspace& work)
 {
-    propose(scene, growth, work);
-    if (growth > 0.0 && is_push_costly(scene, dt, work)) propose(scene, growth = 0.0, work);
-    Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
+    const auto propose_weighed = [&](double by) {
+        propose(scene, by, work);
+        weigh_proposal(scene, dt, work);
+    };
+    propose_weighed(growth);
+    if (growth > 0.0 && is_push_costly(scene, dt, work)) propose_weighed(growth = 0.0);
+    const Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
     if (violations.is_clean() || growth <= 0.0) return violations;
-    propose(scene, 0.0, work);
+    propose_weighed(0.0);
     return check_proposal(scene, work.proposal, work.prediction, work.obstacles);
 }
 
@@ -291,6 +295,11 @@ void commit(double end, Workspace& work, State& state, StepReport& report)
     state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // put back by hand: no history
     state.time = end;
     ++state.step;
+    work.known_world.clear();
+    if (report.rewound > 0) return;
+    work.known_energy = work.proposed_energy;
+    work.known_world = state.mesh.world;
+    work.known_velocity = state.velocity;
 }
 
 }  // namespace
@@ -328,6 +337,7 @@ void prepare(const Scene& scene, const State& state, Workspace& work)
     work.elements = make_elements(state.mesh, topology);
     work.edges = std::move(topology.edges);
     work.system.make_pattern(work.elements);
+    work.known_world.clear();
     work.faces_of_elements = state.mesh.faces;
     work.material_of_elements = state.mesh.material;
 }
