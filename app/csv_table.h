@@ -35,7 +35,7 @@ struct StepRow {
     std::int64_t solves = 0;              ///< velocity solves: more than one where the check found violations
     std::optional<std::int64_t> rewound;  ///< vertices put back on their way, so that nothing is passed
     std::optional<std::int64_t> yielded;  ///< contacts that could not keep their stand-off
-    std::optional<double> energy_rise;  ///< J, pushed in by a step that nothing mended; 0 else
+    std::optional<double> energy_rise;    ///< J, pushed in by a step that nothing mended; 0 else
 };
 
 /// A material point at one time: m, m/s.

@@ -70,8 +70,8 @@ double compute_load_work(const ClothMesh& mesh, const ClothElements& elements, c
             FaceSystem system(at, face.vertices);
             term->add(FaceState(face, at.position), system);
             for (int i = 0; i < 3; ++i)
-                sum += impulse_on(i, system, face, at, velocity).dot(displacement[face.vertices[i]]) /
-                       at.gamma;
+                sum +=
+                    impulse_on(i, system, face, at, velocity).dot(displacement[face.vertices[i]]) / at.gamma;
         }
     }
     return sum;

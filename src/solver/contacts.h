@@ -27,9 +27,9 @@ struct Contact {
     double gap;    ///< distance that q~ is past what it must keep at the step's end, m; negative inside
     bool was_active;
     bool is_pressing = false;  ///< in the last solve of this step, linearised elsewhere
-    bool may_grow = true;  ///< its gap, towards the stand-off; not where it has yielded
-    int bound = -1;        ///< coordinate of the velocity solve, 3 a vertex
-    int row = -1;          ///< or row
+    bool may_grow = true;      ///< its gap, towards the stand-off; not where it has yielded
+    int bound = -1;            ///< coordinate of the velocity solve, 3 a vertex
+    int row = -1;              ///< or row
 
     bool is_vertex() const { return in_frame.kind == ContactKind::Vertex; }
 };

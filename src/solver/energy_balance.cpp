@@ -127,8 +127,8 @@ double find_energy_rise(const Scene& scene, const State& state, const Workspace&
 void weigh_start(const Scene& scene, const State& state, Workspace& work)
 {
     const bool is_known = work.known_world == state.mesh.world && work.known_velocity == state.velocity;
-    work.energy = is_known ? work.known_energy
-                           : compute_cloth_energy(scene, work, state.mesh.world, state.velocity);
+    work.energy =
+        is_known ? work.known_energy : compute_cloth_energy(scene, work, state.mesh.world, state.velocity);
 }
 
 void weigh_proposal(const Scene& scene, double dt, Workspace& work)
@@ -140,8 +140,8 @@ void weigh_proposal(const Scene& scene, double dt, Workspace& work)
     work.proposed_energy = compute_cloth_energy(scene, work, proposal.world, proposal.velocity);
     work.solved_energy = work.proposed_energy;
     if (fastest > kStill * kStill)
-        work.solved_energy.potential = compute_energies(
-            work.elements, work.terms, find_end(work.prediction, proposal.velocity));
+        work.solved_energy.potential =
+            compute_energies(work.elements, work.terms, find_end(work.prediction, proposal.velocity));
 }
 
 bool is_push_costly(const Scene& scene, double dt, const Workspace& work)

@@ -192,8 +192,7 @@ void relinearise(const Scene& scene, Workspace& work, StepReport& report)
 {
     constexpr double kShortest = 0.1;  // wind and pulls are not in the objective: never stay
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
-    for (std::size_t c = 0; c < work.contacts.size(); ++c)
-        work.contacts[c].is_pressing = multiplier[c] > 0.0;
+    for (std::size_t c = 0; c < work.contacts.size(); ++c) work.contacts[c].is_pressing = multiplier[c] > 0.0;
 
     std::vector<Vec3> next = work.proposal.velocity;
     if (report.relinearisations > 0) {  // the first v^ keeps no contact: no measure

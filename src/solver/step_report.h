@@ -31,10 +31,10 @@ struct StepReport {
     int feature_rows = 0;                 ///< those of them at a sharp edge, corner, wire or point
     int crossings = 0;                    ///< in this step
     int solves = 0;                       ///< velocity solves: more than one where the check found violations
-    int relinearisations = 0;             ///< solves of forces linearised again, where energy would have risen
-    double energy_rise = 0.0;             ///< J, what was pushed in by a step that nothing mended
-    int yielded = 0;                      ///< contacts that could not keep their stand-off
-    int rewound = 0;                      ///< vertices put back on their way, so that nothing is passed
+    int relinearisations = 0;  ///< solves of forces linearised again, where energy would have risen
+    double energy_rise = 0.0;  ///< J, what was pushed in by a step that nothing mended
+    int yielded = 0;           ///< contacts that could not keep their stand-off
+    int rewound = 0;           ///< vertices put back on their way, so that nothing is passed
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;

@@ -50,13 +50,13 @@ struct Workspace {
     Proposal proposal;
 
     // move, weigh_proposal, keep_energy
-    ClothEnergy energy;            ///< at the step's start
-    ClothEnergy solved_energy;     ///< of the proposal before anything was moved out to its stand-off
-    ClothEnergy proposed_energy;   ///< and after
-    double least_rise = 0.0;       ///< J, of this step's linearisations so far
-    std::vector<Vec3> least_at;    ///< v^ of that one, m/s
-    bool is_least_taken = false;   ///< whatever it is
-    ClothEnergy known_energy;      ///< of these, which the last commit left
+    ClothEnergy energy;           ///< at the step's start
+    ClothEnergy solved_energy;    ///< of the proposal before anything was moved out to its stand-off
+    ClothEnergy proposed_energy;  ///< and after
+    double least_rise = 0.0;      ///< J, of this step's linearisations so far
+    std::vector<Vec3> least_at;   ///< v^ of that one, m/s
+    bool is_least_taken = false;  ///< whatever it is
+    ClothEnergy known_energy;     ///< of these, which the last commit left
     std::vector<Vec3> known_world, known_velocity;
 };
 

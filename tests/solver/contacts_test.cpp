@@ -154,7 +154,8 @@ TEST(YieldStandOff, EndsWithTheSurfaceKept)
         Setting one({Vec3(0, 0, place)}, 1);
         one.add(0, 0, Vec3::UnitZ(), Vec3::Zero());
         int times = 0;
-        while (yield_stand_off(one.steps, one.prediction, kThickness, one.contacts[0])) ASSERT_LT(++times, 20);
+        while (yield_stand_off(one.steps, one.prediction, kThickness, one.contacts[0]))
+            ASSERT_LT(++times, 20);
         EXPECT_GT(times, 0);
         EXPECT_GT(one.contacts[0].in_frame.least_gap, 0.0) << place;
         EXPECT_LE(one.contacts[0].in_frame.least_gap, 1e-3 * kThickness);
@@ -285,11 +286,11 @@ TEST(FlattenHistory, OnlyOfContactsFromTheFirstOnButUpdatesAllGaps)
     Landed landed;
     landed.touch({1.0, 0.0}, true);
     landed.touch({1.0, 0.0}, true);
-    ASSERT_TRUE(flatten_history(landed.scene, landed.state, landed.steps, 1, landed.contacts,
-                                landed.prediction));
+    ASSERT_TRUE(
+        flatten_history(landed.scene, landed.state, landed.steps, 1, landed.contacts, landed.prediction));
     for (const Contact& contact : landed.contacts) EXPECT_NEAR(contact.gap, 0.0, kRoundOff);
-    EXPECT_FALSE(flatten_history(landed.scene, landed.state, landed.steps, 2, landed.contacts,
-                                 landed.prediction));
+    EXPECT_FALSE(
+        flatten_history(landed.scene, landed.state, landed.steps, 2, landed.contacts, landed.prediction));
 }
 
 }  // namespace

@@ -11,9 +11,9 @@
 namespace arris {
 namespace {
 
-constexpr double kStep = 0.01;        // s
-constexpr double kRoundOff = 1e-10;   // relative: the certificate's residual, squared nowhere
-const Vec3 kEverywhere(0, 0, 1e-3);   // m, the sheet's place: at its stand-off above z = 0
+constexpr double kStep = 0.01;       // s
+constexpr double kRoundOff = 1e-10;  // relative: the certificate's residual, squared nowhere
+const Vec3 kEverywhere(0, 0, 1e-3);  // m, the sheet's place: at its stand-off above z = 0
 
 ClothMesh make_sheet(const Vec3& at = kEverywhere)
 {
@@ -32,7 +32,8 @@ struct OneStep {
     State state, before;
     Workspace work;
 
-    explicit OneStep(Scene a_scene, const Vec3& at = kEverywhere, double start = 0.0) : scene(std::move(a_scene))
+    explicit OneStep(Scene a_scene, const Vec3& at = kEverywhere, double start = 0.0)
+        : scene(std::move(a_scene))
     {
         scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
         settings.integrator = Integrator::ImplicitEuler;

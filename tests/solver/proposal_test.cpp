@@ -54,10 +54,7 @@ struct Above {
         }
     }
 
-    std::optional<int> put_back()
-    {
-        return rewind(scene, state, held, prediction, kStep, steps, proposal);
-    }
+    std::optional<int> put_back() { return rewind(scene, state, held, prediction, kStep, steps, proposal); }
 
     bool is_clean() { return check_proposal(scene, proposal, prediction, steps).is_clean(); }
 

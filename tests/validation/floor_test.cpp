@@ -202,7 +202,9 @@ Shock throw_at_teeth(Integrator integrator, double stiffness, double speed, doub
     for (Vec3& x : mesh.world) x += Vec3(-0.3, -0.2, 0.06 + kThickness + (3.0 + phase) * h * speed);
     ClothRun run(scene, mesh, Vec3(0.0, 0.0, -speed));
     run.settings.integrator = integrator;
-    const auto energy = [&] { return compute_cloth_energy(run.scene, run.work, run.state.mesh.world, run.state.velocity); };
+    const auto energy = [&] {
+        return compute_cloth_energy(run.scene, run.work, run.state.mesh.world, run.state.velocity);
+    };
     const double first = energy().sum();
     double before = first;
     Shock shock;
