@@ -28,14 +28,16 @@ MaterialBox bounding_box(const std::vector<Vec2>& material)
 // Load gathered on vertices; normalised once, at the end. Extended precision so that 1e6 shares sum to 1.
 class ShareSum {
   public:
-    explicit ShareSum(int vertex_count) : weight_(vertex_count, 0.0L) {}
+    explicit ShareSum(const ClothMesh& mesh) : mesh_(mesh), weight_(mesh.vertex_count(), 0.0L) {}
 
-    void add(const Face& face, const Vec3& weights)
+    void add(int f, const Vec3& weights)
     {
+        const Face& face = mesh_.faces[f];
         for (int k = 0; k < 3; ++k) {
             weight_[face[k]] += static_cast<long double>(weights[k]);
             total_ += static_cast<long double>(weights[k]);
         }
+        if (weights.maxCoeff() > 0.0) by_face_.push_back({f, weights});
     }
 
     bool is_empty() const { return !(total_ > 0.0L); }
@@ -48,7 +50,16 @@ class ShareSum {
         return result;
     }
 
+    std::vector<FaceShare> face_shares() const
+    {
+        std::vector<FaceShare> result = by_face_;
+        for (FaceShare& share : result) share.weights /= static_cast<double>(total_);
+        return result;
+    }
+
   private:
+    const ClothMesh& mesh_;
+    std::vector<FaceShare> by_face_;
     std::vector<long double> weight_;
     long double total_ = 0.0L;
 };
@@ -127,8 +138,8 @@ bool overlaps(const ClothMesh& mesh, const Face& face, const MaterialBox& box)
 
 void spread_by_area(const ClothMesh& mesh, const MaterialBox& box, ShareSum& sum)
 {
-    for (const Face& face : mesh.faces)
-        if (overlaps(mesh, face, box)) sum.add(face, integrate_area(mesh, face, box));
+    for (int f = 0; f < mesh.face_count(); ++f)
+        if (overlaps(mesh, mesh.faces[f], box)) sum.add(f, integrate_area(mesh, mesh.faces[f], box));
 }
 
 // The part of an axis-parallel line inside one face, from `begin` to `end`.
@@ -173,14 +184,15 @@ void spread_by_length(const ClothMesh& mesh, const MaterialBox& box, int axis, S
         if (!(end > begin)) continue;
         const double s = (begin - part.begin.X[axis]) / (end - part.begin.X[axis]);
         const Vec3 at_begin = interpolate(part.begin, part.end, s).weights;
-        sum.add(mesh.faces[part.face], 0.5 * (end - begin) * (at_begin + part.end.weights).cwiseMax(0.0));
+        sum.add(part.face, 0.5 * (end - begin) * (at_begin + part.end.weights).cwiseMax(0.0));
         reached = end;
     }
 }
 
-// The nearest of the vertices that touch the box to the box's middle; lowest index on ties.
-std::vector<LoadShare> nearest_vertex(const ClothMesh& mesh, const std::vector<int>& candidates,
-                                      const Vec2& point)
+// All on the nearest of `candidates` to `point`, lowest index on ties; as a corner of face `preferred` where
+// it is one, else of the first face that has it.
+void spread_to_nearest_vertex(const ClothMesh& mesh, const std::vector<int>& candidates, const Vec2& point,
+                              int preferred, ShareSum& sum)
 {
     int nearest = -1;
     double least = std::numeric_limits<double>::infinity();
@@ -191,22 +203,31 @@ std::vector<LoadShare> nearest_vertex(const ClothMesh& mesh, const std::vector<i
             nearest = v;
         }
     }
-    if (nearest < 0) return {};
-    return {{nearest, 1.0}};
+    if (nearest < 0) return;
+    const auto add_to = [&](int f) {
+        const Face& face = mesh.faces[f];
+        const auto corner = std::find(face.begin(), face.end(), nearest);
+        if (corner == face.end()) return false;
+        sum.add(f, Vec3::Unit(corner - face.begin()));
+        return true;
+    };
+    if (preferred >= 0 && add_to(preferred)) return;
+    for (int f = 0; f < mesh.face_count(); ++f)
+        if (add_to(f)) return;
 }
 
-std::vector<LoadShare> spread_over_point(const ClothMesh& mesh, const Vec2& point)
+void spread_over_point(const ClothMesh& mesh, const Vec2& point, ShareSum& sum)
 {
-    if (locate(mesh, point).face < 0) return {};
+    const int face = locate(mesh, point).face;
+    if (face < 0) return;
     std::vector<int> all(mesh.material.size());
     for (int v = 0; v < static_cast<int>(all.size()); ++v) all[v] = v;
-    return nearest_vertex(mesh, all, point);
+    spread_to_nearest_vertex(mesh, all, point, face, sum);
 }
 
 // Where the box only touches the cloth from outside: along its sides, else at vertices.
-std::vector<LoadShare> spread_over_sides(const ClothMesh& mesh, const MaterialBox& box)
+void spread_over_sides(const ClothMesh& mesh, const MaterialBox& box, ShareSum& sum)
 {
-    ShareSum sum(mesh.vertex_count());
     for (int axis = 0; axis < 2; ++axis) {
         for (const double bound : {box.min[1 - axis], box.max[1 - axis]}) {
             MaterialBox side = box;
@@ -214,8 +235,9 @@ std::vector<LoadShare> spread_over_sides(const ClothMesh& mesh, const MaterialBo
             if (box.max[axis] > box.min[axis]) spread_by_length(mesh, side, axis, sum);
         }
     }
-    if (!sum.is_empty()) return sum.shares();
-    return nearest_vertex(mesh, vertices_in_box(mesh, box), 0.5 * (box.min + box.max));
+    if (!sum.is_empty()) return;
+    constexpr int kNoFace = -1;
+    spread_to_nearest_vertex(mesh, vertices_in_box(mesh, box), 0.5 * (box.min + box.max), kNoFace, sum);
 }
 
 // The box's part within the cloth's bounding box; a side no longer than the tolerance becomes none.
@@ -232,6 +254,26 @@ std::optional<MaterialBox> part_near_cloth(const ClothMesh& mesh, const Material
         part.min[axis] = part.max[axis] = std::clamp(middle, bounds.min[axis], bounds.max[axis]);
     }
     return part;
+}
+
+ShareSum spread(const ClothMesh& mesh, const MaterialBox& box)
+{
+    ShareSum sum(mesh);
+    if (mesh.faces.empty()) return sum;
+    const auto part = part_near_cloth(mesh, box);
+    if (!part) return sum;
+    const Vec2 extent = part->max - part->min;
+    if (!(extent.maxCoeff() > 0.0)) {
+        spread_over_point(mesh, part->min, sum);
+        return sum;
+    }
+    if (extent.minCoeff() > 0.0) {
+        spread_by_area(mesh, *part, sum);
+    } else {
+        spread_by_length(mesh, *part, extent.x() > 0.0 ? 0 : 1, sum);
+    }
+    if (sum.is_empty()) spread_over_sides(mesh, *part, sum);
+    return sum;
 }
 
 Vec2 nearest_on_segment(const Vec2& a, const Vec2& b, const Vec2& p)
@@ -289,20 +331,12 @@ std::vector<int> vertices_in_box(const ClothMesh& mesh, const MaterialBox& box)
 
 std::vector<LoadShare> spread_over_box(const ClothMesh& mesh, const MaterialBox& box)
 {
-    if (mesh.faces.empty()) return {};
-    const auto part = part_near_cloth(mesh, box);
-    if (!part) return {};
-    const Vec2 extent = part->max - part->min;
-    if (!(extent.maxCoeff() > 0.0)) return spread_over_point(mesh, part->min);
+    return spread(mesh, box).shares();
+}
 
-    ShareSum sum(mesh.vertex_count());
-    if (extent.minCoeff() > 0.0) {
-        spread_by_area(mesh, *part, sum);
-    } else {
-        spread_by_length(mesh, *part, extent.x() > 0.0 ? 0 : 1, sum);
-    }
-    if (!sum.is_empty()) return sum.shares();
-    return spread_over_sides(mesh, *part);
+std::vector<FaceShare> spread_over_faces(const ClothMesh& mesh, const MaterialBox& box)
+{
+    return spread(mesh, box).face_shares();
 }
 
 MaterialLocation locate(const ClothMesh& mesh, const Vec2& point)

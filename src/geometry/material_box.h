@@ -31,6 +31,15 @@ struct LoadShare {
 /// where the box meets no cloth.
 std::vector<LoadShare> spread_over_box(const ClothMesh& mesh, const MaterialBox& box);
 
+/// A share of a load on the corners of one face.
+struct FaceShare {
+    int face;
+    Vec3 weights;
+};
+
+/// The same load by faces: what `spread_over_box` gives a vertex is the sum of what its corners have here.
+std::vector<FaceShare> spread_over_faces(const ClothMesh& mesh, const MaterialBox& box);
+
 /// Where a material point lies: `face` and its barycentric coordinates there.
 struct MaterialLocation {
     int face = -1;  ///< -1: the point meets no cloth

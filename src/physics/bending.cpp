@@ -73,11 +73,15 @@ void Bending::add(const HingeState& hinge, HingeSystem& system) const
     const double sin_theta = n->c.cross(n->d).dot(e) / length;
     const double squared_cos_half = 0.25 * (n->c + n->d).squaredNorm();
     for (int i = 0; i < 4; ++i) {
-        system.add_force(i, -0.5 * scale * sin_theta * gradient[i]);
+        system.add_elastic_force(i, -0.5 * scale * sin_theta * gradient[i]);
         for (int j = 0; j <= i; ++j)
             system.add_stiffness(i, j,
                                  0.5 * scale * squared_cos_half * gradient[i] * gradient[j].transpose());
     }
+    if (!system.is_eulerian()) return;
+    const double squared_sine = 0.25 * (n->c - n->d).squaredNorm();
+    for (int i = 0; i < 4; ++i)
+        system.add_material_force(i, -stiffness_ * squared_sine * hinge.weight_gradients->at(i));
 }
 
 }  // namespace arris

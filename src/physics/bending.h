@@ -9,6 +9,10 @@ namespace arris {
 /// material space, theta the angle between the faces' normals (the report, section 2.4). The stiffness is
 /// Gauss-Newton in sin(theta/2), so positive semi-definite: 2 K w grad s grad s^T, s = sin(theta/2). A hinge
 /// with a face collapsed to a line has no angle: it exerts no force.
+///
+/// Where material flows the weight 3 |e|^2 / A changes: -dV/dX_i = -K sin^2(theta/2) dw/dX_i at fixed x.
+/// (With -F^T f in its place, as if material carried the fold along, a strip in balance over a ridge would
+/// creep.)
 class Bending : public HingeTerm {
   public:
     explicit Bending(double stiffness) : stiffness_(stiffness) {}

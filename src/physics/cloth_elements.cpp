@@ -1,32 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/cloth_elements.h"
 
+#include <algorithm>
 #include <cassert>
+#include <span>
 
 namespace arris {
 
 namespace {
 
-FaceElement make_face(const ClothMesh& mesh, const Face& face)
+bool has_moved(const std::vector<char>& is_moved, std::span<const int> vertices)
 {
-    const Vec2& a = mesh.material[face[0]];
-    const Vec2& b = mesh.material[face[1]];
-    const Vec2& c = mesh.material[face[2]];
-    const double doubled = twice_area(a, b, c);
-    assert(doubled > 0.0 && "material faces are counter-clockwise");
-
-    // grad N_a is perpendicular to the edge across from a, and its length is one over the altitude.
-    const auto gradient = [&](const Vec2& from, const Vec2& to) -> Vec2 {
-        return Vec2(from.y() - to.y(), to.x() - from.x()) / doubled;
-    };
-    return {face, 0.5 * doubled, {gradient(b, c), gradient(c, a), gradient(a, b)}};
-}
-
-HingeElement make_hinge(const ClothMesh& mesh, const Hinge& hinge, const std::vector<FaceElement>& faces)
-{
-    const double squared_length = (mesh.material[hinge.b] - mesh.material[hinge.a]).squaredNorm();
-    const double area = faces[hinge.face_c].area + faces[hinge.face_d].area;
-    return {{hinge.a, hinge.b, hinge.c, hinge.d}, {hinge.face_c, hinge.face_d}, 3.0 * squared_length / area};
+    return std::any_of(vertices.begin(), vertices.end(), [&](int v) { return is_moved[v] != 0; });
 }
 
 /// Greedy: each element, in order, takes the least colour none of its vertices has.
@@ -63,18 +48,73 @@ ElementColors color_elements(int vertex_count, const std::vector<Element>& eleme
 
 }  // namespace
 
+FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face)
+{
+    const Vec2& a = material[face[0]];
+    const Vec2& b = material[face[1]];
+    const Vec2& c = material[face[2]];
+    const double doubled = twice_area(a, b, c);
+    assert(doubled > 0.0 && "material faces are counter-clockwise");
+
+    // grad N_a is perpendicular to the edge across from a, and its length is one over the altitude.
+    const auto gradient = [&](const Vec2& from, const Vec2& to) -> Vec2 {
+        return Vec2(from.y() - to.y(), to.x() - from.x()) / doubled;
+    };
+    return {face, 0.5 * doubled, {gradient(b, c), gradient(c, a), gradient(a, b)}};
+}
+
+double compute_hinge_weight(const std::vector<Vec2>& material, const std::array<int, 4>& vertices,
+                            double area_c, double area_d)
+{
+    return 3.0 * (material[vertices[1]] - material[vertices[0]]).squaredNorm() / (area_c + area_d);
+}
+
+std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& material,
+                                                   const std::array<int, 4>& vertices, const FaceElement& c,
+                                                   const FaceElement& d)
+{
+    // w = 3 |e|^2 / A: dw = 6 e . de / A - w dA / A, and a face's area grows by A_f b_i . dX_i.
+    const double area = c.area + d.area;
+    const double weight = compute_hinge_weight(material, vertices, c.area, d.area);
+    std::array<Vec2, 4> gradients = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+    for (int i = 0; i < 4; ++i)
+        for (const FaceElement* face : {&c, &d})
+            for (int k = 0; k < 3; ++k)
+                if (face->vertices[k] == vertices[i])
+                    gradients[i] -= weight * face->area / area * face->gradients[k];
+    const Vec2 along_edge = 6.0 / area * (material[vertices[1]] - material[vertices[0]]);
+    gradients[0] -= along_edge;
+    gradients[1] += along_edge;
+    return gradients;
+}
+
 ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology)
 {
     ClothElements elements;
     elements.vertex_count = mesh.vertex_count();
     elements.faces.reserve(mesh.faces.size());
-    for (const Face& face : mesh.faces) elements.faces.push_back(make_face(mesh, face));
+    for (const Face& face : mesh.faces) elements.faces.push_back(make_face_element(mesh.material, face));
     elements.hinges.reserve(topology.hinges.size());
-    for (const Hinge& hinge : topology.hinges)
-        elements.hinges.push_back(make_hinge(mesh, hinge, elements.faces));
+    for (const Hinge& hinge : topology.hinges) {
+        const std::array<int, 4> vertices = {hinge.a, hinge.b, hinge.c, hinge.d};
+        const double weight = compute_hinge_weight(mesh.material, vertices, elements.faces[hinge.face_c].area,
+                                                   elements.faces[hinge.face_d].area);
+        elements.hinges.push_back({vertices, {hinge.face_c, hinge.face_d}, weight});
+    }
     elements.face_colors = color_elements(elements.vertex_count, elements.faces);
     elements.hinge_colors = color_elements(elements.vertex_count, elements.hinges);
     return elements;
+}
+
+void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, ClothElements& elements)
+{
+    for (FaceElement& face : elements.faces)
+        if (has_moved(is_moved, face.vertices)) face = make_face_element(mesh.material, face.vertices);
+    for (HingeElement& hinge : elements.hinges)
+        if (has_moved(is_moved, hinge.vertices))
+            hinge.weight =
+                compute_hinge_weight(mesh.material, hinge.vertices, elements.faces[hinge.faces[0]].area,
+                                     elements.faces[hinge.faces[1]].area);
 }
 
 }  // namespace arris

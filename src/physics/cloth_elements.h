@@ -33,7 +33,8 @@ struct ElementColors {
     std::vector<int> start;
 };
 
-/// All that the terms need to know of the mesh besides where it is. Made anew where the mesh changes.
+/// All that the terms need to know of the mesh besides where it is. Made anew where the mesh changes; where
+/// only material coordinates do, `update_elements` is enough.
 struct ClothElements {
     int vertex_count = 0;
     std::vector<FaceElement> faces;
@@ -43,5 +44,22 @@ struct ClothElements {
 
 /// Linear in face count. Material orientations must be positive (`validate` checks it).
 ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology);
+
+/// Brings the elements at the vertices with `is_moved` (one a vertex) to the mesh's present material
+/// coordinates: the same, to the bit, as `make_elements`. Faces, and so colours, must be what they were.
+void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, ClothElements& elements);
+
+/// Of the triangle whose corners are at `material[face[i]]`, m; it must be counter-clockwise.
+FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face);
+
+/// `weight` of a hinge whose vertices are at `material`, m, between faces of these areas.
+double compute_hinge_weight(const std::vector<Vec2>& material, const std::array<int, 4>& vertices,
+                            double area_c, double area_d);
+
+/// Its derivatives by the material coordinates of the hinge's vertices, 1/m. `c` and `d` are its faces'
+/// elements at `material`.
+std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& material,
+                                                   const std::array<int, 4>& vertices, const FaceElement& c,
+                                                   const FaceElement& d);
 
 }  // namespace arris

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "physics/term.h"
 
 namespace arris {
@@ -25,5 +28,26 @@ Vec3 linear_momentum(double density, const ClothElements& elements, const std::v
 /// Angular momentum about the origin, kg m^2/s.
 Vec3 angular_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& position,
                       const std::vector<Vec3>& velocity);
+
+/// How fast the material moves at the corners of each face, m/s.
+using CornerVelocities = std::vector<std::array<Vec3, 3>>;
+
+/// w = v - F V, of a cloth through whose vertices material flows with `material_velocity` (m/s, one a vertex,
+/// 0 where none does). `elements` are those of the present material coordinates.
+CornerVelocities compute_corner_velocities(const ClothElements& elements, const std::vector<Vec3>& position,
+                                           const std::vector<Vec3>& velocity,
+                                           const std::vector<Vec2>& material_velocity);
+
+/// Energy and momenta of such a cloth: with no flow the same, to the bit, as from the vertices' velocities.
+double kinetic_energy(double density, const ClothElements& elements, const CornerVelocities& velocity);
+Vec3 linear_momentum(double density, const ClothElements& elements, const CornerVelocities& velocity);
+Vec3 angular_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& position,
+                      const CornerVelocities& velocity);
+
+/// One material velocity a vertex, m/s: where material flows (`material_velocity` is not zero) the mean of
+/// its corners' by area, as the two sides of a fold differ; elsewhere the vertex's own.
+std::vector<Vec3> mean_corner_velocities(const ClothElements& elements, const CornerVelocities& corners,
+                                         const std::vector<Vec3>& velocity,
+                                         const std::vector<Vec2>& material_velocity);
 
 }  // namespace arris

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "physics/eulerian_element.h"
+
 namespace arris {
 
 namespace {
@@ -122,12 +124,19 @@ void LinearSystem::scatter(const std::array<int, N>& vertices, const int* blocks
     }
 }
 
-template <typename State, int N, typename Element, typename Blocks, typename ElementTerms>
+/// Sums elements class by class; `add_eulerian` those with an EOL vertex.
+template <typename State, int N, typename Element, typename Blocks, typename ElementTerms,
+          typename AddEulerian>
 void LinearSystem::add_elements(const ElementColors& colors, const std::vector<Element>& elements,
-                                const Blocks& blocks, const ElementTerms& terms, const Linearization& at)
+                                const Blocks& blocks, const ElementTerms& terms, const Linearization& at,
+                                const AddEulerian& add_eulerian)
 {
     for_each_by_color(colors, [&](int e) {
         const Element& element = elements[e];
+        if (at.flow && has_eulerian_vertex(*at.flow, element.vertices)) {
+            add_eulerian(e);
+            return;
+        }
         LocalSystem<N> local(at, element.vertices);
         const State state(element, at.position);
         for (const auto& term : terms) term->add(state, local);
@@ -136,20 +145,51 @@ void LinearSystem::add_elements(const ElementColors& colors, const std::vector<E
     });
 }
 
+/// Loads go to vertices, not to elements. On an EOL vertex: sum_f G_f^T f_f = B^T f - E^T sum_f F_f^T f_f.
+void LinearSystem::set_loads(const ClothMesh& mesh, const Terms& terms, const Linearization& at)
+{
+    // What lies in a box of material depends on where material has flowed to.
+    std::optional<ClothMesh> flowed;
+    if (at.flow && !terms.loads.empty()) {
+        flowed = mesh;
+        flowed->material = at.flow->extrapolated.material;
+    }
+    const ClothMesh& loaded = flowed ? *flowed : mesh;
+    std::vector<Vec3> load(mesh.vertex_count(), Vec3::Zero());
+    for (const auto& term : terms.loads) term->add(loaded, at, load);
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+        rhs_.segment<3>(3 * v) = at.basis[v].transpose() * (at.gamma * load[v]);
+    if (!flowed) return;
+
+    for (const auto& term : terms.loads)
+        for (const CornerLoad& corner : term->corner_loads(loaded, at)) {
+            const Face& face = loaded.faces[corner.face];
+            const int v = face[corner.corner];
+            if (!at.flow->is_eulerian[v]) continue;
+            const Mat32 F =
+                FaceState(make_face_element(loaded.material, face), at.flow->extrapolated.position).F;
+            rhs_.segment<3>(3 * v) -=
+                at.flow->basis[v].transpose() * (F.transpose() * (at.gamma * corner.force));
+        }
+}
+
 void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,
                             const Linearization& at)
 {
     matrix_.coeffs().setZero();
-
-    // Loads first: they go to vertices, not to elements.
-    std::vector<Vec3> load(elements.vertex_count, Vec3::Zero());
-    for (const auto& term : terms.loads) term->add(mesh, at, load);
-    for (int v = 0; v < elements.vertex_count; ++v)
-        rhs_.segment<3>(3 * v) = at.basis[v].transpose() * (at.gamma * load[v]);
-
-    add_elements<FaceState, 3>(elements.face_colors, elements.faces, face_blocks_, terms.faces, at);
-    if (!terms.hinges.empty())
-        add_elements<HingeState, 4>(elements.hinge_colors, elements.hinges, hinge_blocks_, terms.hinges, at);
+    set_loads(mesh, terms, at);
+    add_elements<FaceState, 3>(
+        elements.face_colors, elements.faces, face_blocks_, terms.faces, at, [&](int f) {
+            const Face& face = elements.faces[f].vertices;
+            scatter<3>(face, face_blocks_[f].data(), eulerian_inertia_and_loads(face, terms, at));
+            scatter<3>(face, face_blocks_[f].data(), eulerian_elasticity(face, terms, at));
+        });
+    if (terms.hinges.empty()) return;
+    add_elements<HingeState, 4>(
+        elements.hinge_colors, elements.hinges, hinge_blocks_, terms.hinges, at, [&](int h) {
+            const HingeElement& hinge = elements.hinges[h];
+            scatter<4>(hinge.vertices, hinge_blocks_[h].data(), eulerian_hinge(hinge, elements, terms, at));
+        });
 }
 
 }  // namespace arris

@@ -19,7 +19,9 @@ class LinearSystem {
     /// The pattern of every pair of vertices that share a face or a hinge, values zero. O(n log n).
     void make_pattern(const ClothElements& elements);
 
-    /// Sums all terms at `at`. The result does not depend on the number of threads.
+    /// Sums all terms at `at`; `mesh` and `elements` are those of the step's start. The result does not
+    /// depend on the number of threads. Elements with an EOL vertex (`at.flow`) are made anew, at the
+    /// material coordinates of q^ and of the extrapolated state; the others are summed as if there were none.
     void assemble(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,
                   const Linearization& at);
 
@@ -31,9 +33,11 @@ class LinearSystem {
     template <int N>
     void scatter(const std::array<int, N>& vertices, const int* blocks, const LocalSystem<N>& local);
 
-    template <typename State, int N, typename Element, typename Blocks, typename ElementTerms>
+    void set_loads(const ClothMesh& mesh, const Terms& terms, const Linearization& at);
+    template <typename State, int N, typename Element, typename Blocks, typename ElementTerms,
+              typename AddEulerian>
     void add_elements(const ElementColors& colors, const std::vector<Element>& elements, const Blocks& blocks,
-                      const ElementTerms& terms, const Linearization& at);
+                      const ElementTerms& terms, const Linearization& at, const AddEulerian& add_eulerian);
 
     Eigen::SparseMatrix<double> matrix_;
     Eigen::VectorXd rhs_;

@@ -9,13 +9,49 @@
 //
 //   B^T (M + (gamma^2 + gamma damping) H + gamma D) B u =
 //   B^T (M (v~ - drift) + gamma f + H (gamma^2 (v^ - drift) - gamma damping drift) + gamma D (v_k - drift)).
+//
+// Material flows through some vertices (Eulerian-on-Lagrangian, EOL): their material coordinates move too,
+// X' = X~ + gamma V', V' = E u. In a face with deformation gradient F material at corner i has the corner
+// velocity w_i = v_i - F V_i, and its acceleration is, with b_i the gradients of the shape functions,
+//
+//   dw_i/dt = vdot_i - F Vdot_i - 2 Fdot V_i,   Fdot = sum_j w_j b_j^T
+//
+// (one Fdot V as F changes, one as the material moves through the velocity's gradient Fdot). So in every
+// element with such a corner G_i = B_i - F E_i takes the place of B, w~ = v~ - F V~ that of v~, w^ and w_k
+// alike, and M (2 gamma Fdot V) is added to the right-hand side. Loads act on the material, G^T f; energies
+// V(x, X) of the cloth's shape on its vertices' coordinates, B^T f_x + E^T f_X with f_x = -dV/dx at fixed X
+// and f_X = -dV/dX at fixed x. F, Fdot and V are those of q^ for elasticity, and those of the extrapolated
+// state for inertia and loads.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "geometry/vectors.h"
 
 namespace arris {
+
+/// Where the cloth would be at the step's end by its past alone. Implicit Euler: as it is at the start.
+/// BDF2, w = h_k / h_(k-1): v = (1+w) v_k - w v_(k-1), x = q~ + gamma v; X and V alike.
+struct ExtrapolatedState {
+    std::vector<Vec3> position;           ///< x, m
+    std::vector<Vec3> velocity;           ///< v, m/s
+    std::vector<Vec2> material;           ///< X, m
+    std::vector<Vec2> material_velocity;  ///< V, m/s
+};
+
+/// The material side of a linearisation. All vectors have one entry a vertex; material velocities and bases
+/// are zero where no material flows. Every face with an EOL corner must be counter-clockwise in material
+/// space, at X^ and extrapolated.
+struct MaterialFlow {
+    std::vector<char> is_eulerian;
+    std::vector<Mat23> basis;       ///< E: V' = basis u
+    std::vector<Vec2> position;     ///< X^, m
+    std::vector<Vec2> v_predicted;  ///< V~, m/s
+    std::vector<Vec2> v_expansion;  ///< V^, m/s
+    std::vector<Vec2> v_last;       ///< V_k, m/s
+    ExtrapolatedState extrapolated;
+};
 
 /// Where, when and with which weights a step's forces are linearised. All vectors have one entry a vertex.
 struct Linearization {
@@ -32,6 +68,8 @@ struct Linearization {
     std::vector<Vec3> drift;  ///< m/s
     std::vector<Mat3> basis;
     std::vector<char> has_basis;  ///< 0 where `basis` is the identity
+
+    std::optional<MaterialFlow> flow;  ///< absent where no vertex is EOL
 };
 
 }  // namespace arris

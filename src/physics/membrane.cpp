@@ -109,7 +109,12 @@ void Membrane::add(const FaceState& face, FaceSystem& system) const
 
     // Force on corner i: -A P b_i.
     const Mat32 P = 2.0 * mu_ * (face.F - s.R) + lambda_ * s.S_minus_2 * s.R;
-    for (int i = 0; i < 3; ++i) system.add_force(i, -area * (P * b[i]));
+    for (int i = 0; i < 3; ++i) system.add_elastic_force(i, -area * (P * b[i]));
+    if (system.is_eulerian()) {
+        const double V = energy(face);
+        for (int i = 0; i < 3; ++i)
+            system.add_material_force(i, area * (face.F.transpose() * (P * b[i])) - V * b[i]);
+    }
 
     // dP in the plane: 2 mu dF + lambda R <R, dF> + k T <T, dF>, T = R [0 -1; 1 0], |T|^2 = 2; the twist's
     // eigenvalue 2 mu + 2 k must not be negative.

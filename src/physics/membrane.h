@@ -19,10 +19,15 @@ namespace arris {
 /// 2 (mu + lambda) (S - 2) / S (twist); out of it those of the 2x2 matrix W with P = F W. The last three can
 /// be negative under compression and are then set to zero, so that the stiffness is positive semi-definite,
 /// always.
+///
+/// Where material flows (X of a corner moves at fixed x): dA = A b_i . dX_i and dF = -F dX_i b_i^T, so
+/// -dV/dX_i = F^T (A P b_i) - V b_i: beside what the force on x does, the energy of the material that is let
+/// into the face.
 class Membrane : public FaceTerm {
   public:
     Membrane(double youngs_modulus, double poisson_ratio);
 
+    bool is_elastic() const override { return true; }
     EnergyKind energy_kind() const override { return EnergyKind::Stretch; }
     double energy(const FaceState& face) const override;
     void add(const FaceState& face, FaceSystem& system) const override;

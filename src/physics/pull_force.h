@@ -10,6 +10,7 @@ class PullForce : public LoadTerm {
   public:
     explicit PullForce(const Pull& pull) : pull_(pull) {}
     void add(const ClothMesh& mesh, const Linearization& at, std::vector<Vec3>& force) const override;
+    std::vector<CornerLoad> corner_loads(const ClothMesh& mesh, const Linearization& at) const override;
 
   private:
     Pull pull_;

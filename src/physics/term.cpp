@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/term.h"
 
+#include <cassert>
+
 #include "physics/bending.h"
 #include "physics/gravity_force.h"
 #include "physics/inertia.h"
@@ -27,9 +29,43 @@ LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& v
 }
 
 template <int N>
+LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& vertices,
+                            const std::array<Mat32, N>& deformation)
+    : LocalSystem(at, vertices)
+{
+    is_eulerian_ = true;
+    deformation_ = deformation;
+    const MaterialFlow& flow = *at.flow;
+    for (int i = 0; i < N; ++i) {
+        const int v = vertices[i];
+        const Mat32& F = deformation[i];
+        v_last_[i] -= F * flow.v_last[v];
+        mass_rhs_[i] -= F * flow.v_predicted[v];
+        stiffness_rhs_[i] -= gamma_ * gamma_ * (F * flow.v_expansion[v]);
+        viscosity_rhs_[i] -= gamma_ * (F * flow.v_last[v]);
+        material_rhs_[i].setZero();
+    }
+}
+
+template <int N>
 void LocalSystem<N>::add_force(int i, const Vec3& force)
 {
     rhs_[i] += gamma_ * force;
+}
+
+template <int N>
+void LocalSystem<N>::add_elastic_force(int i, const Vec3& force)
+{
+    add_force(i, force);
+    // G^T f + E^T F^T f = B^T f: at fixed X no material moves.
+    if (is_eulerian_) material_rhs_[i] += gamma_ * (deformation_[i].transpose() * force);
+}
+
+template <int N>
+void LocalSystem<N>::add_material_force(int i, const Vec2& force)
+{
+    assert(is_eulerian_ && "only where material flows has it a force of its own");
+    material_rhs_[i] += gamma_ * force;
 }
 
 template <int N>
@@ -72,6 +108,21 @@ void LocalSystem<N>::reduce(const std::array<const Mat3*, N>& corner_matrices)
             block = (G_i_transposed * block * *corner_matrices[j]).eval();
         }
     }
+}
+
+template <int N>
+void LocalSystem<N>::reduce_eulerian(const std::array<const Mat3*, N>& bases,
+                                     const std::array<const Mat23*, N>& material_bases)
+{
+    assert(is_eulerian_);
+    std::array<Mat3, N> G;
+    std::array<const Mat3*, N> corner_matrices;
+    for (int i = 0; i < N; ++i) {
+        G[i] = *bases[i] - deformation_[i] * *material_bases[i];
+        corner_matrices[i] = &G[i];
+    }
+    reduce(corner_matrices);
+    for (int i = 0; i < N; ++i) rhs_[i] += material_bases[i]->transpose() * material_rhs_[i];
 }
 
 template class LocalSystem<3>;

@@ -15,18 +15,29 @@
 
 namespace arris {
 
-/// One element's part of the linear system, in the velocities of its N corners (see linearization.h). A term
-/// adds its force, mass, stiffness and viscosity; the right-hand side that goes with each is kept up here,
-/// once for all.
+/// One element's part of the linear system, in the corner velocities of its N corners (see linearization.h).
+/// A term adds its force, mass, stiffness and viscosity; the right-hand side that goes with each is kept up
+/// here, once for all.
 template <int N>
 class LocalSystem {
   public:
+    /// Of an element through whose vertices no material flows: corner velocities are the vertices'.
     LocalSystem(const Linearization& at, const std::array<int, N>& vertices);
 
-    double time() const { return time_; }
-    const Vec3& v_last(int i) const { return v_last_[i]; }  ///< m/s, of corner i
+    /// Of an element with an EOL vertex; `at.flow` must be there. `deformation` is F at each corner.
+    LocalSystem(const Linearization& at, const std::array<int, N>& vertices,
+                const std::array<Mat32, N>& deformation);
 
-    void add_force(int i, const Vec3& force);                   ///< N
+    double time() const { return time_; }
+    bool is_eulerian() const { return is_eulerian_; }
+    const Vec3& v_last(int i) const { return v_last_[i]; }  ///< m/s, of the material at corner i
+
+    /// Adds 2 Fdot V, m/s^2, of corner i to what inertia must provide; before any mass.
+    void add_convection(int i, const Vec3& acceleration) { mass_rhs_[i] += gamma_ * acceleration; }
+
+    void add_force(int i, const Vec3& force);                   ///< N, a load on the material
+    void add_elastic_force(int i, const Vec3& force);           ///< N, -dV/dx_i at fixed X
+    void add_material_force(int i, const Vec2& force);          ///< N, -dV/dX_i at fixed x; if is_eulerian()
     void add_mass(int i, int j, double mass);                   ///< kg; i >= j, the other half is implied
     void add_stiffness(int i, int j, const Mat3& minus_df_dx);  ///< N/m; i >= j
     void add_viscosity(int i, int j, const Mat3& minus_df_dv);  ///< N s/m; i >= j
@@ -37,6 +48,10 @@ class LocalSystem {
     /// Maps to the reduced coordinates: block -> G_i^T block G_j, rhs -> G_i^T rhs.
     void reduce(const std::array<const Mat3*, N>& corner_matrices);
 
+    /// The same for an element with an EOL vertex: G_i = basis_i - F_i material_basis_i.
+    void reduce_eulerian(const std::array<const Mat3*, N>& bases,
+                         const std::array<const Mat23*, N>& material_bases);
+
   private:
     void add_block(int i, int j, double weight, const Mat3& block, const std::array<Vec3, N>& times);
 
@@ -44,6 +59,11 @@ class LocalSystem {
     std::array<Vec3, N> v_last_, mass_rhs_, stiffness_rhs_, viscosity_rhs_;
     std::array<Mat3, N*(N + 1) / 2> matrix_;
     std::array<Vec3, N> rhs_;
+
+    // Only where is_eulerian_; `material_rhs_` is what V's virtual velocity finds besides G^T rhs_.
+    bool is_eulerian_ = false;
+    std::array<Mat32, N> deformation_;
+    std::array<Vec2, N> material_rhs_;
 };
 
 using FaceSystem = LocalSystem<3>;
@@ -61,7 +81,8 @@ struct FaceState {
 /// A hinge where it is now.
 struct HingeState {
     const HingeElement& element;
-    std::array<Vec3, 4> x;  ///< m
+    std::array<Vec3, 4> x;                                ///< m
+    std::optional<std::array<Vec2, 4>> weight_gradients;  ///< 1/m, where the hinge has an EOL vertex
 
     HingeState(const HingeElement& hinge, const std::vector<Vec3>& position);
 };
@@ -73,13 +94,16 @@ enum class EnergyKind { None, Gravity, Stretch, Bending };
 class FaceTerm {
   public:
     virtual ~FaceTerm() = default;
+    /// Whether its force is -dV of an energy of the face's shape (add_elastic_force, add_material_force), so
+    /// that a face with an EOL corner has it at q^; inertia and loads are taken where it is extrapolated to.
+    virtual bool is_elastic() const { return false; }
     virtual EnergyKind energy_kind() const { return EnergyKind::None; }
     virtual double energy(const FaceState&) const { return 0.0; }  ///< J
     virtual bool is_drive() const { return false; }  ///< without an energy, but may do work on the cloth
     virtual void add(const FaceState& face, FaceSystem& system) const = 0;
 };
 
-/// An effect with a contribution from each hinge.
+/// An effect with a contribution from each hinge, elastic: add_elastic_force, add_material_force.
 class HingeTerm {
   public:
     virtual ~HingeTerm() = default;
@@ -88,12 +112,20 @@ class HingeTerm {
     virtual void add(const HingeState& hinge, HingeSystem& system) const = 0;
 };
 
+/// A load on one corner of a face, N.
+struct CornerLoad {
+    int face, corner;
+    Vec3 force;
+};
+
 /// An effect that loads vertices.
 class LoadTerm {
   public:
     virtual ~LoadTerm() = default;
     /// Adds to `force` (N, one a vertex) what acts on `mesh` during the step at `at`.
     virtual void add(const ClothMesh& mesh, const Linearization& at, std::vector<Vec3>& force) const = 0;
+    /// The same load by faces: which of them a force on an EOL vertex pulls at decides how material flows.
+    virtual std::vector<CornerLoad> corner_loads(const ClothMesh& mesh, const Linearization& at) const = 0;
 };
 
 /// The effects of a scene, made at load. What is absent is not in a list.

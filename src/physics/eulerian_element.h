@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Elements with an EOL vertex (see linearization.h), in the reduced coordinates of their vertices. Each is
+// made at the material coordinates at which it is evaluated, with its own F in the corner matrices: elastic
+// ones at q^, inertia and loads at the extrapolated state. `at.flow` must be there.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "physics/term.h"
+
+namespace arris {
+
+/// Whether material flows through any of an element's vertices.
+template <std::size_t N>
+bool has_eulerian_vertex(const MaterialFlow& flow, const std::array<int, N>& vertices)
+{
+    return std::any_of(vertices.begin(), vertices.end(), [&](int v) { return flow.is_eulerian[v] != 0; });
+}
+
+/// A face's terms that are not elastic, with 2 Fdot V.
+FaceSystem eulerian_inertia_and_loads(const Face& face, const Terms& terms, const Linearization& at);
+
+/// A face's elastic terms.
+FaceSystem eulerian_elasticity(const Face& face, const Terms& terms, const Linearization& at);
+
+/// A hinge's terms. F at a corner is the mean of those of the hinge's faces there.
+HingeSystem eulerian_hinge(const HingeElement& hinge, const ClothElements& elements, const Terms& terms,
+                           const Linearization& at);
+
+}  // namespace arris
