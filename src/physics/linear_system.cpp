@@ -38,6 +38,20 @@ void reduce(const std::array<int, N>& vertices, const Linearization& at, LocalSy
     if (has_basis) local.reduce(corner_matrices);
 }
 
+/// Whether material flows through EOL vertices only.
+[[maybe_unused]] bool is_consistent(const MaterialFlow& flow, const ClothMesh& mesh)
+{
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+        if (flow.is_eulerian[v]) continue;
+        const bool stands = flow.position[v] == mesh.material[v] &&
+                            flow.extrapolated.material[v] == mesh.material[v] && flow.basis[v].isZero(0.0) &&
+                            flow.v_predicted[v].isZero(0.0) && flow.v_expansion[v].isZero(0.0) &&
+                            flow.v_last[v].isZero(0.0) && flow.extrapolated.material_velocity[v].isZero(0.0);
+        if (!stands) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 void LinearSystem::make_pattern(const ClothElements& elements)
@@ -176,6 +190,7 @@ void LinearSystem::set_loads(const ClothMesh& mesh, const Terms& terms, const Li
 void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,
                             const Linearization& at)
 {
+    assert((!at.flow || is_consistent(*at.flow, mesh)) && "material flows through EOL vertices only");
     matrix_.coeffs().setZero();
     set_loads(mesh, terms, at);
     add_elements<FaceState, 3>(

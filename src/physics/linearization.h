@@ -31,6 +31,12 @@
 
 namespace arris {
 
+/// G = B - F E: the corner velocity in a face of a vertex with v' = B u, V' = E u.
+inline Mat3 corner_matrix(const Mat32& F, const Mat3& basis, const Mat23& material_basis)
+{
+    return basis - F * material_basis;
+}
+
 /// Where the cloth would be at the step's end by its past alone. Implicit Euler: as it is at the start.
 /// BDF2, w = h_k / h_(k-1): v = (1+w) v_k - w v_(k-1), x = q~ + gamma v; X and V alike.
 struct ExtrapolatedState {

@@ -118,7 +118,7 @@ void LocalSystem<N>::reduce_eulerian(const std::array<const Mat3*, N>& bases,
     std::array<Mat3, N> G;
     std::array<const Mat3*, N> corner_matrices;
     for (int i = 0; i < N; ++i) {
-        G[i] = *bases[i] - deformation_[i] * *material_bases[i];
+        G[i] = corner_matrix(deformation_[i], *bases[i], *material_bases[i]);
         corner_matrices[i] = &G[i];
     }
     reduce(corner_matrices);

@@ -72,6 +72,28 @@ TEST(SpreadOverBox, HasSumOneAndTheMomentOfTheClippedRegion)
     }
 }
 
+TEST(SpreadOverFaces, IsTheSameLoadByFaces)
+{
+    const MaterialBox boxes[] = {
+        {{0, 0}, {1, 1}},         {{0.2, 0.3}, {0.7, 0.4}}, {{-3, -3}, {7, 7}},
+        {{0.3, 0.2}, {0.3, 0.9}}, {{0.5, 0.5}, {0.5, 0.5}}, {{0.21, 0.4}, {0.21, 0.4}},
+        {{-1, 0.2}, {0, 0.7}},    {{1, 1}, {2, 2}}};  // the last two touch from outside
+    for (const ClothMesh& mesh : cloths())
+        for (const MaterialBox& box : boxes) {
+            std::vector<double> by_vertex(mesh.material.size(), 0.0);
+            for (const FaceShare& share : spread_over_faces(mesh, box)) {
+                EXPECT_GE(share.weights.minCoeff(), 0.0);
+                EXPECT_GT(share.weights.maxCoeff(), 0.0);
+                for (int k = 0; k < 3; ++k) by_vertex[mesh.faces[share.face][k]] += share.weights[k];
+            }
+            const std::vector<LoadShare> shares = spread_over_box(mesh, box);
+            EXPECT_FALSE(shares.empty());
+            for (const LoadShare& share : shares) by_vertex[share.vertex] -= share.weight;
+            for (const double left : by_vertex) EXPECT_NEAR(left, 0.0, 1e-13);
+        }
+    EXPECT_TRUE(spread_over_faces(cloths()[0], {{5, 5}, {6, 6}}).empty());
+}
+
 TEST(SpreadOverBox, AlongALineCountsNoStretchTwice)
 {
     for (const ClothMesh& mesh : cloths()) {

@@ -124,6 +124,67 @@ Evaluation<N> evaluate(const Term& term, const ElementType& element, const Linea
     return result;
 }
 
+/// An element made from the material coordinates of its corners, with F at each corner.
+template <int N>
+struct ElementAt;
+
+template <>
+struct ElementAt<3> {
+    FaceElement face;
+    std::vector<Vec3> x;
+    std::array<Mat32, 3> deformation;
+
+    ElementAt(const std::vector<Vec3>& world, const std::vector<Vec2>& material)
+        : face(make_face_element(material, {0, 1, 2})), x(world)
+    {
+        deformation.fill(FaceState(face, x).F);
+    }
+    const FaceElement& element() const { return face; }
+    FaceState state() const { return FaceState(face, x); }
+    static std::vector<Vec2> make_material(Generator& random)
+    {
+        std::vector<Vec2> X;
+        do {
+            X.clear();
+            for (int i = 0; i < 3; ++i) X.emplace_back(uniform(random, -1, 1), uniform(random, -1, 1));
+        } while (twice_area(X[0], X[1], X[2]) < 0.3);
+        return X;
+    }
+};
+
+template <>
+struct ElementAt<4> {
+    FaceElement c, d;
+    HingeElement hinge;
+    std::vector<Vec3> x;
+    std::array<Vec2, 4> weight_gradients;
+    std::array<Mat32, 4> deformation;
+
+    ElementAt(const std::vector<Vec3>& world, const std::vector<Vec2>& material)
+        : c(make_face_element(material, {0, 1, 2})),
+          d(make_face_element(material, {1, 0, 3})),
+          hinge{{0, 1, 2, 3}, {0, 1}, compute_hinge_weight(material, {0, 1, 2, 3}, c.area, d.area)},
+          x(world),
+          weight_gradients(compute_hinge_weight_gradients(material, {0, 1, 2, 3}, c, d))
+    {
+        const Mat32 F_c = FaceState(c, x).F, F_d = FaceState(d, x).F;
+        deformation = {0.5 * (F_c + F_d), 0.5 * (F_c + F_d), F_c, F_d};
+    }
+    const HingeElement& element() const { return hinge; }
+    HingeState state() const
+    {
+        HingeState state(hinge, x);
+        state.weight_gradients = weight_gradients;
+        return state;
+    }
+    static std::vector<Vec2> make_material(Generator& random)
+    {
+        std::vector<Vec2> X = {Vec2(0, -0.5), Vec2(0, 0.5), Vec2(-0.8, 0.1), Vec2(0.9, -0.2)};
+        for (Vec2& p : X) p += Vec2(uniform(random, -0.3, 0.3), uniform(random, -0.3, 0.3));
+        return X;
+    }
+};
+
 /// The shapes a term must survive. `is_smooth` where differences are meaningful.
 struct Shape {
     const char* name;
@@ -310,6 +371,109 @@ void expect_rigid_invariance(const Case<N>& c)
     });
 }
 
+/// The force on the material coordinates of an element's corners, by the reduction that the system uses:
+/// V' = (u_1, u_2), v' = 0, so that rhs_i = E^T f_X.
+template <int N>
+std::array<Vec2, N> material_forces(const typename Element<N>::Term& term, const std::vector<Vec3>& x,
+                                    const std::vector<Vec2>& X)
+{
+    const ElementAt<N> element(x, X);
+    Linearization at = make_linearization<N>(x);
+    at.flow.emplace();
+    at.flow->v_predicted = at.flow->v_expansion = at.flow->v_last = std::vector<Vec2>(N, Vec2::Zero());
+    std::array<int, N> vertices;
+    std::array<const Mat3*, N> bases;
+    std::array<const Mat23*, N> material_bases;
+    std::array<Vec2, N> forces;
+    const Mat3 none = Mat3::Zero();
+    Mat23 both;
+    both << 1, 0, 0, 0, 1, 0;
+    for (int i = 0; i < N; ++i) {
+        vertices[i] = i;
+        bases[i] = &none;
+        material_bases[i] = &both;
+    }
+    LocalSystem<N> local(at, vertices, element.deformation);
+    term.add(element.state(), local);
+    local.reduce_eulerian(bases, material_bases);
+    for (int i = 0; i < N; ++i) forces[i] = local.rhs(i).template head<2>();
+    return forces;
+}
+
+/// States as for_each_state's, with the material coordinates of the element.
+template <int N, typename Visit>
+void for_each_material_state(const Visit& visit)
+{
+    for (const Shape& shape : kShapes) {
+        Generator random(13);
+        for (int k = 0; k < 50; ++k) {
+            const std::vector<Vec2> X = ElementAt<N>::make_material(random);
+            std::vector<Vec3> x;
+            for (const Vec2& p : X) x.emplace_back(p.x(), p.y(), 0.0);
+            shape.deform(random, x);
+            SCOPED_TRACE(std::string(shape.name) + ", state " + std::to_string(k));
+            visit(shape, x, X);
+        }
+    }
+}
+
+template <int N>
+void expect_material_force_is_minus_the_gradient(const Case<N>& c)
+{
+    for_each_material_state<N>(
+        [&](const Shape& shape, const std::vector<Vec3>& x, const std::vector<Vec2>& X) {
+            const std::array<Vec2, N> analytic = material_forces<N>(*c.term, x, X);
+            for (const Vec2& force : analytic) ASSERT_TRUE(force.allFinite());
+            if (!shape.is_smooth) return;
+            const double energy = c.term->energy(ElementAt<N>(x, X).state());
+            double scale =
+                evaluate<N>(*c.term, ElementAt<N>(x, X).element(), make_linearization<N>(x)).matrix.norm();
+            scale += std::abs(energy);
+            for (const Vec2& force : analytic) scale += force.norm();
+            for (int i = 0; i < 2 * N; ++i) {
+                const auto energy_at = [&](double offset) {
+                    std::vector<Vec2> moved = X;
+                    moved[i / 2][i % 2] += offset;
+                    return c.term->energy(ElementAt<N>(x, moved).state());
+                };
+                const double difference = -(energy_at(kStep) - energy_at(-kStep)) / (2 * kStep);
+                EXPECT_NEAR(analytic[i / 2][i % 2], difference, kFdTolerance * scale) << "coordinate " << i;
+            }
+        });
+}
+
+template <int N>
+void expect_material_invariance(const Case<N>& c)
+{
+    for_each_material_state<N>([&](const Shape&, const std::vector<Vec3>& x, const std::vector<Vec2>& X) {
+        // The cloth is alike everywhere and in every direction: no net force or torque on the material, and
+        // what rotates x changes nothing.
+        const std::array<Vec2, N> here = material_forces<N>(*c.term, x, X);
+        Vec2 net = Vec2::Zero();
+        double torque = 0.0, size = 0.0;
+        for (int i = 0; i < N; ++i) {
+            net += here[i];
+            torque += (X[i] - X[0]).x() * here[i].y() - (X[i] - X[0]).y() * here[i].x();
+            size += here[i].norm();
+        }
+        // Where x is far away or huge, f_X is a difference of F^T f_x, and F has the positions' round-off.
+        double extent = 1.0;
+        for (const Vec3& p : x) extent = std::max(extent, p.norm());
+        const Evaluation<N> world =
+            evaluate<N>(*c.term, ElementAt<N>(x, X).element(), make_linearization<N>(x));
+        size += (world.rhs.norm() + world.matrix.norm()) * extent;
+        EXPECT_LE(net.norm(), kRoundOff * size);
+        EXPECT_LE(std::abs(torque), kRoundOff * size);
+
+        Generator random(17);
+        const Mat3 rotation = random_rotation(random);
+        std::vector<Vec3> rotated = x;
+        for (Vec3& p : rotated) p = rotation * p;
+        const std::array<Vec2, N> same = material_forces<N>(*c.term, rotated, X);
+        for (int i = 0; i < N; ++i) EXPECT_LE((same[i] - here[i]).norm(), 1e-9 * size * extent);
+    });
+}
+
 class FaceTerms : public testing::TestWithParam<Case<3>> {};
 TEST_P(FaceTerms, ForceIsMinusTheGradient)
 {
@@ -322,6 +486,15 @@ TEST_P(FaceTerms, StiffnessIsTheProjectedHessian)
 TEST_P(FaceTerms, RigidMotionChangesNothing)
 {
     expect_rigid_invariance(GetParam());
+}
+TEST_P(FaceTerms, MaterialForceIsMinusTheGradient)
+{
+    // Others are loads on the material, whose energy is that of the whole sheet.
+    if (GetParam().term->is_elastic()) expect_material_force_is_minus_the_gradient(GetParam());
+}
+TEST_P(FaceTerms, MaterialForcesBalance)
+{
+    if (GetParam().term->is_elastic()) expect_material_invariance(GetParam());
 }
 INSTANTIATE_TEST_SUITE_P(All, FaceTerms, testing::ValuesIn(kFaceTerms),
                          [](const auto& i) { return "n" + std::to_string(i.index); });
@@ -338,6 +511,14 @@ TEST_P(HingeTerms, StiffnessIsTheProjectedHessian)
 TEST_P(HingeTerms, RigidMotionChangesNothing)
 {
     expect_rigid_invariance(GetParam());
+}
+TEST_P(HingeTerms, MaterialForceIsMinusTheGradient)
+{
+    expect_material_force_is_minus_the_gradient(GetParam());
+}
+TEST_P(HingeTerms, MaterialForcesBalance)
+{
+    expect_material_invariance(GetParam());
 }
 INSTANTIATE_TEST_SUITE_P(All, HingeTerms, testing::ValuesIn(kHingeTerms),
                          [](const auto& i) { return "n" + std::to_string(i.index); });

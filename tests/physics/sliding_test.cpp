@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cloth whose material flows through vertices on an edge, against closed forms. No friction, no remeshing:
+// the slides are so short that no vertex comes near the edge.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "physics/energies.h"
+#include "sliding_cloth.h"
+#include "tests/validation/ode.h"
+
+namespace arris {
+namespace {
+
+constexpr double kG = 9.81;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// A strip over the edge x = z = 0 between two planes that fall by `alpha` towards -x (negative: it rises
+/// towards the edge) and by `beta` beyond the edge, radians below the horizontal along +u.
+struct Fold {
+    double alpha = 0.0, beta = 0.5 * std::numbers::pi;
+
+    Vec3 direction(double s) const
+    {
+        const double angle = s < 0.0 ? alpha : beta;
+        return {std::cos(angle), 0.0, -std::sin(angle)};
+    }
+    Vec3 normal(double s) const
+    {
+        const double angle = s < 0.0 ? alpha : beta;
+        return {std::sin(angle), 0.0, std::cos(angle)};
+    }
+    /// The bisector; over a wire straight up.
+    Vec3 nbar() const
+    {
+        const Vec3 sum = normal(-1.0) + normal(1.0);
+        return sum.norm() > 1e-6 ? Vec3(sum.normalized()) : Vec3::UnitZ();
+    }
+};
+
+struct Strip {
+    Fold fold;
+    double length = 1.0, width = 0.1;  ///< m
+    double at_edge = 0.9;              ///< u that lies on the edge, m
+    int cells = 8, rows = 2;
+    double skew = 0.0;  ///< of a cell, how far the columns lean
+    double density = 0.1, modulus = 2e5, bending = 1e-7;
+
+    double cell() const { return length / cells; }
+};
+
+/// Columns of the grid nearer to the edge than this make way for the EOL column.
+constexpr double kClearance = 0.3;  // of a cell
+
+std::vector<double> columns_of(const Strip& strip)
+{
+    std::vector<double> columns;
+    for (int j = 0; j <= strip.cells; ++j) {
+        const double u = j * strip.cell();
+        const bool is_end = j == 0 || j == strip.cells;
+        if (is_end || std::abs(u - strip.at_edge) > kClearance * strip.cell()) columns.push_back(u);
+    }
+    columns.push_back(strip.at_edge);
+    std::sort(columns.begin(), columns.end());
+    return columns;
+}
+
+SlidingCloth make_strip(const Strip& strip)
+{
+    ClothMesh mesh;
+    const std::vector<double> columns = columns_of(strip);
+    const int height = strip.rows + 1, width = static_cast<int>(columns.size());
+    std::vector<char> is_on_edge;
+    for (int i = 0; i < width; ++i)
+        for (int j = 0; j < height; ++j) {
+            const double f = static_cast<double>(j) / strip.rows;
+            const bool is_edge = columns[i] == strip.at_edge;
+            const bool leans = i > 0 && i + 1 < width && !is_edge;
+            const double u = columns[i] + (leans ? strip.skew * strip.cell() * (f - 0.5) : 0.0);
+            const double s = u - strip.at_edge;
+            mesh.material.emplace_back(u, f * strip.width);
+            mesh.world.push_back(s * strip.fold.direction(s) + f * strip.width * Vec3::UnitY());
+            is_on_edge.push_back(is_edge);
+        }
+    for (int i = 0; i + 1 < width; ++i)
+        for (int j = 0; j < strip.rows; ++j) {
+            const int a = i * height + j, b = a + height, c = b + 1, d = a + 1;
+            if ((i + j) % 2 == 1) {
+                mesh.faces.push_back({a, b, c});
+                mesh.faces.push_back({a, c, d});
+            } else {
+                mesh.faces.push_back({a, b, d});
+                mesh.faces.push_back({b, c, d});
+            }
+        }
+    Material material{strip.density, strip.modulus, 0.0, strip.bending, 0.0, 1e-3};
+    const int last_row = strip.rows;
+    const Fold fold = strip.fold;
+    const auto coordinates = [is_on_edge, fold, height, last_row](const SlidingCloth& cloth) {
+        std::vector<VertexCoordinates> result;
+        for (int v = 0; v < cloth.mesh.vertex_count(); ++v) {
+            const int row = v % height;
+            if (!is_on_edge[v]) {
+                const Vec3& x = cloth.mesh.world[v];
+                result.push_back(on_face(fold.normal(x.dot(fold.direction(1.0) + fold.direction(-1.0)))));
+                continue;
+            }
+            // Along the cloth's border, else across the trace of the edge.
+            Vec2 direction = Vec2::UnitX();
+            if (row > 0 && row < last_row) {
+                const Vec2 trace = cloth.mesh.material[v + 1] - cloth.mesh.material[v - 1];
+                direction = Vec2(trace.y(), -trace.x()).normalized();
+            }
+            result.push_back(on_edge(Vec3::UnitY(), fold.nbar(), direction));
+        }
+        return result;
+    };
+    return SlidingCloth(make_terms(material, Gravity{Vec3(0, 0, -kG)}, {}, {}), std::move(mesh), coordinates);
+}
+
+/// How far the last column has come along its slope, m.
+double hanging(const SlidingCloth& cloth, const Strip& strip)
+{
+    double sum = 0.0;
+    for (int j = 0; j <= strip.rows; ++j)
+        sum += cloth.mesh.world[cloth.mesh.world.size() - 1 - j].dot(strip.fold.direction(1.0));
+    return sum / (strip.rows + 1);
+}
+
+/// Material that has passed the edge, m: the mean over the EOL column.
+double slid(const SlidingCloth& cloth, const Strip& strip)
+{
+    double sum = 0.0;
+    int count = 0;
+    const std::vector<VertexCoordinates> coordinates = cloth.coordinates(cloth);
+    for (int v = 0; v < cloth.mesh.vertex_count(); ++v) {
+        if (!coordinates[v].is_eulerian()) continue;
+        sum += strip.at_edge - cloth.mesh.material[v].x();
+        ++count;
+    }
+    return sum / count;
+}
+
+double least_area(const ClothMesh& mesh)
+{
+    double least = 1e9;
+    for (const Face& f : mesh.faces)
+        least = std::min(least, twice_area(mesh.material[f[0]], mesh.material[f[1]], mesh.material[f[2]]));
+    return least;
+}
+
+double gravity_energy(const SlidingCloth& cloth)
+{
+    return compute_energies(cloth.elements, cloth.terms, cloth.mesh.world).gravity;
+}
+
+/// Relative errors after a slide of `duration`: of the length beyond the edge, and of the energy (of what was
+/// exchanged). The length is at_start + growth (cosh(rate duration) - 1).
+struct SlideErrors {
+    double length, energy;
+};
+
+struct Slide {
+    double growth, rate;  ///< m, 1/s
+    double duration;      ///< s
+};
+
+SlideErrors measure(const Strip& strip, const Slide& slide, int steps)
+{
+    SlidingCloth cloth = make_strip(strip);
+    const double energy = cloth.total_energy(strip.density), height = gravity_energy(cloth);
+    cloth.advance(slide.duration, steps);
+    EXPECT_GT(least_area(cloth.mesh), 0.0);
+    const double exact =
+        strip.length - strip.at_edge + slide.growth * (std::cosh(slide.rate * slide.duration) - 1.0);
+    return {std::abs(hanging(cloth, strip) / exact - 1.0),
+            std::abs(cloth.total_energy(strip.density) - energy) / std::abs(gravity_energy(cloth) - height)};
+}
+
+/// Second order in the time step, down to 1.25 ms; and 5 ms are good for `bound`.
+void expect_second_order(const Strip& strip, const Slide& slide, double bound)
+{
+    SCOPED_TRACE(testing::Message() << strip.cells << " cells, skew " << strip.skew);
+    const int steps = static_cast<int>(std::lround(slide.duration / 0.005));
+    const SlideErrors coarse = measure(strip, slide, steps / 2), middle = measure(strip, slide, steps),
+                      fine = measure(strip, slide, 4 * steps);
+    EXPECT_LT(middle.length, bound);
+    EXPECT_LT(middle.energy, 10.0 * bound);  // of what was exchanged, which is little
+    constexpr double kOrder = 1.85;  // the first step, of implicit Euler, and stretch (1e-6) take their share
+    EXPECT_GT(std::log2(coarse.length / middle.length), kOrder);
+    EXPECT_GT(0.5 * std::log2(middle.length / fine.length), kOrder);
+}
+
+TEST(Sliding, StripOverATableEdgeFollowsTheHyperbolicCosineOnAnyMesh)
+{
+    // x = x0 cosh(t sqrt(g / L)); 6.6 cm in 0.35 s, less than the clearance at 4 cells.
+    for (const int cells : {4, 8})
+        for (const double skew : {0.0, 0.4}) {
+            Strip strip;
+            strip.cells = cells;
+            strip.skew = skew;
+            expect_second_order(strip, {0.1, std::sqrt(kG), 0.35}, 3e-4);
+        }
+}
+
+TEST(Sliding, StripOverAWireFollowsTheHyperbolicCosineOnAnyMesh)
+{
+    // From y0 off balance y = y0 cosh(t sqrt(2 g / L)).
+    for (const int cells : {4, 8}) {
+        Strip strip;
+        strip.fold = {-90.0 * kDegree, 90.0 * kDegree};
+        strip.at_edge = 0.45;
+        strip.cells = cells;
+        strip.skew = 0.2;
+        expect_second_order(strip, {0.05, std::sqrt(2.0 * kG), 0.25}, 1e-4);
+    }
+}
+
+TEST(Sliding, StripInBalanceOverARidgeDoesNotCreep)
+{
+    // Bending pays for a fold by the widths beside it: with -F^T f in place of -dV/dX this slips by
+    // centimetres at K = 1e-4. What is left is the strip's stretch as it takes its weight, ~ 1 / E.
+    for (const double modulus : {2e4, 2e5})
+        for (const double bending : {1e-7, 1e-4})
+            for (const int cells : {7, 8, 12}) {
+                SCOPED_TRACE(testing::Message() << modulus << " N/m, " << bending << " J, " << cells);
+                Strip strip;
+                strip.fold = {-20.0 * kDegree, 45.0 * kDegree};
+                // Lengths as sin 45 : sin 20.
+                const double upper = std::sin(45.0 * kDegree), lower = std::sin(20.0 * kDegree);
+                strip.at_edge = upper / (upper + lower);
+                strip.cells = cells;
+                strip.skew = 0.3;
+                strip.modulus = modulus;
+                strip.bending = bending;
+                SlidingCloth cloth = make_strip(strip);
+                double greatest = 0.0;
+                for (int k = 0; k < 200; ++k) {
+                    cloth.step(0.005);
+                    greatest = std::max(greatest, std::abs(slid(cloth, strip)));
+                }
+                EXPECT_LT(greatest, 2e-5 * (2e4 / modulus));
+            }
+}
+
+struct Swing {
+    double angle, rate;
+};
+
+/// One element of cloth paid out from a fixed edge y = 0 at ldot, from length l0, swinging about the edge by
+/// `angle` from straight down.
+Swing pay_out(double length, double rate, const Swing& start, double gravity, double duration, int steps,
+              bool has_convection)
+{
+    constexpr double kWidth = 0.1, kTotal = 2.0;
+    const Vec3 d(std::sin(start.angle), 0.0, -std::cos(start.angle));
+    const Vec3 across(std::cos(start.angle), 0.0, std::sin(start.angle));
+    ClothMesh mesh;
+    mesh.material = {Vec2(kTotal - length, 0), Vec2(kTotal - length, kWidth), Vec2(kTotal, 0),
+                     Vec2(kTotal, kWidth)};
+    for (const Vec2& X : mesh.material)
+        mesh.world.push_back((X.x() - kTotal + length) * d + X.y() * Vec3::UnitY());
+    mesh.faces = {{0, 2, 1}, {2, 3, 1}};
+    Material material{0.1, 3e3, 0.0, 1.0, 0.0, 1e-3};  // stretches by 1e-6, folds less
+    const auto coordinates = [rate](const SlidingCloth&) {
+        VertexCoordinates paying = on_edge(Vec3::UnitY(), Vec3::UnitX(), -Vec2::UnitX());
+        paying.known = {0.0, 0.0, rate};
+        return std::vector<VertexCoordinates>{paying, paying, {}, {}};
+    };
+    SlidingCloth cloth(make_terms(material, Gravity{Vec3(0, 0, -gravity)}, {}, {}), mesh, coordinates);
+    cloth.has_convection = has_convection;
+    for (const int v : {0, 1}) cloth.material_velocity[v] = Vec2(-rate, 0.0);
+    for (const int v : {2, 3}) cloth.velocity[v] = rate * d + length * start.rate * across;
+    cloth.advance(duration, steps);
+    const Vec3 end = cloth.mesh.world[2] - cloth.mesh.world[0];
+    const Vec3 v = cloth.velocity[2];
+    const double angle = std::atan2(end.x(), -end.z());
+    return {angle, v.dot(Vec3(std::cos(angle), 0.0, std::sin(angle))) / end.norm()};
+}
+
+/// The same by its equation of motion: thetaddot = -(3 ldot thetadot + 3/2 g sin theta) / l, from the
+/// moment of momentum about the edge.
+Swing exact_pay_out(double length, double rate, const Swing& start, double gravity, double duration)
+{
+    const auto slope = [&](double t, const Eigen::Vector2d& y) -> Eigen::Vector2d {
+        const double l = length + rate * t;
+        return {y[1], -(3.0 * rate * y[1] + 1.5 * gravity * std::sin(y[0])) / l};
+    };
+    const Eigen::Vector2d end =
+        integrate_rk4(Eigen::Vector2d(start.angle, start.rate), 0.0, duration, 20000, slope);
+    return {end[0], end[1]};
+}
+
+TEST(Sliding, ClothThatSwingsWhileItIsPaidOutSlowsAsTheCubeOfItsLength)
+{
+    // Without gravity thetadot = thetadot0 (l0 / l)^3.
+    const Swing exact = exact_pay_out(0.2, 0.4, {0.0, 2.0}, 0.0, 0.5);
+    ASSERT_NEAR(exact.angle, 0.375, 1e-9);
+    ASSERT_NEAR(exact.rate, 0.25, 1e-9);
+    std::vector<double> angles;
+    for (const int steps : {100, 400, 800, 1600}) {
+        const Swing s = pay_out(0.2, 0.4, {0.0, 2.0}, 0.0, 0.5, steps, true);
+        EXPECT_NEAR(s.rate, exact.rate, 1e-4);
+        EXPECT_NEAR(s.angle, exact.angle, 2e-4);
+        angles.push_back(s.angle);
+    }
+    EXPECT_NEAR(angles.back(), exact.angle, 3e-6);
+    // Second order: differences fall by 4. Errors themselves end at the cloth's stretch, 1e-6.
+    EXPECT_GT((angles[1] - angles[2]) / (angles[2] - angles[3]), 3.6);
+
+    // Inertia without 2 Fdot V conserves another thing: thetadot falls as the square of the length only.
+    const Swing forgetful = pay_out(0.2, 0.4, {0.0, 2.0}, 0.0, 0.5, 200, false);
+    EXPECT_NEAR(forgetful.rate, 0.5, 1e-3);
+}
+
+TEST(Sliding, PendulumThatIsPaidOutFollowsItsEquation)
+{
+    const Swing exact = exact_pay_out(0.2, 0.4, {0.3, 0.0}, kG, 1.0);
+    ASSERT_NEAR(exact.angle, 0.0722, 1e-4);
+    const Swing s = pay_out(0.2, 0.4, {0.3, 0.0}, kG, 1.0, 400, true);
+    EXPECT_NEAR(s.angle, exact.angle, 1e-4);
+    EXPECT_NEAR(s.rate, exact.rate, 1e-3);
+}
+
+}  // namespace
+}  // namespace arris
