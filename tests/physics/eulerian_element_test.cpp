@@ -219,6 +219,18 @@ Assembled sum_by_corners(const ClothMesh& mesh, const FaceTerm& term, const Line
     return sum;
 }
 
+/// Drag in every direction: wind does not see how material flows, as that is along the face.
+class Drag : public FaceTerm {
+  public:
+    void add(const FaceState& face, FaceSystem& system) const override
+    {
+        for (int i = 0; i < 3; ++i) {
+            system.add_force(i, -face.element.area * system.v_last(i));
+            system.add_viscosity(i, i, face.element.area * Mat3::Identity());
+        }
+    }
+};
+
 TEST(EulerianElement, LoadsAndViscosityActOnTheMaterialWhereItIsExtrapolatedTo)
 {
     const ClothMesh mesh = crumpled_sheet({4, 3}, GridPattern::Cross, 3);
@@ -228,6 +240,7 @@ TEST(EulerianElement, LoadsAndViscosityActOnTheMaterialWhereItIsExtrapolatedTo)
     std::vector<std::unique_ptr<const FaceTerm>> loads;
     loads.push_back(std::make_unique<WindForce>(wind));
     loads.push_back(std::make_unique<GravityForce>(0.15, Gravity{}));
+    loads.push_back(std::make_unique<Drag>());
     for (auto& term : loads) {
         // Only Lagrangian faces are taken at q^, and here every face has an EOL corner.
         for (const Face& face : mesh.faces) ASSERT_TRUE(has_eulerian_vertex(*at.flow, face));
@@ -258,6 +271,69 @@ TEST(EulerianElement, ElasticStiffnessIsThatOfTheCornersAtTheExpansionPoint)
                 at.gamma * V * (at.flow->basis[face[i]].transpose() * element.gradients[i]);
     }
     EXPECT_LT((system.rhs - rhs).norm(), 1e-11 * rhs.norm());
+}
+
+TEST(EulerianElement, HingeStiffnessIsThatOfTheMeanCornersAtTheExpansionPoint)
+{
+    // One hinge whose edge is EOL, with X^ far from where the mesh was made.
+    ClothMesh mesh;
+    mesh.material = {Vec2(0, 0), Vec2(0.1, 1), Vec2(-1, 0.4), Vec2(0.8, 0.5)};
+    mesh.world = {Vec3(0, 0, 0), Vec3(0, 1, 0.1), Vec3(-0.9, 0.4, -0.3), Vec3(0.7, 0.5, -0.4)};
+    mesh.faces = {{0, 1, 2}, {1, 0, 3}};
+    Linearization at = random_linearization(mesh, 21);
+    MaterialFlow& flow = *at.flow;
+    flow.is_eulerian = {1, 1, 1, 1};
+    flow.position = {Vec2(0.1, -0.1), Vec2(0.2, 1.1), Vec2(-1, 0.4), Vec2(0.8, 0.5)};
+    flow.basis[0] = flow.basis[1];
+    flow.basis[2] = flow.basis[3];
+    const double K = 0.1;
+    Terms terms;
+    terms.hinges.push_back(std::make_unique<Bending>(K));
+    const Assembled system = assemble(mesh, terms, at);
+
+    const ClothElements elements = [&] {
+        ClothMesh there = mesh;
+        there.material = flow.position;
+        return make_elements(there, make_topology(4, mesh.faces));
+    }();
+    const HingeElement& hinge = elements.hinges.at(0);
+    std::array<Mat32, 2> F;
+    for (int f = 0; f < 2; ++f) F[f] = FaceState(elements.faces[hinge.faces[f]], at.position).F;
+    std::array<Mat32, 4> at_corner = {0.5 * (F[0] + F[1]), 0.5 * (F[0] + F[1]), F[0], F[1]};
+    Linearization plain = at;
+    plain.flow.reset();
+    HingeSystem local(plain, hinge.vertices);
+    Bending(K).add(HingeState(hinge, at.position), local);
+    std::array<Mat3, 4> G;
+    for (int i = 0; i < 4; ++i)
+        G[i] = at.basis[hinge.vertices[i]] - at_corner[i] * flow.basis[hinge.vertices[i]];
+    double size = 0.0;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j <= i; ++j) {
+            const Mat3 expected = G[i].transpose() * local.matrix(i, j) * G[j];
+            const Mat3 found = system.matrix.block<3, 3>(3 * hinge.vertices[i], 3 * hinge.vertices[j]);
+            size += expected.norm();
+            EXPECT_LT((found - expected).norm(), kRoundOff * system.matrix.norm()) << i << ", " << j;
+        }
+    EXPECT_GT(size, 0.0);
+}
+
+TEST(EulerianElement, PullFindsItsMaterialWhereItHasFlowedTo)
+{
+    ClothMesh mesh = crumpled_sheet({4, 4}, GridPattern::Diagonal, 22);
+    const Linearization at = random_linearization(mesh, 23);
+    Terms terms;
+    terms.loads.push_back(
+        std::make_unique<PullForce>(Pull{{Vec2(0.2, 0.3), Vec2(0.62, 0.9)}, Vec3(1, 2, 3)}));
+    const Eigen::VectorXd flowed = assemble(mesh, terms, at).rhs;
+    const Eigen::VectorXd still = [&] {
+        Linearization before = at;
+        before.flow->extrapolated.material = mesh.material;
+        return assemble(mesh, terms, before).rhs;
+    }();
+    EXPECT_GT((flowed - still).norm(), 1e-3 * flowed.norm());
+    mesh.material = at.flow->extrapolated.material;
+    EXPECT_EQ(assemble(mesh, terms, at).rhs, flowed);
 }
 
 /// gamma = 1, everything at rest: rhs = B^T f_x + E^T f_X.
