@@ -254,7 +254,7 @@ TEST(EulerianElement, IsBitIdenticalWithoutEolVerticesAndForAnyNumberOfThreads)
     for (auto* velocities :
          {&flow.v_predicted, &flow.v_expansion, &flow.v_last, &flow.extrapolated.material_velocity})
         velocities->assign(n, Vec2::Zero());
-    flow.extrapolated.material = mesh.material;
+    flow.position = flow.extrapolated.material = mesh.material;
     const std::vector<double> with_flow = values();
     at.flow.reset();
     EXPECT_EQ(with_flow, values());
