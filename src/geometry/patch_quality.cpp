@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/patch_quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace arris {
+
+MeshTarget uniform_target(double length, double least_angle)
+{
+    return {[length](const Vec2&) { return length; }, [least_angle](const Vec2&) { return least_angle; }};
+}
+
+double least_angle(const PatchFace& face)
+{
+    // At each corner tan = cross / dot; atan2 needs no division and no clamp.
+    const auto& X = face.material;
+    const double doubled = twice_area(X[0], X[1], X[2]);
+    double least = std::numbers::pi;
+    for (int k = 0; k < 3; ++k) {
+        const Vec2 to_next = X[(k + 1) % 3] - X[k];
+        const Vec2 to_last = X[(k + 2) % 3] - X[k];
+        least = std::min(least, std::atan2(doubled, to_next.dot(to_last)));
+    }
+    return least * 180.0 / std::numbers::pi;
+}
+
+double least_angle(const std::vector<PatchFace>& faces)
+{
+    double least = 180.0;
+    for (const PatchFace& face : faces) least = std::min(least, least_angle(face));
+    return least;
+}
+
+double longest_edge(const std::vector<PatchFace>& faces)
+{
+    double longest = 0.0;
+    for (const PatchFace& face : faces)
+        for (int k = 0; k < 3; ++k)
+            longest = std::max(longest, (face.material[(k + 1) % 3] - face.material[k]).norm());
+    return longest;
+}
+
+Vec2 material_centre(const PatchFace& face)
+{
+    return (face.material[0] + face.material[1] + face.material[2]) / 3.0;
+}
+
+}  // namespace arris

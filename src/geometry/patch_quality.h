@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+
+#include "geometry/cloth_surgery.h"
+
+namespace arris {
+
+/// What clean-up works towards, as functions of the material point.
+struct MeshTarget {
+    std::function<double(const Vec2&)> length;       ///< m, of edges
+    std::function<double(const Vec2&)> least_angle;  ///< degrees, of faces
+};
+
+/// The same everywhere.
+MeshTarget uniform_target(double length, double least_angle);
+
+/// Least angle of a face in material space, degrees; negative if it is clockwise.
+double least_angle(const PatchFace& face);
+/// Of all; 180 for none.
+double least_angle(const std::vector<PatchFace>& faces);
+/// In material space, m; 0 for none.
+double longest_edge(const std::vector<PatchFace>& faces);
+Vec2 material_centre(const PatchFace& face);
+
+}  // namespace arris

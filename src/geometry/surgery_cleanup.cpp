@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A fixed sequence of passes over a patch P of vertices, fixed at the start but for those that splits add:
+//
+//   merge short edges -> flip -> split long edges -> flip -> open thin faces (at most 3 rounds) -> flip
+//
+// Why it ends, whatever the mesh and whatever the guard refuses:
+//   merge   each success removes a vertex of P: at most |P|. A refused edge is tried again only after a
+//           success beside it.
+//   flip    only where the opposite vertex is strictly inside the circumcircle (exact predicate): the surface
+//           (X, Y, X^2 + Y^2) over the faces sinks strictly, so no triangulation of the same points comes
+//           twice, and there are finitely many. That bound is useless as a figure, so there is a cap, linear
+//           in the patch, which is reported when it is hit.
+//   split   the list of long edges is made once, each is split at most once.
+//   open    the list of a round is made once; a face costs at most three operations.
+// `most_operations` is the sum of these bounds.
+//
+// A flip is made only where a face has an angle below kFlipAngle: on folded cloth each flip moves the surface,
+// and a mesh that is good enough is better left alone.
+#include "geometry/surgery_cleanup.h"
+
+#include <CGAL/predicates_on_points_2.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "geometry/cgal.h"
+
+namespace arris {
+namespace {
+
+constexpr double kShort = 0.5;       // of the target length
+constexpr double kLong = 2.0;        // four times that, so that a split never makes a short edge
+constexpr double kFlipAngle = 30.0;  // degrees
+constexpr double kKeepAngle = 10.0;  // degrees: a merge may not leave thinner faces than it found, below this
+constexpr int kThinRounds = 3;
+constexpr int kMostPerThinFace = 3;
+constexpr int kFlipsPerEdge = 8;
+constexpr double kLeastFoot = 0.15;  // of an edge: where it is split opposite a vertex
+
+using Edge = std::array<VertexId, 2>;
+
+Edge edge_of(VertexId a, VertexId b)
+{
+    return {std::min(a, b), std::max(a, b)};
+}
+
+class Cleanup {
+  public:
+    Cleanup(ClothSurgery& surgery, const MeshTarget& target) : surgery_(surgery), target_(target)
+    {
+        const std::vector<VertexId> touched = surgery_.take_touched();
+        patch_.insert(touched.begin(), touched.end());
+        for (const VertexId v : touched) {
+            const VertexRing ring = surgery_.ring(v);
+            patch_.insert(ring.vertices.begin(), ring.vertices.end());
+        }
+    }
+
+    CleanupReport run()
+    {
+        merge_short_edges();
+        flip_edges();
+        split_long_edges();
+        flip_edges();
+        for (int round = 0; round < kThinRounds; ++round)
+            if (!open_thin_faces()) break;
+        flip_edges();
+        judge();
+        surgery_.take_touched();
+        return report_;
+    }
+
+  private:
+    // --- the patch
+
+    std::set<Edge> patch_edges() const
+    {
+        std::set<Edge> edges;
+        for (const VertexId v : patch_)
+            for (const VertexId n : surgery_.ring(v).vertices) edges.insert(edge_of(v, n));
+        return edges;
+    }
+
+    std::set<IdFace> patch_faces() const
+    {
+        std::set<IdFace> faces;
+        for (const VertexId v : patch_)
+            for (IdFace face : surgery_.faces_at(v)) {
+                std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+                faces.insert(face);
+            }
+        return faces;
+    }
+
+    bool in_patch(VertexId v) const { return patch_.contains(v); }
+
+    double length(const Edge& e) const
+    {
+        return (surgery_.material(e[1]) - surgery_.material(e[0])).norm();
+    }
+
+    // In units of the target.
+    double relative_length(const Edge& e) const
+    {
+        return length(e) / target_.length(0.5 * (surgery_.material(e[0]) + surgery_.material(e[1])));
+    }
+
+    double angle_target(const PatchFace& face) const { return target_.least_angle(material_centre(face)); }
+
+    bool commit(const SurgeryProposal& proposal)
+    {
+        if (surgery_.commit(proposal) != Verdict::Done) return false;
+        const SurgeryEvent& event = proposal.event;
+        switch (event.operation) {
+            case SurgeryOperation::Collapse:
+                ++report_.collapses;
+                patch_.erase(event.edge[0]);
+                break;
+            case SurgeryOperation::Flip: ++report_.flips; break;
+            default:
+                ++report_.splits;
+                patch_.insert(event.changes[0].vertex);
+        }
+        return true;
+    }
+
+    // --- merging
+
+    bool is_too_long(const SurgeryEvent& event) const
+    {
+        const double allowed = kLong * target_.length(event.changes[0].new_material);
+        return longest_edge(event.after) > std::max(allowed, longest_edge(event.before));
+    }
+
+    // The better of the two ways to merge an edge, by the angles it leaves; those it leaves must be at least
+    // the least of what is there and `floor`.
+    bool merge(const Edge& e, double floor)
+    {
+        std::optional<SurgeryProposal> best[2];
+        double angle[2] = {-1.0, -1.0};
+        for (int k = 0; k < 2; ++k) {
+            if (!in_patch(e[k])) continue;
+            SurgeryProposal proposal = surgery_.propose_collapse(e[k], e[1 - k]);
+            if (!proposal.is_legal() || is_too_long(proposal.event)) continue;
+            const double after = least_angle(proposal.event.after);
+            if (after < std::min(floor, least_angle(proposal.event.before))) continue;
+            angle[k] = after;
+            best[k] = std::move(proposal);
+        }
+        const int first = angle[1] > angle[0] ? 1 : 0;
+        for (const int k : {first, 1 - first})
+            if (best[k] && commit(*best[k])) return true;
+        return false;
+    }
+
+    void merge_short_edges()
+    {
+        report_.most_operations += static_cast<int>(patch_.size());
+        std::set<std::tuple<double, Edge>> queue;
+        const auto add = [&](const Edge& e) {
+            if (relative_length(e) < kShort) queue.insert({length(e), e});
+        };
+        for (const Edge& e : patch_edges()) add(e);
+        while (!queue.empty()) {
+            const Edge e = std::get<Edge>(*queue.begin());
+            queue.erase(queue.begin());
+            if (!surgery_.has_edge(e[0], e[1]) || relative_length(e) >= kShort) continue;
+            if (!merge(e, kKeepAngle)) continue;
+            const VertexId kept = surgery_.has_vertex(e[0]) ? e[0] : e[1];
+            for (const VertexId n : surgery_.ring(kept).vertices)
+                if (in_patch(kept) || in_patch(n)) add(edge_of(kept, n));
+        }
+    }
+
+    // --- flips
+
+    bool is_locally_delaunay(VertexId a, VertexId b, VertexId c, VertexId d) const
+    {
+        const auto at = [&](VertexId v) { return to_cgal(surgery_.material(v)); };
+        return CGAL::side_of_oriented_circle(at(a), at(b), at(c), at(d)) != CGAL::ON_POSITIVE_SIDE;
+    }
+
+    bool wants_flip(const Edge& e, SurgeryProposal& proposal) const
+    {
+        proposal = surgery_.propose_flip(e[0], e[1]);
+        if (!proposal.is_legal() || least_angle(proposal.event.before) >= kFlipAngle) return false;
+        const VertexId c = surgery_.apex(e[0], e[1]);
+        const VertexId d = surgery_.apex(e[1], e[0]);
+        return !is_locally_delaunay(e[0], e[1], c, d);
+    }
+
+    void flip_edges()
+    {
+        std::set<Edge> queue = patch_edges();
+        int left = kFlipsPerEdge * static_cast<int>(queue.size());
+        report_.most_operations += left;
+        SurgeryProposal proposal;
+        while (!queue.empty()) {
+            const Edge e = *queue.begin();
+            queue.erase(queue.begin());
+            if (!surgery_.has_edge(e[0], e[1]) || !wants_flip(e, proposal)) continue;
+            if (left == 0) {
+                report_.is_capped = true;
+                return;
+            }
+            if (!commit(proposal)) continue;
+            --left;
+            for (const PatchFace& face : proposal.event.after)
+                for (int k = 0; k < 3; ++k) {
+                    const VertexId a = face.vertices[k];
+                    const VertexId b = face.vertices[(k + 1) % 3];
+                    if (in_patch(a) || in_patch(b)) queue.insert(edge_of(a, b));
+                }
+        }
+    }
+
+    // --- splits
+
+    void split_long_edges()
+    {
+        std::vector<std::tuple<double, Edge>> edges;
+        for (const Edge& e : patch_edges())
+            if (relative_length(e) > kLong) edges.emplace_back(-length(e), e);
+        std::sort(edges.begin(), edges.end());
+        report_.most_operations += static_cast<int>(edges.size());
+        for (const auto& [minus_length, e] : edges)
+            if (surgery_.has_edge(e[0], e[1])) commit(surgery_.propose_edge_split(e[0], e[1], 0.5));
+    }
+
+    // --- thin faces
+
+    bool open_thin_faces()
+    {
+        std::vector<std::tuple<double, IdFace>> thin;
+        for (const IdFace& face : patch_faces()) {
+            const PatchFace patch = surgery_.patch_face(face);
+            const double angle = least_angle(patch);
+            if (angle < angle_target(patch)) thin.emplace_back(angle, face);
+        }
+        std::sort(thin.begin(), thin.end());
+        report_.most_operations += kMostPerThinFace * static_cast<int>(thin.size());
+        bool has_opened = false;
+        for (const auto& [angle, face] : thin)
+            if (surgery_.apex(face[0], face[1]) == face[2] && open(face, angle)) has_opened = true;
+        return has_opened;
+    }
+
+    bool open(const IdFace& face, double angle)
+    {
+        std::array<int, 3> by_length = {0, 1, 2};
+        const auto side = [&](int k) { return edge_of(face[k], face[(k + 1) % 3]); };
+        std::sort(by_length.begin(), by_length.end(), [&](int i, int j) {
+            return std::pair(length(side(i)), side(i)) < std::pair(length(side(j)), side(j));
+        });
+        const Edge longest = side(by_length[2]);
+        if (improves(surgery_.propose_flip(longest[0], longest[1]))) return true;
+        for (const int k : by_length)
+            if (merge_thin(side(k), angle)) return true;
+        return project(face, by_length[2], angle) || split_thin(face, by_length[2]);
+    }
+
+    bool improves(const SurgeryProposal& proposal)
+    {
+        return proposal.is_legal() &&
+               least_angle(proposal.event.after) > least_angle(proposal.event.before) && commit(proposal);
+    }
+
+    // Merging must leave no face of the star as thin as the one it is to mend.
+    bool merge_thin(const Edge& e, double angle)
+    {
+        std::optional<SurgeryProposal> best;
+        double best_angle = angle;
+        for (int k = 0; k < 2; ++k) {
+            if (!in_patch(e[k])) continue;
+            SurgeryProposal proposal = surgery_.propose_collapse(e[k], e[1 - k]);
+            if (!proposal.is_legal() || is_too_long(proposal.event)) continue;
+            const double after = least_angle(proposal.event.after);
+            if (!(after > best_angle)) continue;
+            best_angle = after;
+            best = std::move(proposal);
+        }
+        return best && commit(*best);
+    }
+
+    // Where along face side k the corner opposite it has its foot.
+    double foot(const IdFace& face, int k) const
+    {
+        const Vec2 a = surgery_.material(face[k]);
+        const Vec2 d = surgery_.material(face[(k + 1) % 3]) - a;
+        const double s = (surgery_.material(face[(k + 2) % 3]) - a).dot(d) / d.squaredNorm();
+        return std::clamp(s, kLeastFoot, 1.0 - kLeastFoot);
+    }
+
+    // A free vertex close to an edge that cannot be flipped (a trace, the border) is merged into a new vertex
+    // of that edge; the split is taken back if the merge is worse or refused.
+    bool project(const IdFace& face, int k, double angle)
+    {
+        const VertexId a = face[k];
+        const VertexId b = face[(k + 1) % 3];
+        const VertexId corner = face[(k + 2) % 3];
+        const bool is_held = surgery_.edge_tag(a, b) != kNoTag || surgery_.is_border_edge(a, b);
+        const bool is_free = surgery_.role(corner) == TraceRole::Free && !surgery_.is_border(corner) &&
+                             !surgery_.is_fixed(corner) && in_patch(corner);
+        if (!is_held || !is_free) return false;
+        const SurgeryProposal split = surgery_.propose_edge_split(a, b, foot(face, k));
+        if (!split.is_legal() || !commit(split)) return false;
+        const VertexId m = split.event.changes[0].vertex;
+        const SurgeryProposal merged = surgery_.propose_collapse(corner, m);
+        if (merged.is_legal() && !is_too_long(merged.event) && least_angle(merged.event.after) > angle &&
+            commit(merged))
+            return true;
+        const SurgeryProposal back = surgery_.propose_collapse(m, a);
+        if (back.is_legal()) commit(back);
+        return false;
+    }
+
+    // Opens a sliver by a new vertex: on the edge opposite its one trace vertex, on the trace's edge between
+    // two, on an edge that is no trace's between three; where that opens the angles.
+    bool split_thin(const IdFace& face, int longest)
+    {
+        int traced = 0;
+        for (const VertexId v : face) traced += surgery_.role(v) != TraceRole::Free ? 1 : 0;
+        for (int i = 0; i < 3; ++i) {
+            const int k = (longest + i) % 3;
+            const VertexId a = face[k];
+            const VertexId b = face[(k + 1) % 3];
+            const bool is_traced = surgery_.edge_tag(a, b) != kNoTag;
+            const bool is_opposite = surgery_.role(face[(k + 2) % 3]) != TraceRole::Free;
+            const bool is_chosen =
+                traced == 1 ? is_opposite : (traced == 2 ? is_traced : traced == 3 && !is_traced);
+            if (is_chosen && improves(surgery_.propose_edge_split(a, b, foot(face, k)))) return true;
+        }
+        return false;
+    }
+
+    void judge()
+    {
+        for (const IdFace& face : patch_faces()) {
+            const PatchFace patch = surgery_.patch_face(face);
+            const double angle = least_angle(patch);
+            report_.least_angle = std::min(report_.least_angle, angle);
+            report_.thin_faces += angle < angle_target(patch) ? 1 : 0;
+        }
+    }
+
+    ClothSurgery& surgery_;
+    const MeshTarget& target_;
+    std::set<VertexId> patch_;
+    CleanupReport report_;
+};
+
+}  // namespace
+
+CleanupReport clean_up(ClothSurgery& surgery, const MeshTarget& target)
+{
+    return Cleanup(surgery, target).run();
+}
+
+}  // namespace arris

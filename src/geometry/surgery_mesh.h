@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CGAL/Surface_mesh.h>
+
+#include <unordered_map>
+
+#include "geometry/cgal.h"
+#include "geometry/cloth_surgery.h"
+
+namespace arris {
+
+/// CGAL's half-edge mesh in the material plane with persistent ids: bookkeeping and bare changes of
+/// connectivity, no decisions. For .cpp files of the surgery only. Every id named must exist; whether a change
+/// is legal is the caller's to know.
+class SurgeryMesh {
+  public:
+    using Mesh = CGAL::Surface_mesh<Point2>;
+    using Vertex = Mesh::Vertex_index;
+    using Halfedge = Mesh::Halfedge_index;
+
+    SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids);
+
+    int vertex_count() const { return static_cast<int>(vertex_of_.size()); }
+    bool has(VertexId v) const { return vertex_of_.contains(v); }
+    Vertex vertex(VertexId v) const { return vertex_of_.at(v); }
+    VertexId id(Vertex v) const { return id_[v]; }
+    /// From a to b; null if they are no neighbours.
+    Halfedge halfedge(VertexId a, VertexId b) const;
+    bool has_face(Halfedge h) const { return !mesh_.is_border(h); }
+    VertexId apex(Halfedge h) const { return id_[mesh_.target(mesh_.next(h))]; }
+    bool is_border_edge(Halfedge h) const { return mesh_.is_border(mesh_.edge(h)); }
+    VertexRing ring(VertexId v) const;
+
+    Vec2 material(VertexId v) const { return to_eigen(mesh_.point(vertex(v))); }
+    Vec3& world(VertexId v) { return world_[vertex(v)]; }
+    const Vec3& world(VertexId v) const { return world_[vertex(v)]; }
+    bool is_fixed(VertexId v) const { return is_fixed_[vertex(v)]; }
+    void fix(VertexId v) { is_fixed_[vertex(v)] = true; }
+    TraceRole role(VertexId v) const { return role_[vertex(v)]; }
+    int tag(VertexId v) const { return tag_[vertex(v)]; }
+    void set_role(VertexId v, TraceRole role, int tag);
+    int edge_tag(Halfedge h) const { return edge_tag_[mesh_.edge(h)]; }
+    void set_edge_tag(Halfedge h, int tag) { edge_tag_[mesh_.edge(h)] = tag; }
+    /// The neighbours along tagged edges, in the ring's order.
+    std::vector<VertexId> trace_neighbours(VertexId v) const;
+
+    void move(VertexId v, const Vec2& material, const Vec3& world);
+    /// Both halves keep the edge's tag.
+    void split_edge(VertexId a, VertexId b, const VertexChange& made);
+    void split_face(const IdFace& face, const VertexChange& made);
+    /// Tags of edges that fall together are kept.
+    void collapse(VertexId removed, VertexId kept);
+    void flip(VertexId a, VertexId b);
+
+    std::vector<VertexId> ids() const;  ///< ascending
+    std::vector<IdFace> faces() const;  ///< each from its least id, ascending
+
+  private:
+    void name_new_vertex(Vertex v, const VertexChange& made);
+
+    Mesh mesh_;
+    Mesh::Property_map<Vertex, VertexId> id_;
+    Mesh::Property_map<Vertex, Vec3> world_;
+    Mesh::Property_map<Vertex, bool> is_fixed_;
+    Mesh::Property_map<Vertex, TraceRole> role_;
+    Mesh::Property_map<Vertex, int> tag_;
+    Mesh::Property_map<Mesh::Edge_index, int> edge_tag_;
+    std::unordered_map<VertexId, Vertex> vertex_of_;  // looked up, never iterated in its own order
+};
+
+}  // namespace arris

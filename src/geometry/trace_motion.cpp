@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+//        ahead                    A face turns over when a moving corner comes to the line of the other two.
+//   *-----*-----*  trace          Such a face is threatened. It is saved by merging what stands there into
+//    \   / \   /    |             the trace, by merging it into something farther away, or by turning the
+//     \ /   \ /     v             edge that lies across the way.
+//      p-----q
+//
+// Clearing ends: a merge removes a vertex, and a flip is made only where it leaves fewer threatened faces, so
+// that (vertices, threatened faces) sinks strictly in lexicographic order.
+#include "geometry/trace_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "geometry/surgery_cleanup.h"
+
+namespace arris {
+namespace {
+
+constexpr double kClear = 0.3;       // of the target length
+constexpr double kSoundAngle = 3.0;  // degrees: preferred are ways that leave no thinner face
+constexpr int kInstants = 4;         // of the way, at which faces are looked at: corners go straight
+constexpr int kMostSubsteps = 100000;
+
+using Ahead = std::map<VertexId, Vec2>;
+
+class Clearing {
+  public:
+    Clearing(ClothSurgery& surgery, const Ahead& ahead) : surgery_(surgery), ahead_(ahead) {}
+
+    ClearanceReport run()
+    {
+        std::set<IdFace> queue;
+        for (const auto& [v, way] : ahead_)
+            for (const IdFace& face : surgery_.faces_at(v)) queue.insert(from_least(face));
+        while (!queue.empty()) {
+            const IdFace face = *queue.begin();
+            queue.erase(queue.begin());
+            if (surgery_.apex(face[0], face[1]) != face[2] || !is_threatened(surgery_.patch_face(face)))
+                continue;
+            if (!save(face)) continue;
+            ++report_.operations;
+            for (const PatchFace& made : surgery_.events().back().after)
+                queue.insert(from_least(made.vertices));
+        }
+        find_blocked();
+        return report_;
+    }
+
+  private:
+    static IdFace from_least(IdFace face)
+    {
+        std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+        return face;
+    }
+
+    bool is_moving(VertexId v) const { return ahead_.contains(v); }
+
+    // The least doubled area on the way over the square of the longest side as it is: how far from turning.
+    double soundness(const PatchFace& face) const
+    {
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 1; i <= kInstants; ++i) {
+            std::array<Vec2, 3> X = face.material;
+            for (int k = 0; k < 3; ++k)
+                if (const auto at = ahead_.find(face.vertices[k]); at != ahead_.end())
+                    X[k] += double(i) / kInstants * at->second;
+            least = std::min(least, twice_area(X[0], X[1], X[2]));
+        }
+        const double side = longest_edge({face});
+        return least / (side * side);
+    }
+
+    bool is_threatened(const PatchFace& face) const { return !(soundness(face) > 0.0); }
+
+    struct Candidate {
+        int change;  // in the number of threatened faces
+        double soundness;
+        SurgeryProposal proposal;
+    };
+
+    Candidate judge(SurgeryProposal proposal) const
+    {
+        Candidate candidate{0, std::numeric_limits<double>::infinity(), {}};
+        for (const PatchFace& face : proposal.event.after) {
+            const double sound = soundness(face);
+            candidate.change += sound > 0.0 ? 0 : 1;
+            candidate.soundness = std::min(candidate.soundness, sound);
+        }
+        for (const PatchFace& face : proposal.event.before) candidate.change -= is_threatened(face) ? 1 : 0;
+        candidate.proposal = std::move(proposal);
+        return candidate;
+    }
+
+    void consider(SurgeryProposal proposal, std::vector<Candidate>& candidates) const
+    {
+        if (!proposal.is_legal()) return;
+        const SurgeryEvent& event = proposal.event;
+        const bool is_into_trace =
+            event.operation == SurgeryOperation::Collapse && is_moving(event.edge[1]);
+        Candidate candidate = judge(std::move(proposal));
+        if (candidate.change < 0 || (candidate.change == 0 && is_into_trace))
+            candidates.push_back(std::move(candidate));
+    }
+
+    // Best first: thin faces last, then fewest threatened faces, then the soundest; equal ones stay in the
+    // order in which they were found.
+    static bool is_better(const Candidate& c, const Candidate& d)
+    {
+        const auto key = [](const Candidate& e) {
+            const SurgeryEvent& event = e.proposal.event;
+            const bool is_thin =
+                least_angle(event.after) < std::min(kSoundAngle, least_angle(event.before));
+            return std::tuple(is_thin, e.change, -e.soundness);
+        };
+        return key(c) < key(d);
+    }
+
+    bool save(const IdFace& face)
+    {
+        std::vector<Candidate> candidates;
+        for (int k = 0; k < 3; ++k) {
+            consider(surgery_.propose_flip(face[k], face[(k + 1) % 3]), candidates);
+            if (is_moving(face[k])) continue;
+            for (const VertexId w : surgery_.ring(face[k]).vertices)
+                consider(surgery_.propose_collapse(face[k], w), candidates);
+        }
+        std::stable_sort(candidates.begin(), candidates.end(), is_better);
+        for (const Candidate& candidate : candidates)
+            if (surgery_.commit(candidate.proposal) == Verdict::Done) return true;
+        return false;
+    }
+
+    void find_blocked()
+    {
+        for (const auto& [v, way] : ahead_)
+            for (const IdFace& face : surgery_.faces_at(v))
+                if (is_threatened(surgery_.patch_face(face))) {
+                    report_.blocked.push_back(v);
+                    break;
+                }
+    }
+
+    ClothSurgery& surgery_;
+    const Ahead& ahead_;
+    ClearanceReport report_;
+};
+
+ClearanceReport clear(ClothSurgery& surgery, const MeshTarget& target, Ahead ahead)
+{
+    for (auto at = ahead.begin(); at != ahead.end();) {
+        Vec2& way = at->second;
+        const double length = way.norm();
+        const double least = kClear * target.length(surgery.material(at->first));
+        if (length > 0.0 && length < least) way *= least / length;
+        at = length > 0.0 ? std::next(at) : ahead.erase(at);
+    }
+    return Clearing(surgery, ahead).run();
+}
+
+class TraceMotion {
+  public:
+    TraceMotion(ClothSurgery& surgery, const MeshTarget& target, const std::vector<VertexMove>& moves)
+        : surgery_(surgery), target_(target)
+    {
+        for (const VertexMove& move : moves)
+            rest_[move.vertex] = {move.material - surgery.material(move.vertex), move.keeps_world};
+    }
+
+    TraceMotionReport run()
+    {
+        TraceMotionReport report;
+        const int count = substep_count();
+        for (int k = 0; k < count && report.verdict == Verdict::Done; ++k) {
+            const double share = 1.0 / (count - k);
+            const std::size_t events = surgery_.events().size();
+            Ahead ahead;
+            for (const auto& [v, way] : rest_) ahead[v] = share * way.vector;
+            report.blocked = clear(surgery_, target_, ahead).blocked;
+            report.verdict = take_step(share);
+            if (report.verdict != Verdict::Done) break;
+            clean_up(surgery_, target_);
+            follow(events);
+            ++report.substeps;
+            report.fraction = double(report.substeps) / count;
+        }
+        if (report.verdict == Verdict::Done) report.blocked.clear();
+        return report;
+    }
+
+  private:
+    struct Way {
+        Vec2 vector;
+        bool keeps_world;
+    };
+
+    int substep_count() const
+    {
+        double most = 1.0;
+        for (const auto& [v, way] : rest_)
+            most = std::max(most, way.vector.norm() / (kClear * target_.length(surgery_.material(v))));
+        return static_cast<int>(std::min(std::ceil(most), double(kMostSubsteps)));
+    }
+
+    Verdict take_step(double share)
+    {
+        std::vector<VertexMove> moves;
+        for (auto& [v, way] : rest_)
+            moves.push_back({v, surgery_.material(v) + share * way.vector, way.keeps_world});
+        const Verdict verdict = surgery_.commit(surgery_.propose_moves(moves));
+        if (verdict != Verdict::Done) return verdict;
+        for (auto& [v, way] : rest_) way.vector *= 1.0 - share;
+        return Verdict::Done;
+    }
+
+    // Drops vertices that are gone and takes along those put on the trace.
+    void follow(std::size_t first_event)
+    {
+        for (std::size_t k = first_event; k < surgery_.events().size(); ++k) {
+            const SurgeryEvent& event = surgery_.events()[k];
+            if (event.operation == SurgeryOperation::Collapse) rest_.erase(event.edge[0]);
+            if (event.operation != SurgeryOperation::SplitEdge || event.role == TraceRole::Free) continue;
+            const double s = event.changes[0].weights[1];
+            Way way{Vec2::Zero(), true};
+            for (const auto& [v, weight] : {std::pair(event.edge[0], 1.0 - s), std::pair(event.edge[1], s)}) {
+                const auto at = rest_.find(v);
+                if (at == rest_.end()) continue;
+                way.vector += weight * at->second.vector;
+                way.keeps_world = way.keeps_world && at->second.keeps_world;
+            }
+            rest_[event.changes[0].vertex] = way;
+        }
+    }
+
+    ClothSurgery& surgery_;
+    const MeshTarget& target_;
+    std::map<VertexId, Way> rest_;  // of the way
+};
+
+}  // namespace
+
+ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
+                            const std::vector<TraceAdvance>& advances)
+{
+    Ahead ahead;
+    for (const TraceAdvance& advance : advances) ahead[advance.vertex] = advance.ahead;
+    return clear(surgery, target, std::move(ahead));
+}
+
+TraceMotionReport move_trace(ClothSurgery& surgery, const MeshTarget& target,
+                             const std::vector<VertexMove>& moves)
+{
+    for (const VertexMove& move : moves) {
+        if (!surgery.has_vertex(move.vertex)) return {Verdict::Missing, 0, 0.0, {}};
+        if (!move.material.allFinite()) return {Verdict::Argument, 0, 0.0, {}};
+    }
+    return TraceMotion(surgery, target, moves).run();
+}
+
+}  // namespace arris

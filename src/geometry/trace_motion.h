@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "geometry/patch_quality.h"
+
+namespace arris {
+
+/// A trace vertex that is about to move through the material.
+struct TraceAdvance {
+    VertexId vertex;
+    Vec2 ahead;  ///< m: how far, and in which direction, the material must be clear
+};
+
+struct ClearanceReport {
+    int operations = 0;
+    /// Trace vertices with a face that would turn over on the way and could not be cleared: the border, a
+    /// corner, a fixed vertex, another trace or the guard stands there. Ascending.
+    std::vector<VertexId> blocked;
+};
+
+/// Clears the way ahead of moving trace vertices, so that every face keeps its orientation while all of them
+/// go their way together: what stands there is merged into the trace, or away from it, or an edge across the
+/// way is flipped. The way is at least 0.3 of the target length long, or `ahead` where that is longer; a
+/// vertex whose `ahead` is zero counts as resting. Vertices must exist.
+ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
+                            const std::vector<TraceAdvance>& advances);
+
+struct TraceMotionReport {
+    Verdict verdict = Verdict::Done;
+    int substeps = 0;
+    double fraction = 0.0;             ///< of the way that was made; 1 if done
+    std::vector<VertexId> blocked;     ///< as in ClearanceReport, where it ended
+};
+
+/// Takes trace vertices to new places, however far, all together and straight: in steps of at most 0.3 of the
+/// target length, clearing before each and cleaning up after it. Vertices of the trace that clean-up merges on
+/// the way are dropped from the motion; those it adds on an edge between moving vertices move along with that
+/// edge. Stops at the last possible step where the way cannot be cleared.
+TraceMotionReport move_trace(ClothSurgery& surgery, const MeshTarget& target,
+                             const std::vector<VertexMove>& moves);
+
+}  // namespace arris
