@@ -103,11 +103,14 @@ class ClothSurgery::Implementation {
 
     VertexChange change_at(const IdFace& parents, const Vec3& weights) const
     {
-        VertexChange change{next_id, Vec2::Zero(), Vec2::Zero(), Vec3::Zero(),
-                            Vec3::Zero(), parents, weights};
-        for (int k = 0; k < 3; ++k) {
-            change.new_material += weights[k] * mesh.material(parents[k]);
-            change.new_world += weights[k] * mesh.world(parents[k]);
+        // From the first parent: a point between two of equal coordinate has it exactly.
+        VertexChange change{next_id,    mesh.material(parents[0]), Vec2::Zero(), mesh.world(parents[0]),
+                            Vec3::Zero(), parents,                   weights};
+        change.new_material = change.old_material;
+        change.new_world = change.old_world;
+        for (int k = 1; k < 3; ++k) {
+            change.new_material += weights[k] * (mesh.material(parents[k]) - mesh.material(parents[0]));
+            change.new_world += weights[k] * (mesh.world(parents[k]) - mesh.world(parents[0]));
         }
         change.old_material = change.new_material;
         change.old_world = change.new_world;

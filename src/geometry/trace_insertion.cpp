@@ -42,6 +42,13 @@ Verdict snap(ClothSurgery& surgery, VertexId v, const Vec2& place)
     return surgery.commit(proposal);
 }
 
+// As good as there: inner vertices that are not quite there can move, those of the border perhaps not.
+bool is_at(const ClothSurgery& surgery, const MeshTarget& target, VertexId v, const Vec2& X)
+{
+    const double distance = (surgery.material(v) - X).norm();
+    return surgery.is_border(v) ? distance <= kOnEdge * target.length(X) : surgery.material(v) == X;
+}
+
 bool is_of(const ClothSurgery& surgery, VertexId v, int tag)
 {
     return surgery.role(v) != TraceRole::Free && surgery.tag(v) == tag;
@@ -265,13 +272,16 @@ TraceInsertion insert_edge_crossing(ClothSurgery& surgery, const MeshTarget& tar
     const double reach = kSnap * target.length(X);
     std::array<VertexId, 2> ends = {a, b};
     if (s > 0.5) std::swap(ends[0], ends[1]);
-    const int edge_tag = surgery.edge_tag(a, b);
     for (const VertexId v : ends) {
         if (!((surgery.material(v) - X).norm() <= reach)) continue;
         if (is_of(surgery, v, made.tag)) return {Verdict::Done, v};
-        if (edge_tag != kNoTag || (surgery.is_border(v) && !surgery.is_border_edge(a, b))) continue;
-        const bool is_there = surgery.material(v) == X && surgery.role(v) == TraceRole::Free;
-        if (!is_there && snap(surgery, v, X) != Verdict::Done) continue;
+        if (surgery.role(v) != TraceRole::Free) continue;
+        if (!is_at(surgery, target, v, X)) {
+            if (surgery.is_border(v) && !surgery.is_border_edge(a, b)) continue;
+            if (snap(surgery, v, X) != Verdict::Done) continue;
+        } else if (surgery.is_fixed(v)) {
+            return {Verdict::Fixed, kNoVertex};
+        }
         surgery.set_role(v, made.role, made.tag);
         surgery.touch(v);
         return {Verdict::Done, v};

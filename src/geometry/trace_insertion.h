@@ -22,6 +22,7 @@ struct TraceVertex {
 /// Puts a trace vertex where a feature crosses the edge a-b, at (1 - s) a + s b. The nearer end, if it is
 /// within 0.3 of the target length, moves there (a border vertex only along the border, a fixed or traced one
 /// never; a traced one of the same tag is taken as it is, a Node's role staying), else the edge is split.
+/// A border vertex within 1e-9 of the target length is taken where it is. Fixed: that is a corner.
 /// Quality: nearer than 5 % of the edge to an end that cannot give way (0.1 % if that end is itself on
 /// another trace: features may be close). Trace: the edge itself is another feature's.
 TraceInsertion insert_edge_crossing(ClothSurgery& surgery, const MeshTarget& target, VertexId a, VertexId b,

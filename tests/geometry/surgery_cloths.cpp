@@ -184,6 +184,18 @@ std::string SurgeryCheck::find_wrong(const ClothSurgery& surgery) const
     return {};
 }
 
+bool is_same(const SurgeryResult& a, const SurgeryResult& b)
+{
+    const auto same_edges = [](const auto& e, const auto& f) {
+        return e.a == f.a && e.b == f.b && e.tag == f.tag;
+    };
+    return a.mesh.material == b.mesh.material && a.mesh.world == b.mesh.world &&
+           a.mesh.faces == b.mesh.faces && a.ids == b.ids && a.next_id == b.next_id && a.roles == b.roles &&
+           a.tags == b.tags &&
+           std::equal(a.tagged_edges.begin(), a.tagged_edges.end(), b.tagged_edges.begin(),
+                      b.tagged_edges.end(), same_edges);
+}
+
 VertexId nearest_vertex(const ClothSurgery& surgery, const Vec2& material)
 {
     const SurgeryResult result = surgery.result();

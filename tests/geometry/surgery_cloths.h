@@ -45,6 +45,9 @@ class SurgeryCheck {
     std::vector<std::pair<VertexId, Vec2>> fixed_;
 };
 
+/// To the bit.
+bool is_same(const SurgeryResult& a, const SurgeryResult& b);
+
 /// The vertex nearest to a point.
 VertexId nearest_vertex(const ClothSurgery& surgery, const Vec2& material);
 
