@@ -57,6 +57,7 @@ class Cleanup {
             const VertexRing ring = surgery_.ring(v);
             patch_.insert(ring.vertices.begin(), ring.vertices.end());
         }
+        report_.patch_vertices = static_cast<int>(patch_.size());
     }
 
     CleanupReport run()

@@ -6,6 +6,7 @@
 namespace arris {
 
 struct CleanupReport {
+    int patch_vertices = 0;  ///< looked at, at the start
     int collapses = 0;
     int flips = 0;
     int splits = 0;

@@ -104,11 +104,12 @@ class Clearing {
         const bool is_into_trace =
             event.operation == SurgeryOperation::Collapse && is_moving(event.edge[1]);
         Candidate candidate = judge(std::move(proposal));
-        if (candidate.change < 0 || (candidate.change == 0 && is_into_trace))
+        if (candidate.change < 0 || is_into_trace)
             candidates.push_back(std::move(candidate));
     }
 
-    // Best first: thin faces last, then fewest threatened faces, then the soundest; equal ones stay in the
+    // Best first: those that threaten more faces than before last, then those that leave thin ones, then by the
+    // number of threatened faces, then the soundest; equal ones stay in the
     // order in which they were found.
     static bool is_better(const Candidate& c, const Candidate& d)
     {
@@ -116,7 +117,7 @@ class Clearing {
             const SurgeryEvent& event = e.proposal.event;
             const bool is_thin =
                 least_angle(event.after) < std::min(kSoundAngle, least_angle(event.before));
-            return std::tuple(is_thin, e.change, -e.soundness);
+            return std::tuple(e.change > 0, is_thin, e.change, -e.soundness);
         };
         return key(c) < key(d);
     }
