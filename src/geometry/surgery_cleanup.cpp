@@ -136,25 +136,32 @@ class Cleanup {
         return longest_edge(event.after) > std::max(allowed, longest_edge(event.before));
     }
 
-    // The better of the two ways to merge an edge, by the angles it leaves; those it leaves must be at least
-    // the least of what is there and `floor`.
-    bool merge(const Edge& e, double floor)
+    // The better of the two ways to merge an edge, by the least angle it leaves; `accepts` is asked with the
+    // event and that angle.
+    template <typename Accepts>
+    bool merge(const Edge& e, const Accepts& accepts)
     {
-        std::optional<SurgeryProposal> best[2];
+        std::optional<SurgeryProposal> ways[2];
         double angle[2] = {-1.0, -1.0};
         for (int k = 0; k < 2; ++k) {
             if (!in_patch(e[k])) continue;
             SurgeryProposal proposal = surgery_.propose_collapse(e[k], e[1 - k]);
             if (!proposal.is_legal() || is_too_long(proposal.event)) continue;
-            const double after = least_angle(proposal.event.after);
-            if (after < std::min(floor, least_angle(proposal.event.before))) continue;
-            angle[k] = after;
-            best[k] = std::move(proposal);
+            angle[k] = least_angle(proposal.event.after);
+            if (accepts(proposal.event, angle[k])) ways[k] = std::move(proposal);
         }
         const int first = angle[1] > angle[0] ? 1 : 0;
         for (const int k : {first, 1 - first})
-            if (best[k] && commit(*best[k])) return true;
+            if (ways[k] && commit(*ways[k])) return true;
         return false;
+    }
+
+    // Leaves no thinner face than it found, or none thin.
+    bool merge_short(const Edge& e)
+    {
+        return merge(e, [](const SurgeryEvent& event, double angle) {
+            return angle >= std::min(kKeepAngle, least_angle(event.before));
+        });
     }
 
     void merge_short_edges()
@@ -169,7 +176,7 @@ class Cleanup {
             const Edge e = std::get<Edge>(*queue.begin());
             queue.erase(queue.begin());
             if (!surgery_.has_edge(e[0], e[1]) || relative_length(e) >= kShort) continue;
-            if (!merge(e, kKeepAngle)) continue;
+            if (!merge_short(e)) continue;
             const VertexId kept = surgery_.has_vertex(e[0]) ? e[0] : e[1];
             for (const VertexId n : surgery_.ring(kept).vertices)
                 if (in_patch(kept) || in_patch(n)) add(edge_of(kept, n));
@@ -186,11 +193,12 @@ class Cleanup {
 
     bool wants_flip(const Edge& e, SurgeryProposal& proposal) const
     {
-        proposal = surgery_.propose_flip(e[0], e[1]);
-        if (!proposal.is_legal() || least_angle(proposal.event.before) >= kFlipAngle) return false;
+        // Cheapest first: most edges end here.
         const VertexId c = surgery_.apex(e[0], e[1]);
         const VertexId d = surgery_.apex(e[1], e[0]);
-        return !is_locally_delaunay(e[0], e[1], c, d);
+        if (c == kNoVertex || d == kNoVertex || is_locally_delaunay(e[0], e[1], c, d)) return false;
+        proposal = surgery_.propose_flip(e[0], e[1]);
+        return proposal.is_legal() && least_angle(proposal.event.before) < kFlipAngle;
     }
 
     void flip_edges()
@@ -258,8 +266,10 @@ class Cleanup {
         });
         const Edge longest = side(by_length[2]);
         if (improves(surgery_.propose_flip(longest[0], longest[1]))) return true;
+        // No face may be left as thin as the one that is to go.
+        const auto opens = [&](const SurgeryEvent&, double after) { return after > angle; };
         for (const int k : by_length)
-            if (merge_thin(side(k), angle)) return true;
+            if (merge(side(k), opens)) return true;
         return project(face, by_length[2], angle) || split_thin(face, by_length[2]);
     }
 
@@ -267,23 +277,6 @@ class Cleanup {
     {
         return proposal.is_legal() &&
                least_angle(proposal.event.after) > least_angle(proposal.event.before) && commit(proposal);
-    }
-
-    // Merging must leave no face of the star as thin as the one it is to mend.
-    bool merge_thin(const Edge& e, double angle)
-    {
-        std::optional<SurgeryProposal> best;
-        double best_angle = angle;
-        for (int k = 0; k < 2; ++k) {
-            if (!in_patch(e[k])) continue;
-            SurgeryProposal proposal = surgery_.propose_collapse(e[k], e[1 - k]);
-            if (!proposal.is_legal() || is_too_long(proposal.event)) continue;
-            const double after = least_angle(proposal.event.after);
-            if (!(after > best_angle)) continue;
-            best_angle = after;
-            best = std::move(proposal);
-        }
-        return best && commit(*best);
     }
 
     // Where along face side k the corner opposite it has its foot.

@@ -163,14 +163,38 @@ class TraceWalk {
     // Finds or makes the next vertex, a neighbour of `current`, in `next_`.
     Verdict advance(VertexId current)
     {
-        next_ = end_;
-        if (surgery_.has_edge(current, end_)) return Verdict::Done;
-        const RingHit hit = first_hit(surgery_, current, surgery_.material(end_));
-        if (hit.p == kNoVertex) return Verdict::Border;
-        if (hit.q == kNoVertex) return take(hit.p);
-        if (snap_end(current, hit)) return Verdict::Done;
-        if (surgery_.apex(hit.q, hit.p) == end_ && flip(hit)) return Verdict::Done;
-        return cross(current, hit);
+        // Each further round has one vertex less.
+        for (;;) {
+            next_ = end_;
+            if (surgery_.has_edge(current, end_)) return Verdict::Done;
+            const RingHit hit = first_hit(surgery_, current, surgery_.material(end_));
+            if (hit.p == kNoVertex) return Verdict::Border;
+            if (hit.q == kNoVertex) return take(hit.p);
+            if (snap_end(current, hit, kSnap)) return Verdict::Done;
+            if (surgery_.apex(hit.q, hit.p) == end_ && flip(hit)) return Verdict::Done;
+            const Verdict crossed = cross(current, hit);
+            if (crossed != Verdict::Quality) return crossed;
+            // A vertex beside the line and beside one of the line's vertices: moved onto it all the same (a
+            // short edge of the trace, for clean-up to merge), or merged into the line's vertex.
+            if (snap_end(current, hit, 0.0)) return Verdict::Done;
+            if (!absorb_end(current, hit)) return crossed;
+        }
+    }
+
+    bool absorb_end(VertexId current, const RingHit& hit)
+    {
+        for (const VertexId v : {hit.p, hit.q}) {
+            const Vec2 X = surgery_.material(v);
+            const double apart = (X - surgery_.material(current)).norm();
+            if (surgery_.role(v) != TraceRole::Free || !(apart <= kSnap * target_.length(X))) continue;
+            const SurgeryProposal proposal = surgery_.propose_collapse(v, current);
+            if (!proposal.is_legal()) continue;
+            if (least_angle(proposal.event.after) <
+                std::min(kSnapAngle, least_angle(proposal.event.before)))
+                continue;
+            if (surgery_.commit(proposal) == Verdict::Done) return true;
+        }
+        return false;
     }
 
     // A vertex exactly on the line.
@@ -183,8 +207,9 @@ class TraceWalk {
         return Verdict::Done;
     }
 
-    // Moves the nearer end of the crossed edge onto the line, or else the other.
-    bool snap_end(VertexId current, const RingHit& hit)
+    // Moves the nearer end of the crossed edge onto the line, or else the other, if it is then at least
+    // `clearance` target lengths from the vertices that the line has here.
+    bool snap_end(VertexId current, const RingHit& hit, double clearance)
     {
         const Line line{surgery_.material(current), surgery_.material(end_)};
         std::array<VertexId, 2> ends = {hit.p, hit.q};
@@ -194,7 +219,8 @@ class TraceWalk {
             const Vec2 X = surgery_.material(v);
             const double reach = kSnap * target_.length(X);
             const double along = line.along(X) * line.length();
-            const bool is_clear = along > reach && line.length() - along > reach;
+            const double apart = clearance * target_.length(X);
+            const bool is_clear = along > apart && line.length() - along > apart;
             if (line.off(X) > reach || !is_clear || surgery_.is_border(v)) continue;
             if (snap(surgery_, v, line.foot(X)) != Verdict::Done) continue;
             next_ = v;

@@ -26,6 +26,7 @@ constexpr double kClear = 0.3;       // of the target length
 constexpr double kSoundAngle = 3.0;  // degrees: preferred are ways that leave no thinner face
 constexpr int kInstants = 4;         // of the way, at which faces are looked at: corners go straight
 constexpr int kMostSubsteps = 100000;
+constexpr int kMostStages = 100;
 
 using Ahead = std::map<VertexId, Vec2>;
 
@@ -81,12 +82,19 @@ class Clearing {
     struct Candidate {
         int change;  // in the number of threatened faces
         double soundness;
+        bool is_into_trace;
         SurgeryProposal proposal;
+
+        // Fewer threatened faces; as many, with the obstacle merged into the trace; a merge that is a step on
+        // the way at best.
+        int rank() const { return change < 0 ? 0 : (change == 0 && is_into_trace ? 1 : 2); }
     };
 
     Candidate judge(SurgeryProposal proposal) const
     {
-        Candidate candidate{0, std::numeric_limits<double>::infinity(), {}};
+        const bool is_into_trace = proposal.event.operation == SurgeryOperation::Collapse &&
+                                   is_moving(proposal.event.edge[1]);
+        Candidate candidate{0, std::numeric_limits<double>::infinity(), is_into_trace, {}};
         for (const PatchFace& face : proposal.event.after) {
             const double sound = soundness(face);
             candidate.change += sound > 0.0 ? 0 : 1;
@@ -100,16 +108,13 @@ class Clearing {
     void consider(SurgeryProposal proposal, std::vector<Candidate>& candidates) const
     {
         if (!proposal.is_legal()) return;
-        const SurgeryEvent& event = proposal.event;
-        const bool is_into_trace =
-            event.operation == SurgeryOperation::Collapse && is_moving(event.edge[1]);
+        const bool is_merge = proposal.event.operation == SurgeryOperation::Collapse;
         Candidate candidate = judge(std::move(proposal));
-        if (candidate.change < 0 || is_into_trace)
-            candidates.push_back(std::move(candidate));
+        if (candidate.change < 0 || is_merge) candidates.push_back(std::move(candidate));
     }
 
-    // Best first: those that threaten more faces than before last, then those that leave thin ones, then by the
-    // number of threatened faces, then the soundest; equal ones stay in the
+    // Best first: by rank, then those that leave no thin faces, then by the number of threatened faces, then the
+    // soundest; equal ones stay in the
     // order in which they were found.
     static bool is_better(const Candidate& c, const Candidate& d)
     {
@@ -117,7 +122,7 @@ class Clearing {
             const SurgeryEvent& event = e.proposal.event;
             const bool is_thin =
                 least_angle(event.after) < std::min(kSoundAngle, least_angle(event.before));
-            return std::tuple(e.change > 0, is_thin, e.change, -e.soundness);
+            return std::tuple(e.rank(), is_thin, e.change, -e.soundness);
         };
         return key(c) < key(d);
     }
@@ -152,16 +157,29 @@ class Clearing {
     ClearanceReport report_;
 };
 
+// In stages of at most that least way, so that what stands nearest goes first: vertices of one cell after the
+// other can be merged into the trace, but not those behind others.
 ClearanceReport clear(ClothSurgery& surgery, const MeshTarget& target, Ahead ahead)
 {
+    double stages = 1.0;
     for (auto at = ahead.begin(); at != ahead.end();) {
         Vec2& way = at->second;
         const double length = way.norm();
         const double least = kClear * target.length(surgery.material(at->first));
         if (length > 0.0 && length < least) way *= least / length;
+        stages = std::max(stages, std::ceil(length / least));
         at = length > 0.0 ? std::next(at) : ahead.erase(at);
     }
-    return Clearing(surgery, ahead).run();
+    const int count = static_cast<int>(std::min(stages, double(kMostStages)));
+    ClearanceReport report;
+    for (int k = 1; k <= count; ++k) {
+        Ahead part = ahead;
+        for (auto& [v, way] : part) way *= double(k) / count;
+        const ClearanceReport stage = Clearing(surgery, part).run();
+        report.operations += stage.operations;
+        report.blocked = stage.blocked;
+    }
+    return report;
 }
 
 class TraceMotion {

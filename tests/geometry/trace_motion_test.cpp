@@ -114,6 +114,44 @@ TEST(ClearAhead, LeavesRoomForTheWholeWay)
     }
 }
 
+TEST(ClearAhead, WhatItCallsClearIsClearForRandomTracesAndWays)
+{
+    std::mt19937 random(21);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    const auto inside = [&] {
+        const double u = unit(random);
+        return Vec2(0.3 + 0.4 * u, 0.3 + 0.4 * unit(random));
+    };
+    int blocked = 0, trials = 0;
+    for (unsigned seed = 0; seed < 600; ++seed) {
+        const SurgeryCloth cloth = square_cloth(16, 0.25, seed);
+        ClothSurgery surgery = cloth.surgery();
+        const SurgeryCheck check(surgery);
+        const MeshTarget target = target_of(cloth);
+        const std::vector<Vec2> line = {inside(), inside(), inside()};
+        // A bend sharper than the mesh resolves is another test's.
+        if ((line[0] - line[1]).norm() < 0.15 || (line[2] - line[1]).norm() < 0.15 ||
+            (line[0] - line[1]).normalized().dot((line[2] - line[1]).normalized()) > 0.5)
+            continue;
+        cut(surgery, target, line, 1);
+        clean_up(surgery, target);
+        const double angle = 6.28 * unit(random);
+        const Vec2 way = 2.5 * cloth.cell * unit(random) * Vec2(std::cos(angle), std::sin(angle));
+        std::vector<TraceAdvance> advances;
+        for (const VertexMove& move : shifted(surgery, 1, way)) advances.push_back({move.vertex, way});
+        const bool is_blocked = !clear_ahead(surgery, target, advances).blocked.empty();
+        ASSERT_EQ(check.find_wrong(surgery), "") << seed;
+        ++trials;
+        blocked += is_blocked ? 1 : 0;
+        if (is_blocked) continue;
+        for (const double part : {0.05, 0.25, 0.5, 1.0})
+            EXPECT_TRUE(surgery.propose_moves(shifted(surgery, 1, part * way)).is_legal()) << seed;
+    }
+    fmt::print("{} of {} blocked\n", blocked, trials);
+    EXPECT_GT(trials, 60);
+    EXPECT_EQ(blocked, 0);
+}
+
 TEST(ClearAhead, NamesWhatItCannotClear)
 {
     const SurgeryCloth cloth = square_cloth(8);

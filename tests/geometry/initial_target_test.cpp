@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/initial_target.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "geometry/surgery_cleanup.h"
+#include "tests/geometry/surgery_cloths.h"
+
+namespace arris {
+namespace {
+
+// Cells that grow from left to right nearly threefold.
+SurgeryCloth graded_cloth(int n)
+{
+    SurgeryCloth cloth = square_cloth(n);
+    for (Vec2& X : cloth.mesh.material) X.x() = (std::exp(X.x()) - 1.0) / (std::exp(1.0) - 1.0);
+    return cloth;
+}
+
+TEST(InitialTarget, IsTheMeanEdgeLengthOfARegularMesh)
+{
+    const SurgeryCloth cloth = square_cloth(10);
+    const MeshTarget target = make_initial_target(cloth.mesh);
+    const double inside = cloth.cell * (4.0 + 2.0 * std::sqrt(2.0)) / 6.0;
+    EXPECT_NEAR(target.length({0.5, 0.5}), inside, 1e-15);
+    EXPECT_NEAR(target.length({0.43, 0.57}), inside, 1e-15);
+    EXPECT_EQ(target.least_angle({0.43, 0.57}), 15.0);
+    EXPECT_NEAR(make_initial_target(cloth.mesh, 60.0).least_angle({0.43, 0.57}), 45.0, 1e-12);
+}
+
+TEST(InitialTarget, IsLinearBetweenVerticesAndFollowsTheMesh)
+{
+    const SurgeryCloth cloth = graded_cloth(20);
+    const MeshTarget target = make_initial_target(cloth.mesh);
+    EXPECT_GT(target.length({0.9, 0.5}), 1.3 * target.length({0.1, 0.5}));
+    const Face& f = cloth.mesh.faces[100];
+    const Vec2 a = cloth.mesh.material[f[0]], b = cloth.mesh.material[f[1]];
+    EXPECT_NEAR(target.length(0.3 * a + 0.7 * b), 0.3 * target.length(a) + 0.7 * target.length(b), 1e-15);
+}
+
+TEST(InitialTarget, BeyondTheMeshTheNearestFaceCounts)
+{
+    const MeshTarget target = make_initial_target(square_cloth(10).mesh);
+    for (const Vec2& by : {Vec2(-1e-17, 0.0), Vec2(-1e-9, 0.0), Vec2(-3.0, 0.0), Vec2(-1e6, 1e6)})
+        EXPECT_GT(target.length(Vec2(0.0, 0.55) + by), 0.09);
+    EXPECT_NEAR(target.length({-1e-12, 0.55}), target.length({0.0, 0.55}), 1e-12);
+}
+
+TEST(InitialTarget, AsksNoWorkOfTheMeshItWasMadeOf)
+{
+    for (const SurgeryCloth& cloth : {square_cloth(12), graded_cloth(20), bay_cloth(9), holed_cloth(9)}) {
+        ClothSurgery surgery = cloth.surgery();
+        for (const VertexId v : cloth.ids()) surgery.touch(v);
+        const CleanupReport report = clean_up(surgery, make_initial_target(cloth.mesh));
+        EXPECT_EQ(report.operations(), 0) << cloth.name;
+        EXPECT_EQ(report.thin_faces, 0) << cloth.name;
+    }
+}
+
+TEST(InitialTarget, CleanUpBringsASizeToAMeshAndStaysThere)
+{
+    const SurgeryCloth cloth = square_cloth(30, 0.2);
+    ClothSurgery surgery = cloth.surgery();
+    const SurgeryCheck check(surgery);
+    const MeshTarget target = make_initial_target(graded_cloth(12).mesh);
+    int last = 0, count = 0;
+    for (int pass = 0; pass < 12; ++pass) {
+        for (const VertexId v : surgery.result().ids) surgery.touch(v);
+        const CleanupReport report = clean_up(surgery, target);
+        ASSERT_LE(report.operations(), report.most_operations);
+        ASSERT_EQ(check.find_wrong(surgery), "");
+        last = count;
+        count = surgery.vertex_count();
+    }
+    EXPECT_LT(count, 500);
+    EXPECT_GT(count, 100);
+    EXPECT_NEAR(count, last, 0.02 * last);
+}
+
+}  // namespace
+}  // namespace arris
