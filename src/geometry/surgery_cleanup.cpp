@@ -156,11 +156,13 @@ class Cleanup {
         return false;
     }
 
-    // Leaves no thinner face than it found, or none thin.
+    // Leaves no thinner face than it found, or none thin. A very short edge makes faces about as thin as it
+    // is, and sometimes (two vertices beside a corner of the cloth) it takes two merges to be rid of them.
     bool merge_short(const Edge& e)
     {
-        return merge(e, [](const SurgeryEvent& event, double angle) {
-            return angle >= std::min(kKeepAngle, least_angle(event.before));
+        const double floor = kKeepAngle * std::min(1.0, relative_length(e) / kShort);
+        return merge(e, [floor](const SurgeryEvent& event, double angle) {
+            return angle >= std::min(floor, least_angle(event.before));
         });
     }
 
