@@ -104,8 +104,9 @@ class ClothSurgery::Implementation {
     VertexChange change_at(const IdFace& parents, const Vec3& weights) const
     {
         // From the first parent: a point between two of equal coordinate has it exactly.
-        VertexChange change{next_id,    mesh.material(parents[0]), Vec2::Zero(), mesh.world(parents[0]),
-                            Vec3::Zero(), parents,                   weights};
+        VertexChange change{
+            next_id, mesh.material(parents[0]), Vec2::Zero(), mesh.world(parents[0]), Vec3::Zero(), parents,
+            weights};
         change.new_material = change.old_material;
         change.new_world = change.old_world;
         for (int k = 1; k < 3; ++k) {
@@ -213,34 +214,38 @@ class ClothSurgery::Implementation {
         return change;
     }
 
-    // Border vertices must come to lie between their border neighbours, where these come to lie.
+    // Border vertices must come to lie between their border neighbours, where these come to lie: from corner
+    // to corner that leaves only the line they are on.
     bool keeps_border(const SurgeryEvent& event, VertexId v) const
     {
         const VertexRing ring = mesh.ring(v);
         if (ring.is_closed) return true;
         const PatchFace places = changed_face(event, {ring.vertices.front(), v, ring.vertices.back()});
-        const Vec2 first = mesh.material(ring.vertices.front());
-        const Vec2 last = mesh.material(ring.vertices.back());
-        return is_between(places.material[0], places.material[2], places.material[1]) &&
-               is_on_line(first, last, places.material[1]);
+        return is_between(places.material[0], places.material[2], places.material[1]);
     }
 
     void apply(const SurgeryEvent& event)
     {
         const auto [a, b] = event.edge;
         switch (event.operation) {
-            case SurgeryOperation::SplitEdge: mesh.split_edge(a, b, event.changes[0]); break;
+            case SurgeryOperation::SplitEdge:
+                mesh.split_edge(a, b, event.changes[0]);
+                break;
             case SurgeryOperation::SplitFace:
                 mesh.split_face(event.before[0].vertices, event.changes[0]);
                 break;
             case SurgeryOperation::Move:
                 for (const VertexChange& c : event.changes) mesh.move(c.vertex, c.new_material, c.new_world);
                 break;
-            case SurgeryOperation::Collapse: mesh.collapse(a, b); break;
-            case SurgeryOperation::Flip: mesh.flip(a, b); break;
+            case SurgeryOperation::Collapse:
+                mesh.collapse(a, b);
+                break;
+            case SurgeryOperation::Flip:
+                mesh.flip(a, b);
+                break;
         }
-        const bool is_split = event.operation == SurgeryOperation::SplitEdge ||
-                              event.operation == SurgeryOperation::SplitFace;
+        const bool is_split =
+            event.operation == SurgeryOperation::SplitEdge || event.operation == SurgeryOperation::SplitFace;
         if (!is_split) return;
         assert(event.changes[0].vertex == next_id && "the mesh changed since the proposal was made");
         ++next_id;
@@ -469,8 +474,7 @@ SurgeryProposal ClothSurgery::propose_moves(const std::vector<VertexMove>& moves
     event.after.clear();
     for (std::size_t k = 0; k < moves.size(); ++k)
         if (!moves[k].keeps_world)
-            event.changes[k] =
-                implementation_->interpolated(*this, moves[k].vertex, moves[k].material);
+            event.changes[k] = implementation_->interpolated(*this, moves[k].vertex, moves[k].material);
     for (const IdFace& face : faces) {
         event.before.push_back(patch_face(face));
         implementation_->add_after(event, face);
@@ -495,8 +499,7 @@ SurgeryProposal ClothSurgery::propose_collapse(VertexId v, VertexId w) const
         event.before.push_back(patch_face(face));
         if (!has(face, w)) event.after.push_back(patch_face(replaced(face, v, w)));
     }
-    event.changes = {
-        {v, material(v), material(w), world(v), world(w), IdFace{w, w, w}, Vec3::UnitX()}};
+    event.changes = {{v, material(v), material(w), world(v), world(w), IdFace{w, w, w}, Vec3::UnitX()}};
     if (event.after.empty()) return {Verdict::Topology, {}};
     Implementation::check_orientation(proposal);
     return proposal;
@@ -576,8 +579,7 @@ SurgeryResult ClothSurgery::result() const
     for (const VertexId v : result.ids) {
         if (mesh.role(v) == TraceRole::Free) continue;
         for (const VertexId n : mesh.trace_neighbours(v))
-            if (v < n)
-                result.tagged_edges.push_back({index.at(v), index.at(n), edge_tag(v, n)});
+            if (v < n) result.tagged_edges.push_back({index.at(v), index.at(n), edge_tag(v, n)});
     }
     std::sort(result.tagged_edges.begin(), result.tagged_edges.end(),
               [](const auto& e, const auto& f) { return std::pair(e.a, e.b) < std::pair(f.a, f.b); });
@@ -587,17 +589,28 @@ SurgeryResult ClothSurgery::result() const
 const char* to_string(Verdict verdict)
 {
     switch (verdict) {
-        case Verdict::Done: return "done";
-        case Verdict::Missing: return "missing";
-        case Verdict::Argument: return "argument";
-        case Verdict::Fixed: return "fixed";
-        case Verdict::Border: return "border";
-        case Verdict::Trace: return "trace";
-        case Verdict::Topology: return "topology";
-        case Verdict::Orientation: return "orientation";
-        case Verdict::Quality: return "quality";
-        case Verdict::Guard: return "guard";
-        case Verdict::Budget: return "budget";
+        case Verdict::Done:
+            return "done";
+        case Verdict::Missing:
+            return "missing";
+        case Verdict::Argument:
+            return "argument";
+        case Verdict::Fixed:
+            return "fixed";
+        case Verdict::Border:
+            return "border";
+        case Verdict::Trace:
+            return "trace";
+        case Verdict::Topology:
+            return "topology";
+        case Verdict::Orientation:
+            return "orientation";
+        case Verdict::Quality:
+            return "quality";
+        case Verdict::Guard:
+            return "guard";
+        case Verdict::Budget:
+            return "budget";
     }
     return "";
 }

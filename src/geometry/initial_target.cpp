@@ -87,8 +87,10 @@ class InitialMesh {
     Place find(const Vec2& X) const
     {
         std::vector<int> near;
-        for (double reach = 0.0; near.empty() && reach < std::numeric_limits<double>::infinity();
-             reach = reach > 0.0 ? 2.0 * reach : 1e-9 * mean_) {
+        for (double reach = 0.0;
+             near.empty() && reach<std::numeric_limits<double>::infinity(); reach = reach> 0.0
+                 ? 2.0 * reach
+                 : 1e-9 * mean_) {
             const Vec3 slack(reach, reach, reach);
             tree_.find(BoxTree::Box(flat(X) - slack, flat(X) + slack), near);
         }
@@ -118,7 +120,8 @@ class InitialMesh {
 MeshTarget make_initial_target(const ClothMesh& initial, double most_angle)
 {
     const InitialMesh mesh(initial, most_angle);
-    return {[mesh](const Vec2& X) { return mesh.length(X); }, [mesh](const Vec2& X) { return mesh.angle(X); }};
+    return {[mesh](const Vec2& X) { return mesh.length(X); },
+            [mesh](const Vec2& X) { return mesh.angle(X); }};
 }
 
 }  // namespace arris

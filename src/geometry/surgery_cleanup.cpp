@@ -12,11 +12,11 @@
 //           twice, and there are finitely many. That bound is useless as a figure, so there is a cap, linear
 //           in the patch, which is reported when it is hit.
 //   split   the list of long edges is made once, each is split at most once.
-//   open    the list of a round is made once; a face costs at most three operations.
+//   open    the list of a round is made once; a face costs at most one operation.
 // `most_operations` is the sum of these bounds.
 //
-// A flip is made only where a face has an angle below kFlipAngle: on folded cloth each flip moves the surface,
-// and a mesh that is good enough is better left alone.
+// A flip is made only where a face has an angle below kFlipAngle: on folded cloth each flip moves the
+// surface, and a mesh that is good enough is better left alone.
 #include "geometry/surgery_cleanup.h"
 
 #include <CGAL/predicates_on_points_2.h>
@@ -35,8 +35,8 @@ constexpr double kShort = 0.5;       // of the target length
 constexpr double kLong = 2.0;        // four times that, so that a split never makes a short edge
 constexpr double kFlipAngle = 30.0;  // degrees
 constexpr double kKeepAngle = 10.0;  // degrees: a merge may not leave thinner faces than it found, below this
+constexpr double kSplitAngle = 0.5;  // of the least angle before: what a split may leave for the next round
 constexpr int kThinRounds = 3;
-constexpr int kMostPerThinFace = 3;
 constexpr int kFlipsPerEdge = 8;
 constexpr double kLeastFoot = 0.15;  // of an edge: where it is split opposite a vertex
 
@@ -98,10 +98,7 @@ class Cleanup {
 
     bool in_patch(VertexId v) const { return patch_.contains(v); }
 
-    double length(const Edge& e) const
-    {
-        return (surgery_.material(e[1]) - surgery_.material(e[0])).norm();
-    }
+    double length(const Edge& e) const { return (surgery_.material(e[1]) - surgery_.material(e[0])).norm(); }
 
     // In units of the target.
     double relative_length(const Edge& e) const
@@ -120,7 +117,9 @@ class Cleanup {
                 ++report_.collapses;
                 patch_.erase(event.edge[0]);
                 break;
-            case SurgeryOperation::Flip: ++report_.flips; break;
+            case SurgeryOperation::Flip:
+                ++report_.flips;
+                break;
             default:
                 ++report_.splits;
                 patch_.insert(event.changes[0].vertex);
@@ -252,7 +251,7 @@ class Cleanup {
             if (angle < angle_target(patch)) thin.emplace_back(angle, face);
         }
         std::sort(thin.begin(), thin.end());
-        report_.most_operations += kMostPerThinFace * static_cast<int>(thin.size());
+        report_.most_operations += static_cast<int>(thin.size());
         bool has_opened = false;
         for (const auto& [angle, face] : thin)
             if (surgery_.apex(face[0], face[1]) == face[2] && open(face, angle)) has_opened = true;
@@ -272,7 +271,7 @@ class Cleanup {
         const auto opens = [&](const SurgeryEvent&, double after) { return after > angle; };
         for (const int k : by_length)
             if (merge(side(k), opens)) return true;
-        return project(face, by_length[2], angle) || split_thin(face, by_length[2]);
+        return split_thin(face, by_length[2]);
     }
 
     bool improves(const SurgeryProposal& proposal)
@@ -290,31 +289,16 @@ class Cleanup {
         return std::clamp(s, kLeastFoot, 1.0 - kLeastFoot);
     }
 
-    // A free vertex close to an edge that cannot be flipped (a trace, the border) is merged into a new vertex
-    // of that edge; the split is taken back if the merge is worse or refused.
-    bool project(const IdFace& face, int k, double angle)
+    // Halves an angle at most: a thinner face would be worse than the one it is to open if nothing follows.
+    static bool is_opening(const SurgeryProposal& proposal)
     {
-        const VertexId a = face[k];
-        const VertexId b = face[(k + 1) % 3];
-        const VertexId corner = face[(k + 2) % 3];
-        const bool is_held = surgery_.edge_tag(a, b) != kNoTag || surgery_.is_border_edge(a, b);
-        const bool is_free = surgery_.role(corner) == TraceRole::Free && !surgery_.is_border(corner) &&
-                             !surgery_.is_fixed(corner) && in_patch(corner);
-        if (!is_held || !is_free) return false;
-        const SurgeryProposal split = surgery_.propose_edge_split(a, b, foot(face, k));
-        if (!split.is_legal() || !commit(split)) return false;
-        const VertexId m = split.event.changes[0].vertex;
-        const SurgeryProposal merged = surgery_.propose_collapse(corner, m);
-        if (merged.is_legal() && !is_too_long(merged.event) && least_angle(merged.event.after) > angle &&
-            commit(merged))
-            return true;
-        const SurgeryProposal back = surgery_.propose_collapse(m, a);
-        if (back.is_legal()) commit(back);
-        return false;
+        return proposal.is_legal() &&
+               least_angle(proposal.event.after) >= kSplitAngle * least_angle(proposal.event.before);
     }
 
-    // Opens a sliver by a new vertex: on the edge opposite its one trace vertex, on the trace's edge between
-    // two, on an edge that is no trace's between three; where that opens the angles.
+    // What is thin and can be neither flipped nor merged gets a new vertex, from which the next round's flips
+    // and merges can open it: on the edge opposite its one trace vertex, on the trace's edge between two, on
+    // an edge that is no trace's between three.
     bool split_thin(const IdFace& face, int longest)
     {
         int traced = 0;
@@ -327,7 +311,9 @@ class Cleanup {
             const bool is_opposite = surgery_.role(face[(k + 2) % 3]) != TraceRole::Free;
             const bool is_chosen =
                 traced == 1 ? is_opposite : (traced == 2 ? is_traced : traced == 3 && !is_traced);
-            if (is_chosen && improves(surgery_.propose_edge_split(a, b, foot(face, k)))) return true;
+            if (!is_chosen) continue;
+            const SurgeryProposal proposal = surgery_.propose_edge_split(a, b, foot(face, k));
+            if (is_opening(proposal) && commit(proposal)) return true;
         }
         return false;
     }

@@ -11,8 +11,8 @@
 namespace arris {
 
 /// CGAL's half-edge mesh in the material plane with persistent ids: bookkeeping and bare changes of
-/// connectivity, no decisions. For .cpp files of the surgery only. Every id named must exist; whether a change
-/// is legal is the caller's to know.
+/// connectivity, no decisions. For .cpp files of the surgery only. Every id named must exist; whether a
+/// change is legal is the caller's to know.
 class SurgeryMesh {
   public:
     using Mesh = CGAL::Surface_mesh<Point2>;

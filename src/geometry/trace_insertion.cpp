@@ -5,7 +5,8 @@
 //        p1      p2              from a vertex of the trace the line to the end leaves through one edge of
 //       /  \    /  \             its ring; there the line gets its next vertex: the nearer end of that edge,
 //   a *----x--x------* b         moved onto the line where it is near, or a new one. Each comes nearer to
-//       \  /    \  /             the end b than the last, so that the walk ends; the bound on its steps is for
+//       \  /    \  /             the end b than the last, so that the walk ends; the bound on its steps is
+//       for
 //        q1      q2              meshes with faces so thin that rounding decides.
 //
 // A line through an inner vertex uses that vertex. Every change is checked by ClothSurgery, so a walk that
@@ -189,8 +190,7 @@ class TraceWalk {
             if (surgery_.role(v) != TraceRole::Free || !(apart <= kSnap * target_.length(X))) continue;
             const SurgeryProposal proposal = surgery_.propose_collapse(v, current);
             if (!proposal.is_legal()) continue;
-            if (least_angle(proposal.event.after) <
-                std::min(kSnapAngle, least_angle(proposal.event.before)))
+            if (least_angle(proposal.event.after) < std::min(kSnapAngle, least_angle(proposal.event.before)))
                 continue;
             if (surgery_.commit(proposal) == Verdict::Done) return true;
         }

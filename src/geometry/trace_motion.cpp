@@ -92,8 +92,8 @@ class Clearing {
 
     Candidate judge(SurgeryProposal proposal) const
     {
-        const bool is_into_trace = proposal.event.operation == SurgeryOperation::Collapse &&
-                                   is_moving(proposal.event.edge[1]);
+        const bool is_into_trace =
+            proposal.event.operation == SurgeryOperation::Collapse && is_moving(proposal.event.edge[1]);
         Candidate candidate{0, std::numeric_limits<double>::infinity(), is_into_trace, {}};
         for (const PatchFace& face : proposal.event.after) {
             const double sound = soundness(face);
@@ -113,15 +113,13 @@ class Clearing {
         if (candidate.change < 0 || is_merge) candidates.push_back(std::move(candidate));
     }
 
-    // Best first: by rank, then those that leave no thin faces, then by the number of threatened faces, then the
-    // soundest; equal ones stay in the
-    // order in which they were found.
+    // Best first: by rank, then those that leave no thin faces, then by the number of threatened faces, then
+    // the soundest; equal ones stay in the order in which they were found.
     static bool is_better(const Candidate& c, const Candidate& d)
     {
         const auto key = [](const Candidate& e) {
             const SurgeryEvent& event = e.proposal.event;
-            const bool is_thin =
-                least_angle(event.after) < std::min(kSoundAngle, least_angle(event.before));
+            const bool is_thin = least_angle(event.after) < std::min(kSoundAngle, least_angle(event.before));
             return std::tuple(e.rank(), is_thin, e.change, -e.soundness);
         };
         return key(c) < key(d);

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <random>
@@ -191,6 +191,27 @@ TEST(ClothSurgery, CollapseGivesTheFacesToTheOtherEnd)
     EXPECT_EQ(event.changes[0].old_material, Vec2(1, 1));
 }
 
+TEST(ClothSurgery, CollapseLeavesTheOtherEndAsItIs)
+{
+    const SurgeryCloth cloth = square_cloth(3);
+    int done = 0;
+    for (const VertexId v : cloth.ids())
+        for (const VertexId w : cloth.surgery().ring(v).vertices) {
+            ClothSurgery surgery(cloth.mesh, cloth.ids(), 16, {5});
+            if (v != 5) surgery.set_role(w, TraceRole::Node, 4);
+            const bool was_fixed = surgery.is_fixed(w);
+            const TraceRole role = surgery.role(w);
+            if (collapse(surgery, v, w) != Verdict::Done) continue;
+            ++done;
+            EXPECT_EQ(surgery.is_fixed(w), was_fixed) << v << " -> " << w;
+            EXPECT_EQ(surgery.role(w), role);
+            EXPECT_EQ(surgery.material(w), cloth.mesh.material[w]);
+            EXPECT_EQ(surgery.world(w), cloth.mesh.world[w]);
+            EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
+        }
+    EXPECT_GT(done, 20);
+}
+
 TEST(ClothSurgery, CornersAndTheBordersPolygonStay)
 {
     ClothSurgery surgery = three_by_three();
@@ -209,8 +230,8 @@ TEST(ClothSurgery, CornersAndTheBordersPolygonStay)
 TEST(ClothSurgery, BordersThatMeetAtAVertexAreNotJoinedAcross)
 {
     // A strip one face wide: the inner edge 1-3 joins border to border.
-    ClothSurgery surgery = make({{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}},
-                                {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {2, 5, 4}});
+    ClothSurgery surgery =
+        make({{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}}, {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {2, 5, 4}});
     EXPECT_EQ(collapse(surgery, 1, 3), Verdict::Border);
     EXPECT_EQ(collapse(surgery, 1, 4), Verdict::Border);
     EXPECT_EQ(collapse(surgery, 1, 0), Verdict::Done);
@@ -278,8 +299,8 @@ TEST(ClothSurgery, VerticesMoveTogetherWhereOneAloneCouldNot)
     const Vec2 up(0.0, 0.11);
     EXPECT_EQ(move(surgery, a, surgery.material(a) + up), Verdict::Orientation);
     // b is in the way of a; together they only meet the next one.
-    EXPECT_EQ(surgery.commit(surgery.propose_moves({{a, surgery.material(a) + Vec2(0.0, 0.09)},
-                                                    {b, surgery.material(b) + Vec2(0.0, 0.09)}})),
+    EXPECT_EQ(surgery.commit(surgery.propose_moves(
+                  {{a, surgery.material(a) + Vec2(0.0, 0.09)}, {b, surgery.material(b) + Vec2(0.0, 0.09)}})),
               Verdict::Done);
 }
 
@@ -419,8 +440,10 @@ struct Fuzz {
         const VertexId w = ring.vertices[below(ring.vertices.size())];
         const std::vector<IdFace> faces = surgery.faces_at(v);
         switch (below(6)) {
-            case 0: return surgery.propose_edge_split(v, w, fraction());
-            case 1: return surgery.propose_face_split(faces[below(faces.size())], {unit(), unit(), fraction()});
+            case 0:
+                return surgery.propose_edge_split(v, w, fraction());
+            case 1:
+                return surgery.propose_face_split(faces[below(faces.size())], {unit(), unit(), fraction()});
             case 2: {
                 const Vec2 by(unit() - 0.5, unit() - 0.5);
                 return surgery.propose_moves({{v, surgery.material(v) + cell * by, unit() < 0.5}});
@@ -429,8 +452,10 @@ struct Fuzz {
                 const Vec2 along = surgery.material(w) - surgery.material(v);
                 return surgery.propose_moves({{v, surgery.material(v) + (fraction() - 0.3) * along}});
             }
-            case 4: return surgery.propose_flip(v, w);
-            default: return surgery.propose_collapse(v, w);
+            case 4:
+                return surgery.propose_flip(v, w);
+            default:
+                return surgery.propose_collapse(v, w);
         }
     }
 
@@ -502,8 +527,7 @@ TEST(ClothSurgery, EventsTellAllThatHappened)
     const SurgeryCloth cloth = square_cloth(6, 0.3);
     ClothSurgery surgery = cloth.surgery();
     Fuzz fuzz(9);
-    for (int k = 0; k < 2000; ++k)
-        surgery.commit(fuzz.propose(surgery, surgery.result().ids, cloth.cell));
+    for (int k = 0; k < 2000; ++k) surgery.commit(fuzz.propose(surgery, surgery.result().ids, cloth.cell));
 
     const auto from_least = [](IdFace f) {
         std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());

@@ -164,7 +164,7 @@ TEST(CleanUp, LongEdgesAreSplitOnATraceTooAndNoneIsLeft)
     EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
 }
 
-TEST(CleanUp, CapBesideATraceIsPutOnIt)
+TEST(CleanUp, CapBesideATraceIsOpened)
 {
     // A free vertex close to the middle of a long edge of a trace.
     const SurgeryCloth cloth = square_cloth(8);
@@ -179,6 +179,18 @@ TEST(CleanUp, CapBesideATraceIsPutOnIt)
     EXPECT_EQ(report.thin_faces, 0);
     EXPECT_GT(report.least_angle, kAngle);
     EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
+}
+
+// Four corners on one circle have two triangulations alike: neither is turned into the other for ever.
+TEST(CleanUp, CocircularFacesAreLeftAlone)
+{
+    SurgeryCloth cloth = square_cloth(8);
+    for (Vec2& X : cloth.mesh.material) X.y() *= 4.0;  // least angle 14 degrees
+    ClothSurgery surgery = cloth.surgery();
+    touch_all(surgery);
+    const CleanupReport report = clean_up(surgery, uniform_target(2.5 * cloth.cell, 10.0));
+    EXPECT_EQ(report.flips, 0);
+    EXPECT_FALSE(report.is_capped);
 }
 
 TEST(CleanUp, SabotagedMeshesAreMended)
@@ -246,7 +258,8 @@ TEST(CleanUp, IsTheSameFromARebuiltMesh)
         const SurgeryResult result = whole.result();
         ClothSurgery rebuilt(result.mesh, result.ids, result.next_id);
         for (ClothSurgery* surgery : {&whole, &rebuilt}) {
-            surgery->commit(surgery->propose_edge_split(result.ids[40], surgery->ring(result.ids[40]).vertices[0], 0.1));
+            surgery->commit(
+                surgery->propose_edge_split(result.ids[40], surgery->ring(result.ids[40]).vertices[0], 0.1));
             touch_all(*surgery);
             clean_up(*surgery, uniform_target(1.5 * cloth.cell, kAngle));
         }

@@ -36,8 +36,8 @@ class SurgeryCheck {
   public:
     explicit SurgeryCheck(const ClothSurgery& surgery);
 
-    /// Empty if the mesh is valid, every face's orientation positive, the area the same to 1e-12, the border's
-    /// length too, corners where they were, and every tagged edge between vertices with a role.
+    /// Empty if the mesh is valid, every face's orientation positive, the area the same to 1e-12, the
+    /// border's length too, corners where they were, and every tagged edge between vertices with a role.
     std::string find_wrong(const ClothSurgery& surgery) const;
 
   private:

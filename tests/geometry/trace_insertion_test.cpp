@@ -106,8 +106,9 @@ TEST(InsertEdgeCrossing, BorderVerticesMoveAlongTheBorderOnlyAndCornersNever)
     const auto off = insert_edge_crossing(surgery, target, border, inside, 0.1, {TraceRole::OnTrace, 1});
     EXPECT_EQ(off.verdict, Verdict::Done);
     EXPECT_NE(off.vertex, border);
-    EXPECT_EQ(insert_edge_crossing(surgery, target, border, off.vertex, 0.01, {TraceRole::OnTrace, 2}).verdict,
-              Verdict::Quality);
+    EXPECT_EQ(
+        insert_edge_crossing(surgery, target, border, off.vertex, 0.01, {TraceRole::OnTrace, 2}).verdict,
+        Verdict::Quality);
     EXPECT_EQ(insert_edge_crossing(surgery, target, border, next, 0.1, {TraceRole::OnTrace, 3}).vertex,
               border);
     EXPECT_EQ(surgery.material(border).y(), 0.0);
@@ -230,8 +231,8 @@ TEST(JoinTraceVertices, OneUnitInTheLastPlaceBesideVerticesIsNoTrouble)
 
 TEST(JoinTraceVertices, EndsOnVerticesEdgesBorderAndCorner)
 {
-    const std::vector<Vec2> ends = {{0.5, 0.5}, {0.53, 0.5}, {0.57, 0.52}, {0.5, 0.0}, {0.53, 0.0},
-                                    {1.0, 0.3}, {0.125, 1.0}, {0.3, 1.0}};
+    const std::vector<Vec2> ends = {{0.5, 0.5},  {0.53, 0.5}, {0.57, 0.52}, {0.5, 0.0},
+                                    {0.53, 0.0}, {1.0, 0.3},  {0.125, 1.0}, {0.3, 1.0}};
     const SurgeryCloth cloth = square_cloth(8);
     for (const Vec2& a : ends)
         for (const Vec2& b : ends) {
@@ -382,7 +383,8 @@ TEST(JoinTraceVertices, RandomLinesInTurnKeepMeshAndVertexCount)
             // From the mesh's own vertices, off by next to nothing or by anything.
             const SurgeryResult now = surgery.result();
             const auto pick = [&]() -> Vec2 {
-                const std::size_t v = std::min(std::size_t(unit(random) * double(now.ids.size())), now.ids.size() - 1);
+                const std::size_t v =
+                    std::min(std::size_t(unit(random) * double(now.ids.size())), now.ids.size() - 1);
                 const double off = std::pow(10.0, -17.0 + 16.0 * unit(random));
                 const Vec2 by(off * (unit(random) - 0.5), off * (unit(random) - 0.5));
                 const Vec2 X = now.mesh.material[v] + size * by;

@@ -97,7 +97,8 @@ TEST(ClearAhead, LeavesRoomForTheWholeWay)
         cut(surgery, target, {{0.2, 0.4}, {0.5, 0.45}, {0.8, 0.4}}, 1);
         clean_up(surgery, target);
         std::vector<TraceAdvance> advances;
-        for (const VertexMove& move : shifted(surgery, 1, {0, way})) advances.push_back({move.vertex, {0, way}});
+        for (const VertexMove& move : shifted(surgery, 1, {0, way}))
+            advances.push_back({move.vertex, {0, way}});
         EXPECT_TRUE(clear_ahead(surgery, target, advances).blocked.empty());
         EXPECT_EQ(check.find_wrong(surgery), "");
         // At least 0.3 of the target length is clear, and the way; and on the way nothing turns over.
@@ -112,6 +113,25 @@ TEST(ClearAhead, LeavesRoomForTheWholeWay)
             };
             EXPECT_GT(area(proposal.event.after[f]), 0.69 * area(proposal.event.before[f]));
         }
+    }
+}
+
+TEST(ClearAhead, ThreeTenthsOfTheTargetLengthAreClearHoweverSmallTheStep)
+{
+    const SurgeryCloth cloth = square_cloth(8);
+    const MeshTarget target = target_of(cloth);
+    for (const double height : {0.2, 0.45}) {
+        ClothSurgery surgery = cloth.surgery();
+        cut(surgery, target, {{0.25, 0.5}, {0.75, 0.5}}, 1);
+        const VertexId node = trace_vertex(surgery, {0.25, 0.5});
+        const VertexId above = nearest_vertex(surgery, {0.25, 0.625});
+        const SurgeryProposal split = surgery.propose_edge_split(node, above, height);
+        ASSERT_EQ(surgery.commit(split), Verdict::Done);
+        std::vector<TraceAdvance> advances;
+        for (const VertexMove& move : shifted(surgery, 1, {0, 0}))
+            advances.push_back({move.vertex, {0, 1e-9}});
+        EXPECT_TRUE(clear_ahead(surgery, target, advances).blocked.empty());
+        EXPECT_EQ(surgery.has_vertex(split.event.changes[0].vertex), height > 0.3 * 1.14);
     }
 }
 
@@ -176,7 +196,8 @@ TEST(ClearAhead, IsBlockedByFixedVerticesOtherTracesAndTheGuard)
     const auto blocked = [&](ClothSurgery& surgery) {
         cut(surgery, target, {{0.25, 0.25}, {0.75, 0.25}}, 1);
         std::vector<TraceAdvance> advances;
-        for (const VertexMove& move : shifted(surgery, 1, {0, 0.3})) advances.push_back({move.vertex, {0, 0.3}});
+        for (const VertexMove& move : shifted(surgery, 1, {0, 0.3}))
+            advances.push_back({move.vertex, {0, 0.3}});
         const SurgeryCheck check(surgery);
         const bool is_blocked = !clear_ahead(surgery, target, advances).blocked.empty();
         EXPECT_EQ(check.find_wrong(surgery), "");
@@ -210,13 +231,15 @@ TEST(MoveTrace, FarInOneCallPassesManyCells)
         const Vec2 origin = cloth.mesh.material[0];
         const double size = 20 * cloth.cell;
         cut(surgery, target,
-            {origin + size * Vec2(0.2, 0.1), origin + size * Vec2(0.5, 0.15), origin + size * Vec2(0.8, 0.1)}, 1);
+            {origin + size * Vec2(0.2, 0.1), origin + size * Vec2(0.5, 0.15), origin + size * Vec2(0.8, 0.1)},
+            1);
         const TraceMotionReport report = move_trace(surgery, target, shifted(surgery, 1, {0, 0.75 * size}));
         EXPECT_EQ(report.verdict, Verdict::Done) << cloth.name << to_string(report.verdict);
         EXPECT_EQ(report.fraction, 1.0);
         EXPECT_EQ(check.find_wrong(surgery), "") << cloth.name;
         const Vec2 node = origin + size * Vec2(0.5, 0.9);
-        EXPECT_LT((surgery.material(trace_vertex(surgery, node)) - node).norm(), 1e-12 * size + 1e-15 * origin.norm() * 100);
+        EXPECT_LT((surgery.material(trace_vertex(surgery, node)) - node).norm(),
+                  1e-12 * size + 1e-15 * origin.norm() * 100);
         EXPECT_LE(surgery.vertex_count(), 1.2 * cloth.mesh.vertex_count());
     }
 }
@@ -339,7 +362,7 @@ TEST(MoveTrace, CornerOfThreeFeaturesWandersOverTheCloth)
     }
     figures.print("three features", cloth.mesh.vertex_count());
     EXPECT_LE(figures.most_vertices, 1.2 * cloth.mesh.vertex_count());
-    EXPECT_GT(figures.percentile(0.05), 5.0);
+    EXPECT_GT(figures.percentile(0.05), 13.0);
 }
 
 TEST(MoveTrace, StaysValidUnderAGuardThatRefusesAtRandom)
@@ -359,7 +382,8 @@ TEST(MoveTrace, StaysValidUnderAGuardThatRefusesAtRandom)
         int done = 0;
         for (int step = 0; step < 200; ++step) {
             const double by = (step / 20 % 2 == 0 ? 0.021 : -0.021);
-            done += move_trace(surgery, target, shifted(surgery, 1, {0, by})).verdict == Verdict::Done ? 1 : 0;
+            done +=
+                move_trace(surgery, target, shifted(surgery, 1, {0, by})).verdict == Verdict::Done ? 1 : 0;
             ASSERT_EQ(check.find_wrong(surgery), "") << step;
         }
         fmt::print("guard refuses {}: {} of 200 steps done, vertices {} -> {}\n", refused, done,
@@ -405,12 +429,14 @@ TEST(MoveTrace, IsTheSameFromAMeshRebuiltEveryStep)
         const SurgeryResult last = rebuilt.result();
         const std::vector<VertexId> touched = rebuilt.take_touched();
         rebuilt = ClothSurgery(last.mesh, last.ids, last.next_id);
-        for (std::size_t k = 0; k < last.ids.size(); ++k) rebuilt.set_role(last.ids[k], last.roles[k], last.tags[k]);
+        for (std::size_t k = 0; k < last.ids.size(); ++k)
+            rebuilt.set_role(last.ids[k], last.roles[k], last.tags[k]);
         for (const auto& edge : last.tagged_edges)
             rebuilt.set_edge_tag(last.ids[edge.a], last.ids[edge.b], edge.tag);
         for (const VertexId v : touched) rebuilt.touch(v);
         for (ClothSurgery* surgery : {&whole, &rebuilt})
-            ASSERT_EQ(move_trace(*surgery, target, shifted(*surgery, 1, {0.003, 0.008})).verdict, Verdict::Done);
+            ASSERT_EQ(move_trace(*surgery, target, shifted(*surgery, 1, {0.003, 0.008})).verdict,
+                      Verdict::Done);
         ASSERT_TRUE(is_same(whole.result(), rebuilt.result())) << step;
     }
 }
@@ -491,8 +517,7 @@ TEST(TraceSweep, ChordsFromBorderToBorderCutAnew)
                                              {TraceRole::Node, 1});
             Verdict verdict = ends[0].verdict != Verdict::Done ? ends[0].verdict : ends[1].verdict;
             if (verdict == Verdict::Done)
-                verdict =
-                    join_trace_vertices(surgery, target, ends[0].vertex, ends[1].vertex, 1).verdict;
+                verdict = join_trace_vertices(surgery, target, ends[0].vertex, ends[1].vertex, 1).verdict;
             ++verdicts[verdict];
             clean_up(surgery, target);
             ASSERT_EQ(check.find_wrong(surgery), "") << direction << " step " << step;
@@ -500,6 +525,7 @@ TEST(TraceSweep, ChordsFromBorderToBorderCutAnew)
         }
         figures.print(fmt::format("chords cut anew, direction {}", direction), cloth.mesh.vertex_count());
         EXPECT_LE(figures.most_vertices, 1.2 * cloth.mesh.vertex_count());
+        EXPECT_GT(figures.percentile(0.05), 13.0);
     }
     for (const auto& [verdict, count] : verdicts) fmt::print("  {} {}\n", to_string(verdict), count);
     // Refused only beside the cloth's corners.
@@ -531,7 +557,8 @@ TEST(MoveTrace, DISABLED_TimeAStep)
         const auto begin = std::chrono::steady_clock::now();
         const SurgeryResult result = surgery.result();
         const ClothSurgery again(result.mesh, result.ids, result.next_id);
-        const double rebuild = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        const double rebuild =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         fmt::print("n {}: {:.3f} ms a step, {:.1f} operations a step, result and rebuilding {:.2f} ms\n", n,
                    1e3 * seconds / 200, double(operations) / 200, 1e3 * rebuild);
     }
