@@ -111,23 +111,14 @@ void SurgeryMesh::split_face(const IdFace& face, const VertexChange& made)
 
 void SurgeryMesh::collapse(VertexId removed, VertexId kept)
 {
-    // CGAL decides which of the two records it erases: whichever is left becomes the vertex that is kept.
     std::vector<std::pair<VertexId, int>> tags;
     for (const VertexId end : {removed, kept})
         for (const VertexId n : trace_neighbours(end))
             if (n != removed && n != kept) tags.emplace_back(n, edge_tag(halfedge(end, n)));
-    const Vertex v = vertex(removed);
-    const Vertex w = vertex(kept);
-    const Vertex left = CGAL::Euler::collapse_edge(mesh_.edge(halfedge(removed, kept)), mesh_);
-    if (left == v) {
-        mesh_.point(v) = mesh_.point(w);
-        world_[v] = Vec3(world_[w]);
-        is_fixed_[v] = bool(is_fixed_[w]);
-        role_[v] = role_[w];
-        tag_[v] = tag_[w];
-    }
-    id_[left] = kept;
-    vertex_of_[kept] = left;
+    // CGAL keeps the target of the half-edge that the edge is made of.
+    [[maybe_unused]] const Vertex left =
+        CGAL::Euler::collapse_edge(mesh_.edge(halfedge(removed, kept)), mesh_);
+    assert(left == vertex(kept) && "the other vertex was removed");
     vertex_of_.erase(removed);
     for (const auto& [n, tag] : tags) set_edge_tag(halfedge(kept, n), tag);
 }
