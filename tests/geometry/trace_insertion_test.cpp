@@ -340,6 +340,28 @@ TEST(JoinTraceVertices, ThreeFeaturesAtTwentyDegrees)
     EXPECT_GT(report.least_angle, 7.0);
 }
 
+// Inside an ordinary mesh there is always a way, whatever vertices lie beside the line and its ends.
+TEST(JoinTraceVertices, LinesInsideAnIrregularMeshAreNotRefused)
+{
+    std::mt19937 random(21);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    const auto inside = [&] {
+        const double u = unit(random);
+        return Vec2(0.3 + 0.4 * u, 0.3 + 0.4 * unit(random));
+    };
+    int lines = 0;
+    for (unsigned seed = 0; seed < 3000; ++seed) {
+        const SurgeryCloth cloth = square_cloth(16, 0.25, seed);
+        const Vec2 from = inside();
+        const Vec2 to = inside();
+        if ((from - to).norm() < 0.15) continue;
+        ClothSurgery surgery = cloth.surgery();
+        ++lines;
+        expect_on_line(surgery, cut(surgery, target_of(cloth), from, to), 1, kStraight);
+    }
+    EXPECT_GT(lines, 2000);
+}
+
 TEST(JoinTraceVertices, WalkEndsOnMeshesWithoutAltitude)
 {
     std::mt19937 random(4);
