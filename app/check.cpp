@@ -199,15 +199,10 @@ SceneEffect obstacle_effect(const RunConfig& config)
 
 SceneEffect eol_effect(const RunConfig& config)
 {
-    const auto& obstacles = config.scene.obstacles;
-    const bool has_features = std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& obstacle) {
-        return !obstacle.features().edges.empty() || !obstacle.features().corners.empty();
-    });
+    if (config.scene.eol) return {"eol", true, "eol.enabled, and an obstacle has sharp features"};
     return {"eol", false,
-            has_features
-                ? "not in this version: contacts keep the cloth's vertices, edges and faces off sharp "
-                  "features"
-                : "no obstacle has sharp features"};
+            has_features(config.scene) ? "eol.enabled is false: contacts keep the cloth off sharp features"
+                                       : "no obstacle has sharp features"};
 }
 
 void describe_meetings(const RunConfig& config, Lines& lines)

@@ -60,7 +60,10 @@ StepRow make_row(const Run& run, const StepReport& report)
 {
     const State& state = run.at.state;
     const Scene& scene = run.config.scene;
-    const Energies energies = compute_energies(run.work.elements, run.work.terms, state.mesh.world);
+    const ClothElements& elements = run.work.elements;
+    const Energies energies = compute_energies(elements, run.work.terms, state.mesh.world);
+    const CornerVelocities moving =
+        compute_corner_velocities(elements, state.mesh.world, state.velocity, state.material_velocity);
     StepRow row;
     row.step = state.step;
     row.time = state.time;
@@ -68,12 +71,13 @@ StepRow make_row(const Run& run, const StepReport& report)
     row.vertices = state.mesh.vertex_count();
     row.faces = state.mesh.face_count();
     row.contacts = report.contacts;
-    row.kinetic_energy = kinetic_energy(scene.material.density, run.work.elements, state.velocity);
+    row.kinetic_energy = kinetic_energy(scene.material.density, elements, moving);
     if (scene.gravity) row.gravity_energy = energies.gravity;
     row.stretch_energy = energies.stretch;
     if (scene.material.bending_stiffness > 0.0) row.bending_energy = energies.bending;
     if (!scene.obstacles.empty()) {
         row.feature_rows = report.feature_rows;
+        if (scene.eol) row.eol_vertices = report.eol_vertices;
         row.rewound = report.rewound;
         row.yielded = report.yielded;
     }
@@ -94,6 +98,7 @@ StepRow make_row(const Run& run, const StepReport& report)
 void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is_halved)
 {
     const State& state = run.at.state;
+    prepare(run.config.scene, state, run.work);  // elements where material has flowed
     const bool is_audited = run.timeline.frame_at(state.time) >= 0 || state.time >= run.config.duration;
     run.audited = is_audited ? audit(run.config.scene, state.mesh, state.time) : Audit();
     StepRow row = make_row(run, report);
@@ -118,6 +123,11 @@ Ending explain(const StepReport& report, double tolerance, const State& state)
         case StepStatus::NotFinite:
             return {RunStatus::NotFinite,
                     fmt::format("a number that is not finite {}, also with 64 times smaller steps", place)};
+        case StepStatus::Overrun:
+            return {RunStatus::NotConverged,
+                    fmt::format("material flows over a feature faster than the mesh can follow {}, also with "
+                                "64 times smaller steps",
+                                place)};
         case StepStatus::Infeasible:
             return {
                 RunStatus::Infeasible,

@@ -261,10 +261,10 @@ std::vector<SceneKey> make_scene_keys()
         not_built(table("self_contact", "", "Switches contact of the cloth with itself on.")),
 
         table("eol", "{}", "Eulerian-on-Lagrangian vertices on sharp features of obstacles."),
-        not_built(boolean("eol.enabled", "false",
-                          "Whether vertices are put exactly on sharp features, with the material flowing "
-                          "through them."),
-                  "true"),
+        boolean(
+            "eol.enabled", "false",
+            "Whether vertices are put exactly on sharp features, with the material flowing through them. An "
+            "experiment in this version."),
 
         not_built(table("remesh", "",
                         "Switches adaptive refinement on; without it the mesh changes only near features.")),

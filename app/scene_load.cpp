@@ -20,6 +20,7 @@
 #include "app/timeline.h"
 #include "geometry/cloth_file.h"
 #include "geometry/cloth_grid.h"
+#include "geometry/initial_target.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -339,6 +340,8 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     config.cloth_velocity = to_vec3(json["cloth"]["velocity"]);
     check_meetings(document, config);
     load_obstacles(document, options, std::move(plans), config);
+    if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))
+        config.scene.eol = make_initial_target(config.cloth);
     if (!options.cloth) check_start(document, options, config);
     warn_of_first_keyframes(document, config);
 

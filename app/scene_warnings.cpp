@@ -153,6 +153,8 @@ void check_obstacles(const RunConfig& config, Warnings& warnings)
         if (obstacle.mesh().faces.empty()) warnings.add(path + ".feature_angle", "the obstacle has no faces");
         check_obstacle_motion(config, obstacle.motion(), path, warnings);
     }
+    if (config.as_run["eol"]["enabled"].get<bool>() && !config.scene.eol)
+        warnings.add("eol.enabled", "no obstacle has a sharp feature");
 }
 
 void check_pins(const RunConfig& config, Warnings& warnings)

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "physics/inertia.h"
+
 namespace arris {
 
 Frame make_frame(const State& state, const ClothElements& elements, const Terms& terms)
@@ -11,15 +13,18 @@ Frame make_frame(const State& state, const ClothElements& elements, const Terms&
     frame.world = state.mesh.world;
     frame.material = state.mesh.material;
     frame.vertex_velocity = state.velocity;
-    frame.material_velocity = state.velocity;  // material does not flow through Lagrangian vertices
+    frame.material_velocity = mean_corner_velocities(
+        elements,
+        compute_corner_velocities(elements, state.mesh.world, state.velocity, state.material_velocity),
+        state.velocity, state.material_velocity);
     frame.ids = state.ids;
     frame.eol.assign(state.ids.size(), 0);
+    for (const EolVertex& eol : state.eol) frame.eol[state.index_of(eol.vertex_id)] = eol.is_corner ? 2 : 1;
     frame.contact.assign(state.ids.size(), 0);
     for (const ActiveContact& contact : state.active)
         for (const std::uint32_t id : contact.vertex_ids) {
             if (id == ActiveContact::kNoVertex) continue;
-            const auto vertex = std::lower_bound(state.ids.begin(), state.ids.end(), id);
-            frame.contact[vertex - state.ids.begin()] = 1;
+            frame.contact[state.index_of(id)] = 1;
         }
     frame.faces = state.mesh.faces;
     FaceReadings readings = compute_face_readings(elements, terms, state.mesh.world);

@@ -304,7 +304,10 @@ TraceInsertion insert_edge_crossing(ClothSurgery& surgery, const MeshTarget& tar
         if (surgery.role(v) != TraceRole::Free) continue;
         if (!is_at(surgery, target, v, X)) {
             if (surgery.is_border(v) && !surgery.is_border_edge(a, b)) continue;
-            if (snap(surgery, v, X) != Verdict::Done) continue;
+            // Where the guard keeps a vertex from the trace, a split beside it would only make a thin face.
+            const Verdict snapped = snap(surgery, v, X);
+            if (snapped == Verdict::Guard) return {snapped, kNoVertex};
+            if (snapped != Verdict::Done) continue;
         } else if (surgery.is_fixed(v)) {
             return {Verdict::Fixed, kNoVertex};
         }
@@ -334,7 +337,10 @@ TraceInsertion insert_face_point(ClothSurgery& surgery, const MeshTarget& target
         const VertexId v = face[k];
         if (!((corners[k] - X).norm() <= kSnap * target.length(X))) break;
         if (is_of(surgery, v, made.tag)) return {Verdict::Done, v};
-        if (surgery.is_border(v) || snap(surgery, v, X) != Verdict::Done) continue;
+        if (surgery.is_border(v)) continue;
+        const Verdict snapped = snap(surgery, v, X);
+        if (snapped == Verdict::Guard) return {snapped, kNoVertex};
+        if (snapped != Verdict::Done) continue;
         surgery.set_role(v, made.role, made.tag);
         return {Verdict::Done, v};
     }

@@ -50,6 +50,8 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
             if (!accept(report, shrink > 1)) return std::nullopt;
         } else if (report.status == StepStatus::EnergyRise && work.prediction.has_history) {
             restart(state);
+        } else if (report.status == StepStatus::Overrun && work.has_given_up()) {
+            continue;  // with fewer EOL vertices: at most as often as there are traces to give up
         } else if (shrink == kMostParts) {
             return report;
         } else {

@@ -16,7 +16,10 @@ std::vector<ObstacleStep> stand_still(const Scene& scene, const ClothMesh& mesh,
     State state;
     state.mesh = mesh;
     state.velocity.assign(mesh.world.size(), Vec3::Zero());
-    const Prediction prediction{1.0, false, 0.0, mesh.world, state.velocity};
+    Prediction prediction;
+    prediction.gamma = 1.0;
+    prediction.position = mesh.world;
+    prediction.velocity = state.velocity;
     std::vector<ObstacleStep> steps = move_obstacles(scene, state, edges, prediction, {}, 0.0);
     for (ObstacleStep& step : steps) {
         step.motion.faces = &mesh.faces;

@@ -59,6 +59,25 @@ void hold(const std::vector<HeldVertex>& held, const Prediction& prediction, std
     }
 }
 
+/// EOL vertices have coordinates of their own, and start from where riding on the obstacle takes them.
+void let_flow(const std::vector<EolCoordinates>& eol, const Prediction& prediction, Linearization& at)
+{
+    at.flow.reset();
+    if (eol.empty()) return;
+    const std::size_t n = at.drift.size();
+    MaterialFlow& flow = at.flow.emplace();
+    flow.is_eulerian.assign(n, 0);
+    flow.basis.assign(n, Mat23::Zero());
+    for (const EolCoordinates& vertex : eol) {
+        const int v = vertex.vertex;
+        at.drift[v] = (vertex.carried - prediction.position[v]) / prediction.gamma;
+        at.basis[v] = vertex.basis;
+        at.has_basis[v] = 1;
+        flow.is_eulerian[v] = 1;
+        flow.basis[v] = vertex.material_basis;
+    }
+}
+
 /// Contacts in the order in which they may become bounds: what pressed comes first.
 std::vector<std::size_t> order_of(const std::vector<Contact>& contacts)
 {
@@ -105,8 +124,9 @@ void append_rows(const Prediction& prediction, const Linearization& at, std::siz
     }
 }
 
-void build_constraints(const std::vector<HeldVertex>& held, const Prediction& prediction, const State& state,
-                       std::vector<Contact>& contacts, Linearization& at, VelocityProblem& problem)
+void build_constraints(const std::vector<HeldVertex>& held, const std::vector<EolCoordinates>& eol,
+                       const Prediction& prediction, const State& state, std::vector<Contact>& contacts,
+                       Linearization& at, VelocityProblem& problem)
 {
     const std::size_t n = state.mesh.world.size();
     at.drift.assign(n, Vec3::Zero());
@@ -121,12 +141,18 @@ void build_constraints(const std::vector<HeldVertex>& held, const Prediction& pr
     // Bounds: as many of a vertex's contacts as have independent normals.
     std::vector<Frame> frames(n);
     hold(held, prediction, frames, at, problem);
+    let_flow(eol, prediction, at);
     for (const std::size_t c : order_of(contacts)) {
         Contact& contact = contacts[c];
         const int v = contact.in_frame.vertices[0];
         contact.bound = contact.row = -1;
-        if (!contact.is_vertex() || !frames[v].add(contact.normal)) continue;
-        contact.bound = 3 * v + frames[v].count - 1;
+        if (contact.eol >= 0) {
+            contact.bound = 3 * v;
+        } else {
+            const bool is_flowing = at.flow && at.flow->is_eulerian[v];
+            if (!contact.is_vertex() || is_flowing || !frames[v].add(contact.normal)) continue;
+            contact.bound = 3 * v + frames[v].count - 1;
+        }
         problem.lower[contact.bound] = -contact.gap / prediction.gamma - contact.normal.dot(at.drift[v]);
         if (is_expected(contact, prediction, state)) problem.guess.push_back(contact.bound);
     }

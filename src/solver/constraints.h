@@ -15,9 +15,11 @@ namespace arris {
 /// a basis. A contact whose normal depends too much on those before it, and one of an edge or face, becomes a
 /// row. Fills `at.drift`, `at.basis`, `at.has_basis`, of `problem` the bounds, rows, what is fixed, and the
 /// guess (what was active, and what would arrive at its last velocity), and of `contacts` which constraint
-/// they are. A constraint is gap + gamma n . v' >= 0.
-void build_constraints(const std::vector<HeldVertex>& held, const Prediction& prediction, const State& state,
-                       std::vector<Contact>& contacts, Linearization& at, VelocityProblem& problem);
+/// they are. A constraint is gap + gamma n . v' >= 0. EOL vertices have the coordinates of `eol` instead:
+/// relative to their place on the obstacle, their own contact a bound on the first, any others rows.
+void build_constraints(const std::vector<HeldVertex>& held, const std::vector<EolCoordinates>& eol,
+                       const Prediction& prediction, const State& state, std::vector<Contact>& contacts,
+                       Linearization& at, VelocityProblem& problem);
 
 /// Adds the contacts from `first` on as rows in the coordinates that are there.
 void append_rows(const Prediction& prediction, const Linearization& at, std::size_t first,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "geometry/contact_plane.h"
+
 namespace arris {
 
 namespace {
@@ -41,12 +43,6 @@ bool find_active(const State& state, const Contact& contact)
     return false;
 }
 
-int index_of(const State& state, std::uint32_t id)
-{
-    const auto found = std::lower_bound(state.ids.begin(), state.ids.end(), id);
-    return found != state.ids.end() && *found == id ? static_cast<int>(found - state.ids.begin()) : -1;
-}
-
 /// Pairs of an edge or face that pressed at the end of the last step and that the search by features did not
 /// find again: the check after the solve had found them.
 class RememberedPairs {
@@ -64,7 +60,7 @@ class RememberedPairs {
             std::array<int, 3> vertices = {-1, -1, -1};
             bool is_there = true;
             for (int i = 0; i < 3 && active.vertex_ids[i] != ActiveContact::kNoVertex; ++i) {
-                vertices[i] = index_of(state_, active.vertex_ids[i]);
+                vertices[i] = state_.index_of(active.vertex_ids[i]);
                 is_there = is_there && vertices[i] >= 0;
             }
             const auto is_same = [&](const ObstacleContact& c) {
@@ -149,6 +145,41 @@ bool runs_into(const ObstacleStep& step, const Contact& contact, double shift)
     return now + shift < local.least_gap && end < local.least_gap;
 }
 
+/// Changes a field and its material side by `amount` along the contact's normal, with the least change.
+void shift_along(const std::vector<EolCoordinates>& eol, const Contact& contact, double amount,
+                 std::vector<Vec3>& world, std::vector<Vec2>& material)
+{
+    if (contact.eol < 0) return contact.in_frame.shift(amount * contact.normal, world);
+    const EolCoordinates& at = eol[contact.eol];
+    world[at.vertex] += amount * (at.basis * at.opening);
+    material[at.vertex] += amount * (at.material_basis * at.opening);
+}
+
+/// Whether a contact that the search found is one of an EOL vertex with the feature it is on.
+bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, double thickness,
+                const ObstacleContact& contact)
+{
+    constexpr double kNear = 2.5;  // mitre and a little
+    const ObstacleFeatures& features = obstacle.features();
+    const int corner = eol.is_corner ? features.corners[eol.feature].point : -1;
+    if (contact.kind == ContactKind::Triangle) return contact.element == corner;
+    if (contact.kind == ContactKind::Vertex)
+        return (contact.point - at.frame.point).norm() <= kNear * thickness &&
+               contact.normal.dot(at.frame.outward) > 0.0;
+    if (!eol.is_corner) return contact.element == features.edges[eol.feature].edge;
+    const auto& ends = obstacle.topology().edges[contact.element].points;
+    return ends[0] == corner || ends[1] == corner;
+}
+
+Contact make_eol_contact(const ObstacleStep& step, const Prediction& prediction, double thickness,
+                         int obstacle, const EolCoordinates& at)
+{
+    const ClothPoint point = {{at.vertex, -1, -1}, {1.0, 0.0, 0.0}};
+    ObstacleContact contact = make_contact(step.motion, ContactKind::Vertex, point, -1, at.frame.outward,
+                                           at.frame.point, at.frame.mitre * thickness);
+    return place_contact(contact, obstacle, step, prediction);
+}
+
 /// Of two contacts of one vertex whose normals oppose each other.
 SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction, Contact& a,
                       Contact& b)
@@ -203,7 +234,7 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
 Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
                       const Prediction& prediction)
 {
-    Contact placed{contact, obstacle, step.end.rotation * contact.normal, 0.0, false, false, true, -1, -1};
+    Contact placed{contact, obstacle, step.end.rotation * contact.normal, 0.0, false};
     update_gap(step, prediction, placed);
     return placed;
 }
@@ -236,6 +267,43 @@ std::vector<Contact> find_contacts(const Scene& scene, const State& state, const
         }
     }
     return contacts;
+}
+
+std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& state, const ClothStars& stars,
+                                             const Prediction& prediction,
+                                             const std::vector<ObstacleStep>& steps,
+                                             std::vector<Contact>& contacts)
+{
+    const double thickness = scene.material.thickness;
+    std::vector<EolCoordinates> eol;
+    std::vector<int> slot(state.mesh.world.size(), -1);
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
+        const int o = state.eol[entry].obstacle;
+        const EolPlacing placing =
+            place_eol_vertex(scene.obstacles[o], state, entry, stars, steps[o].motion.begin, steps[o].end);
+        if (!placing.coordinates) continue;
+        slot[placing.coordinates->vertex] = static_cast<int>(eol.size());
+        eol.push_back(*placing.coordinates);
+    }
+    std::erase_if(contacts, [&](const Contact& contact) {
+        for (const int v : contact.in_frame.vertices) {
+            if (v < 0 || slot[v] < 0) continue;
+            const EolVertex& vertex = state.eol[eol[slot[v]].entry];
+            if (vertex.obstacle == contact.obstacle && is_covered(scene.obstacles[contact.obstacle], vertex,
+                                                                  eol[slot[v]], thickness, contact.in_frame))
+                return true;
+        }
+        return false;
+    });
+    for (std::size_t e = 0; e < eol.size(); ++e) {
+        const int o = state.eol[eol[e].entry].obstacle;
+        contacts.push_back(make_eol_contact(steps[o], prediction, thickness, o, eol[e]));
+        contacts.back().eol = static_cast<int>(e);
+        contacts.back().mitre = eol[e].frame.mitre;
+        contacts.back().may_grow = false;  // pushing it out would stretch the cloth on both sides
+        contacts.back().was_active = find_active(state, contacts.back());
+    }
+    return eol;
 }
 
 SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
@@ -273,7 +341,8 @@ bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& p
 }
 
 bool flatten_history(const Scene& scene, const State& state, const std::vector<ObstacleStep>& steps,
-                     std::size_t first, std::vector<Contact>& contacts, Prediction& prediction)
+                     const std::vector<EolCoordinates>& eol, std::size_t first,
+                     std::vector<Contact>& contacts, Prediction& prediction)
 {
     constexpr int kPasses = 3;  // several contacts of one vertex disturb each other where they are not square
     bool is_changed = false;
@@ -286,10 +355,10 @@ bool flatten_history(const Scene& scene, const State& state, const std::vector<O
             const double shift =
                 contact.normal.dot(contact.in_frame.at(prediction.position)) - ridden.position;
             if (!runs_into(step, contact, shift)) continue;
-            contact.in_frame.shift(-shift * contact.normal, prediction.position);
             const double gained =
                 ridden.velocity - contact.normal.dot(contact.in_frame.at(prediction.velocity));
-            contact.in_frame.shift(gained * contact.normal, prediction.velocity);
+            shift_along(eol, contact, -shift, prediction.position, prediction.material);
+            shift_along(eol, contact, gained, prediction.velocity, prediction.material_velocity);
             is_changed = true;
         }
     if (is_changed)

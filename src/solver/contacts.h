@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/obstacle_contact.h"
+#include "solver/eol_coordinates.h"
 #include "solver/held_vertices.h"
 #include "solver/scene.h"
 #include "solver/state.h"
@@ -28,6 +29,8 @@ struct Contact {
     bool was_active;
     bool is_pressing = false;  ///< in the last solve of this step, linearised elsewhere
     bool may_grow = true;      ///< its gap, towards the stand-off; not where it has yielded
+    double mitre = 1.0;        ///< its stand-off is this times the thickness
+    int eol = -1;              ///< of which EOL coordinates it is the bound on the first
     int bound = -1;            ///< coordinate of the velocity solve, 3 a vertex
     int row = -1;              ///< or row
 
@@ -44,6 +47,14 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
 /// pressed at the end of the last step.
 std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
                                    std::vector<ObstacleStep>& steps);
+
+/// The coordinates of the state's EOL vertices, whose own contact is the bound on their first: those that
+/// the search found of them with the feature they are on are dropped, and the bounds are appended. Nothing
+/// for a vertex that can have no coordinates any more: it is then like any other.
+std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& state, const ClothStars& stars,
+                                             const Prediction& prediction,
+                                             const std::vector<ObstacleStep>& steps,
+                                             std::vector<Contact>& contacts);
 
 /// The contact in the world, its gap that of the prediction.
 Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
@@ -72,7 +83,8 @@ bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& p
 /// bring it out, or where it was active; and updates all gaps. Otherwise what a vertex brought into an impact
 /// would be extrapolated through it, and it would rebound. True where anything was flattened.
 bool flatten_history(const Scene& scene, const State& state, const std::vector<ObstacleStep>& steps,
-                     std::size_t first, std::vector<Contact>& contacts, Prediction& prediction);
+                     const std::vector<EolCoordinates>& eol, std::size_t first,
+                     std::vector<Contact>& contacts, Prediction& prediction);
 
 /// Those of `contacts` that press, for `State::active`; `multiplier` has one entry a contact (N s).
 std::vector<ActiveContact> active_contacts(const State& state, const std::vector<Contact>& contacts,

@@ -56,12 +56,27 @@ double work_of_obstacles(const Workspace& work)
     return sum / work.prediction.gamma;
 }
 
+ClothVelocity velocity_of(const Proposal& proposal)
+{
+    return {proposal.velocity, proposal.material_velocity};
+}
+
+/// The workspace's elements where material has flowed to `material`.
+ClothElements elements_at(const Workspace& work, const std::vector<Vec2>& material)
+{
+    ClothElements elements = work.elements;
+    std::vector<char> is_moved(material.size(), 0);
+    for (const EolCoordinates& vertex : work.eol) is_moved[vertex.vertex] = 1;
+    update_elements({material, {}, work.faces_of_elements}, is_moved, elements);
+    return elements;
+}
+
 /// How fast, m/s, the proposal's positions were moved from where its velocity leads.
 std::vector<Vec3> push_velocity(const Workspace& work, double dt)
 {
     std::vector<Vec3> velocity = work.proposal.world;
-    const std::vector<Vec3> from = find_end(work.prediction, work.proposal.velocity);
-    for (std::size_t v = 0; v < from.size(); ++v) velocity[v] = (velocity[v] - from[v]) / dt;
+    const MovingCloth from = find_end(work.prediction, velocity_of(work.proposal));
+    for (std::size_t v = 0; v < velocity.size(); ++v) velocity[v] = (velocity[v] - from.world[v]) / dt;
     return velocity;
 }
 
@@ -78,23 +93,21 @@ double round_off_energy(const Scene& scene, const State& state, const ClothEleme
 
 }  // namespace
 
-ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, const std::vector<Vec3>& position,
-                                 const std::vector<Vec3>& velocity)
+ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, const MovingCloth& cloth)
 {
-    return {kinetic_energy(scene.material.density, work.elements, velocity),
-            compute_energies(work.elements, work.terms, position)};
-}
-
-std::vector<Vec3> find_end(const Prediction& prediction, const std::vector<Vec3>& velocity)
-{
-    std::vector<Vec3> end = prediction.position;
-    for (std::size_t v = 0; v < end.size(); ++v) end[v] += prediction.gamma * velocity[v];
-    return end;
+    const double density = scene.material.density;
+    if (work.eol.empty())
+        return {kinetic_energy(density, work.elements, cloth.velocity.world),
+                compute_energies(work.elements, work.terms, cloth.world)};
+    const ClothElements elements = elements_at(work, cloth.material);
+    const CornerVelocities corners =
+        compute_corner_velocities(elements, cloth.world, cloth.velocity.world, cloth.velocity.material);
+    return {kinetic_energy(density, elements, corners), compute_energies(elements, work.terms, cloth.world)};
 }
 
 double compute_driven_work(const State& state, const Workspace& work)
 {
-    std::vector<Vec3> displacement = find_end(work.prediction, work.proposal.velocity);
+    std::vector<Vec3> displacement = find_end(work.prediction, velocity_of(work.proposal)).world;
     for (std::size_t v = 0; v < displacement.size(); ++v) displacement[v] -= state.mesh.world[v];
     return work_of_pins(state, work) + work_of_obstacles(work) +
            compute_load_work(state.mesh, work.elements, work.terms, work.at, work.proposal.velocity,
@@ -126,9 +139,15 @@ double find_energy_rise(const Scene& scene, const State& state, const Workspace&
 
 void weigh_start(const Scene& scene, const State& state, Workspace& work)
 {
-    const bool is_known = work.known_world == state.mesh.world && work.known_velocity == state.velocity;
+    const bool is_known = work.known.world == state.mesh.world &&
+                          work.known.material == state.mesh.material &&
+                          work.known.velocity.world == state.velocity &&
+                          work.known.velocity.material == state.material_velocity;
     work.energy =
-        is_known ? work.known_energy : compute_cloth_energy(scene, work, state.mesh.world, state.velocity);
+        is_known ? work.known_energy
+                 : compute_cloth_energy(
+                       scene, work,
+                       {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}});
 }
 
 void weigh_proposal(const Scene& scene, double dt, Workspace& work)
@@ -137,11 +156,11 @@ void weigh_proposal(const Scene& scene, double dt, Workspace& work)
     const Proposal& proposal = work.proposal;
     double fastest = 0.0;
     for (const Vec3& v : push_velocity(work, dt)) fastest = std::max(fastest, v.squaredNorm());
-    work.proposed_energy = compute_cloth_energy(scene, work, proposal.world, proposal.velocity);
-    work.solved_energy = work.proposed_energy;
-    if (fastest > kStill * kStill)
-        work.solved_energy.potential =
-            compute_energies(work.elements, work.terms, find_end(work.prediction, proposal.velocity));
+    MovingCloth end = find_end(work.prediction, velocity_of(proposal));
+    if (fastest > kStill * kStill) work.solved_energy = compute_cloth_energy(scene, work, end);
+    end.world = proposal.world;
+    work.proposed_energy = compute_cloth_energy(scene, work, end);
+    if (!(fastest > kStill * kStill)) work.solved_energy = work.proposed_energy;
 }
 
 bool is_push_costly(const Scene& scene, double dt, const Workspace& work)
@@ -155,11 +174,14 @@ bool is_push_costly(const Scene& scene, double dt, const Workspace& work)
     return cost > push + kRise * (work.solved_energy.kinetic + elastic);
 }
 
-double compute_step_objective(const Scene& scene, const Workspace& work, const std::vector<Vec3>& velocity)
+double compute_step_objective(const Scene& scene, const Workspace& work, const ClothVelocity& velocity)
 {
-    std::vector<Vec3> gained = velocity;
-    for (std::size_t v = 0; v < gained.size(); ++v) gained[v] -= work.prediction.velocity[v];
-    return compute_cloth_energy(scene, work, find_end(work.prediction, velocity), gained).sum();
+    MovingCloth end = find_end(work.prediction, velocity);
+    for (std::size_t v = 0; v < end.world.size(); ++v) {
+        end.velocity.world[v] -= work.prediction.velocity[v];
+        end.velocity.material[v] -= work.prediction.material_velocity[v];
+    }
+    return compute_cloth_energy(scene, work, end).sum();
 }
 
 }  // namespace arris

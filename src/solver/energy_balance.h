@@ -24,11 +24,8 @@
 
 namespace arris {
 
-ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, const std::vector<Vec3>& position,
-                                 const std::vector<Vec3>& velocity);
-
-/// Where the cloth is (m) at the step's end, if it moves with `velocity` (m/s).
-std::vector<Vec3> find_end(const Prediction& prediction, const std::vector<Vec3>& velocity);
+/// Of a cloth with the workspace's faces. Where material flows, elements are taken where it is.
+ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, const MovingCloth& cloth);
 
 /// Work, J, that moving pins, moving obstacles, pulls and wind do on the cloth in the step from `state` to
 /// the velocity in `work.solution`, with the forces that this has found. Negative where they are driven.
@@ -49,6 +46,6 @@ double find_energy_rise(const Scene& scene, const State& state, const Workspace&
 bool is_push_costly(const Scene& scene, double dt, const Workspace& work);
 
 /// 1/2 |v - v~|_M^2 + V(q~ + gamma v), J: what the step minimises, but for wind, pulls and damping.
-double compute_step_objective(const Scene& scene, const Workspace& work, const std::vector<Vec3>& velocity);
+double compute_step_objective(const Scene& scene, const Workspace& work, const ClothVelocity& velocity);
 
 }  // namespace arris

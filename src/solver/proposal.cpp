@@ -77,7 +77,7 @@ void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<O
         const double gap =
             contact.normal.dot(local.at(proposal.world) - steps[contact.obstacle].end(local.point));
         const double wanted = local.least_gap + (contact.may_grow ? growth : 0.0);
-        const double missing = std::min(thickness, wanted) - gap;
+        const double missing = std::min(contact.mitre * thickness, wanted) - gap;
         if (missing > 0.0) local.shift(missing * contact.normal, proposal.world);
     }
     hold_in_place(held, proposal.world);

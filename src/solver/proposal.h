@@ -12,8 +12,10 @@ namespace arris {
 
 /// A step's end as it is proposed; not committed. One entry a vertex.
 struct Proposal {
-    std::vector<Vec3> world;     ///< q', m
-    std::vector<Vec3> velocity;  ///< v', m/s
+    std::vector<Vec3> world;              ///< q', m
+    std::vector<Vec3> velocity;           ///< v', m/s
+    std::vector<Vec2> material;           ///< X', m
+    std::vector<Vec2> material_velocity;  ///< V', m/s
 };
 
 /// Moves positions, not velocities, out to what their contacts keep, which mends round-off, and of a cloth

@@ -6,6 +6,13 @@
 
 namespace arris {
 
+bool has_features(const Scene& scene)
+{
+    return std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const Obstacle& obstacle) {
+        return !obstacle.features().edges.empty() || !obstacle.features().corners.empty();
+    });
+}
+
 Placement pin_placement(const Scene& scene, const Pin& pin, double time)
 {
     if (!pin.follows) return pin.motion.at(time);

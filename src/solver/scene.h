@@ -8,6 +8,7 @@
 
 #include "geometry/material_box.h"
 #include "geometry/obstacle.h"
+#include "geometry/patch_quality.h"
 #include "geometry/rigid_motion.h"
 #include "physics/effects.h"
 #include "physics/material.h"
@@ -34,7 +35,11 @@ struct Scene {
     std::vector<Pull> pulls;
     std::vector<Pin> pins;
     std::vector<Obstacle> obstacles;
+    std::optional<MeshTarget> eol;  ///< what the mesh near features should be; without it none is EOL
 };
+
+/// Whether any obstacle has a sharp edge, corner, wire or point.
+bool has_features(const Scene& scene);
 
 /// Maps where something that `pin` holds was at time 0 to where it has it at `time` (s).
 Placement pin_placement(const Scene& scene, const Pin& pin, double time);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -61,6 +62,21 @@ struct State {
     std::vector<PinAnchor> anchors;     ///< ascending by (pin, vertex_id)
     std::vector<ActiveContact> active;  ///< ascending by (vertex_ids, obstacle, kind, element)
     std::int64_t crossings = 0;         ///< how often, so far, something passed through
+
+    /// -1 where there is no such vertex.
+    int index_of(std::uint32_t id) const
+    {
+        const auto found = std::lower_bound(ids.begin(), ids.end(), id);
+        return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
+    }
+
+    /// Entry in `eol` of the vertex with this id; -1 where it is none.
+    int eol_entry(std::uint32_t id) const
+    {
+        const auto found = std::lower_bound(
+            eol.begin(), eol.end(), id, [](const EolVertex& e, std::uint32_t i) { return e.vertex_id < i; });
+        return found != eol.end() && found->vertex_id == id ? static_cast<int>(found - eol.begin()) : -1;
+    }
 };
 
 }  // namespace arris

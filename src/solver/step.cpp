@@ -6,8 +6,10 @@
 #include <cmath>
 #include <optional>
 
+#include "solver/conform.h"
 #include "solver/constraints.h"
 #include "solver/energy_balance.h"
+#include "solver/mesh_transfer.h"
 #include "solver/stopwatch.h"
 
 namespace arris {
@@ -16,13 +18,39 @@ namespace {
 
 constexpr int kMostSolves = 12;  // of one step
 
+/// The state to step from: as it is, or on another mesh.
+State& conform(const Scene& scene, double end, State& state, Workspace& work, StepReport& report)
+{
+    Stopwatch watch;
+    prepare(scene, state, work);
+    report.seconds.move += watch.lap();
+    // Strictly where the cloth could not give way as it should have.
+    std::optional<ConformedMesh> conformed;
+    TransferReport transferred;
+    for (const bool is_strict : {false, true}) {
+        conformed = conform_mesh(scene, end - state.time, state, work.edges, work.given_up, is_strict);
+        report.seconds.conform += watch.lap();
+        if (!conformed) return state;
+        work.conformed = transfer(scene, state, *conformed, transferred);
+        report.seconds.transfer += watch.lap();
+        if (!transferred.is_strained) break;
+    }
+    report.inserted = conformed->report.inserted;
+    report.released = conformed->report.released;
+    prepare(scene, work.conformed, work);
+    report.seconds.move += watch.lap();
+    return work.conformed;
+}
+
 /// Where the integrator starts from, and where pins and obstacles will be.
 void move(const Scene& scene, const Settings& settings, double end, const State& state, Workspace& work)
 {
     work.prediction = predict(state, settings.integrator, end - state.time);
-    work.expansion = state.velocity;
-    if (!work.prediction.has_history) work.expansion.assign(state.velocity.size(), Vec3::Zero());
-    weigh_start(scene, state, work);
+    work.expansion = {state.velocity, state.material_velocity};
+    if (!work.prediction.has_history) {
+        work.expansion.world.assign(state.velocity.size(), Vec3::Zero());
+        work.expansion.material.assign(state.velocity.size(), Vec2::Zero());
+    }
     work.is_least_taken = false;
     work.held = find_held_vertices(scene, state, end);
     work.obstacles = move_obstacles(scene, state, work.edges, work.prediction, work.held, end);
@@ -32,8 +60,12 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
 bool find_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
 {
     work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
+    work.eol.clear();
+    if (!state.eol.empty())
+        work.eol = add_eol_contacts(scene, state, work.stars, work.prediction, work.obstacles, work.contacts);
+    weigh_start(scene, state, work);
     const std::optional<int> crushed = share_room(work.obstacles, work.prediction, work.contacts).crushed;
-    flatten_history(scene, state, work.obstacles, 0, work.contacts, work.prediction);
+    flatten_history(scene, state, work.obstacles, work.eol, 0, work.contacts, work.prediction);
     work.has_system = false;
     work.yielded = 0;
     if (!crushed) return true;
@@ -42,11 +74,39 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
     return false;
 }
 
-/// Each vertex's coordinates, in which pins are known and contacts are bounds or rows; A, b in them.
-void assemble(const Scene& scene, double end, const State& state, Workspace& work)
+/// Whether every face keeps most of the material it has at the step's start: a face whose height changes by a
+/// large share in one step has a strain that one linearisation cannot follow.
+bool has_material_left(Workspace& work, const std::vector<Vec2>& material)
 {
-    if (work.has_system) return;
-    build_constraints(work.held, work.prediction, state, work.contacts, work.at, work.problem);
+    constexpr double kLeast = 0.7;
+    work.overrun.clear();
+    for (const EolCoordinates& eol : work.eol)
+        for (const int f : work.stars.faces[eol.vertex]) {
+            const auto& [a, b, c] = work.faces_of_elements[f];
+            const double left = 0.5 * twice_area(material[a], material[b], material[c]);
+            if (!(left >= kLeast * work.elements.faces[f].area)) work.overrun.push_back(eol.vertex);
+        }
+    return work.overrun.empty();
+}
+
+/// The material side of the linearisation.
+void let_material_flow(const State& state, const Prediction& prediction, const ClothVelocity& expansion,
+                       const MovingCloth& end, MaterialFlow& flow)
+{
+    flow.position = end.material;
+    flow.v_predicted = prediction.material_velocity;
+    flow.v_expansion = expansion.material;
+    flow.v_last = state.material_velocity;
+    const MovingCloth past = extrapolate(state, prediction);
+    flow.extrapolated = {past.world, past.velocity.world, past.material, past.velocity.material};
+}
+
+/// Each vertex's coordinates, in which pins are known and contacts are bounds or rows; A, b in them.
+/// False where material would have flowed further than the mesh allows.
+bool assemble(const Scene& scene, double end, const State& state, Workspace& work)
+{
+    if (work.has_system) return true;
+    build_constraints(work.held, work.eol, work.prediction, state, work.contacts, work.at, work.problem);
     Linearization& at = work.at;
     const Prediction& prediction = work.prediction;
     at.begin = state.time;
@@ -55,9 +115,17 @@ void assemble(const Scene& scene, double end, const State& state, Workspace& wor
     at.damping = scene.material.damping;
     at.v_predicted = prediction.velocity;
     at.v_last = state.velocity;
-    at.v_expansion = work.expansion;
-    at.position = find_end(prediction, work.expansion);
+    const MovingCloth end_there = find_end(prediction, work.expansion);
+    at.v_expansion = work.expansion.world;
+    at.position = end_there.world;
+    if (at.flow) {
+        let_material_flow(state, prediction, work.expansion, end_there, *at.flow);
+        if (!has_material_left(work, at.flow->position) ||
+            !has_material_left(work, at.flow->extrapolated.material))
+            return false;
+    }
     work.system.assemble(state.mesh, work.elements, work.terms, at);
+    return true;
 }
 
 /// Minimises 1/2 u^T A u - b^T u over bounds and rows.
@@ -88,6 +156,20 @@ void solve_velocity(const Settings& settings, Workspace& work, StepReport& repor
             report.status = StepStatus::Infeasible;
             break;
     }
+}
+
+/// X' = X~ + gamma V'. False where more material flows over a feature than the mesh has there.
+bool propose_flow(Workspace& work)
+{
+    work.proposal.material = work.prediction.material;
+    work.proposal.material_velocity.assign(work.prediction.material.size(), Vec2::Zero());
+    for (const EolCoordinates& eol : work.eol) {
+        const int v = eol.vertex;
+        Vec2& flow = work.proposal.material_velocity[v];
+        flow = eol.material_basis * work.solution.velocity.segment<3>(3 * v);
+        work.proposal.material[v] += work.prediction.gamma * flow;
+    }
+    return has_material_left(work, work.proposal.material);
 }
 
 /// q' = q~ + gamma v'. Where the cloth is nearer to an obstacle than its stand-off, it is moved out by up to
@@ -180,7 +262,8 @@ bool add_violations(const Scene& scene, const State& state, const Violations& vi
     const std::size_t first = work.contacts.size();
     work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());
     const bool is_shared = share_room(work.obstacles, work.prediction, work.contacts).is_changed;
-    if (flatten_history(scene, state, work.obstacles, first, work.contacts, work.prediction) || is_shared)
+    if (flatten_history(scene, state, work.obstacles, work.eol, first, work.contacts, work.prediction) ||
+        is_shared)
         work.has_system = false;
     else
         append_rows(work.prediction, work.at, first, work.contacts, work.problem);
@@ -194,12 +277,15 @@ void relinearise(const Scene& scene, Workspace& work, StepReport& report)
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
     for (std::size_t c = 0; c < work.contacts.size(); ++c) work.contacts[c].is_pressing = multiplier[c] > 0.0;
 
-    std::vector<Vec3> next = work.proposal.velocity;
+    ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
     if (report.relinearisations > 0) {  // the first v^ keeps no contact: no measure
         const double now = compute_step_objective(scene, work, work.expansion);
         for (double share = 1.0; compute_step_objective(scene, work, next) > now && share > kShortest;) {
             share *= 0.5;
-            for (std::size_t v = 0; v < next.size(); ++v) next[v] = 0.5 * (next[v] + work.expansion[v]);
+            for (std::size_t v = 0; v < next.world.size(); ++v) {
+                next.world[v] = 0.5 * (next.world[v] + work.expansion.world[v]);
+                next.material[v] = 0.5 * (next.material[v] + work.expansion.material[v]);
+            }
         }
     }
     work.expansion = std::move(next);
@@ -233,18 +319,21 @@ bool keep_energy(const Scene& scene, const State& state, Attempt attempt, Worksp
     return true;
 }
 
-/// Steps 3 to 5 once; true where the velocity is to be solved again.
+/// Steps 4 to 6 once; true where the velocity is to be solved again.
 bool solve_and_check(const Scene& scene, const Settings& settings, double end, const State& state,
                      Attempt attempt, Workspace& work, StepReport& report)
 {
     constexpr double kGrowth = 0.1;  // m/s, of a gap on its way to the stand-off
     Stopwatch watch;
 
-    // 3. A and b in the vertices' coordinates, in which contacts are bounds and rows.
-    assemble(scene, end, state, work);
+    // 4. A and b in the vertices' coordinates, in which contacts are bounds and rows.
+    if (!assemble(scene, end, state, work)) {
+        report.status = StepStatus::Overrun;
+        return false;
+    }
     report.seconds.assemble += watch.lap();
 
-    // 4. The constrained velocity, with its certificate. What cannot be met together yields.
+    // 5. The constrained velocity, with its certificate. What cannot be met together yields.
     solve_velocity(settings, work, report);
     watch.lap();
     if (report.status == StepStatus::Infeasible && report.solves < kMostSolves &&
@@ -252,7 +341,11 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
         return true;
     if (report.status != StepStatus::Done && report.status != StepStatus::Infeasible) return false;
 
-    // 5. q' = q~ + gamma v', not committed, and the exact check of the whole way.
+    // 6. q' = q~ + gamma v', not committed, and the exact check of the whole way.
+    if (report.status == StepStatus::Done && !propose_flow(work)) {
+        report.status = StepStatus::Overrun;
+        return false;
+    }
     const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
     const Violations violations = propose_and_check(scene, end - state.time, growth, work);
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
@@ -276,29 +369,69 @@ int count_feature_rows(const std::vector<Contact>& contacts, const std::vector<d
     return count;
 }
 
+/// What each EOL vertex has to remember: which way is outward, and since when it does not press.
+void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoordinates>& eol,
+                const std::vector<double>& multiplier, std::vector<EolVertex>& vertices)
+{
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+        if (contacts[c].eol < 0) continue;
+        EolVertex& vertex = vertices[eol[contacts[c].eol].entry];
+        vertex.outward = contacts[c].in_frame.normal;
+        vertex.idle = multiplier[c] > 0.0 ? 0 : vertex.idle + 1;
+    }
+}
+
+/// A shorter step needs less room; where that has not helped once, the traces concerned become rows, where
+/// that has not helped either, all do.
+void note_overrun(const State& state, const StepReport& report, Workspace& work)
+{
+    if (report.status == StepStatus::Overrun && ++work.overruns > 1) {
+        for (const int v : work.overrun) work.given_up.push_back(state.eol[state.eol_entry(state.ids[v])]);
+        if (work.overruns > Workspace::kMostOverruns) work.given_up = state.eol;
+    }
+    if (report.status != StepStatus::Done) return;
+    work.overruns = 0;
+    work.given_up.clear();
+}
+
 /// Swaps the new state in, or leaves the old one where the step failed.
 void commit(double end, Workspace& work, State& state, StepReport& report)
 {
     if (report.status != StepStatus::Done) return;
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
     state.active = active_contacts(state, work.contacts, multiplier);
+    count_idle(work.contacts, work.eol, multiplier, state.eol);
     state.crossings += report.crossings;
     report.contacts = static_cast<int>(state.active.size());
+    report.eol_vertices = static_cast<int>(state.eol.size());
     report.feature_rows = count_feature_rows(work.contacts, multiplier);
     state.previous_world.swap(state.mesh.world);
     state.previous_velocity.swap(state.velocity);
     state.mesh.world.swap(work.proposal.world);
     state.velocity.swap(work.proposal.velocity);
-    state.previous_material = state.mesh.material;
-    state.previous_material_velocity = state.material_velocity;
+    state.previous_material.swap(state.mesh.material);
+    state.previous_material_velocity.swap(state.material_velocity);
+    state.mesh.material.swap(work.proposal.material);
+    state.material_velocity.swap(work.proposal.material_velocity);
     state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // put back by hand: no history
     state.time = end;
     ++state.step;
-    work.known_world.clear();
+    work.known.world.clear();
     if (report.rewound > 0) return;
     work.known_energy = work.proposed_energy;
-    work.known_world = state.mesh.world;
-    work.known_velocity = state.velocity;
+    work.known = {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
+}
+
+/// What presses at the start, where there is no last step to tell: what does in a first step that is not
+/// kept.
+std::vector<ActiveContact> find_pressing(const Scene& scene, const Settings& settings, double end,
+                                         const State& state, Workspace& work, Attempt attempt)
+{
+    Scene rows_only = scene;
+    rows_only.eol.reset();
+    State trial = state;
+    step(rows_only, settings, end, trial, work, attempt);
+    return trial.active;
 }
 
 }  // namespace
@@ -330,13 +463,22 @@ void prepare(const Scene& scene, const State& state, Workspace& work)
 {
     if (work.terms.faces.empty())
         work.terms = make_terms(scene.material, scene.gravity, scene.wind, scene.pulls);
-    if (work.faces_of_elements == state.mesh.faces && work.material_of_elements == state.mesh.material)
+    const bool has_faces = work.faces_of_elements == state.mesh.faces;
+    if (has_faces && work.material_of_elements == state.mesh.material) return;
+    if (has_faces) {  // material has flowed
+        const std::vector<Vec2>& then = work.material_of_elements;
+        std::vector<char> is_moved(then.size());
+        for (std::size_t v = 0; v < then.size(); ++v) is_moved[v] = then[v] != state.mesh.material[v];
+        update_elements(state.mesh, is_moved, work.elements);
+        work.material_of_elements = state.mesh.material;
         return;
+    }
     MeshTopology topology = make_topology(state.mesh.vertex_count(), state.mesh.faces);
+    if (scene.eol) work.stars = make_stars(state.mesh.vertex_count(), state.mesh.faces, topology.edges);
     work.elements = make_elements(state.mesh, topology);
     work.edges = std::move(topology.edges);
     work.system.make_pattern(work.elements);
-    work.known_world.clear();
+    work.known.world.clear();
     work.faces_of_elements = state.mesh.faces;
     work.material_of_elements = state.mesh.material;
 }
@@ -347,22 +489,30 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     StepReport report;
     report.dt = end - state.time;
     Stopwatch watch;
+    if (scene.eol && state.step == 0 && state.active.empty())
+        state.active = find_pressing(scene, settings, end, state, work, attempt);
 
-    // 1. Elements of a mesh that changed; q~ and v~ of the integrator; where pins and obstacles will be.
-    prepare(scene, state, work);
-    move(scene, settings, end, state, work);
-    report.seconds.move += watch.lap();
-
-    // 2. What the cloth may touch: vertices, edges and faces; nothing can move where it has no room.
-    if (!find_contacts(scene, state, work, report)) return report;
-    report.seconds.contacts += watch.lap();
-
-    // 3 - 5. Solve, propose, check: what the check finds becomes rows, in bounded rounds.
-    while (solve_and_check(scene, settings, end, state, attempt, work, report)) continue;
+    // 1. EOL vertices on the features that press; elements of a mesh that changed.
+    State& start = conform(scene, end, state, work, report);
     watch.lap();
 
-    // 6. Swapped in, or the state stays as it was.
-    commit(end, work, state, report);
+    // 2. q~ and v~ of the integrator; where pins and obstacles will be.
+    move(scene, settings, end, start, work);
+    report.seconds.move += watch.lap();
+
+    // 3. What the cloth may touch: vertices, edges and faces; nothing can move where it has no room.
+    if (!find_contacts(scene, start, work, report)) return report;
+    report.seconds.contacts += watch.lap();
+
+    // 4 - 6. Solve, propose, check: what the check finds becomes rows, in bounded rounds.
+    while (solve_and_check(scene, settings, end, start, attempt, work, report)) continue;
+    watch.lap();
+
+    note_overrun(start, report, work);
+
+    // 7. Swapped in, or the state stays as it was.
+    commit(end, work, start, report);
+    if (report.status == StepStatus::Done && &start != &state) std::swap(state, start);
     report.seconds.advance += watch.lap();
     return report;
 }

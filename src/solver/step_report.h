@@ -5,7 +5,7 @@
 
 namespace arris {
 
-enum class StepStatus { Done, NotConverged, Infeasible, NotFinite, Penetration, EnergyRise };
+enum class StepStatus { Done, NotConverged, Infeasible, NotFinite, Penetration, EnergyRise, Overrun };
 
 /// Wall seconds of one step by phase.
 struct PhaseSeconds {
@@ -38,6 +38,8 @@ struct StepReport {
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;
+    int eol_vertices = 0;
+    int inserted = 0, released = 0;  ///< EOL vertices
     PhaseSeconds seconds;
 };
 

@@ -19,6 +19,7 @@ Prediction predict(const State& state, Integrator integrator, double dt)
     // ((1+w)^2 a_k - w^2 a_(k-1)) / (1+2w) = a_k + w^2 / (1+2w) (a_k - a_(k-1))   exact for a resting vertex
     const double w = dt / state.previous_dt;
     const double forward = w * w / (1.0 + 2.0 * w);
+    prediction.ratio = w;
     prediction.forward = forward;
     prediction.gamma = dt * (1.0 + w) / (1.0 + 2.0 * w);
     const auto extrapolate = [forward](auto& now, const auto& previous) {
@@ -30,6 +31,29 @@ Prediction predict(const State& state, Integrator integrator, double dt)
     extrapolate(prediction.material, state.previous_material);
     extrapolate(prediction.material_velocity, state.previous_material_velocity);
     return prediction;
+}
+
+MovingCloth find_end(const Prediction& prediction, const ClothVelocity& velocity)
+{
+    MovingCloth end{prediction.position, prediction.material, velocity};
+    for (std::size_t v = 0; v < end.world.size(); ++v) {
+        end.world[v] += prediction.gamma * velocity.world[v];
+        end.material[v] += prediction.gamma * velocity.material[v];
+    }
+    return end;
+}
+
+MovingCloth extrapolate(const State& state, const Prediction& prediction)
+{
+    if (!prediction.has_history)
+        return {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
+    ClothVelocity velocity{state.velocity, state.material_velocity};
+    for (std::size_t v = 0; v < velocity.world.size(); ++v) {
+        velocity.world[v] += prediction.ratio * (state.velocity[v] - state.previous_velocity[v]);
+        velocity.material[v] +=
+            prediction.ratio * (state.material_velocity[v] - state.previous_material_velocity[v]);
+    }
+    return find_end(prediction, velocity);
 }
 
 }  // namespace arris

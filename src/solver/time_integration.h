@@ -18,12 +18,32 @@ namespace arris {
 struct Prediction {
     double gamma = 0.0;                   ///< s
     bool has_history = false;             ///< BDF2 with a step behind it; else implicit Euler
+    double ratio = 0.0;                   ///< of this step to the last
     double forward = 0.0;                 ///< q~ = q_k + forward (q_k - q_(k-1))
     std::vector<Vec3> position;           ///< q~, m
     std::vector<Vec3> velocity;           ///< v~, m/s
     std::vector<Vec2> material;           ///< X~, m
     std::vector<Vec2> material_velocity;  ///< V~, m/s
 };
+
+/// Velocities of vertices, m/s; `material` is that with which their material coordinates move.
+struct ClothVelocity {
+    std::vector<Vec3> world;
+    std::vector<Vec2> material;
+};
+
+/// The cloth's vertices at one moment, in the world and in the material, and how they move.
+struct MovingCloth {
+    std::vector<Vec3> world;     ///< m
+    std::vector<Vec2> material;  ///< m
+    ClothVelocity velocity;
+};
+
+/// Where a step ends with this velocity: q' = q~ + gamma v'.
+MovingCloth find_end(const Prediction& prediction, const ClothVelocity& velocity);
+
+/// Where the cloth would be at the step's end by its past alone; implicit Euler: as it is.
+MovingCloth extrapolate(const State& state, const Prediction& prediction);
 
 /// BDF2 is implicit Euler where there is no step behind it, or one so short that variable-step BDF2 were not
 /// stable.

@@ -30,6 +30,15 @@ struct Workspace {
     std::vector<Face> faces_of_elements;  ///< of the mesh `elements` was made for
     std::vector<Vec2> material_of_elements;
     std::vector<MeshEdge> edges;
+    ClothStars stars;  ///< where the state has EOL vertices
+
+    // conform
+    std::vector<int> overrun;         ///< EOL vertices over which more material would flow than there is
+    int overruns = 0;                 ///< attempts of this step that ended so
+    std::vector<EolVertex> given_up;  ///< for which no attempt of this step had room
+    bool has_given_up() const { return !given_up.empty() && overruns <= kMostOverruns + 1; }
+    static constexpr int kMostOverruns = 4;  ///< then all traces become rows
+    State conformed;                         ///< on the mesh that the step wants, where it is not the state's
 
     // move
     Prediction prediction;
@@ -38,8 +47,9 @@ struct Workspace {
 
     // find_contacts, build_constraints, add_violations
     std::vector<Contact> contacts;
+    std::vector<EolCoordinates> eol;
     Linearization at;
-    std::vector<Vec3> expansion;  ///< v^, m/s
+    ClothVelocity expansion;  ///< v^
     VelocityProblem problem;
     int yielded = 0;
     bool has_system = false;  ///< of this step's prediction; rows may have been added since
@@ -49,15 +59,15 @@ struct Workspace {
     VelocitySolution solution;
     Proposal proposal;
 
-    // move, weigh_proposal, keep_energy
+    // find_contacts, weigh_proposal, keep_energy
     ClothEnergy energy;           ///< at the step's start
     ClothEnergy solved_energy;    ///< of the proposal before anything was moved out to its stand-off
     ClothEnergy proposed_energy;  ///< and after
     double least_rise = 0.0;      ///< J, of this step's linearisations so far
-    std::vector<Vec3> least_at;   ///< v^ of that one, m/s
+    ClothVelocity least_at;       ///< v^ of that one
     bool is_least_taken = false;  ///< whatever it is
-    ClothEnergy known_energy;     ///< of these, which the last commit left
-    std::vector<Vec3> known_world, known_velocity;
+    ClothEnergy known_energy;     ///< of `known`, which the last commit left
+    MovingCloth known;
 };
 
 }  // namespace arris

@@ -42,6 +42,8 @@ const std::vector<IneffectiveKey> kIneffectiveKeys = {
      "6: cloth.material.preset = \"silk\": has no effect: all its values are overridden"},
     {"Thickness", "[cloth.material]\nthickness = 1e-3\n",
      "6: cloth.material.thickness = 1e-3: has no effect: there is no obstacle to keep away from"},
+    {"Eol", "[eol]\nenabled = true\n",
+     "6: eol.enabled = true: has no effect: no obstacle has a sharp feature"},
     {"Gravity", "[gravity]\nacceleration = [0, 0, 0]\n",
      "6: gravity.acceleration = [0, 0, 0]: has no effect: it is zero"},
     {"Drag", "[wind]\nvelocity = [1, 0, 0]\ndrag = 0\n", "5: wind: has no effect: its drag is zero"},

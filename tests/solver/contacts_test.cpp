@@ -218,7 +218,7 @@ struct Landed {
         contacts.back().was_active = was_active;
     }
 
-    bool flatten() { return flatten_history(scene, state, steps, 0, contacts, prediction); }
+    bool flatten() { return flatten_history(scene, state, steps, {}, 0, contacts, prediction); }
 };
 
 TEST(FlattenHistory, StopsWhatWouldBeExtrapolatedThroughAndLeavesTheRest)
@@ -287,10 +287,10 @@ TEST(FlattenHistory, OnlyOfContactsFromTheFirstOnButUpdatesAllGaps)
     landed.touch({1.0, 0.0}, true);
     landed.touch({1.0, 0.0}, true);
     ASSERT_TRUE(
-        flatten_history(landed.scene, landed.state, landed.steps, 1, landed.contacts, landed.prediction));
+        flatten_history(landed.scene, landed.state, landed.steps, {}, 1, landed.contacts, landed.prediction));
     for (const Contact& contact : landed.contacts) EXPECT_NEAR(contact.gap, 0.0, kRoundOff);
     EXPECT_FALSE(
-        flatten_history(landed.scene, landed.state, landed.steps, 2, landed.contacts, landed.prediction));
+        flatten_history(landed.scene, landed.state, landed.steps, {}, 2, landed.contacts, landed.prediction));
 }
 
 }  // namespace

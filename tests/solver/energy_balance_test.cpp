@@ -42,12 +42,18 @@ struct OneStep {
         before = state;
         EXPECT_EQ(step(scene, settings, start + kStep, state, work).status, StepStatus::Done);
         work.proposal.velocity = state.velocity;  // the commit has taken it away
+        work.proposal.material_velocity = state.material_velocity;
+    }
+
+    std::vector<Vec3> end() const
+    {
+        return find_end(work.prediction, {work.proposal.velocity, work.proposal.material_velocity}).world;
     }
 
     double mass() const { return scene.material.density * material_area(state.mesh); }
     void weigh()
     {
-        work.proposal.world = find_end(work.prediction, work.proposal.velocity);
+        work.proposal.world = end();
         weigh_proposal(scene, kStep, work);
     }
     bool is_push_costly_to(const std::vector<Vec3>& world)
@@ -170,7 +176,7 @@ TEST(EnergyRise, IsNoRoundOffOfASheetThatHangsFarAway)
 TEST(Push, IsCostlyWhereItStrainsAndFreeWhereItDoesNot)
 {
     OneStep one{Scene()};
-    const std::vector<Vec3> flat = find_end(one.work.prediction, one.work.proposal.velocity);
+    const std::vector<Vec3> flat = one.end();
     EXPECT_FALSE(one.is_push_costly_to(flat)) << "nothing is moved";
     std::vector<Vec3> world = flat;
     for (Vec3& x : world) x.z() += 1e-3;

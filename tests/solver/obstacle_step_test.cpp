@@ -113,7 +113,11 @@ struct ObstacleRun {
     }
 
     double kinetic() const { return kinetic_energy(scene.material.density, work.elements, state.velocity); }
-    ClothEnergy energy() const { return compute_cloth_energy(scene, work, state.mesh.world, state.velocity); }
+    ClothEnergy energy() const
+    {
+        return compute_cloth_energy(
+            scene, work, {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}});
+    }
     double mass() const { return scene.material.density * material_area(state.mesh); }
     Vec3 centre() const
     {

@@ -203,7 +203,10 @@ Shock throw_at_teeth(Integrator integrator, double stiffness, double speed, doub
     ClothRun run(scene, mesh, Vec3(0.0, 0.0, -speed));
     run.settings.integrator = integrator;
     const auto energy = [&] {
-        return compute_cloth_energy(run.scene, run.work, run.state.mesh.world, run.state.velocity);
+        const State& state = run.state;
+        return compute_cloth_energy(
+            run.scene, run.work,
+            {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}});
     };
     const double first = energy().sum();
     double before = first;

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/conform.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "geometry/closest_point.h"
+#include "geometry/surgery_cleanup.h"
+#include "geometry/trace_insertion.h"
+#include "geometry/trace_motion.h"
+#include "solver/border_room.h"
+#include "solver/eol_coordinates.h"
+#include "solver/eol_guard.h"
+#include "solver/feature_sites.h"
+#include "solver/held_vertices.h"
+
+namespace arris {
+
+namespace {
+
+constexpr int kMostIdle = 3;         // steps without pressing, after which a vertex is released
+constexpr double kRoom = 0.15;       // target lengths to a border ahead, below which a trace is released
+constexpr double kCornerRoom = 0.3;  // the same of an obstacle's corner
+constexpr double kInsertRoom = 0.3, kCornerInsertRoom = 0.5;  // and to be made
+constexpr double kClearSteps = 3.3;                           // of flow that must find material ahead
+
+/// Tags of the surgery: one a polyline and one a corner of each obstacle.
+class FeatureTags {
+  public:
+    explicit FeatureTags(const std::vector<Obstacle>& obstacles) : obstacles_(obstacles)
+    {
+        for (const Obstacle& obstacle : obstacles) {
+            first_.push_back(count_);
+            const ObstacleFeatures& features = obstacle.features();
+            count_ += features.polyline_count + static_cast<int>(features.corners.size());
+        }
+    }
+
+    int tag(std::int32_t obstacle, bool is_corner, std::int32_t feature) const
+    {
+        const ObstacleFeatures& features = obstacles_[obstacle].features();
+        return first_[obstacle] +
+               (is_corner ? features.polyline_count + feature : features.edges[feature].polyline);
+    }
+    int tag(const EolVertex& vertex) const { return tag(vertex.obstacle, vertex.is_corner, vertex.feature); }
+
+  private:
+    const std::vector<Obstacle>& obstacles_;
+    std::vector<int> first_;
+    int count_ = 0;
+};
+
+/// Whether an EOL vertex is still on the stretch of feature that it is on.
+bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3& place)
+{
+    if (vertex.is_corner) return true;
+    const auto [a, b] = feature_segment(obstacle, vertex.feature);
+    const double s = closest_on_segment(place, a, b);
+    return s > 0.0 && s < 1.0;
+}
+
+class Conforming {
+  public:
+    Conforming(const Scene& scene, double dt, const State& state, const std::vector<MeshEdge>& edges,
+               bool is_strict)
+        : scene_(scene),
+          dt_(dt),
+          state_(state),
+          edges_(edges),
+          stars_(make_stars(state.mesh.vertex_count(), state.mesh.faces, edges)),
+          target_(*scene.eol),
+          tags_(scene.obstacles),
+          guard_(scene, state, is_strict)
+    {
+    }
+
+    std::optional<ConformedMesh> run(const std::vector<EolVertex>& given_up)
+    {
+        find_releases();
+        sites_ = find_feature_sites(scene_, state_, edges_);
+        if (released_.empty() && sites_.empty() && given_up.empty() && !is_flowing()) return std::nullopt;
+        surgery_.emplace(state_.mesh, state_.ids, state_.next_id, pinned());
+        guard_.watch(*surgery_);
+        surgery_->set_guard([this](const SurgeryEvent& event) { return guard_.allows(event); });
+        mark();
+        for (const VertexId v : released_) release(v);
+        for (const EolVertex& vertex : given_up) {
+            given_up_.insert(tags_.tag(vertex));
+            if (surgery_->has_vertex(vertex.vertex_id)) release_trace(vertex.vertex_id);
+        }
+        clear_way();
+        for (const FeatureSite& site : sites_) insert(site);
+        join();
+        report_.operations += clean_up(*surgery_, target_).operations();
+        if (surgery_->events().empty() && report_.released == 0 && report_.inserted == 0) return std::nullopt;
+        return result();
+    }
+
+  private:
+    bool is_flowing() const
+    {
+        return std::any_of(state_.eol.begin(), state_.eol.end(), [&](const EolVertex& e) {
+            return !state_.material_velocity[state_.index_of(e.vertex_id)].isZero();
+        });
+    }
+
+    std::vector<VertexId> pinned() const
+    {
+        std::vector<VertexId> ids;
+        for (const HeldVertex& held : find_held_vertices(scene_, state_, state_.time + dt_))
+            ids.push_back(state_.ids[held.vertex]);
+        return ids;
+    }
+
+    void find_releases()
+    {
+        Placement now;
+        std::vector<Vec3> positions;  // in the frame of obstacle `of`
+        int of = -1;
+        for (int entry = 0; entry < static_cast<int>(state_.eol.size()); ++entry) {
+            const EolVertex& eol = state_.eol[entry];
+            const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+            const int v = state_.index_of(eol.vertex_id);
+            if (eol.obstacle != of) {
+                of = eol.obstacle;
+                now = obstacle.at(state_.time);
+                positions = to_frame(now, state_.mesh.world);
+            }
+            const double room =
+                (eol.is_corner ? kCornerRoom : kRoom) * target_.length(state_.mesh.material[v]);
+            const bool is_idle = eol.idle >= kMostIdle;
+            if (!is_idle &&
+                room_to_border(scene_, state_, stars_, state_.mesh.material[v], v,
+                               stars_.border_neighbours[v][0] >= 0, eol) > room &&
+                is_on_feature(obstacle, eol, positions[v]) &&
+                place_eol_vertex(obstacle, state_, entry, stars_, positions, now).coordinates)
+                continue;
+            released_.push_back(eol.vertex_id);
+        }
+    }
+
+    /// Tells the surgery what is on features already.
+    void mark()
+    {
+        for (const EolVertex& e : state_.eol)
+            surgery_->set_role(e.vertex_id, e.is_corner ? TraceRole::Node : TraceRole::OnTrace, tags_.tag(e));
+        for (const MeshEdge& edge : edges_) {
+            const int a = state_.eol_entry(state_.ids[edge.a]), b = state_.eol_entry(state_.ids[edge.b]);
+            if (a < 0 || b < 0) continue;
+            const EolVertex &p = state_.eol[a], &q = state_.eol[b];
+            if (is_trace_edge(scene_.obstacles[p.obstacle], p, q))
+                surgery_->set_edge_tag(p.vertex_id, q.vertex_id, tags_.tag(p.is_corner ? q : p));
+        }
+        surgery_->take_touched();
+        eol_ = state_.eol;
+    }
+
+    void clear_way()
+    {
+        std::vector<TraceAdvance> advances;
+        for (const EolVertex& e : state_.eol) {
+            if (!surgery_->has_vertex(e.vertex_id) || surgery_->role(e.vertex_id) == TraceRole::Free)
+                continue;
+            const Vec2 ahead = kClearSteps * dt_ * state_.material_velocity[state_.index_of(e.vertex_id)];
+            advances.push_back({e.vertex_id, ahead});
+        }
+        if (advances.empty()) return;
+        guard_.set_clearing(true);
+        const ClearanceReport cleared = clear_ahead(*surgery_, target_, advances);
+        guard_.set_clearing(false);
+        report_.operations += cleared.operations;
+        // What stands in the way and cannot give way: there the feature is met by rows.
+        for (const VertexId v : cleared.blocked) release_trace(v);
+    }
+
+    /// All that is joined to a vertex along its trace: a trace with a hole would tear the cloth around it.
+    void release_trace(VertexId v)
+    {
+        std::vector<VertexId> open = {v};
+        while (!open.empty()) {
+            const VertexId at = open.back();
+            open.pop_back();
+            if (surgery_->role(at) == TraceRole::Free) continue;
+            given_up_.insert(surgery_->tag(at));
+            for (const VertexId w : surgery_->ring(at).vertices)
+                if (surgery_->edge_tag(at, w) != kNoTag) open.push_back(w);
+            release(at);
+        }
+    }
+
+    void release(VertexId v)
+    {
+        surgery_->release_vertex(v);
+        ++report_.released;
+    }
+
+    bool is_near_border(const FeatureSite& site) const
+    {
+        const int v = state_.index_of(site.near);
+        if (v < 0) return false;
+        const double h = target_.length(site.material);
+        const EolVertex eol{site.near, site.obstacle, site.is_corner, site.feature, site.outward, 0};
+        // What comes fast would have to go at once.
+        const Obstacle& obstacle = scene_.obstacles[site.obstacle];
+        const Vec3 slip = state_.velocity[v] - obstacle.velocity_after(state_.time, state_.mesh.world[v]);
+        const double room = std::max((site.is_corner ? kCornerInsertRoom : kInsertRoom) * h,
+                                     2.0 * kClearSteps * dt_ * slip.norm());
+        return room_to_border(scene_, state_, stars_, site.material, v, site.is_on_border, eol) < room;
+    }
+
+    void insert(const FeatureSite& site)
+    {
+        const int tag = tags_.tag(site.obstacle, site.is_corner, site.feature);
+        if (given_up_.contains(tag) || is_near_border(site)) {
+            ++report_.refused;
+            return;
+        }
+        if (site.is_corner && has_vertex_on(site)) return;
+        const VertexId near = surgery_->has_vertex(site.near) ? site.near : nearest_to(site.material);
+        const TraceInsertion made =
+            insert_trace_point(*surgery_, target_, site.material, near,
+                               {site.is_corner ? TraceRole::Node : TraceRole::OnTrace, tag});
+        if (made.verdict != Verdict::Done) {
+            ++report_.refused;
+            return;
+        }
+        const auto at = std::lower_bound(eol_.begin(), eol_.end(), made.vertex,
+                                         [](const EolVertex& e, VertexId id) { return e.vertex_id < id; });
+        if (at != eol_.end() && at->vertex_id == made.vertex) return;  // it was there
+        eol_.insert(at, {made.vertex, site.obstacle, site.is_corner, site.feature, site.outward, 0});
+        ++report_.inserted;
+    }
+
+    /// A corner holds one vertex of a cloth that lies over it.
+    bool has_vertex_on(const FeatureSite& corner) const
+    {
+        const double h = target_.length(corner.material);
+        return std::any_of(eol_.begin(), eol_.end(), [&](const EolVertex& e) {
+            return e.is_corner && e.obstacle == corner.obstacle && e.feature == corner.feature &&
+                   surgery_->has_vertex(e.vertex_id) && surgery_->role(e.vertex_id) != TraceRole::Free &&
+                   (surgery_->material(e.vertex_id) - corner.material).norm() < h;
+        });
+    }
+
+    VertexId nearest_to(const Vec2& material) const
+    {
+        VertexId nearest = kNoVertex;
+        double least = 0.0;
+        for (std::size_t v = 0; v < state_.ids.size(); ++v) {
+            if (!surgery_->has_vertex(state_.ids[v])) continue;
+            const double distance = (state_.mesh.material[v] - material).squaredNorm();
+            if (nearest != kNoVertex && distance >= least) continue;
+            nearest = state_.ids[v];
+            least = distance;
+        }
+        return nearest;
+    }
+
+    /// Neighbours along a feature that are neighbours in the mesh, too, get a mesh edge between them.
+    void join()
+    {
+        for (std::size_t o = 0; o < scene_.obstacles.size(); ++o) {
+            std::set<int> features;
+            for (const EolVertex& e : eol_)
+                if (e.obstacle == static_cast<int>(o) && !e.is_corner) features.insert(e.feature);
+            for (const int f : features) join_along(static_cast<int>(o), f);
+        }
+    }
+
+    void join_along(int o, int feature)
+    {
+        const Obstacle& obstacle = scene_.obstacles[o];
+        const Placement now = obstacle.at(state_.time);
+        const auto [a, b] = feature_segment(obstacle, feature);
+        const EolVertex on_it{0, o, false, feature, Vec3::Zero(), 0};
+        std::vector<std::pair<double, EolVertex>> row;
+        for (const EolVertex& e : eol_) {
+            if (!surgery_->has_vertex(e.vertex_id) || surgery_->role(e.vertex_id) == TraceRole::Free)
+                continue;
+            if (!is_trace_edge(obstacle, on_it, e)) continue;
+            row.emplace_back((now.inverse(surgery_->world(e.vertex_id)) - a).dot(b - a), e);
+        }
+        std::sort(row.begin(), row.end(), [](const auto& p, const auto& q) {
+            return std::tuple(p.first, p.second.vertex_id) < std::tuple(q.first, q.second.vertex_id);
+        });
+        for (std::size_t i = 1; i < row.size(); ++i) join(row[i - 1].second, row[i].second);
+    }
+
+    void join(const EolVertex& a, const EolVertex& b)
+    {
+        if (!surgery_->has_vertex(a.vertex_id) || !surgery_->has_vertex(b.vertex_id)) return;
+        if (surgery_->role(a.vertex_id) == TraceRole::Free || surgery_->role(b.vertex_id) == TraceRole::Free)
+            return;
+        if (!is_trace_edge(scene_.obstacles[a.obstacle], a, b)) return;
+        if (surgery_->edge_tag(a.vertex_id, b.vertex_id) != kNoTag) return;
+        const int tag = tags_.tag(a.is_corner ? b : a);
+        if (surgery_->has_edge(a.vertex_id, b.vertex_id))
+            surgery_->set_edge_tag(a.vertex_id, b.vertex_id, tag);
+        else if (share_neighbours(a.vertex_id, b.vertex_id))
+            join_trace_vertices(*surgery_, target_, a.vertex_id, b.vertex_id, tag);
+    }
+
+    /// Two vertices across one edge.
+    bool share_neighbours(VertexId a, VertexId b) const
+    {
+        for (const IdFace& face : surgery_->faces_at(a))
+            if (surgery_->apex(face[2], face[1]) == b) return true;
+        return false;
+    }
+
+    ConformedMesh result()
+    {
+        ConformedMesh made{surgery_->result(), surgery_->events(), {}, report_};
+        for (std::size_t v = 0; v < made.surgery.ids.size(); ++v) {
+            if (made.surgery.roles[v] == TraceRole::Free) continue;
+            const VertexId id = made.surgery.ids[v];
+            const auto known = std::lower_bound(
+                eol_.begin(), eol_.end(), id, [](const EolVertex& e, VertexId i) { return e.vertex_id < i; });
+            if (known != eol_.end() && known->vertex_id == id)
+                made.eol.push_back(*known);
+            else if (const auto between = on_trace_of(id, made.surgery.tags[v]))
+                made.eol.push_back(*between);
+        }
+        return made;
+    }
+
+    /// A vertex that clean-up or a join has put on a trace is like its neighbour on it.
+    std::optional<EolVertex> on_trace_of(VertexId id, int tag) const
+    {
+        for (const VertexId w : surgery_->ring(id).vertices) {
+            const auto known = std::lower_bound(
+                eol_.begin(), eol_.end(), w, [](const EolVertex& e, VertexId i) { return e.vertex_id < i; });
+            if (known == eol_.end() || known->vertex_id != w || known->is_corner) continue;
+            if (tags_.tag(*known) != tag) continue;
+            EolVertex made = *known;
+            made.vertex_id = id;
+            made.idle = 0;
+            return made;
+        }
+        return std::nullopt;
+    }
+
+    const Scene& scene_;
+    double dt_;
+    const State& state_;
+    const std::vector<MeshEdge>& edges_;
+    const ClothStars stars_;
+    const MeshTarget& target_;
+    FeatureTags tags_;
+    std::vector<VertexId> released_;
+    std::vector<FeatureSite> sites_;
+    std::optional<ClothSurgery> surgery_;
+    std::vector<EolVertex> eol_;
+    EolGuard guard_;
+    std::set<int> given_up_;  ///< tags of traces that were released as their way was blocked
+    ConformReport report_;
+};
+
+}  // namespace
+
+std::optional<ConformedMesh> conform_mesh(const Scene& scene, double dt, const State& state,
+                                          const std::vector<MeshEdge>& edges,
+                                          const std::vector<EolVertex>& given_up, bool is_strict)
+{
+    if (!scene.eol || (state.eol.empty() && state.active.empty())) return std::nullopt;
+    return Conforming(scene, dt, state, edges, is_strict).run(given_up);
+}
+
+}  // namespace arris

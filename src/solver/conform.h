@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A contact with a sharp feature is a row first. Where it pressed at the end of the last step the mesh gets a
+// vertex there, if it admits one of good quality, and edges along the feature from one to the next; where it
+// does not, the contact stays a row, which is always safe: any of this may be refused.
+#pragma once
+
+#include <vector>
+
+#include "geometry/cloth_surgery.h"
+#include "solver/scene.h"
+#include "solver/state.h"
+
+namespace arris {
+
+struct ConformReport {
+    int inserted = 0, released = 0, operations = 0;
+    int refused = 0;  ///< pressing feature contacts that stay rows
+};
+
+/// What the surgery has done and who is EOL now.
+struct ConformedMesh {
+    SurgeryResult surgery;
+    std::vector<SurgeryEvent> events;
+    std::vector<EolVertex> eol;  ///< ascending by vertex_id
+    ConformReport report;
+};
+
+/// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
+/// they have not for long, the way of those that slide cleared, what they left restored. Nothing where the
+/// mesh is right as it is. `edges` are the state's.
+/// A strict one strains nothing; another may where the cloth around can give way.
+std::optional<ConformedMesh> conform_mesh(const Scene& scene, double dt, const State& state,
+                                          const std::vector<MeshEdge>& edges,
+                                          const std::vector<EolVertex>& given_up, bool is_strict);
+
+}  // namespace arris

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A vertex on a sharp feature has three unknowns like any other: away from the feature (c), along it (a), and
+// the material's flow over it (s); on a corner c and two of flow. So contact is the bound c >= ..., and the
+// system stays positive definite where the cloth is flat, where the world's and the material's motion across
+// the feature are one and the same.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/feature_frame.h"
+#include "geometry/mesh_topology.h"
+#include "geometry/rigid_motion.h"
+#include "solver/state.h"
+
+namespace arris {
+
+/// One EOL vertex during a step: xdot = drift + basis u, Xdot = material_basis u, u = (c, a, s) or
+/// (c, s1, s2).
+struct EolCoordinates {
+    int vertex;
+    int entry;           ///< in State::eol
+    FeatureFrame frame;  ///< at the step's start, in the obstacle's frame
+    Vec3 carried;        ///< where riding on the obstacle takes it by the step's end, world
+    Mat3 basis;          ///< first column: the outward direction at the step's end
+    Mat23 material_basis;
+    Vec3 opening;  ///< change of u, (1, ...), that opens the gap with the least kinetic energy
+};
+
+/// The cloth around each vertex: what EOL coordinates are made of. Made anew where the mesh changes.
+struct ClothStars {
+    std::vector<std::vector<int>> faces;                ///< at each vertex, ascending
+    std::vector<std::array<int, 2>> border_neighbours;  ///< of a border vertex, ascending; -1 elsewhere
+};
+ClothStars make_stars(int vertex_count, const std::vector<Face>& faces, const std::vector<MeshEdge>& edges);
+
+/// Why a vertex cannot be EOL though a feature presses on it.
+enum class EolRefusal {
+    NoDirection,  ///< a saddle corner, or wire or point whose cloth tells no side
+    AlongBorder,  ///< the trace meets the cloth's border at less than 20 degrees
+    EdgeOn,       ///< flat cloth that all but contains the outward direction: material and world coincide
+    ClothCorner   ///< only rows at the cloth's own corners
+};
+
+/// The coordinates of EOL vertex `entry` of the state, or why it can have none. `positions` are the cloth's
+/// in the obstacle's frame, which is at `end` when the step ends.
+struct EolPlacing {
+    std::optional<EolCoordinates> coordinates;
+    EolRefusal refusal = EolRefusal::NoDirection;  ///< where there are none
+};
+EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
+                            const std::vector<Vec3>& positions, const Placement& end);
+
+/// Whether two EOL vertices joined by an edge of the cloth have the feature along it.
+bool is_trace_edge(const Obstacle& obstacle, const EolVertex& a, const EolVertex& b);
+
+}  // namespace arris

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/eol_guard.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <unordered_map>
+
+#include "geometry/surgery_clearance.h"
+
+namespace arris {
+
+namespace {
+
+IdFace from_least(IdFace face)
+{
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    return face;
+}
+
+}  // namespace
+
+EolGuard::EolGuard(const Scene& scene, const State& state, bool is_strict)
+    : scene_(scene),
+      state_(state),
+      membrane_(scene.material.youngs_modulus, scene.material.poisson_ratio),
+      is_strict_(is_strict)
+{
+    for (const ActiveContact& contact : state.active)
+        if (contact.kind == ContactKind::Vertex)
+            normals_[contact.vertex_ids[0]] =
+                scene.obstacles[contact.obstacle].at(state.time).rotation * contact.normal;
+}
+
+bool EolGuard::allows(const SurgeryEvent& event) const
+{
+    const double thickness = scene_.material.thickness;
+    if (strain_gain(event) > 0.0 && (is_strict_ || !can_give_way(event))) return false;
+    return std::all_of(scene_.obstacles.begin(), scene_.obstacles.end(), [&](const Obstacle& obstacle) {
+        return is_free(event, obstacle, obstacle.at(state_.time), thickness);
+    });
+}
+
+double EolGuard::allowance(const SurgeryEvent& event) const
+{
+    constexpr double kShare = 0.01;     // of the patch's stretch energy, and
+    constexpr double kMotion = 0.01;    // of what moves it: its own motion, its weight over a cell
+    constexpr double kClearing = 10.0;  // the alternative is to give the trace up
+    double before = 0.0, area = 0.0, squared_speed = 0.0;
+    for (const PatchFace& face : event.before) {
+        before += stretch_of(face);
+        area += 0.5 * twice_area(face.material[0], face.material[1], face.material[2]);
+        for (const VertexId id : face.vertices)
+            if (const int v = state_.index_of(id); v >= 0)
+                squared_speed = std::max(squared_speed, state_.velocity[v].squaredNorm());
+    }
+    const double weight = scene_.gravity ? scene_.gravity->acceleration.norm() : 0.0;
+    const double motion = scene_.material.density * area *
+                          (0.5 * squared_speed + weight * scene_.eol->length(event.before[0].material[0]));
+    return (is_clearing_ ? kClearing : 1.0) * (kShare * before + kMotion * motion);
+}
+
+double EolGuard::strain_gain(const SurgeryEvent& event) const
+{
+    double gain = -allowance(event);
+    for (const PatchFace& face : event.before) gain -= stretch_of(face);
+    for (const PatchFace& face : event.after) gain += stretch_of(face);
+    return gain;
+}
+
+bool EolGuard::can_give_way(const SurgeryEvent& event) const
+{
+    const double before =
+        find_relaxed_energy(scene_, make_patch(event, false), std::numeric_limits<double>::infinity());
+    const double wanted = before + allowance(event);
+    return find_relaxed_energy(scene_, make_patch(event, true), wanted) <= wanted;
+}
+
+LoosePatch EolGuard::make_patch(const SurgeryEvent& event, bool is_after) const
+{
+    constexpr int kRings = 2;
+    std::set<VertexId> near;
+    for (const PatchFace& face : event.before) near.insert(face.vertices.begin(), face.vertices.end());
+    for (int ring = 0; ring < kRings; ++ring)
+        for (const VertexId v : std::set<VertexId>(near)) {
+            const VertexRing around = surgery_->ring(v);
+            near.insert(around.vertices.begin(), around.vertices.end());
+        }
+    std::set<IdFace> replaced, faces;
+    for (const PatchFace& face : event.before) replaced.insert(from_least(face.vertices));
+    for (const VertexId v : near)
+        for (const IdFace& face : surgery_->faces_at(v))
+            if (std::all_of(face.begin(), face.end(), [&](VertexId w) { return near.contains(w); }))
+                faces.insert(from_least(face));
+
+    LoosePatch patch;
+    std::unordered_map<VertexId, int> local;
+    const auto add = [&](const PatchFace& face) {
+        Face made;
+        for (int i = 0; i < 3; ++i) {
+            const auto [at, is_new] = local.try_emplace(face.vertices[i], patch.mesh.vertex_count());
+            made[i] = at->second;
+            if (!is_new) continue;
+            patch.mesh.material.push_back(face.material[i]);
+            patch.mesh.world.push_back(face.world[i]);
+            patch.is_free.push_back(is_loose(face.vertices[i], near, event));
+            const auto normal = normals_.find(face.vertices[i]);
+            patch.normals.push_back(normal == normals_.end() ? Vec3(Vec3::Zero()) : normal->second);
+        }
+        patch.mesh.faces.push_back(made);
+    };
+    for (const PatchFace& face : is_after ? event.after : event.before) add(face);
+    for (const IdFace& face : faces)
+        if (!replaced.contains(face)) add(surgery_->patch_face(face));
+    return patch;
+}
+
+bool EolGuard::is_loose(VertexId v, const std::set<VertexId>& near, const SurgeryEvent& event) const
+{
+    const bool is_changed = std::any_of(event.changes.begin(), event.changes.end(),
+                                        [v](const VertexChange& change) { return change.vertex == v; });
+    if (is_changed || !surgery_->has_vertex(v) || surgery_->is_fixed(v) ||
+        surgery_->role(v) != TraceRole::Free)
+        return false;
+    const VertexRing around = surgery_->ring(v);
+    return std::all_of(around.vertices.begin(), around.vertices.end(),
+                       [&](VertexId w) { return near.contains(w); });
+}
+
+double EolGuard::stretch_of(const PatchFace& face) const
+{
+    const std::vector<Vec2> X(face.material.begin(), face.material.end());
+    const std::vector<Vec3> x(face.world.begin(), face.world.end());
+    return membrane_.energy(FaceState(make_face_element(X, {0, 1, 2}), x));
+}
+
+}  // namespace arris

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <set>
+
+#include "geometry/cloth_surgery.h"
+#include "physics/membrane.h"
+#include "solver/patch_relaxation.h"
+#include "solver/scene.h"
+#include "solver/state.h"
+
+namespace arris {
+
+/// What mesh surgery may do to the cloth of a state: nothing of an obstacle gets through it, and it is hardly
+/// strained.
+class EolGuard {
+  public:
+    /// A strict one counts strain as it is made, another what would be left when the cloth around gave way.
+    EolGuard(const Scene& scene, const State& state, bool is_strict);
+
+    /// The mesh under surgery, whose patches may give way.
+    void watch(const ClothSurgery& surgery) { surgery_ = &surgery; }
+    bool allows(const SurgeryEvent& event) const;
+
+    /// What clears the way of a sliding feature may strain more: the alternative is to give the trace up.
+    void set_clearing(bool is_clearing) { is_clearing_ = is_clearing; }
+
+  private:
+    /// By how much an operation raises the stretch energy, J, beyond what is allowed; not above 0 otherwise.
+    double strain_gain(const SurgeryEvent& event) const;
+    double stretch_of(const PatchFace& face) const;
+    /// Whether the cloth around could take up what strain an operation makes.
+    bool can_give_way(const SurgeryEvent& event) const;
+    LoosePatch make_patch(const SurgeryEvent& event, bool is_after) const;
+    bool is_loose(VertexId v, const std::set<VertexId>& near, const SurgeryEvent& event) const;
+    double allowance(const SurgeryEvent& event) const;
+
+    const Scene& scene_;
+    const State& state_;
+    Membrane membrane_;
+    bool is_strict_;
+    bool is_clearing_ = false;
+    const ClothSurgery* surgery_ = nullptr;
+    std::map<VertexId, Vec3> normals_;  ///< world, of contacts that pressed
+};
+
+}  // namespace arris

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/feature_sites.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "geometry/closest_point.h"
+#include "geometry/feature_frame.h"
+#include "geometry/normal_cone.h"
+
+namespace arris {
+
+namespace {
+
+constexpr double kNear = 2.5;      // thicknesses from a feature: mitre and a little
+constexpr double kInPlane = 1e-6;  // thicknesses: a vertex nearer to a feature's plane is in it
+
+/// Feature edges by topology edge; -1 where it is none.
+std::vector<int> feature_of_edges(const Obstacle& obstacle)
+{
+    std::vector<int> feature(obstacle.topology().edges.size(), -1);
+    const auto& edges = obstacle.features().edges;
+    for (std::size_t f = 0; f < edges.size(); ++f) feature[edges[f].edge] = static_cast<int>(f);
+    return feature;
+}
+
+int corner_at(const Obstacle& obstacle, int point)
+{
+    const auto& corners = obstacle.features().corners;
+    const auto found = std::lower_bound(corners.begin(), corners.end(), point,
+                                        [](const FeatureCorner& c, int p) { return c.point < p; });
+    return found != corners.end() && found->point == point ? static_cast<int>(found - corners.begin()) : -1;
+}
+
+/// Finds the places of one obstacle on which its features pressed in the last step.
+class SiteFinder {
+  public:
+    SiteFinder(const Scene& scene, const State& state, const std::vector<MeshEdge>& edges, std::int32_t o)
+        : state_(state),
+          obstacle_(scene.obstacles[o]),
+          o_(o),
+          thickness_(scene.material.thickness),
+          positions_(to_frame(obstacle_.at(state.time), state.mesh.world)),
+          feature_(feature_of_edges(obstacle_)),
+          neighbours_(positions_.size())
+    {
+        for (const MeshEdge& edge : edges) {
+            neighbours_[edge.a].push_back(edge.b);
+            neighbours_[edge.b].push_back(edge.a);
+            if (edge.face_right < 0) border_edges_.insert({edge.a, edge.b});
+        }
+    }
+
+    std::optional<FeatureSite> find(const ActiveContact& contact) const
+    {
+        std::array<int, 3> v = {-1, -1, -1};
+        for (int i = 0; i < 3 && contact.vertex_ids[i] != ActiveContact::kNoVertex; ++i) {
+            v[i] = state_.index_of(contact.vertex_ids[i]);
+            if (v[i] < 0) return std::nullopt;
+        }
+        switch (contact.kind) {
+            case ContactKind::Vertex:
+                return at_vertex(v[0], contact.normal);
+            case ContactKind::Edge:
+                return on_edge(v[0], v[1], contact);
+            case ContactKind::Triangle:
+                return in_face(v, contact);
+        }
+        return std::nullopt;
+    }
+
+  private:
+    FeatureSite make_site(bool is_corner, int feature, const Vec2& X, int near, const Vec3& outward) const
+    {
+        return {o_, is_corner, feature, X, state_.ids[near], outward};
+    }
+
+    /// Where the cloth's edge passes through the plane in which an EOL vertex may move.
+    std::optional<FeatureSite> on_edge(int a, int b, const ActiveContact& contact) const
+    {
+        const int feature = feature_[contact.element];
+        return feature < 0 ? std::nullopt : cross(a, b, feature, contact.normal);
+    }
+
+    std::optional<FeatureSite> cross(int a, int b, int feature, const Vec3& normal) const
+    {
+        const std::optional<double> s = find_crossing(a, b, feature);
+        if (!s) return std::nullopt;
+        const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
+        FeatureSite site = make_site(false, feature, X, *s < 0.5 ? a : b, normal);
+        site.is_on_border = border_edges_.contains({std::min(a, b), std::max(a, b)});
+        return site;
+    }
+
+    /// On a wire or border, whose plane turns with the cloth, the nearest point.
+    std::optional<double> find_crossing(int a, int b, int feature) const
+    {
+        const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
+        const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
+        if (obstacle_.features().edges[feature].kind != FeatureKind::Convex) return nearest.s;
+        const std::optional<FeatureFrame> frame =
+            find_edge_frame(obstacle_, feature, nearest.second, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+        const Vec3 across = frame->tangent.cross(frame->outward);
+        const double of_a = across.dot(positions_[a] - frame->point);
+        const double of_b = across.dot(positions_[b] - frame->point);
+        const bool is_at_a = std::abs(of_a) <= kInPlane * thickness_;
+        const bool is_at_b = std::abs(of_b) <= kInPlane * thickness_;
+        if (!is_at_a && !is_at_b && (of_a > 0.0) == (of_b > 0.0)) return std::nullopt;
+        const double s = is_at_a ? 0.0 : is_at_b ? 1.0 : of_a / (of_a - of_b);
+        const Vec3 place = (1.0 - s) * positions_[a] + s * positions_[b];
+        const double height = frame->outward.dot(place - frame->point);
+        const double along = closest_on_segment(place, segment[0], segment[1]);
+        if (!(height >= 0.0 && height <= kNear * thickness_ && along > 0.0 && along < 1.0))
+            return std::nullopt;
+        return s;
+    }
+
+    std::optional<FeatureSite> in_face(const std::array<int, 3>& v, const ActiveContact& contact) const
+    {
+        const int corner = corner_at(obstacle_, contact.element);
+        if (corner < 0 || v[2] < 0) return std::nullopt;
+        const Vec3 &a = positions_[v[0]], &b = positions_[v[1]], &c = positions_[v[2]];
+        const PointOnTriangle closest = closest_on_triangle(obstacle_.mesh().points[contact.element],
+                                                            {a, b, c}, (b - a).cross(c - a).normalized());
+        Vec2 X = Vec2::Zero();
+        for (int i = 0; i < 3; ++i) X += closest.weights[i] * state_.mesh.material[v[i]];
+        const auto heaviest = std::max_element(closest.weights.begin(), closest.weights.end());
+        return make_site(true, corner, X, v[heaviest - closest.weights.begin()], contact.normal);
+    }
+
+    /// At a corner, or beside an edge through whose plane an edge of the cloth from here passes.
+    std::optional<FeatureSite> at_vertex(int v, const Vec3& normal) const
+    {
+        const Vec3& place = positions_[v];
+        const double reach = kNear * thickness_;
+        const Box3 box(place.array() - reach, place.array() + reach);
+        std::vector<int> found;
+        obstacle_.find_corners(box, found);
+        for (const int c : found) {
+            const int point = obstacle_.features().corners[c].point;
+            const Vec3 from = place - obstacle_.mesh().points[point];
+            if (from.norm() <= reach && is_in_point_cone(obstacle_, point, from.normalized()))
+                return make_site(true, c, state_.mesh.material[v], v, normal);
+        }
+        obstacle_.find_feature_edges(box, found);
+        for (const int f : found)
+            for (const int w : neighbours_[v])
+                if (const std::optional<FeatureSite> site = cross(v, w, f, normal)) return site;
+        return std::nullopt;
+    }
+
+    const State& state_;
+    const Obstacle& obstacle_;
+    std::int32_t o_;
+    double thickness_;
+    std::vector<Vec3> positions_;
+    std::vector<int> feature_;
+    std::vector<std::vector<int>> neighbours_;  ///< of each vertex
+    std::set<std::pair<int, int>> border_edges_;
+};
+
+}  // namespace
+
+std::array<Vec3, 2> feature_segment(const Obstacle& obstacle, int feature)
+{
+    const auto& ends = obstacle.topology().edges[obstacle.features().edges[feature].edge].points;
+    return {obstacle.mesh().points[ends[0]], obstacle.mesh().points[ends[1]]};
+}
+
+std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& state,
+                                            const std::vector<MeshEdge>& edges)
+{
+    std::map<std::int32_t, SiteFinder> finders;
+    std::vector<FeatureSite> sites;
+    for (const ActiveContact& contact : state.active) {
+        if (contact.kind == ContactKind::Vertex && state.eol_entry(contact.vertex_ids[0]) >= 0) continue;
+        const auto [finder, is_new] =
+            finders.try_emplace(contact.obstacle, scene, state, edges, contact.obstacle);
+        if (const std::optional<FeatureSite> site = finder->second.find(contact)) sites.push_back(*site);
+    }
+    std::sort(sites.begin(), sites.end(), [](const FeatureSite& a, const FeatureSite& b) {
+        return std::tuple(!a.is_corner, a.obstacle, a.feature, a.material.x(), a.material.y()) <
+               std::tuple(!b.is_corner, b.obstacle, b.feature, b.material.x(), b.material.y());
+    });
+    return sites;
+}
+
+}  // namespace arris

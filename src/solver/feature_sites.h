@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/cloth_surgery.h"
+#include "geometry/mesh_topology.h"
+#include "solver/scene.h"
+#include "solver/state.h"
+
+namespace arris {
+
+/// A place of the cloth that a feature presses on.
+struct FeatureSite {
+    std::int32_t obstacle;
+    bool is_corner;
+    std::int32_t feature;
+    Vec2 material;
+    VertexId near;              ///< a vertex of the element that it is on
+    Vec3 outward;               ///< the contact's normal, in the obstacle's frame
+    bool is_on_border = false;  ///< of the cloth
+};
+
+/// Where features pressed at the end of the last step and no EOL vertex is yet; corners first, those of one
+/// feature in the order of the material. On a convex edge it is where the cloth passes through the plane in
+/// which an EOL vertex may move, so that nothing has to be put there.
+std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& state,
+                                            const std::vector<MeshEdge>& edges);
+
+/// Ends of feature edge `feature` (index in features().edges).
+std::array<Vec3, 2> feature_segment(const Obstacle& obstacle, int feature);
+
+}  // namespace arris

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the cloth carries over a change of its mesh. A new vertex in the surface has what the surface had
+// there, which changes nothing; where an edge or vertex went, or a vertex became or ceased to be EOL, the
+// velocity around it is the nearest that the new mesh can have, with the same momentum
+// (physics/velocity_fit.h).
+#pragma once
+
+#include "solver/conform.h"
+#include "solver/scene.h"
+#include "solver/state.h"
+
+namespace arris {
+
+struct TransferReport {
+    double energy_gain = 0.0;  ///< kinetic, J
+    int patches = 0;           ///< on which velocity was fitted
+    bool is_strained = false;  ///< a patch could not give way to what strains it now
+};
+
+/// The state on the new mesh: positions, velocities, history, and of contacts and anchors those whose
+/// vertices are still there.
+State transfer(const Scene& scene, const State& before, const ConformedMesh& conformed,
+               TransferReport& report);
+
+}  // namespace arris

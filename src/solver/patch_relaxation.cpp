@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/patch_relaxation.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <memory>
+
+#include "geometry/mesh_topology.h"
+#include "geometry/sweep_check.h"
+#include "physics/bending.h"
+#include "physics/energies.h"
+#include "physics/inertia.h"
+#include "physics/linear_system.h"
+#include "physics/membrane.h"
+
+namespace arris {
+
+namespace {
+
+/// The patch as a small cloth of its own, at rest.
+class Relaxation {
+  public:
+    Relaxation(const Scene& scene, LoosePatch patch) : scene_(scene), patch_(std::move(patch))
+    {
+        const MeshTopology topology = make_topology(patch_.mesh.vertex_count(), patch_.mesh.faces);
+        edges_ = topology.edges;
+        elements_ = make_elements(patch_.mesh, topology);
+        const Material& material = scene.material;
+        terms_.faces.push_back(std::make_unique<Inertia>(material.density));
+        terms_.faces.push_back(std::make_unique<Membrane>(material.youngs_modulus, material.poisson_ratio));
+        if (material.bending_stiffness > 0.0)
+            terms_.hinges.push_back(std::make_unique<Bending>(material.bending_stiffness));
+        system_.make_pattern(elements_);
+    }
+
+    /// Lowers the energy to `wanted`, or as far as a few steps bring it.
+    void run(double wanted)
+    {
+        constexpr int kMostSteps = 8;
+        for (int k = 0; k < kMostSteps && energy() > wanted && descend(); ++k) continue;
+    }
+
+    double energy() const { return energy_at(patch_.mesh.world); }
+    const std::vector<Vec3>& world() const { return patch_.mesh.world; }
+
+    /// One step of Newton's method that lowers the energy; false where there is none.
+    bool descend()
+    {
+        constexpr int kMostHalvings = 8;
+        constexpr double kWorthwhile = 1e-3;  // of the energy
+        const std::vector<Vec3> way = find_way();
+        const double now = energy();
+        double share = 1.0;
+        for (int k = 0; k < kMostHalvings; ++k, share *= 0.5) {
+            std::vector<Vec3> next = patch_.mesh.world;
+            for (std::size_t v = 0; v < next.size(); ++v) next[v] += share * way[v];
+            if (!(energy_at(next) < (1.0 - kWorthwhile) * now)) continue;
+            patch_.mesh.world = std::move(next);
+            return true;
+        }
+        return false;
+    }
+
+    bool is_way_free(const std::vector<Vec3>& begin, double time) const
+    {
+        return std::all_of(scene_.obstacles.begin(), scene_.obstacles.end(), [&](const Obstacle& obstacle) {
+            const Placement now = obstacle.at(time);
+            const ClothMotion motion = {&patch_.mesh.faces, &edges_, to_frame(now, begin),
+                                        to_frame(now, patch_.mesh.world)};
+            return check_sweep(obstacle, motion, scene_.material.thickness).is_clean();
+        });
+    }
+
+    void go_back_half(const std::vector<Vec3>& begin)
+    {
+        for (std::size_t v = 0; v < begin.size(); ++v)
+            patch_.mesh.world[v] = 0.5 * (patch_.mesh.world[v] + begin[v]);
+    }
+
+  private:
+    double energy_at(const std::vector<Vec3>& world) const
+    {
+        const Energies energies = compute_energies(elements_, terms_, world);
+        return energies.stretch + energies.bending;
+    }
+
+    /// (M + H) way = f, with a step of one second: M only keeps what has no stiffness where it is.
+    std::vector<Vec3> find_way()
+    {
+        const std::size_t n = patch_.mesh.world.size();
+        Linearization at;
+        at.gamma = 1.0;
+        at.position = patch_.mesh.world;
+        at.v_predicted = at.v_expansion = at.v_last = at.drift = std::vector<Vec3>(n, Vec3::Zero());
+        at.basis.assign(n, Mat3::Identity());
+        at.has_basis.assign(n, 0);
+        system_.assemble(patch_.mesh, elements_, terms_, at);
+        Eigen::SparseMatrix<double> matrix = system_.matrix();
+        Eigen::VectorXd rhs = system_.rhs();
+        constexpr double kStiff = 1e6;  // beside the greatest stiffness: held
+        const double stiff = kStiff * matrix.diagonal().maxCoeff();
+        for (std::size_t v = 0; v < n; ++v) {
+            const Eigen::Index first = static_cast<Eigen::Index>(3 * v);
+            if (!patch_.is_free[v]) {
+                for (int d = 0; d < 3; ++d) matrix.coeffRef(first + d, first + d) += stiff;
+                rhs.segment<3>(first).setZero();
+                continue;
+            }
+            const Vec3& normal = patch_.normals[v];
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j)
+                    matrix.coeffRef(first + i, first + j) += stiff * normal[i] * normal[j];
+        }
+        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor(matrix);
+        std::vector<Vec3> way(n, Vec3::Zero());
+        if (factor.info() != Eigen::Success) return way;
+        const Eigen::VectorXd solution = factor.solve(rhs);
+        if (!solution.allFinite()) return way;
+        for (std::size_t v = 0; v < n; ++v)
+            if (patch_.is_free[v]) way[v] = solution.segment<3>(static_cast<Eigen::Index>(3 * v));
+        return way;
+    }
+
+    const Scene& scene_;
+    LoosePatch patch_;
+    std::vector<MeshEdge> edges_;
+    ClothElements elements_;
+    Terms terms_;
+    LinearSystem system_;
+};
+
+}  // namespace
+
+double relax(const Scene& scene, const RelaxedPatch& patch, State& state)
+{
+    constexpr int kMostHalvings = 4;
+    std::vector<int> local(state.mesh.world.size(), -1), vertices;
+    LoosePatch loose;
+    for (const int f : patch.faces) {
+        Face face;
+        for (int i = 0; i < 3; ++i) {
+            const int v = state.mesh.faces[f][i];
+            if (local[v] < 0) {
+                local[v] = static_cast<int>(vertices.size());
+                vertices.push_back(v);
+                loose.mesh.material.push_back(state.mesh.material[v]);
+                loose.mesh.world.push_back(state.mesh.world[v]);
+                loose.is_free.push_back(patch.is_free[v]);
+                loose.normals.push_back(patch.normals[v]);
+            }
+            face[i] = local[v];
+        }
+        loose.mesh.faces.push_back(face);
+    }
+    Relaxation relaxation(scene, std::move(loose));
+    const std::vector<Vec3> begin = relaxation.world();
+    const double before = relaxation.energy();
+    relaxation.run(patch.wanted);
+    for (int k = 0; !relaxation.is_way_free(begin, state.time); ++k) {
+        if (k == kMostHalvings) return before;
+        relaxation.go_back_half(begin);
+    }
+    for (std::size_t i = 0; i < begin.size(); ++i) {
+        const Vec3 moved = relaxation.world()[i] - begin[i];
+        state.mesh.world[vertices[i]] += moved;
+        state.previous_world[vertices[i]] += moved;
+    }
+    return relaxation.energy();
+}
+
+double find_relaxed_energy(const Scene& scene, const LoosePatch& patch, double wanted)
+{
+    Relaxation relaxation(scene, patch);
+    relaxation.run(wanted);
+    return relaxation.energy();
+}
+
+}  // namespace arris

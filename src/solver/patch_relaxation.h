@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "solver/scene.h"
+#include "solver/state.h"
+
+namespace arris {
+
+/// A part of the cloth whose shape may give way.
+struct RelaxedPatch {
+    std::vector<int> faces;     ///< of the state's mesh
+    std::vector<char> is_free;  ///< of each vertex of the state
+    std::vector<Vec3>
+        normals;          ///< of each vertex: it keeps its height along this; zero where it is free to leave
+    double wanted = 0.0;  ///< J: elastic energy at which it is relaxed enough
+};
+
+/// Moves free vertices, in the world, until the patch's stretch and bending energy has fallen to `wanted` or
+/// falls no more, as in the pop filter of Narain, Pfaff and O'Brien 2013: a change of mesh that strains the
+/// cloth would be seen as a push. The way is kept free of obstacles: where it is not it is halved, at most a
+/// few times, then not gone. History moves along, so that no velocity comes of it. Returns the energy, J.
+double relax(const Scene& scene, const RelaxedPatch& patch, State& state);
+
+/// A patch by itself; one entry a vertex.
+struct LoosePatch {
+    ClothMesh mesh;
+    std::vector<char> is_free;
+    std::vector<Vec3> normals;  ///< as above
+};
+
+/// The elastic energy, J, to which a patch would relax, or anything below `wanted`; obstacles are not looked
+/// at.
+double find_relaxed_energy(const Scene& scene, const LoosePatch& patch, double wanted);
+
+}  // namespace arris
