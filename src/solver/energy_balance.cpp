@@ -15,7 +15,7 @@ namespace {
 
 // What a step may add, of what there was in motion and what changed kind. Quiet BDF2 stays below 1e-3 of it;
 // where the linearisation fails it is from a few per cent to nearly all.
-constexpr double kRise = 0.01;
+constexpr double kRise = 0.003;
 
 // Forces at a step's end stand for their mean over it: what the work of those that ebb away after a jerk is
 // short of, measured at 6 %.

@@ -132,7 +132,7 @@ struct ObstacleRun {
     /// out to its stand-off at up to 0.1 m/s, by what such a push would give it.
     void weigh(double dt)
     {
-        constexpr double kShare = 0.01, kMean = 0.25, kPush = 0.1;  // m/s
+        constexpr double kShare = 0.003, kMean = 0.25, kPush = 0.1;  // m/s
         State before = state;
         before.mesh.world = state.previous_world;
         work.proposal.velocity = state.velocity;

@@ -233,7 +233,7 @@ TEST(Impact, OfStiffClothOnTeethGainsNoEnergy)
     Table table("impact_stiff", {"integrator", "E", "V", "greatest energy / first", "rise in a step / first",
                                  "stretch / first", "solves a step"});
     constexpr double kRoundOff = 1e-12;
-    constexpr double kRise = 0.01;  // of a step, and what is moved out to its stand-off at 0.1 m/s
+    constexpr double kRise = 0.003;  // of a step, and what is moved out to its stand-off at 0.1 m/s
     const int phases = is_deep() ? 20 : 3;
     for (const Integrator integrator : kIntegrators)
         for (const double stiffness : {2e3, 1e6})
@@ -247,7 +247,7 @@ TEST(Impact, OfStiffClothOnTeethGainsNoEnergy)
                     worst.stretch = std::max(worst.stretch, shock.stretch);
                     worst.solves = std::max(worst.solves, shock.solves);
                 }
-                EXPECT_LT(worst.greatest, 1.0 + kRoundOff);
+                EXPECT_LT(worst.greatest, 1.0 + kRise);
                 EXPECT_LT(worst.rise, kRise + 0.01 / (speed * speed));
                 table.add({integrator == Integrator::Bdf2 ? "BDF2" : "implicit Euler",
                            fmt::format("{:g} N/m", stiffness), fmt::format("{:g} m/s", speed),
