@@ -474,7 +474,7 @@ void prepare(const Scene& scene, const State& state, Workspace& work)
         return;
     }
     MeshTopology topology = make_topology(state.mesh.vertex_count(), state.mesh.faces);
-    if (scene.eol) work.stars = make_stars(state.mesh.vertex_count(), state.mesh.faces, topology.edges);
+    work.stars = make_stars(state.mesh.vertex_count(), state.mesh.faces, topology.edges);
     work.elements = make_elements(state.mesh, topology);
     work.edges = std::move(topology.edges);
     work.system.make_pattern(work.elements);

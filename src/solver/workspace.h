@@ -30,7 +30,7 @@ struct Workspace {
     std::vector<Face> faces_of_elements;  ///< of the mesh `elements` was made for
     std::vector<Vec2> material_of_elements;
     std::vector<MeshEdge> edges;
-    ClothStars stars;  ///< where the state has EOL vertices
+    ClothStars stars;
 
     // conform
     std::vector<int> overrun;         ///< EOL vertices over which more material would flow than there is
