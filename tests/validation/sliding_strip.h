@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A strip of cloth that slides without friction over a straight edge, from one slope onto a steeper one: a
+// chain over a pulley.
+//
+//      before          x: material that has gone over the edge, measured along the slope after it
+//     _________
+//     (L - x)  \       x" = g (x sin b + (L - x) sin a) / L,   a, b: how steeply the slopes go down
+//     strip     \ x
+//                \     a table's edge: a = 0, b = 90 degrees; a ridge: a < 0
+//                 after
+//
+// Thin and stiff, the strip has nothing else to move by. It presses on the edge while its tension exceeds the
+// flow of momentum around the bend, rho x'^2; then it lifts off.
+#pragma once
+
+#include "cloth_run.h"
+
+namespace arris {
+
+/// Angles below the horizontal, rad; before < after.
+struct Slopes {
+    double before = 0.0, after = 0.5 * 3.14159265358979323846;
+};
+
+/// Closed form of a chain of `length` (m) that starts at rest with `start` (m) over the edge.
+class SlidingChain {
+  public:
+    SlidingChain(const Slopes& slopes, double length, double start);
+
+    double length_after(double time) const;  ///< x, m
+    double speed(double time) const;         ///< x', m/s
+    double acceleration(double time) const;  ///< x", m/s^2
+
+    /// When it no longer presses on the edge, s; it must slide forward.
+    double lift_off() const;
+
+    double balance() const { return balance_; }  ///< x at which it would stay, m
+
+  private:
+    double tension_excess(double time) const;  ///< T - rho x'^2 at the edge over rho, m^2/s^2
+    Slopes slopes_;
+    double length_, start_;
+    double balance_;
+    double rate_;  ///< 1/s
+};
+
+struct StripCase {
+    Slopes slopes = {};
+    double length = 1.0, width = 0.2, start = 0.1;  ///< m
+    std::array<int, 2> cells = {8, 2};
+    GridPattern pattern = GridPattern::Diagonal;
+    double pattern_angle = 0.0;  ///< degrees
+    double youngs_modulus = 2e5, bending_stiffness = 1e-7;
+    Integrator integrator = Integrator::Bdf2;
+    bool has_eol = true;
+    Placement place = {};         ///< of edge, strip and gravity alike: changes nothing
+    Vec3 carried = Vec3::Zero();  ///< m/s, velocity of edge and strip alike: changes nothing
+};
+
+/// How far from where the strip must bend, at its stand-off from both slopes, `world` is now, m; along the
+/// edge does not count.
+double distance_from_bend(const StripCase& strip, double time, const Vec3& world);
+
+/// Bent over the edge, which is the y axis before it is placed, at its stand-off from both slopes.
+ClothRun make_strip_run(const StripCase& strip);
+
+double strip_mass(const StripCase& strip);  ///< kg
+
+/// x of the strip's end, m.
+double measure_length_after(const StripCase& strip, const ClothRun& run);
+
+/// Kinetic and potential, J.
+double measure_energy(ClothRun& run);
+
+}  // namespace arris
