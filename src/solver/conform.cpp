@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "geometry/closest_point.h"
+#include "geometry/feature_frame.h"
 #include "geometry/surgery_cleanup.h"
 #include "geometry/trace_insertion.h"
 #include "geometry/trace_motion.h"
@@ -91,6 +92,7 @@ class Conforming {
             if (surgery_->has_vertex(vertex.vertex_id)) release_trace(vertex.vertex_id);
         }
         clear_way();
+        forget_released();
         for (const FeatureSite& site : sites_) insert(site);
         join();
         report_.operations += clean_up(*surgery_, target_).operations();
@@ -196,6 +198,14 @@ class Conforming {
         ++report_.released;
     }
 
+    /// What a site takes again begins anew.
+    void forget_released()
+    {
+        std::erase_if(eol_, [this](const EolVertex& e) {
+            return !surgery_->has_vertex(e.vertex_id) || surgery_->role(e.vertex_id) == TraceRole::Free;
+        });
+    }
+
     bool is_near_border(const FeatureSite& site) const
     {
         const int v = state_.index_of(site.near);
@@ -229,8 +239,28 @@ class Conforming {
         const auto at = std::lower_bound(eol_.begin(), eol_.end(), made.vertex,
                                          [](const EolVertex& e, VertexId id) { return e.vertex_id < id; });
         if (at != eol_.end() && at->vertex_id == made.vertex) return;  // it was there
-        eol_.insert(at, {made.vertex, site.obstacle, site.is_corner, site.feature, site.outward, 0});
+        const EolVertex vertex{made.vertex, site.obstacle, site.is_corner, site.feature, site.outward, 0};
+        if (!is_in_plane(vertex)) {
+            surgery_->release_vertex(made.vertex);
+            ++report_.refused;
+            return;
+        }
+        eol_.insert(at, vertex);
         ++report_.inserted;
+    }
+
+    /// Surgery at one site bends the surface a little differently at the next. Off the plane of a convex edge
+    /// a vertex would stay off it, as it may only move in it.
+    bool is_in_plane(const EolVertex& eol) const
+    {
+        constexpr double kOff = 0.1;  // thicknesses
+        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+        if (eol.is_corner || obstacle.features().edges[eol.feature].kind != FeatureKind::Convex) return true;
+        const Vec3 place = obstacle.at(state_.time).inverse(surgery_->world(eol.vertex_id));
+        const std::optional<FeatureFrame> frame =
+            find_edge_frame(obstacle, eol.feature, place, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+        const Vec3 across = frame->tangent.cross(frame->outward);
+        return std::abs(across.dot(place - frame->point)) <= kOff * scene_.material.thickness;
     }
 
     /// A corner holds one vertex of a cloth that lies over it.
@@ -320,7 +350,8 @@ class Conforming {
                 eol_.begin(), eol_.end(), id, [](const EolVertex& e, VertexId i) { return e.vertex_id < i; });
             if (known != eol_.end() && known->vertex_id == id)
                 made.eol.push_back(*known);
-            else if (const auto between = on_trace_of(id, made.surgery.tags[v]))
+            else if (const auto between = on_trace_of(id, made.surgery.tags[v]);
+                     between && is_in_plane(*between))
                 made.eol.push_back(*between);
         }
         return made;

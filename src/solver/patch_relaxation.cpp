@@ -37,14 +37,15 @@ class Relaxation {
     void run(double wanted)
     {
         constexpr int kMostSteps = 8;
-        for (int k = 0; k < kMostSteps && energy() > wanted && descend(); ++k) continue;
+        for (int k = 0; k < kMostSteps && energy() > wanted && descend(wanted); ++k) continue;
     }
 
     double energy() const { return energy_at(patch_.mesh.world); }
     const std::vector<Vec3>& world() const { return patch_.mesh.world; }
 
-    /// One step of Newton's method that lowers the energy; false where there is none.
-    bool descend()
+    /// One step of Newton's method that lowers the energy, but not below `wanted`: what strain the cloth had
+    /// before is its own. False where there is none.
+    bool descend(double wanted)
     {
         constexpr int kMostHalvings = 8;
         constexpr double kWorthwhile = 1e-3;  // of the energy
@@ -54,8 +55,9 @@ class Relaxation {
         for (int k = 0; k < kMostHalvings; ++k, share *= 0.5) {
             std::vector<Vec3> next = patch_.mesh.world;
             for (std::size_t v = 0; v < next.size(); ++v) next[v] += share * way[v];
-            if (!(energy_at(next) < (1.0 - kWorthwhile) * now)) continue;
-            patch_.mesh.world = std::move(next);
+            const double reached = energy_at(next);
+            if (!(reached < (1.0 - kWorthwhile) * now)) continue;
+            patch_.mesh.world = reached < wanted ? stop_at(wanted, next) : next;
             return true;
         }
         return false;
@@ -78,6 +80,18 @@ class Relaxation {
     }
 
   private:
+    /// Where on the way to `beyond` the energy has just fallen to `wanted`.
+    std::vector<Vec3> stop_at(double wanted, std::vector<Vec3> beyond) const
+    {
+        constexpr int kBisections = 12;
+        std::vector<Vec3> before = patch_.mesh.world, middle = patch_.mesh.world;
+        for (int k = 0; k < kBisections; ++k) {
+            for (std::size_t v = 0; v < middle.size(); ++v) middle[v] = 0.5 * (before[v] + beyond[v]);
+            (energy_at(middle) > wanted ? before : beyond) = middle;
+        }
+        return beyond;
+    }
+
     double energy_at(const std::vector<Vec3>& world) const
     {
         const Energies energies = compute_energies(elements_, terms_, world);

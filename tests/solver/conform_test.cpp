@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/conform.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/mesh_quality.h"
+#include "geometry/mesh_topology.h"
+#include "geometry/obstacle_shapes.h"
+#include "solver/advance.h"
+#include "solver/audit.h"
+#include "solver/mesh_transfer.h"
+#include "solver/step.h"
+#include "tests/solver/eol_cloth.h"
+
+namespace arris {
+namespace {
+
+using testing::EolCloth;
+using testing::make_draped;
+using testing::make_ridge;
+
+constexpr double kStep = 0.005;
+constexpr double kThickness = 1e-3;
+constexpr double kCell = 0.4 / 7.0;  // no mesh line is above the ridge
+constexpr double kOnFeature = 1e-9;  // m: crossings of straight lines at 1 m
+
+std::vector<MeshEdge> edges_of(const State& state)
+{
+    return make_topology(state.mesh.vertex_count(), state.mesh.faces).edges;
+}
+
+/// Flat cloth that lies on the ridge at the thickness' height, moved by `shift` along x.
+EolCloth lying(double turn, double shift = 0.0, double half_length = 0.5)
+{
+    EolCloth cloth(make_ridge(60.0, half_length), make_draped({7, turn, 180.0}));
+    cloth.scene.eol = uniform_target(kCell, 10.0);
+    for (Vec3& x : cloth.state.mesh.world) x += Vec3(shift, 0.0, kThickness);
+    return cloth;
+}
+
+/// Rows where the cloth's edges cross the ridge's tip, as a step leaves them.
+void press_edges(EolCloth& cloth)
+{
+    const Obstacle& ridge = cloth.scene.obstacles[0];
+    const FeatureEdge& tip = ridge.features().edges[testing::tip_of(ridge)];
+    const double end = std::abs(ridge.mesh().points[ridge.topology().edges[tip.edge].points[0]].y());
+    const State& state = cloth.state;
+    for (const MeshEdge& edge : edges_of(state)) {
+        const Vec3 &a = state.mesh.world[edge.a], &b = state.mesh.world[edge.b];
+        if (!(a.x() * b.x() < 0.0)) continue;
+        const double s = a.x() / (a.x() - b.x());
+        if (std::abs((1.0 - s) * a.y() + s * b.y()) > end) continue;
+        std::array<std::uint32_t, 3> ids = {state.ids[edge.a], state.ids[edge.b], ActiveContact::kNoVertex};
+        std::sort(ids.begin(), ids.end());
+        cloth.state.active.push_back({ids, ContactKind::Edge, 0, tip.edge, Vec3::UnitZ(), 1e-6});
+    }
+}
+
+/// The corner at the ridge's end presses into the face around it.
+void press_corner(EolCloth& cloth)
+{
+    const Obstacle& ridge = cloth.scene.obstacles[0];
+    const int point = ridge.features().corners[testing::end_of(ridge)].point;
+    const Vec3& at = ridge.mesh().points[point];
+    for (const Face& f : cloth.state.mesh.faces) {
+        const auto flat = [&](int i) -> Vec2 { return cloth.state.mesh.world[f[i]].head<2>(); };
+        const Vec2 p = at.head<2>();
+        if (twice_area(p, flat(1), flat(2)) < 0.0 || twice_area(flat(0), p, flat(2)) < 0.0 ||
+            twice_area(flat(0), flat(1), p) < 0.0)
+            continue;
+        std::array<std::uint32_t, 3> ids = {cloth.state.ids[f[0]], cloth.state.ids[f[1]],
+                                            cloth.state.ids[f[2]]};
+        std::sort(ids.begin(), ids.end());
+        cloth.state.active.push_back({ids, ContactKind::Triangle, 0, point, Vec3::UnitZ(), 1e-6});
+        return;
+    }
+}
+
+std::optional<ConformedMesh> conform(const EolCloth& cloth, const std::vector<EolVertex>& given_up = {})
+{
+    return conform_mesh(cloth.scene, kStep, cloth.state, edges_of(cloth.state), given_up, false);
+}
+
+/// Conforms and carries the state over.
+ConformedMesh take(EolCloth& cloth)
+{
+    std::optional<ConformedMesh> made = conform(cloth);
+    EXPECT_TRUE(made);
+    TransferReport report;
+    if (made) cloth.state = transfer(cloth.scene, cloth.state, *made, report);
+    return made ? *made : ConformedMesh{};
+}
+
+/// EOL vertices in the order in which they are along the ridge.
+std::vector<int> along_ridge(const State& state)
+{
+    std::vector<int> row;
+    for (const EolVertex& e : state.eol) row.push_back(state.index_of(e.vertex_id));
+    std::sort(row.begin(), row.end(),
+              [&](int a, int b) { return state.mesh.world[a].y() < state.mesh.world[b].y(); });
+    return row;
+}
+
+bool has_edge(const State& state, int a, int b)
+{
+    const std::vector<MeshEdge> edges = edges_of(state);
+    return std::any_of(edges.begin(), edges.end(),
+                       [&](const MeshEdge& e) { return (e.a == a && e.b == b) || (e.a == b && e.b == a); });
+}
+
+void expect_sound(const State& state, double area)
+{
+    EXPECT_EQ(validate(state.mesh), "");
+    EXPECT_NEAR(material_area(state.mesh), area, 1e-12);
+    EXPECT_TRUE(std::is_sorted(state.ids.begin(), state.ids.end()));
+    for (std::size_t k = 0; k < state.eol.size(); ++k) {
+        EXPECT_GE(state.index_of(state.eol[k].vertex_id), 0);
+        if (k > 0) {
+            EXPECT_LT(state.eol[k - 1].vertex_id, state.eol[k].vertex_id);
+        }
+    }
+}
+
+TEST(Conform, RowsOnAnEdgeBecomeVerticesOnItWithEdgesAlongIt)
+{
+    for (const double turn : {0.0, 17.0, 40.0, -25.0, 45.0}) {
+        EolCloth cloth = lying(turn);
+        press_edges(cloth);
+        ASSERT_GT(cloth.state.active.size(), 6u);
+        const ConformedMesh made = take(cloth);
+        const State& state = cloth.state;
+        expect_sound(state, 0.16);
+        EXPECT_GT(made.report.inserted, 4) << turn;
+        const std::vector<int> row = along_ridge(state);
+        ASSERT_GT(row.size(), 5u) << turn;
+        for (const int v : row) {
+            EXPECT_NEAR(state.mesh.world[v].x(), 0.0, kOnFeature);
+            EXPECT_NEAR(state.mesh.world[v].z(), kThickness, kOnFeature);
+        }
+        for (std::size_t k = 1; k < row.size(); ++k)
+            EXPECT_TRUE(has_edge(state, row[k - 1], row[k])) << turn << " after " << k;
+        EXPECT_EQ(made.surgery.tagged_edges.size(), row.size() - 1) << "all of the trace is known as such";
+        for (const EolVertex& e : state.eol) {
+            EXPECT_EQ(e.feature, testing::tip_of(cloth.scene.obstacles[0]));
+            EXPECT_FALSE(e.is_corner);
+            EXPECT_EQ(e.idle, 0);
+        }
+        // It reaches from border to border, but for what is too near a corner of the cloth.
+        EXPECT_GT(state.mesh.world[row.back()].y() - state.mesh.world[row.front()].y(), 0.4 - 2.2 * kCell);
+        EXPECT_GT(least_material_angle(state.mesh), 5.0);
+    }
+}
+
+TEST(Conform, NeighboursOnTheFeatureAreJoinedAcrossAnEdgeThatDidNotPress)
+{
+    EolCloth cloth = lying(0.0);
+    press_edges(cloth);
+    std::erase_if(cloth.state.active, [&](const ActiveContact& contact) {
+        const Vec2 way = cloth.state.mesh.material[cloth.state.index_of(contact.vertex_ids[1])] -
+                         cloth.state.mesh.material[cloth.state.index_of(contact.vertex_ids[0])];
+        return std::abs(way.x() * way.y()) > 1e-9;  // the diagonals
+    });
+    ASSERT_EQ(cloth.state.active.size(), 8u);
+    const ConformedMesh made = take(cloth);
+    expect_sound(cloth.state, 0.16);
+    const std::vector<int> row = along_ridge(cloth.state);
+    ASSERT_GE(row.size(), 8u);
+    for (std::size_t k = 1; k < row.size(); ++k) EXPECT_TRUE(has_edge(cloth.state, row[k - 1], row[k])) << k;
+    EXPECT_EQ(made.surgery.tagged_edges.size(), row.size() - 1);
+}
+
+TEST(Conform, WhereNothingHasChangedTheSecondTimeChangesNothing)
+{
+    for (const double turn : {0.0, 17.0, 40.0}) {
+        EolCloth cloth = lying(turn);
+        press_edges(cloth);
+        take(cloth);
+        cloth.state.active.clear();
+        for (const EolVertex& e : cloth.state.eol)
+            cloth.state.active.push_back({{e.vertex_id, ActiveContact::kNoVertex, ActiveContact::kNoVertex},
+                                          ContactKind::Vertex,
+                                          0,
+                                          e.feature,
+                                          Vec3::UnitZ(),
+                                          1e-6});
+        EXPECT_FALSE(conform(cloth)) << "nothing flows";
+        // Rows beside it again, whose places are EOL vertices already.
+        press_edges(cloth);
+        const std::optional<ConformedMesh> again = conform(cloth);
+        EXPECT_FALSE(again) << turn << ": " << (again ? again->events.size() : 0) << " operations, "
+                            << (again ? again->report.inserted : 0) << " inserted";
+        // What flows a little may have something of its way cleared: once each way, not again.
+        int passes = 0;
+        for (int k = 0; k < 12; ++k) {
+            for (const EolVertex& e : cloth.state.eol)
+                cloth.state.material_velocity[cloth.state.index_of(e.vertex_id)] =
+                    (k % 2 == 0 ? 1e-7 : -1e-7) * Vec2(1, -1);
+            cloth.state.active.clear();
+            const std::optional<ConformedMesh> flowing = conform(cloth);
+            if (!flowing) continue;
+            EXPECT_LT(k, 4) << turn << ": " << flowing->events.size();
+            EXPECT_EQ(flowing->report.released + flowing->report.inserted, 0);
+            ++passes;
+            TransferReport report;
+            cloth.state = transfer(cloth.scene, cloth.state, *flowing, report);
+        }
+        EXPECT_LE(passes, 2) << turn;
+    }
+}
+
+TEST(Conform, NearABorderThatRunsAlongARowStaysARow)
+{
+    for (const double cells : {0.1, 0.28, 0.32, 0.6}) {  // from the border x = -0.2 of the cloth
+        EolCloth cloth = lying(0.0, 0.2 - cells * kCell);
+        press_edges(cloth);
+        ASSERT_GT(cloth.state.active.size(), 6u);
+        const std::optional<ConformedMesh> made = conform(cloth);
+        ASSERT_EQ(made.has_value(), cells > 0.3) << cells;
+        if (made) {
+            EXPECT_GT(made->eol.size(), 4u);
+        }
+    }
+}
+
+TEST(Conform, WhereTheClothComesFastItWouldHaveToGoAtOnce)
+{
+    // 0.6 cells (34 mm) of material are left, of which one step uses up 5 mm for each m/s.
+    for (const double speed : {0.0, 0.1, 2.0, 20.0}) {
+        EolCloth cloth = lying(0.0, 0.2 - 0.6 * kCell);
+        for (Vec3& v : cloth.state.velocity) v = Vec3(speed, 0, 0);
+        press_edges(cloth);
+        EXPECT_EQ(conform(cloth).has_value(), speed < 1.0) << speed;
+    }
+}
+
+TEST(Conform, ACornerBecomesANodeAtWhichTheTraceEnds)
+{
+    EolCloth cloth = lying(12.0, 0.003, 0.1);
+    press_edges(cloth);
+    press_corner(cloth);
+    ASSERT_EQ(cloth.state.active.back().kind, ContactKind::Triangle);
+    take(cloth);
+    expect_sound(cloth.state, 0.16);
+    const Obstacle& ridge = cloth.scene.obstacles[0];
+    const std::vector<int> row = along_ridge(cloth.state);
+    ASSERT_GT(row.size(), 2u);
+    const EolVertex& last = cloth.state.eol[cloth.state.eol_entry(cloth.state.ids[row.back()])];
+    EXPECT_TRUE(last.is_corner);
+    EXPECT_EQ(last.feature, testing::end_of(ridge));
+    EXPECT_LT((cloth.state.mesh.world[row.back()] - Vec3(0, 0.1, kThickness)).norm(), kOnFeature);
+    for (std::size_t k = 1; k < row.size(); ++k) EXPECT_TRUE(has_edge(cloth.state, row[k - 1], row[k])) << k;
+}
+
+TEST(Conform, WhatHasNotPressedForThreeStepsIsReleased)
+{
+    EolCloth cloth = lying(17.0);
+    press_edges(cloth);
+    take(cloth);
+    cloth.state.active.clear();
+    const std::size_t count = cloth.state.eol.size();
+    for (EolVertex& e : cloth.state.eol) e.idle = 2;
+    EXPECT_FALSE(conform(cloth)) << "two steps are not for long";
+
+    cloth.state.eol[1].idle = 3;
+    const VertexId idle = cloth.state.eol[1].vertex_id;
+    EolCloth one = cloth;
+    const ConformedMesh released = take(one);
+    EXPECT_EQ(released.report.released, 1);
+    EXPECT_EQ(one.state.eol_entry(idle), -1);
+    EXPECT_LT(one.state.eol.size(), count);
+    expect_sound(one.state, 0.16);
+
+    for (EolVertex& e : cloth.state.eol) e.idle = 3;
+    EXPECT_EQ(take(cloth).report.released, static_cast<int>(count));
+    EXPECT_TRUE(cloth.state.eol.empty());
+    expect_sound(cloth.state, 0.16);
+    EXPECT_FALSE(conform(cloth));
+}
+
+TEST(Conform, WhatHasLeftItsStretchOfTheFeatureIsReleased)
+{
+    for (const double beyond : {-0.02, 0.02}) {
+        EolCloth cloth = lying(0.0, 0.0, 0.3);
+        press_edges(cloth);
+        take(cloth);
+        cloth.state.active.clear();
+        const std::vector<int> row = along_ridge(cloth.state);
+        const double move = 0.3 + beyond - cloth.state.mesh.world[row.back()].y();
+        for (Vec3& x : cloth.state.mesh.world) x.y() += move;
+        const std::optional<ConformedMesh> made = conform(cloth);
+        ASSERT_EQ(made.has_value(), beyond > 0.0);
+        if (made) {
+            EXPECT_GE(made->report.released, 1);
+        }
+    }
+}
+
+TEST(Conform, ATraceThatIsGivenUpIsReleasedWholeAndItsContactsStayRows)
+{
+    EolCloth cloth = lying(17.0);
+    press_edges(cloth);
+    const std::vector<ActiveContact> rows = cloth.state.active;
+    take(cloth);
+    ASSERT_GT(cloth.state.eol.size(), 3u);
+    for (const EolVertex& e : cloth.state.eol)
+        cloth.state.material_velocity[cloth.state.index_of(e.vertex_id)] = Vec2(1e-3, 0);
+    cloth.state.active.clear();
+    press_edges(cloth);
+    const std::optional<ConformedMesh> made = conform(cloth, {cloth.state.eol[2]});
+    ASSERT_TRUE(made);
+    EXPECT_TRUE(made->eol.empty());
+    EXPECT_EQ(made->report.inserted, 0);
+    EXPECT_GT(made->report.released, 1) << "an end that is left alone goes with its neighbour, uncounted";
+    EXPECT_GT(made->report.refused, 0);
+    EXPECT_EQ(validate(made->surgery.mesh), "");
+}
+
+TEST(Conform, WithoutATargetOrWithoutContactsThereIsNothingToDo)
+{
+    EolCloth cloth = lying(17.0);
+    EXPECT_FALSE(conform(cloth));
+    press_edges(cloth);
+    cloth.scene.eol.reset();
+    EXPECT_FALSE(conform(cloth));
+}
+
+/// How far above the cloth a point is, m; 0 where there is none below or above it.
+double height_over(const ClothMesh& mesh, const Vec3& point)
+{
+    for (const Face& f : mesh.faces) {
+        const Vec3 &a = mesh.world[f[0]], &b = mesh.world[f[1]], &c = mesh.world[f[2]];
+        const Vec2 p = point.head<2>(), q = a.head<2>(), r = b.head<2>(), s = c.head<2>();
+        const double area = twice_area(q, r, s);
+        const double of_a = twice_area(p, r, s) / area, of_b = twice_area(q, p, s) / area;
+        if (of_a < 0.0 || of_b < 0.0 || of_a + of_b > 1.0) continue;
+        return point.z() - (of_a * a.z() + of_b * b.z() + (1.0 - of_a - of_b) * c.z());
+    }
+    return 0.0;
+}
+
+TEST(Conform, NothingOfAnObstacleGetsThroughTheCloth)
+{
+    // Wavy cloth that gives way to anything; nails 10 micrometres from its faces.
+    EolCloth cloth = lying(17.0);
+    cloth.scene.gravity = Gravity{};
+    cloth.scene.material.youngs_modulus = 1e-3;
+    for (Vec3& x : cloth.state.mesh.world)
+        x.z() += 0.001 + 0.002 * std::sin(40.0 * x.x()) * std::sin(20.0 * x.y());
+    press_edges(cloth);
+    const State& state = cloth.state;
+    std::vector<Vec3> nails;
+    for (const Face& f : state.mesh.faces) {
+        const Vec3 middle = (state.mesh.world[f[0]] + state.mesh.world[f[1]] + state.mesh.world[f[2]]) / 3.0;
+        nails.push_back(middle + Vec3(0, 0, nails.size() % 2 == 0 ? 1e-5 : -1e-5));
+    }
+    const auto count_passed = [&](const ClothMesh& mesh) {
+        return std::count_if(nails.begin(), nails.end(), [&](const Vec3& nail) {
+            return height_over(state.mesh, nail) * height_over(mesh, nail) < 0.0;
+        });
+    };
+    const std::optional<ConformedMesh> unhindered = conform(cloth);
+    ASSERT_TRUE(unhindered);
+    EXPECT_GT(count_passed(unhindered->surgery.mesh), 3);
+
+    cloth.scene.obstacles.push_back(Obstacle("nails", make_points(nails), {}, {}, 30.0));
+    const std::optional<ConformedMesh> made = conform(cloth);
+    ASSERT_TRUE(made);
+    EXPECT_GT(made->report.inserted, 0) << "splits pass nothing";
+    EXPECT_EQ(count_passed(made->surgery.mesh), 0);
+}
+
+/// Steps with gravity and all: cloth that falls on a ridge and hangs down on both sides.
+TEST(ConformedSteps, ClothThatFallsOnARidgeBendsOnVerticesOfIt)
+{
+    for (const double turn : {0.0, 17.0}) {
+        EolCloth cloth = lying(turn);
+        cloth.scene.material.thickness = kThickness;
+        cloth.scene.gravity = Gravity{};
+        State& state = cloth.state;
+        for (Vec3& x : state.mesh.world) x.z() += 2e-3;
+        Workspace work;
+        int steps_with_eol = 0, most = 0;
+        for (int k = 0; k < 30 && !::testing::Test::HasFailure(); ++k) {
+            const auto accept = [&](const StepReport& report, bool) {
+                EXPECT_EQ(report.crossings, 0);
+                expect_sound(state, 0.16);
+                EXPECT_EQ(audit(cloth.scene, state.mesh, state.time).obstacle, -1) << state.time;
+                for (std::size_t v = 0; v < state.ids.size(); ++v)
+                    if (state.eol_entry(state.ids[v]) < 0) {
+                        EXPECT_TRUE(state.material_velocity[v].isZero());
+                    }
+                return true;
+            };
+            ASSERT_FALSE(advance(cloth.scene, Settings(), state.time + kStep, state, work, accept));
+            steps_with_eol += state.eol.empty() ? 0 : 1;
+            most = std::max(most, static_cast<int>(state.eol.size()));
+            for (const EolVertex& e : state.eol) {
+                EXPECT_LE(e.idle, 3) << "what is taken again begins anew";
+                const Vec3& x = state.mesh.world[state.index_of(e.vertex_id)];
+                EXPECT_NEAR(x.x(), 0.0, 0.1 * kThickness) << state.time;  // the plane in which it may move
+            }
+        }
+        EXPECT_GT(steps_with_eol, 15) << turn;
+        EXPECT_GT(most, 5) << turn;
+    }
+}
+
+}  // namespace
+}  // namespace arris

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/solver/eol_cloth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/cloth_grid.h"
+#include "geometry/obstacle_shapes.h"
+#include "physics/energies.h"
+#include "physics/inertia.h"
+#include "solver/step.h"
+
+namespace arris::testing {
+namespace {
+
+constexpr double kWidth = 0.4;  // m
+
+double half_angle(double degrees)
+{
+    return 0.5 * degrees * std::numbers::pi / 180.0;
+}
+
+ClothElements elements_of(const ClothMesh& mesh)
+{
+    return make_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
+}
+
+CornerVelocities corners_of(const State& state, const ClothElements& elements)
+{
+    return compute_corner_velocities(elements, state.mesh.world, state.velocity, state.material_velocity);
+}
+
+}  // namespace
+
+Obstacle make_ridge(double tip_degrees, double half_length)
+{
+    constexpr double kHeight = 0.3;
+    const double base = 2.0 * kHeight * std::tan(half_angle(tip_degrees));
+    ObstacleMesh mesh = make_teeth({1, std::max(1.0, 1.1 * base), kHeight, 2.0 * half_length, tip_degrees});
+    for (Vec3& p : mesh.points) p.z() -= kHeight;
+    return Obstacle("ridge", std::move(mesh), {}, {}, 30.0);
+}
+
+int tip_of(const Obstacle& ridge)
+{
+    const auto& edges = ridge.features().edges;
+    const auto found = std::find_if(edges.begin(), edges.end(), [&](const FeatureEdge& edge) {
+        const auto& [a, b] = ridge.topology().edges[edge.edge].points;
+        return ridge.mesh().points[a].z() > -1e-9 && ridge.mesh().points[b].z() > -1e-9;
+    });
+    return static_cast<int>(found - edges.begin());
+}
+
+int end_of(const Obstacle& ridge)
+{
+    const auto& corners = ridge.features().corners;
+    const auto found = std::find_if(corners.begin(), corners.end(), [&](const FeatureCorner& corner) {
+        const Vec3& point = ridge.mesh().points[corner.point];
+        return point.z() > -1e-9 && point.y() > 0.0;
+    });
+    return static_cast<int>(found - corners.begin());
+}
+
+ClothMesh make_draped(const Drape& shape)
+{
+    ClothGrid grid;
+    grid.size = {kWidth, kWidth};
+    grid.resolution = {shape.cells, shape.cells};
+    grid.pattern = GridPattern::Diagonal;
+    ClothMesh mesh = make_cloth_grid(grid);
+    const double turn = shape.turn_degrees * std::numbers::pi / 180.0, half = half_angle(shape.fold_degrees);
+    for (std::size_t v = 0; v < mesh.world.size(); ++v) {
+        const Vec2 X = mesh.material[v] - Vec2::Constant(0.5 * kWidth);
+        const double across = std::cos(turn) * X.x() - std::sin(turn) * X.y();
+        const double along = std::sin(turn) * X.x() + std::cos(turn) * X.y();
+        mesh.world[v] = {across * std::sin(half), shape.stretch * along, -std::abs(across) * std::cos(half)};
+    }
+    return mesh;
+}
+
+EolCloth::EolCloth(Obstacle obstacle, ClothMesh mesh)
+{
+    scene.material = {0.2, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+    scene.obstacles.push_back(std::move(obstacle));
+    scene.eol = uniform_target(0.05, 10.0);
+    state = make_state(scene, std::move(mesh), Vec3::Zero());
+}
+
+int EolCloth::vertex_at(double u, double v) const
+{
+    const auto& X = state.mesh.material;
+    const auto nearest = std::min_element(X.begin(), X.end(), [&](const Vec2& a, const Vec2& b) {
+        return (a - Vec2(u, v)).squaredNorm() < (b - Vec2(u, v)).squaredNorm();
+    });
+    return static_cast<int>(nearest - X.begin());
+}
+
+int EolCloth::add_eol(int vertex, bool is_corner, int feature)
+{
+    state.eol.push_back({state.ids[vertex], 0, is_corner, feature, Vec3::UnitZ(), 0});
+    std::sort(state.eol.begin(), state.eol.end(),
+              [](const EolVertex& a, const EolVertex& b) { return a.vertex_id < b.vertex_id; });
+    return state.eol_entry(state.ids[vertex]);
+}
+
+ClothStars EolCloth::stars() const
+{
+    const MeshTopology topology = make_topology(state.mesh.vertex_count(), state.mesh.faces);
+    return make_stars(state.mesh.vertex_count(), state.mesh.faces, topology.edges);
+}
+
+EolPlacing EolCloth::place(int vertex, const Placement& end) const
+{
+    return place_eol_vertex(scene.obstacles[0], state, state.eol_entry(state.ids[vertex]), stars(),
+                            state.mesh.world, end);
+}
+
+double kinetic_energy_of(const Scene& scene, const State& state)
+{
+    const ClothElements elements = elements_of(state.mesh);
+    return kinetic_energy(scene.material.density, elements, corners_of(state, elements));
+}
+
+Vec3 momentum_of(const Scene& scene, const State& state)
+{
+    const ClothElements elements = elements_of(state.mesh);
+    return linear_momentum(scene.material.density, elements, corners_of(state, elements));
+}
+
+double elastic_energy_of(const Scene& scene, const ClothMesh& mesh)
+{
+    const Terms terms = make_terms(scene.material, {}, {}, {});
+    const Energies energies = compute_energies(elements_of(mesh), terms, mesh.world);
+    return energies.stretch + energies.bending;
+}
+
+}  // namespace arris::testing

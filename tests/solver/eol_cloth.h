@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "solver/eol_coordinates.h"
+#include "solver/scene.h"
+#include "solver/state.h"
+
+namespace arris::testing {
+
+/// A ridge along y whose tip is the segment x = z = 0, `half_length` to either side of y = 0, with
+/// `tip_degrees` between its flanks.
+Obstacle make_ridge(double tip_degrees, double half_length = 0.5);
+
+/// The feature that is the ridge's tip, and the corner at which it ends at y > 0.
+int tip_of(const Obstacle& ridge);
+int end_of(const Obstacle& ridge);
+
+/// A square of cloth 0.4 m wide over the ridge x = z = 0.
+struct Drape {
+    int cells = 8;
+    double turn_degrees = 0.0;   ///< of the material against the ridge
+    double fold_degrees = 90.0;  ///< between its two sides; 180 is flat
+    double stretch = 1.0;        ///< along y
+};
+
+/// The cloth's middle is on the ridge, its sides hang down from it to x < 0 and x > 0.
+ClothMesh make_draped(const Drape& shape);
+
+/// A state of it, the scene's material and mesh target set; without gravity.
+struct EolCloth {
+    Scene scene;
+    State state;
+
+    EolCloth(Obstacle obstacle, ClothMesh mesh);
+    int vertex_at(double u, double v) const;  ///< nearest to that material point
+    /// Makes a vertex EOL and returns its entry.
+    int add_eol(int vertex, bool is_corner, int feature);
+    ClothStars stars() const;
+    EolPlacing place(int vertex, const Placement& end = {}) const;
+};
+
+/// Of the whole cloth: kinetic energy (J) and linear momentum (kg m/s) of its material.
+double kinetic_energy_of(const Scene& scene, const State& state);
+Vec3 momentum_of(const Scene& scene, const State& state);
+
+/// Stretch and bending energy, J.
+double elastic_energy_of(const Scene& scene, const ClothMesh& mesh);
+
+}  // namespace arris::testing

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/eol_coordinates.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "geometry/obstacle_shapes.h"
+#include "tests/solver/eol_cloth.h"
+
+namespace arris {
+namespace {
+
+using testing::Drape;
+using testing::EolCloth;
+using testing::make_draped;
+using testing::make_ridge;
+
+constexpr double kRoundOff = 1e-12;  // of unit vectors, through a few products of 2 x 2 matrices
+
+double radians(double degrees)
+{
+    return degrees * std::numbers::pi / 180.0;
+}
+
+/// Cloth of this shape on a ridge of 60 degrees.
+EolCloth on_ridge(const Drape& shape, double tip = 60.0)
+{
+    return EolCloth(make_ridge(tip), make_draped(shape));
+}
+
+EolCloth on_wire(const Drape& shape)
+{
+    return EolCloth(Obstacle("wire", make_wire({{0, -1, 0}, {0, 1, 0}}, false), {}, {}, 30.0),
+                    make_draped(shape));
+}
+
+/// The vertex in the middle as EOL on the ridge's tip (or the wire), placed.
+EolPlacing place_middle(EolCloth cloth, bool is_wire = false)
+{
+    const int v = cloth.vertex_at(0.2, 0.2);
+    cloth.add_eol(v, false, is_wire ? 0 : testing::tip_of(cloth.scene.obstacles[0]));
+    return cloth.place(v);
+}
+
+void expect_parallel(const Vec2& a, const Vec2& b)
+{
+    EXPECT_NEAR(a.norm(), 1.0, kRoundOff);
+    EXPECT_NEAR(std::abs(a.dot(b)), 1.0, kRoundOff) << a.transpose() << " and " << b.transpose();
+}
+
+/// Kinetic energy when the vertex alone moves, at this rate.
+double energy_of(EolCloth cloth, const EolCoordinates& at, const Vec3& u)
+{
+    cloth.state.velocity[at.vertex] = at.basis * u;
+    cloth.state.material_velocity[at.vertex] = at.material_basis * u;
+    return testing::kinetic_energy_of(cloth.scene, cloth.state);
+}
+
+TEST(EolCoordinates, OnAnEdgeAreOutwardAlongAndTheFlowAcross)
+{
+    for (const double tip : {5.0, 60.0, 120.0})  // a knife, too
+        for (const double fold : {tip, 180.0}) {
+            const EolPlacing placing = place_middle(on_ridge({8, 0.0, fold}, tip));
+            ASSERT_TRUE(placing.coordinates) << tip;
+            const EolCoordinates& at = *placing.coordinates;
+            EXPECT_LT((at.basis.col(0) - Vec3::UnitZ()).norm(), kRoundOff);
+            EXPECT_NEAR(std::abs(at.basis.col(1).y()), 1.0, kRoundOff);
+            EXPECT_TRUE(at.basis.col(2).isZero()) << "flow leaves the vertex where it is";
+            EXPECT_TRUE(at.material_basis.leftCols<2>().isZero()) << "moving it carries its material along";
+            expect_parallel(at.material_basis.col(2), Vec2::UnitX());
+            EXPECT_EQ(at.opening[0], 1.0);
+        }
+}
+
+TEST(EolCoordinates, OnAWireAreOutwardWhereTheClothIs)
+{
+    for (const double side : {1.0, -1.0}) {
+        EolCloth cloth = on_wire({8, 0.0, 150.0});
+        const int v = cloth.vertex_at(0.2, 0.2);
+        cloth.state.eol[cloth.add_eol(v, false, 0)].outward = Vec3(0, 0, side);
+        const EolPlacing placing = cloth.place(v);
+        ASSERT_TRUE(placing.coordinates);
+        EXPECT_LT((placing.coordinates->basis.col(0) - Vec3(0, 0, side)).norm(), kRoundOff);
+        expect_parallel(placing.coordinates->material_basis.col(2), Vec2::UnitX());
+    }
+    // Folded over it by more than a right angle the cloth itself tells the side.
+    EolCloth hanging = on_wire({8, 0.0, 20.0});
+    const int v = hanging.vertex_at(0.2, 0.2);
+    hanging.state.eol[hanging.add_eol(v, false, 0)].outward = Vec3(0, 0, -1);
+    const EolPlacing placing = hanging.place(v);
+    ASSERT_TRUE(placing.coordinates);
+    EXPECT_LT((placing.coordinates->basis.col(0) - Vec3::UnitZ()).norm(), kRoundOff);
+}
+
+TEST(EolCoordinates, OnACornerAreOutwardAndAnyFlow)
+{
+    EolCloth cloth(make_ridge(60.0, 0.0001 + 0.2), make_draped({8, 0.0, 60.0}));
+    const int v = cloth.vertex_at(0.2, 0.35);
+    cloth.add_eol(v, true, testing::end_of(cloth.scene.obstacles[0]));
+    const EolPlacing placing = cloth.place(v);
+    ASSERT_TRUE(placing.coordinates);
+    const EolCoordinates& at = *placing.coordinates;
+    EXPECT_NEAR(at.basis.col(0).norm(), 1.0, kRoundOff);
+    EXPECT_NEAR(at.basis.col(0).x(), 0.0, kRoundOff) << "the ridge is symmetric";
+    EXPECT_GT(at.basis.col(0).y(), 0.1);
+    EXPECT_GT(at.basis.col(0).z(), 0.1);
+    EXPECT_TRUE(at.basis.rightCols<2>().isZero());
+    EXPECT_TRUE(at.material_basis.col(0).isZero());
+    const Mat2 flow = at.material_basis.rightCols<2>();
+    EXPECT_GT(std::abs(flow.determinant()), 0.5) << "the material flows any way";
+}
+
+TEST(EolCoordinates, OnTheClothsBorderFlowAlongTheBorder)
+{
+    for (const double turn : {0.0, 30.0, -40.0, 60.0}) {
+        EolCloth cloth = on_ridge({8, turn, 180.0});
+        const int v = cloth.vertex_at(0.2, 0.0);
+        cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+        const EolPlacing placing = cloth.place(v);
+        ASSERT_TRUE(placing.coordinates) << turn;
+        EXPECT_EQ(std::abs(placing.coordinates->material_basis(0, 2)), 1.0) << "not off the border";
+        EXPECT_EQ(placing.coordinates->material_basis(1, 2), 0.0);
+    }
+}
+
+TEST(EolCoordinates, TraceIsWhatTheDeformationMapsToTheTangentWhereNoNeighbourTells)
+{
+    for (const double turn : {10.0, 45.0, -70.0}) {
+        const EolPlacing flat = place_middle(on_ridge({8, turn, 180.0}));
+        ASSERT_TRUE(flat.coordinates);
+        // The material direction (sin, cos) lies along the ridge, so what flows over it is (cos, -sin).
+        expect_parallel(flat.coordinates->material_basis.col(2),
+                        Vec2(std::cos(radians(turn)), -std::sin(radians(turn))));
+    }
+    // Sheared and stretched: F = [[1, 0.5], [0, 2]] maps (-1, 2) / ... to y.
+    EolCloth cloth = on_ridge({8, 0.0, 180.0});
+    for (std::size_t v = 0; v < cloth.state.mesh.world.size(); ++v) {
+        const Vec2 X = cloth.state.mesh.material[v] - Vec2(0.2, 0.2);
+        cloth.state.mesh.world[v] = Vec3(X.x() + 0.5 * X.y(), 2.0 * X.y(), 0.0);
+    }
+    const EolPlacing sheared = place_middle(cloth);
+    ASSERT_TRUE(sheared.coordinates);
+    expect_parallel(sheared.coordinates->material_basis.col(2), Vec2(2.0, 1.0).normalized());
+}
+
+TEST(EolCoordinates, TraceFollowsTheEdgesToNeighboursOnTheFeature)
+{
+    // The material is turned by 10 degrees, so F says otherwise.
+    for (const int neighbours : {1, 2}) {
+        EolCloth cloth = on_ridge({8, 10.0, 180.0});
+        const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+        const int v = cloth.vertex_at(0.2, 0.2);
+        cloth.add_eol(v, false, tip);
+        cloth.add_eol(cloth.vertex_at(0.2, 0.25), false, tip);
+        if (neighbours == 2) cloth.add_eol(cloth.vertex_at(0.2, 0.15), false, tip);
+        const EolPlacing placing = cloth.place(v);
+        ASSERT_TRUE(placing.coordinates);
+        expect_parallel(placing.coordinates->material_basis.col(2), Vec2::UnitX());
+    }
+    // A bent trace: the mean of both ways, each in the same sense. One goes up, one down a diagonal.
+    EolCloth cloth = on_ridge({8, 20.0, 180.0});
+    const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+    const int v = cloth.vertex_at(0.2, 0.2);
+    cloth.add_eol(v, false, tip);
+    Vec2 way = Vec2(0.0, 0.05);
+    cloth.add_eol(cloth.vertex_at(0.2, 0.25), false, tip);
+    const ClothMesh& mesh = cloth.state.mesh;
+    const ClothStars stars = cloth.stars();
+    for (const int f : stars.faces[v])
+        for (const int w : mesh.faces[f]) {
+            const Vec2 to = mesh.material[w] - mesh.material[v];
+            if (to.norm() < 0.06 || to.y() > 0.0) continue;
+            if (cloth.state.eol_entry(cloth.state.ids[w]) < 0) {
+                cloth.add_eol(w, false, tip);
+                way -= to;
+            }
+        }
+    ASSERT_GT(std::abs(way.x()), 0.04) << "there is a diagonal";
+    const EolPlacing placing = cloth.place(v);
+    ASSERT_TRUE(placing.coordinates);
+    expect_parallel(placing.coordinates->material_basis.col(2), Vec2(way.y(), -way.x()).normalized());
+}
+
+TEST(EolCoordinates, NeighboursOnAnotherFeatureTellNothing)
+{
+    EolCloth cloth = on_ridge({8, 10.0, 180.0});
+    const Obstacle& ridge = cloth.scene.obstacles[0];
+    const int tip = testing::tip_of(ridge);
+    const int v = cloth.vertex_at(0.2, 0.2);
+    cloth.add_eol(v, false, tip);
+    cloth.add_eol(cloth.vertex_at(0.2, 0.25), false, tip == 0 ? 1 : 0);
+    const EolPlacing placing = cloth.place(v);
+    ASSERT_TRUE(placing.coordinates);
+    expect_parallel(placing.coordinates->material_basis.col(2),
+                    Vec2(std::cos(radians(10.0)), -std::sin(radians(10.0))));
+}
+
+TEST(EolCoordinates, OpeningHasTheLeastKineticEnergy)
+{
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> shift(-0.005, 0.005);
+    for (int k = 0; k < 24; ++k) {
+        const double fold = k % 3 == 0 ? 180.0 : k % 3 == 1 ? 90.0 : 20.0;
+        EolCloth cloth = on_ridge({8, 5.0 * k, fold, 1.0 + 0.03 * k}, 15.0);
+        for (Vec3& x : cloth.state.mesh.world) x += Vec3(shift(random), shift(random), shift(random));
+        const int v = cloth.vertex_at(0.2, 0.2);
+        const Obstacle& ridge = cloth.scene.obstacles[0];
+        const bool is_corner = k % 4 == 3;
+        cloth.add_eol(v, is_corner, is_corner ? testing::end_of(ridge) : testing::tip_of(ridge));
+        const EolPlacing placing = cloth.place(v);
+        ASSERT_TRUE(placing.coordinates) << k;
+        const EolCoordinates& at = *placing.coordinates;
+        EXPECT_EQ(at.opening[0], 1.0);
+        const double least = energy_of(cloth, at, at.opening);
+        ASSERT_GT(least, 0.0);
+        for (const int i : {1, 2})
+            for (const double size : {1e-3, 0.1, 10.0}) {
+                Vec3 change = Vec3::Zero();
+                change[i] = size;
+                const double up = energy_of(cloth, at, at.opening + change);
+                const double down = energy_of(cloth, at, at.opening - change);
+                EXPECT_GT(std::min(up, down), least);
+                // A parabola with its foot there.
+                EXPECT_NEAR(up, down, 1e-9 * (up + down)) << k << " by " << size << " in " << i;
+            }
+    }
+}
+
+TEST(EolCoordinates, AreTurnedToWhereTheObstacleWillBe)
+{
+    EolCloth cloth = on_ridge({8, 0.0, 60.0});
+    const int v = cloth.vertex_at(0.2, 0.2);
+    cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+    const Placement end = {rotation_about(Vec3(1, 2, 3), 40.0), Vec3(5, -6, 7)};
+    const EolPlacing here = cloth.place(v), there = cloth.place(v, end);
+    ASSERT_TRUE(here.coordinates && there.coordinates);
+    EXPECT_LT((there.coordinates->basis - end.rotation * here.coordinates->basis).norm(), kRoundOff);
+    EXPECT_EQ(there.coordinates->material_basis, here.coordinates->material_basis);
+    EXPECT_LT((there.coordinates->carried - end(cloth.state.mesh.world[v])).norm(), kRoundOff);
+    EXPECT_LT((there.coordinates->opening - here.coordinates->opening).norm(), kRoundOff);
+    EXPECT_EQ(there.coordinates->frame.outward, here.coordinates->frame.outward) << "in the frame, at begin";
+}
+
+TEST(EolRefusal, AtTheClothsOwnCorners)
+{
+    for (const Vec2& corner : {Vec2(0, 0), Vec2(0.4, 0), Vec2(0, 0.4), Vec2(0.4, 0.4)}) {
+        EolCloth cloth = on_ridge({8, 45.0, 180.0});
+        const int v = cloth.vertex_at(corner.x(), corner.y());
+        cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+        const EolPlacing placing = cloth.place(v);
+        ASSERT_FALSE(placing.coordinates);
+        EXPECT_EQ(placing.refusal, EolRefusal::ClothCorner);
+    }
+}
+
+TEST(EolRefusal, WhereTheTraceMeetsTheBorderAtLessThan20Degrees)
+{
+    for (const double turn : {-19.0, 0.0, 19.0, 21.0, -21.0}) {
+        EolCloth cloth = on_ridge({8, turn, 180.0});
+        const int v = cloth.vertex_at(0.0, 0.2);  // the ridge runs at `turn` to this border
+        cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+        const EolPlacing placing = cloth.place(v);
+        ASSERT_EQ(placing.coordinates.has_value(), std::abs(turn) > 20.0) << turn;
+        if (!placing.coordinates) {
+            EXPECT_EQ(placing.refusal, EolRefusal::AlongBorder);
+        }
+    }
+}
+
+TEST(EolRefusal, OfACornerOnTheBorder)
+{
+    EolCloth cloth = on_ridge({8, 0.0, 60.0});
+    const int v = cloth.vertex_at(0.2, 0.4);
+    cloth.add_eol(v, true, testing::end_of(cloth.scene.obstacles[0]));
+    const EolPlacing placing = cloth.place(v);
+    ASSERT_FALSE(placing.coordinates);
+    EXPECT_EQ(placing.refusal, EolRefusal::AlongBorder);
+}
+
+TEST(EolRefusal, OfFlatClothThatAllButContainsTheOutwardDirection)
+{
+    for (const double lean : {0.0, 9.0, 11.0, 45.0}) {  // from standing on the ridge
+        EolCloth cloth = on_ridge({8, 0.0, 180.0});
+        const Mat3 turn = rotation_about(Vec3::UnitY(), 90.0 - lean);
+        for (Vec3& x : cloth.state.mesh.world) x = turn * x;
+        const EolPlacing placing = place_middle(cloth);
+        ASSERT_EQ(placing.coordinates.has_value(), lean > 10.0) << lean;
+        if (!placing.coordinates) {
+            EXPECT_EQ(placing.refusal, EolRefusal::EdgeOn);
+        }
+    }
+    // Cloth that is folded there is not edge-on, however it stands.
+    EXPECT_TRUE(place_middle(on_ridge({8, 0.0, 1.0}, 0.5)).coordinates);
+}
+
+TEST(EolRefusal, OfCollapsedClothAndOfAWireWhoseClothTellsNoSide)
+{
+    EolCloth wire = on_wire({8, 0.0, 180.0});
+    for (Vec3& x : wire.state.mesh.world) x = Vec3(0, x.y(), 0);  // all of it in the wire's line
+    EXPECT_EQ(place_middle(wire, true).refusal, EolRefusal::NoDirection);
+    EXPECT_FALSE(place_middle(wire, true).coordinates);
+
+    EolCloth point = on_ridge({8, 0.0, 180.0});
+    for (Vec3& x : point.state.mesh.world) x.setZero();
+    EXPECT_FALSE(place_middle(point).coordinates);
+
+    EolCloth broken = on_ridge({8, 0.0, 180.0});
+    for (Vec3& x : broken.state.mesh.world) x.setConstant(std::nan(""));
+    EXPECT_FALSE(place_middle(broken).coordinates);
+}
+
+TEST(TraceEdge, JoinsVerticesOfOneStretchAndItsEnds)
+{
+    const Obstacle ridge = make_ridge(60.0);
+    const int tip = testing::tip_of(ridge), end = testing::end_of(ridge);
+    const EolVertex on_tip{0, 0, false, tip, Vec3::UnitZ(), 0}, at_end{1, 0, true, end, Vec3::UnitZ(), 0};
+    EXPECT_TRUE(is_trace_edge(ridge, on_tip, on_tip));
+    EXPECT_TRUE(is_trace_edge(ridge, on_tip, at_end));
+    EXPECT_TRUE(is_trace_edge(ridge, at_end, on_tip));
+    EolVertex elsewhere = on_tip;
+    elsewhere.obstacle = 1;
+    EXPECT_FALSE(is_trace_edge(ridge, on_tip, elsewhere));
+    const auto& features = ridge.features();
+    for (int f = 0; f < static_cast<int>(features.edges.size()); ++f) {
+        const EolVertex other{2, 0, false, f, Vec3::UnitZ(), 0};
+        EXPECT_EQ(is_trace_edge(ridge, on_tip, other), f == tip);
+        const auto& ends = ridge.topology().edges[features.edges[f].edge].points;
+        const int point = features.corners[end].point;
+        EXPECT_EQ(is_trace_edge(ridge, at_end, other), ends[0] == point || ends[1] == point);
+        // Both its ends are corners: the feature runs from one to the other.
+        for (int c = 0; c < static_cast<int>(features.corners.size()); ++c) {
+            const int at = features.corners[c].point;
+            if (at == point) continue;
+            if ((ends[0] == at && ends[1] == point) || (ends[1] == at && ends[0] == point)) {
+                EXPECT_TRUE(is_trace_edge(ridge, at_end, {3, 0, true, c, Vec3::UnitZ(), 0}));
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace arris

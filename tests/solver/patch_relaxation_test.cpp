@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/patch_relaxation.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <random>
+
+#include "geometry/obstacle_shapes.h"
+#include "solver/audit.h"
+#include "tests/solver/eol_cloth.h"
+
+namespace arris {
+namespace {
+
+using testing::elastic_energy_of;
+using testing::EolCloth;
+using testing::make_draped;
+
+constexpr double kHeight = 1.0;  // m, of the cloth above the obstacle
+
+/// Flat cloth of 0.4 m whose inner vertices are out of place, far from its obstacle.
+struct Setting {
+    EolCloth cloth;
+    RelaxedPatch patch;
+
+    explicit Setting(double rough, ObstacleMesh obstacle = make_points({{9, 9, 9}}))
+        : cloth(Obstacle("it", std::move(obstacle), {}, {}, 30.0), make_draped({8, 0.0, 180.0}))
+    {
+        std::mt19937 random(2);
+        std::normal_distribution<double> shift(0.0, rough);
+        State& state = cloth.state;
+        patch.faces.resize(state.mesh.faces.size());
+        std::iota(patch.faces.begin(), patch.faces.end(), 0);
+        patch.normals.assign(state.ids.size(), Vec3::Zero());
+        for (std::size_t v = 0; v < state.ids.size(); ++v) {
+            const Vec2& X = state.mesh.material[v];
+            const bool is_inner = (X - Vec2(0.2, 0.2)).cwiseAbs().maxCoeff() < 0.19;
+            patch.is_free.push_back(is_inner);
+            state.mesh.world[v].z() += kHeight;
+            if (is_inner) state.mesh.world[v] += Vec3(shift(random), shift(random), shift(random));
+            state.previous_world[v] = state.mesh.world[v] - Vec3(0.001, 0.002, 0.003);
+            state.velocity[v] = Vec3(0.2, 0.4, 0.6);
+        }
+    }
+
+    double energy() const { return elastic_energy_of(cloth.scene, cloth.state.mesh); }
+    double relax() { return arris::relax(cloth.scene, patch, cloth.state); }
+};
+
+TEST(PatchRelaxation, LowersTheEnergyAndReturnsWhatThereIs)
+{
+    for (const double stiffness : {50.0, 5e4})
+        for (const double bending : {0.0, 1e-5, 1e-2})
+            for (const double rough : {1e-6, 1e-3, 5e-3, 0.05}) {
+                Setting setting(rough);
+                setting.cloth.scene.material.youngs_modulus = stiffness;
+                setting.cloth.scene.material.bending_stiffness = bending;
+                const double before = setting.energy();
+                const double after = setting.relax();
+                EXPECT_NEAR(after, setting.energy(), 1e-12 * before);
+                EXPECT_LT(after, rough < 1e-2 ? 0.1 * before : before) << stiffness << ", " << rough;
+            }
+}
+
+TEST(PatchRelaxation, WhatIsHeldStaysAndHistoryMovesAlong)
+{
+    Setting setting(5e-3);
+    const State before = setting.cloth.state;
+    setting.relax();
+    const State& after = setting.cloth.state;
+    int moved = 0;
+    for (std::size_t v = 0; v < before.ids.size(); ++v) {
+        const Vec3 way = after.mesh.world[v] - before.mesh.world[v];
+        if (setting.patch.is_free[v] == 0) {
+            EXPECT_EQ(after.mesh.world[v], before.mesh.world[v]);
+            EXPECT_EQ(after.previous_world[v], before.previous_world[v]);
+        }
+        moved += way.norm() > 1e-4 ? 1 : 0;
+        EXPECT_LT((after.previous_world[v] - before.previous_world[v] - way).norm(), 1e-15);
+        EXPECT_EQ(after.velocity[v], before.velocity[v]);
+        EXPECT_EQ(after.mesh.material[v], before.mesh.material[v]);
+        EXPECT_EQ(after.previous_material[v], before.previous_material[v]);
+    }
+    EXPECT_GT(moved, 30);
+}
+
+TEST(PatchRelaxation, OnlyThePatchMoves)
+{
+    Setting setting(5e-3);
+    std::erase_if(setting.patch.faces, [&](int f) {
+        for (const int v : setting.cloth.state.mesh.faces[f])
+            if (setting.cloth.state.mesh.material[v].x() > 0.2 + 1e-9) return true;
+        return false;
+    });
+    for (std::size_t v = 0; v < setting.patch.is_free.size(); ++v)
+        if (setting.cloth.state.mesh.material[v].x() > 0.2 - 1e-9) setting.patch.is_free[v] = 0;
+    const State before = setting.cloth.state;
+    setting.relax();
+    int moved = 0;
+    for (std::size_t v = 0; v < before.ids.size(); ++v) {
+        const bool is_same = setting.cloth.state.mesh.world[v] == before.mesh.world[v];
+        moved += is_same ? 0 : 1;
+        EXPECT_TRUE(is_same || setting.patch.is_free[v] != 0);
+    }
+    EXPECT_GT(moved, 10);
+}
+
+TEST(PatchRelaxation, StopsAtWhatIsWanted)
+{
+    Setting relaxed(5e-3);
+    const State before = relaxed.cloth.state;
+    relaxed.patch.wanted = relaxed.energy();
+    EXPECT_EQ(relaxed.relax(), relaxed.energy());
+    EXPECT_EQ(relaxed.cloth.state.mesh.world, before.mesh.world) << "it is relaxed enough";
+
+    // What strain the cloth had before is not taken from it: a push the other way.
+    for (const double share : {0.99, 0.9, 0.5}) {
+        Setting partly(5e-3);
+        const double wanted = share * partly.energy();
+        partly.patch.wanted = wanted;
+        const double left = partly.relax();
+        EXPECT_LE(left, (1.0 + 1e-9) * wanted);
+        EXPECT_GT(left, 0.9 * wanted) << share;
+    }
+}
+
+TEST(PatchRelaxation, KeepsTheHeightOfWhatTouches)
+{
+    constexpr double kHeld = 1e-6;  // of the way: the spring that holds it is that much stiffer
+    Setting setting(5e-3);
+    for (std::size_t v = 0; v < setting.patch.normals.size(); ++v)
+        if (v % 2 == 0) setting.patch.normals[v] = Vec3(1, 2, 2) / 3.0;
+    const State before = setting.cloth.state;
+    setting.relax();
+    double along = 0.0, off = 0.0;
+    for (std::size_t v = 0; v < before.ids.size(); ++v) {
+        const Vec3 way = setting.cloth.state.mesh.world[v] - before.mesh.world[v];
+        EXPECT_LT(std::abs(way.dot(setting.patch.normals[v])), 100.0 * kHeld * 5e-3);
+        (v % 2 == 0 ? along : off) += way.norm();
+    }
+    EXPECT_GT(along, 0.01) << "it slides";
+    EXPECT_GT(off, 0.01);
+}
+
+TEST(PatchRelaxation, NeverPassesAnObstacle)
+{
+    // A vertex is drawn out over a nail, a wire and a box on the way back; one corner of a box is beside it.
+    const Vec3 above(0, 0, kHeight + 0.02);
+    int stopped = 0;
+    for (int kind = 0; kind < 4; ++kind) {
+        ObstacleMesh mesh = kind == 0 ? make_points({above})
+                            : kind == 1
+                                ? make_wire({above - Vec3(0, 0.01, 0), above + Vec3(0, 0.01, 0)}, false)
+                                : make_box({0.01, 0.01, 0.01});
+        if (kind > 1)
+            for (Vec3& p : mesh.points) p += above + (kind == 3 ? Vec3(0.015, 0, 0) : Vec3(0, 0, 0));
+        Setting setting(0.0, mesh);
+        setting.cloth.scene.material.youngs_modulus = 1e3;
+        State& state = setting.cloth.state;
+        const int middle = setting.cloth.vertex_at(0.2, 0.2);
+        state.mesh.world[middle].z() += 0.06;
+        ASSERT_EQ(audit(setting.cloth.scene, state.mesh, 0.0).obstacle, -1) << kind;
+        const double before = setting.energy();
+        const State begin = state;
+        const double after = setting.relax();
+        EXPECT_LE(after, before);
+        EXPECT_NEAR(after, setting.energy(), 1e-12 * before);
+        EXPECT_EQ(audit(setting.cloth.scene, state.mesh, 0.0).obstacle, -1) << kind;
+        // What was under the tent's top still is.
+        EXPECT_GT(state.mesh.world[middle].z(), above.z()) << kind;
+        stopped += state.mesh.world[middle].z() > kHeight + 0.005 ? 1 : 0;
+    }
+    EXPECT_EQ(stopped, 4);
+}
+
+TEST(PatchRelaxation, OfNothingFreeOrOfNothingAtAllDoesNothing)
+{
+    Setting held(5e-3);
+    std::fill(held.patch.is_free.begin(), held.patch.is_free.end(), 0);
+    const State before = held.cloth.state;
+    EXPECT_NEAR(held.relax(), held.energy(), 1e-12);
+    EXPECT_EQ(held.cloth.state.mesh.world, before.mesh.world);
+
+    Setting flat(0.0);
+    const State rest = flat.cloth.state;
+    flat.relax();
+    for (std::size_t v = 0; v < rest.ids.size(); ++v)
+        EXPECT_LT((flat.cloth.state.mesh.world[v] - rest.mesh.world[v]).norm(), 1e-15) << "rounding";
+}
+
+}  // namespace
+}  // namespace arris
