@@ -95,9 +95,12 @@ class SiteFinder {
         return site;
     }
 
-    /// On a wire or border, whose plane turns with the cloth, the nearest point.
+    /// On a border, whose plane turns with the cloth, the nearest point.
     std::optional<double> find_crossing(int a, int b, int feature) const
     {
+        // Both sides of a cloth that hangs over a wire lie on the wire's line: the check of a step would have
+        // to know them. Until then wires are met by rows.
+        if (obstacle_.features().edges[feature].kind == FeatureKind::Wire) return std::nullopt;
         const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
         const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
         if (obstacle_.features().edges[feature].kind != FeatureKind::Convex) return nearest.s;
