@@ -104,7 +104,8 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     StepRow row = make_row(run, report);
     row.is_halved = is_halved;
     if (const std::int64_t index = run.timeline.frame_at(state.time); index >= 0) {
-        run.files.write_frame(index, make_frame(state, run.work.elements, run.work.terms));
+        run.files.write_frame(
+            index, make_frame(run.config.scene.obstacles, state, run.work.elements, run.work.terms));
         run.at.frames = index + 1;
     }
     run.files.append_probes(state.time, sample_probes(run.config.probes, state));

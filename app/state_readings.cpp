@@ -4,10 +4,34 @@
 #include <algorithm>
 
 #include "physics/inertia.h"
+#include "solver/eol_coordinates.h"
 
 namespace arris {
 
-Frame make_frame(const State& state, const ClothElements& elements, const Terms& terms)
+namespace {
+
+/// The cloth's edges that lie on features, ascending.
+std::vector<std::array<int, 2>> find_eol_edges(const std::vector<Obstacle>& obstacles, const State& state)
+{
+    std::vector<std::array<int, 2>> edges;
+    for (const Face& face : state.mesh.faces)
+        for (int i = 0; i < 3; ++i) {
+            const int v = face[i], w = face[(i + 1) % 3];
+            const int a = state.eol_entry(state.ids[v]), b = state.eol_entry(state.ids[w]);
+            if (a < 0 || b < 0) continue;
+            const EolVertex &p = state.eol[a], &q = state.eol[b];
+            if (is_trace_edge(obstacles[static_cast<std::size_t>(p.obstacle)], p, q))
+                edges.push_back({std::min(v, w), std::max(v, w)});
+        }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
+}
+
+}  // namespace
+
+Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, const ClothElements& elements,
+                 const Terms& terms)
 {
     Frame frame;
     frame.world = state.mesh.world;
@@ -20,6 +44,7 @@ Frame make_frame(const State& state, const ClothElements& elements, const Terms&
     frame.ids = state.ids;
     frame.eol.assign(state.ids.size(), 0);
     for (const EolVertex& eol : state.eol) frame.eol[state.index_of(eol.vertex_id)] = eol.is_corner ? 2 : 1;
+    if (!state.eol.empty()) frame.eol_edges = find_eol_edges(obstacles, state);
     frame.contact.assign(state.ids.size(), 0);
     for (const ActiveContact& contact : state.active)
         for (const std::uint32_t id : contact.vertex_ids) {

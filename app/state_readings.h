@@ -12,7 +12,8 @@
 namespace arris {
 
 /// The state as a frame. `elements` are those of its mesh.
-Frame make_frame(const State& state, const ClothElements& elements, const Terms& terms);
+Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, const ClothElements& elements,
+                 const Terms& terms);
 
 /// Where the probes' material points are and how fast, in the order of `probes`.
 std::vector<ProbeSample> sample_probes(const std::vector<Probe>& probes, const State& state);
