@@ -22,11 +22,17 @@ struct Patch {
 
     int add(VertexId id, const Vec3& place)
     {
-        const auto found = std::find(ids.begin(), ids.end(), id);
-        if (found != ids.end()) return static_cast<int>(found - ids.begin());
+        const int known = index_of(id);
+        if (known < static_cast<int>(ids.size())) return known;
         ids.push_back(id);
         begin.push_back(place);
-        return static_cast<int>(ids.size()) - 1;
+        return known;
+    }
+
+    /// The number of vertices where it is none of them.
+    int index_of(VertexId id) const
+    {
+        return static_cast<int>(std::find(ids.begin(), ids.end(), id) - ids.begin());
     }
 };
 
@@ -44,7 +50,7 @@ Patch make_patch(const SurgeryEvent& event)
 /// Cuts both faces of a flip at the middle of the edge, which is what moves.
 int cut_in_the_middle(const std::array<VertexId, 2>& edge, Patch& patch)
 {
-    const int a = patch.add(edge[0], {}), b = patch.add(edge[1], {});
+    const int a = patch.index_of(edge[0]), b = patch.index_of(edge[1]);
     const int middle = patch.add(kNoVertex, 0.5 * (patch.begin[a] + patch.begin[b]));
     std::vector<Face> halves;
     for (const Face& face : patch.faces)
@@ -85,12 +91,12 @@ bool is_free(const SurgeryEvent& event, const Obstacle& obstacle, const Placemen
         case SurgeryOperation::Move:
         case SurgeryOperation::Collapse:
             for (const VertexChange& change : event.changes)
-                end[patch.add(change.vertex, {})] = change.new_world;
+                end[patch.index_of(change.vertex)] = change.new_world;
             break;
     }
     if (event.operation == SurgeryOperation::Collapse) {
-        const int kept = patch.add(event.edge[1], {});
-        end[patch.add(event.edge[0], {})] = patch.begin[kept];
+        const int kept = patch.index_of(event.edge[1]);
+        end[patch.index_of(event.edge[0])] = patch.begin[kept];
     }
     const MeshTopology topology = make_topology(static_cast<int>(patch.begin.size()), patch.faces);
     const ClothMotion motion = {&patch.faces, &topology.edges, to_frame(placement, patch.begin),
