@@ -232,7 +232,6 @@ TEST(Impact, OfStiffClothOnTeethGainsNoEnergy)
 {
     Table table("impact_stiff", {"integrator", "E", "V", "greatest energy / first", "rise in a step / first",
                                  "stretch / first", "solves a step"});
-    constexpr double kRoundOff = 1e-12;
     constexpr double kRise = 0.003;  // of a step, and what is moved out to its stand-off at 0.1 m/s
     const int phases = is_deep() ? 20 : 3;
     for (const Integrator integrator : kIntegrators)
