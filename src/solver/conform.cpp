@@ -163,8 +163,7 @@ class Conforming {
     {
         std::vector<TraceAdvance> advances;
         for (const EolVertex& e : state_.eol) {
-            if (!surgery_->has_vertex(e.vertex_id) || surgery_->role(e.vertex_id) == TraceRole::Free)
-                continue;
+            if (!is_on_trace(e.vertex_id)) continue;
             const Vec2 ahead = kClearSteps * dt_ * state_.material_velocity[state_.index_of(e.vertex_id)];
             advances.push_back({e.vertex_id, ahead});
         }
@@ -201,9 +200,25 @@ class Conforming {
     /// What a site takes again begins anew.
     void forget_released()
     {
-        std::erase_if(eol_, [this](const EolVertex& e) {
-            return !surgery_->has_vertex(e.vertex_id) || surgery_->role(e.vertex_id) == TraceRole::Free;
-        });
+        std::erase_if(eol_, [this](const EolVertex& e) { return !is_on_trace(e.vertex_id); });
+    }
+
+    bool is_on_trace(VertexId v) const
+    {
+        return surgery_->has_vertex(v) && surgery_->role(v) != TraceRole::Free;
+    }
+
+    /// Where a vertex is in `eol_`, or would be.
+    std::vector<EolVertex>::const_iterator place_of(VertexId v) const
+    {
+        return std::lower_bound(eol_.begin(), eol_.end(), v,
+                                [](const EolVertex& e, VertexId id) { return e.vertex_id < id; });
+    }
+
+    const EolVertex* find_eol(VertexId v) const
+    {
+        const auto at = place_of(v);
+        return at != eol_.end() && at->vertex_id == v ? &*at : nullptr;
     }
 
     bool is_near_border(const FeatureSite& site) const
@@ -236,16 +251,14 @@ class Conforming {
             ++report_.refused;
             return;
         }
-        const auto at = std::lower_bound(eol_.begin(), eol_.end(), made.vertex,
-                                         [](const EolVertex& e, VertexId id) { return e.vertex_id < id; });
-        if (at != eol_.end() && at->vertex_id == made.vertex) return;  // it was there
+        if (find_eol(made.vertex)) return;  // it was there
         const EolVertex vertex{made.vertex, site.obstacle, site.is_corner, site.feature, site.outward, 0};
         if (!is_in_plane(vertex)) {
             surgery_->release_vertex(made.vertex);
             ++report_.refused;
             return;
         }
-        eol_.insert(at, vertex);
+        eol_.insert(place_of(made.vertex), vertex);
         ++report_.inserted;
     }
 
@@ -269,8 +282,7 @@ class Conforming {
         const double h = target_.length(corner.material);
         return std::any_of(eol_.begin(), eol_.end(), [&](const EolVertex& e) {
             return e.is_corner && e.obstacle == corner.obstacle && e.feature == corner.feature &&
-                   surgery_->has_vertex(e.vertex_id) && surgery_->role(e.vertex_id) != TraceRole::Free &&
-                   (surgery_->material(e.vertex_id) - corner.material).norm() < h;
+                   is_on_trace(e.vertex_id) && (surgery_->material(e.vertex_id) - corner.material).norm() < h;
         });
     }
 
@@ -307,9 +319,7 @@ class Conforming {
         const EolVertex on_it{0, o, false, feature, Vec3::Zero(), 0};
         std::vector<std::pair<double, EolVertex>> row;
         for (const EolVertex& e : eol_) {
-            if (!surgery_->has_vertex(e.vertex_id) || surgery_->role(e.vertex_id) == TraceRole::Free)
-                continue;
-            if (!is_trace_edge(obstacle, on_it, e)) continue;
+            if (!is_on_trace(e.vertex_id) || !is_trace_edge(obstacle, on_it, e)) continue;
             row.emplace_back((now.inverse(surgery_->world(e.vertex_id)) - a).dot(b - a), e);
         }
         std::sort(row.begin(), row.end(), [](const auto& p, const auto& q) {
@@ -320,9 +330,7 @@ class Conforming {
 
     void join(const EolVertex& a, const EolVertex& b)
     {
-        if (!surgery_->has_vertex(a.vertex_id) || !surgery_->has_vertex(b.vertex_id)) return;
-        if (surgery_->role(a.vertex_id) == TraceRole::Free || surgery_->role(b.vertex_id) == TraceRole::Free)
-            return;
+        if (!is_on_trace(a.vertex_id) || !is_on_trace(b.vertex_id)) return;
         if (!is_trace_edge(scene_.obstacles[a.obstacle], a, b)) return;
         if (surgery_->edge_tag(a.vertex_id, b.vertex_id) != kNoTag) return;
         const int tag = tags_.tag(a.is_corner ? b : a);
@@ -346,9 +354,7 @@ class Conforming {
         for (std::size_t v = 0; v < made.surgery.ids.size(); ++v) {
             if (made.surgery.roles[v] == TraceRole::Free) continue;
             const VertexId id = made.surgery.ids[v];
-            const auto known = std::lower_bound(
-                eol_.begin(), eol_.end(), id, [](const EolVertex& e, VertexId i) { return e.vertex_id < i; });
-            if (known != eol_.end() && known->vertex_id == id)
+            if (const EolVertex* known = find_eol(id))
                 made.eol.push_back(*known);
             else if (const auto between = on_trace_of(id, made.surgery.tags[v]);
                      between && is_in_plane(*between))
@@ -361,9 +367,8 @@ class Conforming {
     std::optional<EolVertex> on_trace_of(VertexId id, int tag) const
     {
         for (const VertexId w : surgery_->ring(id).vertices) {
-            const auto known = std::lower_bound(
-                eol_.begin(), eol_.end(), w, [](const EolVertex& e, VertexId i) { return e.vertex_id < i; });
-            if (known == eol_.end() || known->vertex_id != w || known->is_corner) continue;
+            const EolVertex* known = find_eol(w);
+            if (!known || known->is_corner) continue;
             if (tags_.tag(*known) != tag) continue;
             EolVertex made = *known;
             made.vertex_id = id;

@@ -4,12 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 
-#include "physics/bending.h"
 #include "physics/energies.h"
-#include "physics/membrane.h"
 #include "physics/velocity_fit.h"
 #include "solver/eol_coordinates.h"
 #include "solver/held_vertices.h"
@@ -161,9 +158,10 @@ class PatchFitter {
         TransferReport report;
         find_patch();
         for (int p = 0; p < patch_count_; ++p) {
-            const double gain = relax_patch(p);
+            const std::vector<Face> then = old_faces(p);
+            const double gain = relax_patch(p, then);
             frames_.clear();
-            const std::optional<VelocityFit> fit = fit_patch(p);
+            const std::optional<VelocityFit> fit = fit_patch(p, then);
             report.is_strained = report.is_strained || gain > 0.01 * ((fit ? fit->energy : 0.0) + weight(p));
             if (!fit) continue;
             ++report.patches;
@@ -248,21 +246,30 @@ class PatchFitter {
     }
 
     /// The old faces that cover what patch p covers: those that are not outside.
-    VelocityField old_field(int p) const
+    std::vector<Face> old_faces(int p) const
     {
         std::map<FaceIds, int> outside;
         for (std::size_t f = 0; f < patch_.size(); ++f)
             if (patch_[f] < 0) outside[ids_of(after_, after_.mesh.faces[f])] = 1;
+        const std::vector<Vec2>& X = before_.mesh.material;
+        std::vector<Face> faces;
+        for (const Face& face : before_.mesh.faces)
+            if (!outside.contains(ids_of(before_, face)) &&
+                find_patch_of((X[face[0]] + X[face[1]] + X[face[2]]) / 3.0) == p)
+                faces.push_back(face);
+        return faces;
+    }
+
+    VelocityField old_field(const std::vector<Face>& faces) const
+    {
         VelocityField field;
-        for (const Face& face : before_.mesh.faces) {
-            if (outside.contains(ids_of(before_, face))) continue;
+        for (const Face& face : faces) {
             std::array<Vec2, 3> X;
             std::array<Vec3, 3> x, w;
             for (int i = 0; i < 3; ++i) {
                 X[i] = before_.mesh.material[face[i]];
                 x[i] = before_.mesh.world[face[i]];
             }
-            if (find_patch_of((X[0] + X[1] + X[2]) / 3.0) != p) continue;
             const Mat32 F = deformation(X, x);
             for (int i = 0; i < 3; ++i)
                 w[i] = before_.velocity[face[i]] - F * before_.material_velocity[face[i]];
@@ -312,24 +319,15 @@ class PatchFitter {
 
     /// A mesh that strains the cloth more than the one before gives way.
     /// Returns by how much its elastic energy is above what it was, J.
-    double relax_patch(int p)
+    double relax_patch(int p, const std::vector<Face>& then)
     {
         RelaxedPatch patch;
-        std::vector<Face> now, then;
+        std::vector<Face> now;
         for (std::size_t f = 0; f < patch_.size(); ++f)
             if (patch_[f] == p) {
                 patch.faces.push_back(static_cast<int>(f));
                 now.push_back(after_.mesh.faces[f]);
             }
-        std::map<FaceIds, int> outside;
-        for (std::size_t f = 0; f < patch_.size(); ++f)
-            if (patch_[f] < 0) outside[ids_of(after_, after_.mesh.faces[f])] = 1;
-        for (const Face& face : before_.mesh.faces) {
-            if (outside.contains(ids_of(before_, face))) continue;
-            Vec2 middle = Vec2::Zero();
-            for (const int v : face) middle += before_.mesh.material[v] / 3.0;
-            if (find_patch_of(middle) == p) then.push_back(face);
-        }
         patch.wanted = elastic_energy(before_.mesh, then);
         const double strained = elastic_energy(after_.mesh, now);
         constexpr double kRounding = 1e-9;  // of sums over the patch: a split leaves the energy as it is
@@ -366,7 +364,7 @@ class PatchFitter {
                               : 0.0;
     }
 
-    std::optional<VelocityFit> fit_patch(int p)
+    std::optional<VelocityFit> fit_patch(int p, const std::vector<Face>& then)
     {
         std::vector<int> vertices;
         for (std::size_t f = 0; f < patch_.size(); ++f)
@@ -386,7 +384,7 @@ class PatchFitter {
             const Face& face = after_.mesh.faces[f];
             patch.faces.push_back({local[face[0]], local[face[1]], local[face[2]]});
         }
-        const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old_field(p), patch);
+        const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old_field(then), patch);
         if (!fit) return fit;
         for (std::size_t i = 0; i < vertices.size(); ++i) {
             after_.velocity[vertices[i]] = fit->velocity[i];
