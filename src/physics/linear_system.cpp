@@ -7,6 +7,7 @@
 #include <cassert>
 
 #include "physics/eulerian_element.h"
+#include "physics/momentum_flux.h"
 
 namespace arris {
 
@@ -193,6 +194,7 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
     assert((!at.flow || is_consistent(*at.flow, mesh)) && "material flows through EOL vertices only");
     matrix_.coeffs().setZero();
     set_loads(mesh, terms, at);
+    add_momentum_flux(terms.density, elements, at, rhs_);
     add_elements<FaceState, 3>(
         elements.face_colors, elements.faces, face_blocks_, terms.faces, at, [&](int f) {
             const Face& face = elements.faces[f].vertices;

@@ -147,6 +147,7 @@ Terms make_terms(const Material& material, const std::optional<Gravity>& gravity
                  const std::optional<Wind>& wind, const std::vector<Pull>& pulls)
 {
     Terms terms;
+    terms.density = material.density;
     terms.faces.push_back(std::make_unique<Inertia>(material.density));
     terms.faces.push_back(std::make_unique<Membrane>(material.youngs_modulus, material.poisson_ratio));
     if (material.bending_stiffness > 0.0)

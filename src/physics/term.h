@@ -133,6 +133,7 @@ struct Terms {
     std::vector<std::unique_ptr<const FaceTerm>> faces;
     std::vector<std::unique_ptr<const HingeTerm>> hinges;
     std::vector<std::unique_ptr<const LoadTerm>> loads;
+    double density = 0.0;  ///< areal, kg/m^2, of the inertia among `faces`
 };
 
 /// Inertia and membrane always; the others where their effect is there. Adding a term is one file and one

@@ -14,6 +14,7 @@
 #include "solver/border_room.h"
 #include "solver/eol_coordinates.h"
 #include "solver/eol_guard.h"
+#include "solver/eol_release.h"
 #include "solver/feature_sites.h"
 #include "solver/held_vertices.h"
 
@@ -21,7 +22,6 @@ namespace arris {
 
 namespace {
 
-constexpr int kMostIdle = 3;         // steps without pressing, after which a vertex is released
 constexpr double kRoom = 0.15;       // target lengths to a border ahead, below which a trace is released
 constexpr double kCornerRoom = 0.3;  // the same of an obstacle's corner
 constexpr double kInsertRoom = 0.3, kCornerInsertRoom = 0.5;  // and to be made
@@ -132,13 +132,14 @@ class Conforming {
             }
             const double room =
                 (eol.is_corner ? kCornerRoom : kRoom) * target_.length(state_.mesh.material[v]);
-            const bool is_idle = eol.idle >= kMostIdle;
-            if (!is_idle &&
-                room_to_border(scene_, state_, stars_, state_.mesh.material[v], v,
+            if (room_to_border(scene_, state_, stars_, state_.mesh.material[v], v,
                                stars_.border_neighbours[v][0] >= 0, eol) > room &&
-                is_on_feature(obstacle, eol, positions[v]) &&
-                place_eol_vertex(obstacle, state_, entry, stars_, positions, now).coordinates)
-                continue;
+                is_on_feature(obstacle, eol, positions[v])) {
+                const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, positions, now);
+                if (placing.coordinates &&
+                    !can_let_go(scene_, state_, stars_, entry, *placing.coordinates, positions[v]))
+                    continue;
+            }
             released_.push_back(eol.vertex_id);
         }
     }

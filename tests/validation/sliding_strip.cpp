@@ -102,14 +102,14 @@ double SlidingChain::tension_excess(double time) const
     return tension - speed(time) * speed(time);
 }
 
-double SlidingChain::lift_off() const
+double SlidingChain::lift_off(double held) const
 {
     double before = 0.0, after = 0.1;
-    while (tension_excess(after) > 0.0) after += 0.1;
+    while (tension_excess(after) > -kG * held) after += 0.1;
     constexpr int kBisections = 50;
     for (int k = 0; k < kBisections; ++k) {
         const double middle = 0.5 * (before + after);
-        (tension_excess(middle) > 0.0 ? before : after) = middle;
+        (tension_excess(middle) > -kG * held ? before : after) = middle;
     }
     return after;
 }

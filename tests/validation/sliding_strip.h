@@ -31,8 +31,9 @@ class SlidingChain {
     double speed(double time) const;         ///< x', m/s
     double acceleration(double time) const;  ///< x", m/s^2
 
-    /// When it no longer presses on the edge, s; it must slide forward.
-    double lift_off() const;
+    /// When it no longer presses on the edge, s; it must slide forward. `held` (m) of its length rest on the
+    /// edge beside its tension.
+    double lift_off(double held = 0.0) const;
 
     double balance() const { return balance_; }  ///< x at which it would stay, m
 

@@ -213,6 +213,46 @@ TEST(SlidingStrip, IsTheSameWhereverAndHoweverFastItIsCarried)
     EXPECT_NEAR(slide(carried, end, kStep).length / length, 1.0, kCarriedTolerance);
 }
 
+/// When an EOL vertex last pressed on the edge, s.
+double last_press(const StripCase& strip, double duration, double dt)
+{
+    SCOPED_TRACE(describe(strip));
+    ClothRun run = make_strip_run(strip);
+    double last = 0.0;
+    const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
+    for (int k = 1; k <= steps; ++k) {
+        run.advance(k * dt - run.state.time);
+        const bool presses =
+            std::any_of(run.state.active.begin(), run.state.active.end(), [&](const ActiveContact& contact) {
+                return run.state.eol_entry(contact.vertex_ids[0]) >= 0 && contact.multiplier > 0.0;
+            });
+        if (presses) last = run.state.time;
+    }
+    return last;
+}
+
+// Its material turned around the edge, the strip lifts off where that takes all its tension; later by what
+// the weight of the half cell on the table that the edge's vertices carry, too, takes to overcome.
+TEST(SlidingStrip, LiftsOffWhenTurningItsMaterialTakesAllTension)
+{
+    constexpr double kWatched = 1.06;  // of the time until lift-off: 4 cells do it at 1.04
+    Table table("sliding_lift_off", {"cells", "step", "last presses at", "lift-off"});
+    for (const double dt : {kStep, 0.001})
+        for (const int cells : {4, 8, 16, 32}) {
+            StripCase strip;
+            strip.cells = {cells, std::max(cells / 4, 1)};
+            const SlidingChain chain = chain_of(strip);
+            const double exact = chain.lift_off(), last = last_press(strip, kWatched * exact, dt);
+            EXPECT_GT(last, exact - dt) << describe(strip);
+            EXPECT_LT(last, chain.lift_off(0.25 / cells) + dt) << describe(strip);
+            if (cells >= 16 && dt == kStep) {
+                EXPECT_LT(last, exact + dt) << describe(strip);
+            }
+            table.add({fmt::format("{}", cells), fmt::format("{:g} ms", 1e3 * dt),
+                       fmt::format("{:.4f} s", last), fmt::format("{:.4f} s", exact)});
+        }
+}
+
 TEST(SlidingStrip, SnagsWithoutEolVertices)
 {
     for (const std::array<int, 2> cells : {std::array{4, 1}, {16, 4}}) {
