@@ -121,6 +121,7 @@ class Conforming {
         Placement now;
         std::vector<Vec3> positions;  // in the frame of obstacle `of`
         int of = -1;
+        std::vector<EolHold> holds;
         for (int entry = 0; entry < static_cast<int>(state_.eol.size()); ++entry) {
             const EolVertex& eol = state_.eol[entry];
             const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
@@ -132,16 +133,18 @@ class Conforming {
             }
             const double room =
                 (eol.is_corner ? kCornerRoom : kRoom) * target_.length(state_.mesh.material[v]);
-            if (room_to_border(scene_, state_, stars_, state_.mesh.material[v], v,
-                               stars_.border_neighbours[v][0] >= 0, eol) > room &&
-                is_on_feature(obstacle, eol, positions[v])) {
-                const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, positions, now);
-                if (placing.coordinates &&
-                    !can_let_go(scene_, state_, stars_, entry, *placing.coordinates, positions[v]))
-                    continue;
-            }
-            released_.push_back(eol.vertex_id);
+            holds.push_back(EolHold::None);
+            if (!(room_to_border(scene_, state_, stars_, state_.mesh.material[v], v,
+                                 stars_.border_neighbours[v][0] >= 0, eol) > room) ||
+                !is_on_feature(obstacle, eol, positions[v]))
+                continue;
+            const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, positions, now);
+            if (placing.coordinates)
+                holds.back() = find_hold(scene_, state_, stars_, entry, *placing.coordinates, positions[v]);
         }
+        hold_between(scene_, state_, edges_, holds);
+        for (std::size_t entry = 0; entry < holds.size(); ++entry)
+            if (holds[entry] != EolHold::Firm) released_.push_back(state_.eol[entry].vertex_id);
     }
 
     /// Tells the surgery what is on features already.

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/eol_release.h"
 
+#include <algorithm>
+
 #include "physics/cloth_elements.h"
 #include "physics/term.h"
+#include "solver/feature_sites.h"
 
 namespace arris {
 
@@ -43,16 +46,46 @@ StarEnergy measure_star(const Scene& scene, const State& state, const std::vecto
 
 }  // namespace
 
-bool can_let_go(const Scene& scene, const State& state, const ClothStars& stars, int entry,
-                const EolCoordinates& at, const Vec3& place)
+EolHold find_hold(const Scene& scene, const State& state, const ClothStars& stars, int entry,
+                  const EolCoordinates& at, const Vec3& place)
 {
     constexpr double kShare = 1e-3;
     const EolVertex& eol = state.eol[entry];
-    if (eol.idle < kIdleSteps) return false;
+    if (eol.idle < kIdleSteps) return EolHold::Firm;
     const double gap = (place - at.frame.point).norm();
-    if (gap > scene.eol->length(state.mesh.material[at.vertex])) return true;
+    if (gap > scene.eol->length(state.mesh.material[at.vertex])) return EolHold::None;
     const StarEnergy energy = measure_star(scene, state, stars.faces[at.vertex], at.vertex, eol.obstacle);
-    return energy.loss <= kShare * energy.kinetic;
+    if (energy.loss > kShare * energy.kinetic) return EolHold::Firm;
+    return gap <= kOnFeature * scene.material.thickness ? EolHold::Loose : EolHold::None;
+}
+
+void hold_between(const Scene& scene, const State& state, const std::vector<MeshEdge>& edges,
+                  std::vector<EolHold>& holds)
+{
+    if (std::find(holds.begin(), holds.end(), EolHold::Loose) == holds.end()) return;
+    std::vector<std::vector<int>> beside(holds.size());
+    for (const MeshEdge& edge : edges) {
+        const int a = state.eol_entry(state.ids[edge.a]), b = state.eol_entry(state.ids[edge.b]);
+        if (a < 0 || b < 0 || holds[a] == EolHold::None || holds[b] == EolHold::None) continue;
+        if (!is_trace_edge(scene.obstacles[state.eol[a].obstacle], state.eol[a], state.eol[b])) continue;
+        beside[a].push_back(b);
+        beside[b].push_back(a);
+    }
+    // What is left when loose ends are cut off, again and again, lies between.
+    std::vector<int> open;
+    for (std::size_t entry = 0; entry < holds.size(); ++entry) open.push_back(static_cast<int>(entry));
+    while (!open.empty()) {
+        const int at = open.back();
+        open.pop_back();
+        if (holds[at] != EolHold::Loose || beside[at].size() > 1) continue;
+        holds[at] = EolHold::None;
+        for (const int next : beside[at]) {
+            std::erase(beside[next], at);
+            open.push_back(next);
+        }
+    }
+    for (EolHold& hold : holds)
+        if (hold == EolHold::Loose) hold = EolHold::Firm;
 }
 
 }  // namespace arris

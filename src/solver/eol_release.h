@@ -15,10 +15,22 @@ namespace arris {
 /// Steps without pressing, before which no vertex is let go: contact that chatters is still contact.
 inline constexpr int kIdleSteps = 3;
 
-/// Whether EOL vertex `entry`, at `place` in its obstacle's frame, does not press and can be let go: at no
-/// more cost than a thousandth of the kinetic energy of the faces around it (relative to the obstacle), or
-/// when it is more than a cell from its feature.
-bool can_let_go(const Scene& scene, const State& state, const ClothStars& stars, int entry,
-                const EolCoordinates& at, const Vec3& place);
+/// Whether an EOL vertex stays.
+enum class EolHold {
+    None,   ///< it goes
+    Loose,  ///< it goes, unless it lies on its feature between two that stay
+    Firm
+};
+
+/// Of EOL vertex `entry`, at `place` in its obstacle's frame. None more than a cell from its feature; firm
+/// where it presses, or where letting it go would cost more than a thousandth of the kinetic energy of the
+/// faces around it (relative to the obstacle).
+EolHold find_hold(const Scene& scene, const State& state, const ClothStars& stars, int entry,
+                  const EolCoordinates& at, const Vec3& place);
+
+/// Makes loose ones firm that lie along a trace between firm ones: a trace with a hole holds the cloth there.
+/// One hold an entry of `state.eol`; `edges` are the state's.
+void hold_between(const Scene& scene, const State& state, const std::vector<MeshEdge>& edges,
+                  std::vector<EolHold>& holds);
 
 }  // namespace arris

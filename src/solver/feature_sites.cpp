@@ -15,7 +15,6 @@ namespace arris {
 
 namespace {
 
-constexpr double kNear = 2.5;      // thicknesses from a feature: mitre and a little
 constexpr double kInPlane = 1e-6;  // thicknesses: a vertex nearer to a feature's plane is in it
 
 /// Feature edges by topology edge; -1 where it is none.
@@ -45,12 +44,16 @@ class SiteFinder {
           thickness_(scene.material.thickness),
           positions_(to_frame(obstacle_.at(state.time), state.mesh.world)),
           feature_(feature_of_edges(obstacle_)),
-          neighbours_(positions_.size())
+          faces_(faces_at_vertices(static_cast<int>(positions_.size()), state.mesh.faces)),
+          neighbours_(positions_.size()),
+          is_border_(positions_.size(), 0)
     {
         for (const MeshEdge& edge : edges) {
             neighbours_[edge.a].push_back(edge.b);
             neighbours_[edge.b].push_back(edge.a);
-            if (edge.face_right < 0) border_edges_.insert({edge.a, edge.b});
+            if (edge.face_right >= 0) continue;
+            border_edges_.insert({edge.a, edge.b});
+            is_border_[edge.a] = is_border_[edge.b] = 1;
         }
     }
 
@@ -72,7 +75,112 @@ class SiteFinder {
         return std::nullopt;
     }
 
+    /// Adds to sites of convex edge `feature` what of the cloth lies on it between them and EOL vertices.
+    void complete(int feature, std::vector<FeatureSite>& sites) const
+    {
+        if (obstacle_.features().edges[feature].kind != FeatureKind::Convex) return;
+        TraceGraph trace;
+        std::vector<Crossing> open = begin_trace(feature, sites, trace);
+        while (!open.empty()) {
+            const Crossing at = open.back();
+            open.pop_back();
+            for (const auto& [next, site] : crossings_beside(at, feature)) {
+                const auto [node, is_new] = trace.try_emplace(next, TraceNode{site, false, {}});
+                if (is_new) open.push_back(next);
+                node->second.beside.insert(at);
+                trace.at(at).beside.insert(next);
+            }
+        }
+        cut_loose_ends(trace);
+        for (const auto& [at, node] : trace)
+            if (!node.is_known) sites.push_back(*node.site);
+    }
+
   private:
+    using Crossing = std::array<int, 2>;  ///< a FeatureSite's edge
+    struct TraceNode {
+        std::optional<FeatureSite> site;  ///< none where an EOL vertex is
+        bool is_known;                    ///< a site that presses, or an EOL vertex
+        std::set<Crossing> beside;
+    };
+    using TraceGraph = std::map<Crossing, TraceNode>;
+
+    bool is_eol_on(int v, int feature) const
+    {
+        const int entry = state_.eol_entry(state_.ids[v]);
+        return entry >= 0 && !state_.eol[entry].is_corner && state_.eol[entry].obstacle == o_ &&
+               state_.eol[entry].feature == feature;
+    }
+
+    /// What is on the feature already; returned are those of them from which the trace may go on.
+    std::vector<Crossing> begin_trace(int feature, const std::vector<FeatureSite>& sites,
+                                      TraceGraph& trace) const
+    {
+        std::vector<Crossing> open;
+        for (const FeatureSite& site : sites)
+            if (trace.try_emplace(site.edge, TraceNode{site, true, {}}).second) open.push_back(site.edge);
+        for (const EolVertex& eol : state_.eol) {
+            const int v = state_.index_of(eol.vertex_id);
+            if (!is_eol_on(v, feature)) continue;
+            trace[{v, v}] = {std::nullopt, true, {}};
+            const auto joined = std::count_if(neighbours_[v].begin(), neighbours_[v].end(),
+                                              [&](int w) { return is_eol_on(w, feature); });
+            if (joined < 2) open.push_back({v, v});
+        }
+        return open;
+    }
+
+    /// Where the plane of the feature passes through the faces around a crossing.
+    std::map<Crossing, std::optional<FeatureSite>> crossings_beside(const Crossing& at, int feature) const
+    {
+        std::map<Crossing, std::optional<FeatureSite>> found;
+        for (const int f : faces_[at[0]]) {
+            const Face& face = state_.mesh.faces[f];
+            if (std::find(face.begin(), face.end(), at[1]) == face.end()) continue;
+            for (int k = 0; k < 3; ++k) {
+                const int a = face[k], b = face[(k + 1) % 3];
+                if (is_eol_on(a, feature))
+                    found[{a, a}] = std::nullopt;
+                else if (is_eol_on(b, feature))
+                    found[{b, b}] = std::nullopt;
+                else if (const auto site = cross(a, b, feature, outward_of(feature)))
+                    found[site->edge] = site;
+            }
+        }
+        found.erase(at);
+        return found;
+    }
+
+    Vec3 outward_of(int feature) const
+    {
+        const std::array<Vec3, 2> ends = feature_segment(obstacle_, feature);
+        return find_edge_frame(obstacle_, feature, ends[0], {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()})
+            ->outward;
+    }
+
+    /// What remains beside what is known lies between; or on the cloth's border, next to it.
+    static void cut_loose_ends(TraceGraph& trace)
+    {
+        const auto is_loose = [&](const TraceNode& node) {
+            if (node.is_known || node.beside.size() > 1) return false;
+            const bool is_end =
+                !node.beside.empty() && node.site->is_on_border && trace.at(*node.beside.begin()).is_known;
+            return !is_end;
+        };
+        for (bool is_changed = true; is_changed;) {
+            is_changed = false;
+            for (auto at = trace.begin(); at != trace.end();) {
+                if (!is_loose(at->second)) {
+                    ++at;
+                    continue;
+                }
+                for (const Crossing& next : at->second.beside) trace.at(next).beside.erase(at->first);
+                at = trace.erase(at);
+                is_changed = true;
+            }
+        }
+    }
+
     FeatureSite make_site(bool is_corner, int feature, const Vec2& X, int near, const Vec3& outward) const
     {
         return {o_, is_corner, feature, X, state_.ids[near], outward};
@@ -87,11 +195,14 @@ class SiteFinder {
 
     std::optional<FeatureSite> cross(int a, int b, int feature, const Vec3& normal) const
     {
+        if (a > b) std::swap(a, b);
         const std::optional<double> s = find_crossing(a, b, feature);
         if (!s) return std::nullopt;
         const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
         FeatureSite site = make_site(false, feature, X, *s < 0.5 ? a : b, normal);
-        site.is_on_border = border_edges_.contains({std::min(a, b), std::max(a, b)});
+        site.edge = {*s < 1.0 ? a : b, *s > 0.0 ? b : a};
+        const bool is_vertex = site.edge[0] == site.edge[1];
+        site.is_on_border = is_vertex ? is_border_[site.edge[0]] : border_edges_.contains({a, b});
         return site;
     }
 
@@ -116,7 +227,7 @@ class SiteFinder {
         const Vec3 place = (1.0 - s) * positions_[a] + s * positions_[b];
         const double height = frame->outward.dot(place - frame->point);
         const double along = closest_on_segment(place, segment[0], segment[1]);
-        if (!(height >= 0.0 && height <= kNear * thickness_ && along > 0.0 && along < 1.0))
+        if (!(height >= 0.0 && height <= kOnFeature * thickness_ && along > 0.0 && along < 1.0))
             return std::nullopt;
         return s;
     }
@@ -138,7 +249,7 @@ class SiteFinder {
     std::optional<FeatureSite> at_vertex(int v, const Vec3& normal) const
     {
         const Vec3& place = positions_[v];
-        const double reach = kNear * thickness_;
+        const double reach = kOnFeature * thickness_;
         const Box3 box(place.array() - reach, place.array() + reach);
         std::vector<int> found;
         obstacle_.find_corners(box, found);
@@ -161,7 +272,9 @@ class SiteFinder {
     double thickness_;
     std::vector<Vec3> positions_;
     std::vector<int> feature_;
+    std::vector<std::vector<int>> faces_;       ///< at each vertex
     std::vector<std::vector<int>> neighbours_;  ///< of each vertex
+    std::vector<char> is_border_;               ///< of the cloth
     std::set<std::pair<int, int>> border_edges_;
 };
 
@@ -178,11 +291,26 @@ std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& sta
 {
     std::map<std::int32_t, SiteFinder> finders;
     std::vector<FeatureSite> sites;
+    const auto finder_of = [&](std::int32_t o) -> const SiteFinder& {
+        return finders.try_emplace(o, scene, state, edges, o).first->second;
+    };
+    std::map<std::array<int, 2>, std::vector<FeatureSite>> by_feature;  // of obstacle and edge
     for (const ActiveContact& contact : state.active) {
-        if (contact.kind == ContactKind::Vertex && state.eol_entry(contact.vertex_ids[0]) >= 0) continue;
-        const auto [finder, is_new] =
-            finders.try_emplace(contact.obstacle, scene, state, edges, contact.obstacle);
-        if (const std::optional<FeatureSite> site = finder->second.find(contact)) sites.push_back(*site);
+        const bool is_eol =
+            contact.kind == ContactKind::Vertex && state.eol_entry(contact.vertex_ids[0]) >= 0;
+        const std::optional<FeatureSite> site =
+            is_eol ? std::nullopt : finder_of(contact.obstacle).find(contact);
+        if (!site) continue;
+        if (site->is_corner)
+            sites.push_back(*site);
+        else
+            by_feature[{site->obstacle, site->feature}].push_back(*site);
+    }
+    for (const EolVertex& eol : state.eol)
+        if (!eol.is_corner) by_feature[{eol.obstacle, eol.feature}];
+    for (auto& [feature, found] : by_feature) {
+        finder_of(feature[0]).complete(feature[1], found);
+        sites.insert(sites.end(), found.begin(), found.end());
     }
     std::sort(sites.begin(), sites.end(), [](const FeatureSite& a, const FeatureSite& b) {
         return std::tuple(!a.is_corner, a.obstacle, a.feature, a.material.x(), a.material.y()) <

@@ -11,20 +11,25 @@
 
 namespace arris {
 
+/// Thicknesses from a feature, within which cloth lies on it: the mitre and a little.
+inline constexpr double kOnFeature = 2.5;
+
 /// A place of the cloth that a feature presses on.
 struct FeatureSite {
     std::int32_t obstacle;
     bool is_corner;
     std::int32_t feature;
     Vec2 material;
-    VertexId near;              ///< a vertex of the element that it is on
-    Vec3 outward;               ///< the contact's normal, in the obstacle's frame
-    bool is_on_border = false;  ///< of the cloth
+    VertexId near;                       ///< a vertex of the element that it is on
+    Vec3 outward;                        ///< the contact's normal, in the obstacle's frame
+    bool is_on_border = false;           ///< of the cloth
+    std::array<int, 2> edge = {-1, -1};  ///< of the cloth that passes through there; twice the same: a vertex
 };
 
 /// Where features pressed at the end of the last step and no EOL vertex is yet; corners first, those of one
 /// feature in the order of the material. On a convex edge it is where the cloth passes through the plane in
-/// which an EOL vertex may move, so that nothing has to be put there.
+/// which an EOL vertex may move, so that nothing has to be put there; and the places between, as a trace with
+/// a hole holds the cloth there.
 std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& state,
                                             const std::vector<MeshEdge>& edges);
 

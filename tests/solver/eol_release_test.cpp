@@ -42,12 +42,13 @@ struct FlowingCloth {
 
     void set_idle(int steps) { cloth.state.eol[entry].idle = steps; }
 
-    bool can_be_let_go() const
+    EolHold hold() const
     {
         const EolPlacing placing = cloth.place(middle);
-        return can_let_go(cloth.scene, cloth.state, cloth.stars(), entry, *placing.coordinates,
-                          cloth.state.mesh.world[middle]);
+        return find_hold(cloth.scene, cloth.state, cloth.stars(), entry, *placing.coordinates,
+                         cloth.state.mesh.world[middle]);
     }
+    bool can_be_let_go() const { return hold() != EolHold::Firm; }
 };
 
 TEST(EolRelease, OfAFoldThroughWhichMaterialFlowsWaits)
@@ -96,6 +97,47 @@ TEST(EolRelease, CostsTheEnergyThatTheFaceVelocitiesDifferBy)
     const double turn = (180.0 - goes) * 3.14159265358979323846 / 180.0;
     const double share = 4.0 * std::pow(std::sin(0.5 * turn), 2) / 48.0 / 0.5;
     EXPECT_NEAR(share, 1e-3, 1e-8);
+}
+
+/// What becomes of the holds of a row of EOL vertices along the ridge, F, L or N each, in the material's
+/// order.
+std::string hold_between_of(const std::string& along)
+{
+    const FlowingCloth flowing(90.0, 0.0);
+    const State& state = flowing.cloth.state;
+    EXPECT_EQ(along.size(), state.eol.size());
+    std::vector<std::pair<double, int>> row;
+    for (int e = 0; e < static_cast<int>(state.eol.size()); ++e)
+        row.emplace_back(state.mesh.material[state.index_of(state.eol[e].vertex_id)].y(), e);
+    std::sort(row.begin(), row.end());
+    std::vector<EolHold> holds(row.size());
+    for (std::size_t k = 0; k < row.size(); ++k)
+        holds[row[k].second] = along[k] == 'F'   ? EolHold::Firm
+                               : along[k] == 'L' ? EolHold::Loose
+                                                 : EolHold::None;
+    hold_between(flowing.cloth.scene, state, make_topology(state.mesh.vertex_count(), state.mesh.faces).edges,
+                 holds);
+    std::string found;
+    for (const auto& [y, e] : row)
+        found += holds[e] == EolHold::Firm ? 'F' : holds[e] == EolHold::Loose ? 'L' : 'N';
+    return found;
+}
+
+TEST(EolRelease, LeavesNoHolesInATrace)
+{
+    EXPECT_EQ(hold_between_of("FLFLLLFFF"), "FFFFFFFFF");
+    EXPECT_EQ(hold_between_of("LLFLLFNLL"), "NNFFFFNNN");
+    EXPECT_EQ(hold_between_of("FLNLFLLLL"), "FNNNFNNNN");
+    EXPECT_EQ(hold_between_of("LLLLLLLLL"), "NNNNNNNNN");
+}
+
+TEST(EolRelease, HoldsNothingBetweenThatIsOffTheFeature)
+{
+    FlowingCloth still(90.0, 0.0);
+    EXPECT_EQ(still.hold(), EolHold::Loose);
+    const double thickness = still.cloth.scene.material.thickness;
+    for (Vec3& x : still.cloth.state.mesh.world) x.z() += 3.0 * thickness;
+    EXPECT_EQ(still.hold(), EolHold::None);
 }
 
 TEST(EolRelease, IsTheSameOnAMovingObstacle)
