@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <map>
+#include <set>
 #include <unordered_map>
 
 #include "physics/energies.h"
@@ -104,6 +105,29 @@ void interpolate(const SurgeryEvent& event, const VertexChange& change, CarriedB
     all[change.vertex] = made;
 }
 
+/// A contact of an edge or face that was split, merged or flipped goes: it would hold the cloth where there
+/// is none, for as long as its vertices are there.
+void drop_contacts_without_element(State& state)
+{
+    constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
+    std::vector<char> is_named(state.ids.size(), 0);
+    for (const ActiveContact& contact : state.active)
+        for (const std::uint32_t id : contact.vertex_ids)
+            if (const int v = id == kNone ? -1 : state.index_of(id); v >= 0) is_named[v] = 1;
+
+    std::set<std::array<std::uint32_t, 3>> elements;
+    for (std::size_t v = 0; v < state.ids.size(); ++v)
+        if (is_named[v]) elements.insert({state.ids[v], kNone, kNone});
+    for (const Face& face : state.mesh.faces) {
+        if (is_named[face[0]] + is_named[face[1]] + is_named[face[2]] < 2) continue;
+        std::array<std::uint32_t, 3> ids = {state.ids[face[0]], state.ids[face[1]], state.ids[face[2]]};
+        std::sort(ids.begin(), ids.end());
+        elements.insert({ids, {ids[0], ids[1], kNone}, {ids[1], ids[2], kNone}, {ids[0], ids[2], kNone}});
+    }
+    std::erase_if(state.active,
+                  [&](const ActiveContact& contact) { return !elements.contains(contact.vertex_ids); });
+}
+
 State on_new_mesh(const State& before, const ConformedMesh& conformed, const CarriedById& all)
 {
     State after = before;
@@ -128,11 +152,7 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
         after.previous_material_velocity[v] = carried.previous_V;
     }
     std::erase_if(after.anchors, [&](const PinAnchor& a) { return after.index_of(a.vertex_id) < 0; });
-    std::erase_if(after.active, [&](const ActiveContact& contact) {
-        return std::any_of(contact.vertex_ids.begin(), contact.vertex_ids.end(), [&](std::uint32_t id) {
-            return id != ActiveContact::kNoVertex && after.index_of(id) < 0;
-        });
-    });
+    drop_contacts_without_element(after);
     return after;
 }
 

@@ -398,6 +398,27 @@ TEST(MeshTransfer, ContactsAndAnchorsOfVerticesThatAreGoneAreDropped)
     EXPECT_EQ(after.anchors[0].vertex_id, kept);
 }
 
+TEST(MeshTransfer, ContactsOfAnEdgeThatWasSplitAndOfItsFacesAreDropped)
+{
+    EolCloth cloth = free_cloth(3);
+    ClothSurgery surgery = operate(cloth.state);
+    const VertexId a = cloth.state.ids[cloth.vertex_at(0.2, 0.2)], b = surgery.ring(a).vertices[0];
+    const VertexId c = surgery.apex(a, b);
+    constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
+    const auto contact = [](std::array<std::uint32_t, 3> ids, ContactKind kind, double multiplier) {
+        std::sort(ids.begin(), ids.end());
+        return ActiveContact{ids, kind, 0, 0, Vec3::UnitZ(), multiplier};
+    };
+    cloth.state.active = {
+        contact({a, kNone, kNone}, ContactKind::Vertex, 1.0), contact({a, b, kNone}, ContactKind::Edge, 2.0),
+        contact({b, c, kNone}, ContactKind::Edge, 3.0), contact({a, b, c}, ContactKind::Triangle, 4.0)};
+    ASSERT_EQ(surgery.commit(surgery.propose_edge_split(a, b, 0.5)), Verdict::Done);
+    const State after = carry(cloth, conformed(surgery, {}));
+    ASSERT_EQ(after.active.size(), 2u);
+    EXPECT_EQ(after.active[0].multiplier, 1.0);
+    EXPECT_EQ(after.active[1].multiplier, 3.0);
+}
+
 /// Stiff cloth bent to a cylinder, above the ridge.
 EolCloth bent_cloth()
 {
