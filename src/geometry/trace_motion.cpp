@@ -3,8 +3,10 @@
 //        ahead                    A face turns over when a moving corner comes to the line of the other two.
 //   *-----*-----*  trace          Such a face is threatened. It is saved by merging what stands there into
 //    \   / \   /    |             the trace, by merging it into something farther away, or by turning the
-//     \ /   \ /     v             edge that lies across the way.
-//      p-----q
+//     \ /   \ /     v             edge that lies across the way. Where two vertices of the trace approach
+//     each
+//      p-----q                    other, as at a corner that slides along its edge, one is merged into the
+//      other.
 //
 // Clearing ends: a merge removes a vertex, and a flip is made only where it leaves fewer threatened faces, so
 // that (vertices, threatened faces) sinks strictly in lexicographic order.
@@ -37,7 +39,7 @@ class Clearing {
     ClearanceReport run()
     {
         std::set<IdFace> queue;
-        for (const auto& [v, way] : ahead_)
+        for (const VertexId v : moving())
             for (const IdFace& face : surgery_.faces_at(v)) queue.insert(from_least(face));
         while (!queue.empty()) {
             const IdFace face = *queue.begin();
@@ -62,6 +64,15 @@ class Clearing {
 
     bool is_moving(VertexId v) const { return ahead_.contains(v); }
 
+    // Those of them that have not been merged.
+    std::vector<VertexId> moving() const
+    {
+        std::vector<VertexId> left;
+        for (const auto& [v, way] : ahead_)
+            if (surgery_.has_vertex(v)) left.push_back(v);
+        return left;
+    }
+
     // The least doubled area on the way over the square of the longest side as it is: how far from turning.
     double soundness(const PatchFace& face) const
     {
@@ -83,18 +94,26 @@ class Clearing {
         int change;  // in the number of threatened faces
         double soundness;
         bool is_into_trace;
+        bool is_of_trace;  // what would go moves
         SurgeryProposal proposal;
 
-        // Fewer threatened faces; as many, with the obstacle merged into the trace; a merge that is a step on
-        // the way at best.
-        int rank() const { return change < 0 ? 0 : (change == 0 && is_into_trace ? 1 : 2); }
+        // Fewer threatened faces; as many, with the obstacle merged into the trace; fewer, for a vertex less
+        // on the trace; a merge that is a step on the way at best.
+        int rank() const
+        {
+            if (is_of_trace) return 2;
+            return change < 0 ? 0 : (change == 0 && is_into_trace ? 1 : 3);
+        }
     };
 
     Candidate judge(SurgeryProposal proposal) const
     {
-        const bool is_into_trace =
-            proposal.event.operation == SurgeryOperation::Collapse && is_moving(proposal.event.edge[1]);
-        Candidate candidate{0, std::numeric_limits<double>::infinity(), is_into_trace, {}};
+        const bool is_merge = proposal.event.operation == SurgeryOperation::Collapse;
+        Candidate candidate{0,
+                            std::numeric_limits<double>::infinity(),
+                            is_merge && is_moving(proposal.event.edge[1]),
+                            is_merge && is_moving(proposal.event.edge[0]),
+                            {}};
         for (const PatchFace& face : proposal.event.after) {
             const double sound = soundness(face);
             candidate.change += sound > 0.0 ? 0 : 1;
@@ -110,7 +129,8 @@ class Clearing {
         if (!proposal.is_legal()) return;
         const bool is_merge = proposal.event.operation == SurgeryOperation::Collapse;
         Candidate candidate = judge(std::move(proposal));
-        if (candidate.change < 0 || is_merge) candidates.push_back(std::move(candidate));
+        if (candidate.change < 0 || (is_merge && !candidate.is_of_trace))
+            candidates.push_back(std::move(candidate));
     }
 
     // Best first: by rank, then those that leave no thin faces, then by the number of threatened faces, then
@@ -130,9 +150,9 @@ class Clearing {
         std::vector<Candidate> candidates;
         for (int k = 0; k < 3; ++k) {
             consider(surgery_.propose_flip(face[k], face[(k + 1) % 3]), candidates);
-            if (is_moving(face[k])) continue;
             for (const VertexId w : surgery_.ring(face[k]).vertices)
-                consider(surgery_.propose_collapse(face[k], w), candidates);
+                if (!is_moving(face[k]) || surgery_.edge_tag(face[k], w) != kNoTag)
+                    consider(surgery_.propose_collapse(face[k], w), candidates);
         }
         std::stable_sort(candidates.begin(), candidates.end(), is_better);
         for (const Candidate& candidate : candidates)
@@ -142,7 +162,7 @@ class Clearing {
 
     void find_blocked()
     {
-        for (const auto& [v, way] : ahead_)
+        for (const VertexId v : moving())
             for (const IdFace& face : surgery_.faces_at(v))
                 if (is_threatened(surgery_.patch_face(face))) {
                     report_.blocked.push_back(v);
@@ -199,10 +219,12 @@ class TraceMotion {
             Ahead ahead;
             for (const auto& [v, way] : rest_) ahead[v] = share * way.vector;
             report.blocked = clear(surgery_, target_, ahead).blocked;
+            follow(events);
             report.verdict = take_step(share);
             if (report.verdict != Verdict::Done) break;
+            const std::size_t cleared = surgery_.events().size();
             clean_up(surgery_, target_);
-            follow(events);
+            follow(cleared);
             ++report.substeps;
             report.fraction = double(report.substeps) / count;
         }

@@ -22,8 +22,9 @@ struct ClearanceReport {
 
 /// Clears the way ahead of moving trace vertices, so that every face keeps its orientation while all of them
 /// go their way together: what stands there is merged into the trace, or away from it, or an edge across the
-/// way is flipped. The way is at least 0.3 of the target length long, or `ahead` where that is longer; a
-/// vertex whose `ahead` is zero counts as resting. Vertices must exist.
+/// way is flipped; of vertices of a trace that come upon each other some are merged, and are gone then. The
+/// way is at least 0.3 of the target length long, or `ahead` where that is longer; a vertex whose `ahead` is
+/// zero counts as resting. Vertices must exist.
 ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
                             const std::vector<TraceAdvance>& advances);
 

@@ -172,6 +172,49 @@ TEST(ClearAhead, WhatItCallsClearIsClearForRandomTracesAndWays)
     EXPECT_EQ(blocked, 0);
 }
 
+/// The corner of an L goes along one of its arms, whose own vertices hardly move and so are in its way.
+std::vector<VertexMove> corner_moves(const ClothSurgery& surgery, const Vec2& way)
+{
+    std::vector<VertexMove> moves;
+    for (const VertexMove& move : shifted(surgery, 1, {0, 0})) {
+        const bool is_on_arm = move.material.x() < 0.5 - 1e-9;
+        moves.push_back({move.vertex, move.material + (is_on_arm ? Vec2(0, -1e-6) : way)});
+    }
+    return moves;
+}
+
+TEST(ClearAhead, ACornerThatSlidesAlongItsEdgeTakesInTheVerticesOfTheEdge)
+{
+    const SurgeryCloth cloth = square_cloth(8);
+    const MeshTarget target = target_of(cloth);
+    const Vec2 way(-0.2, 0.0);
+    ClothSurgery surgery = cloth.surgery();
+    const SurgeryCheck check(surgery);
+    const VertexId corner = cut(surgery, target, {{0.25, 0.5}, {0.5, 0.5}, {0.5, 0.25}}, 1)[1];
+    const VertexId on_arm = trace_vertex(surgery, {0.375, 0.5});
+    const VertexId end = trace_vertex(surgery, {0.25, 0.5});
+    std::vector<TraceAdvance> advances;
+    for (const VertexMove& move : corner_moves(surgery, way))
+        advances.push_back({move.vertex, move.material - surgery.material(move.vertex)});
+    EXPECT_TRUE(clear_ahead(surgery, target, advances).blocked.empty());
+    EXPECT_EQ(check.find_wrong(surgery), "");
+    EXPECT_FALSE(surgery.has_vertex(on_arm));
+    EXPECT_NE(surgery.edge_tag(corner, end), kNoTag);
+    EXPECT_TRUE(surgery.propose_moves(corner_moves(surgery, way)).is_legal());
+
+    // The same as a motion; the nodes at both ends stay.
+    ClothSurgery moved = cloth.surgery();
+    cut(moved, target, {{0.25, 0.5}, {0.5, 0.5}, {0.5, 0.25}}, 1);
+    EXPECT_EQ(move_trace(moved, target, corner_moves(moved, way)).verdict, Verdict::Done);
+    EXPECT_EQ(check.find_wrong(moved), "");
+    EXPECT_TRUE(moved.has_vertex(corner) && moved.has_vertex(end));
+    ClothSurgery stopped = cloth.surgery();
+    cut(stopped, target, {{0.25, 0.5}, {0.5, 0.5}, {0.5, 0.25}}, 1);
+    EXPECT_NE(move_trace(stopped, target, corner_moves(stopped, 1.3 * way)).verdict, Verdict::Done);
+    EXPECT_EQ(check.find_wrong(stopped), "");
+    EXPECT_TRUE(stopped.has_vertex(corner) && stopped.has_vertex(end));
+}
+
 TEST(ClearAhead, NamesWhatItCannotClear)
 {
     const SurgeryCloth cloth = square_cloth(8);
