@@ -25,7 +25,9 @@ namespace {
 constexpr double kRoom = 0.15;       // target lengths to a border ahead, below which a trace is released
 constexpr double kCornerRoom = 0.3;  // the same of an obstacle's corner
 constexpr double kInsertRoom = 0.3, kCornerInsertRoom = 0.5;  // and to be made
-constexpr double kClearSteps = 3.3;                           // of flow that must find material ahead
+// Of flow that must find material ahead. A step may take 30 % of a face's material: of what has room for four
+// no more than that also where the flow gets faster.
+constexpr double kClearSteps = 4.0;
 
 /// Tags of the surgery: one a polyline and one a corner of each obstacle.
 class FeatureTags {
@@ -87,13 +89,12 @@ class Conforming {
         surgery_->set_guard([this](const SurgeryEvent& event) { return guard_.allows(event); });
         mark();
         for (const VertexId v : released_) release(v);
-        for (const EolVertex& vertex : given_up) {
-            given_up_.insert(tags_.tag(vertex));
-            if (surgery_->has_vertex(vertex.vertex_id)) release_trace(vertex.vertex_id);
-        }
+        for (const EolVertex& vertex : given_up)
+            if (is_on_trace(vertex.vertex_id)) release(vertex.vertex_id);
         clear_way();
         forget_released();
-        for (const FeatureSite& site : sites_) insert(site);
+        if (given_up.empty())  // else the step has failed on the vertices there were
+            for (const FeatureSite& site : sites_) insert(site);
         join();
         report_.operations += clean_up(*surgery_, target_).operations();
         if (surgery_->events().empty() && report_.released == 0 && report_.inserted == 0) return std::nullopt;
@@ -176,23 +177,9 @@ class Conforming {
         const ClearanceReport cleared = clear_ahead(*surgery_, target_, advances);
         guard_.set_clearing(false);
         report_.operations += cleared.operations;
-        // What stands in the way and cannot give way: there the feature is met by rows.
-        for (const VertexId v : cleared.blocked) release_trace(v);
-    }
-
-    /// All that is joined to a vertex along its trace: a trace with a hole would tear the cloth around it.
-    void release_trace(VertexId v)
-    {
-        std::vector<VertexId> open = {v};
-        while (!open.empty()) {
-            const VertexId at = open.back();
-            open.pop_back();
-            if (surgery_->role(at) == TraceRole::Free) continue;
-            given_up_.insert(surgery_->tag(at));
-            for (const VertexId w : surgery_->ring(at).vertices)
-                if (surgery_->edge_tag(at, w) != kNoTag) open.push_back(w);
-            release(at);
-        }
+        // What stands in the way and cannot give way: there the feature is met by rows. Only there: the rest
+        // of the trace carries the cloth on.
+        for (const VertexId v : cleared.blocked) release(v);
     }
 
     void release(VertexId v)
@@ -242,7 +229,7 @@ class Conforming {
     void insert(const FeatureSite& site)
     {
         const int tag = tags_.tag(site.obstacle, site.is_corner, site.feature);
-        if (given_up_.contains(tag) || is_near_border(site)) {
+        if (is_near_border(site)) {
             ++report_.refused;
             return;
         }
@@ -394,7 +381,6 @@ class Conforming {
     std::optional<ClothSurgery> surgery_;
     std::vector<EolVertex> eol_;
     EolGuard guard_;
-    std::set<int> given_up_;  ///< tags of traces that were released as their way was blocked
     ConformReport report_;
 };
 
