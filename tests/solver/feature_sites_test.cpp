@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/feature_sites.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/solver/eol_cloth.h"
+
+namespace arris {
+namespace {
+
+using testing::EolCloth;
+
+constexpr double kThickness = 1e-3;
+
+std::vector<MeshEdge> edges_of(const State& state)
+{
+    return make_topology(state.mesh.vertex_count(), state.mesh.faces).edges;
+}
+
+/// Flat cloth on a ridge, its mesh turned against it; every edge that crosses the tip, in its order along it.
+struct RidgeCloth {
+    EolCloth cloth;
+    std::vector<std::pair<double, MeshEdge>> crossing;  ///< y and edge
+
+    explicit RidgeCloth(double turn, double fold_degrees = 180.0)
+        : cloth(testing::make_ridge(60.0, 0.5), testing::make_draped({7, turn, fold_degrees}))
+    {
+        State& state = cloth.state;
+        for (Vec3& x : state.mesh.world) x.z() += kThickness;
+        for (const MeshEdge& edge : edges_of(state)) {
+            const Vec3 &a = state.mesh.world[edge.a], &b = state.mesh.world[edge.b];
+            if (!(a.x() * b.x() < 0.0)) continue;
+            const double s = a.x() / (a.x() - b.x());
+            crossing.emplace_back((1.0 - s) * a.y() + s * b.y(), edge);
+        }
+        std::sort(crossing.begin(), crossing.end(),
+                  [](const auto& p, const auto& q) { return p.first < q.first; });
+    }
+
+    void press(std::size_t k)
+    {
+        const MeshEdge& edge = crossing[k].second;
+        cloth.state.active.push_back(
+            {{cloth.state.ids[edge.a], cloth.state.ids[edge.b], ActiveContact::kNoVertex},
+             ContactKind::Edge,
+             0,
+             cloth.scene.obstacles[0].features().edges[tip()].edge,
+             Vec3::UnitZ(),
+             1e-6});
+    }
+
+    int tip() const { return testing::tip_of(cloth.scene.obstacles[0]); }
+
+    std::vector<FeatureSite> sites() const
+    {
+        return find_feature_sites(cloth.scene, cloth.state, edges_of(cloth.state));
+    }
+
+    /// Whether there is a site on the k-th edge, one.
+    std::vector<char> is_site() const
+    {
+        std::vector<char> is(crossing.size(), 0);
+        for (const FeatureSite& site : sites())
+            for (std::size_t k = 0; k < crossing.size(); ++k)
+                if (site.edge == std::array{crossing[k].second.a, crossing[k].second.b}) ++is[k];
+        return is;
+    }
+};
+
+constexpr double kTurn = 17.0;  // no vertex is over the ridge then
+
+TEST(FeatureSites, AreWhereEdgesPressAndAllBetween)
+{
+    RidgeCloth ridge(kTurn);
+    const std::size_t count = ridge.crossing.size();
+    ASSERT_GT(count, 12u);
+    ridge.press(3);
+    ridge.press(8);
+    const std::vector<char> is_site = ridge.is_site();
+    for (std::size_t k = 0; k < count; ++k) EXPECT_EQ(is_site[k], k >= 3 && k <= 8) << k;
+}
+
+TEST(FeatureSites, ReachTheClothsBorderFromNextToIt)
+{
+    RidgeCloth ridge(kTurn);
+    const std::size_t count = ridge.crossing.size();
+    ridge.press(1);
+    ridge.press(count - 3);
+    const std::vector<char> is_site = ridge.is_site();
+    EXPECT_EQ(is_site[0], 1) << "one from the border";
+    EXPECT_EQ(is_site[count - 2], 0) << "two from it";
+    EXPECT_EQ(is_site[count - 1], 0);
+    for (const FeatureSite& site : ridge.sites()) {
+        const bool is_first = site.edge == std::array{ridge.crossing[0].second.a, ridge.crossing[0].second.b};
+        EXPECT_EQ(site.is_on_border, is_first);
+    }
+}
+
+TEST(FeatureSites, DoNotBridgeWhatIsOffTheFeature)
+{
+    RidgeCloth ridge(kTurn);
+    ridge.press(3);
+    ridge.press(8);
+    const MeshEdge& lifted = ridge.crossing[6].second;
+    for (const int v : {lifted.a, lifted.b}) ridge.cloth.state.mesh.world[v].z() += 3.0 * kThickness;
+    const std::vector<char> is_site = ridge.is_site();
+    for (std::size_t k = 0; k < is_site.size(); ++k) EXPECT_EQ(is_site[k], k == 3 || k == 8) << k;
+}
+
+TEST(FeatureSites, GoOnFromTheEndOfATrace)
+{
+    RidgeCloth ridge(0.0);  // seven columns: none over the ridge; eight cells would be
+    ridge.press(4);
+    State& state = ridge.cloth.state;
+    // A vertex put onto the tip.
+    const MeshEdge& edge = ridge.crossing[9].second;
+    const int v = edge.a;
+    const double s =
+        state.mesh.world[edge.a].x() / (state.mesh.world[edge.a].x() - state.mesh.world[edge.b].x());
+    state.mesh.material[v] = (1.0 - s) * state.mesh.material[edge.a] + s * state.mesh.material[edge.b];
+    state.mesh.world[v] = (1.0 - s) * state.mesh.world[edge.a] + s * state.mesh.world[edge.b];
+    ridge.cloth.add_eol(v, false, ridge.tip());
+    const auto is_at = [&](const FeatureSite& site) { return site.material == state.mesh.material[v]; };
+    const std::vector<FeatureSite> sites = ridge.sites();
+    EXPECT_GT(sites.size(), 3u);
+    EXPECT_TRUE(std::none_of(sites.begin(), sites.end(), is_at)) << "it is there";
+    double least = 1.0, most = 0.0;
+    for (const FeatureSite& site : sites) {
+        least = std::min(least, site.material.y());
+        most = std::max(most, site.material.y());
+    }
+    EXPECT_LT(most, state.mesh.material[v].y());
+    state.eol.clear();
+    EXPECT_EQ(ridge.sites().size(), 1u);
+}
+
+TEST(FeatureSites, AreNoneWhereNothingPresses)
+{
+    EXPECT_TRUE(RidgeCloth(kTurn).sites().empty());
+}
+
+}  // namespace
+}  // namespace arris
