@@ -4,9 +4,8 @@
 //   *-----*-----*  trace          Such a face is threatened. It is saved by merging what stands there into
 //    \   / \   /    |             the trace, by merging it into something farther away, or by turning the
 //     \ /   \ /     v             edge that lies across the way. Where two vertices of the trace approach
-//     each
-//      p-----q                    other, as at a corner that slides along its edge, one is merged into the
-//      other.
+//      p-----q                    each other, as at a corner that slides along its edge, one is merged into
+//                               the other.
 //
 // Clearing ends: a merge removes a vertex, and a flip is made only where it leaves fewer threatened faces, so
 // that (vertices, threatened faces) sinks strictly in lexicographic order.
@@ -30,11 +29,24 @@ constexpr int kInstants = 4;         // of the way, at which faces are looked at
 constexpr int kMostSubsteps = 100000;
 constexpr int kMostStages = 100;
 
-using Ahead = std::map<VertexId, Vec2>;
+// The least doubled area on the way over the square of the longest side as it is: how far from turning.
+double soundness(const PatchFace& face, const TraceWays& ways)
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 1; i <= kInstants; ++i) {
+        std::array<Vec2, 3> X = face.material;
+        for (int k = 0; k < 3; ++k)
+            if (const auto at = ways.find(face.vertices[k]); at != ways.end())
+                X[k] += double(i) / kInstants * at->second;
+        least = std::min(least, twice_area(X[0], X[1], X[2]));
+    }
+    const double side = longest_edge({face});
+    return least / (side * side);
+}
 
 class Clearing {
   public:
-    Clearing(ClothSurgery& surgery, const Ahead& ahead) : surgery_(surgery), ahead_(ahead) {}
+    Clearing(ClothSurgery& surgery, const TraceWays& ahead) : surgery_(surgery), ahead_(ahead) {}
 
     ClearanceReport run()
     {
@@ -73,22 +85,8 @@ class Clearing {
         return left;
     }
 
-    // The least doubled area on the way over the square of the longest side as it is: how far from turning.
-    double soundness(const PatchFace& face) const
-    {
-        double least = std::numeric_limits<double>::infinity();
-        for (int i = 1; i <= kInstants; ++i) {
-            std::array<Vec2, 3> X = face.material;
-            for (int k = 0; k < 3; ++k)
-                if (const auto at = ahead_.find(face.vertices[k]); at != ahead_.end())
-                    X[k] += double(i) / kInstants * at->second;
-            least = std::min(least, twice_area(X[0], X[1], X[2]));
-        }
-        const double side = longest_edge({face});
-        return least / (side * side);
-    }
-
-    bool is_threatened(const PatchFace& face) const { return !(soundness(face) > 0.0); }
+    double soundness(const PatchFace& face) const { return arris::soundness(face, ahead_); }
+    bool is_threatened(const PatchFace& face) const { return turns_over(face, ahead_); }
 
     struct Candidate {
         int change;  // in the number of threatened faces
@@ -171,13 +169,13 @@ class Clearing {
     }
 
     ClothSurgery& surgery_;
-    const Ahead& ahead_;
+    const TraceWays& ahead_;
     ClearanceReport report_;
 };
 
 // In stages of at most that least way, so that what stands nearest goes first: vertices of one cell after the
 // other can be merged into the trace, but not those behind others.
-ClearanceReport clear(ClothSurgery& surgery, const MeshTarget& target, Ahead ahead)
+ClearanceReport clear(ClothSurgery& surgery, const MeshTarget& target, TraceWays ahead)
 {
     double stages = 1.0;
     for (auto at = ahead.begin(); at != ahead.end();) {
@@ -190,8 +188,9 @@ ClearanceReport clear(ClothSurgery& surgery, const MeshTarget& target, Ahead ahe
     }
     const int count = static_cast<int>(std::min(stages, double(kMostStages)));
     ClearanceReport report;
+    report.ways = ahead;
     for (int k = 1; k <= count; ++k) {
-        Ahead part = ahead;
+        TraceWays part = ahead;
         for (auto& [v, way] : part) way *= double(k) / count;
         const ClearanceReport stage = Clearing(surgery, part).run();
         report.operations += stage.operations;
@@ -216,7 +215,7 @@ class TraceMotion {
         for (int k = 0; k < count && report.verdict == Verdict::Done; ++k) {
             const double share = 1.0 / (count - k);
             const std::size_t events = surgery_.events().size();
-            Ahead ahead;
+            TraceWays ahead;
             for (const auto& [v, way] : rest_) ahead[v] = share * way.vector;
             report.blocked = clear(surgery_, target_, ahead).blocked;
             follow(events);
@@ -283,10 +282,15 @@ class TraceMotion {
 
 }  // namespace
 
+bool turns_over(const PatchFace& face, const TraceWays& ways)
+{
+    return !(soundness(face, ways) > 0.0);
+}
+
 ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
                             const std::vector<TraceAdvance>& advances)
 {
-    Ahead ahead;
+    TraceWays ahead;
     for (const TraceAdvance& advance : advances) ahead[advance.vertex] = advance.ahead;
     return clear(surgery, target, std::move(ahead));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "geometry/patch_quality.h"
@@ -13,8 +14,15 @@ struct TraceAdvance {
     Vec2 ahead;  ///< m: how far, and in which direction, the material must be clear
 };
 
+/// Ways of trace vertices through the material, m.
+using TraceWays = std::map<VertexId, Vec2>;
+
+/// Whether a face would lose its orientation while all of them go their ways together.
+bool turns_over(const PatchFace& face, const TraceWays& ways);
+
 struct ClearanceReport {
     int operations = 0;
+    TraceWays ways;  ///< that were to be cleared
     /// Trace vertices with a face that would turn over on the way and could not be cleared: the border, a
     /// corner, a fixed vertex, another trace or the guard stands there. Ascending.
     std::vector<VertexId> blocked;

@@ -86,7 +86,8 @@ class Conforming {
         if (released_.empty() && sites_.empty() && given_up.empty() && !is_flowing()) return std::nullopt;
         surgery_.emplace(state_.mesh, state_.ids, state_.next_id, pinned());
         guard_.watch(*surgery_);
-        surgery_->set_guard([this](const SurgeryEvent& event) { return guard_.allows(event); });
+        surgery_->set_guard(
+            [this](const SurgeryEvent& event) { return keeps_way(event) && guard_.allows(event); });
         mark();
         for (const VertexId v : released_) release(v);
         for (const EolVertex& vertex : given_up)
@@ -177,9 +178,18 @@ class Conforming {
         const ClearanceReport cleared = clear_ahead(*surgery_, target_, advances);
         guard_.set_clearing(false);
         report_.operations += cleared.operations;
+        ways_ = cleared.ways;
         // What stands in the way and cannot give way: there the feature is met by rows. Only there: the rest
         // of the trace carries the cloth on.
         for (const VertexId v : cleared.blocked) release(v);
+    }
+
+    /// What has been cleared stays clear.
+    bool keeps_way(const SurgeryEvent& event) const
+    {
+        const auto is_in_way = [&](const PatchFace& face) { return turns_over(face, ways_); };
+        return ways_.empty() || std::none_of(event.after.begin(), event.after.end(), is_in_way) ||
+               std::any_of(event.before.begin(), event.before.end(), is_in_way);
     }
 
     void release(VertexId v)
@@ -381,6 +391,7 @@ class Conforming {
     std::optional<ClothSurgery> surgery_;
     std::vector<EolVertex> eol_;
     EolGuard guard_;
+    TraceWays ways_;  ///< of the vertices that flow
     ConformReport report_;
 };
 
