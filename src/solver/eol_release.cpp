@@ -17,6 +17,22 @@ struct StarEnergy {
     double kinetic = 0.0, loss = 0.0;
 };
 
+/// Whether the cloth turns at the vertex.
+bool is_folded(const State& state, const std::vector<int>& faces)
+{
+    constexpr double kFlat = 0.9986;  // cosine of 3 degrees
+    std::vector<Vec3> normals;
+    Vec3 mean = Vec3::Zero();
+    for (const int f : faces) {
+        const auto& [a, b, c] = state.mesh.faces[f];
+        const std::vector<Vec3>& x = state.mesh.world;
+        normals.push_back((x[b] - x[a]).cross(x[c] - x[a]).normalized());
+        mean += normals.back();
+    }
+    mean.normalize();
+    return !std::all_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(mean) > kFlat; });
+}
+
 StarEnergy measure_star(const Scene& scene, const State& state, const std::vector<int>& faces, int vertex,
                         int obstacle)
 {
@@ -55,7 +71,8 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
     const double gap = (place - at.frame.point).norm();
     if (gap > scene.eol->length(state.mesh.material[at.vertex])) return EolHold::None;
     const StarEnergy energy = measure_star(scene, state, stars.faces[at.vertex], at.vertex, eol.obstacle);
-    if (energy.loss > kShare * energy.kinetic) return EolHold::Firm;
+    if (energy.loss > kShare * energy.kinetic || is_folded(state, stars.faces[at.vertex]))
+        return EolHold::Firm;
     return gap <= kOnFeature * scene.material.thickness ? EolHold::Loose : EolHold::None;
 }
 
