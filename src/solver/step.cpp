@@ -9,6 +9,7 @@
 #include "solver/conform.h"
 #include "solver/constraints.h"
 #include "solver/energy_balance.h"
+#include "solver/material_flow.h"
 #include "solver/mesh_transfer.h"
 #include "solver/stopwatch.h"
 
@@ -74,33 +75,6 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
     return false;
 }
 
-/// Whether every face keeps most of the material it has at the step's start: a face whose height changes by a
-/// large share in one step has a strain that one linearisation cannot follow.
-bool has_material_left(Workspace& work, const std::vector<Vec2>& material)
-{
-    constexpr double kLeast = 0.7;
-    work.overrun.clear();
-    for (const EolCoordinates& eol : work.eol)
-        for (const int f : work.stars.faces[eol.vertex]) {
-            const auto& [a, b, c] = work.faces_of_elements[f];
-            const double left = 0.5 * twice_area(material[a], material[b], material[c]);
-            if (!(left >= kLeast * work.elements.faces[f].area)) work.overrun.push_back(eol.vertex);
-        }
-    return work.overrun.empty();
-}
-
-/// The material side of the linearisation.
-void let_material_flow(const State& state, const Prediction& prediction, const ClothVelocity& expansion,
-                       const MovingCloth& end, MaterialFlow& flow)
-{
-    flow.position = end.material;
-    flow.v_predicted = prediction.material_velocity;
-    flow.v_expansion = expansion.material;
-    flow.v_last = state.material_velocity;
-    const MovingCloth past = extrapolate(state, prediction);
-    flow.extrapolated = {past.world, past.velocity.world, past.material, past.velocity.material};
-}
-
 /// Each vertex's coordinates, in which pins are known and contacts are bounds or rows; A, b in them.
 /// False where material would have flowed further than the mesh allows.
 bool assemble(const Scene& scene, double end, const State& state, Workspace& work)
@@ -118,12 +92,7 @@ bool assemble(const Scene& scene, double end, const State& state, Workspace& wor
     const MovingCloth end_there = find_end(prediction, work.expansion);
     at.v_expansion = work.expansion.world;
     at.position = end_there.world;
-    if (at.flow) {
-        let_material_flow(state, prediction, work.expansion, end_there, *at.flow);
-        if (!has_material_left(work, at.flow->position) ||
-            !has_material_left(work, at.flow->extrapolated.material))
-            return false;
-    }
+    if (at.flow && !linearise_flow(state, end_there, work)) return false;
     work.system.assemble(state.mesh, work.elements, work.terms, at);
     return true;
 }
@@ -156,20 +125,6 @@ void solve_velocity(const Settings& settings, Workspace& work, StepReport& repor
             report.status = StepStatus::Infeasible;
             break;
     }
-}
-
-/// X' = X~ + gamma V'. False where more material flows over a feature than the mesh has there.
-bool propose_flow(Workspace& work)
-{
-    work.proposal.material = work.prediction.material;
-    work.proposal.material_velocity.assign(work.prediction.material.size(), Vec2::Zero());
-    for (const EolCoordinates& eol : work.eol) {
-        const int v = eol.vertex;
-        Vec2& flow = work.proposal.material_velocity[v];
-        flow = eol.material_basis * work.solution.velocity.segment<3>(3 * v);
-        work.proposal.material[v] += work.prediction.gamma * flow;
-    }
-    return has_material_left(work, work.proposal.material);
 }
 
 /// q' = q~ + gamma v'. Where the cloth is nearer to an obstacle than its stand-off, it is moved out by up to

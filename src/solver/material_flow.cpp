@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/material_flow.h"
+
+namespace arris {
+
+namespace {
+
+/// Whether every face at an EOL vertex keeps most of the material it has at the step's start.
+bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
+{
+    constexpr double kLeast = 0.7;
+    work.overrun.clear();
+    for (const EolCoordinates& eol : work.eol)
+        for (const int f : work.stars.faces[eol.vertex]) {
+            const auto& [a, b, c] = work.faces_of_elements[f];
+            const double left = 0.5 * twice_area(material[a], material[b], material[c]);
+            if (!(left >= kLeast * work.elements.faces[f].area)) work.overrun.push_back(eol.vertex);
+        }
+    return work.overrun.empty();
+}
+
+}  // namespace
+
+bool linearise_flow(const State& state, const MovingCloth& end, Workspace& work)
+{
+    const Prediction& prediction = work.prediction;
+    MaterialFlow& flow = *work.at.flow;
+    flow.position = end.material;
+    flow.v_predicted = prediction.material_velocity;
+    flow.v_expansion = work.expansion.material;
+    flow.v_last = state.material_velocity;
+    const MovingCloth past = extrapolate(state, prediction);
+    flow.extrapolated = {past.world, past.velocity.world, past.material, past.velocity.material};
+    return has_material_left(flow.position, work) && has_material_left(flow.extrapolated.material, work);
+}
+
+bool propose_flow(Workspace& work)
+{
+    work.proposal.material = work.prediction.material;
+    work.proposal.material_velocity.assign(work.prediction.material.size(), Vec2::Zero());
+    for (const EolCoordinates& eol : work.eol) {
+        const int v = eol.vertex;
+        Vec2& flow = work.proposal.material_velocity[v];
+        flow = eol.material_basis * work.solution.velocity.segment<3>(3 * v);
+        work.proposal.material[v] += work.prediction.gamma * flow;
+    }
+    return has_material_left(work.proposal.material, work);
+}
+
+}  // namespace arris

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far material flows through EOL vertices in a step, and that no face beside them loses most of what it
+// has: one whose height changes by a large share has a strain that one linearisation cannot follow.
+#pragma once
+
+#include "solver/state.h"
+#include "solver/time_integration.h"
+#include "solver/workspace.h"
+
+namespace arris {
+
+/// The material side of the linearisation in `work.at`, which must have one; `end` is where the step ends
+/// with v^. False where the mesh has not that much material: `work.overrun` says over which vertices.
+bool linearise_flow(const State& state, const MovingCloth& end, Workspace& work);
+
+/// X' = X~ + gamma V' of the velocity solved. False alike.
+bool propose_flow(Workspace& work);
+
+}  // namespace arris
