@@ -20,19 +20,29 @@ struct Side {
     bool is_forward;  // runs from low to high
 };
 
-std::vector<Side> sorted_sides(const std::vector<Face>& faces)
+// By `low`, then `high`; of one edge those that run forward first.
+std::vector<Side> sorted_sides(int vertex_count, const std::vector<Face>& faces)
 {
-    std::vector<Side> sides;
-    sides.reserve(3 * faces.size());
+    // Each vertex has few: counted out by `low`, then sorted a vertex at a time.
+    std::vector<std::size_t> next(static_cast<std::size_t>(vertex_count) + 1, 0);
+    const auto low_of = [](const Face& face, int k) { return std::min(face[k], face[(k + 1) % 3]); };
+    for (const Face& face : faces)
+        for (int k = 0; k < 3; ++k) ++next[low_of(face, k) + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<Side> sides(3 * faces.size());
     for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
         for (int k = 0; k < 3; ++k) {
             const int a = faces[f][k];
             const int b = faces[f][(k + 1) % 3];
-            sides.push_back({std::min(a, b), std::max(a, b), f, k, a < b});
+            sides[next[std::min(a, b)]++] = {std::min(a, b), std::max(a, b), f, k, a < b};
         }
     }
-    const auto key = [](const Side& s) { return std::tuple(s.low, s.high, !s.is_forward, s.face); };
-    std::sort(sides.begin(), sides.end(), [&](const Side& s, const Side& t) { return key(s) < key(t); });
+    const auto key = [](const Side& s) { return std::tuple(s.high, !s.is_forward, s.face); };
+    std::size_t begin = 0;  // `next` now tells where each vertex's end
+    for (int v = 0; v < vertex_count; begin = next[v++])
+        std::sort(sides.begin() + static_cast<std::ptrdiff_t>(begin),
+                  sides.begin() + static_cast<std::ptrdiff_t>(next[v]),
+                  [&](const Side& s, const Side& t) { return key(s) < key(t); });
     return sides;
 }
 
@@ -150,7 +160,9 @@ MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces)
 {
     MeshTopology topology;
     topology.is_border.assign(vertex_count, 0);
-    const std::vector<Side> sides = sorted_sides(faces);
+    const std::vector<Side> sides = sorted_sides(vertex_count, faces);
+    topology.edges.reserve(sides.size() / 2);
+    topology.hinges.reserve(sides.size() / 2);
     for (std::size_t i = 0; i < sides.size(); ++i) {
         const Side& s = sides[i];
         if (i + 1 == sides.size() || !same_edge(s, sides[i + 1])) {
@@ -169,7 +181,11 @@ MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces)
 
 std::vector<std::vector<int>> faces_at_vertices(int vertex_count, const std::vector<Face>& faces)
 {
+    std::vector<int> count(static_cast<std::size_t>(vertex_count), 0);
+    for (const Face& face : faces)
+        for (const int v : face) ++count[v];
     std::vector<std::vector<int>> faces_at(static_cast<std::size_t>(vertex_count));
+    for (int v = 0; v < vertex_count; ++v) faces_at[v].reserve(count[v]);
     for (int f = 0; f < static_cast<int>(faces.size()); ++f)
         for (const int v : faces[f]) faces_at[v].push_back(f);
     return faces_at;
@@ -180,7 +196,7 @@ std::string validate(const ClothMesh& mesh, const ElementNumbers& numbers)
     const Names names{numbers};
     if (std::string wrong = find_bad_index(mesh, names); !wrong.empty()) return wrong;
     if (std::string wrong = find_bad_coordinate(mesh, names); !wrong.empty()) return wrong;
-    const std::vector<Side> sides = sorted_sides(mesh.faces);
+    const std::vector<Side> sides = sorted_sides(mesh.vertex_count(), mesh.faces);
     if (std::string wrong = find_bad_edge(sides, names); !wrong.empty()) return wrong;
     if (std::string wrong = find_bow_tie(mesh, sides, names); !wrong.empty()) return wrong;
     return find_bad_orientation(mesh, names);

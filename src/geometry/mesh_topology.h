@@ -27,7 +27,7 @@ struct MeshTopology {
     std::vector<char> is_border;  ///< one a vertex
 };
 
-/// Linear in face count (a sort). Faces must form an oriented 2-manifold: `validate` checks that.
+/// Linear in face count. Faces must form an oriented 2-manifold: `validate` checks that.
 MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces);
 
 /// The faces at each vertex, ascending.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/deformation_gradient.h"
+
 namespace arris {
 
 namespace {
@@ -112,11 +114,7 @@ NewFace make_face(double density, const FitPatch& patch, const Face& face)
 {
     NewFace made;
     for (int i = 0; i < 3; ++i) made.X[i] = patch.material[face[i]];
-    Mat2 DX;
-    Mat32 Dx;
-    DX << made.X[1] - made.X[0], made.X[2] - made.X[0];
-    Dx << patch.world[face[1]] - patch.world[face[0]], patch.world[face[2]] - patch.world[face[0]];
-    made.F = Dx * DX.inverse();
+    made.F = deformation_gradient(made.X, {patch.world[face[0]], patch.world[face[1]], patch.world[face[2]]});
     made.mass = density * 0.5 * cross(made.X[1] - made.X[0], made.X[2] - made.X[0]);
     return made;
 }

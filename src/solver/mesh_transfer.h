@@ -6,16 +6,11 @@
 #pragma once
 
 #include "solver/conform.h"
+#include "solver/patch_fit.h"
 #include "solver/scene.h"
 #include "solver/state.h"
 
 namespace arris {
-
-struct TransferReport {
-    double energy_gain = 0.0;  ///< kinetic, J
-    int patches = 0;           ///< on which velocity was fitted
-    bool is_strained = false;  ///< a patch could not give way to what strains it now
-};
 
 /// The state on the new mesh: positions, velocities, history, and of contacts and anchors those whose
 /// vertices are still there.

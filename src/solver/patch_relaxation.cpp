@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "geometry/mesh_topology.h"
+#include "geometry/sub_mesh.h"
 #include "geometry/sweep_check.h"
 #include "physics/bending.h"
 #include "physics/energies.h"
@@ -148,23 +149,11 @@ class Relaxation {
 double relax(const Scene& scene, const RelaxedPatch& patch, State& state)
 {
     constexpr int kMostHalvings = 4;
-    std::vector<int> local(state.mesh.world.size(), -1), vertices;
-    LoosePatch loose;
-    for (const int f : patch.faces) {
-        Face face;
-        for (int i = 0; i < 3; ++i) {
-            const int v = state.mesh.faces[f][i];
-            if (local[v] < 0) {
-                local[v] = static_cast<int>(vertices.size());
-                vertices.push_back(v);
-                loose.mesh.material.push_back(state.mesh.material[v]);
-                loose.mesh.world.push_back(state.mesh.world[v]);
-                loose.is_free.push_back(patch.is_free[v]);
-                loose.normals.push_back(patch.normals[v]);
-            }
-            face[i] = local[v];
-        }
-        loose.mesh.faces.push_back(face);
+    SubMesh part = extract_faces(state.mesh, patch.faces);
+    LoosePatch loose{std::move(part.mesh), {}, {}};
+    for (const int v : part.vertices) {
+        loose.is_free.push_back(patch.is_free[v]);
+        loose.normals.push_back(patch.normals[v]);
     }
     Relaxation relaxation(scene, std::move(loose));
     const std::vector<Vec3> begin = relaxation.world();
@@ -176,8 +165,8 @@ double relax(const Scene& scene, const RelaxedPatch& patch, State& state)
     }
     for (std::size_t i = 0; i < begin.size(); ++i) {
         const Vec3 moved = relaxation.world()[i] - begin[i];
-        state.mesh.world[vertices[i]] += moved;
-        state.previous_world[vertices[i]] += moved;
+        state.mesh.world[part.vertices[i]] += moved;
+        state.previous_world[part.vertices[i]] += moved;
     }
     return relaxation.energy();
 }

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/changed_patches.h"
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+namespace arris {
+
+namespace {
+
+void sort_unique(std::vector<int>& values)
+{
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+class PatchFinder {
+  public:
+    explicit PatchFinder(const MeshChange& change)
+        : change_(change),
+          before_(change.before),
+          after_(change.after),
+          is_near_(change.after.ids.size(), 0),
+          patch_(change.after.mesh.faces.size(), -1)
+    {
+    }
+
+    std::vector<ChangedPatch> find()
+    {
+        constexpr int kRings = 2;
+        mark_changed();
+        for (int ring = 0; ring < kRings; ++ring) grow();
+        join();
+        for (ChangedPatch& patch : patches_) complete(patch);
+        add_faces_before();
+        return std::move(patches_);
+    }
+
+  private:
+    bool is_eol_changed(int v) const
+    {
+        const std::uint32_t id = after_.ids[v];
+        const int now = after_.eol_entry(id), then = before_.eol_entry(id);
+        if ((now < 0) != (then < 0)) return true;
+        return now >= 0 && std::tuple(after_.eol[now].obstacle, after_.eol[now].is_corner) !=
+                               std::tuple(before_.eol[then].obstacle, before_.eol[then].is_corner);
+    }
+
+    /// Vertices at which a face may have changed.
+    std::vector<int> touched() const
+    {
+        std::set<VertexId> ids;
+        for (const SurgeryEvent& event : change_.events) {
+            for (const PatchFace& face : event.before) ids.insert(face.vertices.begin(), face.vertices.end());
+            for (const PatchFace& face : event.after) ids.insert(face.vertices.begin(), face.vertices.end());
+        }
+        for (const State* state : {&before_, &after_})
+            for (const EolVertex& eol : state->eol) ids.insert(eol.vertex_id);
+        std::vector<int> vertices;
+        for (const VertexId id : ids)
+            if (const int v = after_.index_of(id); v >= 0) vertices.push_back(v);
+        return vertices;
+    }
+
+    /// The same three vertices, once around; -1 where there is none.
+    static int find_face(const State& state, const std::vector<std::vector<int>>& faces_at,
+                         const std::array<VertexId, 3>& ids)
+    {
+        const std::array<int, 3> v = {state.index_of(ids[0]), state.index_of(ids[1]), state.index_of(ids[2])};
+        if (v[0] < 0 || v[1] < 0 || v[2] < 0) return -1;
+        for (const int f : faces_at[v[0]]) {
+            const Face& face = state.mesh.faces[f];
+            const auto first = std::find(face.begin(), face.end(), v[0]) - face.begin();
+            if (face[(first + 1) % 3] == v[1] && face[(first + 2) % 3] == v[2]) return f;
+        }
+        return -1;
+    }
+
+    static std::array<VertexId, 3> ids_of(const State& state, int f)
+    {
+        const Face& face = state.mesh.faces[f];
+        return {state.ids[face[0]], state.ids[face[1]], state.ids[face[2]]};
+    }
+
+    /// Whether it was there before, at the same place in the material, and its vertices were what they are.
+    bool is_kept(int f) const
+    {
+        if (find_face(before_, change_.faces_at_before, ids_of(after_, f)) < 0) return false;
+        const Face& face = after_.mesh.faces[f];
+        return std::all_of(face.begin(), face.end(), [&](int v) {
+            const int then = before_.index_of(after_.ids[v]);
+            return !is_eol_changed(v) && before_.mesh.material[then] == after_.mesh.material[v];
+        });
+    }
+
+    void mark_changed()
+    {
+        std::vector<int> faces;
+        for (const int v : touched())
+            faces.insert(faces.end(), change_.faces_at_after[v].begin(), change_.faces_at_after[v].end());
+        sort_unique(faces);
+        for (const int f : faces)
+            if (!is_kept(f)) add_vertices(f);
+    }
+
+    void add_vertices(int f)
+    {
+        for (const int v : after_.mesh.faces[f]) {
+            if (is_near_[v]) continue;
+            is_near_[v] = 1;
+            near_.push_back(v);
+        }
+    }
+
+    void grow()
+    {
+        const std::vector<int> rim = near_;
+        for (const int v : rim)
+            for (const int f : change_.faces_at_after[v]) add_vertices(f);
+    }
+
+    bool is_in(int f) const
+    {
+        const Face& face = after_.mesh.faces[f];
+        return is_near_[face[0]] && is_near_[face[1]] && is_near_[face[2]];
+    }
+
+    /// Faces all of whose vertices are near, joined where they share one.
+    void join()
+    {
+        std::vector<int> faces;
+        for (const int v : near_)
+            for (const int f : change_.faces_at_after[v])
+                if (is_in(f)) faces.push_back(f);
+        sort_unique(faces);
+        for (const int first : faces) {
+            if (patch_[first] >= 0) continue;
+            const int p = static_cast<int>(patches_.size());
+            ChangedPatch& patch = patches_.emplace_back();
+            std::vector<int> open = {first};
+            patch_[first] = p;
+            while (!open.empty()) {
+                const int f = open.back();
+                open.pop_back();
+                patch.faces.push_back(f);
+                for (const int v : after_.mesh.faces[f])
+                    for (const int g : change_.faces_at_after[v]) {
+                        if (patch_[g] >= 0 || !is_in(g)) continue;
+                        patch_[g] = p;
+                        open.push_back(g);
+                    }
+            }
+        }
+    }
+
+    void complete(ChangedPatch& patch) const
+    {
+        std::sort(patch.faces.begin(), patch.faces.end());
+        for (const int f : patch.faces)
+            patch.vertices.insert(patch.vertices.end(), after_.mesh.faces[f].begin(),
+                                  after_.mesh.faces[f].end());
+        sort_unique(patch.vertices);
+        for (const int v : patch.vertices) {
+            const std::vector<int>& around = change_.faces_at_after[v];
+            patch.is_inside.push_back(std::all_of(
+                around.begin(), around.end(), [&](int f) { return patch_[f] == patch_[patch.faces[0]]; }));
+        }
+    }
+
+    /// Those that are still there and in a patch, and those that are gone: all at what is near, and at
+    /// vertices that are gone.
+    void add_faces_before()
+    {
+        std::vector<int> open;
+        std::unordered_map<int, int> patch_of;  // of a vertex before; looked up only
+        for (std::size_t p = 0; p < patches_.size(); ++p)
+            for (const int v : patches_[p].vertices)
+                if (const int then = before_.index_of(after_.ids[v]); then >= 0) {
+                    patch_of[then] = static_cast<int>(p);
+                    open.push_back(then);
+                }
+        std::vector<char> is_seen(before_.mesh.faces.size(), 0);
+        while (!open.empty()) {
+            const int v = open.back();
+            open.pop_back();
+            for (const int f : change_.faces_at_before[v]) {
+                if (is_seen[f]) continue;
+                const int now = find_face(after_, change_.faces_at_after, ids_of(before_, f));
+                is_seen[f] = 1;
+                if (now >= 0 && patch_[now] < 0) continue;
+                patches_[now >= 0 ? patch_[now] : patch_of.at(v)].faces_before.push_back(f);
+                for (const int w : before_.mesh.faces[f])
+                    if (after_.index_of(before_.ids[w]) < 0 && patch_of.try_emplace(w, patch_of.at(v)).second)
+                        open.push_back(w);
+            }
+        }
+        for (ChangedPatch& patch : patches_) std::sort(patch.faces_before.begin(), patch.faces_before.end());
+    }
+
+    const MeshChange& change_;
+    const State& before_;
+    const State& after_;
+    std::vector<int> near_;      ///< vertices after
+    std::vector<char> is_near_;  ///< of each
+    std::vector<int> patch_;     ///< of each face after; -1 outside
+    std::vector<ChangedPatch> patches_;
+};
+
+}  // namespace
+
+std::vector<ChangedPatch> find_changed_patches(const MeshChange& change)
+{
+    return PatchFinder(change).find();
+}
+
+}  // namespace arris

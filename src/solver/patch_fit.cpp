@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/patch_fit.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "geometry/sub_mesh.h"
+#include "physics/deformation_gradient.h"
+#include "physics/energies.h"
+#include "physics/velocity_fit.h"
+#include "solver/held_vertices.h"
+#include "solver/patch_relaxation.h"
+
+namespace arris {
+
+namespace {
+
+class PatchFitter {
+  public:
+    PatchFitter(const Scene& scene, const State& before, const ClothStars& stars, State& after)
+        : scene_(scene),
+          before_(before),
+          stars_(stars),
+          after_(after),
+          held_(find_held_vertices(scene, after, after.time))
+    {
+    }
+
+    TransferReport run(const std::vector<ChangedPatch>& patches)
+    {
+        TransferReport report;
+        for (const ChangedPatch& patch : patches) {
+            const double gain = relax_patch(patch);
+            const std::optional<VelocityFit> fit = fit_patch(patch);
+            report.is_strained =
+                report.is_strained || gain > 0.01 * ((fit ? fit->energy : 0.0) + weight(patch));
+            if (!fit) continue;
+            ++report.patches;
+            report.energy_gain += fit->energy_gain;
+        }
+        return report;
+    }
+
+  private:
+    VelocityField old_field(const ChangedPatch& patch) const
+    {
+        VelocityField field;
+        for (const int f : patch.faces_before) {
+            const Face& face = before_.mesh.faces[f];
+            std::array<Vec2, 3> X;
+            std::array<Vec3, 3> x, w;
+            for (int i = 0; i < 3; ++i) {
+                X[i] = before_.mesh.material[face[i]];
+                x[i] = before_.mesh.world[face[i]];
+            }
+            const Mat32 F = deformation_gradient(X, x);
+            for (int i = 0; i < 3; ++i)
+                w[i] = before_.velocity[face[i]] - F * before_.material_velocity[face[i]];
+            field.triangles.push_back(X);
+            field.velocity.push_back(w);
+        }
+        return field;
+    }
+
+    /// Elastic energy of those faces of a mesh; hinges between them only.
+    double elastic_energy(const ClothMesh& whole, const std::vector<int>& faces) const
+    {
+        const SubMesh part = extract_faces(whole, faces);
+        const MeshTopology topology = make_topology(part.mesh.vertex_count(), part.mesh.faces);
+        const Terms terms = make_terms(scene_.material, {}, {}, {});
+        const Energies energies =
+            compute_energies(make_elements(part.mesh, topology), terms, part.mesh.world);
+        return energies.stretch + energies.bending;
+    }
+
+    /// A mesh that strains the cloth more than the one before gives way.
+    /// Returns by how much its elastic energy is above what it was, J.
+    double relax_patch(const ChangedPatch& patch)
+    {
+        const double before = elastic_energy(before_.mesh, patch.faces_before);
+        const double strained = elastic_energy(after_.mesh, patch.faces);
+        constexpr double kRounding = 1e-9;  // of sums over the patch: a split leaves the energy as it is
+        if (strained <= (1.0 + kRounding) * before) return 0.0;
+
+        const std::size_t n = after_.ids.size();
+        RelaxedPatch relaxed{patch.faces, std::vector<char>(n, 0), std::vector<Vec3>(n, Vec3::Zero()),
+                             before};
+        for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
+            const int v = patch.vertices[i];
+            relaxed.is_free[v] = after_.eol_entry(after_.ids[v]) < 0 && patch.is_inside[i];
+        }
+        for (const HeldVertex& held : held_) relaxed.is_free[held.vertex] = 0;
+        for (const ActiveContact& contact : after_.active)
+            if (contact.kind == ContactKind::Vertex)
+                relaxed.normals[after_.index_of(contact.vertex_ids[0])] =
+                    scene_.obstacles[contact.obstacle].at(after_.time).rotation * contact.normal;
+        return relax(scene_, relaxed, after_) - before;
+    }
+
+    /// Of a patch, over a cell, J.
+    double weight(const ChangedPatch& patch) const
+    {
+        double area = 0.0, length = 0.0;
+        for (const int f : patch.faces) {
+            const Face& face = after_.mesh.faces[f];
+            const Vec2& X = after_.mesh.material[face[0]];
+            area += 0.5 * twice_area(X, after_.mesh.material[face[1]], after_.mesh.material[face[2]]);
+            length = std::max(length, scene_.eol->length(X));
+        }
+        return scene_.gravity ? scene_.material.density * area * scene_.gravity->acceleration.norm() * length
+                              : 0.0;
+    }
+
+    std::optional<VelocityFit> fit_patch(const ChangedPatch& changed)
+    {
+        FitPatch patch;
+        std::unordered_map<int, int> local;
+        for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
+            local[changed.vertices[i]] = static_cast<int>(i);
+            add_vertex(changed.vertices[i], changed.is_inside[i], patch);
+        }
+        for (const int f : changed.faces) {
+            const Face& face = after_.mesh.faces[f];
+            patch.faces.push_back({local[face[0]], local[face[1]], local[face[2]]});
+        }
+        const std::optional<VelocityFit> fit =
+            fit_velocity(scene_.material.density, old_field(changed), patch);
+        if (!fit) return fit;
+        for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
+            after_.velocity[changed.vertices[i]] = fit->velocity[i];
+            after_.material_velocity[changed.vertices[i]] = fit->material_velocity[i];
+        }
+        return fit;
+    }
+
+    void add_vertex(int v, bool is_inside, FitPatch& patch)
+    {
+        patch.material.push_back(after_.mesh.material[v]);
+        patch.world.push_back(after_.mesh.world[v]);
+        patch.is_free.push_back(is_inside);
+        Vec3 drift = Vec3::Zero();
+        Vec2 material_drift = Vec2::Zero();
+        Mat3 basis = Mat3::Identity();
+        Mat23 material_basis = Mat23::Zero();
+        if (!is_inside) {
+            drift = after_.velocity[v];
+            material_drift = after_.material_velocity[v];
+        } else if (const int entry = after_.eol_entry(after_.ids[v]); entry >= 0) {
+            const std::int32_t o = after_.eol[entry].obstacle;
+            const Obstacle& obstacle = scene_.obstacles[o];
+            const Placement now = obstacle.at(after_.time);
+            const EolPlacing placing =
+                place_eol_vertex(obstacle, after_, entry, stars_, positions_around(v, now), now);
+            if (placing.coordinates) {
+                basis = placing.coordinates->basis;
+                material_basis = placing.coordinates->material_basis;
+                drift = obstacle.velocity_after(after_.time, after_.mesh.world[v]);
+            }
+        }
+        patch.drift.push_back(drift);
+        patch.material_drift.push_back(material_drift);
+        patch.basis.push_back(basis);
+        patch.material_basis.push_back(material_basis);
+    }
+
+    /// Of the star of v, in an obstacle's frame; of other vertices nothing that means anything.
+    const std::vector<Vec3>& positions_around(int v, const Placement& frame)
+    {
+        positions_.resize(after_.ids.size(), Vec3::Zero());
+        for (const int f : stars_.faces[v])
+            for (const int w : after_.mesh.faces[f]) positions_[w] = frame.inverse(after_.mesh.world[w]);
+        return positions_;
+    }
+
+    const Scene& scene_;
+    const State& before_;
+    const ClothStars& stars_;
+    State& after_;
+    std::vector<HeldVertex> held_;
+    std::vector<Vec3> positions_;
+};
+
+}  // namespace
+
+TransferReport fit_patches(const Scene& scene, const State& before, const std::vector<ChangedPatch>& patches,
+                           const ClothStars& stars, State& after)
+{
+    return PatchFitter(scene, before, stars, after).run(patches);
+}
+
+}  // namespace arris
