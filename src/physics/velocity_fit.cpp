@@ -64,30 +64,80 @@ Vec3 at(const std::array<Vec3, 3>& corners, const Vec3& weights)
     return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
 }
 
-bool boxes_touch(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b)
-{
-    for (int d = 0; d < 2; ++d) {
-        const auto [a_low, a_high] = std::minmax({a[0][d], a[1][d], a[2][d]});
-        const auto [b_low, b_high] = std::minmax({b[0][d], b[1][d], b[2][d]});
-        if (a_low > b_high || b_low > a_high) return false;
+struct Box2 {
+    Vec2 low, high;
+
+    explicit Box2(const std::array<Vec2, 3>& corners)
+        : low(corners[0].cwiseMin(corners[1]).cwiseMin(corners[2])),
+          high(corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]))
+    {
     }
-    return true;
-}
+    bool touches(const Box2& other) const
+    {
+        return !((low.array() > other.high.array()).any() || (other.low.array() > high.array()).any());
+    }
+};
+
+/// The old field, its triangles in the order of their boxes' lower ends along the patch's longer side.
+class OldField {
+  public:
+    explicit OldField(const VelocityField& field) : field_(field)
+    {
+        boxes_.reserve(field.triangles.size());
+        for (const std::array<Vec2, 3>& triangle : field.triangles) boxes_.emplace_back(triangle);
+        if (boxes_.empty()) return;
+        Box2 whole = boxes_.front();
+        for (const Box2& box : boxes_) {
+            whole.low = whole.low.cwiseMin(box.low);
+            whole.high = whole.high.cwiseMax(box.high);
+        }
+        axis_ = whole.high.x() - whole.low.x() >= whole.high.y() - whole.low.y() ? 0 : 1;
+        for (std::size_t t = 0; t < boxes_.size(); ++t) {
+            order_.push_back(static_cast<int>(t));
+            widest_ = std::max(widest_, boxes_[t].high[axis_] - boxes_[t].low[axis_]);
+        }
+        std::sort(order_.begin(), order_.end(), [this](int a, int b) { return low(a) < low(b); });
+    }
+
+    /// Those whose boxes touch the triangle's, ascending.
+    std::vector<int> find_near(const std::array<Vec2, 3>& triangle) const
+    {
+        const Box2 box(triangle);
+        std::vector<int> found;
+        // Twice the widest: never too few by rounding.
+        const auto first = std::lower_bound(order_.begin(), order_.end(), box.low[axis_] - 2.0 * widest_,
+                                            [this](int t, double bound) { return low(t) < bound; });
+        for (auto t = first; t != order_.end() && low(*t) <= box.high[axis_]; ++t)
+            if (box.touches(boxes_[*t])) found.push_back(*t);
+        std::sort(found.begin(), found.end());
+        return found;
+    }
+
+    const std::array<Vec2, 3>& triangle(int t) const { return field_.triangles[t]; }
+    const std::array<Vec3, 3>& velocity(int t) const { return field_.velocity[t]; }
+
+  private:
+    double low(int t) const { return boxes_[t].low[axis_]; }
+
+    const VelocityField& field_;
+    std::vector<Box2> boxes_;
+    std::vector<int> order_;
+    int axis_ = 0;
+    double widest_ = 0.0;  ///< m, of the boxes along the axis
+};
 
 /// Integrals over a new triangle of its shape functions times the old velocity, times density.
-std::array<Vec3, 3> integrate_old(double density, const VelocityField& old,
-                                  const std::array<Vec2, 3>& triangle)
+std::array<Vec3, 3> integrate_old(double density, const OldField& old, const std::array<Vec2, 3>& triangle)
 {
     std::array<Vec3, 3> sums = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-    for (std::size_t t = 0; t < old.triangles.size(); ++t) {
-        if (!boxes_touch(triangle, old.triangles[t])) continue;
-        const Polygon common = overlap(triangle, old.triangles[t]);
+    for (const int t : old.find_near(triangle)) {
+        const Polygon common = overlap(triangle, old.triangle(t));
         for (int k = 2; k < common.count; ++k) {
             // Products of linear functions: the three middles of the sides are exact.
             const Vec2 &p = common.corners[0], &q = common.corners[k - 1], &r = common.corners[k];
             const double weight = density * 0.5 * cross(q - p, r - p) / 3.0;
             for (const Vec2& middle : {Vec2(0.5 * (p + q)), Vec2(0.5 * (q + r)), Vec2(0.5 * (r + p))}) {
-                const Vec3 velocity = at(old.velocity[t], barycentric(old.triangles[t], middle));
+                const Vec3 velocity = at(old.velocity(t), barycentric(old.triangle(t), middle));
                 const Vec3 shape = barycentric(triangle, middle);
                 for (int i = 0; i < 3; ++i) sums[i] += weight * shape[i] * velocity;
             }
@@ -196,10 +246,11 @@ std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old
 {
     NormalEquations equations(patch);
     if (equations.is_empty()) return std::nullopt;
+    const OldField old_field(old);
     std::vector<NewFace> faces;
     for (const Face& face : patch.faces) {
         faces.push_back(make_face(density, patch, face));
-        equations.add(face, faces.back(), integrate_old(density, old, faces.back().X));
+        equations.add(face, faces.back(), integrate_old(density, old_field, faces.back().X));
     }
     const std::optional<std::vector<Vec3>> u = equations.solve();
     if (!u) return std::nullopt;

@@ -2,7 +2,6 @@
 #include "solver/eol_guard.h"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 #include <unordered_map>
 
@@ -74,10 +73,8 @@ double EolGuard::strain_gain(const SurgeryEvent& event) const
 
 bool EolGuard::can_give_way(const SurgeryEvent& event) const
 {
-    const double before =
-        find_relaxed_energy(scene_, make_patch(event, false), std::numeric_limits<double>::infinity());
-    const double wanted = before + allowance(event);
-    return find_relaxed_energy(scene_, make_patch(event, true), wanted) <= wanted;
+    const double before = find_elastic_energy(scene_, make_patch(event, false).mesh);
+    return can_relax_to(scene_, make_patch(event, true), before + allowance(event));
 }
 
 LoosePatch EolGuard::make_patch(const SurgeryEvent& event, bool is_after) const

@@ -6,7 +6,6 @@
 
 #include "geometry/sub_mesh.h"
 #include "physics/deformation_gradient.h"
-#include "physics/energies.h"
 #include "physics/velocity_fit.h"
 #include "solver/held_vertices.h"
 #include "solver/patch_relaxation.h"
@@ -62,23 +61,13 @@ class PatchFitter {
         return field;
     }
 
-    /// Elastic energy of those faces of a mesh; hinges between them only.
-    double elastic_energy(const ClothMesh& whole, const std::vector<int>& faces) const
-    {
-        const SubMesh part = extract_faces(whole, faces);
-        const MeshTopology topology = make_topology(part.mesh.vertex_count(), part.mesh.faces);
-        const Terms terms = make_terms(scene_.material, {}, {}, {});
-        const Energies energies =
-            compute_energies(make_elements(part.mesh, topology), terms, part.mesh.world);
-        return energies.stretch + energies.bending;
-    }
-
     /// A mesh that strains the cloth more than the one before gives way.
     /// Returns by how much its elastic energy is above what it was, J.
     double relax_patch(const ChangedPatch& patch)
     {
-        const double before = elastic_energy(before_.mesh, patch.faces_before);
-        const double strained = elastic_energy(after_.mesh, patch.faces);
+        const double before =
+            find_elastic_energy(scene_, extract_faces(before_.mesh, patch.faces_before).mesh);
+        const double strained = find_elastic_energy(scene_, extract_faces(after_.mesh, patch.faces).mesh);
         constexpr double kRounding = 1e-9;  // of sums over the patch: a split leaves the energy as it is
         if (strained <= (1.0 + kRounding) * before) return 0.0;
 

@@ -3,66 +3,61 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <memory>
+#include <utility>
 
 #include "geometry/mesh_topology.h"
 #include "geometry/sub_mesh.h"
 #include "geometry/sweep_check.h"
-#include "physics/bending.h"
 #include "physics/energies.h"
-#include "physics/inertia.h"
 #include "physics/linear_system.h"
-#include "physics/membrane.h"
+#include "physics/term.h"
 
 namespace arris {
 
 namespace {
 
+/// What the shape costs, and mass.
+Terms make_elastic_terms(const Material& material)
+{
+    return make_terms(material, {}, {}, {});
+}
+
+double elastic_energy(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& world)
+{
+    const Energies energies = compute_energies(elements, terms, world);
+    return energies.stretch + energies.bending;
+}
+
 /// The patch as a small cloth of its own, at rest.
 class Relaxation {
   public:
-    Relaxation(const Scene& scene, LoosePatch patch) : scene_(scene), patch_(std::move(patch))
+    Relaxation(const Scene& scene, LoosePatch patch)
+        : scene_(scene), patch_(std::move(patch)), terms_(make_elastic_terms(scene.material))
     {
-        const MeshTopology topology = make_topology(patch_.mesh.vertex_count(), patch_.mesh.faces);
-        edges_ = topology.edges;
+        MeshTopology topology = make_topology(patch_.mesh.vertex_count(), patch_.mesh.faces);
         elements_ = make_elements(patch_.mesh, topology);
-        const Material& material = scene.material;
-        terms_.faces.push_back(std::make_unique<Inertia>(material.density));
-        terms_.faces.push_back(std::make_unique<Membrane>(material.youngs_modulus, material.poisson_ratio));
-        if (material.bending_stiffness > 0.0)
-            terms_.hinges.push_back(std::make_unique<Bending>(material.bending_stiffness));
-        system_.make_pattern(elements_);
+        edges_ = std::move(topology.edges);
+        energy_ = energy_at(patch_.mesh.world);
     }
 
-    /// Lowers the energy to `wanted`, or as far as a few steps bring it.
+    /// Lowers the energy to `wanted` or below, or as far as a few steps bring it.
     void run(double wanted)
     {
         constexpr int kMostSteps = 8;
-        for (int k = 0; k < kMostSteps && energy() > wanted && descend(wanted); ++k) continue;
+        for (int k = 0; k < kMostSteps && energy_ > wanted && descend(); ++k) continue;
     }
 
-    double energy() const { return energy_at(patch_.mesh.world); }
-    const std::vector<Vec3>& world() const { return patch_.mesh.world; }
-
-    /// One step of Newton's method that lowers the energy, but not below `wanted`: what strain the cloth had
-    /// before is its own. False where there is none.
-    bool descend(double wanted)
+    /// Back on the last step's way to where the energy has just fallen to `wanted`: what strain the cloth had
+    /// before is its own.
+    void rise_to(double wanted)
     {
-        constexpr int kMostHalvings = 8;
-        constexpr double kWorthwhile = 1e-3;  // of the energy
-        const std::vector<Vec3> way = find_way();
-        const double now = energy();
-        double share = 1.0;
-        for (int k = 0; k < kMostHalvings; ++k, share *= 0.5) {
-            std::vector<Vec3> next = patch_.mesh.world;
-            for (std::size_t v = 0; v < next.size(); ++v) next[v] += share * way[v];
-            const double reached = energy_at(next);
-            if (!(reached < (1.0 - kWorthwhile) * now)) continue;
-            patch_.mesh.world = reached < wanted ? stop_at(wanted, next) : next;
-            return true;
-        }
-        return false;
+        if (!(energy_ < wanted) || before_last_.empty()) return;
+        patch_.mesh.world = stop_at(wanted, patch_.mesh.world);
+        energy_ = energy_at(patch_.mesh.world);
     }
+
+    double energy() const { return energy_; }
+    const std::vector<Vec3>& world() const { return patch_.mesh.world; }
 
     bool is_way_free(const std::vector<Vec3>& begin, double time) const
     {
@@ -78,14 +73,34 @@ class Relaxation {
     {
         for (std::size_t v = 0; v < begin.size(); ++v)
             patch_.mesh.world[v] = 0.5 * (patch_.mesh.world[v] + begin[v]);
+        energy_ = energy_at(patch_.mesh.world);
     }
 
   private:
+    /// One step of Newton's method that lowers the energy; false where there is none.
+    bool descend()
+    {
+        constexpr int kMostHalvings = 8;
+        constexpr double kWorthwhile = 1e-3;  // of the energy
+        const std::vector<Vec3> way = find_way();
+        double share = 1.0;
+        for (int k = 0; k < kMostHalvings; ++k, share *= 0.5) {
+            std::vector<Vec3> next = patch_.mesh.world;
+            for (std::size_t v = 0; v < next.size(); ++v) next[v] += share * way[v];
+            const double reached = energy_at(next);
+            if (!(reached < (1.0 - kWorthwhile) * energy_)) continue;
+            before_last_ = std::exchange(patch_.mesh.world, std::move(next));
+            energy_ = reached;
+            return true;
+        }
+        return false;
+    }
+
     /// Where on the way to `beyond` the energy has just fallen to `wanted`.
     std::vector<Vec3> stop_at(double wanted, std::vector<Vec3> beyond) const
     {
         constexpr int kBisections = 12;
-        std::vector<Vec3> before = patch_.mesh.world, middle = patch_.mesh.world;
+        std::vector<Vec3> before = before_last_, middle = before_last_;
         for (int k = 0; k < kBisections; ++k) {
             for (std::size_t v = 0; v < middle.size(); ++v) middle[v] = 0.5 * (before[v] + beyond[v]);
             (energy_at(middle) > wanted ? before : beyond) = middle;
@@ -95,14 +110,15 @@ class Relaxation {
 
     double energy_at(const std::vector<Vec3>& world) const
     {
-        const Energies energies = compute_energies(elements_, terms_, world);
-        return energies.stretch + energies.bending;
+        return elastic_energy(elements_, terms_, world);
     }
 
     /// (M + H) way = f, with a step of one second: M only keeps what has no stiffness where it is.
     std::vector<Vec3> find_way()
     {
         const std::size_t n = patch_.mesh.world.size();
+        const bool is_first = system_.matrix().rows() == 0;  // many a patch never moves
+        if (is_first) system_.make_pattern(elements_);
         Linearization at;
         at.gamma = 1.0;
         at.position = patch_.mesh.world;
@@ -126,10 +142,11 @@ class Relaxation {
                 for (int j = 0; j < 3; ++j)
                     matrix.coeffRef(first + i, first + j) += stiff * normal[i] * normal[j];
         }
-        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor(matrix);
+        if (is_first) factor_.analyzePattern(matrix);
+        factor_.factorize(matrix);
         std::vector<Vec3> way(n, Vec3::Zero());
-        if (factor.info() != Eigen::Success) return way;
-        const Eigen::VectorXd solution = factor.solve(rhs);
+        if (factor_.info() != Eigen::Success) return way;
+        const Eigen::VectorXd solution = factor_.solve(rhs);
         if (!solution.allFinite()) return way;
         for (std::size_t v = 0; v < n; ++v)
             if (patch_.is_free[v]) way[v] = solution.segment<3>(static_cast<Eigen::Index>(3 * v));
@@ -141,7 +158,10 @@ class Relaxation {
     std::vector<MeshEdge> edges_;
     ClothElements elements_;
     Terms terms_;
+    double energy_ = 0.0;            ///< J, where it is
+    std::vector<Vec3> before_last_;  ///< where it was before the last step
     LinearSystem system_;
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;  ///< of one pattern
 };
 
 }  // namespace
@@ -159,6 +179,7 @@ double relax(const Scene& scene, const RelaxedPatch& patch, State& state)
     const std::vector<Vec3> begin = relaxation.world();
     const double before = relaxation.energy();
     relaxation.run(patch.wanted);
+    relaxation.rise_to(patch.wanted);
     for (int k = 0; !relaxation.is_way_free(begin, state.time); ++k) {
         if (k == kMostHalvings) return before;
         relaxation.go_back_half(begin);
@@ -171,11 +192,17 @@ double relax(const Scene& scene, const RelaxedPatch& patch, State& state)
     return relaxation.energy();
 }
 
-double find_relaxed_energy(const Scene& scene, const LoosePatch& patch, double wanted)
+bool can_relax_to(const Scene& scene, const LoosePatch& patch, double wanted)
 {
     Relaxation relaxation(scene, patch);
     relaxation.run(wanted);
-    return relaxation.energy();
+    return relaxation.energy() <= wanted;
+}
+
+double find_elastic_energy(const Scene& scene, const ClothMesh& mesh)
+{
+    const MeshTopology topology = make_topology(mesh.vertex_count(), mesh.faces);
+    return elastic_energy(make_elements(mesh, topology), make_elastic_terms(scene.material), mesh.world);
 }
 
 }  // namespace arris

@@ -30,8 +30,10 @@ struct LoosePatch {
     std::vector<Vec3> normals;  ///< as above
 };
 
-/// The elastic energy, J, to which a patch would relax, or anything below `wanted`; obstacles are not looked
-/// at.
-double find_relaxed_energy(const Scene& scene, const LoosePatch& patch, double wanted);
+/// Whether a patch would relax to an elastic energy of `wanted` (J); obstacles are not looked at.
+bool can_relax_to(const Scene& scene, const LoosePatch& patch, double wanted);
+
+/// Stretch and bending energy, J, of the scene's cloth in this shape.
+double find_elastic_energy(const Scene& scene, const ClothMesh& mesh);
 
 }  // namespace arris
