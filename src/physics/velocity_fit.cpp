@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -169,15 +170,16 @@ NewFace make_face(double density, const FitPatch& patch, const Face& face)
     return made;
 }
 
-/// The normal equations, with three multipliers of momentum behind the unknowns.
+/// The normal equations M u + C^T lambda = r, C u = p: M is the mass of the free coordinates, C u their
+/// momentum. M is sparse and positive definite; three solves more eliminate the multipliers.
 class NormalEquations {
   public:
     NormalEquations(const FitPatch& patch) : patch_(patch), slot_(patch.material.size(), -1)
     {
         for (std::size_t v = 0; v < slot_.size(); ++v)
             if (patch.is_free[v]) slot_[v] = 3 * free_count_++;
-        matrix_.setZero(size(), size());
-        rhs_.setZero(size());
+        carried_.setZero(3, 3 * free_count_);
+        rhs_.setZero(3 * free_count_);
     }
 
     bool is_empty() const { return free_count_ == 0; }
@@ -194,40 +196,65 @@ class NormalEquations {
         for (int i = 0; i < 3; ++i) {
             Vec3 missing = old[i];
             for (int j = 0; j < 3; ++j) missing -= weight(face, i, j) * known[j];
-            rhs_.tail<3>() += missing;
+            momentum_ += missing;
             const int row = slot_[vertices[i]];
             if (row < 0) continue;
             rhs_.segment<3>(row) += G[i].transpose() * missing;
-            const Mat3 carried = face.mass / 3.0 * G[i];
-            matrix_.block<3, 3>(size() - 3, row) += carried;
-            matrix_.block<3, 3>(row, size() - 3) += carried.transpose();
+            carried_.middleCols<3>(row) += face.mass / 3.0 * G[i];
             for (int j = 0; j < 3; ++j)
-                if (const int column = slot_[vertices[j]]; column >= 0)
-                    matrix_.block<3, 3>(row, column) += weight(face, i, j) * G[i].transpose() * G[j];
+                if (const int column = slot_[vertices[j]]; column >= 0 && column <= row)
+                    add_block(row, column, weight(face, i, j) * G[i].transpose() * G[j]);
         }
     }
 
     /// u of each vertex, zero where it is not free.
     std::optional<std::vector<Vec3>> solve() const
     {
-        const Eigen::VectorXd x = matrix_.partialPivLu().solve(rhs_);
+        Eigen::SparseMatrix<double> mass(rhs_.size(), rhs_.size());
+        mass.setFromTriplets(lower_.begin(), lower_.end());
+        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor(mass);
+        if (factor.info() != Eigen::Success) return std::nullopt;
+        const Eigen::Matrix<double, Eigen::Dynamic, 3> of_unit = factor.solve(carried_.transpose());
+        const Eigen::PartialPivLU<Mat3> schur(carried_ * of_unit);
+
+        // The second round takes what rounding left.
+        Eigen::VectorXd u = Eigen::VectorXd::Zero(rhs_.size()), left = rhs_;
+        Vec3 multiplier = Vec3::Zero(), missing = momentum_;
+        for (int round = 0; round < 2; ++round) {
+            const Eigen::VectorXd free = factor.solve(left);
+            const Vec3 change = schur.solve(carried_ * free - missing);
+            u += free - of_unit * change;
+            multiplier += change;
+            left = rhs_ - mass.selfadjointView<Eigen::Lower>() * u - carried_.transpose() * multiplier;
+            missing = momentum_ - carried_ * u;
+        }
         constexpr double kSolved = 1e-9;
-        if (!x.allFinite() || (matrix_ * x - rhs_).norm() > kSolved * rhs_.norm()) return std::nullopt;
-        std::vector<Vec3> u(slot_.size(), Vec3::Zero());
+        if (!u.allFinite() ||
+            !(std::hypot(left.norm(), missing.norm()) <= kSolved * std::hypot(rhs_.norm(), momentum_.norm())))
+            return std::nullopt;
+        std::vector<Vec3> all(slot_.size(), Vec3::Zero());
         for (std::size_t v = 0; v < slot_.size(); ++v)
-            if (slot_[v] >= 0) u[v] = x.segment<3>(slot_[v]);
-        return u;
+            if (slot_[v] >= 0) all[v] = u.segment<3>(slot_[v]);
+        return all;
     }
 
   private:
-    int size() const { return 3 * free_count_ + 3; }
     static double weight(const NewFace& face, int i, int j) { return face.mass / (i == j ? 6.0 : 12.0); }
+
+    void add_block(int row, int column, const Mat3& block)
+    {
+        for (int c = 0; c < 3; ++c)
+            for (int r = 0; r < 3; ++r)
+                if (row + r >= column + c) lower_.emplace_back(row + r, column + c, block(r, c));
+    }
 
     const FitPatch& patch_;
     std::vector<int> slot_;
     int free_count_ = 0;
-    Eigen::MatrixXd matrix_;
-    Eigen::VectorXd rhs_;
+    std::vector<Eigen::Triplet<double>> lower_;         ///< of M
+    Eigen::Matrix<double, 3, Eigen::Dynamic> carried_;  ///< C
+    Eigen::VectorXd rhs_;                               ///< r
+    Vec3 momentum_ = Vec3::Zero();                      ///< p
 };
 
 double energy_before(double density, const VelocityField& old)

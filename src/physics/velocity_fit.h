@@ -43,7 +43,7 @@ struct VelocityFit {
 /// Minimises the integral of density / 2 |new - old|^2 over the patch under equality of linear momentum.
 /// `density` is areal, kg/m^2. Nothing where no vertex is free or the system is singular (a patch folded so
 /// that a vertex's coordinates move no material). Exact integrals over the overlay of both meshes; cost is
-/// the product of face counts plus a sparse factorisation.
+/// near linear in face count plus a sparse factorisation.
 std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old, const FitPatch& patch);
 
 }  // namespace arris
