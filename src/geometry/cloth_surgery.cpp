@@ -57,7 +57,7 @@ VertexId ClothSurgery::apex(VertexId a, VertexId b) const
 
 bool ClothSurgery::is_border(VertexId v) const
 {
-    return !implementation_->mesh.ring(v).is_closed;
+    return implementation_->mesh.is_on_border(v);
 }
 
 bool ClothSurgery::is_border_edge(VertexId a, VertexId b) const

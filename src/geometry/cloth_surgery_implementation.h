@@ -126,6 +126,7 @@ class ClothSurgery::Implementation {
 
     bool is_corner(VertexId v) const
     {
+        if (!mesh.is_on_border(v)) return false;
         const VertexRing ring = mesh.ring(v);
         return !ring.is_closed && !is_between(mesh.material(ring.vertices.front()),
                                               mesh.material(ring.vertices.back()), mesh.material(v));

@@ -7,6 +7,8 @@
 #include <cassert>
 #include <utility>
 
+#include "geometry/mesh_topology.h"
+
 namespace arris {
 
 SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids)
@@ -27,11 +29,48 @@ SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids
         world_[added] = mesh.world[v];
         vertex_of_.emplace(ids[v], added);
     }
+    connect(mesh);
+}
+
+// The half-edges of the whole mesh at once: CGAL's add_face looks for each among those there are.
+void SurgeryMesh::connect(const ClothMesh& mesh)
+{
     const auto at = [](int v) { return Vertex(static_cast<Mesh::size_type>(v)); };
-    for (const Face& f : mesh.faces) {
-        [[maybe_unused]] const auto added = mesh_.add_face(at(f[0]), at(f[1]), at(f[2]));
-        assert(added != Mesh::null_face() && "the mesh must be an oriented manifold");
+    const MeshTopology topology = make_topology(mesh.vertex_count(), mesh.faces);
+    std::vector<std::array<Halfedge, 3>> sides(mesh.faces.size());  // that leaves each corner of a face
+    const auto take_side = [&](int f, int a, Halfedge from_a) {
+        const Face& face = mesh.faces[f];
+        const auto k = std::find(face.begin(), face.end(), a) - face.begin();
+        const bool is_forward = mesh_.target(from_a) == at(face[(k + 1) % 3]);
+        if (is_forward)
+            sides[f][k] = from_a;
+        else
+            sides[f][(k + 2) % 3] = mesh_.opposite(from_a);
+    };
+    for (const MeshEdge& edge : topology.edges) {
+        const Halfedge from_a = mesh_.add_edge(at(edge.a), at(edge.b));
+        take_side(edge.face_left, edge.a, from_a);
+        if (edge.face_right >= 0) take_side(edge.face_right, edge.a, from_a);
     }
+    for (const std::array<Halfedge, 3>& around : sides) {
+        const auto face = mesh_.add_face();
+        mesh_.set_halfedge(face, around[0]);
+        for (int k = 0; k < 3; ++k) {
+            mesh_.set_face(around[k], face);
+            mesh_.set_next(around[k], around[(k + 1) % 3]);
+            mesh_.set_halfedge(mesh_.target(around[k]), around[k]);
+        }
+    }
+    // On the border each goes on to the one that leaves its end, and is the one that its end knows.
+    std::vector<Halfedge> leaving(static_cast<std::size_t>(mesh.vertex_count()));
+    for (const Halfedge h : mesh_.halfedges())
+        if (mesh_.is_border(h)) leaving[mesh_.source(h)] = h;
+    for (const Halfedge h : mesh_.halfedges()) {
+        if (!mesh_.is_border(h)) continue;
+        mesh_.set_next(h, leaving[mesh_.target(h)]);
+        mesh_.set_halfedge(mesh_.target(h), h);
+    }
+    assert(mesh_.is_valid(false) && "the mesh must be an oriented manifold");
 }
 
 SurgeryMesh::Halfedge SurgeryMesh::halfedge(VertexId a, VertexId b) const

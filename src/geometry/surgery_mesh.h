@@ -31,6 +31,7 @@ class SurgeryMesh {
     VertexId apex(Halfedge h) const { return id_[mesh_.target(mesh_.next(h))]; }
     bool is_border_edge(Halfedge h) const { return mesh_.is_border(mesh_.edge(h)); }
     VertexRing ring(VertexId v) const;
+    bool is_on_border(VertexId v) const { return mesh_.is_border(vertex(v)); }
 
     Vec2 material(VertexId v) const { return to_eigen(mesh_.point(vertex(v))); }
     Vec3& world(VertexId v) { return world_[vertex(v)]; }
@@ -57,6 +58,7 @@ class SurgeryMesh {
     std::vector<IdFace> faces() const;  ///< each from its least id, ascending
 
   private:
+    void connect(const ClothMesh& mesh);
     void name_new_vertex(Vertex v, const VertexChange& made);
 
     Mesh mesh_;

@@ -82,7 +82,7 @@ class Conforming {
     std::optional<ConformedMesh> run(const std::vector<EolVertex>& given_up)
     {
         find_releases();
-        sites_ = find_feature_sites(scene_, state_, edges_);
+        sites_ = find_feature_sites(scene_, state_, stars_);
         if (released_.empty() && sites_.empty() && given_up.empty() && !is_flowing()) return std::nullopt;
         surgery_.emplace(state_.mesh, state_.ids, state_.next_id, pinned());
         guard_.watch(*surgery_);

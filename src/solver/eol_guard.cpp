@@ -25,10 +25,6 @@ EolGuard::EolGuard(const Scene& scene, const State& state, bool is_strict)
       membrane_(scene.material.youngs_modulus, scene.material.poisson_ratio),
       is_strict_(is_strict)
 {
-    for (const ActiveContact& contact : state.active)
-        if (contact.kind == ContactKind::Vertex)
-            normals_[contact.vertex_ids[0]] =
-                scene.obstacles[contact.obstacle].at(state.time).rotation * contact.normal;
 }
 
 bool EolGuard::allows(const SurgeryEvent& event) const
@@ -105,8 +101,7 @@ LoosePatch EolGuard::make_patch(const SurgeryEvent& event, bool is_after) const
             patch.mesh.material.push_back(face.material[i]);
             patch.mesh.world.push_back(face.world[i]);
             patch.is_free.push_back(is_loose(face.vertices[i], near, event));
-            const auto normal = normals_.find(face.vertices[i]);
-            patch.normals.push_back(normal == normals_.end() ? Vec3(Vec3::Zero()) : normal->second);
+            patch.normals.push_back(find_kept_normal(scene_, state_, face.vertices[i]));
         }
         patch.mesh.faces.push_back(made);
     };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <map>
 #include <set>
 
 #include "geometry/cloth_surgery.h"
@@ -42,7 +41,6 @@ class EolGuard {
     bool is_strict_;
     bool is_clearing_ = false;
     const ClothSurgery* surgery_ = nullptr;
-    std::map<VertexId, Vec3> normals_;  ///< world, of contacts that pressed
 };
 
 }  // namespace arris

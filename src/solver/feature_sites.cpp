@@ -37,24 +37,15 @@ int corner_at(const Obstacle& obstacle, int point)
 /// Finds the places of one obstacle on which its features pressed in the last step.
 class SiteFinder {
   public:
-    SiteFinder(const Scene& scene, const State& state, const std::vector<MeshEdge>& edges, std::int32_t o)
+    SiteFinder(const Scene& scene, const State& state, const ClothStars& stars, std::int32_t o)
         : state_(state),
           obstacle_(scene.obstacles[o]),
           o_(o),
           thickness_(scene.material.thickness),
           positions_(to_frame(obstacle_.at(state.time), state.mesh.world)),
           feature_(feature_of_edges(obstacle_)),
-          faces_(faces_at_vertices(static_cast<int>(positions_.size()), state.mesh.faces)),
-          neighbours_(positions_.size()),
-          is_border_(positions_.size(), 0)
+          stars_(stars)
     {
-        for (const MeshEdge& edge : edges) {
-            neighbours_[edge.a].push_back(edge.b);
-            neighbours_[edge.b].push_back(edge.a);
-            if (edge.face_right >= 0) continue;
-            border_edges_.insert({edge.a, edge.b});
-            is_border_[edge.a] = is_border_[edge.b] = 1;
-        }
     }
 
     std::optional<FeatureSite> find(const ActiveContact& contact) const
@@ -123,8 +114,9 @@ class SiteFinder {
             const int v = state_.index_of(eol.vertex_id);
             if (!is_eol_on(v, feature)) continue;
             trace[{v, v}] = {std::nullopt, true, {}};
-            const auto joined = std::count_if(neighbours_[v].begin(), neighbours_[v].end(),
-                                              [&](int w) { return is_eol_on(w, feature); });
+            const std::vector<int> beside = neighbours(v);
+            const auto joined =
+                std::count_if(beside.begin(), beside.end(), [&](int w) { return is_eol_on(w, feature); });
             if (joined < 2) open.push_back({v, v});
         }
         return open;
@@ -134,7 +126,7 @@ class SiteFinder {
     std::map<Crossing, std::optional<FeatureSite>> crossings_beside(const Crossing& at, int feature) const
     {
         std::map<Crossing, std::optional<FeatureSite>> found;
-        for (const int f : faces_[at[0]]) {
+        for (const int f : stars_.faces[at[0]]) {
             const Face& face = state_.mesh.faces[f];
             if (std::find(face.begin(), face.end(), at[1]) == face.end()) continue;
             for (int k = 0; k < 3; ++k) {
@@ -201,8 +193,8 @@ class SiteFinder {
         const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
         FeatureSite site = make_site(false, feature, X, *s < 0.5 ? a : b, normal);
         site.edge = {*s < 1.0 ? a : b, *s > 0.0 ? b : a};
-        const bool is_vertex = site.edge[0] == site.edge[1];
-        site.is_on_border = is_vertex ? is_border_[site.edge[0]] : border_edges_.contains({a, b});
+        const auto [before, after] = stars_.border_neighbours[site.edge[0]];
+        site.is_on_border = site.edge[0] == site.edge[1] ? before >= 0 : before == b || after == b;
         return site;
     }
 
@@ -261,9 +253,21 @@ class SiteFinder {
         }
         obstacle_.find_feature_edges(box, found);
         for (const int f : found)
-            for (const int w : neighbours_[v])
+            for (const int w : neighbours(v))
                 if (const std::optional<FeatureSite> site = cross(v, w, f, normal)) return site;
         return std::nullopt;
+    }
+
+    /// Ascending.
+    std::vector<int> neighbours(int v) const
+    {
+        std::vector<int> found;
+        for (const int f : stars_.faces[v])
+            for (const int w : state_.mesh.faces[f])
+                if (w != v) found.push_back(w);
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        return found;
     }
 
     const State& state_;
@@ -272,10 +276,7 @@ class SiteFinder {
     double thickness_;
     std::vector<Vec3> positions_;
     std::vector<int> feature_;
-    std::vector<std::vector<int>> faces_;       ///< at each vertex
-    std::vector<std::vector<int>> neighbours_;  ///< of each vertex
-    std::vector<char> is_border_;               ///< of the cloth
-    std::set<std::pair<int, int>> border_edges_;
+    const ClothStars& stars_;
 };
 
 }  // namespace
@@ -286,13 +287,12 @@ std::array<Vec3, 2> feature_segment(const Obstacle& obstacle, int feature)
     return {obstacle.mesh().points[ends[0]], obstacle.mesh().points[ends[1]]};
 }
 
-std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& state,
-                                            const std::vector<MeshEdge>& edges)
+std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& state, const ClothStars& stars)
 {
     std::map<std::int32_t, SiteFinder> finders;
     std::vector<FeatureSite> sites;
     const auto finder_of = [&](std::int32_t o) -> const SiteFinder& {
-        return finders.try_emplace(o, scene, state, edges, o).first->second;
+        return finders.try_emplace(o, scene, state, stars, o).first->second;
     };
     std::map<std::array<int, 2>, std::vector<FeatureSite>> by_feature;  // of obstacle and edge
     for (const ActiveContact& contact : state.active) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/cloth_surgery.h"
-#include "geometry/mesh_topology.h"
+#include "solver/eol_coordinates.h"
 #include "solver/scene.h"
 #include "solver/state.h"
 
@@ -30,8 +30,7 @@ struct FeatureSite {
 /// feature in the order of the material. On a convex edge it is where the cloth passes through the plane in
 /// which an EOL vertex may move, so that nothing has to be put there; and the places between, as a trace with
 /// a hole holds the cloth there.
-std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& state,
-                                            const std::vector<MeshEdge>& edges);
+std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& state, const ClothStars& stars);
 
 /// Ends of feature edge `feature` (index in features().edges).
 std::array<Vec3, 2> feature_segment(const Obstacle& obstacle, int feature);

@@ -77,12 +77,9 @@ class PatchFitter {
         for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
             const int v = patch.vertices[i];
             relaxed.is_free[v] = after_.eol_entry(after_.ids[v]) < 0 && patch.is_inside[i];
+            relaxed.normals[v] = find_kept_normal(scene_, after_, after_.ids[v]);
         }
         for (const HeldVertex& held : held_) relaxed.is_free[held.vertex] = 0;
-        for (const ActiveContact& contact : after_.active)
-            if (contact.kind == ContactKind::Vertex)
-                relaxed.normals[after_.index_of(contact.vertex_ids[0])] =
-                    scene_.obstacles[contact.obstacle].at(after_.time).rotation * contact.normal;
         return relax(scene_, relaxed, after_) - before;
     }
 

@@ -166,6 +166,18 @@ class Relaxation {
 
 }  // namespace
 
+Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vertex_id)
+{
+    Vec3 normal = Vec3::Zero();
+    auto contact = std::lower_bound(
+        state.active.begin(), state.active.end(), vertex_id,
+        [](const ActiveContact& active, std::uint32_t id) { return active.vertex_ids[0] < id; });
+    for (; contact != state.active.end() && contact->vertex_ids[0] == vertex_id; ++contact)
+        if (contact->kind == ContactKind::Vertex)
+            normal = scene.obstacles[contact->obstacle].at(state.time).rotation * contact->normal;
+    return normal;
+}
+
 double relax(const Scene& scene, const RelaxedPatch& patch, State& state)
 {
     constexpr int kMostHalvings = 4;

@@ -17,6 +17,9 @@ struct RelaxedPatch {
     double wanted = 0.0;  ///< J: elastic energy at which it is relaxed enough
 };
 
+/// Of a vertex that pressed at the end of the last step its contact's normal, world; else zero.
+Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vertex_id);
+
 /// Moves free vertices, in the world, until the patch's stretch and bending energy has fallen to `wanted` or
 /// falls no more, as in the pop filter of Narain, Pfaff and O'Brien 2013: a change of mesh that strains the
 /// cloth would be seen as a push. The way is kept free of obstacles: where it is not it is halved, at most a

@@ -56,7 +56,7 @@ struct RidgeCloth {
 
     std::vector<FeatureSite> sites() const
     {
-        return find_feature_sites(cloth.scene, cloth.state, edges_of(cloth.state));
+        return find_feature_sites(cloth.scene, cloth.state, cloth.stars());
     }
 
     /// Whether there is a site on the k-th edge, one.
