@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // When a vertex ceases to be EOL. While material flows over a fold it has two velocities there, one a side;
-// an ordinary vertex has their mean, and the cloth loses energy. So an EOL vertex that no longer presses is
-// not let go for that alone: cloth that lifts off an edge keeps its fold, through which it flows, until the
-// fold has opened or is far from the edge.
+// an ordinary vertex has their mean, and the cloth loses energy. And where a fold has been let go, the cloth
+// bends beside the feature, so that to put a vertex there again strains it. So an EOL vertex that no longer
+// presses is not let go for that alone: cloth that lifts off an edge keeps its fold, through which it flows,
+// until it is flat there or far from the edge.
 #pragma once
 
 #include "geometry/patch_quality.h"
@@ -22,9 +23,8 @@ enum class EolHold {
     Firm
 };
 
-/// Of EOL vertex `entry`, at `place` in its obstacle's frame. None more than a cell from its feature; firm
-/// where it presses, or where letting it go would cost more than a thousandth of the kinetic energy of the
-/// faces around it (relative to the obstacle).
+/// Of EOL vertex `entry`, at `place` in its obstacle's frame. Firm where it presses; none more than a cell
+/// from its feature; firm where the cloth is folded, by more than 6 degrees.
 EolHold find_hold(const Scene& scene, const State& state, const ClothStars& stars, int entry,
                   const EolCoordinates& at, const Vec3& place);
 

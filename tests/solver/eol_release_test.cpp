@@ -51,19 +51,22 @@ struct FlowingCloth {
     bool can_be_let_go() const { return hold() != EolHold::Firm; }
 };
 
-TEST(EolRelease, OfAFoldThroughWhichMaterialFlowsWaits)
+TEST(EolRelease, OfAFoldWaitsWhetherMaterialFlowsOrNot)
 {
-    for (const double fold : {60.0, 90.0, 120.0, 165.0})
-        EXPECT_FALSE(FlowingCloth(fold).can_be_let_go()) << fold;
-    for (const double fold : {176.0, 180.0}) EXPECT_TRUE(FlowingCloth(fold).can_be_let_go()) << fold;
+    for (const double speed : {kSpeed, 0.0}) {
+        for (const double fold : {60.0, 90.0, 120.0, 165.0, 173.0})
+            EXPECT_FALSE(FlowingCloth(fold, speed).can_be_let_go()) << fold;
+        for (const double fold : {175.0, 180.0})
+            EXPECT_TRUE(FlowingCloth(fold, speed).can_be_let_go()) << fold;
+    }
 }
 
-TEST(EolRelease, OfAFoldAtRestDoesNot)
+TEST(EolRelease, OfFlatClothWaitsForThreeStepsWithoutPressing)
 {
-    FlowingCloth still(90.0, 0.0);
-    EXPECT_TRUE(still.can_be_let_go());
-    still.set_idle(kIdleSteps - 1);
-    EXPECT_FALSE(still.can_be_let_go()) << "it may press again at once";
+    FlowingCloth flat(180.0);
+    EXPECT_TRUE(flat.can_be_let_go());
+    flat.set_idle(kIdleSteps - 1);
+    EXPECT_FALSE(flat.can_be_let_go()) << "it may press again at once";
 }
 
 TEST(EolRelease, WhileItPressesNeverIs)
@@ -82,21 +85,6 @@ TEST(EolRelease, ComesAtTheLatestACellFromTheFeature)
         for (Vec3& x : lifted.cloth.state.mesh.world) x.z() += gap;
         EXPECT_EQ(lifted.can_be_let_go(), is_far);
     }
-}
-
-TEST(EolRelease, CostsTheEnergyThatTheFaceVelocitiesDifferBy)
-{
-    // One vertex of two velocities, w and w', half of the area each: rho A |w - w'|^2 / 48 is lost.
-    // The share of 1/1000 is crossed where the sum of the rest is known: found by halving the angle.
-    double still_waits = 150.0, goes = 180.0;
-    for (int k = 0; k < 40; ++k) {
-        const double middle = 0.5 * (still_waits + goes);
-        (FlowingCloth(middle).can_be_let_go() ? goes : still_waits) = middle;
-    }
-    // All faces move at the same speed s: T = rho A s^2 / 2, |w - w'| = 2 s sin(turn / 2).
-    const double turn = (180.0 - goes) * 3.14159265358979323846 / 180.0;
-    const double share = 4.0 * std::pow(std::sin(0.5 * turn), 2) / 48.0 / 0.5;
-    EXPECT_NEAR(share, 1e-3, 1e-8);
 }
 
 /// What becomes of the holds of a row of EOL vertices along the ridge, F, L or N each, in the material's
@@ -133,26 +121,11 @@ TEST(EolRelease, LeavesNoHolesInATrace)
 
 TEST(EolRelease, HoldsNothingBetweenThatIsOffTheFeature)
 {
-    FlowingCloth still(90.0, 0.0);
+    FlowingCloth still(180.0, 0.0);
     EXPECT_EQ(still.hold(), EolHold::Loose);
     const double thickness = still.cloth.scene.material.thickness;
     for (Vec3& x : still.cloth.state.mesh.world) x.z() += 3.0 * thickness;
     EXPECT_EQ(still.hold(), EolHold::None);
-}
-
-TEST(EolRelease, IsTheSameOnAMovingObstacle)
-{
-    for (const double fold : {90.0, 179.0}) {
-        FlowingCloth carried(fold);
-        const bool expected = carried.can_be_let_go();
-        const Vec3 drift(30.0, -20.0, 10.0);
-        RigidMotion motion;
-        motion.velocity = drift;
-        const Obstacle& ridge = carried.cloth.scene.obstacles[0];
-        carried.cloth.scene.obstacles[0] = Obstacle("ridge", ridge.mesh(), {}, motion, 30.0);
-        for (Vec3& v : carried.cloth.state.velocity) v += drift;
-        EXPECT_EQ(carried.can_be_let_go(), expected) << fold;
-    }
 }
 
 }  // namespace
