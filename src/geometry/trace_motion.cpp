@@ -25,6 +25,7 @@ namespace {
 
 constexpr double kClear = 0.3;       // of the target length
 constexpr double kSoundAngle = 3.0;  // degrees: preferred are ways that leave no thinner face
+constexpr double kLeastAngle = 0.1;  // degrees: where rounding decides which side up a face is
 constexpr int kInstants = 4;         // of the way, at which faces are looked at: corners go straight
 constexpr int kMostSubsteps = 100000;
 constexpr int kMostStages = 100;
@@ -125,6 +126,8 @@ class Clearing {
     void consider(SurgeryProposal proposal, std::vector<Candidate>& candidates) const
     {
         if (!proposal.is_legal()) return;
+        if (least_angle(proposal.event.after) < std::min(kLeastAngle, least_angle(proposal.event.before)))
+            return;
         const bool is_merge = proposal.event.operation == SurgeryOperation::Collapse;
         Candidate candidate = judge(std::move(proposal));
         if (candidate.change < 0 || (is_merge && !candidate.is_of_trace))

@@ -215,6 +215,29 @@ TEST(ClearAhead, ACornerThatSlidesAlongItsEdgeTakesInTheVerticesOfTheEdge)
     EXPECT_TRUE(stopped.has_vertex(corner) && stopped.has_vertex(end));
 }
 
+TEST(ClearAhead, LeavesNoFaceOfWhichRoundingDecidesWhichSideIsUp)
+{
+    // Of three vertices in a line, but for rounding, no face is made, though one way up it would be legal.
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    double least = 180.0;
+    for (unsigned seed = 0; seed < 200; ++seed) {
+        const SurgeryCloth cloth = square_cloth(8, 0.2, seed);
+        ClothSurgery surgery = cloth.surgery();
+        const MeshTarget target = target_of(cloth);
+        cut(surgery, target, {{0.25, 0.5}, {0.75, 0.5}}, 1);
+        for (const VertexId v : surgery.result().ids)
+            for (const VertexId w : surgery.ring(v).vertices)
+                if (unit(random) < 0.05) surgery.commit(surgery.propose_edge_split(v, w, 0.3));
+        std::vector<TraceAdvance> advances;
+        for (const VertexMove& move : shifted(surgery, 1, {0, 0}))
+            advances.push_back({move.vertex, {0.05 * unit(random), 0.2 * unit(random)}});
+        clear_ahead(surgery, target, advances);
+        least = std::min(least, least_material_angle(surgery.result().mesh));
+    }
+    EXPECT_GT(least, 0.09);
+}
+
 TEST(ClearAhead, NamesWhatItCannotClear)
 {
     const SurgeryCloth cloth = square_cloth(8);
