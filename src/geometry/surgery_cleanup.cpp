@@ -110,8 +110,11 @@ class Cleanup {
 
     bool commit(const SurgeryProposal& proposal)
     {
-        if (surgery_.commit(proposal) != Verdict::Done) return false;
+        const Verdict verdict = surgery_.commit(proposal);
         const SurgeryEvent& event = proposal.event;
+        if (verdict == Verdict::Guard && event.operation == SurgeryOperation::Collapse)
+            kept_apart_.insert(edge_of(event.edge[0], event.edge[1]));
+        if (verdict != Verdict::Done) return false;
         switch (event.operation) {
             case SurgeryOperation::Collapse:
                 ++report_.collapses;
@@ -271,6 +274,9 @@ class Cleanup {
         const auto opens = [&](const SurgeryEvent&, double after) { return after > angle; };
         for (const int k : by_length)
             if (merge(side(k), opens)) return true;
+        // What the guard keeps apart a split would only make more of.
+        for (int k = 0; k < 3; ++k)
+            if (kept_apart_.contains(side(k))) return false;
         return split_thin(face, by_length[2]);
     }
 
@@ -331,6 +337,7 @@ class Cleanup {
     ClothSurgery& surgery_;
     const MeshTarget& target_;
     std::set<VertexId> patch_;
+    std::set<Edge> kept_apart_;  // by the guard
     CleanupReport report_;
 };
 

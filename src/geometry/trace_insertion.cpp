@@ -55,11 +55,19 @@ bool is_of(const ClothSurgery& surgery, VertexId v, int tag)
     return surgery.role(v) != TraceRole::Free && surgery.tag(v) == tag;
 }
 
-// Too near to an end for a split: the new faces would be thin for good.
-bool is_crowded(const ClothSurgery& surgery, VertexId a, VertexId b, double s)
+// A trace at X that flows so leaves v behind: what is thin between them opens.
+bool is_behind(const ClothSurgery& surgery, VertexId v, const Vec2& X, const Vec2& flow)
 {
+    return (surgery.material(v) - X).dot(flow) < 0.0;
+}
+
+// Too near to an end for a split: the new faces would be thin for good.
+bool is_crowded(const ClothSurgery& surgery, VertexId a, VertexId b, double s, const Vec2& flow)
+{
+    const Vec2 X = surgery.material(a) + s * (surgery.material(b) - surgery.material(a));
     const auto least = [&](VertexId v) {
-        return surgery.role(v) != TraceRole::Free ? kTraceFraction : kLeastFraction;
+        return surgery.role(v) != TraceRole::Free || is_behind(surgery, v, X, flow) ? kTraceFraction
+                                                                                    : kLeastFraction;
     };
     return s < least(a) || 1.0 - s < least(b);
 }
@@ -68,7 +76,7 @@ Verdict split(ClothSurgery& surgery, VertexId a, VertexId b, double s, const Tra
               VertexId& vertex)
 {
     if (surgery.edge_tag(a, b) != kNoTag && surgery.edge_tag(a, b) != made.tag) return Verdict::Trace;
-    if (is_crowded(surgery, a, b, s)) return Verdict::Quality;
+    if (is_crowded(surgery, a, b, s, made.flow)) return Verdict::Quality;
     const SurgeryProposal proposal = surgery.propose_edge_split(a, b, s, made.role, made.tag);
     if (proposal.is_legal()) vertex = proposal.event.changes[0].vertex;
     return surgery.commit(proposal);
@@ -304,9 +312,11 @@ TraceInsertion insert_edge_crossing(ClothSurgery& surgery, const MeshTarget& tar
         if (surgery.role(v) != TraceRole::Free) continue;
         if (!is_at(surgery, target, v, X)) {
             if (surgery.is_border(v) && !surgery.is_border_edge(a, b)) continue;
-            // Where the guard keeps a vertex from the trace, a split beside it would only make a thin face.
+            // Where the guard keeps a vertex from the trace, a split beside it makes a thin face, for good if
+            // the trace does not leave it.
             const Verdict snapped = snap(surgery, v, X);
-            if (snapped == Verdict::Guard) return {snapped, kNoVertex};
+            if (snapped == Verdict::Guard && !is_behind(surgery, v, X, made.flow))
+                return {snapped, kNoVertex};
             if (snapped != Verdict::Done) continue;
         } else if (surgery.is_fixed(v)) {
             return {Verdict::Fixed, kNoVertex};
@@ -339,7 +349,7 @@ TraceInsertion insert_face_point(ClothSurgery& surgery, const MeshTarget& target
         if (is_of(surgery, v, made.tag)) return {Verdict::Done, v};
         if (surgery.is_border(v)) continue;
         const Verdict snapped = snap(surgery, v, X);
-        if (snapped == Verdict::Guard) return {snapped, kNoVertex};
+        if (snapped == Verdict::Guard && !is_behind(surgery, v, X, made.flow)) return {snapped, kNoVertex};
         if (snapped != Verdict::Done) continue;
         surgery.set_role(v, made.role, made.tag);
         return {Verdict::Done, v};

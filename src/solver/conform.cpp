@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -15,6 +16,7 @@
 #include "solver/eol_coordinates.h"
 #include "solver/eol_guard.h"
 #include "solver/eol_release.h"
+#include "solver/feature_flow.h"
 #include "solver/feature_sites.h"
 #include "solver/held_vertices.h"
 
@@ -98,6 +100,10 @@ class Conforming {
             for (const FeatureSite& site : sites_) insert(site);
         join();
         report_.operations += clean_up(*surgery_, target_).operations();
+        if (report_.inserted > 0) {  // theirs, too, must be clear
+            clear_way();
+            report_.operations += clean_up(*surgery_, target_).operations();
+        }
         if (surgery_->events().empty() && report_.released == 0 && report_.inserted == 0) return std::nullopt;
         return result();
     }
@@ -163,16 +169,16 @@ class Conforming {
         }
         surgery_->take_touched();
         eol_ = state_.eol;
+        for (const EolVertex& e : eol_)
+            flow_[e.vertex_id] = state_.material_velocity[state_.index_of(e.vertex_id)];
     }
 
     void clear_way()
     {
         std::vector<TraceAdvance> advances;
-        for (const EolVertex& e : state_.eol) {
-            if (!is_on_trace(e.vertex_id)) continue;
-            const Vec2 ahead = kClearSteps * dt_ * state_.material_velocity[state_.index_of(e.vertex_id)];
-            advances.push_back({e.vertex_id, ahead});
-        }
+        for (const EolVertex& e : eol_)
+            if (is_on_trace(e.vertex_id))
+                advances.push_back({e.vertex_id, kClearSteps * dt_ * flow_.at(e.vertex_id)});
         if (advances.empty()) return;
         guard_.set_clearing(true);
         const ClearanceReport cleared = clear_ahead(*surgery_, target_, advances);
@@ -245,9 +251,11 @@ class Conforming {
         }
         if (site.is_corner && has_vertex_on(site)) return;
         const VertexId near = surgery_->has_vertex(site.near) ? site.near : nearest_to(site.material);
+        const int v = state_.index_of(site.near);
+        const Vec2 flow = find_feature_flow(scene_, state_, stars_, v, site.obstacle);
         const TraceInsertion made =
             insert_trace_point(*surgery_, target_, site.material, near,
-                               {site.is_corner ? TraceRole::Node : TraceRole::OnTrace, tag});
+                               {site.is_corner ? TraceRole::Node : TraceRole::OnTrace, tag, flow});
         if (made.verdict != Verdict::Done) {
             ++report_.refused;
             return;
@@ -260,6 +268,7 @@ class Conforming {
             return;
         }
         eol_.insert(place_of(made.vertex), vertex);
+        flow_[made.vertex] = flow;
         ++report_.inserted;
     }
 
@@ -390,6 +399,7 @@ class Conforming {
     std::vector<FeatureSite> sites_;
     std::optional<ClothSurgery> surgery_;
     std::vector<EolVertex> eol_;
+    std::map<VertexId, Vec2> flow_;  ///< m/s, of those in `eol_`
     EolGuard guard_;
     TraceWays ways_;  ///< of the vertices that flow
     ConformReport report_;

@@ -185,11 +185,13 @@ class SiteFinder {
         return feature < 0 ? std::nullopt : cross(a, b, feature, contact.normal);
     }
 
+    bool is_eol(int v) const { return state_.eol_entry(state_.ids[v]) >= 0; }
+
     std::optional<FeatureSite> cross(int a, int b, int feature, const Vec3& normal) const
     {
         if (a > b) std::swap(a, b);
         const std::optional<double> s = find_crossing(a, b, feature);
-        if (!s) return std::nullopt;
+        if (!s || (*s == 0.0 && is_eol(a)) || (*s == 1.0 && is_eol(b))) return std::nullopt;
         const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
         FeatureSite site = make_site(false, feature, X, *s < 0.5 ? a : b, normal);
         site.edge = {*s < 1.0 ? a : b, *s > 0.0 ? b : a};

@@ -181,6 +181,28 @@ TEST(CleanUp, CapBesideATraceIsOpened)
     EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
 }
 
+TEST(CleanUp, WhatTheGuardKeepsFromAMergeIsNotSplitInstead)
+{
+    // A row of free vertices close beside a trace, as where folded cloth has just left it.
+    const SurgeryCloth cloth = square_cloth(8);
+    ClothSurgery surgery = cloth.surgery();
+    const std::vector<VertexId> trace = row(surgery, 0.5, 0.25, 0.75, 0.125);
+    mark_trace(surgery, trace, 1);
+    for (const VertexId v : trace) surgery.set_role(v, TraceRole::Node, 1);
+    for (const VertexId v : row(surgery, 0.625, 0.25, 0.75, 0.125))
+        ASSERT_EQ(surgery.commit(surgery.propose_moves({{v, surgery.material(v) - Vec2(0.0, 0.12)}})),
+                  Verdict::Done);
+    touch_all(surgery);
+    surgery.set_guard(
+        [](const SurgeryEvent& event) { return event.operation != SurgeryOperation::Collapse; });
+    EXPECT_EQ(clean_up(surgery, target_of(cloth)).splits, 0);
+    EXPECT_EQ(surgery.vertex_count(), 81);
+    surgery.set_guard({});
+    touch_all(surgery);
+    EXPECT_GT(clean_up(surgery, target_of(cloth)).collapses, 0);
+    EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
+}
+
 // Four corners on one circle have two triangulations alike: neither is turned into the other for ever.
 TEST(CleanUp, CocircularFacesAreLeftAlone)
 {

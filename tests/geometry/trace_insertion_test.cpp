@@ -118,6 +118,36 @@ TEST(InsertEdgeCrossing, BorderVerticesMoveAlongTheBorderOnlyAndCornersNever)
     EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
 }
 
+TEST(InsertEdgeCrossing, BesideAVertexThatTheGuardKeepsSplitsWhereTheTraceLeavesItBehind)
+{
+    const SurgeryCloth cloth = square_cloth(8);
+    const MeshTarget target = target_of(cloth);
+    const auto insert_with = [&](const Vec2& flow, double s) {
+        ClothSurgery surgery = cloth.surgery();
+        const SurgeryCheck check(surgery);
+        surgery.set_guard(
+            [](const SurgeryEvent& event) { return event.operation != SurgeryOperation::Move; });
+        const VertexId a = nearest_vertex(surgery, {0.5, 0.5}), b = nearest_vertex(surgery, {0.5, 0.625});
+        const TraceInsertion made =
+            insert_edge_crossing(surgery, target, a, b, s, {TraceRole::OnTrace, 1, flow});
+        EXPECT_EQ(check.find_wrong(surgery), "");
+        EXPECT_EQ(surgery.vertex_count(), made.verdict == Verdict::Done ? 82 : 81);
+        if (made.verdict == Verdict::Done) {
+            EXPECT_LT((surgery.material(made.vertex) - Vec2(0.5, 0.5 + s * 0.125)).norm(), 1e-15);
+        }
+        return made.verdict;
+    };
+    for (const double s : {0.2, 0.04, 0.002}) {
+        EXPECT_EQ(insert_with({0.0, 1e-9}, s), Verdict::Done) << s;
+        EXPECT_EQ(insert_with({5.0, 1.0}, s), Verdict::Done) << s;
+        EXPECT_EQ(insert_with({0.0, -1.0}, s), Verdict::Guard) << s;
+        EXPECT_EQ(insert_with({0.0, 0.0}, s), Verdict::Guard) << s;
+        EXPECT_EQ(insert_with({kNan, 0.0}, s), Verdict::Guard) << s;
+        EXPECT_EQ(insert_with({0.0, -1.0}, 1.0 - s), Verdict::Done) << s;
+    }
+    EXPECT_EQ(insert_with({0.0, 1.0}, 0.0005), Verdict::Quality);
+}
+
 TEST(InsertEdgeCrossing, RefusesWhatIsNoCrossing)
 {
     const SurgeryCloth cloth = square_cloth(8);
@@ -152,6 +182,23 @@ TEST(InsertFacePoint, LiesWhereItWasAskedFor)
         }
         EXPECT_LT((surgery.material(made.vertex) - X).norm(), 1e-15);
     }
+}
+
+TEST(InsertFacePoint, BesideACornerThatTheGuardKeepsSplitsWhereTheTraceLeavesItBehind)
+{
+    const SurgeryCloth cloth = square_cloth(8);
+    ClothSurgery surgery = cloth.surgery();
+    surgery.set_guard([](const SurgeryEvent& event) { return event.operation != SurgeryOperation::Move; });
+    const VertexId v = nearest_vertex(surgery, {0.5, 0.5});
+    const IdFace face = surgery.faces_at(v)[0];
+    const auto corners = surgery.patch_face(face).material;
+    const Vec2 away = 0.5 * (corners[1] + corners[2]) - corners[0];
+    const Vec3 weights(0.8, 0.1, 0.1);
+    TraceVertex made{TraceRole::Node, 1, -away};
+    EXPECT_EQ(insert_face_point(surgery, target_of(cloth), face, weights, made).verdict, Verdict::Guard);
+    made.flow = away;
+    EXPECT_EQ(insert_face_point(surgery, target_of(cloth), face, weights, made).verdict, Verdict::Done);
+    EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
 }
 
 TEST(InsertFacePoint, CoincidentPointsAreOneVertex)

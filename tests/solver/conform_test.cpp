@@ -236,6 +236,50 @@ TEST(Conform, WhereTheClothComesFastItWouldHaveToGoAtOnce)
     }
 }
 
+/// Cloth folded along a mesh line that has come a millimetre and a half off the ridge; its faces are those of
+/// cloth folded on it. Beside the fold its edges press on the ridge.
+EolCloth folded_beside(double speed)
+{
+    EolCloth cloth(make_ridge(60.0), make_draped({8, 0.0, 110.0}));
+    cloth.scene.eol = uniform_target(0.05, 10.0);
+    cloth.scene.material.youngs_modulus = 2000.0;
+    const double half = 55.0 * M_PI / 180.0;
+    const Vec3 way(std::sin(half), 0.0, std::cos(half));  // the left side's, upwards
+    for (std::size_t v = 0; v < cloth.state.ids.size(); ++v) {
+        Vec3& x = cloth.state.mesh.world[v];
+        cloth.state.velocity[v] =
+            speed * (x.x() > 1e-9 ? Vec3(way.x(), 0.0, -way.z()) : Vec3(way.x(), 0.0, way.z()));
+        x += 1.5e-3 * way + Vec3(0.0, 0.0, kThickness / std::sin(half));
+    }
+    press_edges(cloth);
+    return cloth;
+}
+
+TEST(Conform, BesideAFoldThatHasLeftTheFeatureAVertexIsPutWhereTheFoldGoesOn)
+{
+    // The cloth slides on: the fold is behind, and left where it is.
+    const EolCloth leaving = folded_beside(0.3);
+    ASSERT_GT(leaving.state.active.size(), 5u);
+    const std::optional<ConformedMesh> on = conform(leaving);
+    ASSERT_TRUE(on);
+    EXPECT_GE(on->eol.size(), 7u);
+    const auto world_of = [&](VertexId id) {
+        const auto& ids = on->surgery.ids;
+        return on->surgery.mesh.world[std::lower_bound(ids.begin(), ids.end(), id) - ids.begin()];
+    };
+    for (const EolVertex& e : on->eol) EXPECT_LT(std::abs(world_of(e.vertex_id).x()), 0.1 * kThickness);
+    for (std::size_t v = 0; v < leaving.state.ids.size(); ++v) {
+        if (std::abs(leaving.state.mesh.material[v].x() - 0.2) > 1e-9) continue;
+        EXPECT_EQ(leaving.state.mesh.world[v], world_of(leaving.state.ids[v]));
+    }
+    EXPECT_EQ(validate(on->surgery.mesh), "");
+
+    // It comes back: the fold would be run into at once, and where it is it is in the way.
+    EolCloth returning = folded_beside(-0.3);
+    const std::optional<ConformedMesh> made = conform(returning);
+    EXPECT_TRUE(!made || made->eol.empty());
+}
+
 TEST(Conform, ACornerBecomesANodeAtWhichTheTraceEnds)
 {
     EolCloth cloth = lying(12.0, 0.003, 0.1);
