@@ -81,22 +81,23 @@ class Conforming {
     {
     }
 
-    std::optional<ConformedMesh> run(const std::vector<EolVertex>& given_up)
+    std::optional<ConformedMesh> run(const FailedFlow& failed)
     {
         find_releases();
         sites_ = find_feature_sites(scene_, state_, stars_);
-        if (released_.empty() && sites_.empty() && given_up.empty() && !is_flowing()) return std::nullopt;
+        if (released_.empty() && sites_.empty() && failed.empty() && !is_flowing()) return std::nullopt;
         surgery_.emplace(state_.mesh, state_.ids, state_.next_id, pinned());
         guard_.watch(*surgery_);
         surgery_->set_guard(
             [this](const SurgeryEvent& event) { return keeps_way(event) && guard_.allows(event); });
         mark();
         for (const VertexId v : released_) release(v);
-        for (const EolVertex& vertex : given_up)
-            if (is_on_trace(vertex.vertex_id)) release(vertex.vertex_id);
+        for (const VertexId v : failed.given_up)
+            if (is_on_trace(v)) release(v);
+        for (const auto& [v, flow] : failed.flow) expect_flow(v, flow);
         clear_way();
         forget_released();
-        if (given_up.empty())  // else the step has failed on the vertices there were
+        if (failed.given_up.empty())  // else the step has failed on the vertices there were
             for (const FeatureSite& site : sites_) insert(site);
         join();
         report_.operations += clean_up(*surgery_, target_).operations();
@@ -171,6 +172,16 @@ class Conforming {
         eol_ = state_.eol;
         for (const EolVertex& e : eol_)
             flow_[e.vertex_id] = state_.material_velocity[state_.index_of(e.vertex_id)];
+    }
+
+    /// With which an attempt has failed. That may be wild: what is cleared for it is a cell, or twice what
+    /// the flow that is there asks for.
+    void expect_flow(VertexId v, const Vec2& failed)
+    {
+        if (!is_on_trace(v)) return;
+        Vec2& flow = flow_[v];
+        const double cell = target_.length(surgery_->material(v)) / (kClearSteps * dt_);
+        flow = failed * std::min(1.0, std::max(2.0 * flow.norm(), cell) / failed.norm());
     }
 
     void clear_way()
@@ -268,7 +279,7 @@ class Conforming {
             return;
         }
         eol_.insert(place_of(made.vertex), vertex);
-        flow_[made.vertex] = flow;
+        flow_.try_emplace(made.vertex, flow);
         ++report_.inserted;
     }
 
@@ -408,11 +419,11 @@ class Conforming {
 }  // namespace
 
 std::optional<ConformedMesh> conform_mesh(const Scene& scene, double dt, const State& state,
-                                          const std::vector<MeshEdge>& edges,
-                                          const std::vector<EolVertex>& given_up, bool is_strict)
+                                          const std::vector<MeshEdge>& edges, const FailedFlow& failed,
+                                          bool is_strict)
 {
     if (!scene.eol || (state.eol.empty() && state.active.empty())) return std::nullopt;
-    return Conforming(scene, dt, state, edges, is_strict).run(given_up);
+    return Conforming(scene, dt, state, edges, is_strict).run(failed);
 }
 
 }  // namespace arris

@@ -4,6 +4,8 @@
 // does not, the contact stays a row, which is always safe: any of this may be refused.
 #pragma once
 
+#include <map>
+#include <set>
 #include <vector>
 
 #include "geometry/cloth_surgery.h"
@@ -25,12 +27,19 @@ struct ConformedMesh {
     ConformReport report;
 };
 
+/// What earlier attempts of a step have found out about the flow of material.
+struct FailedFlow {
+    std::map<VertexId, Vec2> flow;  ///< m/s: with it the mesh had not enough material at that vertex
+    std::set<VertexId> given_up;    ///< vertices for which no attempt had room: they are released
+    bool empty() const { return flow.empty() && given_up.empty(); }
+};
+
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
 /// they have not for long, the way of those that slide cleared, what they left restored. Nothing where the
 /// mesh is right as it is. `edges` are the state's.
 /// A strict one strains nothing; another may where the cloth around can give way.
 std::optional<ConformedMesh> conform_mesh(const Scene& scene, double dt, const State& state,
-                                          const std::vector<MeshEdge>& edges,
-                                          const std::vector<EolVertex>& given_up, bool is_strict);
+                                          const std::vector<MeshEdge>& edges, const FailedFlow& failed,
+                                          bool is_strict);
 
 }  // namespace arris

@@ -14,7 +14,9 @@ bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
         for (const int f : work.stars.faces[eol.vertex]) {
             const auto& [a, b, c] = work.faces_of_elements[f];
             const double left = 0.5 * twice_area(material[a], material[b], material[c]);
-            if (!(left >= kLeast * work.elements.faces[f].area)) work.overrun.push_back(eol.vertex);
+            if (left >= kLeast * work.elements.faces[f].area) continue;
+            const Vec2 way = material[eol.vertex] - work.material_of_elements[eol.vertex];
+            work.overrun.push_back({eol.vertex, way / (work.at.time - work.at.begin)});
         }
     return work.overrun.empty();
 }

@@ -29,7 +29,7 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
     std::optional<ConformedMesh> conformed;
     TransferReport transferred;
     for (const bool is_strict : {false, true}) {
-        conformed = conform_mesh(scene, end - state.time, state, work.edges, work.given_up, is_strict);
+        conformed = conform_mesh(scene, end - state.time, state, work.edges, work.failed_flow, is_strict);
         report.seconds.conform += watch.lap();
         if (!conformed) return state;
         work.conformed = transfer(scene, state, *conformed, transferred);
@@ -336,17 +336,18 @@ void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoord
     }
 }
 
-/// A shorter step needs less room; where that has not helped once, the traces concerned become rows, where
-/// that has not helped either, all do.
+/// What the next attempt has to know where material overran the mesh.
 void note_overrun(const State& state, const StepReport& report, Workspace& work)
 {
-    if (report.status == StepStatus::Overrun && ++work.overruns > 1) {
-        for (const int v : work.overrun) work.given_up.push_back(state.eol[state.eol_entry(state.ids[v])]);
-        if (work.overruns > Workspace::kMostOverruns) work.given_up = state.eol;
+    if (report.status == StepStatus::Done) work.forget_overruns();
+    if (report.status != StepStatus::Overrun) return;
+    ++work.overruns;
+    for (const auto& [v, flow] : work.overrun) {
+        work.failed_flow.flow[state.ids[v]] = flow;
+        if (work.overruns > 2) work.failed_flow.given_up.insert(state.ids[v]);
     }
-    if (report.status != StepStatus::Done) return;
-    work.overruns = 0;
-    work.given_up.clear();
+    if (work.overruns > Workspace::kMostOverruns)
+        for (const EolVertex& eol : state.eol) work.failed_flow.given_up.insert(eol.vertex_id);
 }
 
 /// Swaps the new state in, or leaves the old one where the step failed.

@@ -7,6 +7,7 @@
 #include "physics/energies.h"
 #include "physics/linear_system.h"
 #include "physics/term.h"
+#include "solver/conform.h"
 #include "solver/contacts.h"
 #include "solver/proposal.h"
 #include "solver/velocity_solve.h"
@@ -33,12 +34,22 @@ struct Workspace {
     ClothStars stars;
 
     // conform
-    std::vector<int> overrun;         ///< EOL vertices over which more material would flow than there is
-    int overruns = 0;                 ///< attempts of this step that ended so
-    std::vector<EolVertex> given_up;  ///< for which no attempt of this step had room
-    bool has_given_up() const { return !given_up.empty() && overruns <= kMostOverruns + 1; }
-    static constexpr int kMostOverruns = 4;  ///< then all traces become rows
-    State conformed;                         ///< on the mesh that the step wants, where it is not the state's
+    struct Overrun {
+        int vertex;  ///< EOL, over which more material would flow than there is
+        Vec2 flow;   ///< m/s
+    };
+    std::vector<Overrun> overrun;
+    int overruns = 0;        ///< attempts of this step that ended so
+    FailedFlow failed_flow;  ///< of them
+    /// The same step on another mesh comes before a shorter one: with the way of what overran cleared, and,
+    /// where that and a shorter step have not helped, with fewer EOL vertices, in the end with none.
+    bool can_try_another_mesh() const
+    {
+        return overruns == 1 || (overruns > 2 && overruns <= kMostOverruns + 1);
+    }
+    static constexpr int kMostOverruns = 5;
+    void forget_overruns() { overruns = 0, failed_flow = {}; }
+    State conformed;  ///< on the mesh that the step wants, where it is not the state's
 
     // move
     Prediction prediction;

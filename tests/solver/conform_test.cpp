@@ -79,9 +79,9 @@ void press_corner(EolCloth& cloth)
     }
 }
 
-std::optional<ConformedMesh> conform(const EolCloth& cloth, const std::vector<EolVertex>& given_up = {})
+std::optional<ConformedMesh> conform(const EolCloth& cloth, const FailedFlow& failed = {})
 {
-    return conform_mesh(cloth.scene, kStep, cloth.state, edges_of(cloth.state), given_up, false);
+    return conform_mesh(cloth.scene, kStep, cloth.state, edges_of(cloth.state), failed, false);
 }
 
 /// Conforms and carries the state over.
@@ -365,7 +365,7 @@ TEST(Conform, AVertexThatIsGivenUpIsReleasedTheOthersOfItsTraceStayAndNothingIsI
     cloth.state.active.clear();
     press_edges(cloth);
     const EolVertex released = cloth.state.eol[cloth.state.eol_entry(cloth.state.ids[given_up])];
-    const std::optional<ConformedMesh> made = conform(cloth, {released});
+    const std::optional<ConformedMesh> made = conform(cloth, {{}, {released.vertex_id}});
     ASSERT_TRUE(made);
     EXPECT_EQ(made->eol.size(), count - 1);
     for (const EolVertex& e : made->eol) EXPECT_NE(e.vertex_id, released.vertex_id);
