@@ -40,9 +40,7 @@ double EolGuard::allowance(const SurgeryEvent& event) const
 {
     constexpr double kShare = 0.01;     // of the patch's stretch energy, and
     constexpr double kMotion = 0.01;    // of what moves it: its own motion, its weight over a cell
-    // The alternative is to give the trace up: a row that holds all that slides. Where what may give way was
-    // not enough, as much as moves the patch.
-    const double clearing = is_strict_ ? 100.0 : 10.0;
+    constexpr double kClearing = 10.0;  // the alternative is to give the trace up; 100 is seen as a push
     double before = 0.0, area = 0.0, squared_speed = 0.0;
     for (const PatchFace& face : event.before) {
         before += stretch_of(face);
@@ -56,7 +54,7 @@ double EolGuard::allowance(const SurgeryEvent& event) const
                           (0.5 * squared_speed + weight * scene_.eol->length(event.before[0].material[0]));
     constexpr double kStrain = 1e-6;  // nobody sees; of cloth without strain and motion rounding is all
     const double unseen = scene_.material.youngs_modulus * area * kStrain * kStrain;
-    return (is_clearing_ ? clearing : 1.0) * (kShare * before + kMotion * motion + unseen);
+    return (is_clearing_ ? kClearing : 1.0) * (kShare * before + kMotion * motion + unseen);
 }
 
 double EolGuard::strain_gain(const SurgeryEvent& event) const
