@@ -39,7 +39,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
     constexpr int kMostParts = 64;
     int shrink = 1, parts = 1;  // how much shorter parts have become; how many are left
     Cost cost;
-    work.forget_overruns();
+    work.forget_failures();
     while (state.time < end) {
         const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
         const Attempt attempt = shrink == kMostParts ? Attempt::Last : Attempt::Ordinary;

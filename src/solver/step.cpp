@@ -336,18 +336,24 @@ void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoord
     }
 }
 
-/// What the next attempt has to know where material overran the mesh.
-void note_overrun(const State& state, const StepReport& report, Workspace& work)
+/// What an attempt from `start`, the state or what conform made of it, has failed on: the next one has to
+/// know where material overran the mesh. Where the velocity could not be solved for, no vertex is EOL again.
+void note_failure(const State& state, const State& start, const StepReport& report, Workspace& work)
 {
-    if (report.status == StepStatus::Done) work.forget_overruns();
-    if (report.status != StepStatus::Overrun) return;
-    ++work.overruns;
-    for (const auto& [v, flow] : work.overrun) {
-        work.failed_flow.flow[state.ids[v]] = flow;
-        if (work.overruns > 2) work.failed_flow.given_up.insert(state.ids[v]);
+    if (report.status == StepStatus::Done) work.forget_failures();
+    const bool is_overrun = report.status == StepStatus::Overrun;
+    if (is_overrun) {
+        ++work.overruns;
+        for (const auto& [v, flow] : work.overrun) {
+            work.failed_flow.flow[start.ids[v]] = flow;
+            if (work.overruns > 2) work.failed_flow.given_up.insert(start.ids[v]);
+        }
     }
-    if (work.overruns > Workspace::kMostOverruns)
-        for (const EolVertex& eol : state.eol) work.failed_flow.given_up.insert(eol.vertex_id);
+    const bool is_unsolved =
+        report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite;
+    if (!is_unsolved && !(is_overrun && work.overruns > Workspace::kMostOverruns)) return;
+    for (const State* tried : {&state, &start})
+        for (const EolVertex& eol : tried->eol) work.failed_flow.given_up.insert(eol.vertex_id);
 }
 
 /// Swaps the new state in, or leaves the old one where the step failed.
@@ -464,7 +470,7 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     while (solve_and_check(scene, settings, end, start, attempt, work, report)) continue;
     watch.lap();
 
-    note_overrun(start, report, work);
+    note_failure(state, start, report, work);
 
     // 7. Swapped in, or the state stays as it was.
     commit(end, work, start, report);

@@ -48,7 +48,7 @@ struct Workspace {
         return overruns == 1 || (overruns > 2 && overruns <= kMostOverruns + 1);
     }
     static constexpr int kMostOverruns = 5;
-    void forget_overruns() { overruns = 0, failed_flow = {}; }
+    void forget_failures() { overruns = 0, failed_flow = {}; }
     State conformed;  ///< on the mesh that the step wants, where it is not the state's
 
     // move

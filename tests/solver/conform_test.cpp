@@ -463,5 +463,36 @@ TEST(ConformedSteps, ClothThatFallsOnARidgeBendsOnVerticesOfIt)
     }
 }
 
+TEST(ConformedSteps, WhatOverrunsInEveryAttemptBecomesRowsInAFew)
+{
+    EolCloth cloth = lying(17.0);
+    press_edges(cloth);
+    take(cloth);
+    State& state = cloth.state;
+    const std::size_t count = state.eol.size();
+    ASSERT_GT(count, 5u);
+    // Nothing flows, so that no way is blocked, but by its history all would flow metres in the next step.
+    state.previous_dt = kStep;
+    state.previous_world = state.mesh.world;
+    state.previous_velocity = state.velocity;
+    state.previous_material = state.mesh.material;
+    for (std::size_t v = 0; v < state.ids.size(); ++v)
+        state.previous_material_velocity[v] =
+            state.eol_entry(state.ids[v]) < 0 ? Vec2::Zero() : Vec2(-1e4, 0.0);
+    Workspace work;
+    int attempts = 0;
+    StepReport report;
+    do {
+        report = step(cloth.scene, Settings(), state.time + kStep, state, work);
+        ++attempts;
+    } while (report.status == StepStatus::Overrun && attempts < 20);
+    EXPECT_EQ(report.status, StepStatus::Done);
+    EXPECT_GT(attempts, 2);
+    EXPECT_LE(attempts, Workspace::kMostOverruns + 2);
+    EXPECT_LT(state.eol.size(), count);
+    expect_sound(state, 0.16);
+    EXPECT_TRUE(work.failed_flow.empty());
+}
+
 }  // namespace
 }  // namespace arris
