@@ -19,16 +19,21 @@ double mitre_of(double least_part)
     return least_part * kLongestMitre > 1.0 ? 1.0 / least_part : kLongestMitre;
 }
 
-// The cloth's mean normal on its side; where it turns by more than 90 degrees that is short and turns fast,
-// and the direction against where it leaves is the better one. Nothing where both are too short.
+// The cloth's mean normal on its side, and the direction against where it leaves: of cloth that bends over
+// the feature like a V both point the same way, the one short where the other is long, so that their sum
+// turns evenly from flat cloth to cloth that hangs down on both sides. Nothing where both are too short.
 std::optional<Vec3> outward_of_cloth(const ClothAround& cloth, const Vec3& tangent)
 {
     constexpr double kShort = 1e-3;  // of a sum of unit vectors
     const auto across = [&](const Vec3& v) { return Vec3(v - tangent.dot(v) * tangent); };
     const Vec3 normal = across(cloth.normal), back = across(-cloth.leaving);
     if (!(std::max(normal.norm(), back.norm()) > kShort)) return std::nullopt;
-    Vec3 outward = normal.norm() >= back.norm() ? normal : back;
-    if (normal.norm() >= back.norm() && outward.dot(cloth.side) < 0.0) outward = -outward;
+    // Which way the normal goes, unless it is known, the fold tells where there is one, else where the cloth
+    // has been.
+    const Vec3& known = back.norm() > normal.norm() ? back : cloth.side;
+    const bool is_inward = cloth.orientation != 0 ? cloth.orientation < 0 : normal.dot(known) < 0.0;
+    const Vec3 outward = is_inward ? Vec3(back - normal) : Vec3(back + normal);
+    if (!(outward.norm() > kShort)) return std::nullopt;
     return outward.normalized();
 }
 

@@ -20,14 +20,16 @@ struct FeatureFrame {
 
 /// The cloth around the vertex, which alone tells which way is outward of a wire or point.
 struct ClothAround {
-    Vec3 normal;   ///< sum of unit normals of its faces there, as they are oriented
-    Vec3 leaving;  ///< sum of unit directions in which the cloth leaves the feature, in its faces
-    Vec3 side;     ///< any vector from the feature to the cloth's side on which it has been
+    Vec3 normal;          ///< sum of the unit normals of both its sides, as they are oriented
+    Vec3 leaving;         ///< sum of the unit directions in which its sides leave the feature
+    Vec3 side;            ///< any vector from the feature to the cloth's side on which it has been
+    int orientation = 0;  ///< 1 or -1 where it is known that normals point outward, or inward: cloth folded
+                          ///< flat does not show it
 };
 
 /// On feature edge `edge` (index in features().edges). Convex: the bisector of its faces' normals; border:
-/// the outward conormal; wire: the cloth's mean normal on its side, or, where the cloth turns by more than 90
-/// degrees, against where it leaves. Nothing where a wire's cloth tells no direction.
+/// the outward conormal; wire: halfway between the cloth's two sides, that is along its mean normal and
+/// against where it leaves. Nothing where a wire's cloth tells no direction.
 std::optional<FeatureFrame> find_edge_frame(const Obstacle& obstacle, int edge, const Vec3& place,
                                             const ClothAround& cloth);
 

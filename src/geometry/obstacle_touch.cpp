@@ -114,6 +114,13 @@ void find_touches(const Obstacle& obstacle, const std::array<Vec3, 3>& triangle,
     }
 }
 
+bool is_touching(const std::array<Vec3, 3>& triangle, const std::array<Vec3, 2>& segment)
+{
+    const Shape shape(triangle);
+    const Point3 a = to_cgal(segment[0]), b = to_cgal(segment[1]);
+    return a == b ? shape.touches(a) : shape.touches(a, b);
+}
+
 namespace {
 
 Vec3 normal_of(const std::array<Vec3, 3>& t)

@@ -21,6 +21,9 @@ struct ObstacleTouch {
 /// covers. One whose box is clear of the obstacle's costs next to nothing. Corners must be finite.
 void find_touches(const Obstacle& obstacle, const std::array<Vec3, 3>& triangle, ObstacleTouch& found);
 
+/// Whether a triangle touches a segment, by exact predicates; either may be degenerate.
+bool is_touching(const std::array<Vec3, 3>& triangle, const std::array<Vec3, 2>& segment);
+
 /// About where two triangles meet that touch: the middle of the points where sides of the one pass through
 /// the other, to rounding. Either may be without area.
 Vec3 middle_of_touch(const std::array<Vec3, 3>& first, const std::array<Vec3, 3>& second);

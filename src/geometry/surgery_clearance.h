@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "geometry/cloth_surgery.h"
 #include "geometry/obstacle.h"
 
@@ -9,7 +11,13 @@ namespace arris {
 /// Whether an operation leaves the cloth free of an obstacle whose frame is at `placement`: no new face
 /// touches it, and nothing of it is between the surface that was and the one that is to be, so that no
 /// corner, wire or nail gets from one side to the other. A split changes no surface and is always free.
+/// `held` ascend by vertex: what is on features of the obstacle.
+struct HeldVertexId {
+    VertexId vertex;
+    bool is_corner;
+    int feature;  ///< index in features().corners or .edges
+};
 bool is_free(const SurgeryEvent& event, const Obstacle& obstacle, const Placement& placement,
-             double thickness);
+             double thickness, const std::vector<HeldVertexId>& held = {});
 
 }  // namespace arris

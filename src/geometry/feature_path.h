@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ways along a polyline of an obstacle's features, from segment to segment; they end at its corners.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/obstacle.h"
+
+namespace arris {
+
+/// A place on a polyline: feature edge (index in features().edges) and the point of it nearest to a given
+/// one.
+struct FeaturePlace {
+    int feature;
+    double s;  ///< in [0, 1], from the edge's first point
+};
+
+/// The point of a feature edge nearest to `place`.
+struct PointOnFeature {
+    double s;
+    Vec3 point;
+};
+PointOnFeature place_on_feature(const Obstacle& obstacle, int feature, const Vec3& place);
+
+/// Where on the polyline of feature edge `feature` a place is that has gone along from that edge: from it to
+/// the next as long as that is nearer. So a strand of the same polyline that happens to be near is not taken.
+FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& place);
+
+/// A part of an edge.
+struct FeatureStretch {
+    int edge;         ///< of the topology
+    double from, to;  ///< s of its ends, from < to
+};
+
+/// What of a polyline is within `reach` (m, along it) of a place on it, to both sides as far as its corners;
+/// ascending by edge. On a closed one an edge may be named twice.
+std::vector<FeatureStretch> stretch_around(const Obstacle& obstacle, const FeaturePlace& place, double reach);
+
+/// The same of a corner (index in features().corners), along each feature edge at it.
+std::vector<FeatureStretch> stretch_around_corner(const Obstacle& obstacle, int corner, double reach);
+
+/// Length of the polyline between two places on it, m; nothing where it is more than `most`, or where they
+/// are on different ones.
+std::optional<double> distance_along(const Obstacle& obstacle, const FeaturePlace& a, const FeaturePlace& b,
+                                     double most);
+
+/// The same from a place to a corner (index in features().corners) at an end of its polyline.
+std::optional<double> distance_to_corner(const Obstacle& obstacle, const FeaturePlace& a, int corner,
+                                         double most);
+
+/// An edge of a polyline in the order along it.
+struct PolylineEdge {
+    int feature;
+    bool is_forward;  ///< from its first point to its second
+    double begin;     ///< m, length of the polyline before it
+};
+struct Polyline {
+    std::vector<PolylineEdge> edges;  ///< a closed one begins at its first edge
+    double length = 0.0;              ///< m
+    bool is_closed = false;
+};
+Polyline trace_polyline(const Obstacle& obstacle, int polyline);
+
+/// Index of a topology edge in features().edges; -1 where it is none.
+int feature_of_edge(const ObstacleFeatures& features, int edge);
+
+/// Parts of the segment [0, 1] outside these stretches of `edge`, as pairs (from, to).
+std::vector<std::array<double, 2>> parts_outside(const std::vector<FeatureStretch>& stretches, int edge);
+
+/// Such a part; its ends are the segment's own where it has none of them left out.
+std::array<Vec3, 2> part_of(const std::array<Vec3, 2>& segment, const std::array<double, 2>& part);
+
+}  // namespace arris

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/feature_path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/geometry/contact_scene.h"
+#include "tests/geometry/sample_obstacles.h"
+
+namespace arris {
+namespace {
+
+constexpr double kRoundOff = 1e-12;  // of lengths of about 1 m, added up
+
+Obstacle make_polyline(const std::vector<Vec3>& points, bool is_closed)
+{
+    return samples::make_obstacle(samples::wire(points, is_closed));
+}
+
+Obstacle make_polygon(int count)
+{
+    std::vector<Vec3> points;
+    for (int k = 0; k < count; ++k)
+        points.emplace_back(std::cos(2.0 * M_PI * k / count), std::sin(2.0 * M_PI * k / count), 0.0);
+    return make_polyline(points, true);
+}
+
+/// Turns little at (1, 0, 0), ends at (0, 0, 0) and (3, .1, 0).
+Obstacle make_bent()
+{
+    return make_polyline({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}, {3, 0.1, 0}}, false);
+}
+
+double length_of(const Obstacle& obstacle, const std::vector<FeatureStretch>& stretches)
+{
+    double sum = 0.0;
+    for (const FeatureStretch& part : stretches) {
+        EXPECT_LT(part.from, part.to);
+        EXPECT_GE(part.from, 0.0);
+        EXPECT_LE(part.to, 1.0);
+        const auto& ends = obstacle.topology().edges[part.edge].points;
+        sum += (part.to - part.from) *
+               (obstacle.mesh().points[ends[1]] - obstacle.mesh().points[ends[0]]).norm();
+    }
+    return sum;
+}
+
+TEST(FollowPolyline, GoesOnPastNodesButNotPastCorners)
+{
+    const Obstacle wire = make_bent();
+    for (const auto& [x, feature] : {std::pair(-1.0, 0), {0.2, 0}, {1.3, 1}, {2.5, 2}, {7.0, 2}}) {
+        const FeaturePlace place = follow_polyline(wire, 0, Vec3(x, 0.05, 0.01));
+        EXPECT_EQ(place.feature, feature) << x;
+        EXPECT_EQ(place.s <= 0.0, x < 0.0);
+        EXPECT_EQ(place.s >= 1.0, x > 3.0);
+    }
+    const Obstacle right = make_polyline({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, false);
+    EXPECT_EQ(follow_polyline(right, 0, Vec3(1, 0.5, 0)).feature, 0) << "it ends at the corner";
+}
+
+TEST(FollowPolyline, ExactlyAtANodeStaysWhereItWas)
+{
+    const Obstacle wire = make_bent();
+    EXPECT_EQ(follow_polyline(wire, 0, Vec3(1, 0, 0)).feature, 0);
+    EXPECT_EQ(follow_polyline(wire, 1, Vec3(1, 0, 0)).feature, 1);
+}
+
+TEST(FollowPolyline, DoesNotJumpToAStrandNearby)
+{
+    // A hairpin: the second leg is a millimetre beside the first.
+    std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}};
+    for (int k = 1; k < 8; ++k)
+        points.emplace_back(1.0 + 5e-4 * std::sin(M_PI * k / 8), 5e-4 * (1.0 - std::cos(M_PI * k / 8)), 0.0);
+    points.emplace_back(1, 1e-3, 0);
+    points.emplace_back(0, 1e-3, 0);
+    const Obstacle hairpin = make_polyline(points, false);
+    EXPECT_EQ(hairpin.features().polyline_count, 1);
+    EXPECT_EQ(follow_polyline(hairpin, 0, Vec3(0.5, 9e-4, 0)).feature, 0);
+}
+
+TEST(StretchAround, HasTheLengthAskedForWhereThereIsAsMuch)
+{
+    const Obstacle loop = make_polygon(30);
+    const double around = 30.0 * 2.0 * std::sin(M_PI / 30.0);
+    for (const double reach : {1e-3, 0.05, 0.3, 1.0, 3.0})
+        EXPECT_NEAR(length_of(loop, stretch_around(loop, {7, 0.3}, reach)), 2.0 * reach, kRoundOff) << reach;
+    EXPECT_GE(length_of(loop, stretch_around(loop, {7, 0.3}, 1e3)), around - kRoundOff);
+
+    const Obstacle wire = make_bent();
+    EXPECT_NEAR(length_of(wire, stretch_around(wire, {0, 0.25}, 0.1)), 0.2, kRoundOff);
+    EXPECT_NEAR(length_of(wire, stretch_around(wire, {0, 0.25}, 0.5)), 0.75, kRoundOff) << "it ends";
+    EXPECT_NEAR(length_of(wire, stretch_around(wire, {0, 1.0}, 0.25)), 0.5, kRoundOff) << "at a node";
+    const double whole = 2.0 + std::hypot(1.0, 0.1);
+    EXPECT_NEAR(length_of(wire, stretch_around(wire, {1, 0.5}, 1e9)), whole, 2.0 * kRoundOff);
+    EXPECT_TRUE(stretch_around(wire, {1, 0.5}, 0.0).empty());
+}
+
+TEST(StretchAround, OfACornerGoesAlongEveryWireThere)
+{
+    ObstacleMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
+    mesh.segments = {{0, 1}, {0, 2}, {3, 0}};
+    const Obstacle star = samples::make_obstacle(mesh);
+    int corner = 0;
+    while (star.features().corners[corner].point != 0) ++corner;
+    EXPECT_NEAR(length_of(star, stretch_around_corner(star, corner, 0.2)), 0.6, kRoundOff);
+    const Obstacle nail = samples::make_obstacle(samples::nails({{0, 0, 0}}));
+    EXPECT_TRUE(stretch_around_corner(nail, 0, 0.2).empty());
+}
+
+TEST(DistanceAlong, GoesTheShorterWayAroundALoop)
+{
+    const Obstacle loop = make_polygon(30);
+    const double side = 2.0 * std::sin(M_PI / 30.0);
+    const Polyline polyline = trace_polyline(loop, 0);
+    ASSERT_TRUE(polyline.is_closed);
+    ASSERT_EQ(polyline.edges.size(), 30u);
+    EXPECT_NEAR(polyline.length, 30.0 * side, kRoundOff);
+    for (const int from : {0, 11, 29})
+        for (const int by : {0, 1, 2, 14, 16, 29}) {
+            const FeaturePlace a{polyline.edges[from].feature, 0.5},
+                b{polyline.edges[(from + by) % 30].feature, 0.5};
+            const double truth = std::min(by, 30 - by) * side;
+            const auto found = distance_along(loop, a, b, 20.0 * side);
+            ASSERT_TRUE(found) << from << ' ' << by;
+            EXPECT_NEAR(*found, truth, kRoundOff);
+            if (by > 0) {
+                EXPECT_FALSE(distance_along(loop, a, b, 0.99 * truth));
+            }
+        }
+}
+
+TEST(DistanceAlong, EndsAtCornersAndKnowsThem)
+{
+    const Obstacle right = make_polyline({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, false);
+    EXPECT_FALSE(distance_along(right, {0, 0.5}, {1, 0.5}, 10.0));
+    int corner = 0;
+    while (right.features().corners[corner].point != 1) ++corner;
+    for (const int feature : {0, 1}) {
+        const auto found = distance_to_corner(right, {feature, 0.3}, corner, 10.0);
+        const auto& ends = right.topology().edges[right.features().edges[feature].edge].points;
+        ASSERT_TRUE(found);
+        EXPECT_NEAR(*found, ends[0] == 1 ? 0.3 : 0.7, kRoundOff);
+        EXPECT_FALSE(distance_to_corner(right, {feature, 0.3}, corner, 0.2));
+    }
+}
+
+TEST(TracePolyline, BeginsAtAnEndAndCoversIt)
+{
+    const Obstacle wire = make_bent();
+    const Polyline polyline = trace_polyline(wire, 0);
+    EXPECT_FALSE(polyline.is_closed);
+    ASSERT_EQ(polyline.edges.size(), 3u);
+    EXPECT_NEAR(polyline.length, 2.0 + std::hypot(1.0, 0.1), kRoundOff);
+    EXPECT_EQ(polyline.edges[0].begin, 0.0);
+    EXPECT_NEAR(polyline.edges[1].begin, 1.0, kRoundOff);
+    EXPECT_TRUE(trace_polyline(wire, 5).edges.empty());
+}
+
+TEST(PartsOutside, AreWhatIsLeft)
+{
+    using Parts = std::vector<std::array<double, 2>>;
+    EXPECT_EQ(parts_outside({}, 3), (Parts{{0, 1}}));
+    EXPECT_EQ(parts_outside({{4, 0, 1}}, 3), (Parts{{0, 1}}));
+    EXPECT_EQ(parts_outside({{3, 0, 1}}, 3), (Parts{}));
+    EXPECT_EQ(parts_outside({{3, 0.2, 0.4}}, 3), (Parts{{0, 0.2}, {0.4, 1}}));
+    EXPECT_EQ(parts_outside({{3, 0.3, 1}, {3, 0, 0.1}, {3, 0.25, 0.5}}, 3), (Parts{{0.1, 0.25}}));
+}
+
+}  // namespace
+}  // namespace arris
