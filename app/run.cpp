@@ -100,7 +100,7 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     const State& state = run.at.state;
     prepare(run.config.scene, state, run.work);  // elements where material has flowed
     const bool is_audited = run.timeline.frame_at(state.time) >= 0 || state.time >= run.config.duration;
-    run.audited = is_audited ? audit(run.config.scene, state.mesh, state.time) : Audit();
+    run.audited = is_audited ? audit(run.config.scene, state) : Audit();
     StepRow row = make_row(run, report);
     row.is_halved = is_halved;
     if (const std::int64_t index = run.timeline.frame_at(state.time); index >= 0) {
@@ -321,7 +321,8 @@ void check_references(const std::string& directory, const State& state, const Sc
         return is_sound(vertex.feature, vertex.is_corner ? features.corners.size() : features.edges.size());
     };
     const bool has_obstacles = std::all_of(state.active.begin(), state.active.end(), is_there) &&
-                               std::all_of(state.eol.begin(), state.eol.end(), is_on_feature);
+                               std::all_of(state.eol.begin(), state.eol.end(), is_on_feature) &&
+                               std::all_of(state.loose.begin(), state.loose.end(), is_on_feature);
     if (!has_pins || !has_obstacles)
         throw InputError(fmt::format("{}: is damaged: it names {} that its scene has not",
                                      printable(checkpoint_file(directory)),

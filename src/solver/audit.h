@@ -5,6 +5,7 @@
 
 #include "geometry/penetration.h"
 #include "solver/scene.h"
+#include "solver/state.h"
 
 namespace arris {
 
@@ -17,7 +18,11 @@ struct Audit {
 /// got there, so it finds what a step's own check would have missed.
 std::vector<Audit> find_penetrations(const Scene& scene, const ClothMesh& mesh, double time);
 
+/// The same of a state, whose cloth may touch wires and points beside vertices on them.
+std::vector<Audit> find_penetrations(const Scene& scene, const State& state);
+
 /// The deepest of them.
 Audit audit(const Scene& scene, const ClothMesh& mesh, double time);
+Audit audit(const Scene& scene, const State& state);
 
 }  // namespace arris

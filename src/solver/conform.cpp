@@ -7,8 +7,10 @@
 #include <set>
 #include <tuple>
 
-#include "geometry/closest_point.h"
 #include "geometry/feature_frame.h"
+#include "geometry/feature_nodes.h"
+#include "geometry/feature_path.h"
+#include "geometry/held_features.h"
 #include "geometry/surgery_cleanup.h"
 #include "geometry/trace_insertion.h"
 #include "geometry/trace_motion.h"
@@ -57,13 +59,15 @@ class FeatureTags {
     int count_ = 0;
 };
 
-/// Whether an EOL vertex is still on the stretch of feature that it is on.
+/// Whether an EOL vertex is still on the polyline that it is on: not at its end.
 bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3& place)
 {
     if (vertex.is_corner) return true;
-    const auto [a, b] = feature_segment(obstacle, vertex.feature);
-    const double s = closest_on_segment(place, a, b);
-    return s > 0.0 && s < 1.0;
+    const double s = place_on_feature(obstacle, vertex.feature, place).s;
+    if (s > 0.0 && s < 1.0) return true;
+    const ObstacleFeatures& features = obstacle.features();
+    const auto& ends = obstacle.topology().edges[features.edges[vertex.feature].edge].points;
+    return !is_corner(features, ends[s > 0.0 ? 1 : 0]);
 }
 
 class Conforming {
@@ -85,7 +89,8 @@ class Conforming {
     {
         find_releases();
         sites_ = find_feature_sites(scene_, state_, stars_);
-        if (released_.empty() && sites_.empty() && failed.empty() && !is_flowing()) return std::nullopt;
+        if (released_.empty() && sites_.empty() && failed.empty() && state_.loose.empty() && !is_flowing())
+            return std::nullopt;
         surgery_.emplace(state_.mesh, state_.ids, state_.next_id, pinned());
         guard_.watch(*surgery_);
         surgery_->set_guard(
@@ -105,8 +110,11 @@ class Conforming {
             clear_way();
             report_.operations += clean_up(*surgery_, target_).operations();
         }
-        if (surgery_->events().empty() && report_.released == 0 && report_.inserted == 0) return std::nullopt;
-        return result();
+        ConformedMesh made = result();
+        if (surgery_->events().empty() && report_.released == 0 && report_.inserted == 0 &&
+            made.loose.size() == state_.loose.size())
+            return std::nullopt;
+        return made;
     }
 
   private:
@@ -149,7 +157,9 @@ class Conforming {
                 continue;
             const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, positions, now);
             if (placing.coordinates)
-                holds.back() = find_hold(scene_, state_, stars_, entry, *placing.coordinates, positions[v]);
+                holds.back() = is_clear_of(eol) ? find_hold(scene_, state_, stars_, entry,
+                                                            *placing.coordinates, positions[v])
+                                                : EolHold::Firm;
         }
         hold_between(scene_, state_, edges_, holds);
         for (std::size_t entry = 0; entry < holds.size(); ++entry)
@@ -165,7 +175,7 @@ class Conforming {
             const int a = state_.eol_entry(state_.ids[edge.a]), b = state_.eol_entry(state_.ids[edge.b]);
             if (a < 0 || b < 0) continue;
             const EolVertex &p = state_.eol[a], &q = state_.eol[b];
-            if (is_trace_edge(scene_.obstacles[p.obstacle], p, q))
+            if (is_trace_edge(scene_.obstacles[p.obstacle], placed(p), placed(q)))
                 surgery_->set_edge_tag(p.vertex_id, q.vertex_id, tags_.tag(p.is_corner ? q : p));
         }
         surgery_->take_touched();
@@ -182,6 +192,11 @@ class Conforming {
         Vec2& flow = flow_[v];
         const double cell = target_.length(surgery_->material(v)) / (kClearSteps * dt_);
         flow = failed * std::min(1.0, std::max(2.0 * flow.norm(), cell) / failed.norm());
+    }
+
+    PlacedEol placed(const EolVertex& eol) const
+    {
+        return {eol, scene_.obstacles[eol.obstacle].at(state_.time).inverse(surgery_->world(eol.vertex_id))};
     }
 
     void clear_way()
@@ -289,8 +304,11 @@ class Conforming {
     {
         constexpr double kOff = 0.1;  // thicknesses
         const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
-        if (eol.is_corner || obstacle.features().edges[eol.feature].kind != FeatureKind::Convex) return true;
-        const Vec3 place = obstacle.at(state_.time).inverse(surgery_->world(eol.vertex_id));
+        const Vec3 place = placed(eol).place;
+        if (eol.is_corner) return true;
+        if (obstacle.features().edges[eol.feature].kind != FeatureKind::Convex)
+            return (place - place_on_feature(obstacle, eol.feature, place).point).norm() <=
+                   kOnFeature * scene_.material.thickness;
         const std::optional<FeatureFrame> frame =
             find_edge_frame(obstacle, eol.feature, place, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
         const Vec3 across = frame->tangent.cross(frame->outward);
@@ -325,34 +343,59 @@ class Conforming {
     void join()
     {
         for (std::size_t o = 0; o < scene_.obstacles.size(); ++o) {
-            std::set<int> features;
+            const std::vector<FeatureEdge>& edges = scene_.obstacles[o].features().edges;
+            std::set<int> polylines;
             for (const EolVertex& e : eol_)
-                if (e.obstacle == static_cast<int>(o) && !e.is_corner) features.insert(e.feature);
-            for (const int f : features) join_along(static_cast<int>(o), f);
+                if (e.obstacle == static_cast<int>(o) && !e.is_corner)
+                    polylines.insert(edges[e.feature].polyline);
+            for (const int p : polylines) join_along(static_cast<int>(o), p);
         }
     }
 
-    void join_along(int o, int feature)
+    void join_along(int o, int index)
     {
         const Obstacle& obstacle = scene_.obstacles[o];
-        const Placement now = obstacle.at(state_.time);
-        const auto [a, b] = feature_segment(obstacle, feature);
-        const EolVertex on_it{0, o, false, feature, Vec3::Zero(), 0};
-        std::vector<std::pair<double, EolVertex>> row;
+        const Polyline polyline = trace_polyline(obstacle, index);
+        std::vector<std::pair<double, EolVertex>> row;  // by length along the polyline
         for (const EolVertex& e : eol_) {
-            if (!is_on_trace(e.vertex_id) || !is_trace_edge(obstacle, on_it, e)) continue;
-            row.emplace_back((now.inverse(surgery_->world(e.vertex_id)) - a).dot(b - a), e);
+            if (e.obstacle != o || !is_on_trace(e.vertex_id)) continue;
+            if (const auto along = length_before(obstacle, polyline, e)) row.emplace_back(*along, e);
         }
         std::sort(row.begin(), row.end(), [](const auto& p, const auto& q) {
             return std::tuple(p.first, p.second.vertex_id) < std::tuple(q.first, q.second.vertex_id);
         });
         for (std::size_t i = 1; i < row.size(); ++i) join(row[i - 1].second, row[i].second);
+        if (polyline.is_closed && row.size() > 2) join(row.back().second, row.front().second);
+    }
+
+    /// Of the polyline, m; nothing where the vertex is not on it.
+    std::optional<double> length_before(const Obstacle& obstacle, const Polyline& polyline,
+                                        const EolVertex& eol) const
+    {
+        const ObstacleFeatures& features = obstacle.features();
+        const auto point_at = [&](const PolylineEdge& edge, bool is_end) {
+            return obstacle.topology()
+                .edges[features.edges[edge.feature].edge]
+                .points[edge.is_forward == is_end];
+        };
+        if (eol.is_corner) {
+            const int point = features.corners[eol.feature].point;
+            if (point == point_at(polyline.edges.front(), false)) return 0.0;
+            if (point == point_at(polyline.edges.back(), true)) return polyline.length;
+            return std::nullopt;
+        }
+        const auto at = std::find_if(polyline.edges.begin(), polyline.edges.end(),
+                                     [&](const PolylineEdge& e) { return e.feature == eol.feature; });
+        if (at == polyline.edges.end()) return std::nullopt;
+        const auto [a, b] = feature_segment(obstacle, eol.feature);
+        const double s = place_on_feature(obstacle, eol.feature, placed(eol).place).s;
+        return at->begin + (at->is_forward ? s : 1.0 - s) * (b - a).norm();
     }
 
     void join(const EolVertex& a, const EolVertex& b)
     {
         if (!is_on_trace(a.vertex_id) || !is_on_trace(b.vertex_id)) return;
-        if (!is_trace_edge(scene_.obstacles[a.obstacle], a, b)) return;
+        if (!is_trace_edge(scene_.obstacles[a.obstacle], placed(a), placed(b))) return;
         if (surgery_->edge_tag(a.vertex_id, b.vertex_id) != kNoTag) return;
         const int tag = tags_.tag(a.is_corner ? b : a);
         if (surgery_->has_edge(a.vertex_id, b.vertex_id))
@@ -381,7 +424,62 @@ class Conforming {
                      between && is_in_plane(*between))
                 made.eol.push_back(*between);
         }
+        made.loose = find_loose();
         return made;
+    }
+
+    /// What is EOL no more, but whose cloth is not off the wire or point yet; and what surgery has made among
+    /// such.
+    std::vector<EolVertex> find_loose() const
+    {
+        std::vector<EolVertex> loose;
+        for (const std::vector<EolVertex>* list : {&state_.eol, &state_.loose})
+            for (const EolVertex& e : *list)
+                if (surgery_->has_vertex(e.vertex_id) && !is_on_trace(e.vertex_id) && !is_clear_of(e))
+                    loose.push_back(e);
+        const auto is_known = [&](VertexId v) {
+            return std::any_of(loose.begin(), loose.end(),
+                               [v](const EolVertex& e) { return e.vertex_id == v; });
+        };
+        for (std::size_t k = 0; k < loose.size(); ++k)
+            for (const VertexId v : surgery_->ring(loose[k].vertex_id).vertices) {
+                if (v < state_.next_id || is_on_trace(v) || is_known(v)) continue;
+                EolVertex made = loose[k];
+                made.vertex_id = v;
+                const Obstacle& obstacle = scene_.obstacles[made.obstacle];
+                if (!made.is_corner)
+                    made.feature = follow_polyline(obstacle, made.feature, placed(made).place).feature;
+                if (!is_clear_of(made)) loose.push_back(made);
+            }
+        std::sort(loose.begin(), loose.end(),
+                  [](const EolVertex& a, const EolVertex& b) { return a.vertex_id < b.vertex_id; });
+        return loose;
+    }
+
+    /// Whether the cloth around the vertex is off the wire or point it is on.
+    bool is_clear_of(const EolVertex& eol) const
+    {
+        constexpr double kClear = 0.3;  // thicknesses: more than the cloth may be past it on the wrong side
+        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+        const Placement now = obstacle.at(state_.time);
+        std::vector<std::array<Vec3, 3>> faces;
+        const auto add = [&](const std::array<Vec3, 3>& world) {
+            faces.push_back({now.inverse(world[0]), now.inverse(world[1]), now.inverse(world[2])});
+        };
+        if (surgery_) {
+            for (const IdFace& face : surgery_->faces_at(eol.vertex_id))
+                add(surgery_->patch_face(face).world);
+        } else {
+            const std::vector<Vec3>& x = state_.mesh.world;
+            for (const int f : stars_.faces[state_.index_of(eol.vertex_id)]) {
+                const Face& face = state_.mesh.faces[f];
+                add({x[face[0]], x[face[1]], x[face[2]]});
+            }
+        }
+        const Vec3 world =
+            surgery_ ? surgery_->world(eol.vertex_id) : state_.mesh.world[state_.index_of(eol.vertex_id)];
+        return is_clear(obstacle, {0, eol.is_corner, eol.feature}, now.inverse(world), faces,
+                        kClear * scene_.material.thickness);
     }
 
     /// A vertex that clean-up or a join has put on a trace is like its neighbour on it.
@@ -394,6 +492,8 @@ class Conforming {
             EolVertex made = *known;
             made.vertex_id = id;
             made.idle = 0;
+            const Obstacle& obstacle = scene_.obstacles[made.obstacle];
+            made.feature = follow_polyline(obstacle, made.feature, placed(made).place).feature;
             return made;
         }
         return std::nullopt;
@@ -422,7 +522,7 @@ std::optional<ConformedMesh> conform_mesh(const Scene& scene, double dt, const S
                                           const std::vector<MeshEdge>& edges, const FailedFlow& failed,
                                           bool is_strict)
 {
-    if (!scene.eol || (state.eol.empty() && state.active.empty())) return std::nullopt;
+    if (!scene.eol || (state.eol.empty() && state.loose.empty() && state.active.empty())) return std::nullopt;
     return Conforming(scene, dt, state, edges, is_strict).run(failed);
 }
 

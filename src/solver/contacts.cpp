@@ -2,9 +2,12 @@
 #include "solver/contacts.h"
 
 #include <algorithm>
+#include <map>
 #include <tuple>
 
+#include "geometry/closest_point.h"
 #include "geometry/contact_plane.h"
+#include "geometry/held_features.h"
 
 namespace arris {
 
@@ -155,6 +158,16 @@ void shift_along(const std::vector<EolCoordinates>& eol, const Contact& contact,
     material[at.vertex] += amount * (at.material_basis * at.opening);
 }
 
+/// Whether a contact is one of the cloth beside a held vertex with what it may touch there.
+bool is_beside_held(const HeldFeatures& held, const Obstacle& obstacle, const ObstacleContact& contact)
+{
+    const auto& [a, b, c] = contact.vertices;
+    if (contact.kind == ContactKind::Edge)
+        return is_covered(obstacle, held.beside_edge(a, b), contact.element, contact.point);
+    return contact.kind == ContactKind::Triangle &&
+           held.is_beside_point(contact.vertices, held.beside_face(contact.vertices), contact.element);
+}
+
 /// Whether a contact that the search found is one of an EOL vertex with the feature it is on.
 bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, double thickness,
                 const ObstacleContact& contact)
@@ -166,9 +179,75 @@ bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordin
     if (contact.kind == ContactKind::Vertex)
         return (contact.point - at.frame.point).norm() <= kNear * thickness &&
                contact.normal.dot(at.frame.outward) > 0.0;
+    const ObstacleEdge& edge = obstacle.topology().edges[contact.element];
+    if (edge.faces[0] < 0) return false;  // a wire: only beside the vertex
     if (!eol.is_corner) return contact.element == features.edges[eol.feature].edge;
-    const auto& ends = obstacle.topology().edges[contact.element].points;
-    return ends[0] == corner || ends[1] == corner;
+    return edge.points[0] == corner || edge.points[1] == corner;
+}
+
+/// On the cloth's edges from a vertex on a wire: the wire stays on the side where the vertex has it, though
+/// the cloth touches it. Folded flat both sides are in the wire's line, so that they may pass it by a little.
+void append_sides(const Obstacle& obstacle, int o, const ObstacleStep& step, const Prediction& prediction,
+                  double thickness, const ClothStars& stars, const std::vector<int>& slot,
+                  const EolCoordinates& at, const EolVertex& eol, std::vector<Contact>& contacts)
+{
+    constexpr double kPast = 0.25;   // thicknesses by which the wire may be passed
+    constexpr double kNear = 3.0;    // thicknesses within which it is looked at
+    constexpr double kReach = 10.0;  // along it
+    if (eol.is_corner || at.side == 0 || obstacle.features().edges[eol.feature].kind != FeatureKind::Wire)
+        return;
+    const std::vector<Vec3>& x = step.motion.begin;
+    const std::vector<FeatureStretch> beside = stretch_around(
+        obstacle, {eol.feature, place_on_feature(obstacle, eol.feature, x[at.vertex]).s}, kReach * thickness);
+    std::map<int, Vec3> normals;  // of the cloth along each edge, outward
+    for (const int f : stars.faces[at.vertex]) {
+        const Face& face = (*step.motion.faces)[f];
+        const Vec3 normal = (x[face[1]] - x[face[0]]).cross(x[face[2]] - x[face[0]]).stableNormalized();
+        for (const int w : face)
+            if (w != at.vertex && slot[w] < 0)
+                normals.try_emplace(w, Vec3::Zero()).first->second += at.side * normal;
+    }
+    for (const auto& [w, sum] : normals) {
+        if (!(sum.norm() > 0.1)) continue;
+        const std::array<int, 2> v = {std::min(at.vertex, w), std::max(at.vertex, w)};
+        std::optional<ObstacleContact> nearest;
+        double least = kNear * thickness;
+        for (const FeatureStretch& stretch : beside) {
+            const auto& ends = obstacle.topology().edges[stretch.edge].points;
+            const std::vector<Vec3>& points = obstacle.mesh().points;
+            const SegmentPair pair =
+                closest_between_segments({x[v[0]], x[v[1]]}, {points[ends[0]], points[ends[1]]});
+            const double distance = (pair.first - pair.second).norm();
+            if (distance >= least || pair.s <= 0.0 || pair.s >= 1.0) continue;
+            least = distance;
+            nearest =
+                make_contact(step.motion, ContactKind::Edge, {{v[0], v[1], -1}, {1.0 - pair.s, pair.s, 0.0}},
+                             stretch.edge, sum.normalized(), pair.second, thickness);
+            const double gap = nearest->normal.dot(pair.first - pair.second);
+            nearest->least_gap = std::min(-kPast * thickness, gap);
+        }
+        if (!nearest) continue;
+        contacts.push_back(place_contact(*nearest, o, step, prediction));
+        contacts.back().may_grow = false;
+    }
+}
+
+/// Keeps a vertex that was EOL, and beside which the cloth still touches the wire, off that wire itself.
+std::optional<Contact> make_loose_contact(const Obstacle& obstacle, const ObstacleStep& step,
+                                          const Prediction& prediction, double thickness,
+                                          const EolVertex& loose, int vertex)
+{
+    const Vec3& place = step.motion.begin[vertex];
+    const Vec3 nearest = loose.is_corner
+                             ? obstacle.mesh().points[obstacle.features().corners[loose.feature].point]
+                             : place_on_feature(obstacle, loose.feature, place).point;
+    const Vec3 normal = (place - nearest).stableNormalized();
+    if (!(normal.squaredNorm() > 0.0)) return std::nullopt;
+    ObstacleContact contact =
+        make_contact(step.motion, ContactKind::Vertex, {{vertex, -1, -1}, {1.0, 0.0, 0.0}}, -1, normal,
+                     nearest, thickness);
+    contact.least_gap = std::min(thickness, (place - nearest).norm());
+    return place_contact(contact, loose.obstacle, step, prediction);
 }
 
 Contact make_eol_contact(const ObstacleStep& step, const Prediction& prediction, double thickness,
@@ -207,6 +286,18 @@ SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& 
 
 }  // namespace
 
+std::vector<FeatureHold> holds_on(const State& state, int obstacle)
+{
+    std::vector<FeatureHold> holds;
+    for (const std::vector<EolVertex>* list : {&state.eol, &state.loose})
+        for (const EolVertex& eol : *list)
+            if (eol.obstacle == obstacle)
+                holds.push_back({state.index_of(eol.vertex_id), eol.is_corner, eol.feature});
+    std::sort(holds.begin(), holds.end(),
+              [](const FeatureHold& a, const FeatureHold& b) { return a.vertex < b.vertex; });
+    return holds;
+}
+
 std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
                                          const std::vector<MeshEdge>& edges, const Prediction& prediction,
                                          const std::vector<HeldVertex>& held, double end)
@@ -228,6 +319,8 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
                        to_frame(step.end, free_end)};
         steps.push_back(std::move(step));
     }
+    for (std::size_t o = 0; o < steps.size(); ++o)
+        steps[o].motion.holds = holds_on(state, static_cast<int>(o));
     return steps;
 }
 
@@ -285,12 +378,17 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         slot[placing.coordinates->vertex] = static_cast<int>(eol.size());
         eol.push_back(*placing.coordinates);
     }
+    std::vector<HeldFeatures> held;
+    for (std::size_t o = 0; o < steps.size(); ++o)
+        held.emplace_back(scene.obstacles[o], steps[o].motion, thickness);
     std::erase_if(contacts, [&](const Contact& contact) {
+        const int o = contact.obstacle;
+        if (is_beside_held(held[o], scene.obstacles[o], contact.in_frame)) return true;
         for (const int v : contact.in_frame.vertices) {
             if (v < 0 || slot[v] < 0) continue;
             const EolVertex& vertex = state.eol[eol[slot[v]].entry];
-            if (vertex.obstacle == contact.obstacle && is_covered(scene.obstacles[contact.obstacle], vertex,
-                                                                  eol[slot[v]], thickness, contact.in_frame))
+            if (vertex.obstacle == o &&
+                is_covered(scene.obstacles[o], vertex, eol[slot[v]], thickness, contact.in_frame))
                 return true;
         }
         return false;
@@ -302,6 +400,20 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         contacts.back().mitre = eol[e].frame.mitre;
         contacts.back().may_grow = false;  // pushing it out would stretch the cloth on both sides
         contacts.back().was_active = find_active(state, contacts.back());
+        const std::size_t first = contacts.size();
+        append_sides(scene.obstacles[o], o, steps[o], prediction, thickness, stars, slot, eol[e],
+                     state.eol[eol[e].entry], contacts);
+        for (std::size_t c = first; c < contacts.size(); ++c)
+            contacts[c].was_active = find_active(state, contacts[c]);
+    }
+    for (const EolVertex& loose : state.loose) {
+        const int o = loose.obstacle;
+        std::optional<Contact> contact = make_loose_contact(
+            scene.obstacles[o], steps[o], prediction, thickness, loose, state.index_of(loose.vertex_id));
+        if (!contact) continue;
+        contact->may_grow = false;
+        contact->was_active = find_active(state, *contact);
+        contacts.push_back(*contact);
     }
     return eol;
 }

@@ -37,6 +37,9 @@ struct Contact {
     bool is_vertex() const { return in_frame.kind == ContactKind::Vertex; }
 };
 
+/// The vertices on features of an obstacle, EOL and loose.
+std::vector<FeatureHold> holds_on(const State& state, int obstacle);
+
 /// Where the scene's obstacles are during the step that ends at `end` (s), and how the cloth would move past
 /// them: with the velocity it has, pins where they will be.
 std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,

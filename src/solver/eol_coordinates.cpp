@@ -21,21 +21,22 @@ Face turned_to(const Face& face, int vertex)
     return {face[at], face[(at + 1) % 3], face[(at + 2) % 3]};
 }
 
-/// Sums over the star: what tells how the cloth lies around a vertex.
+/// What tells how the cloth lies around a vertex.
 struct Star {
-    ClothAround cloth;
     Mat2 squared_F = Mat2::Zero();                             ///< sum A F^T F
     Eigen::Matrix<double, 2, 3> F_transposed = Mat23::Zero();  ///< sum A F^T
-    std::vector<Vec3> normals;
+    std::vector<Vec3> normals;                                 ///< of its faces, and their
+    std::vector<Vec3> leaving;        ///< unit directions away from the vertex, halfway between their edges
+    std::vector<double> angles;       ///< there, rad
+    std::vector<Vec2> middles;        ///< material, from the vertex
     std::vector<Mat32> deformations;  ///< F, and
-    std::vector<double> areas;        ///< material, of the faces
+    std::vector<double> areas;        ///< material
 };
 
 Star look_around(const State& state, const std::vector<int>& faces, int vertex,
-                 const std::vector<Vec3>& positions, const Vec3& tangent, const Vec3& side)
+                 const std::vector<Vec3>& positions)
 {
     Star star;
-    star.cloth = {Vec3::Zero(), Vec3::Zero(), side};
     for (const int f : faces) {
         const Face face = turned_to(state.mesh.faces[f], vertex);
         Mat32 Dx;
@@ -53,12 +54,42 @@ Star look_around(const State& state, const std::vector<int>& faces, int vertex,
         star.squared_F += area * F.transpose() * F;
         star.F_transposed += area * F.transpose();
         star.normals.push_back(across.normalized());
-        star.cloth.normal += star.normals.back();
-        Vec3 leaving = Dx.col(0) + Dx.col(1);
-        leaving -= tangent.dot(leaving) * tangent;
-        if (leaving.norm() > 0.0) star.cloth.leaving += leaving.normalized();
+        star.leaving.push_back((Dx.col(0).normalized() + Dx.col(1).normalized()).stableNormalized());
+        star.angles.push_back(std::atan2(across.norm(), Dx.col(0).dot(Dx.col(1))));
+        star.middles.push_back(DX.col(0) + DX.col(1));
     }
     return star;
+}
+
+/// The two sides of a trace, each with one voice, however many faces it has.
+ClothAround sum_sides(const Star& star, const Vec2& trace, const Vec3& tangent, const EolVertex& eol)
+{
+    ClothAround cloth{Vec3::Zero(), Vec3::Zero(), eol.outward, eol.side};
+    for (const double sign : {1.0, -1.0}) {
+        Vec3 normal = Vec3::Zero(), leaving = Vec3::Zero();
+        for (std::size_t f = 0; f < star.normals.size(); ++f) {
+            const Vec2& middle = star.middles[f];
+            if (!(sign * (trace.x() * middle.y() - trace.y() * middle.x()) > 0.0)) continue;
+            normal += star.areas[f] * star.normals[f];
+            leaving += star.areas[f] * star.leaving[f];
+        }
+        normal = (normal - tangent.dot(normal) * tangent).stableNormalized();
+        const Vec3 along = normal.cross(tangent);  // in the side's plane, across the feature
+        cloth.normal += normal;
+        cloth.leaving += along.dot(leaving) < 0.0 ? Vec3(-along) : along;
+    }
+    return cloth;
+}
+
+/// Around a point, each face by the angle that it has there.
+ClothAround sum_around(const Star& star, const EolVertex& eol)
+{
+    ClothAround cloth{Vec3::Zero(), Vec3::Zero(), eol.outward, eol.side};
+    for (std::size_t f = 0; f < star.normals.size(); ++f) {
+        cloth.normal += star.angles[f] * star.normals[f];
+        cloth.leaving += star.angles[f] * star.leaving[f];
+    }
+    return cloth;
 }
 
 Vec2 perpendicular(const Vec2& v)
@@ -69,7 +100,8 @@ Vec2 perpendicular(const Vec2& v)
 /// Material direction of the feature through the vertex: along the cloth's edges that lie on it, else what F
 /// maps nearest to the tangent.
 Vec2 find_trace(const Obstacle& obstacle, const State& state, int entry, int vertex,
-                const std::vector<int>& faces, const Star& star, const Vec3& tangent)
+                const std::vector<int>& faces, const std::vector<Vec3>& positions, const Star& star,
+                const Vec3& tangent)
 {
     Vec2 along = Vec2::Zero();
     std::vector<int> seen;
@@ -79,7 +111,9 @@ Vec2 find_trace(const Obstacle& obstacle, const State& state, int entry, int ver
             if (w == vertex || std::find(seen.begin(), seen.end(), w) != seen.end()) continue;
             seen.push_back(w);
             const int other = state.eol_entry(state.ids[w]);
-            if (other < 0 || !is_trace_edge(obstacle, state.eol[entry], state.eol[other])) continue;
+            if (other < 0 || !is_trace_edge(obstacle, {state.eol[entry], positions[vertex]},
+                                            {state.eol[other], positions[w]}))
+                continue;
             const Vec2 way = state.mesh.material[w] - state.mesh.material[vertex];
             along += way.dot(estimate) >= 0.0 ? way : Vec2(-way);
         }
@@ -122,6 +156,24 @@ Vec3 find_opening(const Star& star, const Mat3& basis, const Mat23& material_bas
     return response / response[0];
 }
 
+/// Which way the normals go, seen where the cloth is not folded flat.
+int find_side(const ClothAround& cloth, const EolVertex& eol, const Vec3& outward)
+{
+    constexpr double kSeen = 0.3;  // of a sum of two unit vectors, or of angles: 17 degrees short of flat
+    const double along = cloth.normal.dot(outward);
+    return std::abs(along) > kSeen ? (along > 0.0 ? 1 : -1) : eol.side;
+}
+
+/// A wire's outward direction turns with the cloth; the vertex follows into its plane, little by little.
+Vec3 towards_plane(const Obstacle& obstacle, const EolVertex& eol, const FeatureFrame& frame,
+                   const Vec3& place)
+{
+    constexpr double kShare = 0.5;  // of what is missing, a step
+    if (eol.is_corner || obstacle.features().edges[eol.feature].kind != FeatureKind::Wire) return place;
+    const Vec3 across = frame.tangent.cross(frame.outward);
+    return place - kShare * across.dot(place - frame.point) * across;
+}
+
 /// From the obstacle's frame to the world.
 EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)
 {
@@ -146,20 +198,46 @@ ClothStars make_stars(int vertex_count, const std::vector<Face>& faces, const st
     return stars;
 }
 
-bool is_trace_edge(const Obstacle& obstacle, const EolVertex& a, const EolVertex& b)
+bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b)
 {
-    if (a.obstacle != b.obstacle) return false;
-    if (!a.is_corner && !b.is_corner) return a.feature == b.feature;
+    if (a.eol.obstacle != b.eol.obstacle) return false;
+    if (!a.eol.is_corner && !b.eol.is_corner && a.eol.feature == b.eol.feature) return true;
+    constexpr double kLongestWay = 1.2;  // over the distance: an arc that turns by 120 degrees
     const ObstacleFeatures& features = obstacle.features();
-    const auto ends_at = [&](const FeatureEdge& edge, const EolVertex& corner) {
-        const auto& ends = obstacle.topology().edges[edge.edge].points;
-        const int point = features.corners[corner.feature].point;
-        return ends[0] == point || ends[1] == point;
+    const auto place_of = [&](const PlacedEol& at) {
+        return at.eol.is_corner ? obstacle.mesh().points[features.corners[at.eol.feature].point]
+                                : place_on_feature(obstacle, at.eol.feature, at.place).point;
     };
-    if (a.is_corner && b.is_corner)
-        return std::any_of(features.edges.begin(), features.edges.end(),
-                           [&](const FeatureEdge& e) { return ends_at(e, a) && ends_at(e, b); });
-    return a.is_corner ? ends_at(features.edges[b.feature], a) : ends_at(features.edges[a.feature], b);
+    const double most = kLongestWay * (place_of(a) - place_of(b)).norm();
+    const auto on = [&](const PlacedEol& at) {
+        return FeaturePlace{at.eol.feature, place_on_feature(obstacle, at.eol.feature, at.place).s};
+    };
+    if (!a.eol.is_corner && !b.eol.is_corner) return distance_along(obstacle, on(a), on(b), most).has_value();
+    if (a.eol.is_corner != b.eol.is_corner) {
+        const PlacedEol &corner = a.eol.is_corner ? a : b, &other = a.eol.is_corner ? b : a;
+        return distance_to_corner(obstacle, on(other), corner.eol.feature, most).has_value();
+    }
+    const int point = features.corners[a.eol.feature].point;
+    const ObstacleTopology& topology = obstacle.topology();
+    for (int k = 0; k < topology.edge_count_at(point); ++k) {
+        const int edge = topology.edge_at(point, k);
+        const int feature = feature_of_edge(features, edge);
+        const double s = topology.edges[edge].points[0] == point ? 0.0 : 1.0;
+        if (feature >= 0 && distance_to_corner(obstacle, {feature, s}, b.eol.feature, most)) return true;
+    }
+    return false;
+}
+
+void follow_features(const std::vector<Obstacle>& obstacles, State& state)
+{
+    for (std::vector<EolVertex>* list : {&state.eol, &state.loose})
+        for (EolVertex& eol : *list) {
+            if (eol.is_corner) continue;
+            const Obstacle& obstacle = obstacles[eol.obstacle];
+            const Vec3& world = state.mesh.world[state.index_of(eol.vertex_id)];
+            eol.feature =
+                follow_polyline(obstacle, eol.feature, obstacle.at(state.time).inverse(world)).feature;
+        }
 }
 
 EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
@@ -177,14 +255,26 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int en
         const auto& ends = obstacle.topology().edges[obstacle.features().edges[eol.feature].edge].points;
         tangent = (obstacle.mesh().points[ends[1]] - obstacle.mesh().points[ends[0]]).normalized();
     }
-    const Star star = look_around(state, stars.faces[v], v, positions, tangent, eol.outward);
-    const std::optional<FeatureFrame> frame =
-        eol.is_corner ? find_corner_frame(obstacle, eol.feature, place, star.cloth)
-                      : find_edge_frame(obstacle, eol.feature, place, star.cloth);
+    const Star star = look_around(state, stars.faces[v], v, positions);
+    Vec2 trace = Vec2::Zero();
+    if (!eol.is_corner)
+        trace = find_trace(obstacle, state, entry, v, stars.faces[v], positions, star, tangent);
+    if (!trace.allFinite()) return {std::nullopt, EolRefusal::NoDirection};
+    const ClothAround around = eol.is_corner ? sum_around(star, eol) : sum_sides(star, trace, tangent, eol);
+    const std::optional<FeatureFrame> frame = eol.is_corner
+                                                  ? find_corner_frame(obstacle, eol.feature, place, around)
+                                                  : find_edge_frame(obstacle, eol.feature, place, around);
     if (!frame) return {std::nullopt, EolRefusal::NoDirection};
     if (is_edge_on(star, frame->outward)) return {std::nullopt, EolRefusal::EdgeOn};
 
-    EolCoordinates at{v, entry, *frame, end(place), Mat3::Zero(), Mat23::Zero(), Vec3::UnitX()};
+    EolCoordinates at{v,
+                      entry,
+                      *frame,
+                      end(towards_plane(obstacle, eol, *frame, place)),
+                      Mat3::Zero(),
+                      Mat23::Zero(),
+                      find_side(around, eol, frame->outward),
+                      Vec3::UnitX()};
     at.basis.col(0) = frame->outward;
     at.basis.col(1) = frame->tangent;
     if (eol.is_corner) {
@@ -192,8 +282,6 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int en
         at.material_basis.col(2) = Vec2::UnitY();
         return finish(star, end, at);
     }
-    const Vec2 trace = find_trace(obstacle, state, entry, v, stars.faces[v], star, tangent);
-    if (!trace.allFinite()) return {std::nullopt, EolRefusal::NoDirection};
     if (border && std::abs(border->x() * trace.y() - border->y() * trace.x()) < kSin20)
         return {std::nullopt, EolRefusal::AlongBorder};
     at.material_basis.col(2) = border ? *border : perpendicular(trace);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/feature_frame.h"
+#include "geometry/feature_path.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/rigid_motion.h"
 #include "solver/state.h"
@@ -24,6 +25,7 @@ struct EolCoordinates {
     Vec3 carried;        ///< where riding on the obstacle takes it by the step's end, world
     Mat3 basis;          ///< first column: the outward direction at the step's end
     Mat23 material_basis;
+    int side;      ///< EolVertex::side from now on
     Vec3 opening;  ///< change of u, (1, ...), that opens the gap with the least kinetic energy
 };
 
@@ -51,7 +53,18 @@ struct EolPlacing {
 EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
                             const std::vector<Vec3>& positions, const Placement& end);
 
-/// Whether two EOL vertices joined by an edge of the cloth have the feature along it.
-bool is_trace_edge(const Obstacle& obstacle, const EolVertex& a, const EolVertex& b);
+/// An EOL vertex and where it is in its obstacle's frame.
+struct PlacedEol {
+    const EolVertex& eol;
+    Vec3 place;
+};
+
+/// Whether two EOL vertices joined by an edge of the cloth have the feature along it: they are on one
+/// polyline, or at its end, and it goes from one to the other nearly straight.
+bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b);
+
+/// EOL vertices that have gone along their polyline past an end of their edge are on the next one from now
+/// on. At the state's time.
+void follow_features(const std::vector<Obstacle>& obstacles, State& state);
 
 }  // namespace arris

@@ -5,8 +5,6 @@
 #include <set>
 #include <unordered_map>
 
-#include "geometry/surgery_clearance.h"
-
 namespace arris {
 
 namespace {
@@ -23,17 +21,26 @@ EolGuard::EolGuard(const Scene& scene, const State& state, bool is_strict)
     : scene_(scene),
       state_(state),
       membrane_(scene.material.youngs_modulus, scene.material.poisson_ratio),
-      is_strict_(is_strict)
+      is_strict_(is_strict),
+      held_(scene.obstacles.size())
 {
+    for (const std::vector<EolVertex>* list : {&state.eol, &state.loose})
+        for (const EolVertex& eol : *list)
+            held_[eol.obstacle].push_back({eol.vertex_id, eol.is_corner, eol.feature});
+    for (std::vector<HeldVertexId>& held : held_)
+        std::sort(held.begin(), held.end(),
+                  [](const HeldVertexId& a, const HeldVertexId& b) { return a.vertex < b.vertex; });
 }
 
 bool EolGuard::allows(const SurgeryEvent& event) const
 {
     const double thickness = scene_.material.thickness;
     if (strain_gain(event) > 0.0 && (is_strict_ || !can_give_way(event))) return false;
-    return std::all_of(scene_.obstacles.begin(), scene_.obstacles.end(), [&](const Obstacle& obstacle) {
-        return is_free(event, obstacle, obstacle.at(state_.time), thickness);
-    });
+    for (std::size_t o = 0; o < scene_.obstacles.size(); ++o) {
+        const Obstacle& obstacle = scene_.obstacles[o];
+        if (!is_free(event, obstacle, obstacle.at(state_.time), thickness, held_[o])) return false;
+    }
+    return true;
 }
 
 double EolGuard::allowance(const SurgeryEvent& event) const

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "geometry/cloth_surgery.h"
+#include "geometry/surgery_clearance.h"
 #include "physics/membrane.h"
 #include "solver/patch_relaxation.h"
 #include "solver/scene.h"
@@ -41,6 +42,7 @@ class EolGuard {
     bool is_strict_;
     bool is_clearing_ = false;
     const ClothSurgery* surgery_ = nullptr;
+    std::vector<std::vector<HeldVertexId>> held_;  ///< on each obstacle
 };
 
 }  // namespace arris

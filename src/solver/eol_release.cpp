@@ -46,7 +46,11 @@ void hold_between(const Scene& scene, const State& state, const std::vector<Mesh
     for (const MeshEdge& edge : edges) {
         const int a = state.eol_entry(state.ids[edge.a]), b = state.eol_entry(state.ids[edge.b]);
         if (a < 0 || b < 0 || holds[a] == EolHold::None || holds[b] == EolHold::None) continue;
-        if (!is_trace_edge(scene.obstacles[state.eol[a].obstacle], state.eol[a], state.eol[b])) continue;
+        const Obstacle& obstacle = scene.obstacles[state.eol[a].obstacle];
+        const Placement now = obstacle.at(state.time);
+        const PlacedEol at_a = {state.eol[a], now.inverse(state.mesh.world[edge.a])};
+        const PlacedEol at_b = {state.eol[b], now.inverse(state.mesh.world[edge.b])};
+        if (!is_trace_edge(obstacle, at_a, at_b)) continue;
         beside[a].push_back(b);
         beside[b].push_back(a);
     }

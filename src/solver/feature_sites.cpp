@@ -200,15 +200,19 @@ class SiteFinder {
         return site;
     }
 
-    /// On a border, whose plane turns with the cloth, the nearest point.
+    /// On a wire or border, whose plane turns with the cloth, the nearest point.
     std::optional<double> find_crossing(int a, int b, int feature) const
     {
-        // Both sides of a cloth that hangs over a wire lie on the wire's line: the check of a step would have
-        // to know them. Until then wires are met by rows.
-        if (obstacle_.features().edges[feature].kind == FeatureKind::Wire) return std::nullopt;
         const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
         const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
-        if (obstacle_.features().edges[feature].kind != FeatureKind::Convex) return nearest.s;
+        const FeatureEdge& edge = obstacle_.features().edges[feature];
+        if (edge.kind != FeatureKind::Convex) {
+            const bool is_near = (nearest.first - nearest.second).norm() <= kOnFeature * thickness_;
+            const auto& ends = obstacle_.topology().edges[edge.edge].points;
+            const bool is_at_corner = (nearest.t <= 0.0 && corner_at(obstacle_, ends[0]) >= 0) ||
+                                      (nearest.t >= 1.0 && corner_at(obstacle_, ends[1]) >= 0);
+            return is_near && !is_at_corner ? std::optional(nearest.s) : std::nullopt;
+        }
         const std::optional<FeatureFrame> frame =
             find_edge_frame(obstacle_, feature, nearest.second, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
         const Vec3 across = frame->tangent.cross(frame->outward);

@@ -11,6 +11,7 @@
 #include "physics/energies.h"
 #include "physics/linear_system.h"
 #include "physics/term.h"
+#include "solver/contacts.h"
 
 namespace arris {
 
@@ -59,14 +60,16 @@ class Relaxation {
     double energy() const { return energy_; }
     const std::vector<Vec3>& world() const { return patch_.mesh.world; }
 
-    bool is_way_free(const std::vector<Vec3>& begin, double time) const
+    bool is_way_free(const std::vector<Vec3>& begin, double time,
+                     const std::vector<std::vector<FeatureHold>>& holds) const
     {
-        return std::all_of(scene_.obstacles.begin(), scene_.obstacles.end(), [&](const Obstacle& obstacle) {
-            const Placement now = obstacle.at(time);
+        for (std::size_t o = 0; o < scene_.obstacles.size(); ++o) {
+            const Placement now = scene_.obstacles[o].at(time);
             const ClothMotion motion = {&patch_.mesh.faces, &edges_, to_frame(now, begin),
-                                        to_frame(now, patch_.mesh.world)};
-            return check_sweep(obstacle, motion, scene_.material.thickness).is_clean();
-        });
+                                        to_frame(now, patch_.mesh.world), holds[o]};
+            if (!check_sweep(scene_.obstacles[o], motion, scene_.material.thickness).is_clean()) return false;
+        }
+        return true;
     }
 
     void go_back_half(const std::vector<Vec3>& begin)
@@ -192,7 +195,17 @@ double relax(const Scene& scene, const RelaxedPatch& patch, State& state)
     const double before = relaxation.energy();
     relaxation.run(patch.wanted);
     relaxation.rise_to(patch.wanted);
-    for (int k = 0; !relaxation.is_way_free(begin, state.time); ++k) {
+    std::vector<std::vector<FeatureHold>> holds(scene.obstacles.size());
+    for (std::size_t o = 0; o < holds.size(); ++o)
+        for (const FeatureHold& hold : holds_on(state, static_cast<int>(o)))
+            if (const auto local = std::find(part.vertices.begin(), part.vertices.end(), hold.vertex);
+                local != part.vertices.end())
+                holds[o].push_back(
+                    {static_cast<int>(local - part.vertices.begin()), hold.is_corner, hold.feature});
+    for (std::vector<FeatureHold>& list : holds)
+        std::sort(list.begin(), list.end(),
+                  [](const FeatureHold& a, const FeatureHold& b) { return a.vertex < b.vertex; });
+    for (int k = 0; !relaxation.is_way_free(begin, state.time, holds); ++k) {
         if (k == kMostHalvings) return before;
         relaxation.go_back_half(begin);
     }

@@ -29,9 +29,11 @@ struct EolVertex {
     std::uint32_t vertex_id;
     std::int32_t obstacle;  ///< index in the scene
     bool is_corner;
-    std::int32_t feature;  ///< index in the obstacle's features().corners or .edges
-    Vec3 outward;          ///< unit, from the feature, in the obstacle's frame
-    std::int32_t idle;     ///< steps in a row at whose end it did not press
+    std::int32_t feature;   ///< index in the obstacle's features().corners or .edges
+    Vec3 outward;           ///< unit, from the feature, in the obstacle's frame
+    std::int32_t idle;      ///< steps in a row at whose end it did not press
+    std::int32_t side = 0;  ///< of a wire or point: 1 where the normals of the cloth's faces point outward,
+                            ///< -1 where inward, 0 as long as that is not known
 };
 
 /// Where a vertex that a pin holds was at time 0: the pin's motion maps this to where it must be.
@@ -58,7 +60,8 @@ struct State {
     std::vector<Vec2> previous_material;
     std::vector<Vec2> previous_material_velocity;
 
-    std::vector<EolVertex> eol;         ///< ascending by vertex_id
+    std::vector<EolVertex> eol;    ///< ascending by vertex_id
+    std::vector<EolVertex> loose;  ///< were EOL; cloth beside them still touches their wire or point. As eol
     std::vector<PinAnchor> anchors;     ///< ascending by (pin, vertex_id)
     std::vector<ActiveContact> active;  ///< ascending by (vertex_ids, obstacle, kind, element)
     std::int64_t crossings = 0;         ///< how often, so far, something passed through

@@ -62,7 +62,7 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
 {
     work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
     work.eol.clear();
-    if (!state.eol.empty())
+    if (!state.eol.empty() || !state.loose.empty())
         work.eol = add_eol_contacts(scene, state, work.stars, work.prediction, work.obstacles, work.contacts);
     weigh_start(scene, state, work);
     const std::optional<int> crushed = share_room(work.obstacles, work.prediction, work.contacts).crushed;
@@ -332,6 +332,7 @@ void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoord
         if (contacts[c].eol < 0) continue;
         EolVertex& vertex = vertices[eol[contacts[c].eol].entry];
         vertex.outward = contacts[c].in_frame.normal;
+        vertex.side = eol[contacts[c].eol].side;
         vertex.idle = multiplier[c] > 0.0 ? 0 : vertex.idle + 1;
     }
 }
@@ -357,7 +358,7 @@ void note_failure(const State& state, const State& start, const StepReport& repo
 }
 
 /// Swaps the new state in, or leaves the old one where the step failed.
-void commit(double end, Workspace& work, State& state, StepReport& report)
+void commit(const Scene& scene, double end, Workspace& work, State& state, StepReport& report)
 {
     if (report.status != StepStatus::Done) return;
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
@@ -378,6 +379,7 @@ void commit(double end, Workspace& work, State& state, StepReport& report)
     state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // put back by hand: no history
     state.time = end;
     ++state.step;
+    follow_features(scene.obstacles, state);
     work.known.world.clear();
     if (report.rewound > 0) return;
     work.known_energy = work.proposed_energy;
@@ -473,7 +475,7 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     note_failure(state, start, report, work);
 
     // 7. Swapped in, or the state stays as it was.
-    commit(end, work, start, report);
+    commit(scene, end, work, start, report);
     if (report.status == StepStatus::Done && &start != &state) std::swap(state, start);
     report.seconds.advance += watch.lap();
     return report;

@@ -11,6 +11,7 @@
 #include "geometry/obstacle_shapes.h"
 #include "solver/advance.h"
 #include "solver/audit.h"
+#include "solver/contacts.h"
 #include "solver/mesh_transfer.h"
 #include "solver/step.h"
 #include "tests/solver/eol_cloth.h"
@@ -151,6 +152,119 @@ TEST(Conform, RowsOnAnEdgeBecomeVerticesOnItWithEdgesAlongIt)
         // It reaches from border to border, but for what is too near a corner of the cloth.
         EXPECT_GT(state.mesh.world[row.back()].y() - state.mesh.world[row.front()].y(), 0.4 - 2.2 * kCell);
         EXPECT_GT(least_material_angle(state.mesh), 5.0);
+    }
+}
+
+/// Flat cloth at the thickness' height over wires; rows where its edges cross them.
+EolCloth lying_on(const Obstacle& wires, double turn)
+{
+    EolCloth cloth(wires, make_draped({7, turn, 180.0}));
+    cloth.scene.eol = uniform_target(kCell, 10.0);
+    for (Vec3& x : cloth.state.mesh.world) x += Vec3(0.003, 0.004, kThickness);
+    const State& state = cloth.state;
+    const Obstacle& obstacle = cloth.scene.obstacles[0];
+    for (const MeshEdge& edge : edges_of(state))
+        for (const FeatureEdge& feature : obstacle.features().edges) {
+            const auto& ends = obstacle.topology().edges[feature.edge].points;
+            const Vec2 p = obstacle.mesh().points[ends[0]].head<2>(),
+                       q = obstacle.mesh().points[ends[1]].head<2>();
+            const Vec2 a = state.mesh.world[edge.a].head<2>(), b = state.mesh.world[edge.b].head<2>();
+            if (!(twice_area(a, b, p) * twice_area(a, b, q) < 0.0 &&
+                  twice_area(p, q, a) * twice_area(p, q, b) < 0.0))
+                continue;
+            std::array<std::uint32_t, 3> ids = {state.ids[edge.a], state.ids[edge.b],
+                                                ActiveContact::kNoVertex};
+            std::sort(ids.begin(), ids.end());
+            cloth.state.active.push_back({ids, ContactKind::Edge, 0, feature.edge, Vec3::UnitZ(), 1e-6});
+        }
+    return cloth;
+}
+
+/// A trace without ends: from every vertex two edges of the cloth go on to others.
+void expect_closed_trace(const EolCloth& cloth)
+{
+    const State& state = cloth.state;
+    std::vector<int> count(state.mesh.world.size(), 0);
+    for (const MeshEdge& edge : edges_of(state)) {
+        const int a = state.eol_entry(state.ids[edge.a]), b = state.eol_entry(state.ids[edge.b]);
+        if (a < 0 || b < 0) continue;
+        if (!is_trace_edge(cloth.scene.obstacles[0], {state.eol[a], state.mesh.world[edge.a]},
+                           {state.eol[b], state.mesh.world[edge.b]}))
+            continue;
+        ++count[edge.a];
+        ++count[edge.b];
+    }
+    for (const EolVertex& eol : state.eol) EXPECT_GE(count[state.index_of(eol.vertex_id)], 2);
+}
+
+TEST(Conform, AWireOfManySegmentsBecomesOneTrace)
+{
+    std::vector<Vec3> points;
+    for (int k = 0; k <= 60; ++k) points.emplace_back(0.0, -0.3 + 0.01 * k, 0.0);
+    for (const double turn : {0.0, 20.0}) {
+        EolCloth cloth = lying_on(Obstacle("wire", make_wire(points, false), {}, {}, 30.0), turn);
+        take(cloth);
+        expect_sound(cloth.state, 0.16);
+        EXPECT_GE(cloth.state.eol.size(), 8u);
+        const std::vector<int> row = along_ridge(cloth.state);
+        for (std::size_t k = 1; k < row.size(); ++k)
+            EXPECT_TRUE(has_edge(cloth.state, row[k - 1], row[k])) << k;
+        for (const EolVertex& eol : cloth.state.eol) {
+            const Vec3& x = cloth.state.mesh.world[cloth.state.index_of(eol.vertex_id)];
+            const Vec3 nearest = place_on_feature(cloth.scene.obstacles[0], eol.feature, x).point;
+            EXPECT_NEAR((x - nearest).norm(), kThickness, kOnFeature) << "each is on the segment below it";
+        }
+    }
+}
+
+TEST(Conform, AClosedWireBecomesAClosedTrace)
+{
+    std::vector<Vec3> points;
+    for (int k = 0; k < 24; ++k)
+        points.emplace_back(0.12 * std::cos(2.0 * M_PI * k / 24), 0.12 * std::sin(2.0 * M_PI * k / 24), 0.0);
+    EolCloth cloth = lying_on(Obstacle("loop", make_wire(points, true), {}, {}, 30.0), 10.0);
+    take(cloth);
+    expect_sound(cloth.state, 0.16);
+    EXPECT_GE(cloth.state.eol.size(), 8u);
+    expect_closed_trace(cloth);
+}
+
+TEST(Conform, WhereAWireEndsInTheMiddleOfTheClothTheTraceDoes)
+{
+    EolCloth cloth =
+        lying_on(Obstacle("wire", make_wire({{0, -0.3, 0}, {0, 0.021, 0}}, false), {}, {}, 30.0), 0.0);
+    take(cloth);
+    expect_sound(cloth.state, 0.16);
+    ASSERT_FALSE(cloth.state.eol.empty());
+    for (const EolVertex& eol : cloth.state.eol)
+        EXPECT_LT(cloth.state.mesh.world[cloth.state.index_of(eol.vertex_id)].y(), 0.021 + kOnFeature);
+}
+
+TEST(Conform, ATraceOnAWireIsNotReleasedAsLongAsTheClothTouchesIt)
+{
+    for (const double fold : {0.0, 176.0}) {
+        EolCloth cloth(Obstacle("wire", make_wire({{0, -1, 0}, {0, 1, 0}}, false), {}, {}, 30.0),
+                       make_draped({8, 0.0, fold}));
+        cloth.scene.eol = uniform_target(0.05, 10.0);
+        for (Vec3& x : cloth.state.mesh.world) x.z() += kThickness;
+        for (int v = 0; v < cloth.state.mesh.vertex_count(); ++v)
+            if (std::abs(cloth.state.mesh.material[v].x() - 0.2) < 1e-9)
+                cloth.state.eol[cloth.add_eol(v, false, 0)].idle = 3;
+        const std::size_t count = cloth.state.eol.size();
+        const std::optional<ConformedMesh> made = conform(cloth);
+        EXPECT_EQ(made ? made->eol.size() : count, fold == 0.0 ? count : 0u);
+        // Given up all the same, it is remembered which vertices they were, until the cloth is off the wire.
+        FailedFlow failed;
+        for (const EolVertex& eol : cloth.state.eol) failed.given_up.insert(eol.vertex_id);
+        const std::optional<ConformedMesh> given_up = conform(cloth, failed);
+        ASSERT_TRUE(given_up);
+        EXPECT_TRUE(given_up->eol.empty());
+        EXPECT_EQ(given_up->loose.empty(), fold > 0.0);
+        if (fold > 0.0) continue;
+        TransferReport report;
+        State after = transfer(cloth.scene, cloth.state, *given_up, report);
+        EXPECT_GE(after.loose.size(), count);
+        EXPECT_EQ(holds_on(after, 0).size(), after.loose.size());
     }
 }
 

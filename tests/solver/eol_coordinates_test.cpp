@@ -95,6 +95,52 @@ TEST(EolCoordinates, OnAWireAreOutwardWhereTheClothIs)
     EXPECT_LT((placing.coordinates->basis.col(0) - Vec3::UnitZ()).norm(), kRoundOff);
 }
 
+TEST(EolCoordinates, OnAWireOutwardTurnsEvenlyAndDoesNotDependOnTheMesh)
+{
+    // However the cloth's mesh is turned against the wire, from flat to folded together.
+    for (const double turn : {0.0, 17.0, 30.0, 45.0})
+        for (const double fold : {180.0, 150.0, 100.0, 95.0, 90.0, 85.0, 80.0, 30.0, 2.0}) {
+            EolCloth cloth = on_wire({8, turn, fold});
+            const int v = cloth.vertex_at(0.2, 0.2);
+            cloth.add_eol(v, false, 0);
+            const EolPlacing placing = cloth.place(v);
+            ASSERT_TRUE(placing.coordinates) << turn << ' ' << fold;
+            const double off = std::acos(std::min(placing.coordinates->basis(2, 0), 1.0));
+            // A turned mesh has faces that the wire's line cuts: they are of neither side.
+            EXPECT_LT(off, turn == 0.0 ? 1e-6 : radians(12.0)) << turn << ' ' << fold;
+        }
+}
+
+TEST(EolCoordinates, OnAWireTheSideIsRememberedWhereTheFoldDoesNotShowIt)
+{
+    for (const int side : {1, -1}) {
+        EolCloth flat = on_wire({8, 0.0, 0.0});  // folded together: its normals cancel
+        const int v = flat.vertex_at(0.2, 0.2);
+        flat.state.eol[flat.add_eol(v, false, 0)].side = side;
+        const EolPlacing placing = flat.place(v);
+        ASSERT_TRUE(placing.coordinates);
+        EXPECT_EQ(placing.coordinates->side, side);
+        EXPECT_LT((placing.coordinates->basis.col(0) - Vec3::UnitZ()).norm(), kRoundOff);
+    }
+    EolCloth open = on_wire({8, 0.0, 120.0});
+    const int v = open.vertex_at(0.2, 0.2);
+    open.add_eol(v, false, 0);
+    EXPECT_EQ(open.place(v).coordinates->side, 1) << "the grid's normals point up";
+}
+
+TEST(EolCoordinates, OnAWireTheVertexFollowsIntoTheOutwardPlane)
+{
+    EolCloth cloth = on_wire({8, 0.0, 90.0});
+    const int v = cloth.vertex_at(0.2, 0.2);
+    cloth.add_eol(v, false, 0);
+    cloth.state.mesh.world[v] += Vec3(1e-4, 0.0, 1e-3);
+    const EolPlacing placing = cloth.place(v);
+    ASSERT_TRUE(placing.coordinates);
+    EXPECT_LT(std::abs(placing.coordinates->carried.x()), 0.9e-4);
+    EXPECT_NEAR(placing.coordinates->carried.y(), cloth.state.mesh.world[v].y(), kRoundOff);
+    EXPECT_NEAR(placing.coordinates->carried.z(), 1e-3, 1e-5);
+}
+
 TEST(EolCoordinates, OnACornerAreOutwardAndAnyFlow)
 {
     EolCloth cloth(make_ridge(60.0, 0.0001 + 0.2), make_draped({8, 0.0, 60.0}));
@@ -312,32 +358,116 @@ TEST(EolRefusal, OfCollapsedClothAndOfAWireWhoseClothTellsNoSide)
     EXPECT_FALSE(place_middle(broken).coordinates);
 }
 
+/// A vertex on the feature's middle, or the corner.
+PlacedEol placed_on(const Obstacle& obstacle, const EolVertex& eol)
+{
+    const ObstacleFeatures& features = obstacle.features();
+    const std::vector<Vec3>& points = obstacle.mesh().points;
+    if (eol.is_corner) return {eol, points[features.corners[eol.feature].point]};
+    const auto& ends = obstacle.topology().edges[features.edges[eol.feature].edge].points;
+    return {eol, 0.5 * (points[ends[0]] + points[ends[1]])};
+}
+
+bool is_joined(const Obstacle& obstacle, const EolVertex& a, const EolVertex& b)
+{
+    const bool is_so = is_trace_edge(obstacle, placed_on(obstacle, a), placed_on(obstacle, b));
+    EXPECT_EQ(is_trace_edge(obstacle, placed_on(obstacle, b), placed_on(obstacle, a)), is_so);
+    return is_so;
+}
+
 TEST(TraceEdge, JoinsVerticesOfOneStretchAndItsEnds)
 {
     const Obstacle ridge = make_ridge(60.0);
     const int tip = testing::tip_of(ridge), end = testing::end_of(ridge);
     const EolVertex on_tip{0, 0, false, tip, Vec3::UnitZ(), 0}, at_end{1, 0, true, end, Vec3::UnitZ(), 0};
-    EXPECT_TRUE(is_trace_edge(ridge, on_tip, on_tip));
-    EXPECT_TRUE(is_trace_edge(ridge, on_tip, at_end));
-    EXPECT_TRUE(is_trace_edge(ridge, at_end, on_tip));
+    EXPECT_TRUE(is_joined(ridge, on_tip, on_tip));
+    EXPECT_TRUE(is_joined(ridge, on_tip, at_end));
+    EXPECT_TRUE(is_joined(ridge, at_end, on_tip));
     EolVertex elsewhere = on_tip;
     elsewhere.obstacle = 1;
-    EXPECT_FALSE(is_trace_edge(ridge, on_tip, elsewhere));
+    EXPECT_FALSE(is_trace_edge(ridge, placed_on(ridge, on_tip), {elsewhere, Vec3::Zero()}));
     const auto& features = ridge.features();
     for (int f = 0; f < static_cast<int>(features.edges.size()); ++f) {
         const EolVertex other{2, 0, false, f, Vec3::UnitZ(), 0};
-        EXPECT_EQ(is_trace_edge(ridge, on_tip, other), f == tip);
+        EXPECT_EQ(is_joined(ridge, on_tip, other), f == tip);
         const auto& ends = ridge.topology().edges[features.edges[f].edge].points;
         const int point = features.corners[end].point;
-        EXPECT_EQ(is_trace_edge(ridge, at_end, other), ends[0] == point || ends[1] == point);
+        EXPECT_EQ(is_joined(ridge, at_end, other), ends[0] == point || ends[1] == point);
         // Both its ends are corners: the feature runs from one to the other.
         for (int c = 0; c < static_cast<int>(features.corners.size()); ++c) {
             const int at = features.corners[c].point;
             if (at == point) continue;
             if ((ends[0] == at && ends[1] == point) || (ends[1] == at && ends[0] == point)) {
-                EXPECT_TRUE(is_trace_edge(ridge, at_end, {3, 0, true, c, Vec3::UnitZ(), 0}));
+                EXPECT_TRUE(is_joined(ridge, at_end, {3, 0, true, c, Vec3::UnitZ(), 0}));
             }
         }
+    }
+}
+
+/// A closed loop around the origin in z = 0, of radius 1.
+Obstacle make_loop(int count)
+{
+    std::vector<Vec3> points;
+    for (int k = 0; k < count; ++k)
+        points.emplace_back(std::cos(2.0 * M_PI * k / count), std::sin(2.0 * M_PI * k / count), 0.0);
+    return Obstacle("loop", make_wire(points, true), {}, {}, 30.0);
+}
+
+/// On the loop's wire at this angle.
+PlacedEol on_loop(const EolVertex& eol, double degrees)
+{
+    const Vec3 at(std::cos(radians(degrees)), std::sin(radians(degrees)), 0.0);
+    return {eol, at};
+}
+
+int edge_at(const Obstacle& loop, double degrees)
+{
+    const PlacedEol at = on_loop({0, 0, false, 0, Vec3::UnitZ(), 0}, degrees);
+    int nearest = 0;
+    for (int f = 0; f < static_cast<int>(loop.features().edges.size()); ++f) {
+        const auto distance = [&](int g) {
+            return (place_on_feature(loop, g, at.place).point - at.place).norm();
+        };
+        if (distance(f) < distance(nearest)) nearest = f;
+    }
+    return nearest;
+}
+
+TEST(TraceEdge, FollowsAPolylineOfManySegmentsButNotAcrossIt)
+{
+    const Obstacle loop = make_loop(40);
+    for (const auto& [from, to, is_along] : {std::tuple(5.0, 50.0, true),
+                                             {350.0, 20.0, true},
+                                             {20.0, 350.0, true},
+                                             {3.0, 100.0, true},
+                                             {0.0, 180.0, false},
+                                             {10.0, 170.0, false},
+                                             {100.0, 240.0, false}}) {
+        const EolVertex a{0, 0, false, edge_at(loop, from), Vec3::UnitZ(), 0};
+        const EolVertex b{1, 0, false, edge_at(loop, to), Vec3::UnitZ(), 0};
+        EXPECT_EQ(is_trace_edge(loop, on_loop(a, from), on_loop(b, to)), is_along) << from << " to " << to;
+    }
+}
+
+TEST(FollowFeatures, VerticesPassOnFromSegmentToSegment)
+{
+    EolCloth cloth(make_loop(40), make_draped({8, 0.0, 180.0}));
+    const Obstacle& loop = cloth.scene.obstacles[0];
+    const int v = cloth.vertex_at(0.2, 0.2);
+    cloth.add_eol(v, false, edge_at(loop, 4.5));
+    for (double degrees = 5.3; degrees < 400.0; degrees += 7.0) {
+        cloth.state.mesh.world[v] = on_loop(cloth.state.eol[0], degrees).place * 1.001;
+        follow_features(cloth.scene.obstacles, cloth.state);
+        EXPECT_EQ(cloth.state.eol[0].feature, edge_at(loop, degrees)) << degrees;
+    }
+    // Where its wire ends it stays on the last segment.
+    EolCloth open(Obstacle("wire", make_wire({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}}, false), {}, {}, 30.0),
+                  make_draped({8, 0.0, 180.0}));
+    open.add_eol(v, false, 0);
+    for (const auto& [x, feature] : {std::pair(-0.5, 0), {0.5, 0}, {1.5, 1}, {3.0, 1}, {0.9, 0}}) {
+        open.state.mesh.world[v] = Vec3(x, 0.0, 0.001);
+        follow_features(open.scene.obstacles, open.state);
+        EXPECT_EQ(open.state.eol[0].feature, feature) << x;
     }
 }
 
