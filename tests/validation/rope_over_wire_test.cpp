@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A strip of cloth that hangs over a wire, both sides straight down, and slides off without friction: a rope
+// over a pulley of no size. Both sides pass through the wire's line.
+//
+//        o      y" = 2 g y / L,  y: how far the longer side is longer than half of the strip.
+//       | |     It presses while its tension exceeds the flow of momentum around the wire, 2 rho y'^2.
+//       | |
+//         |
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cloth_run.h"
+#include "geometry/initial_target.h"
+#include "geometry/mesh_quality.h"
+#include "geometry/obstacle_shapes.h"
+#include "refinement.h"
+#include "solver/energy_balance.h"
+#include "solver/eol_coordinates.h"
+
+namespace arris {
+namespace {
+
+constexpr double kG = 9.81, kDensity = 0.1, kThickness = 1e-3;
+constexpr double kLength = 1.0, kWidth = 0.2, kStart = 0.05;  // m
+constexpr double kLiftOff = 0.598076;                         // s, of this rope
+constexpr double kShare = 0.9;                                // of it, over which errors are measured
+constexpr double kStep = 0.005;                               // s
+constexpr double kTimeError = 1.5e-3;     // BDF2's at 5 ms, over y: the rate is twice a table's
+constexpr double kMeshError = 2e-5;       // over y: K and E h^2 are not quite 0 and infinite
+constexpr double kRise = 1e-4;            // of energy over its start, over what is exchanged
+constexpr double kAreaTolerance = 1e-12;  // round-off of some 100 faces, over the area
+constexpr double kOnWire = 1e-6;          // m, a thousandth of the stand-off: what stretch lifts a vertex by
+
+struct RopeCase {
+    std::array<int, 2> cells = {8, 2};
+    GridPattern pattern = GridPattern::Diagonal;
+    double pattern_angle = 0.0;  ///< degrees
+    Integrator integrator = Integrator::Bdf2;
+    int segments = 1;            ///< of the wire, from y = -1 to 1
+    double bulge_degrees = 0.0;  ///< by which the cloth begins less than folded together
+};
+
+std::string describe(const RopeCase& rope)
+{
+    return fmt::format("{} x {} cells, pattern {}, turned by {}, {} segments, {} degrees open", rope.cells[0],
+                       rope.cells[1], static_cast<int>(rope.pattern), rope.pattern_angle, rope.segments,
+                       rope.bulge_degrees);
+}
+
+double displacement(double time)
+{
+    return kStart * std::cosh(time * std::sqrt(2.0 * kG / kLength));
+}
+
+ObstacleMesh make_wire_of(int segments)
+{
+    std::vector<Vec3> points;
+    for (int k = 0; k <= segments; ++k) points.emplace_back(0.0, -1.0 + 2.0 * k / segments, 0.0);
+    return make_wire(points, false);
+}
+
+/// Folded over the wire, with vertices on it.
+ClothRun make_rope_run(const RopeCase& rope)
+{
+    const double fold = 0.5 * kLength - kStart;
+    ClothGrid grid;
+    grid.size = Vec2(kLength, kWidth);
+    grid.resolution = rope.cells;
+    grid.pattern = rope.pattern;
+    grid.pattern_angle = rope.pattern_angle;
+    grid.folds = {{{Vec2(fold, 0.0), Vec2(fold, kWidth)}, 90.0}};
+    ClothMesh mesh = make_cloth_grid(grid);
+    const double half = 0.5 * rope.bulge_degrees * M_PI / 180.0;
+    for (std::size_t v = 0; v < mesh.world.size(); ++v) {
+        const double along = mesh.material[v].x() - fold;
+        mesh.world[v] = {along * std::sin(half), mesh.material[v].y() - 0.5 * kWidth,
+                         kThickness - std::abs(along) * std::cos(half)};
+    }
+    Scene scene;
+    scene.material = {kDensity, 2e5, 0.0, 1e-7, 0.0, kThickness};
+    scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
+    scene.obstacles.push_back(Obstacle("wire", make_wire_of(rope.segments), {}, {}, 10.0));
+    scene.eol = make_initial_target(mesh);
+    ClothRun run(std::move(scene), std::move(mesh));
+    run.settings.integrator = rope.integrator;
+    for (int v = 0; v < run.state.mesh.vertex_count(); ++v)
+        if (run.state.mesh.material[v].x() == fold)
+            run.state.eol.push_back({run.state.ids[v], 0, false, 0, Vec3::UnitZ(), 0});
+    follow_features(run.scene.obstacles, run.state);
+    return run;
+}
+
+double measure_displacement(const ClothRun& run)
+{
+    double sum = 0.0;
+    int count = 0;
+    for (int v = 0; v < run.state.mesh.vertex_count(); ++v) {
+        if (run.state.mesh.material[v].x() != kLength) continue;
+        sum += kThickness - run.state.mesh.world[v].z() - 0.5 * kLength;
+        ++count;
+    }
+    return sum / count;
+}
+
+double measure_energy(ClothRun& run)
+{
+    prepare(run.scene, run.state, run.work);
+    const State& state = run.state;
+    return compute_cloth_energy(
+               run.scene, run.work,
+               {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}})
+        .sum();
+}
+
+void expect_sound(const State& state)
+{
+    EXPECT_EQ(validate(state.mesh), "");
+    EXPECT_NEAR(material_area(state.mesh) / (kLength * kWidth), 1.0, kAreaTolerance);
+    EXPECT_GE(state.eol.size(), 2u) << "at " << state.time << " s";
+    for (const EolVertex& eol : state.eol) {
+        const Vec3& x = state.mesh.world[state.index_of(eol.vertex_id)];
+        EXPECT_LT(std::hypot(x.x(), x.z() - kThickness), kOnWire) << "at " << state.time << " s";
+    }
+}
+
+struct Slide {
+    double displacement = 0.0, error = 0.0, rise = 0.0, loss = 0.0;
+};
+
+Slide slide(const RopeCase& rope, double dt)
+{
+    SCOPED_TRACE(describe(rope));
+    const double duration = kShare * kLiftOff;
+    ClothRun run = make_rope_run(rope);
+    const double first = measure_energy(run);
+    double greatest = first;
+    const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
+    for (int k = 1; k <= steps && !testing::Test::HasFailure(); ++k) {
+        const StepReport report = run.advance(duration * k / steps - run.state.time);
+        greatest = std::max(greatest, measure_energy(run));
+        EXPECT_EQ(report.rewound, 0);
+        EXPECT_EQ(report.crossings, 0);
+        EXPECT_EQ(report.feature_rows, 0) << "at " << run.state.time << " s";
+        if (rope.bulge_degrees == 0.0) expect_sound(run.state);
+    }
+    const double rate = std::sqrt(2.0 * kG / kLength);
+    const double exchanged =
+        0.5 * kDensity * kLength * kWidth * std::pow(kStart * rate * std::sinh(rate * duration), 2);
+    Slide found;
+    found.displacement = measure_displacement(run);
+    found.error = std::abs(found.displacement / displacement(duration) - 1.0);
+    found.rise = (greatest - first) / exchanged;
+    found.loss = (first - measure_energy(run)) / exchanged;
+    return found;
+}
+
+std::string percent(double share)
+{
+    return fmt::format("{:.4f} %", 100.0 * share);
+}
+
+TEST(RopeOverWire, ConvergesAtTheIntegratorsOrder)
+{
+    Table table("rope_order", {"integrator", "step", "error of y", "energy lost / exchanged"});
+    for (const auto& [integrator, order] :
+         {std::pair(Integrator::ImplicitEuler, 1.0), {Integrator::Bdf2, 2.0}}) {
+        RopeCase rope;
+        rope.integrator = integrator;
+        const std::vector<double> steps = {0.01, 0.005, 0.0025};
+        std::vector<double> errors;
+        for (const double h : steps) {
+            const Slide found = slide(rope, h);
+            errors.push_back(found.error);
+            EXPECT_LT(found.rise, kRise);
+            table.add({integrator == Integrator::Bdf2 ? "BDF2" : "implicit Euler",
+                       fmt::format("{:g} ms", 1e3 * h), percent(found.error),
+                       fmt::format("{:.1e}", found.loss)});
+        }
+        EXPECT_NEAR(order_of(steps, errors), order, 0.15);
+    }
+}
+
+TEST(RopeOverWire, IsARopeOnAnyMeshAndOverAnyWire)
+{
+    Table table("rope_meshes", {"pattern", "turned by", "cells", "segments", "error of y", "energy lost"});
+    double least = 1.0, most = 0.0;
+    for (const GridPattern pattern :
+         {GridPattern::Diagonal, GridPattern::Alternating, GridPattern::Cross, GridPattern::Unstructured})
+        for (const double angle : {0.0, 17.0, 45.0})
+            for (const std::array<int, 2> cells : {std::array{4, 1}, {8, 2}, {16, 4}})
+                for (const int segments : {1, 37}) {
+                    if (pattern == GridPattern::Unstructured && angle > 0.0) continue;
+                    if (segments > 1 && angle > 0.0) continue;
+                    RopeCase rope;
+                    rope.pattern = pattern;
+                    rope.pattern_angle = angle;
+                    rope.cells = cells;
+                    rope.segments = segments;
+                    const Slide found = slide(rope, kStep);
+                    ASSERT_FALSE(testing::Test::HasFailure()) << describe(rope);
+                    EXPECT_LT(found.error, kTimeError) << describe(rope);
+                    EXPECT_LT(found.rise, kRise) << describe(rope);
+                    least = std::min(least, found.displacement);
+                    most = std::max(most, found.displacement);
+                    table.add({std::to_string(static_cast<int>(pattern)), fmt::format("{:g}", angle),
+                               fmt::format("{}", cells[0]), std::to_string(segments), percent(found.error),
+                               fmt::format("{:.1e}", found.loss)});
+                }
+    EXPECT_LT(most / least - 1.0, kMeshError);
+}
+
+}  // namespace
+}  // namespace arris
