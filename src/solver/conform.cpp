@@ -73,7 +73,7 @@ bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3
 class Conforming {
   public:
     Conforming(const Scene& scene, double dt, const State& state, const std::vector<MeshEdge>& edges,
-               bool is_strict)
+               StrainLimit limit)
         : scene_(scene),
           dt_(dt),
           state_(state),
@@ -81,7 +81,7 @@ class Conforming {
           stars_(make_stars(state.mesh.vertex_count(), state.mesh.faces, edges)),
           target_(*scene.eol),
           tags_(scene.obstacles),
-          guard_(scene, state, is_strict)
+          guard_(scene, state, limit)
     {
     }
 
@@ -214,6 +214,7 @@ class Conforming {
         // What stands in the way and cannot give way: there the feature is met by rows. Only there: the rest
         // of the trace carries the cloth on.
         for (const VertexId v : cleared.blocked) release(v);
+        for (const TraceAdvance& advance : advances) report_.lost += is_on_trace(advance.vertex) ? 0 : 1;
     }
 
     /// What has been cleared stays clear.
@@ -520,10 +521,10 @@ class Conforming {
 
 std::optional<ConformedMesh> conform_mesh(const Scene& scene, double dt, const State& state,
                                           const std::vector<MeshEdge>& edges, const FailedFlow& failed,
-                                          bool is_strict)
+                                          StrainLimit limit)
 {
     if (!scene.eol || (state.eol.empty() && state.loose.empty() && state.active.empty())) return std::nullopt;
-    return Conforming(scene, dt, state, edges, is_strict).run(failed);
+    return Conforming(scene, dt, state, edges, limit).run(failed);
 }
 
 }  // namespace arris

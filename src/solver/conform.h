@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/cloth_surgery.h"
+#include "solver/eol_guard.h"
 #include "solver/scene.h"
 #include "solver/state.h"
 
@@ -16,6 +17,7 @@ namespace arris {
 
 struct ConformReport {
     int inserted = 0, released = 0, operations = 0;
+    int lost = 0;     ///< EOL vertices that clearing has cost: blocked, or merged into others
     int refused = 0;  ///< pressing feature contacts that stay rows
 };
 
@@ -38,9 +40,8 @@ struct FailedFlow {
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
 /// they have not for long, the way of those that slide cleared, what they left restored. Nothing where the
 /// mesh is right as it is. `edges` are the state's.
-/// A strict one strains nothing; another may where the cloth around can give way.
 std::optional<ConformedMesh> conform_mesh(const Scene& scene, double dt, const State& state,
                                           const std::vector<MeshEdge>& edges, const FailedFlow& failed,
-                                          bool is_strict);
+                                          StrainLimit limit);
 
 }  // namespace arris

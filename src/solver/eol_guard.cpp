@@ -17,11 +17,11 @@ IdFace from_least(IdFace face)
 
 }  // namespace
 
-EolGuard::EolGuard(const Scene& scene, const State& state, bool is_strict)
+EolGuard::EolGuard(const Scene& scene, const State& state, StrainLimit limit)
     : scene_(scene),
       state_(state),
       membrane_(scene.material.youngs_modulus, scene.material.poisson_ratio),
-      is_strict_(is_strict),
+      limit_(limit),
       held_(scene.obstacles.size())
 {
     for (const std::vector<EolVertex>* list : {&state.eol, &state.loose})
@@ -35,7 +35,7 @@ EolGuard::EolGuard(const Scene& scene, const State& state, bool is_strict)
 bool EolGuard::allows(const SurgeryEvent& event) const
 {
     const double thickness = scene_.material.thickness;
-    if (strain_gain(event) > 0.0 && (is_strict_ || !can_give_way(event))) return false;
+    if (strain_gain(event) > 0.0 && (limit_ != StrainLimit::GivesWay || !can_give_way(event))) return false;
     for (std::size_t o = 0; o < scene_.obstacles.size(); ++o) {
         const Obstacle& obstacle = scene_.obstacles[o];
         if (!is_free(event, obstacle, obstacle.at(state_.time), thickness, held_[o])) return false;
@@ -47,7 +47,8 @@ double EolGuard::allowance(const SurgeryEvent& event) const
 {
     constexpr double kShare = 0.01;     // of the patch's stretch energy, and
     constexpr double kMotion = 0.01;    // of what moves it: its own motion, its weight over a cell
-    constexpr double kClearing = 10.0;  // the alternative is to give the trace up; 100 is seen as a push
+    // The alternative is to give the trace up: a row that holds all that slides.
+    const double clearing = limit_ == StrainLimit::Forced ? 100.0 : 10.0;
     double before = 0.0, area = 0.0, squared_speed = 0.0;
     for (const PatchFace& face : event.before) {
         before += stretch_of(face);
@@ -61,7 +62,7 @@ double EolGuard::allowance(const SurgeryEvent& event) const
                           (0.5 * squared_speed + weight * scene_.eol->length(event.before[0].material[0]));
     constexpr double kStrain = 1e-6;  // nobody sees; of cloth without strain and motion rounding is all
     const double unseen = scene_.material.youngs_modulus * area * kStrain * kStrain;
-    return (is_clearing_ ? kClearing : 1.0) * (kShare * before + kMotion * motion + unseen);
+    return (is_clearing_ ? clearing : 1.0) * (kShare * before + kMotion * motion + unseen);
 }
 
 double EolGuard::strain_gain(const SurgeryEvent& event) const

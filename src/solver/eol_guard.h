@@ -12,12 +12,18 @@
 
 namespace arris {
 
+/// How much surgery may strain the cloth.
+enum class StrainLimit {
+    GivesWay,  ///< what would be left of it when the cloth around gave way counts
+    AsMade,    ///< all of it
+    Forced     ///< as made, but the way of a sliding trace is cleared unless that is seen as a push
+};
+
 /// What mesh surgery may do to the cloth of a state: nothing of an obstacle gets through it, and it is hardly
 /// strained.
 class EolGuard {
   public:
-    /// A strict one counts strain as it is made, another what would be left when the cloth around gave way.
-    EolGuard(const Scene& scene, const State& state, bool is_strict);
+    EolGuard(const Scene& scene, const State& state, StrainLimit limit);
 
     /// The mesh under surgery, whose patches may give way.
     void watch(const ClothSurgery& surgery) { surgery_ = &surgery; }
@@ -39,7 +45,7 @@ class EolGuard {
     const Scene& scene_;
     const State& state_;
     Membrane membrane_;
-    bool is_strict_;
+    StrainLimit limit_;
     bool is_clearing_ = false;
     const ClothSurgery* surgery_ = nullptr;
     std::vector<std::vector<HeldVertexId>> held_;  ///< on each obstacle

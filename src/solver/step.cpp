@@ -25,16 +25,19 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
     Stopwatch watch;
     prepare(scene, state, work);
     report.seconds.move += watch.lap();
-    // Strictly where the cloth could not give way as it should have.
+    // More carefully where the cloth could not give way as it should have; by force where that would cost a
+    // trace its vertices.
     std::optional<ConformedMesh> conformed;
     TransferReport transferred;
-    for (const bool is_strict : {false, true}) {
-        conformed = conform_mesh(scene, end - state.time, state, work.edges, work.failed_flow, is_strict);
+    for (const StrainLimit limit : {StrainLimit::GivesWay, StrainLimit::AsMade, StrainLimit::Forced}) {
+        conformed = conform_mesh(scene, end - state.time, state, work.edges, work.failed_flow, limit);
         report.seconds.conform += watch.lap();
         if (!conformed) return state;
         work.conformed = transfer(scene, state, *conformed, transferred);
         report.seconds.transfer += watch.lap();
-        if (!transferred.is_strained) break;
+        const bool is_wanted =
+            limit == StrainLimit::GivesWay ? !transferred.is_strained : conformed->report.lost == 0;
+        if (is_wanted) break;
     }
     report.inserted = conformed->report.inserted;
     report.released = conformed->report.released;
