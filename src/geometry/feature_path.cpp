@@ -122,23 +122,20 @@ std::vector<FeatureStretch> stretch_around(const Obstacle& obstacle, const Featu
     return stretches;
 }
 
-std::vector<FeatureStretch> stretch_around_corner(const Obstacle& obstacle, int corner, double reach)
+double find_bend(const Obstacle& obstacle, const FeaturePlace& place, double reach)
 {
-    const ObstacleTopology& topology = obstacle.topology();
-    const int point = obstacle.features().corners[corner].point;
-    std::vector<FeatureStretch> stretches;
-    for (int k = 0; k < topology.edge_count_at(point); ++k) {
-        const int edge = topology.edge_at(point, k);
-        const int feature = feature_of_edge(obstacle.features(), edge);
-        if (feature < 0) continue;
-        const int end = topology.edges[edge].points[0] == point ? 1 : 0;
-        walk(obstacle, {feature, 1.0 - end}, end, reach, [&](int f, double from, double to) {
-            add_stretch(obstacle, f, from, to, stretches);
-            return true;
-        });
+    const auto [p, q] = segment_of(obstacle, place.feature);
+    const Vec3 foot = p + place.s * (q - p), tangent = (q - p).normalized();
+    double greatest = 0.0;
+    for (const FeatureStretch& part : stretch_around(obstacle, place, reach)) {
+        const auto& ends = obstacle.topology().edges[part.edge].points;
+        for (const double s : {part.from, part.to}) {
+            const Vec3& a = obstacle.mesh().points[ends[0]];
+            const Vec3 from = a + s * (obstacle.mesh().points[ends[1]] - a) - foot;
+            greatest = std::max(greatest, (from - tangent.dot(from) * tangent).norm());
+        }
     }
-    sort_stretches(stretches);
-    return stretches;
+    return greatest;
 }
 
 std::optional<double> distance_along(const Obstacle& obstacle, const FeaturePlace& a, const FeaturePlace& b,

@@ -37,8 +37,8 @@ struct FeatureStretch {
 /// ascending by edge. On a closed one an edge may be named twice.
 std::vector<FeatureStretch> stretch_around(const Obstacle& obstacle, const FeaturePlace& place, double reach);
 
-/// The same of a corner (index in features().corners), along each feature edge at it.
-std::vector<FeatureStretch> stretch_around_corner(const Obstacle& obstacle, int corner, double reach);
+/// How far a polyline is off its tangent at a place, m, within `reach` of it.
+double find_bend(const Obstacle& obstacle, const FeaturePlace& place, double reach);
 
 /// Length of the polyline between two places on it, m; nothing where it is more than `most`, or where they
 /// are on different ones.

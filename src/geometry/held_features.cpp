@@ -14,31 +14,28 @@ namespace {
 // edge that leaves it at 6 degrees to the wire passes the wire's line there.
 constexpr double kReach = 10.0;
 constexpr double kFar = 2.5;         // thicknesses: mitre and a little
+constexpr double kBend = 0.5;        // thicknesses between a trace's edge and its wire
 constexpr double kLongestWay = 1.2;  // between two vertices of one trace, over their distance
 
 }  // namespace
 
 HeldFeatures::HeldFeatures(const Obstacle& obstacle, const ClothMotion& motion, double thickness)
-    : obstacle_(obstacle)
+    : obstacle_(obstacle), thickness_(thickness)
 {
     const ObstacleFeatures& features = obstacle.features();
     for (const FeatureHold& hold : motion.holds) {
         const Vec3 &begin = motion.begin[hold.vertex], &end = motion.end[hold.vertex];
-        if (hold.is_corner) {
-            if (!features.corners[hold.feature].normals.empty()) continue;
-            const double reach = kReach * thickness;
-            held_.push_back({hold.vertex, hold.feature, {-1, 0.0}, {-1, 0.0}, reach, reach, false});
-        } else if (features.edges[hold.feature].kind == FeatureKind::Wire) {
+        if (!hold.is_corner && features.edges[hold.feature].kind == FeatureKind::Wire) {
             const FeaturePlace place = follow_polyline(obstacle, hold.feature, begin);
             const FeaturePlace last = follow_polyline(obstacle, place.feature, end);
             const auto height = [&](const FeaturePlace& at, const Vec3& from) {
-                return std::max((place_on_feature(obstacle, at.feature, from).point - from).norm(),
-                                thickness);
+                const double distance = (place_on_feature(obstacle, at.feature, from).point - from).norm();
+                return std::clamp(distance, thickness, kFar * thickness);
             };
             const double first_height = height(place, begin), last_height = height(last, end);
             const double greatest = std::max(first_height, last_height);
-            held_.push_back({hold.vertex, -1, place, last, kReach * greatest + (end - begin).norm(),
-                             kReach * last_height, greatest > kFar * thickness});
+            held_.push_back({hold.vertex, place, last, kReach * greatest + (end - begin).norm(),
+                             kReach * last_height, greatest >= kFar * thickness});
         }
     }
 }
@@ -54,23 +51,51 @@ void HeldFeatures::append(const Held& held, double further, bool is_end,
                           std::vector<FeatureStretch>& stretches) const
 {
     const double reach = further + (is_end ? held.end_reach : held.reach);
-    const std::vector<FeatureStretch> around =
-        held.corner >= 0 ? stretch_around_corner(obstacle_, held.corner, reach)
-                         : stretch_around(obstacle_, is_end ? held.end : held.place, reach);
-    stretches.insert(stretches.end(), around.begin(), around.end());
+    const FeaturePlace& place = is_end ? held.end : held.place;
+    const auto ends_of = [&](int edge) -> std::array<Vec3, 2> {
+        const auto& ends = obstacle_.topology().edges[edge].points;
+        return {obstacle_.mesh().points[ends[0]], obstacle_.mesh().points[ends[1]]};
+    };
+    const auto [p, q] = ends_of(obstacle_.features().edges[place.feature].edge);
+    const Vec3 foot = p + place.s * (q - p), tangent = (q - p).normalized();
+    // As far as the wire is straight: where it bends away it may get through the cloth.
+    for (FeatureStretch part : stretch_around(obstacle_, place, reach)) {
+        const auto [a, b] = ends_of(part.edge);
+        const auto excess = [&](double s) {
+            const Vec3 from = a + s * (b - a) - foot;
+            return (from - tangent.dot(from) * tangent).norm() - kBend * thickness_;
+        };
+        const double first = excess(part.from), last = excess(part.to);
+        if (first > 0.0 && last > 0.0) continue;
+        const double middle = part.from + (part.to - part.from) * first / (first - last);
+        if (first > 0.0) part.from = middle;
+        if (last > 0.0) part.to = middle;
+        if (part.from < part.to) stretches.push_back(part);
+    }
 }
 
 double HeldFeatures::way_between(const Held& a, const Held& b) const
 {
-    if (a.corner >= 0 || b.corner >= 0) return 0.0;
+    const auto ends_of = [&](int edge) -> std::array<Vec3, 2> {
+        const auto& ends = obstacle_.topology().edges[edge].points;
+        return {obstacle_.mesh().points[ends[0]], obstacle_.mesh().points[ends[1]]};
+    };
     const auto point_of = [&](const Held& at) {
-        const auto& ends =
-            obstacle_.topology().edges[obstacle_.features().edges[at.place.feature].edge].points;
-        const Vec3 &p = obstacle_.mesh().points[ends[0]], &q = obstacle_.mesh().points[ends[1]];
+        const auto [p, q] = ends_of(obstacle_.features().edges[at.place.feature].edge);
         return Vec3(p + at.place.s * (q - p));
     };
-    const double chord = (point_of(a) - point_of(b)).norm();
-    return distance_along(obstacle_, a.place, b.place, kLongestWay * chord).value_or(0.0);
+    const Vec3 from = point_of(a), to = point_of(b);
+    const double way =
+        distance_along(obstacle_, a.place, b.place, kLongestWay * (from - to).norm()).value_or(0.0);
+    // Where it bends away from between them it may get through the cloth.
+    for (const FeatureStretch& stretch : stretch_around(obstacle_, a.place, way))
+        for (const double s : {stretch.from, stretch.to}) {
+            const auto [p, q] = ends_of(stretch.edge);
+            const Vec3 node = p + s * (q - p);
+            const double t = (node - from).dot(to - from) / (to - from).squaredNorm();
+            if (t > 0.0 && t < 1.0 && (node - from - t * (to - from)).norm() > kBend * thickness_) return 0.0;
+        }
+    return way;
 }
 
 std::vector<FeatureStretch> HeldFeatures::beside_edge(int a, int b) const
@@ -106,14 +131,8 @@ std::vector<FeatureStretch> HeldFeatures::beside_face(const Face& face) const
     return beside(face, 0.0, false);
 }
 
-bool HeldFeatures::is_beside_point(const Face& face, const std::vector<FeatureStretch>& beside,
-                                   int point) const
+bool HeldFeatures::is_beside_point(const std::vector<FeatureStretch>& beside, int point) const
 {
-    for (const int v : face) {
-        const Held* held = find(v);
-        if (held && held->corner >= 0 && obstacle_.features().corners[held->corner].point == point)
-            return true;
-    }
     if (is_corner(obstacle_.features(), point)) return false;  // a wire's end could get through
     return std::any_of(beside.begin(), beside.end(), [&](const FeatureStretch& stretch) {
         const auto& ends = obstacle_.topology().edges[stretch.edge].points;
@@ -126,7 +145,6 @@ void HeldFeatures::let_touch(const Face& face, const std::array<Vec3, 3>& begin,
 {
     if (!is_any() || !touch.is_any()) return;
     const std::vector<FeatureStretch> around = beside(face, 0.0, true);
-    std::erase_if(touch.lone_points, [&](int p) { return is_beside_point(face, around, p); });
     const double size =
         std::max({(end[1] - end[0]).norm(), (end[2] - end[1]).norm(), (end[0] - end[2]).norm()});
     const std::vector<FeatureStretch> whole = beside(face, kLongestWay * size, true);
@@ -142,7 +160,7 @@ void HeldFeatures::let_touch(const Face& face, const std::array<Vec3, 3>& begin,
             });
         };
         if (!touches_outside(around, end)) return true;
-        return !touches_outside(whole, end) && is_touching(begin, segment);
+        return begin != end && !touches_outside(whole, end) && is_touching(begin, segment);
     });
 }
 
@@ -169,23 +187,17 @@ bool is_clear(const Obstacle& obstacle, const FeatureHold& hold, const Vec3& pla
 {
     const ObstacleFeatures& features = obstacle.features();
     const std::vector<Vec3>& points = obstacle.mesh().points;
-    if (hold.is_corner ? !features.corners[hold.feature].normals.empty()
-                       : features.edges[hold.feature].kind != FeatureKind::Wire)
-        return true;
+    if (hold.is_corner || features.edges[hold.feature].kind != FeatureKind::Wire) return true;
     double reach = 0.0;
     for (const std::array<Vec3, 3>& face : faces)
         for (const Vec3& p : face) reach = std::max(reach, (p - place).norm());
     const std::vector<FeatureStretch> beside =
-        hold.is_corner ? stretch_around_corner(obstacle, hold.feature, reach)
-                       : stretch_around(obstacle, follow_polyline(obstacle, hold.feature, place), reach);
+        stretch_around(obstacle, follow_polyline(obstacle, hold.feature, place), reach);
     std::vector<std::array<Vec3, 2>> segments;
     for (const FeatureStretch& stretch : beside) {
         const auto& ends = obstacle.topology().edges[stretch.edge].points;
         segments.push_back({points[ends[0]], points[ends[1]]});
     }
-    if (hold.is_corner)
-        segments.push_back(
-            {points[features.corners[hold.feature].point], points[features.corners[hold.feature].point]});
     return std::all_of(faces.begin(), faces.end(), [&](const std::array<Vec3, 3>& face) {
         return std::all_of(segments.begin(), segments.end(), [&](const std::array<Vec3, 2>& segment) {
             return distance_between(face, segment) > distance;

@@ -6,9 +6,9 @@
 //           /|\           beside hang straight down: they touch the wire beside v. On which side of the wire
 //          / o \          the cloth is there, the vertex remembers, and the bound on its way out keeps.
 //
-// So what is joined to v is not checked against that wire beside v. Everywhere else it is: a wire that got
-// into a face there would have to leave it through an edge farther from v, or through a face that v is not a
-// corner of, and these are.
+// So what is joined to v is not checked against that wire beside v, as far as it is straight. Everywhere else
+// it is: a wire that got into a face there would have to leave it through an edge farther from v, or through
+// a face that v is not a corner of, and these are.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@
 
 namespace arris {
 
-/// What of the obstacle's wires and lone points the cloth around held vertices may touch.
+/// What of the obstacle's wires the cloth around held vertices may touch.
 class HeldFeatures {
   public:
     HeldFeatures(const Obstacle& obstacle, const ClothMotion& motion, double thickness);
@@ -31,8 +31,8 @@ class HeldFeatures {
     std::vector<FeatureStretch> beside_edge(int a, int b) const;
     std::vector<FeatureStretch> beside_face(const Face& face) const;
 
-    /// Whether the obstacle's point is a corner on which one of the face's vertices is, or in such a part.
-    bool is_beside_point(const Face& face, const std::vector<FeatureStretch>& beside, int point) const;
+    /// Whether a node of a wire is in such a part.
+    bool is_beside_point(const std::vector<FeatureStretch>& beside, int point) const;
 
     /// Drops from what a face of the cloth touches at its end what it may: what is beside its held vertices,
     /// and what of their wire it touched at begin. That got there beside them, and goes as it came.
@@ -43,7 +43,6 @@ class HeldFeatures {
     /// A vertex of the cloth, and where on the feature it is.
     struct Held {
         int vertex;
-        int corner;               ///< index in features().corners; -1 on a wire
         FeaturePlace place, end;  ///< at begin and end
         double reach, end_reach;  ///< on the way, and at its end
         bool is_far;  ///< begins or ends farther from it than a stand-off: mesh surgery brings it there
@@ -55,10 +54,11 @@ class HeldFeatures {
     void append(const Held& held, double further, bool is_end, std::vector<FeatureStretch>& stretches) const;
 
     const Obstacle& obstacle_;
+    double thickness_;
     std::vector<Held> held_;  ///< ascending by vertex
 };
 
-/// Whether cloth faces keep more than `distance` (m) from the wire or point that a vertex of them is on;
+/// Whether cloth faces keep more than `distance` (m) from the wire that a vertex of them is on;
 /// true too where it is on something else. `hold.vertex` is not used.
 bool is_clear(const Obstacle& obstacle, const FeatureHold& hold, const Vec3& place,
               const std::vector<std::array<Vec3, 3>>& faces, double distance);

@@ -253,7 +253,7 @@ class GroupSearch {
         const std::vector<FeatureStretch> beside =
             held_.is_any() ? held_.beside_face(face) : std::vector<FeatureStretch>{};
         for (const int p : points_) {
-            if (held_.is_any() && held_.is_beside_point(face, beside, p)) continue;
+            if (held_.is_any() && held_.is_beside_point(beside, p)) continue;
             const auto hit =
                 sweep_face_point(swept.begin(), swept.end(), obstacle_.mesh().points[p], distance_);
             if (!hit) continue;

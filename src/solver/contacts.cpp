@@ -165,7 +165,7 @@ bool is_beside_held(const HeldFeatures& held, const Obstacle& obstacle, const Ob
     if (contact.kind == ContactKind::Edge)
         return is_covered(obstacle, held.beside_edge(a, b), contact.element, contact.point);
     return contact.kind == ContactKind::Triangle &&
-           held.is_beside_point(contact.vertices, held.beside_face(contact.vertices), contact.element);
+           held.is_beside_point(held.beside_face(contact.vertices), contact.element);
 }
 
 /// Whether a contact that the search found is one of an EOL vertex with the feature it is on.
@@ -185,33 +185,37 @@ bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordin
     return edge.points[0] == corner || edge.points[1] == corner;
 }
 
-/// On the cloth's edges from a vertex on a wire: the wire stays on the side where the vertex has it, though
-/// the cloth touches it. Folded flat both sides are in the wire's line, so that they may pass it by a little.
-void append_sides(const Obstacle& obstacle, int o, const ObstacleStep& step, const Prediction& prediction,
-                  double thickness, const ClothStars& stars, const std::vector<int>& slot,
-                  const EolCoordinates& at, const EolVertex& eol, std::vector<Contact>& contacts)
+/// On the cloth's edges from a vertex on a wire, EOL or loose: the wire stays on the side where the vertex
+/// has it, though the cloth touches it. Folded flat both sides are in the wire's line, so that they may pass
+/// it by a little.
+void append_sides(const Obstacle& obstacle, const ObstacleStep& step, const Prediction& prediction,
+                  double thickness, const ClothStars& stars, const std::vector<int>& slot, int vertex,
+                  const EolVertex& eol, std::vector<Contact>& contacts)
 {
     constexpr double kPast = 0.25;   // thicknesses by which the wire may be passed
-    constexpr double kNear = 3.0;    // thicknesses within which it is looked at
-    constexpr double kReach = 10.0;  // along it
-    if (eol.is_corner || at.side == 0 || obstacle.features().edges[eol.feature].kind != FeatureKind::Wire)
+    constexpr double kNear = 3.0;    // stand-offs within which it is looked at
+    constexpr double kReach = 10.0;  // the same along it
+    if (eol.is_corner || eol.side == 0 || obstacle.features().edges[eol.feature].kind != FeatureKind::Wire)
         return;
     const std::vector<Vec3>& x = step.motion.begin;
-    const std::vector<FeatureStretch> beside = stretch_around(
-        obstacle, {eol.feature, place_on_feature(obstacle, eol.feature, x[at.vertex]).s}, kReach * thickness);
+    const PointOnFeature foot = place_on_feature(obstacle, eol.feature, x[vertex]);
+    const double height = std::max((foot.point - x[vertex]).norm(), thickness);
+    const std::vector<FeatureStretch> beside =
+        stretch_around(obstacle, {eol.feature, foot.s}, kReach * height);
     std::map<int, Vec3> normals;  // of the cloth along each edge, outward
-    for (const int f : stars.faces[at.vertex]) {
+    for (const int f : stars.faces[vertex]) {
         const Face& face = (*step.motion.faces)[f];
         const Vec3 normal = (x[face[1]] - x[face[0]]).cross(x[face[2]] - x[face[0]]).stableNormalized();
         for (const int w : face)
-            if (w != at.vertex && slot[w] < 0)
-                normals.try_emplace(w, Vec3::Zero()).first->second += at.side * normal;
+            if (w != vertex && slot[w] < 0)
+                normals.try_emplace(w, Vec3::Zero()).first->second += eol.side * normal;
     }
     for (const auto& [w, sum] : normals) {
-        if (!(sum.norm() > 0.1)) continue;
-        const std::array<int, 2> v = {std::min(at.vertex, w), std::max(at.vertex, w)};
+        constexpr double kTold = 0.1;  // of the sum of two unit normals
+        if (!(sum.norm() > kTold)) continue;
+        const std::array<int, 2> v = {std::min(vertex, w), std::max(vertex, w)};
         std::optional<ObstacleContact> nearest;
-        double least = kNear * thickness;
+        double least = kNear * height;
         for (const FeatureStretch& stretch : beside) {
             const auto& ends = obstacle.topology().edges[stretch.edge].points;
             const std::vector<Vec3>& points = obstacle.mesh().points;
@@ -227,7 +231,7 @@ void append_sides(const Obstacle& obstacle, int o, const ObstacleStep& step, con
             nearest->least_gap = std::min(-kPast * thickness, gap);
         }
         if (!nearest) continue;
-        contacts.push_back(place_contact(*nearest, o, step, prediction));
+        contacts.push_back(place_contact(*nearest, eol.obstacle, step, prediction));
         contacts.back().may_grow = false;
     }
 }
@@ -393,18 +397,17 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         }
         return false;
     });
+    const std::size_t found = contacts.size();
     for (std::size_t e = 0; e < eol.size(); ++e) {
         const int o = state.eol[eol[e].entry].obstacle;
         contacts.push_back(make_eol_contact(steps[o], prediction, thickness, o, eol[e]));
         contacts.back().eol = static_cast<int>(e);
         contacts.back().mitre = eol[e].frame.mitre;
         contacts.back().may_grow = false;  // pushing it out would stretch the cloth on both sides
-        contacts.back().was_active = find_active(state, contacts.back());
-        const std::size_t first = contacts.size();
-        append_sides(scene.obstacles[o], o, steps[o], prediction, thickness, stars, slot, eol[e],
-                     state.eol[eol[e].entry], contacts);
-        for (std::size_t c = first; c < contacts.size(); ++c)
-            contacts[c].was_active = find_active(state, contacts[c]);
+        EolVertex known = state.eol[eol[e].entry];
+        known.side = eol[e].side;
+        append_sides(scene.obstacles[o], steps[o], prediction, thickness, stars, slot, eol[e].vertex, known,
+                     contacts);
     }
     for (const EolVertex& loose : state.loose) {
         const int o = loose.obstacle;
@@ -412,9 +415,13 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
             scene.obstacles[o], steps[o], prediction, thickness, loose, state.index_of(loose.vertex_id));
         if (!contact) continue;
         contact->may_grow = false;
-        contact->was_active = find_active(state, *contact);
         contacts.push_back(*contact);
     }
+    for (const EolVertex& loose : state.loose)
+        append_sides(scene.obstacles[loose.obstacle], steps[loose.obstacle], prediction, thickness, stars,
+                     slot, state.index_of(loose.vertex_id), loose, contacts);
+    for (std::size_t c = found; c < contacts.size(); ++c)
+        contacts[c].was_active = find_active(state, contacts[c]);
     return eol;
 }
 

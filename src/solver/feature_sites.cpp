@@ -9,6 +9,7 @@
 
 #include "geometry/closest_point.h"
 #include "geometry/feature_frame.h"
+#include "geometry/feature_path.h"
 #include "geometry/normal_cone.h"
 
 namespace arris {
@@ -42,6 +43,7 @@ class SiteFinder {
           obstacle_(scene.obstacles[o]),
           o_(o),
           thickness_(scene.material.thickness),
+          eol_target_(*scene.eol),
           positions_(to_frame(obstacle_.at(state.time), state.mesh.world)),
           feature_(feature_of_edges(obstacle_)),
           stars_(stars)
@@ -211,7 +213,10 @@ class SiteFinder {
             const auto& ends = obstacle_.topology().edges[edge.edge].points;
             const bool is_at_corner = (nearest.t <= 0.0 && corner_at(obstacle_, ends[0]) >= 0) ||
                                       (nearest.t >= 1.0 && corner_at(obstacle_, ends[1]) >= 0);
-            return is_near && !is_at_corner ? std::optional(nearest.s) : std::nullopt;
+            if (!is_near || is_at_corner) return std::nullopt;
+            if (edge.kind == FeatureKind::Wire && !is_straight({feature, nearest.t}, length_of(a, b)))
+                return std::nullopt;
+            return nearest.s;
         }
         const std::optional<FeatureFrame> frame =
             find_edge_frame(obstacle_, feature, nearest.second, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
@@ -230,10 +235,30 @@ class SiteFinder {
         return s;
     }
 
+    /// Where wires turn, meet or end: around it cloth may hang through their lines on more than two sides.
+    bool is_of_wires(int point) const
+    {
+        const ObstacleTopology& topology = obstacle_.topology();
+        return topology.edge_count_at(point) > 0 && topology.edges[topology.edge_at(point, 0)].faces[0] < 0;
+    }
+
+    double length_of(int a, int b) const
+    {
+        return eol_target_.length(0.5 * (state_.mesh.material[a] + state_.mesh.material[b]));
+    }
+
+    /// Between two vertices of a trace the wire must not bend away: it would get through the cloth that hangs
+    /// down beside it.
+    bool is_straight(const FeaturePlace& place, double length) const
+    {
+        constexpr double kBend = 0.5;  // thicknesses, over a cell
+        return find_bend(obstacle_, place, length) <= kBend * thickness_;
+    }
+
     std::optional<FeatureSite> in_face(const std::array<int, 3>& v, const ActiveContact& contact) const
     {
         const int corner = corner_at(obstacle_, contact.element);
-        if (corner < 0 || v[2] < 0) return std::nullopt;
+        if (corner < 0 || v[2] < 0 || is_of_wires(contact.element)) return std::nullopt;
         const Vec3 &a = positions_[v[0]], &b = positions_[v[1]], &c = positions_[v[2]];
         const PointOnTriangle closest = closest_on_triangle(obstacle_.mesh().points[contact.element],
                                                             {a, b, c}, (b - a).cross(c - a).normalized());
@@ -253,6 +278,7 @@ class SiteFinder {
         obstacle_.find_corners(box, found);
         for (const int c : found) {
             const int point = obstacle_.features().corners[c].point;
+            if (is_of_wires(point)) continue;
             const Vec3 from = place - obstacle_.mesh().points[point];
             if (from.norm() <= reach && is_in_point_cone(obstacle_, point, from.normalized()))
                 return make_site(true, c, state_.mesh.material[v], v, normal);
@@ -280,6 +306,7 @@ class SiteFinder {
     const Obstacle& obstacle_;
     std::int32_t o_;
     double thickness_;
+    const MeshTarget& eol_target_;
     std::vector<Vec3> positions_;
     std::vector<int> feature_;
     const ClothStars& stars_;

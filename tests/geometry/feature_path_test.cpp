@@ -96,17 +96,15 @@ TEST(StretchAround, HasTheLengthAskedForWhereThereIsAsMuch)
     EXPECT_TRUE(stretch_around(wire, {1, 0.5}, 0.0).empty());
 }
 
-TEST(StretchAround, OfACornerGoesAlongEveryWireThere)
+TEST(FindBend, IsTheSagittaOfALoop)
 {
-    ObstacleMesh mesh;
-    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
-    mesh.segments = {{0, 1}, {0, 2}, {3, 0}};
-    const Obstacle star = samples::make_obstacle(mesh);
-    int corner = 0;
-    while (star.features().corners[corner].point != 0) ++corner;
-    EXPECT_NEAR(length_of(star, stretch_around_corner(star, corner, 0.2)), 0.6, kRoundOff);
-    const Obstacle nail = samples::make_obstacle(samples::nails({{0, 0, 0}}));
-    EXPECT_TRUE(stretch_around_corner(nail, 0, 0.2).empty());
+    const Obstacle loop = make_polygon(720);
+    for (const double reach : {0.01, 0.1, 0.5}) {
+        constexpr double kPolygon = 5e-3;  // of it: segments are chords, and the place is half of one off
+        EXPECT_NEAR(find_bend(loop, {100, 0.5}, reach) / (1.0 - std::cos(reach)), 1.0,
+                    kPolygon + 0.009 / reach);
+    }
+    EXPECT_EQ(find_bend(make_polyline({{0, 0, 0}, {1, 0, 0}}, false), {0, 0.3}, 10.0), 0.0);
 }
 
 TEST(DistanceAlong, GoesTheShorterWayAroundALoop)

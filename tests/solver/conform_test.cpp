@@ -181,23 +181,6 @@ EolCloth lying_on(const Obstacle& wires, double turn)
     return cloth;
 }
 
-/// A trace without ends: from every vertex two edges of the cloth go on to others.
-void expect_closed_trace(const EolCloth& cloth)
-{
-    const State& state = cloth.state;
-    std::vector<int> count(state.mesh.world.size(), 0);
-    for (const MeshEdge& edge : edges_of(state)) {
-        const int a = state.eol_entry(state.ids[edge.a]), b = state.eol_entry(state.ids[edge.b]);
-        if (a < 0 || b < 0) continue;
-        if (!is_trace_edge(cloth.scene.obstacles[0], {state.eol[a], state.mesh.world[edge.a]},
-                           {state.eol[b], state.mesh.world[edge.b]}))
-            continue;
-        ++count[edge.a];
-        ++count[edge.b];
-    }
-    for (const EolVertex& eol : state.eol) EXPECT_GE(count[state.index_of(eol.vertex_id)], 2);
-}
-
 TEST(Conform, AWireOfManySegmentsBecomesOneTrace)
 {
     std::vector<Vec3> points;
@@ -218,16 +201,20 @@ TEST(Conform, AWireOfManySegmentsBecomesOneTrace)
     }
 }
 
-TEST(Conform, AClosedWireBecomesAClosedTrace)
+TEST(Conform, AWireThatBendsWithinACellStaysRows)
 {
-    std::vector<Vec3> points;
-    for (int k = 0; k < 24; ++k)
-        points.emplace_back(0.12 * std::cos(2.0 * M_PI * k / 24), 0.12 * std::sin(2.0 * M_PI * k / 24), 0.0);
-    EolCloth cloth = lying_on(Obstacle("loop", make_wire(points, true), {}, {}, 30.0), 10.0);
-    take(cloth);
-    expect_sound(cloth.state, 0.16);
-    EXPECT_GE(cloth.state.eol.size(), 8u);
-    expect_closed_trace(cloth);
+    // Between two vertices of a trace it would bulge out through the cloth that hangs down.
+    for (const double radius : {0.12, 30.0}) {
+        std::vector<Vec3> points;
+        for (int k = -40; k <= 40; ++k) {
+            const double angle = 0.005 * k / radius;
+            points.emplace_back(radius * (1.0 - std::cos(angle)), radius * std::sin(angle), 0.0);
+        }
+        EolCloth cloth = lying_on(Obstacle("arc", make_wire(points, false), {}, {}, 30.0), 10.0);
+        ASSERT_FALSE(cloth.state.active.empty());
+        const std::optional<ConformedMesh> made = conform(cloth);
+        EXPECT_EQ(made && !made->eol.empty(), radius > 1.0) << radius;
+    }
 }
 
 TEST(Conform, WhereAWireEndsInTheMiddleOfTheClothTheTraceDoes)
