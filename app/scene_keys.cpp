@@ -262,9 +262,11 @@ std::vector<SceneKey> make_scene_keys()
 
         table("eol", "{}", "Eulerian-on-Lagrangian vertices on sharp features of obstacles."),
         boolean(
-            "eol.enabled", "false",
-            "Whether vertices are put exactly on sharp features, with the material flowing through them. An "
-            "experiment in this version."),
+            "eol.enabled", "true",
+            "Whether vertices are put exactly on sharp features, with the material flowing through them."),
+        boolean("eol.wires", "false",
+                "Whether on wires, too. An experiment in this version: cloth folded over a wire is not checked "
+                "against it right beside such vertices."),
 
         not_built(table("remesh", "",
                         "Switches adaptive refinement on; without it the mesh changes only near features.")),

@@ -44,6 +44,7 @@ class SiteFinder {
           o_(o),
           thickness_(scene.material.thickness),
           eol_target_(*scene.eol),
+          has_eol_on_wires_(scene.has_eol_on_wires),
           positions_(to_frame(obstacle_.at(state.time), state.mesh.world)),
           feature_(feature_of_edges(obstacle_)),
           stars_(stars)
@@ -214,6 +215,7 @@ class SiteFinder {
             const bool is_at_corner = (nearest.t <= 0.0 && corner_at(obstacle_, ends[0]) >= 0) ||
                                       (nearest.t >= 1.0 && corner_at(obstacle_, ends[1]) >= 0);
             if (!is_near || is_at_corner) return std::nullopt;
+            if (edge.kind == FeatureKind::Wire && !has_eol_on_wires_) return std::nullopt;
             if (edge.kind == FeatureKind::Wire && !is_straight({feature, nearest.t}, length_of(a, b)))
                 return std::nullopt;
             return nearest.s;
@@ -307,6 +309,7 @@ class SiteFinder {
     std::int32_t o_;
     double thickness_;
     const MeshTarget& eol_target_;
+    bool has_eol_on_wires_;
     std::vector<Vec3> positions_;
     std::vector<int> feature_;
     const ClothStars& stars_;

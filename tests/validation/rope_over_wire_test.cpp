@@ -84,6 +84,7 @@ ClothRun make_rope_run(const RopeCase& rope)
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
     scene.obstacles.push_back(Obstacle("wire", make_wire_of(rope.segments), {}, {}, 10.0));
     scene.eol = make_initial_target(mesh);
+    scene.has_eol_on_wires = true;
     ClothRun run(std::move(scene), std::move(mesh));
     run.settings.integrator = rope.integrator;
     for (int v = 0; v < run.state.mesh.vertex_count(); ++v)
