@@ -83,7 +83,8 @@ const StepColumn kStepColumns[] = {
     {"rewound", [](const StepRow& row) { return cell(row.rewound); }},
     {"yielded", [](const StepRow& row) { return cell(row.yielded); }},
     {"energy_rise", [](const StepRow& row) { return cell(row.energy_rise); }},
-};
+    {"eol_pressing", [](const StepRow& row) { return cell(row.eol_pressing); }},
+};  // and rows_<cause> for each
 
 std::string join(const std::vector<std::string>& cells)
 {
@@ -130,10 +131,16 @@ void require_same_header(const std::string& path, const std::string& header)
 
 }  // namespace
 
+std::string rows_column(RowCause cause)
+{
+    return std::string("rows_") + to_string(cause);
+}
+
 std::string step_header()
 {
     std::vector<std::string> cells;
     for (const StepColumn& column : kStepColumns) cells.push_back(column.name);
+    for (std::size_t k = 0; k < kRowCauses; ++k) cells.push_back(rows_column(static_cast<RowCause>(k)));
     return join(cells);
 }
 
@@ -141,6 +148,8 @@ std::string format_row(const StepRow& row)
 {
     std::vector<std::string> cells;
     for (const StepColumn& column : kStepColumns) cells.push_back(column.cell(row));
+    for (std::size_t k = 0; k < kRowCauses; ++k)
+        cells.push_back(row.rows_by_cause ? fmt::format("{}", (*row.rows_by_cause)[k]) : std::string());
     return join(cells);
 }
 

@@ -36,6 +36,8 @@ struct StepRow {
     std::optional<std::int64_t> rewound;  ///< vertices put back on their way, so that nothing is passed
     std::optional<std::int64_t> yielded;  ///< contacts that could not keep their stand-off
     std::optional<double> energy_rise;    ///< J, pushed in by a step that nothing mended; 0 else
+    std::optional<std::int64_t> eol_pressing;
+    std::optional<RowCounts> rows_by_cause;  ///< of `feature_rows`, a column each: rows_<cause>
 };
 
 /// A material point at one time: m, m/s.
@@ -43,6 +45,9 @@ struct ProbeSample {
     Vec3 position = Vec3::Zero();
     Vec3 velocity = Vec3::Zero();
 };
+
+/// The column of the feature rows of a cause.
+std::string rows_column(RowCause cause);
 
 /// Header and rows, without the line's end. Numbers read back to the same double.
 std::string step_header();

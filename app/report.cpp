@@ -64,6 +64,17 @@ std::string to_string(RunStatus status)
     return "";
 }
 
+std::optional<double> FeatureTotals::eol_share() const
+{
+    std::int64_t rows = 0;
+    for (std::size_t k = 0; k < kRowCauses; ++k) {
+        const auto cause = static_cast<RowCause>(k);
+        if (cause != RowCause::New && !is_without_coordinates(cause)) rows += by_cause[k];
+    }
+    if (eol + rows == 0) return std::nullopt;
+    return static_cast<double>(eol) / static_cast<double>(eol + rows);
+}
+
 StepTotals sum_steps(const std::string& steps_csv)
 {
     CsvReader reader(steps_csv);
@@ -73,6 +84,10 @@ StepTotals sum_steps(const std::string& steps_csv)
     const std::size_t residual = reader.column("kkt_residual"), step = reader.column("step");
     std::vector<std::size_t> phase_columns;
     for (const Phase& phase : kPhases) phase_columns.push_back(reader.column(std::string(phase.name) + "_s"));
+    const std::size_t eol = reader.column("eol_pressing");
+    std::vector<std::size_t> cause_columns;
+    for (std::size_t k = 0; k < kRowCauses; ++k)
+        cause_columns.push_back(reader.column(rows_column(static_cast<RowCause>(k))));
 
     StepTotals totals;
     std::vector<double> row;
@@ -88,6 +103,11 @@ StepTotals sum_steps(const std::string& steps_csv)
         totals.crossings = std::max(totals.crossings, to_count(row[crossings], steps_csv));
         totals.max_kkt_residual = greatest(totals.max_kkt_residual, row[residual]);
         totals.halved_steps += to_count(row[halved], steps_csv);
+        if (std::isnan(row[eol])) continue;
+        if (!totals.features) totals.features.emplace();
+        totals.features->eol += to_count(row[eol], steps_csv);
+        for (std::size_t k = 0; k < kRowCauses; ++k)
+            totals.features->by_cause[k] += to_count(row[cause_columns[k]], steps_csv);
     }
     return totals;
 }
@@ -99,12 +119,26 @@ std::vector<NamedSeconds> list_phases(const PhaseSeconds& phases)
     return list;
 }
 
+namespace {
+
+nlohmann::ordered_json to_json(const FeatureTotals& features)
+{
+    nlohmann::ordered_json rows = nlohmann::ordered_json::object();
+    for (std::size_t k = 0; k < kRowCauses; ++k)
+        rows[to_string(static_cast<RowCause>(k))] = features.by_cause[k];
+    nlohmann::ordered_json json = {{"eol", features.eol}, {"rows", rows}, {"eol_share", nullptr}};
+    if (const std::optional<double> share = features.eol_share()) json["eol_share"] = *share;
+    return json;
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const RunReport& report)
 {
     nlohmann::ordered_json phases = nlohmann::ordered_json::object();
     for (const NamedSeconds& phase : list_phases(report.totals.phases)) phases[phase.name] = phase.seconds;
     const StepTotals& totals = report.totals;
-    return {
+    nlohmann::ordered_json json = {
         {"status", to_string(report.status)},
         {"message", report.message},
         {"steps", totals.steps},
@@ -123,6 +157,8 @@ nlohmann::ordered_json to_json(const RunReport& report)
         {"version", report.version},
         {"threads", report.threads},
     };
+    if (totals.features) json["feature_contacts"] = to_json(*totals.features);
+    return json;
 }
 
 void write_report_json(const std::string& path, const RunReport& report)

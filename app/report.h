@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,16 @@ enum class RunStatus { Finished, Interrupted, Infeasible, NotConverged, Penetrat
 /// io_error.
 std::string to_string(RunStatus status);
 
+/// Contacts that pressed on sharp features, over all steps of a run with EOL vertices.
+struct FeatureTotals {
+    std::int64_t eol = 0;                             ///< as EOL vertices
+    std::array<std::int64_t, kRowCauses> by_cause{};  ///< as rows
+
+    /// Of the contacts that pressed on two steps in a row and where an EOL vertex would have coordinates: how
+    /// many were EOL. Nothing where there were none.
+    std::optional<double> eol_share() const;
+};
+
 /// What a run's steps.csv adds up to, a resumed run's from its beginning.
 struct StepTotals {
     std::int64_t steps = 0;          ///< accepted
@@ -27,6 +39,7 @@ struct StepTotals {
     std::int64_t crossings = 0;
     double max_kkt_residual = 0.0;
     std::int64_t halved_steps = 0;
+    std::optional<FeatureTotals> features;
 };
 
 /// Reads steps.csv in constant memory; a torn last line is left out. InputError if it is not one.

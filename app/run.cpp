@@ -77,7 +77,11 @@ StepRow make_row(const Run& run, const StepReport& report)
     if (scene.material.bending_stiffness > 0.0) row.bending_energy = energies.bending;
     if (!scene.obstacles.empty()) {
         row.feature_rows = report.feature_rows;
-        if (scene.eol) row.eol_vertices = report.eol_vertices;
+        if (scene.eol) {
+            row.eol_vertices = report.eol_vertices;
+            row.eol_pressing = report.eol_pressing;
+            row.rows_by_cause = report.rows_by_cause;
+        }
         row.rewound = report.rewound;
         row.yielded = report.yielded;
     }

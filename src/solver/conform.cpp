@@ -85,7 +85,14 @@ class Conforming {
     {
     }
 
-    std::optional<ConformedMesh> run(const FailedFlow& failed)
+    ConformOutcome run(const FailedFlow& failed)
+    {
+        std::optional<ConformedMesh> mesh = find_mesh(failed);
+        return {std::move(mesh), std::move(refused_)};
+    }
+
+  private:
+    std::optional<ConformedMesh> find_mesh(const FailedFlow& failed)
     {
         find_releases();
         sites_ = find_feature_sites(scene_, state_, stars_);
@@ -96,14 +103,14 @@ class Conforming {
         surgery_->set_guard(
             [this](const SurgeryEvent& event) { return keeps_way(event) && guard_.allows(event); });
         mark();
-        for (const VertexId v : released_) release(v);
+        for (const VertexId v : released_) give_up(v, cause_of_release(v));
         for (const VertexId v : failed.given_up)
-            if (is_on_trace(v)) release(v);
+            if (is_on_trace(v)) give_up(v, RowCause::GivenUp);
         for (const auto& [v, flow] : failed.flow) expect_flow(v, flow);
         clear_way();
         forget_released();
-        if (failed.given_up.empty())  // else the step has failed on the vertices there were
-            for (const FeatureSite& site : sites_) insert(site);
+        has_failed_ = !failed.given_up.empty();
+        for (const FeatureSite& site : sites_) insert(site);
         join();
         report_.operations += clean_up(*surgery_, target_).operations();
         if (report_.inserted > 0) {  // theirs, too, must be clear
@@ -117,7 +124,6 @@ class Conforming {
         return made;
     }
 
-  private:
     bool is_flowing() const
     {
         return std::any_of(state_.eol.begin(), state_.eol.end(), [&](const EolVertex& e) {
@@ -213,7 +219,7 @@ class Conforming {
         ways_ = cleared.ways;
         // What stands in the way and cannot give way: there the feature is met by rows. Only there: the rest
         // of the trace carries the cloth on.
-        for (const VertexId v : cleared.blocked) release(v);
+        for (const VertexId v : cleared.blocked) give_up(v, RowCause::Blocked);
         for (const TraceAdvance& advance : advances) report_.lost += is_on_trace(advance.vertex) ? 0 : 1;
     }
 
@@ -271,32 +277,65 @@ class Conforming {
 
     void insert(const FeatureSite& site)
     {
+        const std::optional<RowCause> cause = try_insert(site);
+        if (cause && site.contact >= 0) refuse(state_.active[site.contact], *cause);
+    }
+
+    /// Why there is no new EOL vertex; nothing where there is one.
+    std::optional<RowCause> try_insert(const FeatureSite& site)
+    {
         const int tag = tags_.tag(site.obstacle, site.is_corner, site.feature);
-        if (is_near_border(site)) {
-            ++report_.refused;
-            return;
-        }
-        if (site.is_corner && has_vertex_on(site)) return;
+        if (has_failed_) return RowCause::GivenUp;  // the step has failed on the vertices there were
+        if (is_near_border(site)) return RowCause::NearBorder;
+        if (site.is_corner && has_vertex_on(site)) return RowCause::BesideEol;
         const VertexId near = surgery_->has_vertex(site.near) ? site.near : nearest_to(site.material);
         const int v = state_.index_of(site.near);
         const Vec2 flow = find_feature_flow(scene_, state_, stars_, v, site.obstacle);
         const TraceInsertion made =
             insert_trace_point(*surgery_, target_, site.material, near,
                                {site.is_corner ? TraceRole::Node : TraceRole::OnTrace, tag, flow});
-        if (made.verdict != Verdict::Done) {
-            ++report_.refused;
-            return;
-        }
-        if (find_eol(made.vertex)) return;  // it was there
+        if (made.verdict != Verdict::Done)
+            return made.verdict == Verdict::Guard ? RowCause::Guard : RowCause::Quality;
+        if (find_eol(made.vertex)) return RowCause::BesideEol;
         const EolVertex vertex{made.vertex, site.obstacle, site.is_corner, site.feature, site.outward, 0};
         if (!is_in_plane(vertex)) {
             surgery_->release_vertex(made.vertex);
-            ++report_.refused;
-            return;
+            return RowCause::OffPlane;
         }
         eol_.insert(place_of(made.vertex), vertex);
         flow_.try_emplace(made.vertex, flow);
+        if (site.contact >= 0) contact_of_[made.vertex] = site.contact;
         ++report_.inserted;
+        return std::nullopt;
+    }
+
+    RowCause cause_of_release(VertexId v) const
+    {
+        const int entry = state_.eol_entry(v);
+        const EolVertex& eol = state_.eol[entry];
+        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+        const Placement now = obstacle.at(state_.time);
+        const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, now);
+        return placing.coordinates ? RowCause::Released : cause_of(placing.refusal);
+    }
+
+    /// A vertex that is EOL, or has just been made, is none from now on: what presses there is a row.
+    void give_up(VertexId v, RowCause cause)
+    {
+        release(v);
+        const int entry = state_.eol_entry(v);
+        const auto made = contact_of_.find(v);
+        constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
+        if (entry >= 0)
+            refused_.push_back(
+                {{v, kNone, kNone}, ContactKind::Vertex, state_.eol[entry].obstacle, -1, cause});
+        else if (made != contact_of_.end())
+            refuse(state_.active[made->second], cause);
+    }
+
+    void refuse(const ActiveContact& contact, RowCause cause)
+    {
+        refused_.push_back({contact.vertex_ids, contact.kind, contact.obstacle, contact.element, cause});
     }
 
     /// Surgery at one site bends the surface a little differently at the next. Off the plane of a convex edge
@@ -513,17 +552,19 @@ class Conforming {
     std::vector<EolVertex> eol_;
     std::map<VertexId, Vec2> flow_;  ///< m/s, of those in `eol_`
     EolGuard guard_;
-    TraceWays ways_;  ///< of the vertices that flow
+    TraceWays ways_;                      ///< of the vertices that flow
+    std::map<VertexId, int> contact_of_;  ///< index in State::active, of vertices made where one pressed
+    std::vector<RefusedContact> refused_;
+    bool has_failed_ = false;  ///< an attempt, on the vertices there were
     ConformReport report_;
 };
 
 }  // namespace
 
-std::optional<ConformedMesh> conform_mesh(const Scene& scene, double dt, const State& state,
-                                          const std::vector<MeshEdge>& edges, const FailedFlow& failed,
-                                          StrainLimit limit)
+ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state,
+                            const std::vector<MeshEdge>& edges, const FailedFlow& failed, StrainLimit limit)
 {
-    if (!scene.eol || (state.eol.empty() && state.loose.empty() && state.active.empty())) return std::nullopt;
+    if (!scene.eol || (state.eol.empty() && state.loose.empty() && state.active.empty())) return {};
     return Conforming(scene, dt, state, edges, limit).run(failed);
 }
 

@@ -5,11 +5,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
 #include "geometry/cloth_surgery.h"
 #include "solver/eol_guard.h"
+#include "solver/row_cause.h"
 #include "solver/scene.h"
 #include "solver/state.h"
 
@@ -17,8 +19,7 @@ namespace arris {
 
 struct ConformReport {
     int inserted = 0, released = 0, operations = 0;
-    int lost = 0;     ///< EOL vertices that clearing has cost: blocked, or merged into others
-    int refused = 0;  ///< pressing feature contacts that stay rows
+    int lost = 0;  ///< EOL vertices that clearing has cost: blocked, or merged into others
 };
 
 /// What the surgery has done and who is EOL now.
@@ -37,11 +38,16 @@ struct FailedFlow {
     bool empty() const { return flow.empty() && given_up.empty(); }
 };
 
+/// What `conform_mesh` found.
+struct ConformOutcome {
+    std::optional<ConformedMesh> mesh;    ///< nothing where it is right as it is
+    std::vector<RefusedContact> refused;  ///< that pressed on a feature and stay or become rows
+};
+
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
-/// they have not for long, the way of those that slide cleared, what they left restored. Nothing where the
-/// mesh is right as it is. `edges` are the state's.
-std::optional<ConformedMesh> conform_mesh(const Scene& scene, double dt, const State& state,
-                                          const std::vector<MeshEdge>& edges, const FailedFlow& failed,
-                                          StrainLimit limit);
+/// they have not for long, the way of those that slide cleared, what they left restored. `edges` are the
+/// state's.
+ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state,
+                            const std::vector<MeshEdge>& edges, const FailedFlow& failed, StrainLimit limit);
 
 }  // namespace arris

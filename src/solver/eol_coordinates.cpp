@@ -288,4 +288,13 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int en
     return finish(star, end, at);
 }
 
+EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
+                            const Placement& now)
+{
+    std::vector<Vec3> positions(state.mesh.world.size(), Vec3::Zero());
+    for (const int f : stars.faces[state.index_of(state.eol[entry].vertex_id)])
+        for (const int v : state.mesh.faces[f]) positions[v] = now.inverse(state.mesh.world[v]);
+    return place_eol_vertex(obstacle, state, entry, stars, positions, now);
+}
+
 }  // namespace arris

@@ -53,6 +53,10 @@ struct EolPlacing {
 EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
                             const std::vector<Vec3>& positions, const Placement& end);
 
+/// The same of an obstacle that stays where it is, at `now`; looks at the cloth around the vertex only.
+EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
+                            const Placement& now);
+
 /// An EOL vertex and where it is in its obstacle's frame.
 struct PlacedEol {
     const EolVertex& eol;

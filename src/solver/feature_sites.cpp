@@ -331,12 +331,13 @@ std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& sta
         return finders.try_emplace(o, scene, state, stars, o).first->second;
     };
     std::map<std::array<int, 2>, std::vector<FeatureSite>> by_feature;  // of obstacle and edge
-    for (const ActiveContact& contact : state.active) {
+    for (std::size_t c = 0; c < state.active.size(); ++c) {
+        const ActiveContact& contact = state.active[c];
         const bool is_eol =
             contact.kind == ContactKind::Vertex && state.eol_entry(contact.vertex_ids[0]) >= 0;
-        const std::optional<FeatureSite> site =
-            is_eol ? std::nullopt : finder_of(contact.obstacle).find(contact);
+        std::optional<FeatureSite> site = is_eol ? std::nullopt : finder_of(contact.obstacle).find(contact);
         if (!site) continue;
+        site->contact = static_cast<int>(c);
         if (site->is_corner)
             sites.push_back(*site);
         else

@@ -24,6 +24,7 @@ struct FeatureSite {
     Vec3 outward;                        ///< the contact's normal, in the obstacle's frame
     bool is_on_border = false;           ///< of the cloth
     std::array<int, 2> edge = {-1, -1};  ///< of the cloth that passes through there; twice the same: a vertex
+    int contact = -1;                    ///< index in State::active; -1 where it only lies between such
 };
 
 /// Where features pressed at the end of the last step and no EOL vertex is yet; corners first, those of one

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "solver/row_cause.h"
+
 namespace arris {
 
 enum class StepStatus { Done, NotConverged, Infeasible, NotFinite, Penetration, EnergyRise, Overrun };
@@ -28,7 +30,9 @@ struct StepReport {
     double dt = 0.0;                      ///< s
     std::int64_t infeasible_vertex = -1;  ///< id of one whose pins and contacts no velocity meets
     int contacts = 0;                     ///< constraints with a positive multiplier
-    int feature_rows = 0;                 ///< those of them at a sharp edge, corner, wire or point
+    int feature_rows = 0;                 ///< those at a sharp edge, corner, wire or point but EOL vertices
+    RowCounts rows_by_cause{};            ///< these, by why they are rows, in a scene with EOL vertices
+    int eol_pressing = 0;                 ///< EOL vertices with a positive multiplier
     int crossings = 0;                    ///< in this step
     int solves = 0;                       ///< velocity solves: more than one where the check found violations
     int relinearisations = 0;  ///< solves of forces linearised again, where energy would have risen

@@ -10,6 +10,7 @@
 #include "solver/conform.h"
 #include "solver/contacts.h"
 #include "solver/proposal.h"
+#include "solver/row_cause.h"
 #include "solver/velocity_solve.h"
 
 namespace arris {
@@ -49,7 +50,8 @@ struct Workspace {
     }
     static constexpr int kMostOverruns = 5;
     void forget_failures() { overruns = 0, failed_flow = {}; }
-    State conformed;  ///< on the mesh that the step wants, where it is not the state's
+    std::vector<RefusedContact> refused;  ///< that pressed on a feature and are rows
+    State conformed;                      ///< on the mesh that the step wants, where it is not the state's
 
     // move
     Prediction prediction;

@@ -54,6 +54,46 @@ TEST(Report, SumsWhatTheStepsSay)
         EXPECT_EQ(phases[i].seconds, 5.0 * static_cast<double>(i + 1));
 }
 
+TEST(Report, CountsFeatureContactsByWhatTheyWere)
+{
+    const TemporaryDirectory dir;
+    EXPECT_FALSE(sum_steps(write_steps(dir, 2)).features) << "no EOL vertices were wanted";
+
+    // Of 90 that pressed twice and could have been EOL 88 were; what is new, and what has no coordinates,
+    // does not count.
+    StepRow row = make_row(3);
+    row.eol_pressing = 80;
+    row.rows_by_cause.emplace();
+    const auto count = [&row](RowCause cause, int rows) {
+        (*row.rows_by_cause)[static_cast<std::size_t>(cause)] = rows;
+    };
+    count(RowCause::New, 20);
+    count(RowCause::AlongBorder, 5);
+    count(RowCause::OtherFeature, 3);
+    count(RowCause::Guard, 2);
+    const std::string path = write_steps(dir, 2);
+    CsvWriter writer = CsvWriter::append_to(path, step_header());
+    writer.append(format_row(row));
+    row.rows_by_cause->fill(0);
+    row.eol_pressing = 8;
+    writer.append(format_row(row));
+    RunReport report;
+    report.totals = sum_steps(path);
+    ASSERT_TRUE(report.totals.features);
+    const nlohmann::ordered_json json = to_json(report)["feature_contacts"];
+    EXPECT_EQ(json["eol"], 88);
+    EXPECT_EQ(json["rows"].size(), kRowCauses);
+    EXPECT_EQ(json["rows"]["new"], 20);
+    EXPECT_EQ(json["rows"]["along_border"], 5);
+    EXPECT_EQ(json["rows"]["other_feature"], 3);
+    EXPECT_EQ(json["rows"]["guard"], 2);
+    EXPECT_EQ(json["rows"]["quality"], 0);
+    EXPECT_DOUBLE_EQ(json["eol_share"].get<double>(), 88.0 / 90.0);
+
+    report.totals.features = FeatureTotals();
+    EXPECT_TRUE(to_json(report)["feature_contacts"]["eol_share"].is_null()) << "nothing pressed";
+}
+
 TEST(Report, NamesPhasesAsTheColumnsOfSteps)
 {
     for (const NamedSeconds& phase : list_phases({}))

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "solver/row_cause.h"
+#include "solver/scene.h"
+#include "solver/state.h"
+#include "solver/workspace.h"
+
+namespace arris {
+
+/// What presses on sharp edges, corners, wires and points at a step's end.
+struct FeatureCensus {
+    int eol = 0;           ///< EOL vertices
+    int rows = 0;          ///< other contacts, also of vertices that touch a feature
+    RowCounts by_cause{};  ///< of these rows, where the scene has EOL vertices; else zero
+};
+
+/// Of a solved step from `state`, before it is committed; `multiplier` is of each of the workspace's
+/// contacts.
+FeatureCensus take_census(const Scene& scene, const State& state, const Workspace& work,
+                          const std::vector<double>& multiplier);
+
+/// Whether a contact touches a sharp feature: edges and faces of the cloth always do, a vertex where its
+/// contact's plane is none of a face.
+bool touches_feature(const Obstacle& obstacle, const ObstacleContact& contact, double thickness);
+
+}  // namespace arris

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/row_cause.h"
+
+namespace arris {
+
+const char* to_string(RowCause cause)
+{
+    switch (cause) {
+        case RowCause::New:
+            return "new";
+        case RowCause::NotCrossing:
+            return "not_crossing";
+        case RowCause::BesideEol:
+            return "beside_eol";
+        case RowCause::NearBorder:
+            return "near_border";
+        case RowCause::Guard:
+            return "guard";
+        case RowCause::Quality:
+            return "quality";
+        case RowCause::OffPlane:
+            return "off_plane";
+        case RowCause::Blocked:
+            return "blocked";
+        case RowCause::GivenUp:
+            return "given_up";
+        case RowCause::Released:
+            return "released";
+        case RowCause::NoDirection:
+            return "no_direction";
+        case RowCause::AlongBorder:
+            return "along_border";
+        case RowCause::EdgeOn:
+            return "edge_on";
+        case RowCause::ClothCorner:
+            return "cloth_corner";
+        case RowCause::OtherFeature:
+            return "other_feature";
+    }
+    return "";
+}
+
+bool is_without_coordinates(RowCause cause)
+{
+    return cause == RowCause::NoDirection || cause == RowCause::AlongBorder || cause == RowCause::EdgeOn ||
+           cause == RowCause::ClothCorner || cause == RowCause::OtherFeature;
+}
+
+RowCause cause_of(EolRefusal refusal)
+{
+    switch (refusal) {
+        case EolRefusal::NoDirection:
+            return RowCause::NoDirection;
+        case EolRefusal::AlongBorder:
+            return RowCause::AlongBorder;
+        case EolRefusal::EdgeOn:
+            return RowCause::EdgeOn;
+        case EolRefusal::ClothCorner:
+            return RowCause::ClothCorner;
+    }
+    return RowCause::NoDirection;
+}
+
+}  // namespace arris
