@@ -19,46 +19,17 @@
 namespace arris {
 namespace {
 
+using testing::edges_of;
 using testing::EolCloth;
+using testing::kLyingCell;
+using testing::kThickness;
+using testing::lying;
 using testing::make_draped;
 using testing::make_ridge;
+using testing::press_edges;
 
 constexpr double kStep = 0.005;
-constexpr double kThickness = 1e-3;
-constexpr double kCell = 0.4 / 7.0;  // no mesh line is above the ridge
 constexpr double kOnFeature = 1e-9;  // m: crossings of straight lines at 1 m
-
-std::vector<MeshEdge> edges_of(const State& state)
-{
-    return make_topology(state.mesh.vertex_count(), state.mesh.faces).edges;
-}
-
-/// Flat cloth that lies on the ridge at the thickness' height, moved by `shift` along x.
-EolCloth lying(double turn, double shift = 0.0, double half_length = 0.5)
-{
-    EolCloth cloth(make_ridge(60.0, half_length), make_draped({7, turn, 180.0}));
-    cloth.scene.eol = uniform_target(kCell, 10.0);
-    for (Vec3& x : cloth.state.mesh.world) x += Vec3(shift, 0.0, kThickness);
-    return cloth;
-}
-
-/// Rows where the cloth's edges cross the ridge's tip, as a step leaves them.
-void press_edges(EolCloth& cloth)
-{
-    const Obstacle& ridge = cloth.scene.obstacles[0];
-    const FeatureEdge& tip = ridge.features().edges[testing::tip_of(ridge)];
-    const double end = std::abs(ridge.mesh().points[ridge.topology().edges[tip.edge].points[0]].y());
-    const State& state = cloth.state;
-    for (const MeshEdge& edge : edges_of(state)) {
-        const Vec3 &a = state.mesh.world[edge.a], &b = state.mesh.world[edge.b];
-        if (!(a.x() * b.x() < 0.0)) continue;
-        const double s = a.x() / (a.x() - b.x());
-        if (std::abs((1.0 - s) * a.y() + s * b.y()) > end) continue;
-        std::array<std::uint32_t, 3> ids = {state.ids[edge.a], state.ids[edge.b], ActiveContact::kNoVertex};
-        std::sort(ids.begin(), ids.end());
-        cloth.state.active.push_back({ids, ContactKind::Edge, 0, tip.edge, Vec3::UnitZ(), 1e-6});
-    }
-}
 
 /// The corner at the ridge's end presses into the face around it.
 void press_corner(EolCloth& cloth)
@@ -151,7 +122,8 @@ TEST(Conform, RowsOnAnEdgeBecomeVerticesOnItWithEdgesAlongIt)
             EXPECT_EQ(e.idle, 0);
         }
         // It reaches from border to border, but for what is too near a corner of the cloth.
-        EXPECT_GT(state.mesh.world[row.back()].y() - state.mesh.world[row.front()].y(), 0.4 - 2.2 * kCell);
+        EXPECT_GT(state.mesh.world[row.back()].y() - state.mesh.world[row.front()].y(),
+                  0.4 - 2.2 * kLyingCell);
         EXPECT_GT(least_material_angle(state.mesh), 5.0);
     }
 }
@@ -160,7 +132,7 @@ TEST(Conform, RowsOnAnEdgeBecomeVerticesOnItWithEdgesAlongIt)
 EolCloth lying_on(const Obstacle& wires, double turn)
 {
     EolCloth cloth(wires, make_draped({7, turn, 180.0}));
-    cloth.scene.eol = uniform_target(kCell, 10.0);
+    cloth.scene.eol = uniform_target(kLyingCell, 10.0);
     for (Vec3& x : cloth.state.mesh.world) x += Vec3(0.003, 0.004, kThickness);
     const State& state = cloth.state;
     const Obstacle& obstacle = cloth.scene.obstacles[0];
@@ -316,7 +288,7 @@ TEST(Conform, WhereNothingHasChangedTheSecondTimeChangesNothing)
 TEST(Conform, NearABorderThatRunsAlongARowStaysARow)
 {
     for (const double cells : {0.1, 0.28, 0.32, 0.6}) {  // from the border x = -0.2 of the cloth
-        EolCloth cloth = lying(0.0, 0.2 - cells * kCell);
+        EolCloth cloth = lying(0.0, 0.2 - cells * kLyingCell);
         press_edges(cloth);
         ASSERT_GT(cloth.state.active.size(), 6u);
         const std::optional<ConformedMesh> made = conform(cloth);
@@ -331,7 +303,7 @@ TEST(Conform, WhereTheClothComesFastItWouldHaveToGoAtOnce)
 {
     // 0.6 cells (34 mm) of material are left, of which one step uses up 5 mm for each m/s.
     for (const double speed : {0.0, 0.1, 2.0, 20.0}) {
-        EolCloth cloth = lying(0.0, 0.2 - 0.6 * kCell);
+        EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
         for (Vec3& v : cloth.state.velocity) v = Vec3(speed, 0, 0);
         press_edges(cloth);
         EXPECT_EQ(conform(cloth).has_value(), speed < 1.0) << speed;

@@ -117,6 +117,36 @@ EolPlacing EolCloth::place(int vertex, const Placement& end) const
                             state.mesh.world, end);
 }
 
+EolCloth lying(double turn, double shift, double half_length)
+{
+    EolCloth cloth(make_ridge(60.0, half_length), make_draped({7, turn, 180.0}));
+    cloth.scene.eol = uniform_target(kLyingCell, 10.0);
+    for (Vec3& x : cloth.state.mesh.world) x += Vec3(shift, 0.0, kThickness);
+    return cloth;
+}
+
+void press_edges(EolCloth& cloth)
+{
+    const Obstacle& ridge = cloth.scene.obstacles[0];
+    const FeatureEdge& tip = ridge.features().edges[tip_of(ridge)];
+    const double end = std::abs(ridge.mesh().points[ridge.topology().edges[tip.edge].points[0]].y());
+    const State& state = cloth.state;
+    for (const MeshEdge& edge : edges_of(state)) {
+        const Vec3 &a = state.mesh.world[edge.a], &b = state.mesh.world[edge.b];
+        if (!(a.x() * b.x() < 0.0)) continue;
+        const double s = a.x() / (a.x() - b.x());
+        if (std::abs((1.0 - s) * a.y() + s * b.y()) > end) continue;
+        std::array<std::uint32_t, 3> ids = {state.ids[edge.a], state.ids[edge.b], ActiveContact::kNoVertex};
+        std::sort(ids.begin(), ids.end());
+        cloth.state.active.push_back({ids, ContactKind::Edge, 0, tip.edge, Vec3::UnitZ(), 1e-6});
+    }
+}
+
+std::vector<MeshEdge> edges_of(const State& state)
+{
+    return make_topology(state.mesh.vertex_count(), state.mesh.faces).edges;
+}
+
 double kinetic_energy_of(const Scene& scene, const State& state)
 {
     const ClothElements elements = elements_of(state.mesh);

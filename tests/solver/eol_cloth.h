@@ -39,6 +39,18 @@ struct EolCloth {
     EolPlacing place(int vertex, const Placement& end = {}) const;
 };
 
+inline constexpr double kThickness = 1e-3;       // m, of an EolCloth
+inline constexpr double kLyingCell = 0.4 / 7.0;  // m: no mesh line is above the ridge
+
+/// Flat cloth that lies on the ridge at the thickness' height, turned by `turn` (degrees), moved by `shift`
+/// (m) along x.
+EolCloth lying(double turn, double shift = 0.0, double half_length = 0.5);
+
+/// Rows where the cloth's edges cross the ridge's tip, as a step leaves them.
+void press_edges(EolCloth& cloth);
+
+std::vector<MeshEdge> edges_of(const State& state);
+
 /// Of the whole cloth: kinetic energy (J) and linear momentum (kg m/s) of its material.
 double kinetic_energy_of(const Scene& scene, const State& state);
 Vec3 momentum_of(const Scene& scene, const State& state);

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/feature_census.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "geometry/obstacle_shapes.h"
+#include "solver/step.h"
+#include "tests/solver/eol_cloth.h"
+
+namespace arris {
+namespace {
+
+using testing::EolCloth;
+using testing::kThickness;
+using testing::lying;
+
+/// A solved step that is only its contacts.
+struct Solved {
+    EolCloth cloth = lying(0.0);
+    Workspace work;
+    std::vector<double> multiplier;
+
+    Solved()
+    {
+        prepare(cloth.scene, cloth.state, work);
+        work.obstacles.resize(1);
+        work.obstacles[0].motion.begin = cloth.state.mesh.world;
+    }
+
+    int tip() const
+    {
+        const ObstacleFeatures& features = cloth.scene.obstacles[0].features();
+        return features.edges[testing::tip_of(cloth.scene.obstacles[0])].edge;
+    }
+
+    Contact& add(ContactKind kind, std::array<int, 3> vertices, int element, bool was_active,
+                 double pressing = 1.0)
+    {
+        Contact contact{};
+        contact.in_frame.kind = kind;
+        contact.in_frame.vertices = vertices;
+        contact.in_frame.element = element;
+        contact.in_frame.normal = Vec3::UnitZ();
+        contact.in_frame.point = Vec3(0, 0.1, 0);
+        contact.obstacle = 0;
+        contact.was_active = was_active;
+        contact.eol = -1;
+        work.contacts.push_back(contact);
+        multiplier.push_back(pressing);
+        return work.contacts.back();
+    }
+
+    FeatureCensus take() const { return take_census(cloth.scene, cloth.state, work, multiplier); }
+    int count(RowCause cause) const { return take().by_cause[static_cast<std::size_t>(cause)]; }
+};
+
+TEST(FeatureCensus, OfNothingThereIsNothing)
+{
+    Solved solved;
+    EXPECT_EQ(solved.take().eol, 0);
+    EXPECT_EQ(solved.take().rows, 0);
+    solved.add(ContactKind::Edge, {3, 4, -1}, solved.tip(), true, 0.0);
+    EXPECT_EQ(solved.take().rows, 0) << "it does not press";
+}
+
+TEST(FeatureCensus, ARowIsNewUntilItHasPressedTwice)
+{
+    Solved solved;
+    solved.add(ContactKind::Edge, {3, 4, -1}, solved.tip(), false);
+    solved.add(ContactKind::Edge, {4, 5, -1}, solved.tip(), true);
+    EXPECT_EQ(solved.count(RowCause::New), 1);
+    EXPECT_EQ(solved.count(RowCause::NotCrossing), 1)
+        << "nothing has refused it: there was no place to put one";
+    EXPECT_EQ(solved.take().rows, 2);
+}
+
+TEST(FeatureCensus, ARowHasTheCauseForWhichItWasRefused)
+{
+    Solved solved;
+    constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
+    solved.work.refused = {{{3, 4, kNone}, ContactKind::Edge, 0, solved.tip(), RowCause::Guard},
+                           {{4, 5, kNone}, ContactKind::Edge, 0, solved.tip() + 1, RowCause::Guard},
+                           {{5, 6, kNone}, ContactKind::Edge, 1, solved.tip(), RowCause::Guard},
+                           {{6, 7, 8}, ContactKind::Triangle, 0, 2, RowCause::Quality},
+                           {{9, kNone, kNone}, ContactKind::Vertex, 0, -1, RowCause::Released}};
+    solved.add(ContactKind::Edge, {3, 4, -1}, solved.tip(), true);
+    solved.add(ContactKind::Edge, {4, 5, -1}, solved.tip(), true);  // refused at another edge of the obstacle
+    solved.add(ContactKind::Edge, {5, 6, -1}, solved.tip(), true);  // and of another obstacle
+    solved.add(ContactKind::Triangle, {6, 7, 8}, 2, true);
+    solved.add(ContactKind::Vertex, {9, -1, -1}, 1, true);
+    EXPECT_EQ(solved.count(RowCause::Guard), 1);
+    EXPECT_EQ(solved.count(RowCause::NotCrossing), 2);
+    EXPECT_EQ(solved.count(RowCause::Quality), 1);
+    EXPECT_EQ(solved.count(RowCause::Released), 1);
+    solved.cloth.scene.eol.reset();
+    EXPECT_EQ(solved.take().rows, 5);
+    EXPECT_EQ(solved.count(RowCause::Guard), 0) << "nothing is to be EOL";
+}
+
+TEST(FeatureCensus, EolVerticesThatPressAreCountedAndWhatElseTheyTouch)
+{
+    Solved solved;
+    EolCloth& cloth = solved.cloth;
+    const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+    for (Vec3& x : cloth.state.mesh.world) x.x() -= 0.5 * testing::kLyingCell;  // a row is on the ridge
+    solved.work.obstacles[0].motion.begin = cloth.state.mesh.world;
+    const auto near_ridge = [&](double y) {
+        const auto& world = cloth.state.mesh.world;
+        return static_cast<int>(std::min_element(world.begin(), world.end(),
+                                                 [y](const Vec3& a, const Vec3& b) {
+                                                     return (a - Vec3(0, y, kThickness)).norm() <
+                                                            (b - Vec3(0, y, kThickness)).norm();
+                                                 }) -
+                                world.begin());
+    };
+    const int a = near_ridge(0.05), b = near_ridge(-0.05);
+    ASSERT_NE(a, b);
+    cloth.add_eol(a, false, tip);
+    cloth.add_eol(b, false, tip);
+    solved.add(ContactKind::Vertex, {a, -1, -1}, -1, true).eol = 0;
+    solved.add(ContactKind::Vertex, {b, -1, -1}, -1, true, 0.0).eol = 1;
+    EXPECT_EQ(solved.take().eol, 1);
+    EXPECT_EQ(solved.take().rows, 0);
+
+    solved.add(ContactKind::Vertex, {a, -1, -1}, 1000, true);
+    EXPECT_EQ(solved.count(RowCause::OtherFeature), 1);
+
+    // One whose cloth stands up has no coordinates: its contact is a row, and says why.
+    for (Vec3& x : cloth.state.mesh.world) x = Vec3(0.0, x.y(), kThickness + x.x());
+    solved.work.obstacles[0].motion.begin = cloth.state.mesh.world;
+    EXPECT_EQ(solved.count(RowCause::EdgeOn), 1);
+}
+
+TEST(FeatureCensus, AnEdgeThatEndsAtAnEolVertexOfItsFeatureIsBesideIt)
+{
+    const auto count_at = [](const std::array<int, 3>& vertices, bool is_tip) {
+        Solved solved;
+        const Obstacle& ridge = solved.cloth.scene.obstacles[0];
+        const int tip = testing::tip_of(ridge);
+        solved.cloth.add_eol(4, false, tip);
+        const int feature = is_tip ? tip : tip == 0 ? 1 : 0;
+        solved.add(ContactKind::Edge, vertices, ridge.features().edges[feature].edge, true);
+        return std::pair(solved.count(RowCause::BesideEol), solved.count(RowCause::NotCrossing));
+    };
+    EXPECT_EQ(count_at({3, 4, -1}, true), std::pair(1, 0));
+    EXPECT_EQ(count_at({2, 3, -1}, true), std::pair(0, 1)) << "no end is";
+    EXPECT_EQ(count_at({3, 4, -1}, false), std::pair(0, 1)) << "it is on another feature";
+}
+
+TEST(FeatureCensus, AVertexThatIsLooseHasBeenReleased)
+{
+    Solved solved;
+    const int tip = testing::tip_of(solved.cloth.scene.obstacles[0]);
+    solved.cloth.state.loose = {{solved.cloth.state.ids[9], 0, false, tip, Vec3::UnitZ(), 0}};
+    solved.add(ContactKind::Vertex, {9, -1, -1}, -1, true);  // no element: it is off its own feature
+    solved.add(ContactKind::Vertex, {8, -1, -1}, -1, true);
+    EXPECT_EQ(solved.count(RowCause::Released), 1);
+    EXPECT_EQ(solved.count(RowCause::NotCrossing), 1);
+}
+
+TEST(FeatureCensus, AVertexTouchesAFeatureWhereItsPlaneIsNoFaces)
+{
+    const Obstacle box("box", make_box({1, 1, 1}), {}, {}, 30.0);
+    const auto touches = [](const Obstacle& obstacle, const Vec3& point, const Vec3& normal, int element) {
+        ObstacleContact contact{};
+        contact.kind = ContactKind::Vertex;
+        contact.vertices = {0, -1, -1};
+        contact.element = element;
+        contact.point = point;
+        contact.normal = normal.normalized();
+        return touches_feature(obstacle, contact, kThickness);
+    };
+    const auto face_to = [&](const Vec3& normal) {
+        const auto& normals = box.topology().face_normals;
+        return static_cast<int>(std::find_if(normals.begin(), normals.end(),
+                                             [&](const Vec3& n) { return n.dot(normal) > 0.99; }) -
+                                normals.begin());
+    };
+    const int top = face_to(Vec3::UnitZ());
+    EXPECT_FALSE(touches(box, {0.1, 0.2, 0.5}, Vec3::UnitZ(), top));
+    EXPECT_FALSE(touches(box, {0.5, 0.2, 0.5}, Vec3::UnitZ(), top)) << "it lies on the top";
+    EXPECT_TRUE(touches(box, {0.5, 0.2, 0.5}, {1, 0, 1}, top));
+    EXPECT_TRUE(touches(box, {0.5, 0.2, 0.5}, {1e-3, 0, 1}, top));
+    EXPECT_TRUE(touches(box, {0.5, 0.5, 0.5}, {1, 1, 1}, top)) << "a corner";
+    const Obstacle wire("wire", make_wire({{-1, 0, 0}, {1, 0, 0}}, false), {}, {}, 30.0);
+    EXPECT_TRUE(touches(wire, {0, 0, 0}, {0, 0, 1}, 0));
+    const Obstacle nail("nail", make_points({{0.3, 0, 0}}), {}, {}, 30.0);
+    EXPECT_TRUE(touches(nail, {0.3, 0, 0}, {0, 0, 1}, 0));
+    EXPECT_TRUE(touches(nail, {0.3, 0, 0}, {0, 1, 1}, 7));
+
+    // The edges of a smooth surface are no features: a box where nothing is sharp.
+    const Obstacle smooth("smooth", make_box({1, 1, 1}), {}, {}, 179.0);
+    ASSERT_TRUE(smooth.features().edges.empty());
+    EXPECT_FALSE(touches(smooth, {0.5, 0.2, 0.5}, {1, 0, 1}, top));
+}
+
+}  // namespace
+}  // namespace arris

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/row_cause.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "solver/conform.h"
+#include "solver/eol_release.h"
+#include "solver/mesh_transfer.h"
+#include "tests/solver/eol_cloth.h"
+
+namespace arris {
+namespace {
+
+using testing::edges_of;
+using testing::EolCloth;
+using testing::kLyingCell;
+using testing::lying;
+using testing::press_edges;
+
+constexpr double kStep = 0.005;  // s
+
+ConformOutcome conform(const EolCloth& cloth, const FailedFlow& failed = {}, bool is_strict = false)
+{
+    return conform_mesh(cloth.scene, kStep, cloth.state, edges_of(cloth.state), failed, is_strict);
+}
+
+int count(const ConformOutcome& outcome, RowCause cause)
+{
+    return static_cast<int>(
+        std::count_if(outcome.refused.begin(), outcome.refused.end(),
+                      [cause](const RefusedContact& refused) { return refused.cause == cause; }));
+}
+
+void take(EolCloth& cloth)
+{
+    const ConformOutcome outcome = conform(cloth);
+    ASSERT_TRUE(outcome.mesh);
+    TransferReport report;
+    cloth.state = transfer(cloth.scene, cloth.state, *outcome.mesh, report);
+    cloth.state.active.clear();
+}
+
+/// Holds the vertices between these material coordinates u.
+void hold(EolCloth& cloth, double from, double to)
+{
+    Pin pin;
+    pin.material = {Vec2(from, 0.0), Vec2(to, 0.4)};
+    cloth.scene.pins = {pin};
+}
+
+TEST(RowCause, EachHasItsOwnName)
+{
+    std::set<std::string> names;
+    for (std::size_t k = 0; k < kRowCauses; ++k) names.insert(to_string(static_cast<RowCause>(k)));
+    EXPECT_EQ(names.size(), kRowCauses);
+    EXPECT_FALSE(names.contains(""));
+}
+
+TEST(RowCause, WhatBecomesEolIsRefusedByNothing)
+{
+    EolCloth cloth = lying(17.0);
+    press_edges(cloth);
+    const ConformOutcome outcome = conform(cloth);
+    ASSERT_TRUE(outcome.mesh);
+    EXPECT_GE(outcome.mesh->report.inserted + count(outcome, RowCause::BesideEol),
+              static_cast<int>(cloth.state.active.size()));
+    EXPECT_EQ(static_cast<int>(outcome.refused.size()), count(outcome, RowCause::BesideEol))
+        << "two edges that cross the feature at one vertex of the cloth";
+}
+
+TEST(RowCause, EveryRowNearABorderIsCounted)
+{
+    EolCloth cloth = lying(0.0, 0.2 - 0.1 * kLyingCell);
+    press_edges(cloth);
+    const ConformOutcome outcome = conform(cloth);
+    EXPECT_FALSE(outcome.mesh);
+    EXPECT_EQ(count(outcome, RowCause::NearBorder), static_cast<int>(cloth.state.active.size()));
+    ASSERT_GT(cloth.state.active.size(), 6u);
+    for (std::size_t k = 0; k < outcome.refused.size(); ++k) {
+        EXPECT_EQ(outcome.refused[k].kind, ContactKind::Edge);
+        EXPECT_EQ(outcome.refused[k].obstacle, 0);
+    }
+}
+
+TEST(RowCause, AVertexThatIsGivenUpIsCountedAndWhatIsNotTriedAgain)
+{
+    EolCloth cloth = lying(17.0);
+    press_edges(cloth);
+    const std::vector<ActiveContact> rows = cloth.state.active;
+    take(cloth);
+    const VertexId given_up = cloth.state.eol[2].vertex_id;
+    const ConformOutcome alone = conform(cloth, {{}, {given_up}});
+    ASSERT_TRUE(alone.mesh);
+    ASSERT_EQ(alone.refused.size(), 1u);
+    EXPECT_EQ(alone.refused[0].cause, RowCause::GivenUp);
+    EXPECT_EQ(alone.refused[0].vertex_ids[0], given_up);
+
+    EolCloth fresh = lying(17.0);
+    fresh.state.active = rows;
+    const ConformOutcome none = conform(fresh, {{}, {given_up}});
+    EXPECT_EQ(count(none, RowCause::GivenUp), static_cast<int>(rows.size()));
+}
+
+TEST(RowCause, WhatIsReleasedIsCountedWithItsReason)
+{
+    EolCloth cloth = lying(17.0);
+    press_edges(cloth);
+    take(cloth);
+    const auto last = std::max_element(
+        cloth.state.eol.begin(), cloth.state.eol.end(), [&](const EolVertex& a, const EolVertex& b) {
+            const auto y = [&](const EolVertex& e) {
+                return cloth.state.mesh.world[cloth.state.index_of(e.vertex_id)].y();
+            };
+            return y(a) < y(b);
+        });
+    last->idle = kIdleSteps;  // an end of the trace: nothing holds it between
+    const ConformOutcome idle = conform(cloth);
+    ASSERT_EQ(idle.refused.size(), 1u);
+    EXPECT_EQ(idle.refused[0].cause, RowCause::Released);
+    EXPECT_EQ(idle.refused[0].vertex_ids[0], last->vertex_id);
+    EXPECT_EQ(idle.refused[0].vertex_ids[1], ActiveContact::kNoVertex);
+    EXPECT_EQ(idle.refused[0].kind, ContactKind::Vertex);
+}
+
+TEST(RowCause, WhatLiesBetweenPressingContactsIsNoContact)
+{
+    // Two contacts near the border, and all that is between them: none becomes EOL, two are counted.
+    EolCloth cloth = lying(0.0, 0.2 - 0.1 * kLyingCell);
+    press_edges(cloth);
+    ASSERT_GT(cloth.state.active.size(), 6u);
+    cloth.state.active = {cloth.state.active.front(), cloth.state.active.back()};
+    EXPECT_EQ(conform(cloth).refused.size(), 2u);
+}
+
+TEST(RowCause, WhatHasNoCoordinatesSaysWhy)
+{
+    // Cloth upright over the ridge: its plane contains the outward direction.
+    EolCloth upright = lying(0.0);
+    for (Vec3& x : upright.state.mesh.world) x = Vec3(0.0, x.y(), x.x() + 0.3);
+    upright.add_eol(upright.vertex_at(0.2, 0.2), false, testing::tip_of(upright.scene.obstacles[0]));
+    EXPECT_EQ(count(conform(upright), RowCause::EdgeOn), 1);
+
+    // A border along the ridge, and the cloth's corner.
+    EolCloth along = lying(0.0, 0.2);
+    along.add_eol(along.vertex_at(0.0, 0.2), false, testing::tip_of(along.scene.obstacles[0]));
+    EXPECT_EQ(count(conform(along), RowCause::AlongBorder), 1);
+    EolCloth corner = lying(0.0, 0.2);
+    corner.add_eol(corner.vertex_at(0.0, 0.0), false, testing::tip_of(corner.scene.obstacles[0]));
+    EXPECT_EQ(count(conform(corner), RowCause::ClothCorner), 1);
+
+    EXPECT_EQ(cause_of(EolRefusal::NoDirection), RowCause::NoDirection);
+    for (const RowCause cause :
+         {RowCause::NoDirection, RowCause::AlongBorder, RowCause::EdgeOn, RowCause::ClothCorner})
+        EXPECT_TRUE(is_without_coordinates(cause));
+    for (const RowCause cause : {RowCause::New, RowCause::Guard, RowCause::NearBorder, RowCause::Released})
+        EXPECT_FALSE(is_without_coordinates(cause));
+}
+
+TEST(RowCause, WhereHeldVerticesLeaveNoPlaceTheMeshIsTheReason)
+{
+    // The ridge is a fiftieth of a cell beside a row of vertices that a pin holds.
+    EolCloth cloth = lying(0.0, 0.2 - 3.02 * kLyingCell);
+    hold(cloth, 3.0 * kLyingCell - 1e-6, 3.0 * kLyingCell + 1e-6);
+    press_edges(cloth);
+    const ConformOutcome outcome = conform(cloth);
+    EXPECT_GT(count(outcome, RowCause::Quality), 4);
+    EXPECT_EQ(count(outcome, RowCause::Guard), 0);
+}
+
+TEST(RowCause, AWayThatCannotBeClearedIsCounted)
+{
+    EolCloth cloth = lying(0.0);
+    press_edges(cloth);
+    take(cloth);
+    hold(cloth, 4.0 * kLyingCell - 1e-6, 4.0 * kLyingCell + 1e-6);
+    // Towards the held row, which is half a cell away: it is there before the four steps that are cleared.
+    for (const EolVertex& e : cloth.state.eol)
+        cloth.state.material_velocity[cloth.state.index_of(e.vertex_id)] =
+            Vec2(0.25 * kLyingCell / kStep, 0.0);
+    press_edges(cloth);
+    const ConformOutcome outcome = conform(cloth);
+    ASSERT_TRUE(outcome.mesh);
+    EXPECT_GT(outcome.mesh->report.released, 2);
+    EXPECT_EQ(count(outcome, RowCause::Blocked), outcome.mesh->report.released);
+    EXPECT_EQ(count(outcome, RowCause::GivenUp), 0);
+}
+
+TEST(RowCause, WhatIsMadeAndFindsNoWayIsCountedAsTheContactItWas)
+{
+    for (const double side : {-1.0, 1.0}) {
+        EolCloth cloth = lying(0.0);
+        const double row = side > 0.0 ? 4.0 : 3.0;
+        hold(cloth, row * kLyingCell - 1e-6, row * kLyingCell + 1e-6);
+        for (Vec3& v : cloth.state.velocity) v = Vec3(-side * 0.25 * kLyingCell / kStep, 0.0, 0.0);
+        press_edges(cloth);
+        const ConformOutcome outcome = conform(cloth);
+        ASSERT_TRUE(outcome.mesh);
+        EXPECT_GT(outcome.mesh->report.released, 1);
+        EXPECT_EQ(count(outcome, RowCause::Blocked), outcome.mesh->report.released);
+        for (const RefusedContact& refused : outcome.refused)
+            EXPECT_EQ(refused.kind, ContactKind::Edge) << "none was EOL before";
+    }
+}
+
+TEST(RowCause, StiffClothThatWouldBeStrainedIsGuarded)
+{
+    // A crease along the row of vertices beside the ridge, which would have to move down its slope.
+    const double beside = 0.15 * kLyingCell;
+    EolCloth cloth = lying(0.0, 0.2 - 3.0 * kLyingCell + beside);
+    cloth.scene.material.youngs_modulus = 1e6;
+    for (Vec3& x : cloth.state.mesh.world) {
+        const double away = x.x() - beside;
+        x = Vec3(beside + 0.8 * away, x.y(), x.z() + 0.6 * (beside / 0.8 - std::abs(away)));
+    }
+    press_edges(cloth);
+    const ConformOutcome outcome = conform(cloth, {}, true);
+    EXPECT_GT(count(outcome, RowCause::Guard), 4);
+}
+
+TEST(RowCause, WhatSurgeryBesideItMovesOffThePlaneIsCounted)
+{
+    // Material lines are wavy across the ridge and the cloth gives way to anything.
+    EolCloth cloth = lying(17.0);
+    cloth.scene.material.youngs_modulus = 1e-9;
+    cloth.scene.gravity = Gravity{};
+    for (Vec3& x : cloth.state.mesh.world) x.x() += 0.012 * std::sin(90.0 * x.y() + 40.0 * x.x());
+    press_edges(cloth);
+    const ConformOutcome outcome = conform(cloth);
+    EXPECT_GT(count(outcome, RowCause::OffPlane), 0);
+}
+
+}  // namespace
+}  // namespace arris
