@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <span>
 
 namespace arris {
@@ -18,13 +19,18 @@ bool has_moved(const std::vector<char>& is_moved, std::span<const int> vertices)
 template <typename Element>
 ElementColors color_elements(int vertex_count, const std::vector<Element>& elements)
 {
-    std::vector<std::vector<int>> used(vertex_count);  // colours at a vertex
+    // Colours at each vertex, as many as it has elements so far: used[begin[v]] .. used[end[v] - 1].
+    std::vector<int> begin(vertex_count + 1, 0);
+    for (const Element& element : elements)
+        for (const int v : element.vertices) ++begin[v + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<int> end(begin.begin(), begin.end() - 1), used(begin.back());
     std::vector<int> color(elements.size());
     std::vector<int> seen_by;  // last element that met this colour
     int color_count = 0;
     for (int e = 0; e < static_cast<int>(elements.size()); ++e) {
         for (const int v : elements[e].vertices)
-            for (const int k : used[v]) seen_by[k] = e;
+            for (int u = begin[v]; u < end[v]; ++u) seen_by[used[u]] = e;
         int free_color = 0;
         while (free_color < color_count && seen_by[free_color] == e) ++free_color;
         if (free_color == color_count) {
@@ -32,7 +38,7 @@ ElementColors color_elements(int vertex_count, const std::vector<Element>& eleme
             seen_by.push_back(-1);
         }
         color[e] = free_color;
-        for (const int v : elements[e].vertices) used[v].push_back(free_color);
+        for (const int v : elements[e].vertices) used[end[v]++] = free_color;
     }
 
     // Counting sort by colour; within one, elements keep their order.

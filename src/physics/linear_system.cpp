@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 #include "physics/eulerian_element.h"
 #include "physics/momentum_flux.h"
@@ -57,23 +58,30 @@ void reduce(const std::array<int, N>& vertices, const Linearization& at, LocalSy
 
 void LinearSystem::make_pattern(const ClothElements& elements)
 {
-    // Neighbours below the diagonal, by column.
-    std::vector<std::vector<int>> below(elements.vertex_count);
-    const auto connect = [&](const auto& vertices) {
-        for (const int i : vertices)
-            for (const int j : vertices)
-                if (i > j) below[j].push_back(i);
-    };
-    for (const FaceElement& face : elements.faces) connect(face.vertices);
-    for (const HingeElement& hinge : elements.hinges) connect(hinge.vertices);
-
+    // Neighbours below the diagonal, by column: below[first[j]] .. below[last[j] - 1].
     const int n = elements.vertex_count;
+    const auto for_each_pair = [&](const auto& visit) {
+        const auto visit_pairs = [&](const auto& vertices) {
+            for (const int i : vertices)
+                for (const int j : vertices)
+                    if (i > j) visit(i, j);
+        };
+        for (const FaceElement& face : elements.faces) visit_pairs(face.vertices);
+        for (const HingeElement& hinge : elements.hinges) visit_pairs(hinge.vertices);
+    };
+    std::vector<int> first(n + 1, 0);
+    for_each_pair([&](int, int j) { ++first[j + 1]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<int> last(first.begin(), first.end() - 1), below(first.back());
+    for_each_pair([&](int i, int j) { below[last[j]++] = i; });
+
     column_height_.assign(n, 0);
     Eigen::VectorXi heights(3 * n);
     for (int j = 0; j < n; ++j) {
-        std::sort(below[j].begin(), below[j].end());
-        below[j].erase(std::unique(below[j].begin(), below[j].end()), below[j].end());
-        column_height_[j] = 3 * (1 + static_cast<int>(below[j].size()));
+        const auto begin = below.begin() + first[j];
+        std::sort(begin, below.begin() + last[j]);
+        last[j] = static_cast<int>(std::unique(begin, below.begin() + last[j]) - below.begin());
+        column_height_[j] = 3 * (1 + last[j] - first[j]);
         heights.segment<3>(3 * j).setConstant(column_height_[j]);
     }
 
@@ -86,8 +94,8 @@ void LinearSystem::make_pattern(const ClothElements& elements)
         for (int c = 0; c < 3; ++c) {
             int entry = outer[3 * j + c];
             for (int r = 0; r < 3; ++r) inner[entry++] = 3 * j + r;
-            for (const int i : below[j])
-                for (int r = 0; r < 3; ++r) inner[entry++] = 3 * i + r;
+            for (int k = first[j]; k < last[j]; ++k)
+                for (int r = 0; r < 3; ++r) inner[entry++] = 3 * below[k] + r;
             outer[3 * j + c + 1] = entry;
         }
     rhs_.resize(3 * n);

@@ -75,19 +75,21 @@ double EolGuard::strain_gain(const SurgeryEvent& event) const
 
 bool EolGuard::can_give_way(const SurgeryEvent& event) const
 {
-    const double before = find_elastic_energy(scene_, make_patch(event, false).mesh);
-    return can_relax_to(scene_, make_patch(event, true), before + allowance(event));
+    const Neighbourhood around = look_around(event);
+    const double before = find_elastic_energy(scene_, make_patch(event.before, around, event).mesh);
+    return can_relax_to(scene_, make_patch(event.after, around, event), before + allowance(event));
 }
 
-LoosePatch EolGuard::make_patch(const SurgeryEvent& event, bool is_after) const
+EolGuard::Neighbourhood EolGuard::look_around(const SurgeryEvent& event) const
 {
     constexpr int kRings = 2;
-    std::set<VertexId> near;
+    Neighbourhood around;
+    std::set<VertexId>& near = around.near;
     for (const PatchFace& face : event.before) near.insert(face.vertices.begin(), face.vertices.end());
     for (int ring = 0; ring < kRings; ++ring)
         for (const VertexId v : std::set<VertexId>(near)) {
-            const VertexRing around = surgery_->ring(v);
-            near.insert(around.vertices.begin(), around.vertices.end());
+            const VertexRing neighbours = surgery_->ring(v);
+            near.insert(neighbours.vertices.begin(), neighbours.vertices.end());
         }
     std::set<IdFace> replaced, faces;
     for (const PatchFace& face : event.before) replaced.insert(from_least(face.vertices));
@@ -95,7 +97,14 @@ LoosePatch EolGuard::make_patch(const SurgeryEvent& event, bool is_after) const
         for (const IdFace& face : surgery_->faces_at(v))
             if (std::all_of(face.begin(), face.end(), [&](VertexId w) { return near.contains(w); }))
                 faces.insert(from_least(face));
+    for (const IdFace& face : faces)
+        if (!replaced.contains(face)) around.kept.push_back(surgery_->patch_face(face));
+    return around;
+}
 
+LoosePatch EolGuard::make_patch(const std::vector<PatchFace>& changed, const Neighbourhood& around,
+                                const SurgeryEvent& event) const
+{
     LoosePatch patch;
     std::unordered_map<VertexId, int> local;
     const auto add = [&](const PatchFace& face) {
@@ -106,14 +115,13 @@ LoosePatch EolGuard::make_patch(const SurgeryEvent& event, bool is_after) const
             if (!is_new) continue;
             patch.mesh.material.push_back(face.material[i]);
             patch.mesh.world.push_back(face.world[i]);
-            patch.is_free.push_back(is_loose(face.vertices[i], near, event));
+            patch.is_free.push_back(is_loose(face.vertices[i], around.near, event));
             patch.normals.push_back(find_kept_normal(scene_, state_, face.vertices[i]));
         }
         patch.mesh.faces.push_back(made);
     };
-    for (const PatchFace& face : is_after ? event.after : event.before) add(face);
-    for (const IdFace& face : faces)
-        if (!replaced.contains(face)) add(surgery_->patch_face(face));
+    for (const PatchFace& face : changed) add(face);
+    for (const PatchFace& face : around.kept) add(face);
     return patch;
 }
 

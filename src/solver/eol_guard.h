@@ -38,7 +38,15 @@ class EolGuard {
     double stretch_of(const PatchFace& face) const;
     /// Whether the cloth around could take up what strain an operation makes.
     bool can_give_way(const SurgeryEvent& event) const;
-    LoosePatch make_patch(const SurgeryEvent& event, bool is_after) const;
+    /// Around an operation: vertices, and the faces between them that it does not replace.
+    struct Neighbourhood {
+        std::set<VertexId> near;
+        std::vector<PatchFace> kept;
+    };
+    Neighbourhood look_around(const SurgeryEvent& event) const;
+    /// These faces, before or after the operation, and those around.
+    LoosePatch make_patch(const std::vector<PatchFace>& changed, const Neighbourhood& around,
+                          const SurgeryEvent& event) const;
     bool is_loose(VertexId v, const std::set<VertexId>& near, const SurgeryEvent& event) const;
     double allowance(const SurgeryEvent& event) const;
 
