@@ -5,6 +5,8 @@
 #include <set>
 #include <unordered_map>
 
+#include "solver/strain_allowance.h"
+
 namespace arris {
 
 namespace {
@@ -45,8 +47,7 @@ bool EolGuard::allows(const SurgeryEvent& event) const
 
 double EolGuard::allowance(const SurgeryEvent& event) const
 {
-    constexpr double kShare = 0.01;     // of the patch's stretch energy, and
-    constexpr double kMotion = 0.01;    // of what moves it: its own motion, its weight over a cell
+    constexpr double kShare = 0.01;  // of the patch's stretch energy
     // The alternative is to give the trace up: a row that holds all that slides.
     const double clearing = limit_ == StrainLimit::Forced ? 100.0 : 10.0;
     double before = 0.0, area = 0.0, squared_speed = 0.0;
@@ -57,12 +58,11 @@ double EolGuard::allowance(const SurgeryEvent& event) const
             if (const int v = state_.index_of(id); v >= 0)
                 squared_speed = std::max(squared_speed, state_.velocity[v].squaredNorm());
     }
-    const double weight = scene_.gravity ? scene_.gravity->acceleration.norm() : 0.0;
-    const double motion = scene_.material.density * area *
-                          (0.5 * squared_speed + weight * scene_.eol->length(event.before[0].material[0]));
+    const double motion = 0.5 * scene_.material.density * area * squared_speed +
+                          weight_over(scene_, area, scene_.eol->length(event.before[0].material[0]));
     constexpr double kStrain = 1e-6;  // nobody sees; of cloth without strain and motion rounding is all
     const double unseen = scene_.material.youngs_modulus * area * kStrain * kStrain;
-    return (is_clearing_ ? clearing : 1.0) * (kShare * before + kMotion * motion + unseen);
+    return (is_clearing_ ? clearing : 1.0) * (kShare * before + kAllowedStrain * motion + unseen);
 }
 
 double EolGuard::strain_gain(const SurgeryEvent& event) const

@@ -9,6 +9,7 @@
 #include "physics/velocity_fit.h"
 #include "solver/held_vertices.h"
 #include "solver/patch_relaxation.h"
+#include "solver/strain_allowance.h"
 
 namespace arris {
 
@@ -32,7 +33,7 @@ class PatchFitter {
             const double gain = relax_patch(patch);
             const std::optional<VelocityFit> fit = fit_patch(patch);
             report.is_strained =
-                report.is_strained || gain > 0.01 * ((fit ? fit->energy : 0.0) + weight(patch));
+                report.is_strained || gain > kAllowedStrain * ((fit ? fit->energy : 0.0) + weight(patch));
             if (!fit) continue;
             ++report.patches;
             report.energy_gain += fit->energy_gain;
@@ -93,8 +94,7 @@ class PatchFitter {
             area += 0.5 * twice_area(X, after_.mesh.material[face[1]], after_.mesh.material[face[2]]);
             length = std::max(length, scene_.eol->length(X));
         }
-        return scene_.gravity ? scene_.material.density * area * scene_.gravity->acceleration.norm() * length
-                              : 0.0;
+        return weight_over(scene_, area, length);
     }
 
     std::optional<VelocityFit> fit_patch(const ChangedPatch& changed)

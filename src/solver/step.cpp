@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <optional>
 
 #include "solver/conform.h"
@@ -31,380 +30,375 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
     std::optional<ConformedMesh> conformed;
     TransferReport transferred;
     for (const StrainLimit limit : {StrainLimit::GivesWay, StrainLimit::AsMade, StrainLimit::Forced}) {
-        for (const StrainLimit limit : {false, true}) {
-            ConformOutcome outcome =
-                conform_mesh(scene, end - state.time, state, work.edges, work.failed_flow, limit);
-            conformed = std::move(outcome.mesh);
-            work.refused = std::move(outcome.refused);
-            report.seconds.conform += watch.lap();
-            if (!conformed) return state;
-            work.conformed = transfer(scene, state, *conformed, transferred);
-            report.seconds.transfer += watch.lap();
-            const bool is_wanted =
-                limit == StrainLimit::GivesWay ? !transferred.is_strained : conformed->report.lost == 0;
-            if (is_wanted) break;
-        }
-        report.inserted = conformed->report.inserted;
-        report.released = conformed->report.released;
-        prepare(scene, work.conformed, work);
-        report.seconds.move += watch.lap();
-        return work.conformed;
+        ConformOutcome outcome =
+            conform_mesh(scene, end - state.time, state, work.edges, work.failed_flow, limit);
+        conformed = std::move(outcome.mesh);
+        work.refused = std::move(outcome.refused);
+        report.seconds.conform += watch.lap();
+        if (!conformed) return state;
+        work.conformed = transfer(scene, state, *conformed, transferred);
+        report.seconds.transfer += watch.lap();
+        const bool is_wanted =
+            limit == StrainLimit::GivesWay ? !transferred.is_strained : conformed->report.lost == 0;
+        if (is_wanted) break;
     }
+    report.inserted = conformed->report.inserted;
+    report.released = conformed->report.released;
+    prepare(scene, work.conformed, work);
+    report.seconds.move += watch.lap();
+    return work.conformed;
+}
 
-    /// Where the integrator starts from, and where pins and obstacles will be.
-    void move(const Scene& scene, const Settings& settings, double end, const State& state, Workspace& work)
-    {
-        work.prediction = predict(state, settings.integrator, end - state.time);
-        work.expansion = {state.velocity, state.material_velocity};
-        if (!work.prediction.has_history) {
-            work.expansion.world.assign(state.velocity.size(), Vec3::Zero());
-            work.expansion.material.assign(state.velocity.size(), Vec2::Zero());
-        }
-        work.is_least_taken = false;
-        work.held = find_held_vertices(scene, state, end);
-        work.obstacles = move_obstacles(scene, state, work.edges, work.prediction, work.held, end);
+/// Where the integrator starts from, and where pins and obstacles will be.
+void move(const Scene& scene, const Settings& settings, double end, const State& state, Workspace& work)
+{
+    work.prediction = predict(state, settings.integrator, end - state.time);
+    work.expansion = {state.velocity, state.material_velocity};
+    if (!work.prediction.has_history) {
+        work.expansion.world.assign(state.velocity.size(), Vec3::Zero());
+        work.expansion.material.assign(state.velocity.size(), Vec2::Zero());
     }
+    work.is_least_taken = false;
+    work.held = find_held_vertices(scene, state, end);
+    work.obstacles = move_obstacles(scene, state, work.edges, work.prediction, work.held, end);
+}
 
-    /// What the cloth may touch; history that runs into it is flattened. False where it would be crushed.
-    bool find_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
-    {
-        work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
-        work.eol.clear();
-        if (!state.eol.empty() || !state.loose.empty())
-            work.eol =
-                add_eol_contacts(scene, state, work.stars, work.prediction, work.obstacles, work.contacts);
-        weigh_start(scene, state, work);
-        const std::optional<int> crushed = share_room(work.obstacles, work.prediction, work.contacts).crushed;
-        flatten_history(scene, state, work.obstacles, work.eol, 0, work.contacts, work.prediction);
+/// What the cloth may touch; history that runs into it is flattened. False where it would be crushed.
+bool find_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
+{
+    work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
+    work.eol.clear();
+    if (!state.eol.empty() || !state.loose.empty())
+        work.eol = add_eol_contacts(scene, state, work.stars, work.prediction, work.obstacles, work.contacts);
+    weigh_start(scene, state, work);
+    const std::optional<int> crushed = share_room(work.obstacles, work.prediction, work.contacts).crushed;
+    flatten_history(scene, state, work.obstacles, work.eol, 0, work.contacts, work.prediction);
+    work.has_system = false;
+    work.yielded = 0;
+    if (!crushed) return true;
+    report.status = StepStatus::Infeasible;
+    report.infeasible_vertex = state.ids[*crushed];
+    return false;
+}
+
+/// Each vertex's coordinates, in which pins are known and contacts are bounds or rows; A, b in them.
+/// False where material would have flowed further than the mesh allows.
+bool assemble(const Scene& scene, double end, const State& state, Workspace& work)
+{
+    if (work.has_system) return true;
+    build_constraints(work.held, work.eol, work.prediction, state, work.contacts, work.at, work.problem);
+    Linearization& at = work.at;
+    const Prediction& prediction = work.prediction;
+    at.begin = state.time;
+    at.time = end;
+    at.gamma = prediction.gamma;
+    at.damping = scene.material.damping;
+    at.v_predicted = prediction.velocity;
+    at.v_last = state.velocity;
+    const MovingCloth end_there = find_end(prediction, work.expansion);
+    at.v_expansion = work.expansion.world;
+    at.position = end_there.world;
+    if (at.flow && !linearise_flow(state, end_there, work)) return false;
+    work.system.assemble(state.mesh, work.elements, work.terms, at);
+    return true;
+}
+
+/// Minimises 1/2 u^T A u - b^T u over bounds and rows.
+void solve_velocity(const Settings& settings, Workspace& work, StepReport& report)
+{
+    work.problem.matrix = &work.system.matrix();
+    work.problem.rhs = &work.system.rhs();
+    work.solution = work.has_system ? work.solver.resume(work.problem, settings)
+                                    : work.solver.solve(work.problem, settings);
+    work.has_system = true;
+    ++report.solves;
+    report.factorisations += work.solution.factorisations;
+    report.nlopt_evaluations += work.solution.nlopt_evaluations;
+    report.kkt_residual = work.solution.kkt_residual;  // of the solve whose velocity is taken
+    report.seconds.factorise += work.solution.factorise_seconds;
+    report.seconds.solve += work.solution.solve_seconds;
+    switch (work.solution.status) {
+        case SolveStatus::Certified:
+            report.status = StepStatus::Done;
+            break;
+        case SolveStatus::NotConverged:
+            report.status = StepStatus::NotConverged;
+            break;
+        case SolveStatus::NotFinite:
+            report.status = StepStatus::NotFinite;
+            break;
+        case SolveStatus::Infeasible:
+            report.status = StepStatus::Infeasible;
+            break;
+    }
+}
+
+/// q' = q~ + gamma v'. Where the cloth is nearer to an obstacle than its stand-off, it is moved out by up
+/// to `growth` (m).
+void propose(const Scene& scene, double growth, Workspace& work)
+{
+    const std::size_t n = work.prediction.position.size();
+    work.proposal.world.resize(n);
+    work.proposal.velocity.resize(n);
+    for (std::size_t v = 0; v < n; ++v) {
+        Vec3& velocity = work.proposal.velocity[v];
+        velocity = work.at.drift[v] + work.at.basis[v] * work.solution.velocity.segment<3>(3 * v);
+        work.proposal.world[v] = work.prediction.position[v] + work.prediction.gamma * velocity;
+    }
+    restore_stand_off(work.contacts, work.obstacles, work.held, scene.material.thickness, growth,
+                      work.proposal);
+}
+
+/// A contact that nothing could meet: the vertex to name, one that a pin holds where there is one.
+std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
+{
+    const auto is_held = [&](int v) {
+        return std::any_of(work.held.begin(), work.held.end(),
+                           [v](const HeldVertex& held) { return held.vertex == v; });
+    };
+    std::int64_t named = -1;
+    for (const int row : work.solution.infeasible_rows)
+        for (const Contact& contact : work.contacts)
+            for (const int v : contact.in_frame.vertices) {
+                if (contact.row != row || v < 0) continue;
+                if (is_held(v)) return state.ids[v];
+                if (named < 0) named = state.ids[v];
+            }
+    return named;
+}
+
+/// Contacts that cannot be met together keep less, in a new system; false where none can. The impulses of
+/// a solution that meets them as well as it can are no contact forces: it is not used.
+bool yield_infeasible(const Scene& scene, Workspace& work)
+{
+    bool is_changed = false;
+    for (Contact& contact : work.contacts) {
+        const std::vector<int>& rows = work.solution.infeasible_rows;
+        if (contact.row < 0 || std::find(rows.begin(), rows.end(), contact.row) == rows.end()) continue;
+        if (!yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, contact)) continue;
+        ++work.yielded;
+        is_changed = true;
+    }
+    work.has_system = work.has_system && !is_changed;
+    return is_changed;
+}
+
+/// Rounds have run out, or the check names nothing that a row could mend.
+void give_up(const Scene& scene, double end, const State& state, Attempt attempt, Workspace& work,
+             StepReport& report)
+{
+    if (report.status == StepStatus::Infeasible)
+        report.infeasible_vertex = find_infeasible_vertex(state, work);
+    else
+        report.status = StepStatus::Penetration;
+    if (attempt == Attempt::Ordinary) return;
+    const std::optional<int> rewound =
+        rewind(scene, state, work.held, work.prediction, end - state.time, work.obstacles, work.proposal);
+    if (!rewound) return;
+    report.rewound = *rewound;
+    report.status = StepStatus::Done;
+}
+
+/// The proposal of a certified velocity, checked. Where only moving cloth out to its stand-off would pass
+/// something, or strains stiff cloth, it is not moved.
+Violations propose_and_check(const Scene& scene, double dt, double growth, Workspace& work)
+{
+    const auto propose_weighed = [&](double by) {
+        propose(scene, by, work);
+        weigh_proposal(scene, dt, work);
+    };
+    propose_weighed(growth);
+    if (growth > 0.0 && is_push_costly(scene, dt, work)) propose_weighed(growth = 0.0);
+    const Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
+    if (violations.is_clean() || growth <= 0.0) return violations;
+    propose_weighed(0.0);
+    return check_proposal(scene, work.proposal, work.prediction, work.obstacles);
+}
+
+/// What the check has found becomes rows of the same system, or of a new one where history ran into it.
+/// False where it names nothing that a row could mend.
+bool add_violations(const Scene& scene, const State& state, const Violations& violations, Workspace& work)
+{
+    if (violations.contacts.empty()) return false;
+    const std::size_t first = work.contacts.size();
+    work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());
+    const bool is_shared = share_room(work.obstacles, work.prediction, work.contacts).is_changed;
+    if (flatten_history(scene, state, work.obstacles, work.eol, first, work.contacts, work.prediction) ||
+        is_shared)
         work.has_system = false;
-        work.yielded = 0;
-        if (!crushed) return true;
-        report.status = StepStatus::Infeasible;
-        report.infeasible_vertex = state.ids[*crushed];
+    else
+        append_rows(work.prediction, work.at, first, work.contacts, work.problem);
+    return true;
+}
+
+/// v^ goes to the velocity found, or part of the way where that has more of what the step minimises.
+void relinearise(const Scene& scene, Workspace& work, StepReport& report)
+{
+    constexpr double kShortest = 0.1;  // wind and pulls are not in the objective: never stay
+    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
+    for (std::size_t c = 0; c < work.contacts.size(); ++c) work.contacts[c].is_pressing = multiplier[c] > 0.0;
+
+    ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
+    if (report.relinearisations > 0) {  // the first v^ keeps no contact: no measure
+        const double now = compute_step_objective(scene, work, work.expansion);
+        for (double share = 1.0; compute_step_objective(scene, work, next) > now && share > kShortest;) {
+            share *= 0.5;
+            for (std::size_t v = 0; v < next.world.size(); ++v) {
+                next.world[v] = 0.5 * (next.world[v] + work.expansion.world[v]);
+                next.material[v] = 0.5 * (next.material[v] + work.expansion.material[v]);
+            }
+        }
+    }
+    work.expansion = std::move(next);
+    work.has_system = false;
+    ++report.relinearisations;
+}
+
+/// Whether the proposal pushes energy in: then forces are linearised again, where it has been found, and
+/// true means solve again. With the last attempt the least there was is taken.
+bool keep_energy(const Scene& scene, const State& state, Attempt attempt, Workspace& work, StepReport& report)
+{
+    constexpr int kMostRelinearisations = 4;  // one does nearly always, three have where they help at all
+    const double rise = find_energy_rise(scene, state, work);
+    report.energy_rise = rise;
+    if (!(rise > 0.0) || work.is_least_taken) return false;
+    if (report.relinearisations == 0 || rise < work.least_rise) {
+        work.least_rise = rise;
+        work.least_at = work.expansion;
+    }
+    if (report.relinearisations < kMostRelinearisations && report.solves < kMostSolves) {
+        relinearise(scene, work, report);
+        return true;
+    }
+    if (attempt == Attempt::Ordinary) {
+        report.status = StepStatus::EnergyRise;
         return false;
     }
+    work.expansion = work.least_at;
+    work.has_system = false;
+    work.is_least_taken = true;
+    return true;
+}
 
-    /// Each vertex's coordinates, in which pins are known and contacts are bounds or rows; A, b in them.
-    /// False where material would have flowed further than the mesh allows.
-    bool assemble(const Scene& scene, double end, const State& state, Workspace& work)
-    {
-        if (work.has_system) return true;
-        build_constraints(work.held, work.eol, work.prediction, state, work.contacts, work.at, work.problem);
-        Linearization& at = work.at;
-        const Prediction& prediction = work.prediction;
-        at.begin = state.time;
-        at.time = end;
-        at.gamma = prediction.gamma;
-        at.damping = scene.material.damping;
-        at.v_predicted = prediction.velocity;
-        at.v_last = state.velocity;
-        const MovingCloth end_there = find_end(prediction, work.expansion);
-        at.v_expansion = work.expansion.world;
-        at.position = end_there.world;
-        if (at.flow && !linearise_flow(state, end_there, work)) return false;
-        work.system.assemble(state.mesh, work.elements, work.terms, at);
+/// Steps 4 to 6 once; true where the velocity is to be solved again.
+bool solve_and_check(const Scene& scene, const Settings& settings, double end, const State& state,
+                     Attempt attempt, Workspace& work, StepReport& report)
+{
+    constexpr double kGrowth = 0.1;  // m/s, of a gap on its way to the stand-off
+    Stopwatch watch;
+
+    // 4. A and b in the vertices' coordinates, in which contacts are bounds and rows.
+    if (!assemble(scene, end, state, work)) {
+        report.status = StepStatus::Overrun;
+        return false;
+    }
+    report.seconds.assemble += watch.lap();
+
+    // 5. The constrained velocity, with its certificate. What cannot be met together yields.
+    solve_velocity(settings, work, report);
+    watch.lap();
+    if (report.status == StepStatus::Infeasible && report.solves < kMostSolves &&
+        yield_infeasible(scene, work))
         return true;
-    }
+    if (report.status != StepStatus::Done && report.status != StepStatus::Infeasible) return false;
 
-    /// Minimises 1/2 u^T A u - b^T u over bounds and rows.
-    void solve_velocity(const Settings& settings, Workspace& work, StepReport& report)
-    {
-        work.problem.matrix = &work.system.matrix();
-        work.problem.rhs = &work.system.rhs();
-        work.solution = work.has_system ? work.solver.resume(work.problem, settings)
-                                        : work.solver.solve(work.problem, settings);
-        work.has_system = true;
-        ++report.solves;
-        report.factorisations += work.solution.factorisations;
-        report.nlopt_evaluations += work.solution.nlopt_evaluations;
-        report.kkt_residual = work.solution.kkt_residual;  // of the solve whose velocity is taken
-        report.seconds.factorise += work.solution.factorise_seconds;
-        report.seconds.solve += work.solution.solve_seconds;
-        switch (work.solution.status) {
-            case SolveStatus::Certified:
-                report.status = StepStatus::Done;
-                break;
-            case SolveStatus::NotConverged:
-                report.status = StepStatus::NotConverged;
-                break;
-            case SolveStatus::NotFinite:
-                report.status = StepStatus::NotFinite;
-                break;
-            case SolveStatus::Infeasible:
-                report.status = StepStatus::Infeasible;
-                break;
+    // 6. q' = q~ + gamma v', not committed, and the exact check of the whole way.
+    if (report.status == StepStatus::Done && !propose_flow(work)) {
+        report.status = StepStatus::Overrun;
+        return false;
+    }
+    const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
+    const Violations violations = propose_and_check(scene, end - state.time, growth, work);
+    const bool is_done = report.status == StepStatus::Done && violations.is_clean();
+    if (is_done && keep_energy(scene, state, attempt, work, report)) return true;
+    const bool is_again = !is_done && report.status == StepStatus::Done && report.solves < kMostSolves &&
+                          add_violations(scene, state, violations, work);
+    const bool is_certified = report.kkt_residual <= settings.tolerance;
+    if (!is_done && !is_again)
+        give_up(scene, end, state, is_certified ? attempt : Attempt::Ordinary, work, report);
+    report.crossings = is_again || report.rewound > 0 ? 0 : violations.crossings;
+    report.yielded = work.yielded;
+    report.seconds.check += watch.lap();
+    return is_again;
+}
+
+/// What each EOL vertex has to remember: which way is outward, and since when it does not press.
+void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoordinates>& eol,
+                const std::vector<double>& multiplier, std::vector<EolVertex>& vertices)
+{
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+        if (contacts[c].eol < 0) continue;
+        EolVertex& vertex = vertices[eol[contacts[c].eol].entry];
+        vertex.outward = contacts[c].in_frame.normal;
+        vertex.side = eol[contacts[c].eol].side;
+        vertex.idle = multiplier[c] > 0.0 ? 0 : vertex.idle + 1;
+    }
+}
+
+/// What an attempt from `start`, the state or what conform made of it, has failed on: the next one has to
+/// know where material overran the mesh. Where the velocity could not be solved for, no vertex is EOL
+/// again.
+void note_failure(const State& state, const State& start, const StepReport& report, Workspace& work)
+{
+    if (report.status == StepStatus::Done) work.forget_failures();
+    const bool is_overrun = report.status == StepStatus::Overrun;
+    if (is_overrun) {
+        ++work.overruns;
+        for (const auto& [v, flow] : work.overrun) {
+            work.failed_flow.flow[start.ids[v]] = flow;
+            if (work.overruns > 2) work.failed_flow.given_up.insert(start.ids[v]);
         }
     }
+    const bool is_unsolved =
+        report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite;
+    if (!is_unsolved && !(is_overrun && work.overruns > Workspace::kMostOverruns)) return;
+    for (const State* tried : {&state, &start})
+        for (const EolVertex& eol : tried->eol) work.failed_flow.given_up.insert(eol.vertex_id);
+}
 
-    /// q' = q~ + gamma v'. Where the cloth is nearer to an obstacle than its stand-off, it is moved out by up
-    /// to `growth` (m).
-    void propose(const Scene& scene, double growth, Workspace& work)
-    {
-        const std::size_t n = work.prediction.position.size();
-        work.proposal.world.resize(n);
-        work.proposal.velocity.resize(n);
-        for (std::size_t v = 0; v < n; ++v) {
-            Vec3& velocity = work.proposal.velocity[v];
-            velocity = work.at.drift[v] + work.at.basis[v] * work.solution.velocity.segment<3>(3 * v);
-            work.proposal.world[v] = work.prediction.position[v] + work.prediction.gamma * velocity;
-        }
-        restore_stand_off(work.contacts, work.obstacles, work.held, scene.material.thickness, growth,
-                          work.proposal);
-    }
+/// Swaps the new state in, or leaves the old one where the step failed.
+void commit(const Scene& scene, double end, Workspace& work, State& state, StepReport& report)
+{
+    if (report.status != StepStatus::Done) return;
+    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
+    const FeatureCensus census = take_census(scene, state, work, multiplier);
+    report.feature_rows = census.rows;
+    report.rows_by_cause = census.by_cause;
+    report.eol_pressing = census.eol;
+    state.active = active_contacts(state, work.contacts, multiplier);
+    count_idle(work.contacts, work.eol, multiplier, state.eol);
+    state.crossings += report.crossings;
+    report.contacts = static_cast<int>(state.active.size());
+    report.eol_vertices = static_cast<int>(state.eol.size());
+    state.previous_world.swap(state.mesh.world);
+    state.previous_velocity.swap(state.velocity);
+    state.mesh.world.swap(work.proposal.world);
+    state.velocity.swap(work.proposal.velocity);
+    state.previous_material.swap(state.mesh.material);
+    state.previous_material_velocity.swap(state.material_velocity);
+    state.mesh.material.swap(work.proposal.material);
+    state.material_velocity.swap(work.proposal.material_velocity);
+    state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // put back by hand: no history
+    state.time = end;
+    ++state.step;
+    follow_features(scene.obstacles, state);
+    work.known.world.clear();
+    if (report.rewound > 0) return;
+    work.known_energy = work.proposed_energy;
+    work.known = {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
+}
 
-    /// A contact that nothing could meet: the vertex to name, one that a pin holds where there is one.
-    std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
-    {
-        const auto is_held = [&](int v) {
-            return std::any_of(work.held.begin(), work.held.end(),
-                               [v](const HeldVertex& held) { return held.vertex == v; });
-        };
-        std::int64_t named = -1;
-        for (const int row : work.solution.infeasible_rows)
-            for (const Contact& contact : work.contacts)
-                for (const int v : contact.in_frame.vertices) {
-                    if (contact.row != row || v < 0) continue;
-                    if (is_held(v)) return state.ids[v];
-                    if (named < 0) named = state.ids[v];
-                }
-        return named;
-    }
-
-    /// Contacts that cannot be met together keep less, in a new system; false where none can. The impulses of
-    /// a solution that meets them as well as it can are no contact forces: it is not used.
-    bool yield_infeasible(const Scene& scene, Workspace& work)
-    {
-        bool is_changed = false;
-        for (Contact& contact : work.contacts) {
-            const std::vector<int>& rows = work.solution.infeasible_rows;
-            if (contact.row < 0 || std::find(rows.begin(), rows.end(), contact.row) == rows.end()) continue;
-            if (!yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, contact))
-                continue;
-            ++work.yielded;
-            is_changed = true;
-        }
-        work.has_system = work.has_system && !is_changed;
-        return is_changed;
-    }
-
-    /// Rounds have run out, or the check names nothing that a row could mend.
-    void give_up(const Scene& scene, double end, const State& state, Attempt attempt, Workspace& work,
-                 StepReport& report)
-    {
-        if (report.status == StepStatus::Infeasible)
-            report.infeasible_vertex = find_infeasible_vertex(state, work);
-        else
-            report.status = StepStatus::Penetration;
-        if (attempt == Attempt::Ordinary) return;
-        const std::optional<int> rewound =
-            rewind(scene, state, work.held, work.prediction, end - state.time, work.obstacles, work.proposal);
-        if (!rewound) return;
-        report.rewound = *rewound;
-        report.status = StepStatus::Done;
-    }
-
-    /// The proposal of a certified velocity, checked. Where only moving cloth out to its stand-off would pass
-    /// something, or strains stiff cloth, it is not moved.
-    Violations propose_and_check(const Scene& scene, double dt, double growth, Workspace& work)
-    {
-        const auto propose_weighed = [&](double by) {
-            propose(scene, by, work);
-            weigh_proposal(scene, dt, work);
-        };
-        propose_weighed(growth);
-        if (growth > 0.0 && is_push_costly(scene, dt, work)) propose_weighed(growth = 0.0);
-        const Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
-        if (violations.is_clean() || growth <= 0.0) return violations;
-        propose_weighed(0.0);
-        return check_proposal(scene, work.proposal, work.prediction, work.obstacles);
-    }
-
-    /// What the check has found becomes rows of the same system, or of a new one where history ran into it.
-    /// False where it names nothing that a row could mend.
-    bool add_violations(const Scene& scene, const State& state, const Violations& violations, Workspace& work)
-    {
-        if (violations.contacts.empty()) return false;
-        const std::size_t first = work.contacts.size();
-        work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());
-        const bool is_shared = share_room(work.obstacles, work.prediction, work.contacts).is_changed;
-        if (flatten_history(scene, state, work.obstacles, work.eol, first, work.contacts, work.prediction) ||
-            is_shared)
-            work.has_system = false;
-        else
-            append_rows(work.prediction, work.at, first, work.contacts, work.problem);
-        return true;
-    }
-
-    /// v^ goes to the velocity found, or part of the way where that has more of what the step minimises.
-    void relinearise(const Scene& scene, Workspace& work, StepReport& report)
-    {
-        constexpr double kShortest = 0.1;  // wind and pulls are not in the objective: never stay
-        const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
-        for (std::size_t c = 0; c < work.contacts.size(); ++c)
-            work.contacts[c].is_pressing = multiplier[c] > 0.0;
-
-        ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
-        if (report.relinearisations > 0) {  // the first v^ keeps no contact: no measure
-            const double now = compute_step_objective(scene, work, work.expansion);
-            for (double share = 1.0; compute_step_objective(scene, work, next) > now && share > kShortest;) {
-                share *= 0.5;
-                for (std::size_t v = 0; v < next.world.size(); ++v) {
-                    next.world[v] = 0.5 * (next.world[v] + work.expansion.world[v]);
-                    next.material[v] = 0.5 * (next.material[v] + work.expansion.material[v]);
-                }
-            }
-        }
-        work.expansion = std::move(next);
-        work.has_system = false;
-        ++report.relinearisations;
-    }
-
-    /// Whether the proposal pushes energy in: then forces are linearised again, where it has been found, and
-    /// true means solve again. With the last attempt the least there was is taken.
-    bool keep_energy(const Scene& scene, const State& state, Attempt attempt, Workspace& work,
-                     StepReport& report)
-    {
-        constexpr int kMostRelinearisations = 4;  // one does nearly always, three have where they help at all
-        const double rise = find_energy_rise(scene, state, work);
-        report.energy_rise = rise;
-        if (!(rise > 0.0) || work.is_least_taken) return false;
-        if (report.relinearisations == 0 || rise < work.least_rise) {
-            work.least_rise = rise;
-            work.least_at = work.expansion;
-        }
-        if (report.relinearisations < kMostRelinearisations && report.solves < kMostSolves) {
-            relinearise(scene, work, report);
-            return true;
-        }
-        if (attempt == Attempt::Ordinary) {
-            report.status = StepStatus::EnergyRise;
-            return false;
-        }
-        work.expansion = work.least_at;
-        work.has_system = false;
-        work.is_least_taken = true;
-        return true;
-    }
-
-    /// Steps 4 to 6 once; true where the velocity is to be solved again.
-    bool solve_and_check(const Scene& scene, const Settings& settings, double end, const State& state,
-                         Attempt attempt, Workspace& work, StepReport& report)
-    {
-        constexpr double kGrowth = 0.1;  // m/s, of a gap on its way to the stand-off
-        Stopwatch watch;
-
-        // 4. A and b in the vertices' coordinates, in which contacts are bounds and rows.
-        if (!assemble(scene, end, state, work)) {
-            report.status = StepStatus::Overrun;
-            return false;
-        }
-        report.seconds.assemble += watch.lap();
-
-        // 5. The constrained velocity, with its certificate. What cannot be met together yields.
-        solve_velocity(settings, work, report);
-        watch.lap();
-        if (report.status == StepStatus::Infeasible && report.solves < kMostSolves &&
-            yield_infeasible(scene, work))
-            return true;
-        if (report.status != StepStatus::Done && report.status != StepStatus::Infeasible) return false;
-
-        // 6. q' = q~ + gamma v', not committed, and the exact check of the whole way.
-        if (report.status == StepStatus::Done && !propose_flow(work)) {
-            report.status = StepStatus::Overrun;
-            return false;
-        }
-        const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
-        const Violations violations = propose_and_check(scene, end - state.time, growth, work);
-        const bool is_done = report.status == StepStatus::Done && violations.is_clean();
-        if (is_done && keep_energy(scene, state, attempt, work, report)) return true;
-        const bool is_again = !is_done && report.status == StepStatus::Done && report.solves < kMostSolves &&
-                              add_violations(scene, state, violations, work);
-        const bool is_certified = report.kkt_residual <= settings.tolerance;
-        if (!is_done && !is_again)
-            give_up(scene, end, state, is_certified ? attempt : Attempt::Ordinary, work, report);
-        report.crossings = is_again || report.rewound > 0 ? 0 : violations.crossings;
-        report.yielded = work.yielded;
-        report.seconds.check += watch.lap();
-        return is_again;
-    }
-
-    /// What each EOL vertex has to remember: which way is outward, and since when it does not press.
-    void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoordinates>& eol,
-                    const std::vector<double>& multiplier, std::vector<EolVertex>& vertices)
-    {
-        for (std::size_t c = 0; c < contacts.size(); ++c) {
-            if (contacts[c].eol < 0) continue;
-            EolVertex& vertex = vertices[eol[contacts[c].eol].entry];
-            vertex.outward = contacts[c].in_frame.normal;
-            vertex.side = eol[contacts[c].eol].side;
-            vertex.idle = multiplier[c] > 0.0 ? 0 : vertex.idle + 1;
-        }
-    }
-
-    /// What an attempt from `start`, the state or what conform made of it, has failed on: the next one has to
-    /// know where material overran the mesh. Where the velocity could not be solved for, no vertex is EOL
-    /// again.
-    void note_failure(const State& state, const State& start, const StepReport& report, Workspace& work)
-    {
-        if (report.status == StepStatus::Done) work.forget_failures();
-        const bool is_overrun = report.status == StepStatus::Overrun;
-        if (is_overrun) {
-            ++work.overruns;
-            for (const auto& [v, flow] : work.overrun) {
-                work.failed_flow.flow[start.ids[v]] = flow;
-                if (work.overruns > 2) work.failed_flow.given_up.insert(start.ids[v]);
-            }
-        }
-        const bool is_unsolved =
-            report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite;
-        if (!is_unsolved && !(is_overrun && work.overruns > Workspace::kMostOverruns)) return;
-        for (const State* tried : {&state, &start})
-            for (const EolVertex& eol : tried->eol) work.failed_flow.given_up.insert(eol.vertex_id);
-    }
-
-    /// Swaps the new state in, or leaves the old one where the step failed.
-    void commit(const Scene& scene, double end, Workspace& work, State& state, StepReport& report)
-    {
-        if (report.status != StepStatus::Done) return;
-        const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
-        const FeatureCensus census = take_census(scene, state, work, multiplier);
-        report.feature_rows = census.rows;
-        report.rows_by_cause = census.by_cause;
-        report.eol_pressing = census.eol;
-        state.active = active_contacts(state, work.contacts, multiplier);
-        count_idle(work.contacts, work.eol, multiplier, state.eol);
-        state.crossings += report.crossings;
-        report.contacts = static_cast<int>(state.active.size());
-        report.eol_vertices = static_cast<int>(state.eol.size());
-        state.previous_world.swap(state.mesh.world);
-        state.previous_velocity.swap(state.velocity);
-        state.mesh.world.swap(work.proposal.world);
-        state.velocity.swap(work.proposal.velocity);
-        state.previous_material.swap(state.mesh.material);
-        state.previous_material_velocity.swap(state.material_velocity);
-        state.mesh.material.swap(work.proposal.material);
-        state.material_velocity.swap(work.proposal.material_velocity);
-        state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // put back by hand: no history
-        state.time = end;
-        ++state.step;
-        follow_features(scene.obstacles, state);
-        work.known.world.clear();
-        if (report.rewound > 0) return;
-        work.known_energy = work.proposed_energy;
-        work.known = {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
-    }
-
-    /// What presses at the start, where there is no last step to tell: what does in a first step that is not
-    /// kept.
-    std::vector<ActiveContact> find_pressing(const Scene& scene, const Settings& settings, double end,
-                                             const State& state, Workspace& work, Attempt attempt)
-    {
-        Scene rows_only = scene;
-        rows_only.eol.reset();
-        State trial = state;
-        step(rows_only, settings, end, trial, work, attempt);
-        return trial.active;
-    }
+/// What presses at the start, where there is no last step to tell: what does in a first step that is not
+/// kept.
+std::vector<ActiveContact> find_pressing(const Scene& scene, const Settings& settings, double end,
+                                         const State& state, Workspace& work, Attempt attempt)
+{
+    Scene rows_only = scene;
+    rows_only.eol.reset();
+    State trial = state;
+    step(rows_only, settings, end, trial, work, attempt);
+    return trial.active;
+}
 
 }  // namespace
 

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "solver/scene.h"
+
+namespace arris {
+
+/// By what share of what moves a patch of cloth (its kinetic energy, and its weight over a cell) a change of
+/// its mesh may raise its elastic energy: nobody sees that.
+inline constexpr double kAllowedStrain = 0.01;
+
+/// What gravity gives cloth of `area` (material, m^2) that falls by `length` (m), J.
+inline double weight_over(const Scene& scene, double area, double length)
+{
+    return scene.gravity ? scene.material.density * area * scene.gravity->acceleration.norm() * length : 0.0;
+}
+
+}  // namespace arris
