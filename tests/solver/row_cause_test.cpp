@@ -24,9 +24,10 @@ using testing::press_edges;
 
 constexpr double kStep = 0.005;  // s
 
-ConformOutcome conform(const EolCloth& cloth, const FailedFlow& failed = {}, bool is_strict = false)
+ConformOutcome conform(const EolCloth& cloth, const FailedFlow& failed = {},
+                       StrainLimit limit = StrainLimit::GivesWay)
 {
-    return conform_mesh(cloth.scene, kStep, cloth.state, edges_of(cloth.state), failed, is_strict);
+    return conform_mesh(cloth.scene, kStep, cloth.state, edges_of(cloth.state), failed, limit);
 }
 
 int count(const ConformOutcome& outcome, RowCause cause)
