@@ -219,7 +219,7 @@ TEST(RowCause, StiffClothThatWouldBeStrainedIsGuarded)
         x = Vec3(beside + 0.8 * away, x.y(), x.z() + 0.6 * (beside / 0.8 - std::abs(away)));
     }
     press_edges(cloth);
-    const ConformOutcome outcome = conform(cloth, {}, true);
+    const ConformOutcome outcome = conform(cloth, {}, StrainLimit::AsMade);
     EXPECT_GT(count(outcome, RowCause::Guard), 4);
 }
 
