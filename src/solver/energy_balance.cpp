@@ -51,7 +51,8 @@ double work_of_obstacles(const Workspace& work)
         const Contact& contact = work.contacts[c];
         const ObstacleStep& step = work.obstacles[contact.obstacle];
         const Vec3& point = contact.in_frame.point;
-        sum += multiplier[c] * contact.normal.dot(step.end(point) - step.begin(point));
+        const Vec3 push = contact.eol >= 0 ? work.eol[contact.eol].push : contact.normal;
+        sum += multiplier[c] * push.dot(step.end(point) - step.begin(point));
     }
     return sum / work.prediction.gamma;
 }
