@@ -26,7 +26,6 @@ namespace {
 constexpr double kClear = 0.3;       // of the target length
 constexpr double kSoundAngle = 3.0;  // degrees: preferred are ways that leave no thinner face
 constexpr double kLeastAngle = 0.1;  // degrees: where rounding decides which side up a face is
-constexpr double kClose = 0.5;       // of the distance that they had: vertices that come upon each other
 constexpr int kInstants = 4;         // of the way, at which faces are looked at: corners go straight
 constexpr int kMostSubsteps = 100000;
 constexpr int kMostStages = 100;
@@ -89,17 +88,6 @@ class Clearing {
 
     double soundness(const PatchFace& face) const { return arris::soundness(face, ahead_); }
     bool is_threatened(const PatchFace& face) const { return turns_over(face, ahead_); }
-
-    // Whether two vertices come upon each other on their ways.
-    bool is_closing(VertexId v, VertexId w) const
-    {
-        const auto way = [&](VertexId u) {
-            const auto at = ahead_.find(u);
-            return at == ahead_.end() ? Vec2(Vec2::Zero()) : at->second;
-        };
-        const Vec2 apart = surgery_.material(w) - surgery_.material(v);
-        return apart.dot(apart + way(w) - way(v)) < kClose * apart.squaredNorm();
-    }
 
     struct Candidate {
         int change;  // in the number of threatened faces
@@ -164,8 +152,7 @@ class Clearing {
         for (int k = 0; k < 3; ++k) {
             consider(surgery_.propose_flip(face[k], face[(k + 1) % 3]), candidates);
             for (const VertexId w : surgery_.ring(face[k]).vertices)
-                if (!is_moving(face[k]) ||
-                    (surgery_.edge_tag(face[k], w) != kNoTag && is_closing(face[k], w)))
+                if (!is_moving(face[k]) || surgery_.edge_tag(face[k], w) != kNoTag)
                     consider(surgery_.propose_collapse(face[k], w), candidates);
         }
         std::stable_sort(candidates.begin(), candidates.end(), is_better);

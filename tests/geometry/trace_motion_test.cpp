@@ -215,24 +215,6 @@ TEST(ClearAhead, ACornerThatSlidesAlongItsEdgeTakesInTheVerticesOfTheEdge)
     EXPECT_TRUE(stopped.has_vertex(corner) && stopped.has_vertex(end));
 }
 
-TEST(ClearAhead, VerticesOfATraceThatGoSideBySideAreNotMergedWhereTheirWayIsBlocked)
-{
-    const SurgeryCloth cloth = square_cloth(8);
-    const MeshTarget target = target_of(cloth);
-    ClothSurgery surgery = cloth.surgery();
-    cut(surgery, target, {{0.25, 0.5}, {0.75, 0.5}}, 1);
-    ASSERT_EQ(shifted(surgery, 1, {0, 0}).size(), 5u);
-    std::vector<TraceAdvance> advances;
-    for (const VertexMove& move : shifted(surgery, 1, {0, 0})) advances.push_back({move.vertex, {0.0, 0.2}});
-    // It lets vertices of the trace go, and nothing else.
-    surgery.set_guard([&](const SurgeryEvent& event) {
-        return event.operation == SurgeryOperation::Collapse &&
-               surgery.role(event.edge[0]) != TraceRole::Free;
-    });
-    EXPECT_FALSE(clear_ahead(surgery, target, advances).blocked.empty());
-    EXPECT_EQ(shifted(surgery, 1, {0, 0}).size(), 5u);
-}
-
 TEST(ClearAhead, LeavesNoFaceOfWhichRoundingDecidesWhichSideIsUp)
 {
     // Of three vertices in a line, but for rounding, no face is made, though one way up it would be legal.
