@@ -336,8 +336,8 @@ void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoord
 }
 
 /// What an attempt from `start`, the state or what conform made of it, has failed on: the next one has to
-/// know where material overran the mesh. Where the velocity could not be solved for, no vertex is EOL
-/// again.
+/// know where material overran the mesh. Where the velocity could twice not be solved for, no vertex stays
+/// EOL.
 void note_failure(const State& state, const State& start, const StepReport& report, Workspace& work)
 {
     if (report.status == StepStatus::Done) work.forget_failures();
@@ -349,9 +349,9 @@ void note_failure(const State& state, const State& start, const StepReport& repo
             if (work.overruns > 2) work.failed_flow.given_up.insert(start.ids[v]);
         }
     }
-    const bool is_unsolved =
-        report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite;
-    if (!is_unsolved && !(is_overrun && work.overruns > Workspace::kMostOverruns)) return;
+    if (report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite) ++work.unsolved;
+    const bool is_hopeless = work.unsolved > 1;
+    if (!is_hopeless && !(is_overrun && work.overruns > Workspace::kMostOverruns)) return;
     for (const State* tried : {&state, &start})
         for (const EolVertex& eol : tried->eol) work.failed_flow.given_up.insert(eol.vertex_id);
 }

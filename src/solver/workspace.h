@@ -41,6 +41,7 @@ struct Workspace {
     };
     std::vector<Overrun> overrun;
     int overruns = 0;        ///< attempts of this step that ended so
+    int unsolved = 0;        ///< and those whose velocity could not be solved for
     FailedFlow failed_flow;  ///< of them
     /// The same step on another mesh comes before a shorter one: with the way of what overran cleared, and,
     /// where that and a shorter step have not helped, with fewer EOL vertices, in the end with none.
@@ -49,7 +50,7 @@ struct Workspace {
         return overruns == 1 || (overruns > 2 && overruns <= kMostOverruns + 1);
     }
     static constexpr int kMostOverruns = 5;
-    void forget_failures() { overruns = 0, failed_flow = {}; }
+    void forget_failures() { overruns = unsolved = 0, failed_flow = {}; }
     std::vector<RefusedContact> refused;  ///< that pressed on a feature and are rows
     State conformed;                      ///< on the mesh that the step wants, where it is not the state's
 
