@@ -46,6 +46,9 @@ struct FoldedStrip {
         for (int v : {2, 3}) at.basis[v].col(2).setZero();
         flow.extrapolated.position = mesh.world;
         flow.extrapolated.material = mesh.material;
+        flow.position = mesh.material;
+        for (auto* none : {&flow.v_predicted, &flow.v_expansion, &flow.v_last})
+            none->assign(mesh.world.size(), Vec2::Zero());
     }
 
     Eigen::VectorXd force() const
