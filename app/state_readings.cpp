@@ -17,14 +17,7 @@ std::vector<std::array<int, 2>> find_eol_edges(const std::vector<Obstacle>& obst
     for (const Face& face : state.mesh.faces)
         for (int i = 0; i < 3; ++i) {
             const int v = face[i], w = face[(i + 1) % 3];
-            const int a = state.eol_entry(state.ids[v]), b = state.eol_entry(state.ids[w]);
-            if (a < 0 || b < 0) continue;
-            const EolVertex &p = state.eol[a], &q = state.eol[b];
-            const Obstacle& obstacle = obstacles[static_cast<std::size_t>(p.obstacle)];
-            const Placement now = obstacle.at(state.time);
-            if (is_trace_edge(obstacle, {p, now.inverse(state.mesh.world[v])},
-                              {q, now.inverse(state.mesh.world[w])}))
-                edges.push_back({std::min(v, w), std::max(v, w)});
+            if (find_trace_edge(obstacles, state, v, w)) edges.push_back({std::min(v, w), std::max(v, w)});
         }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());

@@ -178,11 +178,10 @@ class Conforming {
         for (const EolVertex& e : state_.eol)
             surgery_->set_role(e.vertex_id, e.is_corner ? TraceRole::Node : TraceRole::OnTrace, tags_.tag(e));
         for (const MeshEdge& edge : edges_) {
-            const int a = state_.eol_entry(state_.ids[edge.a]), b = state_.eol_entry(state_.ids[edge.b]);
-            if (a < 0 || b < 0) continue;
-            const EolVertex &p = state_.eol[a], &q = state_.eol[b];
-            if (is_trace_edge(scene_.obstacles[p.obstacle], placed(p), placed(q)))
-                surgery_->set_edge_tag(p.vertex_id, q.vertex_id, tags_.tag(p.is_corner ? q : p));
+            const auto ends = find_trace_edge(scene_.obstacles, state_, edge.a, edge.b);
+            if (!ends) continue;
+            const EolVertex &p = state_.eol[(*ends)[0]], &q = state_.eol[(*ends)[1]];
+            surgery_->set_edge_tag(p.vertex_id, q.vertex_id, tags_.tag(p.is_corner ? q : p));
         }
         surgery_->take_touched();
         eol_ = state_.eol;

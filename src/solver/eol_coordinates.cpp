@@ -238,6 +238,19 @@ bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol
     return false;
 }
 
+std::optional<std::array<int, 2>> find_trace_edge(const std::vector<Obstacle>& obstacles, const State& state,
+                                                  int v, int w)
+{
+    const int a = state.eol_entry(state.ids[v]), b = state.eol_entry(state.ids[w]);
+    if (a < 0 || b < 0) return std::nullopt;
+    const Obstacle& obstacle = obstacles[static_cast<std::size_t>(state.eol[a].obstacle)];
+    const Placement now = obstacle.at(state.time);
+    if (!is_trace_edge(obstacle, {state.eol[a], now.inverse(state.mesh.world[v])},
+                       {state.eol[b], now.inverse(state.mesh.world[w])}))
+        return std::nullopt;
+    return std::array{a, b};
+}
+
 void follow_features(const std::vector<Obstacle>& obstacles, State& state)
 {
     for (std::vector<EolVertex>* list : {&state.eol, &state.loose})

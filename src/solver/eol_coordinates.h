@@ -70,6 +70,11 @@ struct PlacedEol {
 /// polyline, or at its end, and it goes from one to the other nearly straight.
 bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b);
 
+/// The entries in State::eol of the ends of the cloth's edge from vertex v to w, where it lies along a
+/// feature at the state's time.
+std::optional<std::array<int, 2>> find_trace_edge(const std::vector<Obstacle>& obstacles, const State& state,
+                                                  int v, int w);
+
 /// EOL vertices that have gone along their polyline past an end of their edge are on the next one from now
 /// on. At the state's time.
 void follow_features(const std::vector<Obstacle>& obstacles, State& state);

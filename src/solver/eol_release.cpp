@@ -44,13 +44,10 @@ void hold_between(const Scene& scene, const State& state, const std::vector<Mesh
     if (std::find(holds.begin(), holds.end(), EolHold::Loose) == holds.end()) return;
     std::vector<std::vector<int>> beside(holds.size());
     for (const MeshEdge& edge : edges) {
-        const int a = state.eol_entry(state.ids[edge.a]), b = state.eol_entry(state.ids[edge.b]);
-        if (a < 0 || b < 0 || holds[a] == EolHold::None || holds[b] == EolHold::None) continue;
-        const Obstacle& obstacle = scene.obstacles[state.eol[a].obstacle];
-        const Placement now = obstacle.at(state.time);
-        const PlacedEol at_a = {state.eol[a], now.inverse(state.mesh.world[edge.a])};
-        const PlacedEol at_b = {state.eol[b], now.inverse(state.mesh.world[edge.b])};
-        if (!is_trace_edge(obstacle, at_a, at_b)) continue;
+        const auto ends = find_trace_edge(scene.obstacles, state, edge.a, edge.b);
+        if (!ends) continue;
+        const auto [a, b] = *ends;
+        if (holds[a] == EolHold::None || holds[b] == EolHold::None) continue;
         beside[a].push_back(b);
         beside[b].push_back(a);
     }

@@ -8,6 +8,8 @@
 
 #include <Eigen/LU>
 
+#include "physics/deformation_gradient.h"
+
 namespace arris {
 
 Vec2 find_feature_flow(const Scene& scene, const State& state, const ClothStars& stars, int v,
@@ -19,18 +21,15 @@ Vec2 find_feature_flow(const Scene& scene, const State& state, const ClothStars&
     Vec2 sum = Vec2::Zero();
     for (const int f : stars.faces[v]) {
         const auto& [a, b, c] = state.mesh.faces[f];
-        Mat32 Dx;
-        Mat2 DX;
-        Dx << x[b] - x[a], x[c] - x[a];
-        DX << X[b] - X[a], X[c] - X[a];
-        const Mat32 F = Dx * DX.inverse();
+        const Mat32 F = deformation_gradient({X[a], X[b], X[c]}, {x[a], x[b], x[c]});
+        const double area = twice_area(X[a], X[b], X[c]);
         Vec3 lag = Vec3::Zero();  // mean of v_obs - w
         for (const int k : {a, b, c})
             lag += (scene.obstacles[obstacle].velocity_after(state.time, x[k]) - state.velocity[k] +
                     F * state.material_velocity[k]) /
                    3.0;
-        squared += DX.determinant() * F.transpose() * F;
-        sum += DX.determinant() * F.transpose() * lag;
+        squared += area * F.transpose() * F;
+        sum += area * F.transpose() * lag;
     }
     const Vec2 flow = squared.inverse() * sum;
     return flow.allFinite() ? flow : Vec2(Vec2::Zero());

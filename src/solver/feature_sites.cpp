@@ -73,12 +73,13 @@ class SiteFinder {
     void complete(int feature, std::vector<FeatureSite>& sites) const
     {
         if (obstacle_.features().edges[feature].kind != FeatureKind::Convex) return;
+        const Vec3 outward = outward_of(feature);
         TraceGraph trace;
         std::vector<Crossing> open = begin_trace(feature, sites, trace);
         while (!open.empty()) {
             const Crossing at = open.back();
             open.pop_back();
-            for (const auto& [next, site] : crossings_beside(at, feature)) {
+            for (const auto& [next, site] : crossings_beside(at, feature, outward)) {
                 const auto [node, is_new] = trace.try_emplace(next, TraceNode{site, false, {}});
                 if (is_new) open.push_back(next);
                 node->second.beside.insert(at);
@@ -126,7 +127,8 @@ class SiteFinder {
     }
 
     /// Where the plane of the feature passes through the faces around a crossing.
-    std::map<Crossing, std::optional<FeatureSite>> crossings_beside(const Crossing& at, int feature) const
+    std::map<Crossing, std::optional<FeatureSite>> crossings_beside(const Crossing& at, int feature,
+                                                                    const Vec3& outward) const
     {
         std::map<Crossing, std::optional<FeatureSite>> found;
         for (const int f : stars_.faces[at[0]]) {
@@ -138,7 +140,7 @@ class SiteFinder {
                     found[{a, a}] = std::nullopt;
                 else if (is_eol_on(b, feature))
                     found[{b, b}] = std::nullopt;
-                else if (const auto site = cross(a, b, feature, outward_of(feature)))
+                else if (const auto site = cross(a, b, feature, outward))
                     found[site->edge] = site;
             }
         }

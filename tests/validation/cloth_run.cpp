@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "solver/advance.h"
+#include "solver/energy_balance.h"
 
 namespace arris {
 
@@ -48,6 +49,30 @@ void ClothRun::advance(double duration, double dt)
     const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
     for (int k = 1; k <= steps && !testing::Test::HasFailure(); ++k)
         advance(begin + duration * k / steps - state.time);
+}
+
+ClothEnergy measure_energy(ClothRun& run)
+{
+    const State& state = run.state;
+    prepare(run.scene, state, run.work);  // elements where material has flowed
+    return compute_cloth_energy(
+        run.scene, run.work,
+        {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}});
+}
+
+EnergySpan watch_energy(ClothRun& run, double duration, double dt,
+                        const std::function<void(const StepReport&)>& look)
+{
+    const double first = measure_energy(run).sum(), begin = run.state.time;
+    EnergySpan span{first, first, first};
+    const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
+    for (int k = 1; k <= steps && !testing::Test::HasFailure(); ++k) {
+        const StepReport report = run.advance(begin + duration * k / steps - run.state.time);
+        span.last = measure_energy(run).sum();
+        span.greatest = std::max(span.greatest, span.last);
+        look(report);
+    }
+    return span;
 }
 
 void settle(ClothRun& run)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 
 #include "geometry/cloth_grid.h"
 #include "solver/step.h"
@@ -26,6 +27,18 @@ struct ClothRun {
     /// Equal steps of about `dt`, the last one ending `duration` from now.
     void advance(double duration, double dt);
 };
+
+/// Kinetic and potential, of the run's present state.
+ClothEnergy measure_energy(ClothRun& run);
+
+/// Of kinetic and potential energy together, J.
+struct EnergySpan {
+    double first = 0.0, greatest = 0.0, last = 0.0;
+};
+
+/// Equal steps of at most `dt` (s) for `duration`, or until a test fails; `look` is called after each.
+EnergySpan watch_energy(ClothRun& run, double duration, double dt,
+                        const std::function<void(const StepReport&)>& look);
 
 /// Brings the cloth to where its forces balance: implicit Euler steps that each start from rest, and grow
 /// until they are Newton's. Fails the test where it is not still after a bounded number of them.

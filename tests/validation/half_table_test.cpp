@@ -12,7 +12,6 @@
 #include "refinement.h"
 #include "solver/advance.h"
 #include "solver/audit.h"
-#include "solver/energy_balance.h"
 
 namespace arris {
 namespace {
@@ -56,12 +55,7 @@ Slid slide_off(const HalfTable& table)
             found.halved += is_halved ? 1 : 0;
             EXPECT_EQ(report.crossings, 0);
             EXPECT_EQ(report.rewound, 0);
-            prepare(run.scene, run.state, run.work);
-            const ClothEnergy energy =
-                compute_cloth_energy(run.scene, run.work,
-                                     {run.state.mesh.world,
-                                      run.state.mesh.material,
-                                      {run.state.velocity, run.state.material_velocity}});
+            const ClothEnergy energy = measure_energy(run);
             found.kinetic = energy.kinetic;
             found.rise = std::max(found.rise, energy.sum() - least);
             least = std::min(least, energy.sum());

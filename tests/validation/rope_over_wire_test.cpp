@@ -17,7 +17,6 @@
 #include "geometry/mesh_quality.h"
 #include "geometry/obstacle_shapes.h"
 #include "refinement.h"
-#include "solver/energy_balance.h"
 #include "solver/eol_coordinates.h"
 
 namespace arris {
@@ -106,16 +105,6 @@ double measure_displacement(const ClothRun& run)
     return sum / count;
 }
 
-double measure_energy(ClothRun& run)
-{
-    prepare(run.scene, run.state, run.work);
-    const State& state = run.state;
-    return compute_cloth_energy(
-               run.scene, run.work,
-               {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}})
-        .sum();
-}
-
 void expect_sound(const State& state)
 {
     EXPECT_EQ(validate(state.mesh), "");
@@ -136,25 +125,20 @@ Slide slide(const RopeCase& rope, double dt)
     SCOPED_TRACE(describe(rope));
     const double duration = kShare * kLiftOff;
     ClothRun run = make_rope_run(rope);
-    const double first = measure_energy(run);
-    double greatest = first;
-    const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
-    for (int k = 1; k <= steps && !testing::Test::HasFailure(); ++k) {
-        const StepReport report = run.advance(duration * k / steps - run.state.time);
-        greatest = std::max(greatest, measure_energy(run));
+    const EnergySpan energy = watch_energy(run, duration, dt, [&](const StepReport& report) {
         EXPECT_EQ(report.rewound, 0);
         EXPECT_EQ(report.crossings, 0);
         EXPECT_EQ(report.feature_rows, 0) << "at " << run.state.time << " s";
         if (rope.bulge_degrees == 0.0) expect_sound(run.state);
-    }
+    });
     const double rate = std::sqrt(2.0 * kG / kLength);
     const double exchanged =
         0.5 * kDensity * kLength * kWidth * std::pow(kStart * rate * std::sinh(rate * duration), 2);
     Slide found;
     found.displacement = measure_displacement(run);
     found.error = std::abs(found.displacement / displacement(duration) - 1.0);
-    found.rise = (greatest - first) / exchanged;
-    found.loss = (first - measure_energy(run)) / exchanged;
+    found.rise = (energy.greatest - energy.first) / exchanged;
+    found.loss = (energy.first - energy.last) / exchanged;
     return found;
 }
 

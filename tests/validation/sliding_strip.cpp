@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "geometry/initial_target.h"
-#include "solver/energy_balance.h"
 
 namespace arris {
 
@@ -153,14 +152,6 @@ double measure_length_after(const StripCase& strip, const ClothRun& run)
         ++count;
     }
     return sum / count;
-}
-
-double measure_energy(ClothRun& run)
-{
-    const State& state = run.state;
-    prepare(run.scene, state, run.work);  // elements where material has flowed
-    const MovingCloth cloth{state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
-    return compute_cloth_energy(run.scene, run.work, cloth).sum();
 }
 
 }  // namespace arris

@@ -70,7 +70,4 @@ double strip_mass(const StripCase& strip);  ///< kg
 /// x of the strip's end, m.
 double measure_length_after(const StripCase& strip, const ClothRun& run);
 
-/// Kinetic and potential, J.
-double measure_energy(ClothRun& run);
-
 }  // namespace arris

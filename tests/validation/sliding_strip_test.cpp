@@ -93,24 +93,19 @@ Slide slide(const StripCase& strip, double duration, double dt)
 {
     SCOPED_TRACE(describe(strip));
     ClothRun run = make_strip_run(strip);
-    const double first = measure_energy(run);
-    double greatest = first;
-    const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
-    for (int k = 1; k <= steps && !testing::Test::HasFailure(); ++k) {
-        const StepReport report = run.advance(duration * k / steps - run.state.time);
-        greatest = std::max(greatest, measure_energy(run));
+    const EnergySpan energy = watch_energy(run, duration, dt, [&](const StepReport& report) {
         EXPECT_EQ(report.rewound, 0);
-        if (!strip.has_eol) continue;
+        if (!strip.has_eol) return;
         EXPECT_EQ(report.feature_rows, 0) << "at " << run.state.time << " s";
         expect_sound(strip, run.state);
-    }
+    });
     const SlidingChain chain = chain_of(strip);
     const double exchanged = strip_mass(strip) * 0.5 * std::pow(chain.speed(duration), 2);
     Slide found;
     found.length = measure_length_after(strip, run);
     found.error = std::abs(found.length / chain.length_after(duration) - 1.0);
-    found.rise = (greatest - first) / exchanged;
-    found.loss = (first - measure_energy(run)) / exchanged;
+    found.rise = (energy.greatest - energy.first) / exchanged;
+    found.loss = (energy.first - energy.last) / exchanged;
     return found;
 }
 
