@@ -11,6 +11,7 @@
 #include "solver/feature_census.h"
 #include "solver/material_flow.h"
 #include "solver/mesh_transfer.h"
+#include "solver/relinearization.h"
 #include "solver/stopwatch.h"
 
 namespace arris {
@@ -231,55 +232,6 @@ bool add_violations(const Scene& scene, const State& state, const Violations& vi
     return true;
 }
 
-/// v^ goes to the velocity found, or part of the way where that has more of what the step minimises.
-void relinearise(const Scene& scene, Workspace& work, StepReport& report)
-{
-    constexpr double kShortest = 0.1;  // wind and pulls are not in the objective: never stay
-    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
-    for (std::size_t c = 0; c < work.contacts.size(); ++c) work.contacts[c].is_pressing = multiplier[c] > 0.0;
-
-    ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
-    if (report.relinearisations > 0) {  // the first v^ keeps no contact: no measure
-        const double now = compute_step_objective(scene, work, work.expansion);
-        for (double share = 1.0; compute_step_objective(scene, work, next) > now && share > kShortest;) {
-            share *= 0.5;
-            for (std::size_t v = 0; v < next.world.size(); ++v) {
-                next.world[v] = 0.5 * (next.world[v] + work.expansion.world[v]);
-                next.material[v] = 0.5 * (next.material[v] + work.expansion.material[v]);
-            }
-        }
-    }
-    work.expansion = std::move(next);
-    work.has_system = false;
-    ++report.relinearisations;
-}
-
-/// Whether the proposal pushes energy in: then forces are linearised again, where it has been found, and
-/// true means solve again. With the last attempt the least there was is taken.
-bool keep_energy(const Scene& scene, const State& state, Attempt attempt, Workspace& work, StepReport& report)
-{
-    constexpr int kMostRelinearisations = 4;  // one does nearly always, three have where they help at all
-    const double rise = find_energy_rise(scene, state, work);
-    report.energy_rise = rise;
-    if (!(rise > 0.0) || work.is_least_taken) return false;
-    if (report.relinearisations == 0 || rise < work.least_rise) {
-        work.least_rise = rise;
-        work.least_at = work.expansion;
-    }
-    if (report.relinearisations < kMostRelinearisations && report.solves < kMostSolves) {
-        relinearise(scene, work, report);
-        return true;
-    }
-    if (attempt == Attempt::Ordinary) {
-        report.status = StepStatus::EnergyRise;
-        return false;
-    }
-    work.expansion = work.least_at;
-    work.has_system = false;
-    work.is_least_taken = true;
-    return true;
-}
-
 /// Steps 4 to 6 once; true where the velocity is to be solved again.
 bool solve_and_check(const Scene& scene, const Settings& settings, double end, const State& state,
                      Attempt attempt, Workspace& work, StepReport& report)
@@ -310,7 +262,7 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
     const Violations violations = propose_and_check(scene, end - state.time, growth, work);
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
-    if (is_done && keep_energy(scene, state, attempt, work, report)) return true;
+    if (is_done && keep_energy(scene, state, attempt, report.solves < kMostSolves, work, report)) return true;
     const bool is_again = !is_done && report.status == StepStatus::Done && report.solves < kMostSolves &&
                           add_violations(scene, state, violations, work);
     const bool is_certified = report.kkt_residual <= settings.tolerance;
