@@ -45,12 +45,22 @@ double soundness(const PatchFace& face, const TraceWays& ways)
     return least / (side * side);
 }
 
+enum class Need {
+    Way,  ///< of what moves: where vertices of traces come upon each other, some go
+    Room  ///< for what may come: none between traces, which will not come as near as that
+};
+
 class Clearing {
   public:
-    Clearing(ClothSurgery& surgery, const TraceWays& ahead) : surgery_(surgery), ahead_(ahead) {}
-
-    ClearanceReport run()
+    Clearing(ClothSurgery& surgery, const TraceWays& ahead, Need need)
+        : surgery_(surgery), ahead_(ahead), need_(need)
     {
+    }
+
+    /// How much it has done.
+    int run()
+    {
+        int operations = 0;
         std::set<IdFace> queue;
         for (const VertexId v : moving())
             for (const IdFace& face : surgery_.faces_at(v)) queue.insert(from_least(face));
@@ -60,12 +70,23 @@ class Clearing {
             if (surgery_.apex(face[0], face[1]) != face[2] || !is_threatened(surgery_.patch_face(face)))
                 continue;
             if (!save(face)) continue;
-            ++report_.operations;
+            ++operations;
             for (const PatchFace& made : surgery_.events().back().after)
                 queue.insert(from_least(made.vertices));
         }
-        find_blocked();
-        return report_;
+        return operations;
+    }
+
+    std::vector<VertexId> find_blocked() const
+    {
+        std::vector<VertexId> blocked;
+        for (const VertexId v : moving()) {
+            const std::vector<IdFace> faces = surgery_.faces_at(v);
+            if (std::any_of(faces.begin(), faces.end(),
+                            [this](const IdFace& face) { return is_threatened(surgery_.patch_face(face)); }))
+                blocked.push_back(v);
+        }
+        return blocked;
     }
 
   private:
@@ -87,7 +108,19 @@ class Clearing {
     }
 
     double soundness(const PatchFace& face) const { return arris::soundness(face, ahead_); }
-    bool is_threatened(const PatchFace& face) const { return turns_over(face, ahead_); }
+    bool is_threatened(const PatchFace& face) const
+    {
+        return !(need_ == Need::Room && is_between_traces(face)) && turns_over(face, ahead_);
+    }
+
+    bool is_between_traces(const PatchFace& face) const
+    {
+        for (int k = 0; k < 3; ++k) {
+            const VertexId a = face.vertices[k], b = face.vertices[(k + 1) % 3];
+            if (is_moving(a) && is_moving(b) && surgery_.edge_tag(a, b) == kNoTag) return true;
+        }
+        return false;
+    }
 
     struct Candidate {
         int change;  // in the number of threatened faces
@@ -114,9 +147,8 @@ class Clearing {
                             is_merge && is_moving(proposal.event.edge[0]),
                             {}};
         for (const PatchFace& face : proposal.event.after) {
-            const double sound = soundness(face);
-            candidate.change += sound > 0.0 ? 0 : 1;
-            candidate.soundness = std::min(candidate.soundness, sound);
+            candidate.change += is_threatened(face) ? 1 : 0;
+            candidate.soundness = std::min(candidate.soundness, soundness(face));
         }
         for (const PatchFace& face : proposal.event.before) candidate.change -= is_threatened(face) ? 1 : 0;
         candidate.proposal = std::move(proposal);
@@ -130,6 +162,7 @@ class Clearing {
             return;
         const bool is_merge = proposal.event.operation == SurgeryOperation::Collapse;
         Candidate candidate = judge(std::move(proposal));
+        if (candidate.is_of_trace && need_ == Need::Room) return;
         if (candidate.change < 0 || (is_merge && !candidate.is_of_trace))
             candidates.push_back(std::move(candidate));
     }
@@ -161,44 +194,36 @@ class Clearing {
         return false;
     }
 
-    void find_blocked()
-    {
-        for (const VertexId v : moving())
-            for (const IdFace& face : surgery_.faces_at(v))
-                if (is_threatened(surgery_.patch_face(face))) {
-                    report_.blocked.push_back(v);
-                    break;
-                }
-    }
-
     ClothSurgery& surgery_;
     const TraceWays& ahead_;
-    ClearanceReport report_;
+    const Need need_;
 };
 
-// In stages of at most that least way, so that what stands nearest goes first: vertices of one cell after the
-// other can be merged into the trace, but not those behind others.
+// In stages of at most kClear of the target length, so that what stands nearest goes first: vertices of one
+// cell after the other can be merged into the trace, but not those behind others. Then up to kClear where the
+// way is shorter: that is room for what comes, which another trace may take, too.
 ClearanceReport clear(ClothSurgery& surgery, const MeshTarget& target, TraceWays ahead)
 {
     double stages = 1.0;
+    TraceWays room;
     for (auto at = ahead.begin(); at != ahead.end();) {
-        Vec2& way = at->second;
+        const auto& [v, way] = *at;
         const double length = way.norm();
-        const double least = kClear * target.length(surgery.material(at->first));
-        if (length > 0.0 && length < least) way *= least / length;
+        const double least = kClear * target.length(surgery.material(v));
+        if (length > 0.0) room[v] = std::max(1.0, least / length) * way;
         stages = std::max(stages, std::ceil(length / least));
         at = length > 0.0 ? std::next(at) : ahead.erase(at);
     }
     const int count = static_cast<int>(std::min(stages, double(kMostStages)));
     ClearanceReport report;
-    report.ways = ahead;
     for (int k = 1; k <= count; ++k) {
         TraceWays part = ahead;
         for (auto& [v, way] : part) way *= double(k) / count;
-        const ClearanceReport stage = Clearing(surgery, part).run();
-        report.operations += stage.operations;
-        report.blocked = stage.blocked;
+        report.operations += Clearing(surgery, part, Need::Way).run();
     }
+    report.operations += Clearing(surgery, room, Need::Room).run();
+    report.blocked = Clearing(surgery, ahead, Need::Way).find_blocked();
+    report.ways = std::move(room);
     return report;
 }
 

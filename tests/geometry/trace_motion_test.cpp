@@ -283,6 +283,31 @@ TEST(ClearAhead, IsBlockedByFixedVerticesOtherTracesAndTheGuard)
     EXPECT_TRUE(blocked(guarded));
 }
 
+TEST(ClearAhead, TracesNearerThanTheRoomAheadAreInEachOthersWayOnlyWhereTheyMeet)
+{
+    const SurgeryCloth cloth = square_cloth(16);
+    const MeshTarget target = target_of(cloth);
+    constexpr double kGap = 0.01;  // half of the room that is cleared however small the step
+    for (const double way : {1e-9, 0.3 * kGap, 0.7 * kGap}) {
+        ClothSurgery surgery = cloth.surgery();
+        const SurgeryCheck check(surgery);
+        cut(surgery, target, {{0.2, 0.4}, {0.8, 0.4}}, 1);
+        cut(surgery, target, {{0.2, 0.4 + kGap}, {0.8, 0.4 + kGap}}, 2);
+        clean_up(surgery, target);
+        const std::vector<VertexMove> low = shifted(surgery, 1, {0, way}),
+                                      high = shifted(surgery, 2, {0, -way});
+        std::vector<TraceAdvance> advances;
+        for (const VertexMove& move : low) advances.push_back({move.vertex, {0, way}});
+        for (const VertexMove& move : high) advances.push_back({move.vertex, {0, -way}});
+        const ClearanceReport cleared = clear_ahead(surgery, target, advances);
+        EXPECT_EQ(cleared.blocked.empty(), 2.0 * way < kGap) << way;
+        EXPECT_EQ(check.find_wrong(surgery), "");
+        if (2.0 * way > kGap) continue;
+        EXPECT_EQ(shifted(surgery, 1, {0, 0}).size(), low.size()) << way;  // none is merged
+        EXPECT_EQ(shifted(surgery, 2, {0, 0}).size(), high.size()) << way;
+    }
+}
+
 // --- motion
 
 TEST(MoveTrace, FarInOneCallPassesManyCells)
