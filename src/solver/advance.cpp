@@ -39,7 +39,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
     constexpr int kMostParts = 64;
     int shrink = 1, parts = 1;  // how much shorter parts have become; how many are left
     Cost cost;
-    work.forget_failures();
+    work.failed.forget();
     while (state.time < end) {
         const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
         const Attempt attempt = shrink == kMostParts ? Attempt::Last : Attempt::Ordinary;
@@ -51,7 +51,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
             if (!accept(report, shrink > 1)) return std::nullopt;
         } else if (report.status == StepStatus::EnergyRise && work.prediction.has_history) {
             restart(state);
-        } else if (report.status == StepStatus::Overrun && work.can_try_another_mesh()) {
+        } else if (work.failed.may_mesh_help()) {
             continue;
         } else if (shrink == kMostParts) {
             return report;

@@ -274,6 +274,24 @@ class Conforming {
         return room_to_border(scene_, state_, stars_, site.material, v, site.is_on_border, eol) < room;
     }
 
+    /// Of edges nearer to each other than the cloth is thick one has a trace: between two there is no room.
+    bool is_beside_other(const FeatureSite& site) const
+    {
+        if (site.is_corner) return false;
+        const Obstacle& obstacle = scene_.obstacles[site.obstacle];
+        const std::vector<FeatureEdge>& edges = obstacle.features().edges;
+        const double h = target_.length(site.material);
+        return std::any_of(eol_.begin(), eol_.end(), [&](const EolVertex& e) {
+            if (e.obstacle != site.obstacle || e.is_corner || !is_on_trace(e.vertex_id) ||
+                edges[e.feature].polyline == edges[site.feature].polyline ||
+                !((surgery_->material(e.vertex_id) - site.material).norm() < 1.5 * h))
+                return false;
+            const Vec3 there = place_on_feature(obstacle, e.feature, placed(e).place).point;
+            const Vec3 here = place_on_feature(obstacle, site.feature, there).point;
+            return (there - here).norm() < scene_.material.thickness;
+        });
+    }
+
     void insert(const FeatureSite& site)
     {
         const std::optional<RowCause> cause = try_insert(site);
@@ -286,6 +304,7 @@ class Conforming {
         const int tag = tags_.tag(site.obstacle, site.is_corner, site.feature);
         if (has_failed_) return RowCause::GivenUp;  // the step has failed on the vertices there were
         if (is_near_border(site)) return RowCause::NearBorder;
+        if (is_beside_other(site)) return RowCause::OtherFeature;
         if (site.is_corner && has_vertex_on(site)) return RowCause::BesideEol;
         const VertexId near = surgery_->has_vertex(site.near) ? site.near : nearest_to(site.material);
         const int v = state_.index_of(site.near);

@@ -25,7 +25,7 @@ enum class RowCause {
     AlongBorder,   ///< alike
     EdgeOn,        ///< alike
     ClothCorner,   ///< alike
-    OtherFeature,  ///< its vertex is on another feature
+    OtherFeature,  ///< its vertex is on another feature, or one nearer than a thickness has a trace there
 };
 inline constexpr std::size_t kRowCauses = 15;
 using RowCounts = std::array<int, kRowCauses>;  ///< by RowCause

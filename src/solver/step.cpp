@@ -32,7 +32,7 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
     TransferReport transferred;
     for (const StrainLimit limit : {StrainLimit::GivesWay, StrainLimit::AsMade, StrainLimit::Forced}) {
         ConformOutcome outcome =
-            conform_mesh(scene, end - state.time, state, work.edges, work.failed_flow, limit);
+            conform_mesh(scene, end - state.time, state, work.edges, work.failed.flow(), limit);
         conformed = std::move(outcome.mesh);
         work.refused = std::move(outcome.refused);
         report.seconds.conform += watch.lap();
@@ -287,27 +287,6 @@ void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoord
     }
 }
 
-/// What an attempt from `start`, the state or what conform made of it, has failed on: the next one has to
-/// know where material overran the mesh. Where the velocity could twice not be solved for, no vertex stays
-/// EOL.
-void note_failure(const State& state, const State& start, const StepReport& report, Workspace& work)
-{
-    if (report.status == StepStatus::Done) work.forget_failures();
-    const bool is_overrun = report.status == StepStatus::Overrun;
-    if (is_overrun) {
-        ++work.overruns;
-        for (const auto& [v, flow] : work.overrun) {
-            work.failed_flow.flow[start.ids[v]] = flow;
-            if (work.overruns > 2) work.failed_flow.given_up.insert(start.ids[v]);
-        }
-    }
-    if (report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite) ++work.unsolved;
-    const bool is_hopeless = work.unsolved > 1;
-    if (!is_hopeless && !(is_overrun && work.overruns > Workspace::kMostOverruns)) return;
-    for (const State* tried : {&state, &start})
-        for (const EolVertex& eol : tried->eol) work.failed_flow.given_up.insert(eol.vertex_id);
-}
-
 /// Swaps the new state in, or leaves the old one where the step failed.
 void commit(const Scene& scene, double end, Workspace& work, State& state, StepReport& report)
 {
@@ -426,7 +405,7 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     while (solve_and_check(scene, settings, end, start, attempt, work, report)) continue;
     watch.lap();
 
-    note_failure(state, start, report, work);
+    work.failed.note(report, attempt, state, start, work.overrun);
 
     // 7. Swapped in, or the state stays as it was.
     commit(scene, end, work, start, report);

@@ -14,12 +14,6 @@ namespace arris {
 /// pins.
 State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity);
 
-/// What a step may do where solve and check do not come to an end.
-enum class Attempt {
-    Ordinary,  ///< fail: a shorter step may do
-    Last       ///< put patches of cloth back on their way, as `rewind` says
-};
-
 /// Advances `state` to `end` (s, after its time). Where the report's status is not Done, the state is as it
 /// was. Call `restart` first where the input jumps at the step's start.
 StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,

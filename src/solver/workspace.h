@@ -7,7 +7,7 @@
 #include "physics/energies.h"
 #include "physics/linear_system.h"
 #include "physics/term.h"
-#include "solver/conform.h"
+#include "solver/attempts.h"
 #include "solver/contacts.h"
 #include "solver/proposal.h"
 #include "solver/row_cause.h"
@@ -35,22 +35,8 @@ struct Workspace {
     ClothStars stars;
 
     // conform
-    struct Overrun {
-        int vertex;  ///< EOL, over which more material would flow than there is
-        Vec2 flow;   ///< m/s
-    };
     std::vector<Overrun> overrun;
-    int overruns = 0;        ///< attempts of this step that ended so
-    int unsolved = 0;        ///< and those whose velocity could not be solved for
-    FailedFlow failed_flow;  ///< of them
-    /// The same step on another mesh comes before a shorter one: with the way of what overran cleared, and,
-    /// where that and a shorter step have not helped, with fewer EOL vertices, in the end with none.
-    bool can_try_another_mesh() const
-    {
-        return overruns == 1 || (overruns > 2 && overruns <= kMostOverruns + 1);
-    }
-    static constexpr int kMostOverruns = 5;
-    void forget_failures() { overruns = unsolved = 0, failed_flow = {}; }
+    FailedAttempts failed;                ///< at this step
     std::vector<RefusedContact> refused;  ///< that pressed on a feature and are rows
     State conformed;                      ///< on the mesh that the step wants, where it is not the state's
 

@@ -562,10 +562,10 @@ TEST(ConformedSteps, WhatOverrunsInEveryAttemptBecomesRowsInAFew)
     } while (report.status == StepStatus::Overrun && attempts < 20);
     EXPECT_EQ(report.status, StepStatus::Done);
     EXPECT_GT(attempts, 2);
-    EXPECT_LE(attempts, Workspace::kMostOverruns + 2);
+    EXPECT_LE(attempts, FailedAttempts::kMostOverruns + 2);
     EXPECT_LT(state.eol.size(), count);
     expect_sound(state, 0.16);
-    EXPECT_TRUE(work.failed_flow.empty());
+    EXPECT_TRUE(work.failed.flow().empty());
 }
 
 }  // namespace

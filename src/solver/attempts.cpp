@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/attempts.h"
+
+namespace arris {
+
+void FailedAttempts::note(const StepReport& report, Attempt attempt, const State& state, const State& start,
+                          const std::vector<Overrun>& overrun)
+{
+    if (report.status == StepStatus::Done) return forget();
+    const bool is_last = attempt == Attempt::Last;
+    if (report.status == StepStatus::Overrun) {
+        ++overruns_;
+        for (const auto& [v, flow] : overrun) {
+            flow_.flow[start.ids[v]] = flow;
+            if (overruns_ > 2) flow_.given_up.insert(start.ids[v]);
+        }
+        may_mesh_help_ = overruns_ <= kMostOverruns + 1 && (overruns_ != 2 || is_last);
+    } else {
+        may_mesh_help_ = is_last && !start.eol.empty();
+    }
+    if (report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite) ++unsolved_;
+    const bool is_hopeless = report.status == StepStatus::Overrun ? overruns_ > kMostOverruns : is_last;
+    if (!is_hopeless && unsolved_ < 2) return;
+    for (const State* tried : {&state, &start})
+        for (const EolVertex& eol : tried->eol) flow_.given_up.insert(eol.vertex_id);
+}
+
+}  // namespace arris

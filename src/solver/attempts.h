@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "solver/conform.h"
+#include "solver/state.h"
+#include "solver/step_report.h"
+
+namespace arris {
+
+/// What a step may do where solve and check do not come to an end.
+enum class Attempt {
+    Ordinary,  ///< fail: a shorter step may do
+    Last       ///< put patches of cloth back on their way, as `rewind` says
+};
+
+/// An EOL vertex over which more material would flow than the mesh has.
+struct Overrun {
+    int vertex;
+    Vec2 flow;  ///< m/s
+};
+
+/// What the attempts at one step have failed on: the next one has to know. The same step on another mesh
+/// comes before a shorter one: with the way of what overran cleared; where that and a shorter step have not
+/// helped, with fewer EOL vertices; in the end with none.
+class FailedAttempts {
+  public:
+    static constexpr int kMostOverruns = 5;
+
+    /// Of an attempt from `start`, `state` or what conform made of it. One that is done forgets all.
+    void note(const StepReport& report, Attempt attempt, const State& state, const State& start,
+              const std::vector<Overrun>& overrun);
+    void forget() { *this = FailedAttempts(); }
+
+    /// Whether the same step may do on the mesh that it now gets.
+    bool may_mesh_help() const { return may_mesh_help_; }
+
+    const FailedFlow& flow() const { return flow_; }
+
+  private:
+    int overruns_ = 0;
+    int unsolved_ = 0;  ///< whose velocity could not be solved for
+    bool may_mesh_help_ = false;
+    FailedFlow flow_;
+};
+
+}  // namespace arris

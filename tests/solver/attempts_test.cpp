@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/attempts.h"
+
+#include <gtest/gtest.h>
+
+namespace arris {
+namespace {
+
+State state_with_eol(std::vector<std::uint32_t> vertices)
+{
+    State state;
+    state.ids = {0, 1, 2, 3, 4};
+    for (const std::uint32_t v : vertices) state.eol.push_back({v, 0, false, 0, {0, 0, 1}, 0});
+    return state;
+}
+
+StepReport with(StepStatus status)
+{
+    StepReport report;
+    report.status = status;
+    return report;
+}
+
+TEST(FailedAttempts, WhatOverrunsIsClearedThenShortenedThenGivenUpOneByOneThenAll)
+{
+    const State state = state_with_eol({1, 2, 3});
+    FailedAttempts failed;
+    const std::vector<Overrun> overrun = {{2, {1.0, 0.0}}};
+    const auto fail = [&] {
+        failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, overrun);
+    };
+    fail();
+    EXPECT_TRUE(failed.may_mesh_help());
+    EXPECT_EQ(failed.flow().flow.at(2), Vec2(1.0, 0.0));
+    EXPECT_TRUE(failed.flow().given_up.empty());
+    fail();
+    EXPECT_FALSE(failed.may_mesh_help());  // a shorter step first
+    EXPECT_TRUE(failed.flow().given_up.empty());
+    for (int k = 3; k <= FailedAttempts::kMostOverruns; ++k) {
+        fail();
+        EXPECT_TRUE(failed.may_mesh_help());
+        EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{2}));
+    }
+    fail();
+    EXPECT_TRUE(failed.may_mesh_help());
+    EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{1, 2, 3}));
+    fail();
+    EXPECT_FALSE(failed.may_mesh_help());  // bounded, whatever goes on to fail
+}
+
+TEST(FailedAttempts, WhereNoShorterStepIsLeftAnotherMeshIsTried)
+{
+    const State state = state_with_eol({1, 2});
+    FailedAttempts failed;
+    for (int k = 0; k <= FailedAttempts::kMostOverruns; ++k) {
+        failed.note(with(StepStatus::Overrun), Attempt::Last, state, state, {{1, {1.0, 0.0}}});
+        EXPECT_TRUE(failed.may_mesh_help()) << k;
+    }
+    EXPECT_EQ(failed.flow().given_up.size(), 2u);
+    for (const StepStatus status :
+         {StepStatus::NotConverged, StepStatus::NotFinite, StepStatus::Penetration, StepStatus::Infeasible}) {
+        FailedAttempts other;
+        other.note(with(status), Attempt::Last, state, state, {});
+        EXPECT_TRUE(other.may_mesh_help());
+        EXPECT_EQ(other.flow().given_up.size(), 2u);
+        const State none = state_with_eol({});
+        other.note(with(status), Attempt::Last, none, none, {});
+        EXPECT_FALSE(other.may_mesh_help());  // all are gone, and it still fails
+    }
+}
+
+TEST(FailedAttempts, OfStateAndOfWhatConformMadeOfItAllAreGivenUp)
+{
+    const State state = state_with_eol({1, 2}), start = state_with_eol({2, 4});
+    FailedAttempts failed;
+    failed.note(with(StepStatus::NotConverged), Attempt::Ordinary, state, start, {});
+    EXPECT_FALSE(failed.may_mesh_help());
+    EXPECT_TRUE(failed.flow().empty());
+    failed.note(with(StepStatus::NotFinite), Attempt::Ordinary, state, start, {});
+    EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{1, 2, 4}));
+}
+
+TEST(FailedAttempts, AStepThatIsDoneForgets)
+{
+    const State state = state_with_eol({1});
+    FailedAttempts failed;
+    failed.note(with(StepStatus::Overrun), Attempt::Last, state, state, {{1, {1.0, 0.0}}});
+    failed.note(with(StepStatus::Done), Attempt::Last, state, state, {});
+    EXPECT_FALSE(failed.may_mesh_help());
+    EXPECT_TRUE(failed.flow().empty());
+}
+
+}  // namespace
+}  // namespace arris
