@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "solver/material_flow.h"
 #include "solver/step.h"
 
 namespace arris {
@@ -37,7 +38,9 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
                                   Workspace& work, const AcceptPart& accept)
 {
     constexpr int kMostParts = 64;
-    int shrink = 1, parts = 1;  // how much shorter parts have become; how many are left
+    int shrink = 1;                                               // how much shorter parts have become
+    int parts = find_flow_parts(scene, state, end - state.time);  // how many are left
+    const bool is_in_parts = parts > 1;
     Cost cost;
     work.failed.forget();
     while (state.time < end) {
@@ -48,7 +51,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
         if (report.status == StepStatus::Done) {
             cost.put_into(report);
             parts = std::max(parts - 1, 1);
-            if (!accept(report, shrink > 1)) return std::nullopt;
+            if (!accept(report, shrink > 1 || is_in_parts)) return std::nullopt;
         } else if (report.status == StepStatus::EnergyRise && work.prediction.has_history) {
             restart(state);
         } else if (work.failed.may_mesh_help()) {

@@ -9,6 +9,10 @@
 
 namespace arris {
 
+/// In how many equal parts a step of `dt` (s) is better made: so that in none of them more material flows
+/// than cells usually have to give. A function of the state, not more than 4.
+int find_flow_parts(const Scene& scene, const State& state, double dt);
+
 /// The material side of the linearisation in `work.at`, which must have one; `end` is where the step ends
 /// with v^. False where the mesh has not that much material: `work.overrun` says over which vertices.
 bool linearise_flow(const State& state, const MovingCloth& end, Workspace& work);
