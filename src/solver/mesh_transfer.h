@@ -13,8 +13,8 @@
 namespace arris {
 
 /// The state on the new mesh: positions, velocities, history, and of contacts and anchors those whose
-/// vertices are still there.
+/// vertices are still there. Unfinished where it is to stop on a strain and has.
 State transfer(const Scene& scene, const State& before, const ConformedMesh& conformed,
-               TransferReport& report);
+               TransferReport& report, OnStrain on_strain = OnStrain::GoOn);
 
 }  // namespace arris

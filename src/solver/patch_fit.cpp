@@ -26,10 +26,11 @@ class PatchFitter {
     {
     }
 
-    TransferReport run(const std::vector<ChangedPatch>& patches)
+    TransferReport run(const std::vector<ChangedPatch>& patches, OnStrain on_strain)
     {
         TransferReport report;
         for (const ChangedPatch& patch : patches) {
+            if (report.is_strained && on_strain == OnStrain::Stop) break;
             const double gain = relax_patch(patch);
             const std::optional<VelocityFit> fit = fit_patch(patch);
             report.is_strained =
@@ -169,9 +170,9 @@ class PatchFitter {
 }  // namespace
 
 TransferReport fit_patches(const Scene& scene, const State& before, const std::vector<ChangedPatch>& patches,
-                           const ClothStars& stars, State& after)
+                           const ClothStars& stars, OnStrain on_strain, State& after)
 {
-    return PatchFitter(scene, before, stars, after).run(patches);
+    return PatchFitter(scene, before, stars, after).run(patches, on_strain);
 }
 
 }  // namespace arris

@@ -29,7 +29,6 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
     // More carefully where the cloth could not give way as it should have; by force where that would cost a
     // trace its vertices.
     std::optional<ConformedMesh> conformed;
-    TransferReport transferred;
     for (const StrainLimit limit : {StrainLimit::GivesWay, StrainLimit::AsMade, StrainLimit::Forced}) {
         ConformOutcome outcome =
             conform_mesh(scene, end - state.time, state, work.edges, work.failed.flow(), limit);
@@ -37,11 +36,13 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
         work.refused = std::move(outcome.refused);
         report.seconds.conform += watch.lap();
         if (!conformed) return state;
-        work.conformed = transfer(scene, state, *conformed, transferred);
+        if (limit == StrainLimit::AsMade && conformed->report.lost > 0) continue;
+        const bool is_last = limit != StrainLimit::GivesWay;
+        TransferReport transferred;
+        work.conformed =
+            transfer(scene, state, *conformed, transferred, is_last ? OnStrain::GoOn : OnStrain::Stop);
         report.seconds.transfer += watch.lap();
-        const bool is_wanted =
-            limit == StrainLimit::GivesWay ? !transferred.is_strained : conformed->report.lost == 0;
-        if (is_wanted) break;
+        if (is_last || !transferred.is_strained) break;
     }
     report.inserted = conformed->report.inserted;
     report.released = conformed->report.released;
