@@ -30,20 +30,94 @@ constexpr int kInstants = 4;         // of the way, at which faces are looked at
 constexpr int kMostSubsteps = 100000;
 constexpr int kMostStages = 100;
 
-// The least doubled area on the way over the square of the longest side as it is: how far from turning.
-double soundness(const PatchFace& face, const TraceWays& ways)
+std::array<Vec2, 3> ways_of(const PatchFace& face, const TraceWays& ways)
 {
+    std::array<Vec2, 3> way;
+    for (int k = 0; k < 3; ++k) {
+        const auto at = ways.find(face.vertices[k]);
+        way[k] = at != ways.end() ? at->second : Vec2(Vec2::Zero());
+    }
+    return way;
+}
+
+// The least doubled area on the way.
+double least_area(const PatchFace& face, const TraceWays& ways)
+{
+    const std::array<Vec2, 3> way = ways_of(face, ways);
     double least = std::numeric_limits<double>::infinity();
     for (int i = 1; i <= kInstants; ++i) {
         std::array<Vec2, 3> X = face.material;
-        for (int k = 0; k < 3; ++k)
-            if (const auto at = ways.find(face.vertices[k]); at != ways.end())
-                X[k] += double(i) / kInstants * at->second;
+        for (int k = 0; k < 3; ++k) X[k] += double(i) / kInstants * way[k];
         least = std::min(least, twice_area(X[0], X[1], X[2]));
     }
-    const double side = longest_edge({face});
-    return least / (side * side);
+    return least;
 }
+
+// That over the square of the longest side as it is: how far from turning.
+double soundness(const PatchFace& face, const TraceWays& ways)
+{
+    double side = 0.0;
+    for (int k = 0; k < 3; ++k) side = std::max(side, (face.material[(k + 1) % 3] - face.material[k]).norm());
+    return least_area(face, ways) / (side * side);
+}
+
+// False where the doubled area, (b + t db) x (c + t dc), is above zero for certain at every t in [0, 1].
+bool is_at_risk(const PatchFace& face, const TraceWays& ways)
+{
+    constexpr double kRounding = 1e-6;  // of the sides' squares: far above any in the area
+    const auto cross = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
+    const std::array<Vec2, 3> way = ways_of(face, ways);
+    const Vec2 b = face.material[1] - face.material[0], c = face.material[2] - face.material[0];
+    const Vec2 db = way[1] - way[0], dc = way[2] - way[0];
+    const double slope = cross(b, dc) + cross(db, c), curvature = cross(db, dc);
+    const double least = cross(b, c) + std::min(0.0, slope) + std::min(0.0, curvature);
+    const double squares = b.squaredNorm() + c.squaredNorm() + db.squaredNorm() + dc.squaredNorm();
+    return !(least > kRounding * squares);
+}
+
+// Vertices that move with a face that may turn over, whatever share of their ways they go: around others
+// there is nothing to clear.
+class RiskWatch {
+  public:
+    RiskWatch(const ClothSurgery& surgery, const std::array<const TraceWays*, 2>& ways)
+        : surgery_(surgery), ways_(ways), events_(surgery.events().size())
+    {
+        for (const auto& [v, way] : *ways[0])
+            for (const IdFace& face : surgery.faces_at(v))
+                if (is_at_risk(surgery.patch_face(face))) watched_.insert(v);
+    }
+
+    // Takes in the faces that operations have made since.
+    void follow()
+    {
+        for (; events_ < surgery_.events().size(); ++events_)
+            for (const PatchFace& face : surgery_.events()[events_].after) {
+                if (!is_at_risk(face)) continue;
+                for (const VertexId v : face.vertices)
+                    if (ways_[0]->contains(v)) watched_.insert(v);
+            }
+    }
+
+    // Those of them that have not been merged, ascending.
+    std::vector<VertexId> vertices() const
+    {
+        std::vector<VertexId> left;
+        for (const VertexId v : watched_)
+            if (surgery_.has_vertex(v)) left.push_back(v);
+        return left;
+    }
+
+  private:
+    bool is_at_risk(const PatchFace& face) const
+    {
+        return arris::is_at_risk(face, *ways_[0]) || arris::is_at_risk(face, *ways_[1]);
+    }
+
+    const ClothSurgery& surgery_;
+    std::array<const TraceWays*, 2> ways_;  // of the same vertices
+    std::size_t events_;                    // that have been taken in
+    std::set<VertexId> watched_;
+};
 
 enum class Need {
     Way,  ///< of what moves: where vertices of traces come upon each other, some go
@@ -57,13 +131,16 @@ class Clearing {
     {
     }
 
-    /// How much it has done.
-    int run()
+    /// Around `vertices`; how much it has done.
+    int run(const std::vector<VertexId>& vertices)
     {
         int operations = 0;
         std::set<IdFace> queue;
-        for (const VertexId v : moving())
-            for (const IdFace& face : surgery_.faces_at(v)) queue.insert(from_least(face));
+        const auto add = [&](const PatchFace& face) {
+            if (turns_over(face, ahead_)) queue.insert(from_least(face.vertices));
+        };
+        for (const VertexId v : vertices)
+            for (const IdFace& face : surgery_.faces_at(v)) add(surgery_.patch_face(face));
         while (!queue.empty()) {
             const IdFace face = *queue.begin();
             queue.erase(queue.begin());
@@ -71,22 +148,9 @@ class Clearing {
                 continue;
             if (!save(face)) continue;
             ++operations;
-            for (const PatchFace& made : surgery_.events().back().after)
-                queue.insert(from_least(made.vertices));
+            for (const PatchFace& made : surgery_.events().back().after) add(made);
         }
         return operations;
-    }
-
-    std::vector<VertexId> find_blocked() const
-    {
-        std::vector<VertexId> blocked;
-        for (const VertexId v : moving()) {
-            const std::vector<IdFace> faces = surgery_.faces_at(v);
-            if (std::any_of(faces.begin(), faces.end(),
-                            [this](const IdFace& face) { return is_threatened(surgery_.patch_face(face)); }))
-                blocked.push_back(v);
-        }
-        return blocked;
     }
 
   private:
@@ -97,15 +161,6 @@ class Clearing {
     }
 
     bool is_moving(VertexId v) const { return ahead_.contains(v); }
-
-    // Those of them that have not been merged.
-    std::vector<VertexId> moving() const
-    {
-        std::vector<VertexId> left;
-        for (const auto& [v, way] : ahead_)
-            if (surgery_.has_vertex(v)) left.push_back(v);
-        return left;
-    }
 
     double soundness(const PatchFace& face) const { return arris::soundness(face, ahead_); }
     bool is_threatened(const PatchFace& face) const
@@ -199,6 +254,19 @@ class Clearing {
     const Need need_;
 };
 
+std::vector<VertexId> find_blocked(const ClothSurgery& surgery, const TraceWays& ahead,
+                                   const std::vector<VertexId>& vertices)
+{
+    std::vector<VertexId> blocked;
+    for (const VertexId v : vertices) {
+        const std::vector<IdFace> faces = surgery.faces_at(v);
+        if (std::any_of(faces.begin(), faces.end(),
+                        [&](const IdFace& face) { return turns_over(surgery.patch_face(face), ahead); }))
+            blocked.push_back(v);
+    }
+    return blocked;
+}
+
 // In stages of at most kClear of the target length, so that what stands nearest goes first: vertices of one
 // cell after the other can be merged into the trace, but not those behind others. Then up to kClear where the
 // way is shorter: that is room for what comes, which another trace may take, too.
@@ -216,13 +284,18 @@ ClearanceReport clear(ClothSurgery& surgery, const MeshTarget& target, TraceWays
     }
     const int count = static_cast<int>(std::min(stages, double(kMostStages)));
     ClearanceReport report;
+    RiskWatch watch(surgery, {&ahead, &room});
+    const auto clear_part = [&](const TraceWays& part, Need need) {
+        report.operations += Clearing(surgery, part, need).run(watch.vertices());
+        watch.follow();
+    };
     for (int k = 1; k <= count; ++k) {
         TraceWays part = ahead;
         for (auto& [v, way] : part) way *= double(k) / count;
-        report.operations += Clearing(surgery, part, Need::Way).run();
+        clear_part(part, Need::Way);
     }
-    report.operations += Clearing(surgery, room, Need::Room).run();
-    report.blocked = Clearing(surgery, ahead, Need::Way).find_blocked();
+    clear_part(room, Need::Room);
+    report.blocked = find_blocked(surgery, ahead, watch.vertices());
     report.ways = std::move(room);
     return report;
 }
@@ -312,7 +385,7 @@ class TraceMotion {
 
 bool turns_over(const PatchFace& face, const TraceWays& ways)
 {
-    return !(soundness(face, ways) > 0.0);
+    return !(least_area(face, ways) > 0.0);
 }
 
 ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
