@@ -189,7 +189,7 @@ void begin_history(const State& before, State& after)
 }  // namespace
 
 State transfer(const Scene& scene, const State& before, const ConformedMesh& conformed,
-               TransferReport& report, OnStrain on_strain)
+               TransferReport& report, double most_strain)
 {
     CarriedById all(before);
     for (const SurgeryEvent& event : conformed.events)
@@ -205,7 +205,7 @@ State transfer(const Scene& scene, const State& before, const ConformedMesh& con
         faces_at_vertices(before.mesh.vertex_count(), before.mesh.faces);
     report = fit_patches(
         scene, before, find_changed_patches({before, after, conformed.events, faces_at_before, stars.faces}),
-        stars, on_strain, after);
+        stars, most_strain, after);
     begin_history(before, after);
     return after;
 }

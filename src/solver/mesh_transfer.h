@@ -5,6 +5,8 @@
 // (physics/velocity_fit.h).
 #pragma once
 
+#include <limits>
+
 #include "solver/conform.h"
 #include "solver/patch_fit.h"
 #include "solver/scene.h"
@@ -13,8 +15,9 @@
 namespace arris {
 
 /// The state on the new mesh: positions, velocities, history, and of contacts and anchors those whose
-/// vertices are still there. Unfinished where it is to stop on a strain and has.
+/// vertices are still there. Unfinished where a patch stays strained by more than `most_strain`, as a share
+/// of what moves it.
 State transfer(const Scene& scene, const State& before, const ConformedMesh& conformed,
-               TransferReport& report, OnStrain on_strain = OnStrain::GoOn);
+               TransferReport& report, double most_strain = std::numeric_limits<double>::infinity());
 
 }  // namespace arris

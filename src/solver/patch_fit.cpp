@@ -26,15 +26,15 @@ class PatchFitter {
     {
     }
 
-    TransferReport run(const std::vector<ChangedPatch>& patches, OnStrain on_strain)
+    TransferReport run(const std::vector<ChangedPatch>& patches, double most_strain)
     {
         TransferReport report;
         for (const ChangedPatch& patch : patches) {
-            if (report.is_strained && on_strain == OnStrain::Stop) break;
+            if (report.strain > most_strain) break;
             const double gain = relax_patch(patch);
             const std::optional<VelocityFit> fit = fit_patch(patch);
-            report.is_strained =
-                report.is_strained || gain > kAllowedStrain * ((fit ? fit->energy : 0.0) + weight(patch));
+            if (gain > 0.0)
+                report.strain = std::max(report.strain, gain / ((fit ? fit->energy : 0.0) + weight(patch)));
             if (!fit) continue;
             ++report.patches;
             report.energy_gain += fit->energy_gain;
@@ -170,9 +170,9 @@ class PatchFitter {
 }  // namespace
 
 TransferReport fit_patches(const Scene& scene, const State& before, const std::vector<ChangedPatch>& patches,
-                           const ClothStars& stars, OnStrain on_strain, State& after)
+                           const ClothStars& stars, double most_strain, State& after)
 {
-    return PatchFitter(scene, before, stars, after).run(patches, on_strain);
+    return PatchFitter(scene, before, stars, after).run(patches, most_strain);
 }
 
 }  // namespace arris

@@ -13,16 +13,16 @@ namespace arris {
 struct TransferReport {
     double energy_gain = 0.0;  ///< kinetic, J
     int patches = 0;           ///< on which velocity was fitted
-    bool is_strained = false;  ///< a patch could not give way to what strains it now
+    /// Of patches that could not give way to what strains them now: the most that elastic energy is above
+    /// what it was, as a share of what moves the patch.
+    double strain = 0.0;
 };
-
-/// What follows on a patch that could not give way: to stop leaves the patches after it as they are.
-enum class OnStrain { GoOn, Stop };
 
 /// Brings `after`, whose new vertices have what the surface had there, to where each patch may stay: one that
 /// its new mesh strains gives way, and its velocity is the nearest to the old that has the same momentum.
-/// `stars` are those of `after`.
+/// `stars` are those of `after`. Stops, unfinished, at a patch that stays strained by more than
+/// `most_strain`.
 TransferReport fit_patches(const Scene& scene, const State& before, const std::vector<ChangedPatch>& patches,
-                           const ClothStars& stars, OnStrain on_strain, State& after);
+                           const ClothStars& stars, double most_strain, State& after);
 
 }  // namespace arris

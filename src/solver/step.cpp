@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <optional>
 
 #include "solver/conform.h"
@@ -13,6 +14,7 @@
 #include "solver/mesh_transfer.h"
 #include "solver/relinearization.h"
 #include "solver/stopwatch.h"
+#include "solver/strain_allowance.h"
 
 namespace arris {
 
@@ -27,22 +29,28 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
     prepare(scene, state, work);
     report.seconds.move += watch.lap();
     // More carefully where the cloth could not give way as it should have; by force where that would cost a
-    // trace its vertices.
+    // trace its vertices, unless that is felt.
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    constexpr struct {
+        StrainLimit limit;
+        double most_lost, most_strain;
+    } kTries[] = {{StrainLimit::GivesWay, kAny, kAllowedStrain},
+                  {StrainLimit::AsMade, 0, kAny},
+                  {StrainLimit::Forced, kAny, kForcedStrain},
+                  {StrainLimit::AsMade, kAny, kAny}};
     std::optional<ConformedMesh> conformed;
-    for (const StrainLimit limit : {StrainLimit::GivesWay, StrainLimit::AsMade, StrainLimit::Forced}) {
+    for (const auto& [limit, most_lost, most_strain] : kTries) {
         ConformOutcome outcome =
             conform_mesh(scene, end - state.time, state, work.edges, work.failed.flow(), limit);
         conformed = std::move(outcome.mesh);
         work.refused = std::move(outcome.refused);
         report.seconds.conform += watch.lap();
         if (!conformed) return state;
-        if (limit == StrainLimit::AsMade && conformed->report.lost > 0) continue;
-        const bool is_last = limit != StrainLimit::GivesWay;
+        if (conformed->report.lost > most_lost) continue;
         TransferReport transferred;
-        work.conformed =
-            transfer(scene, state, *conformed, transferred, is_last ? OnStrain::GoOn : OnStrain::Stop);
+        work.conformed = transfer(scene, state, *conformed, transferred, most_strain);
         report.seconds.transfer += watch.lap();
-        if (is_last || !transferred.is_strained) break;
+        if (transferred.strain <= most_strain) break;
     }
     report.inserted = conformed->report.inserted;
     report.released = conformed->report.released;

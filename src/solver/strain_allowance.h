@@ -9,6 +9,9 @@ namespace arris {
 /// its mesh may raise its elastic energy: nobody sees that.
 inline constexpr double kAllowedStrain = 0.01;
 
+/// The same where less would cost a sliding trace its vertices, and more energy with them.
+inline constexpr double kForcedStrain = 0.03;
+
 /// What gravity gives cloth of `area` (material, m^2) that falls by `length` (m), J.
 inline double weight_over(const Scene& scene, double area, double length)
 {
