@@ -14,13 +14,10 @@ namespace {
 std::vector<std::array<int, 2>> find_eol_edges(const std::vector<Obstacle>& obstacles, const State& state)
 {
     std::vector<std::array<int, 2>> edges;
-    for (const Face& face : state.mesh.faces)
-        for (int i = 0; i < 3; ++i) {
-            const int v = face[i], w = face[(i + 1) % 3];
-            if (find_trace_edge(obstacles, state, v, w)) edges.push_back({std::min(v, w), std::max(v, w)});
-        }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    if (state.eol.empty()) return edges;
+    const ClothStars stars = make_stars(state.mesh.vertex_count(), state.mesh.faces);
+    for (const auto& [a, b] : find_trace_edges(obstacles, state, stars))
+        edges.push_back({state.index_of(state.eol[a].vertex_id), state.index_of(state.eol[b].vertex_id)});
     return edges;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cassert>
 #include <functional>
-#include <unordered_map>
 #include <utility>
 
 #include "geometry/cloth_surgery_implementation.h"
@@ -13,7 +12,13 @@ namespace arris {
 
 ClothSurgery::ClothSurgery(const ClothMesh& mesh, const std::vector<VertexId>& ids, VertexId next_id,
                            const std::vector<VertexId>& fixed)
-    : implementation_(std::make_unique<Implementation>(mesh, ids, next_id))
+    : ClothSurgery(mesh, ids, next_id, fixed, make_topology(mesh.vertex_count(), mesh.faces).edges)
+{
+}
+
+ClothSurgery::ClothSurgery(const ClothMesh& mesh, const std::vector<VertexId>& ids, VertexId next_id,
+                           const std::vector<VertexId>& fixed, const std::vector<MeshEdge>& edges)
+    : implementation_(std::make_unique<Implementation>(mesh, ids, next_id, edges))
 {
     assert(ids.size() == mesh.world.size() && "one id a vertex");
     assert(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>()) == ids.end());
@@ -192,22 +197,17 @@ SurgeryResult ClothSurgery::result() const
 {
     const SurgeryMesh& mesh = implementation_->mesh;
     SurgeryResult result;
-    result.ids = mesh.ids();
     result.next_id = implementation_->next_id;
-    std::unordered_map<VertexId, int> index;
-    for (const VertexId v : result.ids) {
-        index.emplace(v, static_cast<int>(index.size()));
-        result.mesh.material.push_back(mesh.material(v));
-        result.mesh.world.push_back(mesh.world(v));
-        result.roles.push_back(mesh.role(v));
-        result.tags.push_back(mesh.tag(v));
-    }
-    for (const IdFace& face : mesh.faces())
-        result.mesh.faces.push_back({index.at(face[0]), index.at(face[1]), index.at(face[2])});
-    for (const VertexId v : result.ids) {
-        if (mesh.role(v) == TraceRole::Free) continue;
-        for (const VertexId n : mesh.trace_neighbours(v))
-            if (v < n) result.tagged_edges.push_back({index.at(v), index.at(n), edge_tag(v, n)});
+    mesh.write(result);
+    const auto index_of = [&](VertexId v) {
+        return static_cast<int>(std::lower_bound(result.ids.begin(), result.ids.end(), v) -
+                                result.ids.begin());
+    };
+    for (std::size_t v = 0; v < result.ids.size(); ++v) {
+        if (result.roles[v] == TraceRole::Free) continue;
+        const VertexId id = result.ids[v];
+        for (const VertexId n : mesh.trace_neighbours(id))
+            if (id < n) result.tagged_edges.push_back({static_cast<int>(v), index_of(n), edge_tag(id, n)});
     }
     std::sort(result.tagged_edges.begin(), result.tagged_edges.end(),
               [](const auto& e, const auto& f) { return std::pair(e.a, e.b) < std::pair(f.a, f.b); });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/cloth_mesh.h"
+#include "geometry/mesh_topology.h"
 
 namespace arris {
 
@@ -124,6 +125,9 @@ class ClothSurgery {
     /// its border neighbours by more than rounding.
     ClothSurgery(const ClothMesh& mesh, const std::vector<VertexId>& ids, VertexId next_id,
                  const std::vector<VertexId>& fixed = {});
+    /// The same where the mesh's edges are known.
+    ClothSurgery(const ClothMesh& mesh, const std::vector<VertexId>& ids, VertexId next_id,
+                 const std::vector<VertexId>& fixed, const std::vector<MeshEdge>& edges);
     ~ClothSurgery();
     ClothSurgery(ClothSurgery&& other) noexcept;
     ClothSurgery& operator=(ClothSurgery&& other) noexcept;

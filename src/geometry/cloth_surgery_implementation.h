@@ -41,8 +41,9 @@ inline bool is_counter_clockwise(const PatchFace& face)
 
 class ClothSurgery::Implementation {
   public:
-    Implementation(const ClothMesh& cloth, const std::vector<VertexId>& ids, VertexId first_free_id)
-        : mesh(cloth, ids), next_id(first_free_id)
+    Implementation(const ClothMesh& cloth, const std::vector<VertexId>& ids, VertexId first_free_id,
+                   const std::vector<MeshEdge>& edges)
+        : mesh(cloth, ids, edges), next_id(first_free_id)
     {
     }
 

@@ -7,11 +7,10 @@
 #include <cassert>
 #include <utility>
 
-#include "geometry/mesh_topology.h"
-
 namespace arris {
 
-SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids)
+SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids,
+                         const std::vector<MeshEdge>& edges)
 {
     id_ = mesh_.add_property_map<Vertex, VertexId>("v:id", kNoVertex).first;
     world_ = mesh_.add_property_map<Vertex, Vec3>("v:world", Vec3::Zero()).first;
@@ -29,14 +28,13 @@ SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids
         world_[added] = mesh.world[v];
         vertex_of_.emplace(ids[v], added);
     }
-    connect(mesh);
+    connect(mesh, edges);
 }
 
 // The half-edges of the whole mesh at once: CGAL's add_face looks for each among those there are.
-void SurgeryMesh::connect(const ClothMesh& mesh)
+void SurgeryMesh::connect(const ClothMesh& mesh, const std::vector<MeshEdge>& edges)
 {
     const auto at = [](int v) { return Vertex(static_cast<Mesh::size_type>(v)); };
-    const MeshTopology topology = make_topology(mesh.vertex_count(), mesh.faces);
     std::vector<std::array<Halfedge, 3>> sides(mesh.faces.size());  // that leaves each corner of a face
     const auto take_side = [&](int f, int a, Halfedge from_a) {
         const Face& face = mesh.faces[f];
@@ -47,7 +45,7 @@ void SurgeryMesh::connect(const ClothMesh& mesh)
         else
             sides[f][(k + 2) % 3] = mesh_.opposite(from_a);
     };
-    for (const MeshEdge& edge : topology.edges) {
+    for (const MeshEdge& edge : edges) {
         const Halfedge from_a = mesh_.add_edge(at(edge.a), at(edge.b));
         take_side(edge.face_left, edge.a, from_a);
         if (edge.face_right >= 0) take_side(edge.face_right, edge.a, from_a);
@@ -167,27 +165,29 @@ void SurgeryMesh::flip(VertexId a, VertexId b)
     CGAL::Euler::flip_edge(halfedge(a, b), mesh_);
 }
 
-std::vector<VertexId> SurgeryMesh::ids() const
+void SurgeryMesh::write(SurgeryResult& result) const
 {
-    std::vector<VertexId> ids;
-    ids.reserve(vertex_of_.size());
-    for (const Vertex v : mesh_.vertices()) ids.push_back(id_[v]);
-    std::sort(ids.begin(), ids.end());
-    return ids;
-}
-
-std::vector<IdFace> SurgeryMesh::faces() const
-{
-    std::vector<IdFace> faces;
-    faces.reserve(mesh_.number_of_faces());
+    std::vector<std::pair<VertexId, Vertex>> vertices;
+    vertices.reserve(vertex_of_.size());
+    for (const Vertex v : mesh_.vertices()) vertices.emplace_back(id_[v], v);
+    std::sort(vertices.begin(), vertices.end());
+    std::vector<int> index(mesh_.number_of_vertices() + mesh_.number_of_removed_vertices());
+    for (const auto& [id, v] : vertices) {
+        index[v] = static_cast<int>(result.ids.size());
+        result.ids.push_back(id);
+        result.mesh.material.push_back(to_eigen(mesh_.point(v)));
+        result.mesh.world.push_back(world_[v]);
+        result.roles.push_back(role_[v]);
+        result.tags.push_back(tag_[v]);
+    }
+    result.mesh.faces.reserve(mesh_.number_of_faces());
     for (const auto f : mesh_.faces()) {
         const Halfedge h = mesh_.halfedge(f);
-        IdFace face = {id_[mesh_.source(h)], id_[mesh_.target(h)], apex(h)};
+        Face face = {index[mesh_.source(h)], index[mesh_.target(h)], index[mesh_.target(mesh_.next(h))]};
         std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-        faces.push_back(face);
+        result.mesh.faces.push_back(face);
     }
-    std::sort(faces.begin(), faces.end());
-    return faces;
+    std::sort(result.mesh.faces.begin(), result.mesh.faces.end());
 }
 
 }  // namespace arris

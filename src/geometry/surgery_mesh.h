@@ -19,7 +19,7 @@ class SurgeryMesh {
     using Vertex = Mesh::Vertex_index;
     using Halfedge = Mesh::Halfedge_index;
 
-    SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids);
+    SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids, const std::vector<MeshEdge>& edges);
 
     int vertex_count() const { return static_cast<int>(vertex_of_.size()); }
     bool has(VertexId v) const { return vertex_of_.contains(v); }
@@ -54,11 +54,11 @@ class SurgeryMesh {
     void collapse(VertexId removed, VertexId kept);
     void flip(VertexId a, VertexId b);
 
-    std::vector<VertexId> ids() const;  ///< ascending
-    std::vector<IdFace> faces() const;  ///< each from its least id, ascending
+    /// Vertices, and the faces between them.
+    void write(SurgeryResult& result) const;
 
   private:
-    void connect(const ClothMesh& mesh);
+    void connect(const ClothMesh& mesh, const std::vector<MeshEdge>& edges);
     void name_new_vertex(Vertex v, const VertexChange& made);
 
     Mesh mesh_;

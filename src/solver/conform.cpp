@@ -72,13 +72,11 @@ bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3
 
 class Conforming {
   public:
-    Conforming(const Scene& scene, double dt, const State& state, const std::vector<MeshEdge>& edges,
-               StrainLimit limit)
+    Conforming(const Scene& scene, double dt, const State& state, const ClothStars& stars, StrainLimit limit)
         : scene_(scene),
           dt_(dt),
           state_(state),
-          edges_(edges),
-          stars_(make_stars(state.mesh.vertex_count(), state.mesh.faces, edges)),
+          stars_(stars),
           target_(*scene.eol),
           tags_(scene.obstacles),
           guard_(scene, state, limit)
@@ -98,7 +96,7 @@ class Conforming {
         sites_ = find_feature_sites(scene_, state_, stars_);
         if (released_.empty() && sites_.empty() && failed.empty() && state_.loose.empty() && !is_flowing())
             return std::nullopt;
-        surgery_.emplace(state_.mesh, state_.ids, state_.next_id, pinned());
+        surgery_.emplace(state_.mesh, state_.ids, state_.next_id, pinned(), stars_.topology.edges);
         guard_.watch(*surgery_);
         surgery_->set_guard(
             [this](const SurgeryEvent& event) { return keeps_way(event) && guard_.allows(event); });
@@ -117,11 +115,11 @@ class Conforming {
             clear_way();
             report_.operations += clean_up(*surgery_, target_).operations();
         }
-        ConformedMesh made = result();
+        std::vector<EolVertex> loose = find_loose();
         if (surgery_->events().empty() && report_.released == 0 && report_.inserted == 0 &&
-            made.loose.size() == state_.loose.size())
+            loose.size() == state_.loose.size())
             return std::nullopt;
-        return made;
+        return result(std::move(loose));
     }
 
     bool is_flowing() const
@@ -167,7 +165,7 @@ class Conforming {
                                                             *placing.coordinates, positions[v])
                                                 : EolHold::Firm;
         }
-        hold_between(scene_, state_, edges_, holds);
+        hold_between(scene_, state_, stars_, holds);
         for (std::size_t entry = 0; entry < holds.size(); ++entry)
             if (holds[entry] != EolHold::Firm) released_.push_back(state_.eol[entry].vertex_id);
     }
@@ -177,10 +175,8 @@ class Conforming {
     {
         for (const EolVertex& e : state_.eol)
             surgery_->set_role(e.vertex_id, e.is_corner ? TraceRole::Node : TraceRole::OnTrace, tags_.tag(e));
-        for (const MeshEdge& edge : edges_) {
-            const auto ends = find_trace_edge(scene_.obstacles, state_, edge.a, edge.b);
-            if (!ends) continue;
-            const EolVertex &p = state_.eol[(*ends)[0]], &q = state_.eol[(*ends)[1]];
+        for (const auto& [a, b] : find_trace_edges(scene_.obstacles, state_, stars_)) {
+            const EolVertex &p = state_.eol[a], &q = state_.eol[b];
             surgery_->set_edge_tag(p.vertex_id, q.vertex_id, tags_.tag(p.is_corner ? q : p));
         }
         surgery_->take_touched();
@@ -470,9 +466,9 @@ class Conforming {
         return false;
     }
 
-    ConformedMesh result()
+    ConformedMesh result(std::vector<EolVertex> loose) const
     {
-        ConformedMesh made{surgery_->result(), surgery_->events(), {}, report_};
+        ConformedMesh made{surgery_->result(), surgery_->events(), {}, report_, std::move(loose)};
         for (std::size_t v = 0; v < made.surgery.ids.size(); ++v) {
             if (made.surgery.roles[v] == TraceRole::Free) continue;
             const VertexId id = made.surgery.ids[v];
@@ -482,7 +478,6 @@ class Conforming {
                      between && is_in_plane(*between))
                 made.eol.push_back(*between);
         }
-        made.loose = find_loose();
         return made;
     }
 
@@ -560,8 +555,7 @@ class Conforming {
     const Scene& scene_;
     double dt_;
     const State& state_;
-    const std::vector<MeshEdge>& edges_;
-    const ClothStars stars_;
+    const ClothStars& stars_;
     const MeshTarget& target_;
     FeatureTags tags_;
     std::vector<VertexId> released_;
@@ -579,11 +573,11 @@ class Conforming {
 
 }  // namespace
 
-ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state,
-                            const std::vector<MeshEdge>& edges, const FailedFlow& failed, StrainLimit limit)
+ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
+                            const FailedFlow& failed, StrainLimit limit)
 {
     if (!scene.eol || (state.eol.empty() && state.loose.empty() && state.active.empty())) return {};
-    return Conforming(scene, dt, state, edges, limit).run(failed);
+    return Conforming(scene, dt, state, stars, limit).run(failed);
 }
 
 }  // namespace arris

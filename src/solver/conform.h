@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/cloth_surgery.h"
+#include "solver/eol_coordinates.h"
 #include "solver/eol_guard.h"
 #include "solver/row_cause.h"
 #include "solver/scene.h"
@@ -45,9 +46,9 @@ struct ConformOutcome {
 };
 
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
-/// they have not for long, the way of those that slide cleared, what they left restored. `edges` are the
+/// they have not for long, the way of those that slide cleared, what they left restored. `stars` are the
 /// state's.
-ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state,
-                            const std::vector<MeshEdge>& edges, const FailedFlow& failed, StrainLimit limit);
+ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
+                            const FailedFlow& failed, StrainLimit limit);
 
 }  // namespace arris

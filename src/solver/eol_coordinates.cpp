@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace arris {
 
@@ -195,12 +196,13 @@ EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)
 
 }  // namespace
 
-ClothStars make_stars(int vertex_count, const std::vector<Face>& faces, const std::vector<MeshEdge>& edges)
+ClothStars make_stars(int vertex_count, const std::vector<Face>& faces)
 {
     ClothStars stars;
+    stars.topology = make_topology(vertex_count, faces);
     stars.faces = faces_at_vertices(vertex_count, faces);
     stars.border_neighbours.assign(vertex_count, {-1, -1});
-    for (const MeshEdge& edge : edges) {
+    for (const MeshEdge& edge : stars.topology.edges) {
         if (edge.face_right >= 0) continue;
         for (const auto& [v, w] : {std::pair(edge.a, edge.b), std::pair(edge.b, edge.a)})
             stars.border_neighbours[v][stars.border_neighbours[v][0] < 0 ? 0 : 1] = w;
@@ -238,17 +240,28 @@ bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol
     return false;
 }
 
-std::optional<std::array<int, 2>> find_trace_edge(const std::vector<Obstacle>& obstacles, const State& state,
-                                                  int v, int w)
+std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& obstacles, const State& state,
+                                                 const ClothStars& stars)
 {
-    const int a = state.eol_entry(state.ids[v]), b = state.eol_entry(state.ids[w]);
-    if (a < 0 || b < 0) return std::nullopt;
-    const Obstacle& obstacle = obstacles[static_cast<std::size_t>(state.eol[a].obstacle)];
-    const Placement now = obstacle.at(state.time);
-    if (!is_trace_edge(obstacle, {state.eol[a], now.inverse(state.mesh.world[v])},
-                       {state.eol[b], now.inverse(state.mesh.world[w])}))
-        return std::nullopt;
-    return std::array{a, b};
+    std::vector<std::array<int, 2>> found;
+    const auto add_from = [&](int a) {
+        const int v = state.index_of(state.eol[a].vertex_id);
+        const Obstacle& obstacle = obstacles[static_cast<std::size_t>(state.eol[a].obstacle)];
+        const Placement now = obstacle.at(state.time);
+        std::set<int> beside;  // later entries
+        for (const int f : stars.faces[v])
+            for (const int w : state.mesh.faces[f])
+                if (w > v)
+                    if (const int b = state.eol_entry(state.ids[w]); b >= 0) beside.insert(b);
+        for (const int b : beside) {
+            const int w = state.index_of(state.eol[b].vertex_id);
+            if (is_trace_edge(obstacle, {state.eol[a], now.inverse(state.mesh.world[v])},
+                              {state.eol[b], now.inverse(state.mesh.world[w])}))
+                found.push_back({a, b});
+        }
+    };
+    for (int a = 0; a < static_cast<int>(state.eol.size()); ++a) add_from(a);
+    return found;
 }
 
 void follow_features(const std::vector<Obstacle>& obstacles, State& state)

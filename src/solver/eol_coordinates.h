@@ -34,10 +34,11 @@ struct EolCoordinates {
 
 /// The cloth around each vertex: what EOL coordinates are made of. Made anew where the mesh changes.
 struct ClothStars {
+    MeshTopology topology;
     std::vector<std::vector<int>> faces;                ///< at each vertex, ascending
     std::vector<std::array<int, 2>> border_neighbours;  ///< of a border vertex, ascending; -1 elsewhere
 };
-ClothStars make_stars(int vertex_count, const std::vector<Face>& faces, const std::vector<MeshEdge>& edges);
+ClothStars make_stars(int vertex_count, const std::vector<Face>& faces);
 
 /// Why a vertex cannot be EOL though a feature presses on it.
 enum class EolRefusal {
@@ -70,10 +71,10 @@ struct PlacedEol {
 /// polyline, or at its end, and it goes from one to the other nearly straight.
 bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b);
 
-/// The entries in State::eol of the ends of the cloth's edge from vertex v to w, where it lies along a
-/// feature at the state's time.
-std::optional<std::array<int, 2>> find_trace_edge(const std::vector<Obstacle>& obstacles, const State& state,
-                                                  int v, int w);
+/// The cloth's edges that lie along features at the state's time: the entries in State::eol of their ends,
+/// ascending.
+std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& obstacles, const State& state,
+                                                 const ClothStars& stars);
 
 /// EOL vertices that have gone along their polyline past an end of their edge are on the next one from now
 /// on. At the state's time.

@@ -38,15 +38,12 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
     return gap <= kOnFeature * scene.material.thickness ? EolHold::Loose : EolHold::None;
 }
 
-void hold_between(const Scene& scene, const State& state, const std::vector<MeshEdge>& edges,
+void hold_between(const Scene& scene, const State& state, const ClothStars& stars,
                   std::vector<EolHold>& holds)
 {
     if (std::find(holds.begin(), holds.end(), EolHold::Loose) == holds.end()) return;
     std::vector<std::vector<int>> beside(holds.size());
-    for (const MeshEdge& edge : edges) {
-        const auto ends = find_trace_edge(scene.obstacles, state, edge.a, edge.b);
-        if (!ends) continue;
-        const auto [a, b] = *ends;
+    for (const auto& [a, b] : find_trace_edges(scene.obstacles, state, stars)) {
         if (holds[a] == EolHold::None || holds[b] == EolHold::None) continue;
         beside[a].push_back(b);
         beside[b].push_back(a);

@@ -29,8 +29,8 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
                   const EolCoordinates& at, const Vec3& place);
 
 /// Makes loose ones firm that lie along a trace between firm ones: a trace with a hole holds the cloth there.
-/// One hold an entry of `state.eol`; `edges` are the state's.
-void hold_between(const Scene& scene, const State& state, const std::vector<MeshEdge>& edges,
+/// One hold an entry of `state.eol`.
+void hold_between(const Scene& scene, const State& state, const ClothStars& stars,
                   std::vector<EolHold>& holds);
 
 }  // namespace arris

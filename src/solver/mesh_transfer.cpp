@@ -2,7 +2,6 @@
 #include "solver/mesh_transfer.h"
 
 #include <algorithm>
-#include <set>
 #include <unordered_map>
 
 #include "geometry/mesh_topology.h"
@@ -113,25 +112,21 @@ void interpolate(const SurgeryEvent& event, const VertexChange& change, CarriedB
 
 /// A contact of an edge or face that was split, merged or flipped goes: it would hold the cloth where there
 /// is none, for as long as its vertices are there.
-void drop_contacts_without_element(State& state)
+void drop_contacts_without_element(const ClothStars& stars, State& state)
 {
-    constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
-    std::vector<char> is_named(state.ids.size(), 0);
-    for (const ActiveContact& contact : state.active)
+    const auto has_element = [&](const ActiveContact& contact) {
+        std::vector<int> vertices;
         for (const std::uint32_t id : contact.vertex_ids)
-            if (const int v = id == kNone ? -1 : state.index_of(id); v >= 0) is_named[v] = 1;
-
-    std::set<std::array<std::uint32_t, 3>> elements;
-    for (std::size_t v = 0; v < state.ids.size(); ++v)
-        if (is_named[v]) elements.insert({state.ids[v], kNone, kNone});
-    for (const Face& face : state.mesh.faces) {
-        if (is_named[face[0]] + is_named[face[1]] + is_named[face[2]] < 2) continue;
-        std::array<std::uint32_t, 3> ids = {state.ids[face[0]], state.ids[face[1]], state.ids[face[2]]};
-        std::sort(ids.begin(), ids.end());
-        elements.insert({ids, {ids[0], ids[1], kNone}, {ids[1], ids[2], kNone}, {ids[0], ids[2], kNone}});
-    }
-    std::erase_if(state.active,
-                  [&](const ActiveContact& contact) { return !elements.contains(contact.vertex_ids); });
+            if (id != ActiveContact::kNoVertex) vertices.push_back(state.index_of(id));
+        if (*std::min_element(vertices.begin(), vertices.end()) < 0) return false;
+        const std::vector<int>& around = stars.faces[vertices[0]];
+        return std::any_of(around.begin(), around.end(), [&](int f) {
+            const Face& face = state.mesh.faces[f];
+            return std::all_of(vertices.begin(), vertices.end(),
+                               [&](int v) { return std::find(face.begin(), face.end(), v) != face.end(); });
+        });
+    };
+    std::erase_if(state.active, [&](const ActiveContact& contact) { return !has_element(contact); });
 }
 
 State on_new_mesh(const State& before, const ConformedMesh& conformed, const CarriedById& all)
@@ -161,7 +156,6 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
         after.previous_material_velocity[v] = carried.previous_V;
     }
     std::erase_if(after.anchors, [&](const PinAnchor& a) { return after.index_of(a.vertex_id) < 0; });
-    drop_contacts_without_element(after);
     return after;
 }
 
@@ -199,8 +193,8 @@ State transfer(const Scene& scene, const State& before, const ConformedMesh& con
     for (const EolVertex& eol : before.eol)
         if (const int v = after.index_of(eol.vertex_id); v >= 0 && after.eol_entry(eol.vertex_id) < 0)
             after.material_velocity[v].setZero();
-    const MeshTopology topology = make_topology(after.mesh.vertex_count(), after.mesh.faces);
-    const ClothStars stars = make_stars(after.mesh.vertex_count(), after.mesh.faces, topology.edges);
+    const ClothStars stars = make_stars(after.mesh.vertex_count(), after.mesh.faces);
+    drop_contacts_without_element(stars, after);
     const std::vector<std::vector<int>> faces_at_before =
         faces_at_vertices(before.mesh.vertex_count(), before.mesh.faces);
     report = fit_patches(

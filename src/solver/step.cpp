@@ -22,11 +22,18 @@ namespace {
 
 constexpr int kMostSolves = 12;  // of one step
 
+void prepare_stars(const State& state, Workspace& work)
+{
+    if (work.faces_of_stars == state.mesh.faces) return;
+    work.stars = make_stars(state.mesh.vertex_count(), state.mesh.faces);
+    work.faces_of_stars = state.mesh.faces;
+}
+
 /// The state to step from: as it is, or on another mesh.
 State& conform(const Scene& scene, double end, State& state, Workspace& work, StepReport& report)
 {
     Stopwatch watch;
-    prepare(scene, state, work);
+    prepare_stars(state, work);
     report.seconds.move += watch.lap();
     // More carefully where the cloth could not give way as it should have; by force where that would cost a
     // trace its vertices, unless that is felt.
@@ -41,22 +48,25 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
     std::optional<ConformedMesh> conformed;
     for (const auto& [limit, most_lost, most_strain] : kTries) {
         ConformOutcome outcome =
-            conform_mesh(scene, end - state.time, state, work.edges, work.failed.flow(), limit);
+            conform_mesh(scene, end - state.time, state, work.stars, work.failed.flow(), limit);
         conformed = std::move(outcome.mesh);
         work.refused = std::move(outcome.refused);
         report.seconds.conform += watch.lap();
-        if (!conformed) return state;
+        if (!conformed) break;
         if (conformed->report.lost > most_lost) continue;
         TransferReport transferred;
         work.conformed = transfer(scene, state, *conformed, transferred, most_strain);
         report.seconds.transfer += watch.lap();
         if (transferred.strain <= most_strain) break;
     }
-    report.inserted = conformed->report.inserted;
-    report.released = conformed->report.released;
-    prepare(scene, work.conformed, work);
+    if (conformed) {
+        report.inserted = conformed->report.inserted;
+        report.released = conformed->report.released;
+    }
+    State& start = conformed ? work.conformed : state;
+    prepare(scene, start, work);
     report.seconds.move += watch.lap();
-    return work.conformed;
+    return start;
 }
 
 /// Where the integrator starts from, and where pins and obstacles will be.
@@ -70,7 +80,7 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
     }
     work.is_least_taken = false;
     work.held = find_held_vertices(scene, state, end);
-    work.obstacles = move_obstacles(scene, state, work.edges, work.prediction, work.held, end);
+    work.obstacles = move_obstacles(scene, state, work.stars.topology.edges, work.prediction, work.held, end);
 }
 
 /// What the cloth may touch; history that runs into it is flattened. False where it would be crushed.
@@ -369,6 +379,7 @@ void prepare(const Scene& scene, const State& state, Workspace& work)
 {
     if (work.terms.faces.empty())
         work.terms = make_terms(scene.material, scene.gravity, scene.wind, scene.pulls);
+    prepare_stars(state, work);
     const bool has_faces = work.faces_of_elements == state.mesh.faces;
     if (has_faces && work.material_of_elements == state.mesh.material) return;
     if (has_faces) {  // material has flowed
@@ -379,10 +390,7 @@ void prepare(const Scene& scene, const State& state, Workspace& work)
         work.material_of_elements = state.mesh.material;
         return;
     }
-    MeshTopology topology = make_topology(state.mesh.vertex_count(), state.mesh.faces);
-    work.stars = make_stars(state.mesh.vertex_count(), state.mesh.faces, topology.edges);
-    work.elements = make_elements(state.mesh, topology);
-    work.edges = std::move(topology.edges);
+    work.elements = make_elements(state.mesh, work.stars.topology);
     work.system.make_pattern(work.elements);
     work.known.world.clear();
     work.faces_of_elements = state.mesh.faces;

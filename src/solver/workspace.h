@@ -26,13 +26,13 @@ struct ClothEnergy {
 /// Caches and scratch of the step, grouped by the phase that writes them. Clearing it changes no result.
 struct Workspace {
     // The mesh: made where it changed.
+    ClothStars stars;
+    std::vector<Face> faces_of_stars;  ///< of the mesh `stars` was made for
     Terms terms;
     ClothElements elements;
     LinearSystem system;
     std::vector<Face> faces_of_elements;  ///< of the mesh `elements` was made for
     std::vector<Vec2> material_of_elements;
-    std::vector<MeshEdge> edges;
-    ClothStars stars;
 
     // conform
     std::vector<Overrun> overrun;

@@ -107,8 +107,7 @@ int EolCloth::add_eol(int vertex, bool is_corner, int feature)
 
 ClothStars EolCloth::stars() const
 {
-    const MeshTopology topology = make_topology(state.mesh.vertex_count(), state.mesh.faces);
-    return make_stars(state.mesh.vertex_count(), state.mesh.faces, topology.edges);
+    return make_stars(state.mesh.vertex_count(), state.mesh.faces);
 }
 
 EolPlacing EolCloth::place(int vertex, const Placement& end) const

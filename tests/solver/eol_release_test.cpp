@@ -103,8 +103,7 @@ std::string hold_between_of(const std::string& along)
         holds[row[k].second] = along[k] == 'F'   ? EolHold::Firm
                                : along[k] == 'L' ? EolHold::Loose
                                                  : EolHold::None;
-    hold_between(flowing.cloth.scene, state, make_topology(state.mesh.vertex_count(), state.mesh.faces).edges,
-                 holds);
+    hold_between(flowing.cloth.scene, state, flowing.cloth.stars(), holds);
     std::string found;
     for (const auto& [y, e] : row)
         found += holds[e] == EolHold::Firm ? 'F' : holds[e] == EolHold::Loose ? 'L' : 'N';

@@ -308,6 +308,28 @@ TEST(MeshTransfer, AReleasedVertexIsOfTheMaterialAgain)
     EXPECT_LT(report.energy_gain, -1e-6) << "what two sides of a fold did, one velocity cannot";
 }
 
+TEST(MeshTransfer, StopsAtThePatchThatIsStrainedWhereItIsTo)
+{
+    // At rest and without weight nothing may strain the cloth; a fold that is cut off at two places does.
+    EolCloth cloth(make_ridge(60.0), make_draped({16, 0.0, 90.0}));
+    for (Vec3& x : cloth.state.mesh.world) x.z() += 1.0;
+    set_history(cloth.state);
+    ClothSurgery surgery = operate(cloth.state);
+    for (const double y : {0.1, 0.3}) {
+        const VertexId fold = cloth.state.ids[cloth.vertex_at(0.2, y)];
+        const VertexId beside = cloth.state.ids[cloth.vertex_at(0.225, y)];
+        ASSERT_EQ(surgery.commit(surgery.propose_collapse(fold, beside)), Verdict::Done);
+    }
+    const ConformedMesh mesh = conformed(surgery, {});
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    for (const auto& [most_strain, patches] : {std::pair{kAny, 2}, {0.01, 1}}) {
+        TransferReport report;
+        transfer(cloth.scene, cloth.state, mesh, report, most_strain);
+        EXPECT_GT(report.strain, 0.01);
+        EXPECT_EQ(report.patches, patches);
+    }
+}
+
 TEST(MeshTransfer, FarFromThePatchNoBitChanges)
 {
     EolCloth cloth = free_cloth(7, 120.0, 0.01);

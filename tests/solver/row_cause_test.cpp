@@ -16,7 +16,6 @@
 namespace arris {
 namespace {
 
-using testing::edges_of;
 using testing::EolCloth;
 using testing::kLyingCell;
 using testing::lying;
@@ -27,7 +26,7 @@ constexpr double kStep = 0.005;  // s
 ConformOutcome conform(const EolCloth& cloth, const FailedFlow& failed = {},
                        StrainLimit limit = StrainLimit::GivesWay)
 {
-    return conform_mesh(cloth.scene, kStep, cloth.state, edges_of(cloth.state), failed, limit);
+    return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(), failed, limit);
 }
 
 int count(const ConformOutcome& outcome, RowCause cause)
