@@ -34,7 +34,7 @@ EolGuard::EolGuard(const Scene& scene, const State& state, StrainLimit limit)
                   [](const HeldVertexId& a, const HeldVertexId& b) { return a.vertex < b.vertex; });
 }
 
-bool EolGuard::allows(const SurgeryEvent& event) const
+bool EolGuard::allows(const SurgeryEvent& event)
 {
     const double thickness = scene_.material.thickness;
     if (strain_gain(event) > 0.0 && (limit_ != StrainLimit::GivesWay || !can_give_way(event))) return false;
@@ -73,11 +73,12 @@ double EolGuard::strain_gain(const SurgeryEvent& event) const
     return gain;
 }
 
-bool EolGuard::can_give_way(const SurgeryEvent& event) const
+bool EolGuard::can_give_way(const SurgeryEvent& event)
 {
     const Neighbourhood around = look_around(event);
     const double before = find_elastic_energy(scene_, make_patch(event.before, around, event).mesh);
-    return can_relax_to(scene_, make_patch(event.after, around, event), before + allowance(event));
+    return relaxations_.can_relax_to(scene_, make_patch(event.after, around, event),
+                                     before + allowance(event));
 }
 
 EolGuard::Neighbourhood EolGuard::look_around(const SurgeryEvent& event) const

@@ -7,6 +7,7 @@
 #include "geometry/surgery_clearance.h"
 #include "physics/membrane.h"
 #include "solver/patch_relaxation.h"
+#include "solver/relaxation_memo.h"
 #include "solver/scene.h"
 #include "solver/state.h"
 
@@ -27,7 +28,7 @@ class EolGuard {
 
     /// The mesh under surgery, whose patches may give way.
     void watch(const ClothSurgery& surgery) { surgery_ = &surgery; }
-    bool allows(const SurgeryEvent& event) const;
+    bool allows(const SurgeryEvent& event);
 
     /// What clears the way of a sliding feature may strain more: the alternative is to give the trace up.
     void set_clearing(bool is_clearing) { is_clearing_ = is_clearing; }
@@ -37,7 +38,7 @@ class EolGuard {
     double strain_gain(const SurgeryEvent& event) const;
     double stretch_of(const PatchFace& face) const;
     /// Whether the cloth around could take up what strain an operation makes.
-    bool can_give_way(const SurgeryEvent& event) const;
+    bool can_give_way(const SurgeryEvent& event);
     /// Around an operation: vertices, and the faces between them that it does not replace.
     struct Neighbourhood {
         std::set<VertexId> near;
@@ -57,6 +58,7 @@ class EolGuard {
     bool is_clearing_ = false;
     const ClothSurgery* surgery_ = nullptr;
     std::vector<std::vector<HeldVertexId>> held_;  ///< on each obstacle
+    RelaxationMemo relaxations_;
 };
 
 }  // namespace arris

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/relaxation_memo.h"
+
+namespace arris {
+
+namespace {
+
+std::vector<double> make_key(const LoosePatch& patch, double wanted)
+{
+    const ClothMesh& mesh = patch.mesh;
+    std::vector<double> key = {wanted, double(mesh.vertex_count())};
+    for (std::size_t v = 0; v < mesh.world.size(); ++v) {
+        for (const Vec3* u : {&mesh.world[v], &patch.normals[v]}) key.insert(key.end(), u->begin(), u->end());
+        key.insert(key.end(), mesh.material[v].begin(), mesh.material[v].end());
+        key.push_back(patch.is_free[v]);
+    }
+    for (const Face& face : mesh.faces) key.insert(key.end(), face.begin(), face.end());
+    return key;
+}
+
+}  // namespace
+
+bool RelaxationMemo::can_relax_to(const Scene& scene, const LoosePatch& patch, double wanted)
+{
+    const auto [at, is_new] = known_.try_emplace(make_key(patch, wanted));
+    if (is_new) at->second = arris::can_relax_to(scene, patch, wanted);
+    return at->second;
+}
+
+}  // namespace arris
