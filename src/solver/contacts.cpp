@@ -260,6 +260,10 @@ Contact make_eol_contact(const ObstacleStep& step, const Prediction& prediction,
     const ClothPoint point = {{at.vertex, -1, -1}, {1.0, 0.0, 0.0}};
     ObstacleContact contact = make_contact(step.motion, ContactKind::Vertex, point, -1, at.frame.outward,
                                            at.frame.point, at.frame.mitre * thickness);
+    // Never more than it has: on its way out it would be held to the speed it has, and, with its history
+    // flattened, pushed out faster step by step.
+    const double now = at.frame.outward.dot(step.motion.begin[at.vertex] - at.frame.point);
+    contact.least_gap = std::min(contact.least_gap, now);
     return place_contact(contact, obstacle, step, prediction);
 }
 

@@ -5,9 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "tests/solver/eol_cloth.h"
 #include "tests/solver/floor.h"
 
 namespace arris {
@@ -220,6 +222,35 @@ struct Landed {
 
     bool flatten() { return flatten_history(scene, state, steps, {}, 0, contacts, prediction); }
 };
+
+TEST(EolContacts, WhatIsOnItsWayOutIsNotHeldToItsSpeed)
+{
+    // On a ridge of 60 degrees the stand-off is two thicknesses; the vertex is one away from it.
+    for (const double outward : {-0.1, 0.0, 0.1, 10.0}) {
+        testing::EolCloth cloth = testing::lying(0.0, 0.5 * testing::kLyingCell);
+        for (Vec3& v : cloth.state.velocity) v = Vec3(0.0, 0.0, outward);
+        const auto& world = cloth.state.mesh.world;
+        const auto on_tip = std::find_if(world.begin(), world.end(), [](const Vec3& x) {
+            return std::abs(x.x()) < 1e-9 && std::abs(x.y()) < 0.1;
+        });
+        ASSERT_NE(on_tip, world.end());
+        cloth.add_eol(static_cast<int>(on_tip - world.begin()), false,
+                      testing::tip_of(cloth.scene.obstacles[0]));
+        const std::vector<MeshEdge> edges = testing::edges_of(cloth.state);
+        const Prediction prediction = predict(cloth.state, Integrator::Bdf2, 0.005);
+        std::vector<ObstacleStep> steps =
+            move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
+        std::vector<Contact> contacts = find_contacts(cloth.scene, cloth.state, prediction, steps);
+        ASSERT_EQ(
+            add_eol_contacts(cloth.scene, cloth.state, cloth.stars(), prediction, steps, contacts).size(),
+            1u);
+        const auto bound = std::find_if(contacts.begin(), contacts.end(),
+                                        [](const Contact& contact) { return contact.eol == 0; });
+        ASSERT_NE(bound, contacts.end());
+        EXPECT_NEAR(bound->in_frame.least_gap, testing::kThickness, kRoundOff) << outward;
+        EXPECT_NEAR(bound->gap, 0.0, kRoundOff) << "it may stay where it is";
+    }
+}
 
 TEST(FlattenHistory, StopsWhatWouldBeExtrapolatedThroughAndLeavesTheRest)
 {
