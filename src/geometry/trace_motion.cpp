@@ -297,6 +297,7 @@ ClearanceReport clear(ClothSurgery& surgery, const MeshTarget& target, TraceWays
     clear_part(room, Need::Room);
     report.blocked = find_blocked(surgery, ahead, watch.vertices());
     report.ways = std::move(room);
+    report.needed = std::move(ahead);
     return report;
 }
 

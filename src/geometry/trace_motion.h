@@ -22,7 +22,8 @@ bool turns_over(const PatchFace& face, const TraceWays& ways);
 
 struct ClearanceReport {
     int operations = 0;
-    TraceWays ways;  ///< that were to be cleared
+    TraceWays ways;    ///< that were to be cleared
+    TraceWays needed;  ///< of these what must be: `ahead`
     /// Trace vertices with a face that would turn over on the way and could not be cleared: the border, a
     /// corner, a fixed vertex, another trace or the guard stands there. Ascending.
     std::vector<VertexId> blocked;

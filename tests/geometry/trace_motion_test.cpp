@@ -134,6 +134,27 @@ TEST(ClearAhead, ThreeTenthsOfTheTargetLengthAreClearHoweverSmallTheStep)
     }
 }
 
+TEST(ClearAhead, WhatCannotBeClearedBlocksNothingBeforeItIsReached)
+{
+    const SurgeryCloth cloth = square_cloth(8);
+    const MeshTarget target = target_of(cloth);
+    const auto clear = [&](double height, double way) {
+        ClothSurgery surgery = cloth.surgery();
+        cut(surgery, target, {{0.25, 0.5}, {0.75, 0.5}}, 1);
+        const VertexId node = trace_vertex(surgery, {0.25, 0.5});
+        surgery.commit(surgery.propose_edge_split(node, nearest_vertex(surgery, {0.25, 0.625}), height));
+        surgery.set_guard([](const SurgeryEvent&) { return false; });
+        const ClearanceReport report = clear_ahead(surgery, target, {{node, {0.0, way}}});
+        EXPECT_NEAR(report.ways.at(node).y(), std::max(way, 0.3 * 1.14 * cloth.cell), 1e-3);
+        EXPECT_EQ(report.needed.at(node).y(), way);
+        return report.blocked.empty();
+    };
+    EXPECT_TRUE(clear(0.2, 1e-9));
+    EXPECT_TRUE(clear(0.2, 0.19 * cloth.cell));
+    EXPECT_FALSE(clear(0.2, 0.21 * cloth.cell));
+    EXPECT_TRUE(clear(0.45, 1e-9));
+}
+
 TEST(ClearAhead, WhatItCallsClearIsClearForRandomTracesAndWays)
 {
     std::mt19937 random(21);
