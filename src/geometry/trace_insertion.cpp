@@ -30,6 +30,7 @@ constexpr double kSnap = 0.3;            // of the target length: a vertex neare
 constexpr double kOnEdge = 1e-9;         // of the target length: a point nearer to an edge is on it
 constexpr double kLeastFraction = 0.05;  // of an edge, from an end that cannot give way
 constexpr double kTraceFraction = 1e-3;  // the same if that end is on another trace
+constexpr double kLeastApart = 0.1;      // of the target length: nearer to a trace nothing is left before it
 constexpr double kSnapAngle = 5.0;       // degrees: a vertex does not move if that leaves a thinner face
 
 // Moves v there if no face becomes thin that was not.
@@ -55,19 +56,28 @@ bool is_of(const ClothSurgery& surgery, VertexId v, int tag)
     return surgery.role(v) != TraceRole::Free && surgery.tag(v) == tag;
 }
 
-// A trace at X that flows so leaves v behind: what is thin between them opens.
-bool is_behind(const ClothSurgery& surgery, VertexId v, const Vec2& X, const Vec2& flow)
+// A trace at X that goes so leaves v behind: what is thin between them opens.
+bool is_behind(const ClothSurgery& surgery, VertexId v, const Vec2& X, const Vec2& way)
 {
-    return (surgery.material(v) - X).dot(flow) < 0.0;
+    return (surgery.material(v) - X).dot(way) < 0.0;
+}
+
+// Whether a vertex that cannot move onto a trace at X may stay beside it: it is left behind, or is not
+// reached soon. Nearer the face between them would be thin for good.
+bool may_stay(const ClothSurgery& surgery, const MeshTarget& target, VertexId v, const Vec2& X,
+              const Vec2& way)
+{
+    const double apart = (surgery.material(v) - X).norm();
+    return is_behind(surgery, v, X, way) || (apart > kLeastApart * target.length(X) && apart > way.norm());
 }
 
 // Too near to an end for a split: the new faces would be thin for good.
-bool is_crowded(const ClothSurgery& surgery, VertexId a, VertexId b, double s, const Vec2& flow)
+bool is_crowded(const ClothSurgery& surgery, VertexId a, VertexId b, double s, const Vec2& way)
 {
     const Vec2 X = surgery.material(a) + s * (surgery.material(b) - surgery.material(a));
     const auto least = [&](VertexId v) {
-        return surgery.role(v) != TraceRole::Free || is_behind(surgery, v, X, flow) ? kTraceFraction
-                                                                                    : kLeastFraction;
+        return surgery.role(v) != TraceRole::Free || is_behind(surgery, v, X, way) ? kTraceFraction
+                                                                                   : kLeastFraction;
     };
     return s < least(a) || 1.0 - s < least(b);
 }
@@ -76,7 +86,7 @@ Verdict split(ClothSurgery& surgery, VertexId a, VertexId b, double s, const Tra
               VertexId& vertex)
 {
     if (surgery.edge_tag(a, b) != kNoTag && surgery.edge_tag(a, b) != made.tag) return Verdict::Trace;
-    if (is_crowded(surgery, a, b, s, made.flow)) return Verdict::Quality;
+    if (is_crowded(surgery, a, b, s, made.way)) return Verdict::Quality;
     const SurgeryProposal proposal = surgery.propose_edge_split(a, b, s, made.role, made.tag);
     if (proposal.is_legal()) vertex = proposal.event.changes[0].vertex;
     return surgery.commit(proposal);
@@ -312,10 +322,8 @@ TraceInsertion insert_edge_crossing(ClothSurgery& surgery, const MeshTarget& tar
         if (surgery.role(v) != TraceRole::Free) continue;
         if (!is_at(surgery, target, v, X)) {
             if (surgery.is_border(v) && !surgery.is_border_edge(a, b)) continue;
-            // Where the guard keeps a vertex from the trace, a split beside it makes a thin face, for good if
-            // the trace does not leave it.
             const Verdict snapped = snap(surgery, v, X);
-            if (snapped == Verdict::Guard && !is_behind(surgery, v, X, made.flow))
+            if (snapped == Verdict::Guard && !may_stay(surgery, target, v, X, made.way))
                 return {snapped, kNoVertex};
             if (snapped != Verdict::Done) continue;
         } else if (surgery.is_fixed(v)) {
@@ -349,7 +357,8 @@ TraceInsertion insert_face_point(ClothSurgery& surgery, const MeshTarget& target
         if (is_of(surgery, v, made.tag)) return {Verdict::Done, v};
         if (surgery.is_border(v)) continue;
         const Verdict snapped = snap(surgery, v, X);
-        if (snapped == Verdict::Guard && !is_behind(surgery, v, X, made.flow)) return {snapped, kNoVertex};
+        if (snapped == Verdict::Guard && !may_stay(surgery, target, v, X, made.way))
+            return {snapped, kNoVertex};
         if (snapped != Verdict::Done) continue;
         surgery.set_role(v, made.role, made.tag);
         return {Verdict::Done, v};

@@ -17,7 +17,7 @@ struct TraceInsertion {
 struct TraceVertex {
     TraceRole role = TraceRole::OnTrace;
     int tag = 0;
-    Vec2 flow = Vec2::Zero();  ///< which way it is about to go through the material, if any
+    Vec2 way = Vec2::Zero();  ///< m, that it is about to go through the material, if any
 };
 
 /// Puts a trace vertex where a feature crosses the edge a-b, at (1 - s) a + s b. The nearer end, if it is
@@ -27,7 +27,8 @@ struct TraceVertex {
 /// Quality: nearer than 5 % of the edge to an end that cannot give way (0.1 % if that end is itself on
 /// another trace: features may be close). Trace: the edge itself is another feature's.
 /// An end that the guard does not let move there, as where cloth is folded beside its feature: Guard, but
-/// where the trace is about to go away from it the edge is split however near it is (0.1 %).
+/// where the trace is about to go away from it the edge is split however near it is (0.1 %), and where it is
+/// farther than a tenth of the target length and the way that the trace is about to go.
 TraceInsertion insert_edge_crossing(ClothSurgery& surgery, const MeshTarget& target, VertexId a, VertexId b,
                                     double s, const TraceVertex& made);
 

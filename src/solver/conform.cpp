@@ -108,7 +108,9 @@ class Conforming {
         clear_way();
         forget_released();
         has_failed_ = !failed.given_up.empty();
+        is_inserting_ = true;
         for (const FeatureSite& site : sites_) insert(site);
+        is_inserting_ = false;
         join();
         report_.operations += clean_up(*surgery_, target_).operations();
         if (report_.inserted > 0) {  // theirs, too, must be clear
@@ -212,6 +214,7 @@ class Conforming {
         guard_.set_clearing(false);
         report_.operations += cleared.operations;
         ways_ = cleared.ways;
+        needed_ = cleared.needed;
         // What stands in the way and cannot give way: there the feature is met by rows. Only there: the rest
         // of the trace carries the cloth on.
         for (const VertexId v : cleared.blocked) give_up(v, RowCause::Blocked);
@@ -221,8 +224,9 @@ class Conforming {
     /// What has been cleared stays clear.
     bool keeps_way(const SurgeryEvent& event) const
     {
-        const auto is_in_way = [&](const PatchFace& face) { return turns_over(face, ways_); };
-        return ways_.empty() || std::none_of(event.after.begin(), event.after.end(), is_in_way) ||
+        const TraceWays& ways = is_inserting_ ? needed_ : ways_;
+        const auto is_in_way = [&](const PatchFace& face) { return turns_over(face, ways); };
+        return ways.empty() || std::none_of(event.after.begin(), event.after.end(), is_in_way) ||
                std::any_of(event.before.begin(), event.before.end(), is_in_way);
     }
 
@@ -305,9 +309,9 @@ class Conforming {
         const VertexId near = surgery_->has_vertex(site.near) ? site.near : nearest_to(site.material);
         const int v = state_.index_of(site.near);
         const Vec2 flow = find_feature_flow(scene_, state_, stars_, v, site.obstacle);
-        const TraceInsertion made =
-            insert_trace_point(*surgery_, target_, site.material, near,
-                               {site.is_corner ? TraceRole::Node : TraceRole::OnTrace, tag, flow});
+        const TraceInsertion made = insert_trace_point(
+            *surgery_, target_, site.material, near,
+            {site.is_corner ? TraceRole::Node : TraceRole::OnTrace, tag, kClearSteps * dt_ * flow});
         if (made.verdict != Verdict::Done)
             return made.verdict == Verdict::Guard ? RowCause::Guard : RowCause::Quality;
         if (find_eol(made.vertex)) return RowCause::BesideEol;
@@ -564,7 +568,9 @@ class Conforming {
     std::vector<EolVertex> eol_;
     std::map<VertexId, Vec2> flow_;  ///< m/s, of those in `eol_`
     EolGuard guard_;
-    TraceWays ways_;                      ///< of the vertices that flow
+    TraceWays ways_;    ///< of the vertices that flow, as far as is well
+    TraceWays needed_;  ///< as far as they may soon go: new vertices leave that much
+    bool is_inserting_ = false;
     std::map<VertexId, int> contact_of_;  ///< index in State::active, of vertices made where one pressed
     std::vector<RefusedContact> refused_;
     bool has_failed_ = false;  ///< an attempt, on the vertices there were

@@ -118,18 +118,18 @@ TEST(InsertEdgeCrossing, BorderVerticesMoveAlongTheBorderOnlyAndCornersNever)
     EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
 }
 
-TEST(InsertEdgeCrossing, BesideAVertexThatTheGuardKeepsSplitsWhereTheTraceLeavesItBehind)
+TEST(InsertEdgeCrossing, BesideAVertexThatTheGuardKeepsSplitsWhereTheTraceDoesNotRunIntoIt)
 {
     const SurgeryCloth cloth = square_cloth(8);
     const MeshTarget target = target_of(cloth);
-    const auto insert_with = [&](const Vec2& flow, double s) {
+    const auto insert_with = [&](const Vec2& way, double s) {
         ClothSurgery surgery = cloth.surgery();
         const SurgeryCheck check(surgery);
         surgery.set_guard(
             [](const SurgeryEvent& event) { return event.operation != SurgeryOperation::Move; });
         const VertexId a = nearest_vertex(surgery, {0.5, 0.5}), b = nearest_vertex(surgery, {0.5, 0.625});
         const TraceInsertion made =
-            insert_edge_crossing(surgery, target, a, b, s, {TraceRole::OnTrace, 1, flow});
+            insert_edge_crossing(surgery, target, a, b, s, {TraceRole::OnTrace, 1, way});
         EXPECT_EQ(check.find_wrong(surgery), "");
         EXPECT_EQ(surgery.vertex_count(), made.verdict == Verdict::Done ? 82 : 81);
         if (made.verdict == Verdict::Done) {
@@ -141,11 +141,17 @@ TEST(InsertEdgeCrossing, BesideAVertexThatTheGuardKeepsSplitsWhereTheTraceLeaves
         EXPECT_EQ(insert_with({0.0, 1e-9}, s), Verdict::Done) << s;
         EXPECT_EQ(insert_with({5.0, 1.0}, s), Verdict::Done) << s;
         EXPECT_EQ(insert_with({0.0, -1.0}, s), Verdict::Guard) << s;
-        EXPECT_EQ(insert_with({0.0, 0.0}, s), Verdict::Guard) << s;
         EXPECT_EQ(insert_with({kNan, 0.0}, s), Verdict::Guard) << s;
         EXPECT_EQ(insert_with({0.0, -1.0}, 1.0 - s), Verdict::Done) << s;
     }
     EXPECT_EQ(insert_with({0.0, 1.0}, 0.0005), Verdict::Quality);
+    // Ahead of the trace it may stay where it is not reached, and not nearer than a tenth of the target
+    // length.
+    const double cell = 0.125;
+    EXPECT_EQ(insert_with({0.0, -0.19 * cell}, 0.2), Verdict::Done);
+    EXPECT_EQ(insert_with({0.0, -0.21 * cell}, 0.2), Verdict::Guard);
+    EXPECT_EQ(insert_with({0.0, 0.0}, 0.12), Verdict::Done);
+    EXPECT_EQ(insert_with({0.0, 0.0}, 0.11), Verdict::Guard);
 }
 
 TEST(InsertEdgeCrossing, RefusesWhatIsNoCrossing)
@@ -196,7 +202,7 @@ TEST(InsertFacePoint, BesideACornerThatTheGuardKeepsSplitsWhereTheTraceLeavesItB
     const Vec3 weights(0.8, 0.1, 0.1);
     TraceVertex made{TraceRole::Node, 1, -away};
     EXPECT_EQ(insert_face_point(surgery, target_of(cloth), face, weights, made).verdict, Verdict::Guard);
-    made.flow = away;
+    made.way = away;
     EXPECT_EQ(insert_face_point(surgery, target_of(cloth), face, weights, made).verdict, Verdict::Done);
     EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
 }
