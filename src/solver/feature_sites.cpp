@@ -17,6 +17,7 @@ namespace arris {
 namespace {
 
 constexpr double kInPlane = 1e-6;  // thicknesses: a vertex nearer to a feature's plane is in it
+constexpr double kAsGood = 0.1;    // the same, where the cloth comes no nearer: its edge begins or ends there
 
 /// Feature edges by topology edge; -1 where it is none.
 std::vector<int> feature_of_edges(const Obstacle& obstacle)
@@ -187,15 +188,19 @@ class SiteFinder {
     std::optional<FeatureSite> on_edge(int a, int b, const ActiveContact& contact) const
     {
         const int feature = feature_[contact.element];
-        return feature < 0 ? std::nullopt : cross(a, b, feature, contact.normal);
+        if (feature < 0) return std::nullopt;
+        const std::optional<FeatureSite> crossing = cross(a, b, feature, contact.normal, kInPlane);
+        return crossing ? crossing : cross(a, b, feature, contact.normal, kAsGood);
     }
 
     bool is_eol(int v) const { return state_.eol_entry(state_.ids[v]) >= 0; }
 
-    std::optional<FeatureSite> cross(int a, int b, int feature, const Vec3& normal) const
+    /// `in_plane`, in thicknesses: an end that is no farther from the plane is the crossing.
+    std::optional<FeatureSite> cross(int a, int b, int feature, const Vec3& normal,
+                                     double in_plane = kInPlane) const
     {
         if (a > b) std::swap(a, b);
-        const std::optional<double> s = find_crossing(a, b, feature);
+        const std::optional<double> s = find_crossing(a, b, feature, in_plane);
         if (!s || (*s == 0.0 && is_eol(a)) || (*s == 1.0 && is_eol(b))) return std::nullopt;
         const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
         FeatureSite site = make_site(false, feature, X, *s < 0.5 ? a : b, normal);
@@ -206,7 +211,7 @@ class SiteFinder {
     }
 
     /// On a wire or border, whose plane turns with the cloth, the nearest point.
-    std::optional<double> find_crossing(int a, int b, int feature) const
+    std::optional<double> find_crossing(int a, int b, int feature, double in_plane) const
     {
         const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
         const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
@@ -227,8 +232,8 @@ class SiteFinder {
         const Vec3 across = frame->tangent.cross(frame->outward);
         const double of_a = across.dot(positions_[a] - frame->point);
         const double of_b = across.dot(positions_[b] - frame->point);
-        const bool is_at_a = std::abs(of_a) <= kInPlane * thickness_;
-        const bool is_at_b = std::abs(of_b) <= kInPlane * thickness_;
+        const bool is_at_a = std::abs(of_a) <= in_plane * thickness_;
+        const bool is_at_b = std::abs(of_b) <= in_plane * thickness_;
         if (!is_at_a && !is_at_b && (of_a > 0.0) == (of_b > 0.0)) return std::nullopt;
         const double s = is_at_a ? 0.0 : is_at_b ? 1.0 : of_a / (of_a - of_b);
         const Vec3 place = (1.0 - s) * positions_[a] + s * positions_[b];

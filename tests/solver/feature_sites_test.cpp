@@ -137,6 +137,32 @@ TEST(FeatureSites, GoOnFromTheEndOfATrace)
     EXPECT_EQ(ridge.sites().size(), 1u);
 }
 
+TEST(FeatureSites, AreAtAVertexThatIsAllButInThePlaneWhereTheClothEndsThere)
+{
+    for (const double off :
+         {0.0, 0.05, -0.05, 0.09, 0.11, 0.3}) {  // thicknesses from the border to the plane
+        EolCloth cloth = testing::lying(0.0, 0.2 + off * kThickness);
+        const int inside = cloth.vertex_at(testing::kLyingCell, 0.2), border = cloth.vertex_at(0.0, 0.2);
+        const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+        cloth.state.active.push_back({{cloth.state.ids[std::min(inside, border)],
+                                       cloth.state.ids[std::max(inside, border)], ActiveContact::kNoVertex},
+                                      ContactKind::Edge,
+                                      0,
+                                      cloth.scene.obstacles[0].features().edges[tip].edge,
+                                      Vec3::UnitZ(),
+                                      1e-6});
+        const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, cloth.state, cloth.stars());
+        const auto pressing = std::count_if(sites.begin(), sites.end(),
+                                            [](const FeatureSite& site) { return site.contact >= 0; });
+        EXPECT_EQ(pressing, off < 0.1 ? 1 : 0) << off;
+        for (const FeatureSite& site : sites) {
+            if (site.contact < 0 || off < 0.0) continue;
+            EXPECT_EQ(site.edge, (std::array{border, border}));
+            EXPECT_EQ(site.material, cloth.state.mesh.material[border]);
+        }
+    }
+}
+
 TEST(FeatureSites, AreNoneWhereNothingPresses)
 {
     EXPECT_TRUE(RidgeCloth(kTurn).sites().empty());
