@@ -23,8 +23,8 @@ struct FeatureTotals {
     std::int64_t eol = 0;                             ///< as EOL vertices
     std::array<std::int64_t, kRowCauses> by_cause{};  ///< as rows
 
-    /// Of the contacts that pressed on two steps in a row and where an EOL vertex would have coordinates: how
-    /// many were EOL. Nothing where there were none.
+    /// Of the contacts that pressed on two steps in a row and are not excluded (`is_excluded`): how many were
+    /// EOL. Nothing where there were none.
     std::optional<double> eol_share() const;
 };
 

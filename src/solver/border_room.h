@@ -13,4 +13,10 @@ namespace arris {
 double room_to_border(const Scene& scene, const State& state, const ClothStars& stars, const Vec2& X, int v,
                       bool is_on_border, const EolVertex& eol);
 
+/// Whether the feature of `eol` meets the cloth's border at less than 20 degrees where the border passes
+/// through that edge of the cloth; `edge` twice the same vertex: through it, where both sides of it count. In
+/// the world.
+bool is_along_border(const Scene& scene, const State& state, const ClothStars& stars,
+                     const std::array<int, 2>& edge, const EolVertex& eol);
+
 }  // namespace arris

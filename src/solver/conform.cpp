@@ -154,13 +154,8 @@ class Conforming {
                 now = obstacle.at(state_.time);
                 positions = to_frame(now, state_.mesh.world);
             }
-            const double room =
-                (eol.is_corner ? kCornerRoom : kRoom) * target_.length(state_.mesh.material[v]);
             holds.push_back(EolHold::None);
-            if (!(room_to_border(scene_, state_, stars_, state_.mesh.material[v], v,
-                                 stars_.border_neighbours[v][0] >= 0, eol) > room) ||
-                !is_on_feature(obstacle, eol, positions[v]))
-                continue;
+            if (is_at_border(eol) || !is_on_feature(obstacle, eol, positions[v])) continue;
             const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, positions, now);
             if (placing.coordinates)
                 holds.back() = is_clear_of(eol) ? find_hold(scene_, state_, stars_, entry,
@@ -170,6 +165,16 @@ class Conforming {
         hold_between(scene_, state_, stars_, holds);
         for (std::size_t entry = 0; entry < holds.size(); ++entry)
             if (holds[entry] != EolHold::Firm) released_.push_back(state_.eol[entry].vertex_id);
+    }
+
+    /// Whether an EOL vertex has come so near to the cloth's border that it must go.
+    bool is_at_border(const EolVertex& eol) const
+    {
+        const int v = state_.index_of(eol.vertex_id);
+        const Vec2& X = state_.mesh.material[v];
+        const double room = (eol.is_corner ? kCornerRoom : kRoom) * target_.length(X);
+        return !(room_to_border(scene_, state_, stars_, X, v, stars_.border_neighbours[v][0] >= 0, eol) >
+                 room);
     }
 
     /// Tells the surgery what is on features already.
@@ -260,18 +265,22 @@ class Conforming {
         return at != eol_.end() && at->vertex_id == v ? &*at : nullptr;
     }
 
-    bool is_near_border(const FeatureSite& site) const
+    /// Why the cloth's border leaves no room for a vertex; nothing where it does.
+    std::optional<RowCause> find_border_cause(const FeatureSite& site) const
     {
         const int v = state_.index_of(site.near);
-        if (v < 0) return false;
+        if (v < 0) return std::nullopt;
         const double h = target_.length(site.material);
         const EolVertex eol{site.near, site.obstacle, site.is_corner, site.feature, site.outward, 0};
+        if (site.is_on_border && !site.is_corner && is_along_border(scene_, state_, stars_, site.edge, eol))
+            return RowCause::AlongBorder;
+        const double room = room_to_border(scene_, state_, stars_, site.material, v, site.is_on_border, eol);
+        if (room < (site.is_corner ? kCornerInsertRoom : kInsertRoom) * h) return RowCause::NearBorder;
         // What comes fast would have to go at once.
         const Obstacle& obstacle = scene_.obstacles[site.obstacle];
         const Vec3 slip = state_.velocity[v] - obstacle.velocity_after(state_.time, state_.mesh.world[v]);
-        const double room = std::max((site.is_corner ? kCornerInsertRoom : kInsertRoom) * h,
-                                     2.0 * kClearSteps * dt_ * slip.norm());
-        return room_to_border(scene_, state_, stars_, site.material, v, site.is_on_border, eol) < room;
+        if (room < kClearSteps * dt_ * slip.norm()) return RowCause::BorderAhead;
+        return std::nullopt;
     }
 
     /// Of edges nearer to each other than the cloth is thick one has a trace: between two there is no room.
@@ -303,7 +312,7 @@ class Conforming {
     {
         const int tag = tags_.tag(site.obstacle, site.is_corner, site.feature);
         if (has_failed_) return RowCause::GivenUp;  // the step has failed on the vertices there were
-        if (is_near_border(site)) return RowCause::NearBorder;
+        if (const std::optional<RowCause> border = find_border_cause(site)) return border;
         if (is_beside_other(site)) return RowCause::OtherFeature;
         if (site.is_corner && has_vertex_on(site)) return RowCause::BesideEol;
         const VertexId near = surgery_->has_vertex(site.near) ? site.near : nearest_to(site.material);
@@ -334,7 +343,8 @@ class Conforming {
         const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
         const Placement now = obstacle.at(state_.time);
         const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, now);
-        return placing.coordinates ? RowCause::Released : cause_of(placing.refusal);
+        if (!placing.coordinates) return cause_of(placing.refusal);
+        return is_at_border(eol) ? RowCause::NearBorder : RowCause::Released;
     }
 
     /// A vertex that is EOL, or has just been made, is none from now on: what presses there is a row.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "geometry/closest_point.h"
 #include "geometry/feature_path.h"
@@ -35,22 +37,23 @@ class Census {
             contact.is_vertex() ? state_.eol_entry(state_.ids[contact.in_frame.vertices[0]]) : -1;
         if (entry >= 0) return of_eol_vertex(entry, contact);
         if (!contact.was_active) return RowCause::New;
+        const Beside beside = find_beside(contact);
+        if (beside.is_at) return beside.refusal ? cause_of(*beside.refusal) : RowCause::AtEol;
         const auto refused = std::find_if(work_.refused.begin(), work_.refused.end(),
                                           [&](const RefusedContact& r) { return is_same(r, contact); });
         if (refused != work_.refused.end()) return refused->cause;
         if (is_loose(contact)) return RowCause::Released;
-        return has_eol_end(contact) ? RowCause::BesideEol : RowCause::NotCrossing;
+        return beside.is_any ? RowCause::BesideEol : RowCause::NotCrossing;
     }
 
   private:
     /// One that has no coordinates in this step, or that touches something else besides.
     RowCause of_eol_vertex(int entry, const Contact& contact) const
     {
-        const ObstacleStep& way = work_.obstacles[state_.eol[entry].obstacle];
-        const EolPlacing placing = place_eol_vertex(scene_.obstacles[state_.eol[entry].obstacle], state_,
-                                                    entry, work_.stars, way.motion.begin, way.end);
-        if (!placing.coordinates) return cause_of(placing.refusal);
-        return contact.was_active ? RowCause::OtherFeature : RowCause::New;
+        if (const std::optional<EolRefusal> refusal = find_refusal(entry)) return cause_of(*refusal);
+        if (!contact.was_active) return RowCause::New;
+        return contact.obstacle == state_.eol[entry].obstacle ? RowCause::OtherFeature
+                                                              : RowCause::OtherObstacle;
     }
 
     bool is_loose(const Contact& contact) const
@@ -62,21 +65,76 @@ class Census {
                });
     }
 
-    /// Whether an edge of the cloth ends on the polyline that it touches, or at a corner.
-    bool has_eol_end(const Contact& contact) const
+    /// What EOL vertices a contact has beside it, on the feature that it touches.
+    struct Beside {
+        bool is_any = false;
+        bool is_at = false;                 ///< its place is that of one of them, or between two
+        std::optional<EolRefusal> refusal;  ///< of that one, where it has no coordinates in this step
+    };
+
+    Beside find_beside(const Contact& contact) const
     {
-        if (contact.in_frame.kind != ContactKind::Edge) return false;
+        Beside beside;
+        for (int entry = 0; entry < static_cast<int>(state_.eol.size()); ++entry) {
+            if (!is_of(contact, state_.eol[entry])) continue;
+            beside.is_any = true;
+            if (!is_at(contact, state_.index_of(state_.eol[entry].vertex_id))) continue;
+            beside.is_at = true;
+            beside.refusal = find_refusal(entry);
+            if (!beside.refusal) return beside;
+        }
+        const auto& [a, b, c] = contact.in_frame.vertices;
+        if (contact.in_frame.kind == ContactKind::Edge && has_end(contact, a) && has_end(contact, b))
+            return {true, true, {}};
+        return beside;
+    }
+
+    /// Whether an EOL vertex is on the feature that a contact touches: at an end of the cloth's edge on the
+    /// same polyline or its corner, or on the same corner.
+    bool is_of(const Contact& contact, const EolVertex& eol) const
+    {
+        if (eol.obstacle != contact.obstacle) return false;
         const ObstacleFeatures& features = scene_.obstacles[contact.obstacle].features();
-        const int feature = feature_of_edge(features, contact.in_frame.element);
-        if (feature < 0) return false;
-        const auto is_on_it = [&](int v) {
-            const int entry = v < 0 ? -1 : state_.eol_entry(state_.ids[v]);
-            if (entry < 0 || state_.eol[entry].obstacle != contact.obstacle) return false;
-            const EolVertex& eol = state_.eol[entry];
-            return eol.is_corner || features.edges[eol.feature].polyline == features.edges[feature].polyline;
-        };
-        const auto& ends = contact.in_frame.vertices;
-        return std::any_of(ends.begin(), ends.end(), is_on_it);
+        const ObstacleContact& local = contact.in_frame;
+        if (local.kind == ContactKind::Triangle)
+            return eol.is_corner && features.corners[eol.feature].point == local.element;
+        if (local.kind != ContactKind::Edge) return false;
+        const int v = state_.index_of(eol.vertex_id);
+        const int feature = feature_of_edge(features, local.element);
+        if (feature < 0 || (local.vertices[0] != v && local.vertices[1] != v)) return false;
+        if (!eol.is_corner) return features.edges[eol.feature].polyline == features.edges[feature].polyline;
+        constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+        return distance_to_corner(scene_.obstacles[contact.obstacle], {feature, 0.5}, eol.feature, kAnywhere)
+            .has_value();
+    }
+
+    bool has_end(const Contact& contact, int v) const
+    {
+        const int entry = state_.eol_entry(state_.ids[v]);
+        return entry >= 0 && is_of(contact, state_.eol[entry]) && !find_refusal(entry);
+    }
+
+    /// Whether the cloth touches at that vertex, as far as can be told (row_cause.h).
+    bool is_at(const Contact& contact, int vertex) const
+    {
+        constexpr double kAtEnd = 0.95;  // weight of an edge's end: no vertex is put nearer to another
+        const ObstacleContact& local = contact.in_frame;
+        Vec2 material = Vec2::Zero();
+        for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
+            if (local.kind == ContactKind::Edge && local.vertices[i] == vertex && local.weights[i] > kAtEnd)
+                return true;
+            material += local.weights[i] * state_.mesh.material[local.vertices[i]];
+        }
+        return (material - state_.mesh.material[vertex]).norm() <= kOnFeature * scene_.material.thickness;
+    }
+
+    std::optional<EolRefusal> find_refusal(int entry) const
+    {
+        const EolVertex& eol = state_.eol[entry];
+        const ObstacleStep& way = work_.obstacles[eol.obstacle];
+        const EolPlacing placing = place_eol_vertex(scene_.obstacles[eol.obstacle], state_, entry,
+                                                    work_.stars, way.motion.begin, way.end);
+        return placing.coordinates ? std::nullopt : std::optional(placing.refusal);
     }
 
     bool is_same(const RefusedContact& refused, const Contact& contact) const

@@ -10,10 +10,14 @@ const char* to_string(RowCause cause)
             return "new";
         case RowCause::NotCrossing:
             return "not_crossing";
+        case RowCause::AtEol:
+            return "at_eol";
         case RowCause::BesideEol:
             return "beside_eol";
         case RowCause::NearBorder:
             return "near_border";
+        case RowCause::BorderAhead:
+            return "border_ahead";
         case RowCause::Guard:
             return "guard";
         case RowCause::Quality:
@@ -36,14 +40,26 @@ const char* to_string(RowCause cause)
             return "cloth_corner";
         case RowCause::OtherFeature:
             return "other_feature";
+        case RowCause::OtherObstacle:
+            return "other_obstacle";
     }
     return "";
 }
 
-bool is_without_coordinates(RowCause cause)
+bool is_excluded(RowCause cause)
 {
-    return cause == RowCause::NoDirection || cause == RowCause::AlongBorder || cause == RowCause::EdgeOn ||
-           cause == RowCause::ClothCorner || cause == RowCause::OtherFeature;
+    switch (cause) {
+        case RowCause::AtEol:
+        case RowCause::NearBorder:
+        case RowCause::NoDirection:
+        case RowCause::AlongBorder:
+        case RowCause::EdgeOn:
+        case RowCause::ClothCorner:
+        case RowCause::OtherObstacle:
+            return true;
+        default:
+            return false;
+    }
 }
 
 RowCause cause_of(EolRefusal refusal)

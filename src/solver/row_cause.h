@@ -10,11 +10,19 @@
 namespace arris {
 
 /// Why a contact with a sharp feature that presses is a row, where it could be an EOL vertex.
+///
+/// A contact is a place of the cloth on a feature. Of an edge of the cloth that ends at an EOL vertex of the
+/// same feature nothing can be told apart from that vertex within 5 % of its length, as no vertex is put
+/// nearer to another, nor within the stand-off, on whose rounding both touch; and where both its ends are
+/// such vertices it is the trace itself. The row there holds what the vertex's bound holds, and neither holds
+/// the material back: it is no contact of its own (`AtEol`). Farther from the vertex it is one (`BesideEol`).
 enum class RowCause {
-    New,           ///< it did not press at the end of the step before: a contact is a row first
-    NotCrossing,   ///< no place: the cloth does not pass through its edge's plane, or is not near its wire
-    BesideEol,     ///< an EOL vertex of that feature is at its place, or at an end of its edge
-    NearBorder,    ///< of the cloth: it would have to go at once
+    New,          ///< it did not press at the end of the step before: a contact is a row first
+    NotCrossing,  ///< no place: the cloth does not pass through its edge's plane, or is not near its wire
+    AtEol,        ///< it is the contact of an EOL vertex of that feature, seen from beside it
+    BesideEol,  ///< the mesh's place for it is an EOL vertex of that feature, but the cloth touches elsewhere
+    NearBorder,    ///< of the cloth: nearer than where a trace may begin, or where it had to end
+    BorderAhead,   ///< of the cloth: so fast that it would have to go within a few steps
     Guard,         ///< the mesh it needs would strain the cloth, or an obstacle is in the way
     Quality,       ///< the mesh has no place for it: a corner, another trace, a face too thin
     OffPlane,      ///< where the mesh could have it is off its plane
@@ -26,15 +34,17 @@ enum class RowCause {
     EdgeOn,        ///< alike
     ClothCorner,   ///< alike
     OtherFeature,  ///< its vertex is on another feature, or one nearer than a thickness has a trace there
+    OtherObstacle  ///< its vertex is on a feature of another obstacle
 };
-inline constexpr std::size_t kRowCauses = 15;
+inline constexpr std::size_t kRowCauses = 18;
 using RowCounts = std::array<int, kRowCauses>;  ///< by RowCause
 
 /// In the columns of steps.csv.
 const char* to_string(RowCause cause);
 
-/// Whether a vertex there would have no coordinates, whatever the mesh.
-bool is_without_coordinates(RowCause cause);
+/// Whether no EOL vertex is wanted there, whatever the mesh: it would have no coordinates, would be off the
+/// cloth's border at once, or is there.
+bool is_excluded(RowCause cause);
 
 RowCause cause_of(EolRefusal refusal);
 

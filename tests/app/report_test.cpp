@@ -59,8 +59,8 @@ TEST(Report, CountsFeatureContactsByWhatTheyWere)
     const TemporaryDirectory dir;
     EXPECT_FALSE(sum_steps(write_steps(dir, 2)).features) << "no EOL vertices were wanted";
 
-    // Of 90 that pressed twice and could have been EOL 88 were; what is new, and what has no coordinates,
-    // does not count.
+    // Of 90 that pressed twice and could have been EOL 88 were; what is new, what has no coordinates or no
+    // room before the cloth's border, and what is an EOL vertex's own contact, does not count.
     StepRow row = make_row(3);
     row.eol_pressing = 80;
     row.rows_by_cause.emplace();
@@ -69,8 +69,11 @@ TEST(Report, CountsFeatureContactsByWhatTheyWere)
     };
     count(RowCause::New, 20);
     count(RowCause::AlongBorder, 5);
-    count(RowCause::OtherFeature, 3);
-    count(RowCause::Guard, 2);
+    count(RowCause::OtherObstacle, 3);
+    count(RowCause::NearBorder, 4);
+    count(RowCause::AtEol, 7);
+    count(RowCause::Guard, 1);
+    count(RowCause::OtherFeature, 1);
     const std::string path = write_steps(dir, 2);
     CsvWriter writer = CsvWriter::append_to(path, step_header());
     writer.append(format_row(row));
@@ -85,8 +88,11 @@ TEST(Report, CountsFeatureContactsByWhatTheyWere)
     EXPECT_EQ(json["rows"].size(), kRowCauses);
     EXPECT_EQ(json["rows"]["new"], 20);
     EXPECT_EQ(json["rows"]["along_border"], 5);
-    EXPECT_EQ(json["rows"]["other_feature"], 3);
-    EXPECT_EQ(json["rows"]["guard"], 2);
+    EXPECT_EQ(json["rows"]["other_obstacle"], 3);
+    EXPECT_EQ(json["rows"]["other_feature"], 1);
+    EXPECT_EQ(json["rows"]["at_eol"], 7);
+    EXPECT_EQ(json["rows"]["near_border"], 4);
+    EXPECT_EQ(json["rows"]["guard"], 1);
     EXPECT_EQ(json["rows"]["quality"], 0);
     EXPECT_DOUBLE_EQ(json["eol_share"].get<double>(), 88.0 / 90.0);
 

@@ -133,6 +133,63 @@ TEST(FeatureCensus, EolVerticesThatPressAreCountedAndWhatElseTheyTouch)
     EXPECT_EQ(solved.count(RowCause::EdgeOn), 1);
 }
 
+TEST(FeatureCensus, ARowAtTheEolVertexOfItsFeatureIsTheSameContact)
+{
+    const auto cause_at = [](double weight, bool is_other_eol) {
+        Solved solved;
+        const Obstacle& ridge = solved.cloth.scene.obstacles[0];
+        const int tip = testing::tip_of(ridge);
+        const int v = solved.cloth.vertex_at(0.2, 0.2);
+        const Vec2 middle = solved.cloth.state.mesh.material[v];
+        const int w = solved.cloth.vertex_at(middle.x(), middle.y() + testing::kLyingCell);
+        solved.cloth.add_eol(v, false, tip);
+        if (is_other_eol) solved.cloth.add_eol(w, false, tip);
+        Contact& contact = solved.add(ContactKind::Edge, {v, w, -1}, ridge.features().edges[tip].edge, true);
+        contact.in_frame.weights = {weight, 1.0 - weight, 0.0};
+        for (const RowCause cause : {RowCause::AtEol, RowCause::BesideEol})
+            if (solved.count(cause) == 1) return cause;
+        return RowCause::New;
+    };
+    EXPECT_EQ(cause_at(0.96, false), RowCause::AtEol);
+    EXPECT_EQ(cause_at(0.94, false), RowCause::BesideEol)
+        << "it is 3.4 thicknesses away, and 6 % of the edge";
+    EXPECT_EQ(cause_at(0.5, false), RowCause::BesideEol);
+    EXPECT_EQ(cause_at(0.5, true), RowCause::AtEol) << "the edge is the trace";
+}
+
+TEST(FeatureCensus, ARowAtAnEolVertexWithoutCoordinatesSaysWhyThatHasNone)
+{
+    const auto count_at = [](double weight) {
+        Solved solved;
+        const Obstacle& ridge = solved.cloth.scene.obstacles[0];
+        const int tip = testing::tip_of(ridge), corner = solved.cloth.vertex_at(0.0, 0.0);
+        ASSERT_EQ(corner, 0);
+        solved.cloth.add_eol(corner, false, tip);
+        Contact& contact = solved.add(ContactKind::Edge, {0, 1, -1}, ridge.features().edges[tip].edge, true);
+        contact.in_frame.weights = {weight, 1.0 - weight, 0.0};
+        EXPECT_EQ(solved.count(RowCause::ClothCorner), weight > 0.95 ? 1 : 0);
+        EXPECT_EQ(solved.count(RowCause::AtEol), 0);
+    };
+    count_at(0.97);
+    count_at(0.6);
+}
+
+TEST(FeatureCensus, AFaceThatTouchesACornerBesideItsEolVertexIsAContactOfItsOwn)
+{
+    const auto cause_at = [](double weight) {
+        Solved solved;
+        const Obstacle& ridge = solved.cloth.scene.obstacles[0];
+        const int corner = testing::end_of(ridge), v = solved.cloth.vertex_at(0.2, 0.2);
+        solved.cloth.add_eol(v, true, corner);
+        Contact& contact = solved.add(ContactKind::Triangle, {v, v + 1, v + 2},
+                                      ridge.features().corners[corner].point, true);
+        contact.in_frame.weights = {weight, 0.0, 1.0 - weight};
+        return solved.count(RowCause::AtEol) == 1 ? RowCause::AtEol : RowCause::BesideEol;
+    };
+    EXPECT_EQ(cause_at(0.99), RowCause::AtEol);
+    EXPECT_EQ(cause_at(0.9), RowCause::BesideEol);
+}
+
 TEST(FeatureCensus, AnEdgeThatEndsAtAnEolVertexOfItsFeatureIsBesideIt)
 {
     const auto count_at = [](const std::array<int, 3>& vertices, bool is_tip) {

@@ -87,6 +87,51 @@ TEST(RowCause, EveryRowNearABorderIsCounted)
     }
 }
 
+TEST(RowCause, WhatComesFastToABorderIsNotNearItYet)
+{
+    // 34 mm are left, of which four steps use up 20 mm for each m/s.
+    for (const double speed : {1.5, 2.0}) {
+        EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
+        for (Vec3& v : cloth.state.velocity) v = Vec3(speed, 0, 0);
+        press_edges(cloth);
+        const ConformOutcome outcome = conform(cloth);
+        EXPECT_EQ(count(outcome, RowCause::BorderAhead),
+                  speed > 1.7 ? static_cast<int>(cloth.state.active.size()) : 0);
+        EXPECT_EQ(count(outcome, RowCause::NearBorder), 0);
+    }
+}
+
+TEST(RowCause, WhereTheBorderRunsAlongTheFeatureItIsNotTried)
+{
+    for (const double turn : {8.0, 17.0, 23.0, 40.0}) {
+        EolCloth cloth = lying(turn, 0.2);
+        press_edges(cloth);
+        std::erase_if(cloth.state.active, [&](const ActiveContact& row) {  // edges of the border stay
+            const auto is_on_border = [&](std::uint32_t id) {
+                return cloth.state.mesh.material[cloth.state.index_of(id)].x() < 1e-9;
+            };
+            return !is_on_border(row.vertex_ids[0]) || !is_on_border(row.vertex_ids[1]);
+        });
+        ASSERT_EQ(cloth.state.active.size(), 1u) << turn;
+        const ConformOutcome outcome = conform(cloth);
+        EXPECT_EQ(count(outcome, RowCause::AlongBorder), turn < 20.0 ? 1 : 0) << turn;
+        EXPECT_EQ(outcome.mesh.has_value(), turn > 20.0) << turn;
+    }
+}
+
+TEST(RowCause, WhatHasComeToTheBorderIsCountedAsNearIt)
+{
+    EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
+    press_edges(cloth);
+    take(cloth);
+    ASSERT_GT(cloth.state.eol.size(), 4u);
+    for (const EolVertex& e : cloth.state.eol)
+        cloth.state.mesh.material[cloth.state.index_of(e.vertex_id)].x() = 0.1 * kLyingCell;
+    const ConformOutcome outcome = conform(cloth);
+    EXPECT_EQ(count(outcome, RowCause::NearBorder), static_cast<int>(cloth.state.eol.size()));
+    EXPECT_EQ(count(outcome, RowCause::Released), 0);
+}
+
 TEST(RowCause, AVertexThatIsGivenUpIsCountedAndWhatIsNotTriedAgain)
 {
     EolCloth cloth = lying(17.0);
@@ -155,10 +200,14 @@ TEST(RowCause, WhatHasNoCoordinatesSaysWhy)
 
     EXPECT_EQ(cause_of(EolRefusal::NoDirection), RowCause::NoDirection);
     for (const RowCause cause :
-         {RowCause::NoDirection, RowCause::AlongBorder, RowCause::EdgeOn, RowCause::ClothCorner})
-        EXPECT_TRUE(is_without_coordinates(cause));
-    for (const RowCause cause : {RowCause::New, RowCause::Guard, RowCause::NearBorder, RowCause::Released})
-        EXPECT_FALSE(is_without_coordinates(cause));
+         {RowCause::NoDirection, RowCause::AlongBorder, RowCause::EdgeOn, RowCause::ClothCorner,
+          RowCause::OtherObstacle, RowCause::NearBorder, RowCause::AtEol})
+        EXPECT_TRUE(is_excluded(cause)) << to_string(cause);
+    for (const RowCause cause :
+         {RowCause::New, RowCause::NotCrossing, RowCause::BesideEol, RowCause::BorderAhead, RowCause::Guard,
+          RowCause::Quality, RowCause::OffPlane, RowCause::Blocked, RowCause::GivenUp, RowCause::Released,
+          RowCause::OtherFeature})
+        EXPECT_FALSE(is_excluded(cause)) << to_string(cause);
 }
 
 TEST(RowCause, WhereHeldVerticesLeaveNoPlaceTheMeshIsTheReason)
