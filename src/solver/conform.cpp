@@ -274,12 +274,17 @@ class Conforming {
         const EolVertex eol{site.near, site.obstacle, site.is_corner, site.feature, site.outward, 0};
         if (site.is_on_border && !site.is_corner && is_along_border(scene_, state_, stars_, site.edge, eol))
             return RowCause::AlongBorder;
-        const double room = room_to_border(scene_, state_, stars_, site.material, v, site.is_on_border, eol);
+        const auto room_at = [&](const Vec2& X) {
+            return room_to_border(scene_, state_, stars_, X, v, site.is_on_border, eol);
+        };
+        const double room = room_at(site.material);
         if (room < (site.is_corner ? kCornerInsertRoom : kInsertRoom) * h) return RowCause::NearBorder;
         // What comes fast would have to go at once.
-        const Obstacle& obstacle = scene_.obstacles[site.obstacle];
-        const Vec3 slip = state_.velocity[v] - obstacle.velocity_after(state_.time, state_.mesh.world[v]);
-        if (room < kClearSteps * dt_ * slip.norm()) return RowCause::BorderAhead;
+        constexpr double kAside = 1e-3;  // of the target length: to see how fast the room closes
+        const Vec2 flow = find_feature_flow(scene_, state_, stars_, v, site.obstacle);
+        const Vec2 aside = kAside * h * flow.stableNormalized();
+        const double closing = (room - room_at(site.material + aside)) / (kAside * h) * flow.norm();
+        if (room < kClearSteps * dt_ * closing) return RowCause::BorderAhead;
         return std::nullopt;
     }
 
