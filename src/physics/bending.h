@@ -13,6 +13,14 @@ namespace arris {
 /// Where material flows the weight 3 |e|^2 / A changes: -dV/dX_i = -K sin^2(theta/2) dw/dX_i at fixed x.
 /// (With -F^T f in its place, as if material carried the fold along, a strip in balance over a ridge would
 /// creep.)
+///
+/// A hinge on a sharp feature is a crease: V = K 3 |e| / h sigma (1 - sigma / 2 sigma_0) up to sigma = sin^2
+/// (theta/2) = sigma_0, and as much beyond. Cloth that is folded so far within a cell is not resolved by it:
+/// truly its tension T bends it within sqrt(K / T) of the feature, and a cell away nothing is felt. The
+/// hinge's moment, which would be greatest there, pushes the rows beside the feature off and aside, by K / h
+/// T, and as rows come and go with the sliding material that shakes the cloth. Where a finer mesh resolves
+/// the bend the crease's angle is small, and it is like any other hinge. Its width h is the mesh's own, not
+/// that of the faces beside it, which change with the sliding: a fold would do work on them.
 class Bending : public HingeTerm {
   public:
     explicit Bending(double stiffness) : stiffness_(stiffness) {}

@@ -69,26 +69,34 @@ FaceElement make_face_element(const std::vector<Vec2>& material, const Face& fac
     return {face, 0.5 * doubled, {gradient(b, c), gradient(c, a), gradient(a, b)}};
 }
 
-double compute_hinge_weight(const std::vector<Vec2>& material, const std::array<int, 4>& vertices,
-                            double area_c, double area_d)
+double compute_hinge_weight(const std::vector<Vec2>& material, const HingeElement& hinge, double area_c,
+                            double area_d)
 {
-    return 3.0 * (material[vertices[1]] - material[vertices[0]]).squaredNorm() / (area_c + area_d);
+    const Vec2 e = material[hinge.vertices[1]] - material[hinge.vertices[0]];
+    return hinge.is_crease() ? 3.0 * e.norm() / hinge.crease_width
+                             : 3.0 * e.squaredNorm() / (area_c + area_d);
 }
 
 std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& material,
-                                                   const std::array<int, 4>& vertices, const FaceElement& c,
+                                                   const HingeElement& hinge, const FaceElement& c,
                                                    const FaceElement& d)
 {
+    const Vec2 e = material[hinge.vertices[1]] - material[hinge.vertices[0]];
+    std::array<Vec2, 4> gradients = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+    if (hinge.is_crease()) {
+        gradients[1] = 3.0 / hinge.crease_width * e.normalized();
+        gradients[0] = -gradients[1];
+        return gradients;
+    }
     // w = 3 |e|^2 / A: dw = 6 e . de / A - w dA / A, and a face's area grows by A_f b_i . dX_i.
     const double area = c.area + d.area;
-    const double weight = compute_hinge_weight(material, vertices, c.area, d.area);
-    std::array<Vec2, 4> gradients = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+    const double weight = compute_hinge_weight(material, hinge, c.area, d.area);
     for (int i = 0; i < 4; ++i)
         for (const FaceElement* face : {&c, &d})
             for (int k = 0; k < 3; ++k)
-                if (face->vertices[k] == vertices[i])
+                if (face->vertices[k] == hinge.vertices[i])
                     gradients[i] -= weight * face->area / area * face->gradients[k];
-    const Vec2 along_edge = 6.0 / area * (material[vertices[1]] - material[vertices[0]]);
+    const Vec2 along_edge = 6.0 / area * e;
     gradients[0] -= along_edge;
     gradients[1] += along_edge;
     return gradients;
@@ -102,10 +110,10 @@ ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology)
     for (const Face& face : mesh.faces) elements.faces.push_back(make_face_element(mesh.material, face));
     elements.hinges.reserve(topology.hinges.size());
     for (const Hinge& hinge : topology.hinges) {
-        const std::array<int, 4> vertices = {hinge.a, hinge.b, hinge.c, hinge.d};
-        const double weight = compute_hinge_weight(mesh.material, vertices, elements.faces[hinge.face_c].area,
-                                                   elements.faces[hinge.face_d].area);
-        elements.hinges.push_back({vertices, {hinge.face_c, hinge.face_d}, weight});
+        HingeElement made{{hinge.a, hinge.b, hinge.c, hinge.d}, {hinge.face_c, hinge.face_d}};
+        made.weight = compute_hinge_weight(mesh.material, made, elements.faces[hinge.face_c].area,
+                                           elements.faces[hinge.face_d].area);
+        elements.hinges.push_back(made);
     }
     elements.face_colors = color_elements(elements.vertex_count, elements.faces);
     elements.hinge_colors = color_elements(elements.vertex_count, elements.hinges);
@@ -118,9 +126,8 @@ void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, C
         if (has_moved(is_moved, face.vertices)) face = make_face_element(mesh.material, face.vertices);
     for (HingeElement& hinge : elements.hinges)
         if (has_moved(is_moved, hinge.vertices))
-            hinge.weight =
-                compute_hinge_weight(mesh.material, hinge.vertices, elements.faces[hinge.faces[0]].area,
-                                     elements.faces[hinge.faces[1]].area);
+            hinge.weight = compute_hinge_weight(mesh.material, hinge, elements.faces[hinge.faces[0]].area,
+                                                elements.faces[hinge.faces[1]].area);
 }
 
 }  // namespace arris

@@ -18,11 +18,14 @@ struct FaceElement {
 };
 
 /// Two faces (a, b, c), (b, a, d) that share the edge (a, b). `weight` = 3 |e|^2 / A, e the edge and A the
-/// area of both faces, in material space.
+/// area of both faces, in material space; of a crease 3 |e| / its width.
 struct HingeElement {
     std::array<int, 4> vertices;
     std::array<int, 2> faces;
     double weight = 0.0;
+    double crease_width = 0.0;  ///< m; 0 where it is no crease (physics/bending.h)
+
+    bool is_crease() const { return crease_width > 0.0; }
 };
 
 /// Elements in classes ("colours") that share no vertex: those of one class can be added to a system in
@@ -53,13 +56,13 @@ void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, C
 FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face);
 
 /// `weight` of a hinge whose vertices are at `material`, m, between faces of these areas.
-double compute_hinge_weight(const std::vector<Vec2>& material, const std::array<int, 4>& vertices,
-                            double area_c, double area_d);
+double compute_hinge_weight(const std::vector<Vec2>& material, const HingeElement& hinge, double area_c,
+                            double area_d);
 
 /// Its derivatives by the material coordinates of the hinge's vertices, 1/m. `c` and `d` are its faces'
 /// elements at `material`.
 std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& material,
-                                                   const std::array<int, 4>& vertices, const FaceElement& c,
+                                                   const HingeElement& hinge, const FaceElement& c,
                                                    const FaceElement& d);
 
 }  // namespace arris

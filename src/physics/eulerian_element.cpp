@@ -64,10 +64,10 @@ HingeSystem eulerian_hinge(const HingeElement& hinge, const ClothElements& eleme
     const std::vector<Vec2>& X = at.flow->position;
     const FaceElement c = make_face_element(X, elements.faces[hinge.faces[0]].vertices);
     const FaceElement d = make_face_element(X, elements.faces[hinge.faces[1]].vertices);
-    const HingeElement element = {hinge.vertices, hinge.faces,
-                                  compute_hinge_weight(X, hinge.vertices, c.area, d.area)};
+    HingeElement element = hinge;
+    element.weight = compute_hinge_weight(X, hinge, c.area, d.area);
     HingeState state(element, at.position);
-    state.weight_gradients = compute_hinge_weight_gradients(X, hinge.vertices, c, d);
+    state.weight_gradients = compute_hinge_weight_gradients(X, hinge, c, d);
 
     // Vertices a and b belong to both faces, c and d to one each.
     const Mat32 F_c = FaceState(c, at.position).F, F_d = FaceState(d, at.position).F;

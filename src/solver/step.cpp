@@ -8,6 +8,7 @@
 
 #include "solver/conform.h"
 #include "solver/constraints.h"
+#include "solver/creases.h"
 #include "solver/energy_balance.h"
 #include "solver/feature_census.h"
 #include "solver/material_flow.h"
@@ -338,6 +339,27 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     work.known = {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
 }
 
+/// The elements of the state's mesh.
+void prepare_elements(const State& state, Workspace& work)
+{
+    prepare_stars(state, work);
+    const bool has_faces = work.faces_of_elements == state.mesh.faces;
+    if (has_faces && work.material_of_elements == state.mesh.material) return;
+    if (has_faces) {  // material has flowed
+        const std::vector<Vec2>& then = work.material_of_elements;
+        std::vector<char> is_moved(then.size());
+        for (std::size_t v = 0; v < then.size(); ++v) is_moved[v] = then[v] != state.mesh.material[v];
+        update_elements(state.mesh, is_moved, work.elements);
+        work.material_of_elements = state.mesh.material;
+        return;
+    }
+    work.elements = make_elements(state.mesh, work.stars.topology);
+    work.system.make_pattern(work.elements);
+    work.known.world.clear();
+    work.faces_of_elements = state.mesh.faces;
+    work.material_of_elements = state.mesh.material;
+}
+
 /// What presses at the start, where there is no last step to tell: what does in a first step that is not
 /// kept.
 std::vector<ActiveContact> find_pressing(const Scene& scene, const Settings& settings, double end,
@@ -379,22 +401,8 @@ void prepare(const Scene& scene, const State& state, Workspace& work)
 {
     if (work.terms.faces.empty())
         work.terms = make_terms(scene.material, scene.gravity, scene.wind, scene.pulls);
-    prepare_stars(state, work);
-    const bool has_faces = work.faces_of_elements == state.mesh.faces;
-    if (has_faces && work.material_of_elements == state.mesh.material) return;
-    if (has_faces) {  // material has flowed
-        const std::vector<Vec2>& then = work.material_of_elements;
-        std::vector<char> is_moved(then.size());
-        for (std::size_t v = 0; v < then.size(); ++v) is_moved[v] = then[v] != state.mesh.material[v];
-        update_elements(state.mesh, is_moved, work.elements);
-        work.material_of_elements = state.mesh.material;
-        return;
-    }
-    work.elements = make_elements(state.mesh, work.stars.topology);
-    work.system.make_pattern(work.elements);
-    work.known.world.clear();
-    work.faces_of_elements = state.mesh.faces;
-    work.material_of_elements = state.mesh.material;
+    prepare_elements(state, work);
+    if (mark_creases(scene, state, work.stars, work.elements)) work.known.world.clear();
 }
 
 StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,

@@ -160,13 +160,14 @@ struct ElementAt<4> {
     std::array<Vec2, 4> weight_gradients;
     std::array<Mat32, 4> deformation;
 
-    ElementAt(const std::vector<Vec3>& world, const std::vector<Vec2>& material)
+    ElementAt(const std::vector<Vec3>& world, const std::vector<Vec2>& material, double crease_width = 0.0)
         : c(make_face_element(material, {0, 1, 2})),
           d(make_face_element(material, {1, 0, 3})),
-          hinge{{0, 1, 2, 3}, {0, 1}, compute_hinge_weight(material, {0, 1, 2, 3}, c.area, d.area)},
+          hinge{{0, 1, 2, 3}, {0, 1}, 0.0, crease_width},
           x(world),
-          weight_gradients(compute_hinge_weight_gradients(material, {0, 1, 2, 3}, c, d))
+          weight_gradients(compute_hinge_weight_gradients(material, hinge, c, d))
     {
+        hinge.weight = compute_hinge_weight(material, hinge, c.area, d.area);
         const Mat32 F_c = FaceState(c, x).F, F_d = FaceState(d, x).F;
         deformation = {0.5 * (F_c + F_d), 0.5 * (F_c + F_d), F_c, F_d};
     }
@@ -543,6 +544,84 @@ TEST(Bending, StiffnessIsGaussNewtonInTheSineOfHalfTheAngle)
                   1e-9 * (1.0 + analytic.matrix.norm()))
             << degrees;
     }
+}
+
+constexpr double kCreaseWidth = 0.7;  // m
+
+/// A crease of make_material's shape, folded by `degrees` about its edge.
+ElementAt<4> folded_crease(double degrees, std::vector<Vec2> X)
+{
+    std::vector<Vec3> x;
+    for (const Vec2& p : X) x.emplace_back(p.x(), p.y(), 0.0);
+    const Vec3 axis = (x[1] - x[0]).normalized();
+    x[3] = x[0] + Eigen::AngleAxisd(degrees * M_PI / 180.0, axis) * (x[3] - x[0]);
+    return {x, X, kCreaseWidth};
+}
+
+TEST(Bending, ACreaseForcesAreMinusTheGradientsOfItsEnergy)
+{
+    constexpr double kTolerance = 1e-8;  // central differences
+    Generator random(21);
+    const Bending bending(0.7);
+    for (const double degrees : {0.0, 1.0, 30.0, 59.0, 61.0, 90.0, 170.0}) {
+        const std::vector<Vec2> X = ElementAt<4>::make_material(random);
+        const ElementAt<4> crease = folded_crease(degrees, X);
+        const Evaluation<4> analytic = evaluate<4>(bending, crease.hinge, make_linearization<4>(crease.x));
+        const auto energy_at = [&](const std::vector<Vec3>& x, const std::vector<Vec2>& material) {
+            return bending.energy(ElementAt<4>(x, material, kCreaseWidth).state());
+        };
+        for (int i = 0; i < 12; ++i) {
+            std::vector<Vec3> more = crease.x, less = crease.x;
+            more[i / 3][i % 3] += kStep;
+            less[i / 3][i % 3] -= kStep;
+            const double difference = -(energy_at(more, X) - energy_at(less, X)) / (2.0 * kStep);
+            EXPECT_NEAR(analytic.rhs[i], difference, kTolerance) << degrees << " degrees, coordinate " << i;
+        }
+        for (int i = 0; i < 8; ++i) {
+            std::vector<Vec2> more = X, less = X;
+            more[i / 2][i % 2] += kStep;
+            less[i / 2][i % 2] -= kStep;
+            const double derivative = (ElementAt<4>(crease.x, more, kCreaseWidth).hinge.weight -
+                                       ElementAt<4>(crease.x, less, kCreaseWidth).hinge.weight) /
+                                      (2.0 * kStep);
+            EXPECT_NEAR(crease.weight_gradients[i / 2][i % 2], derivative, kTolerance);
+        }
+    }
+}
+
+TEST(Bending, ACreaseFoldedFarExertsNoForceAndAShallowOneThatOfAHingeOfItsWidth)
+{
+    const Bending bending(0.7);
+    Generator random(22);
+    const std::vector<Vec2> X = ElementAt<4>::make_material(random);
+    for (const double degrees : {60.001, 90.0, 179.0}) {
+        const ElementAt<4> crease = folded_crease(degrees, X);
+        const Evaluation<4> result = evaluate<4>(bending, crease.hinge, make_linearization<4>(crease.x));
+        EXPECT_EQ(result.rhs.norm(), 0.0) << degrees;
+        EXPECT_EQ(result.matrix.norm(), 0.0) << degrees;
+    }
+    const ElementAt<4> shallow = folded_crease(1.0, X);
+    const double sine = std::sin(M_PI / 360.0);
+    const double length = (X[1] - X[0]).norm();
+    constexpr double kSmallAngle = 2e-4;  // sigma / 2 sigma_0 at one degree
+    EXPECT_NEAR(bending.energy(shallow.state()) / (0.7 * 3.0 * length / kCreaseWidth * sine * sine), 1.0,
+                kSmallAngle);
+}
+
+TEST(Bending, AFoldOnACreaseDoesNoWorkOnMaterialThatFlowsAcrossIt)
+{
+    // Its energy does not know of the widths of the faces beside it.
+    const Bending bending(0.7);
+    Generator random(23);
+    const std::vector<Vec2> X = ElementAt<4>::make_material(random);
+    const ElementAt<4> crease = folded_crease(50.0, X);
+    const Vec2 along = (X[1] - X[0]).normalized();
+    const Vec2 across(-along.y(), along.x());
+    for (const Vec2& gradient : crease.weight_gradients)
+        EXPECT_NEAR(gradient.dot(across), 0.0, 1e-15 * crease.hinge.weight);
+    std::vector<Vec2> wider = X;
+    wider[2] += 0.1 * across;
+    EXPECT_EQ(folded_crease(50.0, wider).hinge.weight, crease.hinge.weight);
 }
 
 TEST(Membrane, UniformStretchAnswersWithEPerWidth)

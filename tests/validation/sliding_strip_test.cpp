@@ -283,9 +283,6 @@ TEST(SlidingStrip, DoesNotCreepInBalance)
             for (const GridPattern pattern : kPatterns)
                 for (const double angle : {0.0, 17.0})
                     for (const int cells : {4, 7, 16}) {
-                        // With finer cells stiff cloth lifts off the slopes beside the ridge, truly: bending
-                        // is felt over (D / rho g)^(1/3) = 5 cm.
-                        if (stiffness > 1e-5 && cells > 7) continue;
                         StripCase strip;
                         strip.slopes = {-20.0 * kDegrees, 45.0 * kDegrees};
                         strip.start = chain_of(strip).balance();
@@ -296,9 +293,7 @@ TEST(SlidingStrip, DoesNotCreepInBalance)
                         strip.cells = {cells, std::max(cells / 4, 1)};
                         const double slip = creep(strip);
                         const double settling = 2e-5 * 2e4 / modulus;  // m
-                        // A fold's energy depends on the widths beside it, so a lopsided mesh turns it.
-                        const double turning = 0.27 * stiffness;  // m
-                        EXPECT_LT(slip, settling + turning) << describe(strip);
+                        EXPECT_LT(slip, settling) << describe(strip);
                         table.add({fmt::format("{:g}", modulus), fmt::format("{:g}", stiffness),
                                    name_of(pattern), fmt::format("{:g}", angle), fmt::format("{}", cells),
                                    fmt::format("{:.1e} m", slip)});
