@@ -52,7 +52,8 @@ struct Fold {
 
 Fold find_fold(const HingeElement& hinge, double sigma)
 {
-    constexpr double kCreased = 0.25;  // theta = 60 degrees: twice what a mesh resolves with an error of 10 %
+    // theta = 60 degrees: an edge's right angle within one cell is beyond it, shared by three it is not.
+    constexpr double kCreased = 0.25;
     if (!hinge.is_crease()) return {sigma, 1.0};
     if (sigma >= kCreased) return {0.5 * kCreased, 0.0};
     return {sigma * (1.0 - 0.5 * sigma / kCreased), 1.0 - sigma / kCreased};
