@@ -53,16 +53,15 @@ void write_state(BinaryWriter& out, const State& state)
     out.vectors(state.previous_velocity);
     write_vectors(out, state.previous_material);
     write_vectors(out, state.previous_material_velocity);
-    for (const std::vector<EolVertex>* list : {&state.eol, &state.loose})
-        out.list(*list, [&](const EolVertex& vertex) {
-            out.number(vertex.vertex_id);
-            out.number(vertex.obstacle);
-            out.number(static_cast<std::int32_t>(vertex.is_corner));
-            out.number(vertex.feature);
-            out.vector(vertex.outward);
-            out.number(vertex.idle);
-            out.number(vertex.side);
-        });
+    out.list(state.eol, [&](const EolVertex& vertex) {
+        out.number(vertex.vertex_id);
+        out.number(vertex.obstacle);
+        out.number(static_cast<std::int32_t>(vertex.is_corner));
+        out.number(vertex.feature);
+        out.vector(vertex.outward);
+        out.number(vertex.idle);
+        out.number(vertex.side);
+    });
     out.list(state.anchors, [&](const PinAnchor& anchor) {
         out.number(anchor.pin);
         out.number(anchor.vertex_id);
@@ -101,18 +100,17 @@ State read_state(BinaryReader& in)
     state.previous_material = read_vectors(in);
     state.previous_material_velocity = read_vectors(in);
     constexpr std::size_t kEolBytes = 6 * sizeof(std::int32_t) + 3 * sizeof(double);
-    for (std::vector<EolVertex>* list : {&state.eol, &state.loose})
-        *list = in.list<EolVertex>(kEolBytes, [&] {
-            EolVertex vertex;
-            vertex.vertex_id = in.number<std::uint32_t>();
-            vertex.obstacle = in.number<std::int32_t>();
-            vertex.is_corner = in.number<std::int32_t>() != 0;
-            vertex.feature = in.number<std::int32_t>();
-            vertex.outward = in.vector();
-            vertex.idle = in.number<std::int32_t>();
-            vertex.side = in.number<std::int32_t>();
-            return vertex;
-        });
+    state.eol = in.list<EolVertex>(kEolBytes, [&] {
+        EolVertex vertex;
+        vertex.vertex_id = in.number<std::uint32_t>();
+        vertex.obstacle = in.number<std::int32_t>();
+        vertex.is_corner = in.number<std::int32_t>() != 0;
+        vertex.feature = in.number<std::int32_t>();
+        vertex.outward = in.vector();
+        vertex.idle = in.number<std::int32_t>();
+        vertex.side = in.number<std::int32_t>();
+        return vertex;
+    });
     state.anchors = in.list<PinAnchor>(2 * sizeof(std::uint32_t) + 3 * sizeof(double), [&] {
         PinAnchor anchor;
         anchor.pin = in.number<std::uint32_t>();
@@ -187,8 +185,7 @@ std::string find_defect(const Checkpoint& checkpoint)
             !state.previous_material[v].allFinite() || !state.previous_material_velocity[v].allFinite())
             return fmt::format("vertex {} is not finite", v);
     if (const std::string defect = find_defect(state.active, state.ids); !defect.empty()) return defect;
-    for (const std::vector<EolVertex>* list : {&state.eol, &state.loose})
-        if (const std::string defect = find_defect(*list, state.ids); !defect.empty()) return defect;
+    if (const std::string defect = find_defect(state.eol, state.ids); !defect.empty()) return defect;
     for (std::size_t k = 0; k < state.anchors.size(); ++k) {
         const PinAnchor& anchor = state.anchors[k];
         if (!anchor.origin.allFinite()) return fmt::format("anchor {} is not finite", k);

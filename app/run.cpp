@@ -325,8 +325,7 @@ void check_references(const std::string& directory, const State& state, const Sc
         return is_sound(vertex.feature, vertex.is_corner ? features.corners.size() : features.edges.size());
     };
     const bool has_obstacles = std::all_of(state.active.begin(), state.active.end(), is_there) &&
-                               std::all_of(state.eol.begin(), state.eol.end(), is_on_feature) &&
-                               std::all_of(state.loose.begin(), state.loose.end(), is_on_feature);
+                               std::all_of(state.eol.begin(), state.eol.end(), is_on_feature);
     if (!has_pins || !has_obstacles)
         throw InputError(fmt::format("{}: is damaged: it names {} that its scene has not",
                                      printable(checkpoint_file(directory)),

@@ -264,10 +264,6 @@ std::vector<SceneKey> make_scene_keys()
         boolean(
             "eol.enabled", "true",
             "Whether vertices are put exactly on sharp features, with the material flowing through them."),
-        boolean(
-            "eol.wires", "false",
-            "Whether on wires, too. An experiment in this version: cloth folded over a wire is not checked "
-            "against it right beside such vertices."),
 
         not_built(table("remesh", "",
                         "Switches adaptive refinement on; without it the mesh changes only near features.")),

@@ -340,7 +340,6 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     config.cloth_velocity = to_vec3(json["cloth"]["velocity"]);
     check_meetings(document, config);
     load_obstacles(document, options, std::move(plans), config);
-    config.scene.has_eol_on_wires = json["eol"]["wires"].get<bool>();
     if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))
         config.scene.eol = make_initial_target(config.cloth);
     if (!options.cloth) check_start(document, options, config);

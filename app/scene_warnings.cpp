@@ -155,10 +155,6 @@ void check_obstacles(const RunConfig& config, Warnings& warnings)
     }
     if (config.as_run["eol"]["enabled"].get<bool>() && !config.scene.eol)
         warnings.add("eol.enabled", "no obstacle has a sharp feature");
-    if (!config.scene.eol)
-        warnings.add("eol.wires", "there are no EOL vertices");
-    else if (!has_wires(config.scene))
-        warnings.add("eol.wires", "no obstacle has a wire");
 }
 
 void check_pins(const RunConfig& config, Warnings& warnings)

@@ -215,26 +215,4 @@ int feature_of_edge(const ObstacleFeatures& features, int edge)
                : -1;
 }
 
-std::vector<std::array<double, 2>> parts_outside(const std::vector<FeatureStretch>& stretches, int edge)
-{
-    std::vector<FeatureStretch> on_it;
-    for (const FeatureStretch& stretch : stretches)
-        if (stretch.edge == edge) on_it.push_back(stretch);
-    sort_stretches(on_it);
-    std::vector<std::array<double, 2>> parts;
-    double from = 0.0;
-    for (const FeatureStretch& stretch : on_it) {
-        if (stretch.from > from) parts.push_back({from, stretch.from});
-        from = std::max(from, stretch.to);
-    }
-    if (from < 1.0) parts.push_back({from, 1.0});
-    return parts;
-}
-
-std::array<Vec3, 2> part_of(const std::array<Vec3, 2>& segment, const std::array<double, 2>& part)
-{
-    const auto at = [&](double s) { return Vec3(segment[0] + s * (segment[1] - segment[0])); };
-    return {part[0] > 0.0 ? at(part[0]) : segment[0], part[1] < 1.0 ? at(part[1]) : segment[1]};
-}
-
 }  // namespace arris

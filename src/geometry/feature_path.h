@@ -65,10 +65,4 @@ Polyline trace_polyline(const Obstacle& obstacle, int polyline);
 /// Index of a topology edge in features().edges; -1 where it is none.
 int feature_of_edge(const ObstacleFeatures& features, int edge);
 
-/// Parts of the segment [0, 1] outside these stretches of `edge`, as pairs (from, to).
-std::vector<std::array<double, 2>> parts_outside(const std::vector<FeatureStretch>& stretches, int edge);
-
-/// Such a part; its ends are the segment's own where it has none of them left out.
-std::array<Vec3, 2> part_of(const std::array<Vec3, 2>& segment, const std::array<double, 2>& part);
-
 }  // namespace arris

@@ -11,13 +11,6 @@
 
 namespace arris {
 
-/// A vertex of the cloth that is on a feature of the obstacle.
-struct FeatureHold {
-    int vertex;
-    bool is_corner;
-    int feature;  ///< index in features().corners or .edges
-};
-
 /// The cloth's way during a step in an obstacle's frame; one entry a vertex.
 struct ClothMotion {
     const std::vector<Face>* faces = nullptr;
@@ -25,7 +18,6 @@ struct ClothMotion {
     std::vector<Vec3> begin;  ///< where it is; free of the obstacle
     std::vector<Vec3>
         end;  ///< before the solve: where it would be if nothing were in its way; after: where it went
-    std::vector<FeatureHold> holds = {};  ///< ascending by vertex, each once
 };
 
 enum class ContactKind { Vertex, Edge, Triangle };  ///< which element of the cloth meets the obstacle

@@ -12,7 +12,6 @@
 
 #include "geometry/cgal.h"
 #include "geometry/deepest_point.h"
-#include "geometry/held_features.h"
 #include "geometry/obstacle_touch.h"
 
 namespace arris {
@@ -32,7 +31,7 @@ std::array<Vec3, 3> corners_of(const std::vector<Vec3>& points, const Face& face
 enum class Touch : char { Nothing, Thing, Solid };
 
 std::vector<Touch> find_touching(const Obstacle& obstacle, const std::vector<Vec3>& positions,
-                                 const std::vector<Face>& faces, const HeldFeatures& held)
+                                 const std::vector<Face>& faces)
 {
     std::vector<Touch> touches(faces.size(), Touch::Nothing);
     constexpr int kGrain = 256;  // faces, most of which are far away
@@ -41,7 +40,6 @@ std::vector<Touch> find_touching(const Obstacle& obstacle, const std::vector<Vec
         ObstacleTouch touch;
         for (int f = part.begin(); f < part.end(); ++f) {
             find_touches(obstacle, corners_of(positions, faces[f]), touch);
-            held.let_touch(faces[f], corners_of(positions, faces[f]), corners_of(positions, faces[f]), touch);
             if (!touch.is_any()) continue;
             const bool is_in_solid = std::any_of(touch.faces.begin(), touch.faces.end(),
                                                  [&](int g) { return is_solid(obstacle, g); });
@@ -80,13 +78,11 @@ std::vector<ClothSide> find_sides(const Obstacle& obstacle, const std::vector<Ve
 }
 
 /// About where a cloth face touches the obstacle.
-Vec3 place_of_touch(const Obstacle& obstacle, const Face& face, const std::array<Vec3, 3>& corners,
-                    const HeldFeatures& held)
+Vec3 place_of_touch(const Obstacle& obstacle, const std::array<Vec3, 3>& corners)
 {
     const std::vector<Vec3>& points = obstacle.mesh().points;
     ObstacleTouch touch;
     find_touches(obstacle, corners, touch);
-    held.let_touch(face, corners, corners, touch);
     if (!touch.faces.empty())
         return middle_of_touch(corners, corners_of(points, obstacle.mesh().faces[touch.faces.front()]));
     if (touch.segments.empty()) return points[touch.lone_points.front()];
@@ -169,13 +165,11 @@ int winding_number(const Obstacle& obstacle, const Vec3& place)
 }
 
 Penetration find_penetration(const Obstacle& obstacle, const std::vector<Vec3>& positions,
-                             const std::vector<Face>& faces, const std::vector<FeatureHold>& holds,
-                             double thickness)
+                             const std::vector<Face>& faces)
 {
     assert(std::all_of(positions.begin(), positions.end(), [](const Vec3& p) { return p.allFinite(); }));
     Penetration penetration;
-    const HeldFeatures held(obstacle, {&faces, nullptr, positions, positions, holds}, thickness);
-    const std::vector<Touch> touches = find_touching(obstacle, positions, faces, held);
+    const std::vector<Touch> touches = find_touching(obstacle, positions, faces);
     const auto is_touching = [](Touch t) { return t != Touch::Nothing; };
     penetration.faces = static_cast<int>(std::count_if(touches.begin(), touches.end(), is_touching));
 
@@ -193,7 +187,7 @@ Penetration find_penetration(const Obstacle& obstacle, const std::vector<Vec3>& 
     if (penetration.face < 0 && penetration.faces > 0) {
         const auto first = std::find_if(touches.begin(), touches.end(), is_touching) - touches.begin();
         penetration.face = static_cast<int>(first);
-        penetration.place = place_of_touch(obstacle, faces[first], corners_of(positions, faces[first]), held);
+        penetration.place = place_of_touch(obstacle, corners_of(positions, faces[first]));
     }
     return penetration;
 }

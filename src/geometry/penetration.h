@@ -26,10 +26,8 @@ struct Penetration {
 /// `positions` (one a vertex, finite) are the cloth's in the obstacle's frame. Surface intersection by exact
 /// predicates, and for each connected piece of cloth whether it is inside (winding number not 0). Parallel;
 /// the same at any thread count.
-/// `holds` are vertices on wires and lone points, beside which the cloth may touch them (held_features.h).
 Penetration find_penetration(const Obstacle& obstacle, const std::vector<Vec3>& positions,
-                             const std::vector<Face>& faces, const std::vector<FeatureHold>& holds = {},
-                             double thickness = 0.0);
+                             const std::vector<Face>& faces);
 
 /// The winding number of the obstacle's solids around `place` (frame, finite); 0 outside, and in a cavity. By
 /// exact predicates; points on a solid's surface have 0.

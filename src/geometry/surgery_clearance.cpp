@@ -73,26 +73,10 @@ Vec3 middle_across(const std::array<VertexId, 2>& edge, const Patch& patch)
     return 0.5 * sum;
 }
 
-/// What goes to where another vertex is, is on what that one is on.
-std::vector<FeatureHold> find_holds(const SurgeryEvent& event, const Patch& patch,
-                                    const std::vector<HeldVertexId>& held)
-{
-    std::vector<FeatureHold> holds;
-    for (std::size_t v = 0; v < patch.ids.size(); ++v) {
-        const bool is_gone = event.operation == SurgeryOperation::Collapse && patch.ids[v] == event.edge[0];
-        const VertexId id = is_gone ? event.edge[1] : patch.ids[v];
-        const auto found = std::lower_bound(held.begin(), held.end(), id,
-                                            [](const HeldVertexId& h, VertexId i) { return h.vertex < i; });
-        if (found != held.end() && found->vertex == id)
-            holds.push_back({static_cast<int>(v), found->is_corner, found->feature});
-    }
-    return holds;
-}
-
 }  // namespace
 
 bool is_free(const SurgeryEvent& event, const Obstacle& obstacle, const Placement& placement,
-             double thickness, const std::vector<HeldVertexId>& held)
+             double thickness)
 {
     Patch patch = make_patch(event);
     std::vector<Vec3> end = patch.begin;
@@ -116,7 +100,7 @@ bool is_free(const SurgeryEvent& event, const Obstacle& obstacle, const Placemen
     }
     const MeshTopology topology = make_topology(static_cast<int>(patch.begin.size()), patch.faces);
     const ClothMotion motion = {&patch.faces, &topology.edges, to_frame(placement, patch.begin),
-                                to_frame(placement, end), find_holds(event, patch, held)};
+                                to_frame(placement, end)};
     return check_sweep(obstacle, motion, thickness).is_clean();
 }
 

@@ -11,13 +11,7 @@ namespace arris {
 /// Whether an operation leaves the cloth free of an obstacle whose frame is at `placement`: no new face
 /// touches it, and nothing of it is between the surface that was and the one that is to be, so that no
 /// corner, wire or nail gets from one side to the other. A split changes no surface and is always free.
-/// `held` ascend by vertex: what is on features of the obstacle.
-struct HeldVertexId {
-    VertexId vertex;
-    bool is_corner;
-    int feature;  ///< index in features().corners or .edges
-};
 bool is_free(const SurgeryEvent& event, const Obstacle& obstacle, const Placement& placement,
-             double thickness, const std::vector<HeldVertexId>& held = {});
+             double thickness);
 
 }  // namespace arris

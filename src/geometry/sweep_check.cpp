@@ -15,7 +15,6 @@
 
 #include "geometry/contact_batches.h"
 #include "geometry/face_groups.h"
-#include "geometry/held_features.h"
 #include "geometry/obstacle_touch.h"
 #include "geometry/sweep_violation.h"
 #include "geometry/swept_face.h"
@@ -93,8 +92,7 @@ struct Meeting {
     ContactKind kind;
     int cloth_element, obstacle_element;
     SweepHit hit;
-    double depth;             ///< how far past the meeting point, against its normal, the cloth's point ends
-    bool is_partial = false;  ///< with parts of the obstacle's element left out
+    double depth;  ///< how far past the meeting point, against its normal, the cloth's point ends
 };
 
 /// A face, wire or lone point of the obstacle: its face, edge of the topology or point.
@@ -106,9 +104,8 @@ struct Near {
 /// Checks cloth faces that lie together; keeps lists for reuse.
 class GroupSearch {
   public:
-    GroupSearch(const Obstacle& obstacle, const ClothMotion& motion, const HeldFeatures& held,
-                double thickness)
-        : obstacle_(obstacle), motion_(motion), held_(held), thickness_(thickness)
+    GroupSearch(const Obstacle& obstacle, const ClothMotion& motion, double thickness)
+        : obstacle_(obstacle), motion_(motion), thickness_(thickness)
     {
     }
 
@@ -175,7 +172,6 @@ class GroupSearch {
             keep_deepest(finding);
         }
         find_touches(obstacle_, swept.end(), touch_);
-        held_.let_touch((*motion_.faces)[finding.face], swept.begin(), swept.end(), touch_);
         finding.is_touching = touch_.is_any();
     }
 
@@ -230,19 +226,14 @@ class GroupSearch {
         for (const int c : owned.edges) {
             if (c < 0) continue;
             const int a = (*motion_.edges)[c].a, b = (*motion_.edges)[c].b;
-            const std::vector<FeatureStretch> beside =
-                held_.is_any() ? held_.beside_edge(a, b) : std::vector<FeatureStretch>{};
             bool is_met = false;
-            for (const int e : edges_)
-                for (const std::array<double, 2>& part : parts_outside(beside, e)) {
-                    const auto hit = sweep_edge_edge({motion_.begin[a], motion_.begin[b]},
-                                                     {motion_.end[a], motion_.end[b]},
-                                                     part_of(segment(e), part), distance_);
-                    if (!hit) continue;
-                    is_met = true;
-                    note(ContactKind::Edge, c, e, *hit, {a, b, -1});
-                    meetings_.back().is_partial = part != std::array{0.0, 1.0};
-                }
+            for (const int e : edges_) {
+                const auto hit = sweep_edge_edge({motion_.begin[a], motion_.begin[b]},
+                                                 {motion_.end[a], motion_.end[b]}, segment(e), distance_);
+                if (!hit) continue;
+                is_met = true;
+                note(ContactKind::Edge, c, e, *hit, {a, b, -1});
+            }
             if (is_met) finding.edges.push_back(c);
         }
     }
@@ -250,10 +241,7 @@ class GroupSearch {
     void sweep_face(const SweptFace& swept, FaceFinding& finding)
     {
         const Face& face = (*motion_.faces)[finding.face];
-        const std::vector<FeatureStretch> beside =
-            held_.is_any() ? held_.beside_face(face) : std::vector<FeatureStretch>{};
         for (const int p : points_) {
-            if (held_.is_any() && held_.is_beside_point(beside, p)) continue;
             const auto hit =
                 sweep_face_point(swept.begin(), swept.end(), obstacle_.mesh().points[p], distance_);
             if (!hit) continue;
@@ -287,10 +275,6 @@ class GroupSearch {
         const int c = m.cloth_element, o = m.obstacle_element;
         if (m.kind == ContactKind::Vertex)
             return make_vertex_violation(obstacle_, motion_, c, o, m.hit, thickness_);
-        if (m.is_partial) {
-            const MeshEdge& edge = (*motion_.edges)[c];
-            return make_hit_violation(motion_, m.kind, {edge.a, edge.b, -1}, o, m.hit, thickness_);
-        }
         if (m.kind == ContactKind::Edge)
             return make_edge_violation(obstacle_, motion_, c, o, m.hit, thickness_);
         return make_face_violation(obstacle_, motion_, c, o, m.hit, thickness_);
@@ -312,7 +296,6 @@ class GroupSearch {
 
     const Obstacle& obstacle_;
     const ClothMotion& motion_;
-    const HeldFeatures& held_;
     double thickness_;
     double distance_ = 0.0;
     std::vector<Near> near_faces_, near_wires_, near_points_;  ///< of the group
@@ -379,9 +362,8 @@ SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, dou
     const std::vector<Owned> owned = assign_owners(motion);
     const std::vector<int> order = order_by_place(boxes, kGroupSize);
     const int count = static_cast<int>(order.size());
-    const HeldFeatures held(obstacle, motion, thickness);
     const auto find = [&](int first, int last, std::vector<FaceFinding>& findings) {
-        GroupSearch search(obstacle, motion, held, thickness);
+        GroupSearch search(obstacle, motion, thickness);
         for (int begin = first; begin < last; begin += kGroupSize) {
             const int size = std::min(kGroupSize, last - begin);
             search.search(std::span(&order[begin], size), boxes, owned, findings);

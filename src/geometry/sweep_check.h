@@ -26,8 +26,6 @@ struct SweepReport {
     bool is_clean() const { return faces.empty(); }
 };
 
-/// Cloth joined to a vertex that is on a wire (`motion.holds`) is not checked against that wire
-/// beside it (held_features.h).
 /// Checks the cloth's way from `motion.begin` (free) to `motion.end` against every face, edge, wire and point
 /// of the obstacle. Nothing that touches is missed; what passes within 1e-11 of the size of a cloth face's
 /// swept box, and began farther off, may count as touching. Positions must be finite. Parallel; the same at

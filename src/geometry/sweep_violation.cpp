@@ -58,13 +58,6 @@ std::optional<ObstacleContact> by_hit(const Meeting& meeting, const SweepHit& hi
 
 }  // namespace
 
-std::optional<ObstacleContact> make_hit_violation(const ClothMotion& motion, ContactKind kind,
-                                                  const std::array<int, 3>& vertices, int element,
-                                                  const SweepHit& hit, double thickness)
-{
-    return by_hit({motion, kind, {vertices, hit.weights}, element, hit.point, thickness}, hit);
-}
-
 std::optional<ObstacleContact> make_vertex_violation(const Obstacle& obstacle, const ClothMotion& motion,
                                                      int vertex, int face, const SweepHit& hit,
                                                      double thickness)

@@ -27,9 +27,4 @@ std::optional<ObstacleContact> make_face_violation(const Obstacle& obstacle, con
                                                    int cloth_face, int point, const SweepHit& hit,
                                                    double thickness);
 
-/// Where the sweep left parts of the obstacle's element out: by the hit alone, whatever else of it is near.
-std::optional<ObstacleContact> make_hit_violation(const ClothMotion& motion, ContactKind kind,
-                                                  const std::array<int, 3>& vertices, int element,
-                                                  const SweepHit& hit, double thickness);
-
 }  // namespace arris

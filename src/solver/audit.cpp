@@ -23,8 +23,7 @@ std::vector<Audit> find_penetrations(const Scene& scene, const State& state)
     for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
         const Placement frame = scene.obstacles[o].at(state.time);
         Penetration found =
-            find_penetration(scene.obstacles[o], to_frame(frame, state.mesh.world), state.mesh.faces,
-                             holds_on(state, static_cast<int>(o)), scene.material.thickness);
+            find_penetration(scene.obstacles[o], to_frame(frame, state.mesh.world), state.mesh.faces);
         if (!found.is_any()) continue;
         found.place = frame(found.place);
         penetrations.push_back({static_cast<int>(o), found});

@@ -10,7 +10,6 @@
 #include "geometry/feature_frame.h"
 #include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
-#include "geometry/held_features.h"
 #include "geometry/surgery_cleanup.h"
 #include "geometry/trace_insertion.h"
 #include "geometry/trace_motion.h"
@@ -94,8 +93,7 @@ class Conforming {
     {
         find_releases();
         sites_ = find_feature_sites(scene_, state_, stars_);
-        if (released_.empty() && sites_.empty() && failed.empty() && state_.loose.empty() && !is_flowing())
-            return std::nullopt;
+        if (released_.empty() && sites_.empty() && failed.empty() && !is_flowing()) return std::nullopt;
         surgery_.emplace(state_.mesh, state_.ids, state_.next_id, pinned(), stars_.topology.edges);
         guard_.watch(*surgery_);
         surgery_->set_guard(
@@ -117,11 +115,8 @@ class Conforming {
             clear_way();
             report_.operations += clean_up(*surgery_, target_).operations();
         }
-        std::vector<EolVertex> loose = find_loose();
-        if (surgery_->events().empty() && report_.released == 0 && report_.inserted == 0 &&
-            loose.size() == state_.loose.size())
-            return std::nullopt;
-        return result(std::move(loose));
+        if (surgery_->events().empty() && report_.released == 0 && report_.inserted == 0) return std::nullopt;
+        return result();
     }
 
     bool is_flowing() const
@@ -158,9 +153,7 @@ class Conforming {
             if (is_at_border(eol) || !is_on_feature(obstacle, eol, positions[v])) continue;
             const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, positions, now);
             if (placing.coordinates)
-                holds.back() = is_clear_of(eol) ? find_hold(scene_, state_, stars_, entry,
-                                                            *placing.coordinates, positions[v])
-                                                : EolHold::Firm;
+                holds.back() = find_hold(scene_, state_, stars_, entry, *placing.coordinates, positions[v]);
         }
         hold_between(scene_, state_, stars_, holds);
         for (std::size_t entry = 0; entry < holds.size(); ++entry)
@@ -500,60 +493,6 @@ class Conforming {
         return made;
     }
 
-    /// What is EOL no more, but whose cloth is not off the wire or point yet; and what surgery has made among
-    /// such.
-    std::vector<EolVertex> find_loose() const
-    {
-        std::vector<EolVertex> loose;
-        for (const std::vector<EolVertex>* list : {&state_.eol, &state_.loose})
-            for (const EolVertex& e : *list)
-                if (surgery_->has_vertex(e.vertex_id) && !is_on_trace(e.vertex_id) && !is_clear_of(e))
-                    loose.push_back(e);
-        const auto is_known = [&](VertexId v) {
-            return std::any_of(loose.begin(), loose.end(),
-                               [v](const EolVertex& e) { return e.vertex_id == v; });
-        };
-        for (std::size_t k = 0; k < loose.size(); ++k)
-            for (const VertexId v : surgery_->ring(loose[k].vertex_id).vertices) {
-                if (v < state_.next_id || is_on_trace(v) || is_known(v)) continue;
-                EolVertex made = loose[k];
-                made.vertex_id = v;
-                const Obstacle& obstacle = scene_.obstacles[made.obstacle];
-                if (!made.is_corner)
-                    made.feature = follow_polyline(obstacle, made.feature, placed(made).place).feature;
-                if (!is_clear_of(made)) loose.push_back(made);
-            }
-        std::sort(loose.begin(), loose.end(),
-                  [](const EolVertex& a, const EolVertex& b) { return a.vertex_id < b.vertex_id; });
-        return loose;
-    }
-
-    /// Whether the cloth around the vertex is off the wire or point it is on.
-    bool is_clear_of(const EolVertex& eol) const
-    {
-        constexpr double kClear = 0.3;  // thicknesses: more than the cloth may be past it on the wrong side
-        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
-        const Placement now = obstacle.at(state_.time);
-        std::vector<std::array<Vec3, 3>> faces;
-        const auto add = [&](const std::array<Vec3, 3>& world) {
-            faces.push_back({now.inverse(world[0]), now.inverse(world[1]), now.inverse(world[2])});
-        };
-        if (surgery_) {
-            for (const IdFace& face : surgery_->faces_at(eol.vertex_id))
-                add(surgery_->patch_face(face).world);
-        } else {
-            const std::vector<Vec3>& x = state_.mesh.world;
-            for (const int f : stars_.faces[state_.index_of(eol.vertex_id)]) {
-                const Face& face = state_.mesh.faces[f];
-                add({x[face[0]], x[face[1]], x[face[2]]});
-            }
-        }
-        const Vec3 world =
-            surgery_ ? surgery_->world(eol.vertex_id) : state_.mesh.world[state_.index_of(eol.vertex_id)];
-        return is_clear(obstacle, {0, eol.is_corner, eol.feature}, now.inverse(world), faces,
-                        kClear * scene_.material.thickness);
-    }
-
     /// A vertex that clean-up or a join has put on a trace is like its neighbour on it.
     std::optional<EolVertex> on_trace_of(VertexId id, int tag) const
     {
@@ -597,7 +536,7 @@ class Conforming {
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
                             const FailedFlow& failed, StrainLimit limit)
 {
-    if (!scene.eol || (state.eol.empty() && state.loose.empty() && state.active.empty())) return {};
+    if (!scene.eol || (state.eol.empty() && state.active.empty())) return {};
     return Conforming(scene, dt, state, stars, limit).run(failed);
 }
 

@@ -29,7 +29,6 @@ struct ConformedMesh {
     std::vector<SurgeryEvent> events;
     std::vector<EolVertex> eol;  ///< ascending by vertex_id
     ConformReport report;
-    std::vector<EolVertex> loose = {};  ///< State::loose from now on
 };
 
 /// What earlier attempts of a step have found out about the flow of material.

@@ -7,7 +7,8 @@
 
 #include "geometry/closest_point.h"
 #include "geometry/contact_plane.h"
-#include "geometry/held_features.h"
+#include "geometry/feature_nodes.h"
+#include "solver/fold_contacts.h"
 
 namespace arris {
 
@@ -158,100 +159,61 @@ void shift_along(const std::vector<EolCoordinates>& eol, const Contact& contact,
     material[at.vertex] += amount * (at.material_basis * at.opening);
 }
 
-/// Whether a contact is one of the cloth beside a held vertex with what it may touch there.
-bool is_beside_held(const HeldFeatures& held, const Obstacle& obstacle, const ObstacleContact& contact)
+/// Whether a wire's contact with cloth that is joined to a vertex on it is beside that vertex.
+bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, const Vec3& place,
+               double thickness, const ObstacleContact& contact)
 {
-    const auto& [a, b, c] = contact.vertices;
-    if (contact.kind == ContactKind::Edge)
-        return is_covered(obstacle, held.beside_edge(a, b), contact.element, contact.point);
-    return contact.kind == ContactKind::Triangle &&
-           held.is_beside_point(held.beside_face(contact.vertices), contact.element);
+    constexpr double kReach = 10.0;  // heights: cloth that leaves it at 6 degrees is a stand-off away there
+    const ObstacleFeatures& features = obstacle.features();
+    const double height = std::max((place - at.frame.point).norm(), thickness);
+    if ((contact.point - at.frame.point).norm() > kReach * height) return false;
+    const auto is_of_wire = [&](int edge) {
+        const int feature = feature_of_edge(features, edge);
+        return feature >= 0 && features.edges[feature].polyline == features.edges[eol.feature].polyline;
+    };
+    if (contact.kind == ContactKind::Edge) return is_of_wire(contact.element);
+    const ObstacleTopology& topology = obstacle.topology();
+    return !is_corner(features, contact.element) && topology.edge_count_at(contact.element) > 0 &&
+           is_of_wire(topology.edge_at(contact.element, 0));
 }
 
 /// Whether a contact that the search found is one of an EOL vertex with the feature it is on.
-bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, double thickness,
-                const ObstacleContact& contact)
+bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, const Vec3& place,
+                double thickness, const ObstacleContact& contact)
 {
     constexpr double kNear = 2.5;  // mitre and a little
     const ObstacleFeatures& features = obstacle.features();
     const int corner = eol.is_corner ? features.corners[eol.feature].point : -1;
+    if (contact.kind != ContactKind::Vertex && !eol.is_corner &&
+        features.edges[eol.feature].kind == FeatureKind::Wire)
+        return is_beside(obstacle, eol, at, place, thickness, contact);
     if (contact.kind == ContactKind::Triangle) return contact.element == corner;
     if (contact.kind == ContactKind::Vertex)
         return (contact.point - at.frame.point).norm() <= kNear * thickness &&
                contact.normal.dot(at.frame.outward) > 0.0;
     const ObstacleEdge& edge = obstacle.topology().edges[contact.element];
-    if (edge.faces[0] < 0) return false;  // a wire: only beside the vertex
     if (!eol.is_corner) return contact.element == features.edges[eol.feature].edge;
     return edge.points[0] == corner || edge.points[1] == corner;
 }
 
-/// On the cloth's edges from a vertex on a wire, EOL or loose: the wire stays on the side where the vertex
-/// has it, though the cloth touches it. Folded flat both sides are in the wire's line, so that they may pass
-/// it by a little.
-void append_sides(const Obstacle& obstacle, const ObstacleStep& step, const Prediction& prediction,
-                  double thickness, const ClothStars& stars, const std::vector<int>& slot, int vertex,
-                  const EolVertex& eol, std::vector<Contact>& contacts)
+/// Keeps the sides of cloth folded over a wire apart.
+void append_folds(const Scene& scene, const State& state, const ClothStars& stars,
+                  const Prediction& prediction, const std::vector<ObstacleStep>& steps,
+                  const std::vector<EolCoordinates>& eol, std::vector<Contact>& contacts)
 {
-    constexpr double kPast = 0.25;   // thicknesses by which the wire may be passed
-    constexpr double kNear = 3.0;    // stand-offs within which it is looked at
-    constexpr double kReach = 10.0;  // the same along it
-    if (eol.is_corner || eol.side == 0 || obstacle.features().edges[eol.feature].kind != FeatureKind::Wire)
-        return;
-    const std::vector<Vec3>& x = step.motion.begin;
-    const PointOnFeature foot = place_on_feature(obstacle, eol.feature, x[vertex]);
-    const double height = std::max((foot.point - x[vertex]).norm(), thickness);
-    const std::vector<FeatureStretch> beside =
-        stretch_around(obstacle, {eol.feature, foot.s}, kReach * height);
-    std::map<int, Vec3> normals;  // of the cloth along each edge, outward
-    for (const int f : stars.faces[vertex]) {
-        const Face& face = (*step.motion.faces)[f];
-        const Vec3 normal = (x[face[1]] - x[face[0]]).cross(x[face[2]] - x[face[0]]).stableNormalized();
-        for (const int w : face)
-            if (w != vertex && slot[w] < 0)
-                normals.try_emplace(w, Vec3::Zero()).first->second += eol.side * normal;
+    const double thickness = scene.material.thickness;
+    std::vector<const std::vector<Vec3>*> positions;
+    for (const ObstacleStep& step : steps) positions.push_back(&step.motion.begin);
+    for (const FoldContact& fold : find_fold_contacts(scene.obstacles, state, stars, eol, positions)) {
+        const ObstacleStep& step = steps[fold.obstacle];
+        ObstacleContact contact =
+            make_contact(step.motion, ContactKind::Vertex, {{fold.vertex, -1, -1}, {1.0, 0.0, 0.0}}, -1,
+                         fold.bound.normal, fold.point, thickness);
+        contact.least_gap = fold.bound.least_gap;
+        contacts.push_back(place_contact(contact, fold.obstacle, step, prediction));
+        contacts.back().mitre = fold.bound.wanted / thickness;
+        contacts.back().is_fold = true;
     }
-    for (const auto& [w, sum] : normals) {
-        constexpr double kTold = 0.1;  // of the sum of two unit normals
-        if (!(sum.norm() > kTold)) continue;
-        const std::array<int, 2> v = {std::min(vertex, w), std::max(vertex, w)};
-        std::optional<ObstacleContact> nearest;
-        double least = kNear * height;
-        for (const FeatureStretch& stretch : beside) {
-            const auto& ends = obstacle.topology().edges[stretch.edge].points;
-            const std::vector<Vec3>& points = obstacle.mesh().points;
-            const SegmentPair pair =
-                closest_between_segments({x[v[0]], x[v[1]]}, {points[ends[0]], points[ends[1]]});
-            const double distance = (pair.first - pair.second).norm();
-            if (distance >= least || pair.s <= 0.0 || pair.s >= 1.0) continue;
-            least = distance;
-            nearest =
-                make_contact(step.motion, ContactKind::Edge, {{v[0], v[1], -1}, {1.0 - pair.s, pair.s, 0.0}},
-                             stretch.edge, sum.normalized(), pair.second, thickness);
-            const double gap = nearest->normal.dot(pair.first - pair.second);
-            nearest->least_gap = std::min(-kPast * thickness, gap);
-        }
-        if (!nearest) continue;
-        contacts.push_back(place_contact(*nearest, eol.obstacle, step, prediction));
-        contacts.back().may_grow = false;
-    }
-}
-
-/// Keeps a vertex that was EOL, and beside which the cloth still touches the wire, off that wire itself.
-std::optional<Contact> make_loose_contact(const Obstacle& obstacle, const ObstacleStep& step,
-                                          const Prediction& prediction, double thickness,
-                                          const EolVertex& loose, int vertex)
-{
-    const Vec3& place = step.motion.begin[vertex];
-    const Vec3 nearest = loose.is_corner
-                             ? obstacle.mesh().points[obstacle.features().corners[loose.feature].point]
-                             : place_on_feature(obstacle, loose.feature, place).point;
-    const Vec3 normal = (place - nearest).stableNormalized();
-    if (!(normal.squaredNorm() > 0.0)) return std::nullopt;
-    ObstacleContact contact =
-        make_contact(step.motion, ContactKind::Vertex, {{vertex, -1, -1}, {1.0, 0.0, 0.0}}, -1, normal,
-                     nearest, thickness);
-    contact.least_gap = std::min(thickness, (place - nearest).norm());
-    return place_contact(contact, loose.obstacle, step, prediction);
 }
 
 Contact make_eol_contact(const ObstacleStep& step, const Prediction& prediction, double thickness,
@@ -294,18 +256,6 @@ SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& 
 
 }  // namespace
 
-std::vector<FeatureHold> holds_on(const State& state, int obstacle)
-{
-    std::vector<FeatureHold> holds;
-    for (const std::vector<EolVertex>* list : {&state.eol, &state.loose})
-        for (const EolVertex& eol : *list)
-            if (eol.obstacle == obstacle)
-                holds.push_back({state.index_of(eol.vertex_id), eol.is_corner, eol.feature});
-    std::sort(holds.begin(), holds.end(),
-              [](const FeatureHold& a, const FeatureHold& b) { return a.vertex < b.vertex; });
-    return holds;
-}
-
 std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
                                          const std::vector<MeshEdge>& edges, const Prediction& prediction,
                                          const std::vector<HeldVertex>& held, double end)
@@ -327,8 +277,6 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
                        to_frame(step.end, free_end)};
         steps.push_back(std::move(step));
     }
-    for (std::size_t o = 0; o < steps.size(); ++o)
-        steps[o].motion.holds = holds_on(state, static_cast<int>(o));
     return steps;
 }
 
@@ -380,23 +328,19 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     std::vector<int> slot(state.mesh.world.size(), -1);
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
         const int o = state.eol[entry].obstacle;
-        const EolPlacing placing =
-            place_eol_vertex(scene.obstacles[o], state, entry, stars, steps[o].motion.begin, steps[o].end);
+        const EolPlacing placing = place_eol_vertex(scene.obstacles[o], state, entry, stars,
+                                                    steps[o].motion.begin, steps[o].end, prediction.gamma);
         if (!placing.coordinates) continue;
         slot[placing.coordinates->vertex] = static_cast<int>(eol.size());
         eol.push_back(*placing.coordinates);
     }
-    std::vector<HeldFeatures> held;
-    for (std::size_t o = 0; o < steps.size(); ++o)
-        held.emplace_back(scene.obstacles[o], steps[o].motion, thickness);
     std::erase_if(contacts, [&](const Contact& contact) {
         const int o = contact.obstacle;
-        if (is_beside_held(held[o], scene.obstacles[o], contact.in_frame)) return true;
         for (const int v : contact.in_frame.vertices) {
             if (v < 0 || slot[v] < 0) continue;
             const EolVertex& vertex = state.eol[eol[slot[v]].entry];
-            if (vertex.obstacle == o &&
-                is_covered(scene.obstacles[o], vertex, eol[slot[v]], thickness, contact.in_frame))
+            if (vertex.obstacle == o && is_covered(scene.obstacles[o], vertex, eol[slot[v]],
+                                                   steps[o].motion.begin[v], thickness, contact.in_frame))
                 return true;
         }
         return false;
@@ -408,22 +352,8 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         contacts.back().eol = static_cast<int>(e);
         contacts.back().mitre = eol[e].frame.mitre;
         contacts.back().may_grow = false;  // pushing it out would stretch the cloth on both sides
-        EolVertex known = state.eol[eol[e].entry];
-        known.side = eol[e].side;
-        append_sides(scene.obstacles[o], steps[o], prediction, thickness, stars, slot, eol[e].vertex, known,
-                     contacts);
     }
-    for (const EolVertex& loose : state.loose) {
-        const int o = loose.obstacle;
-        std::optional<Contact> contact = make_loose_contact(
-            scene.obstacles[o], steps[o], prediction, thickness, loose, state.index_of(loose.vertex_id));
-        if (!contact) continue;
-        contact->may_grow = false;
-        contacts.push_back(*contact);
-    }
-    for (const EolVertex& loose : state.loose)
-        append_sides(scene.obstacles[loose.obstacle], steps[loose.obstacle], prediction, thickness, stars,
-                     slot, state.index_of(loose.vertex_id), loose, contacts);
+    append_folds(scene, state, stars, prediction, steps, eol, contacts);
     for (std::size_t c = found; c < contacts.size(); ++c)
         contacts[c].was_active = find_active(state, contacts[c]);
     return eol;
@@ -434,7 +364,7 @@ SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& 
 {
     std::vector<Contact*> of_vertices;
     for (Contact& contact : contacts)
-        if (contact.is_vertex()) of_vertices.push_back(&contact);
+        if (contact.is_vertex() && !contact.is_fold) of_vertices.push_back(&contact);
     const auto vertex_of = [](const Contact* contact) { return contact->in_frame.vertices[0]; };
     std::stable_sort(of_vertices.begin(), of_vertices.end(),
                      [&](const Contact* a, const Contact* b) { return vertex_of(a) < vertex_of(b); });
@@ -453,11 +383,17 @@ bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& p
                      Contact& contact)
 {
     constexpr double kNothingLeft = 1e-3;  // of the thickness
+    constexpr double kFree = 1e3;          // m: no step goes so far
     const ObstacleStep& step = steps[contact.obstacle];
     ObstacleContact& local = contact.in_frame;
     const double now = local.normal.dot(local.at(step.motion.begin) - local.point);
-    if (!(local.least_gap > kNothingLeft * thickness)) return false;
-    local.least_gap = now < local.least_gap ? now : 0.5 * local.least_gap;
+    if (contact.is_fold) {  // no stand-off, but a help: the check will say where it is missed
+        if (local.least_gap <= -kFree) return false;
+        local.least_gap = -kFree;
+    } else {
+        if (!(local.least_gap > kNothingLeft * thickness)) return false;
+        local.least_gap = now < local.least_gap ? now : 0.5 * local.least_gap;
+    }
     contact.may_grow = false;
     update_gap(step, prediction, contact);
     return true;

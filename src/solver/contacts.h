@@ -29,6 +29,7 @@ struct Contact {
     bool was_active;
     bool is_pressing = false;  ///< in the last solve of this step, linearised elsewhere
     bool may_grow = true;      ///< its gap, towards the stand-off; not where it has yielded
+    bool is_fold = false;      ///< keeps one side of cloth folded over a wire from passing to the other's
     double mitre = 1.0;        ///< its stand-off is this times the thickness
     int eol = -1;              ///< of which EOL coordinates it is the bound on the first
     int bound = -1;            ///< coordinate of the velocity solve, 3 a vertex
@@ -36,9 +37,6 @@ struct Contact {
 
     bool is_vertex() const { return in_frame.kind == ContactKind::Vertex; }
 };
-
-/// The vertices on features of an obstacle, EOL and loose.
-std::vector<FeatureHold> holds_on(const State& state, int obstacle);
 
 /// Where the scene's obstacles are during the step that ends at `end` (s), and how the cloth would move past
 /// them: with the velocity it has, pins where they will be.
@@ -76,8 +74,8 @@ SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& 
                       std::vector<Contact>& contacts);
 
 /// Lets a contact whose row could not be met with the others yield: it keeps no more than the gap it has,
-/// which riding on the obstacle keeps, or, where it kept only that, half of it. False where it has nothing to
-/// yield.
+/// which riding on the obstacle keeps, or, where it kept only that, half of it; of a fold nothing. False
+/// where it has nothing to yield.
 bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& prediction, double thickness,
                      Contact& contact);
 

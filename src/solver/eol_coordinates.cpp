@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "solver/wire_fold.h"
+
 namespace arris {
 
 namespace {
@@ -165,17 +167,27 @@ int find_side(const ClothAround& cloth, const EolVertex& eol, const Vec3& outwar
     return std::abs(along) > kSeen ? (along > 0.0 ? 1 : -1) : eol.side;
 }
 
-/// A wire's outward direction turns with the cloth; the vertex follows into its plane, little by little.
-Vec3 towards_plane(const Obstacle& obstacle, const EolVertex& eol, const FeatureFrame& frame,
-                   const Vec3& place)
+/// A wire's outward direction turns with the cloth; the vertex goes round the wire with it.
+void turn_with_cloth(const Obstacle& obstacle, const State& state, int entry, int vertex,
+                     const std::vector<int>& faces, const std::vector<Vec3>& positions, double dt,
+                     FeatureFrame& frame, Vec3& place)
 {
-    constexpr double kShare = 0.5;  // of what is missing, a step
-    if (eol.is_corner || obstacle.features().edges[eol.feature].kind != FeatureKind::Wire) return place;
-    const Vec3 across = frame.tangent.cross(frame.outward);
-    return place - kShare * across.dot(place - frame.point) * across;
+    const EolVertex& eol = state.eol[entry];
+    if (eol.is_corner || obstacle.features().edges[eol.feature].kind != FeatureKind::Wire) return;
+    std::vector<Vec3> beside;
+    for (const int f : faces)
+        for (const int w : state.mesh.faces[f]) {
+            const int other = state.eol_entry(state.ids[w]);
+            const bool is_on_wire =
+                w == vertex || (other >= 0 && is_trace_edge(obstacle, {eol, positions[vertex]},
+                                                            {state.eol[other], positions[w]}));
+            if (!is_on_wire) beside.push_back(positions[w]);
+        }
+    frame.outward = turn_outward(frame, place, beside, dt);
+    const Vec3 from = place - frame.point, along = frame.tangent.dot(from) * frame.tangent;
+    place = frame.point + along + (from - along).norm() * frame.outward;
 }
 
-/// From the obstacle's frame to the world.
 /// Pulled alike by both its sides cloth is in balance with a force halfway between them.
 Vec3 find_push(const Vec3& leaving, const Mat3& basis)
 {
@@ -266,18 +278,16 @@ std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& ob
 
 void follow_features(const std::vector<Obstacle>& obstacles, State& state)
 {
-    for (std::vector<EolVertex>* list : {&state.eol, &state.loose})
-        for (EolVertex& eol : *list) {
-            if (eol.is_corner) continue;
-            const Obstacle& obstacle = obstacles[eol.obstacle];
-            const Vec3& world = state.mesh.world[state.index_of(eol.vertex_id)];
-            eol.feature =
-                follow_polyline(obstacle, eol.feature, obstacle.at(state.time).inverse(world)).feature;
-        }
+    for (EolVertex& eol : state.eol) {
+        if (eol.is_corner) continue;
+        const Obstacle& obstacle = obstacles[eol.obstacle];
+        const Vec3& world = state.mesh.world[state.index_of(eol.vertex_id)];
+        eol.feature = follow_polyline(obstacle, eol.feature, obstacle.at(state.time).inverse(world)).feature;
+    }
 }
 
 EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
-                            const std::vector<Vec3>& positions, const Placement& end)
+                            const std::vector<Vec3>& positions, const Placement& end, double dt)
 {
     const EolVertex& eol = state.eol[entry];
     const int v = state.index_of(eol.vertex_id);
@@ -306,14 +316,16 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int en
     EolCoordinates at{v,
                       entry,
                       *frame,
-                      end(towards_plane(obstacle, eol, *frame, place)),
+                      place,
                       Mat3::Zero(),
                       Mat23::Zero(),
                       find_side(around, eol, frame->outward),
                       Vec3::Zero(),
                       Vec3::UnitX()};
-    at.basis.col(0) = frame->outward;
-    at.basis.col(1) = frame->tangent;
+    turn_with_cloth(obstacle, state, entry, v, stars.faces[v], positions, dt, at.frame, at.carried);
+    at.carried = end(at.carried);
+    at.basis.col(0) = at.frame.outward;
+    at.basis.col(1) = at.frame.tangent;
     at.push = end.rotation * find_push(around.leaving, at.basis);
     if (eol.is_corner) {
         at.material_basis.col(1) = Vec2::UnitX();

@@ -23,26 +23,17 @@ EolGuard::EolGuard(const Scene& scene, const State& state, StrainLimit limit)
     : scene_(scene),
       state_(state),
       membrane_(scene.material.youngs_modulus, scene.material.poisson_ratio),
-      limit_(limit),
-      held_(scene.obstacles.size())
+      limit_(limit)
 {
-    for (const std::vector<EolVertex>* list : {&state.eol, &state.loose})
-        for (const EolVertex& eol : *list)
-            held_[eol.obstacle].push_back({eol.vertex_id, eol.is_corner, eol.feature});
-    for (std::vector<HeldVertexId>& held : held_)
-        std::sort(held.begin(), held.end(),
-                  [](const HeldVertexId& a, const HeldVertexId& b) { return a.vertex < b.vertex; });
 }
 
 bool EolGuard::allows(const SurgeryEvent& event)
 {
     const double thickness = scene_.material.thickness;
     if (strain_gain(event) > 0.0 && (limit_ != StrainLimit::GivesWay || !can_give_way(event))) return false;
-    for (std::size_t o = 0; o < scene_.obstacles.size(); ++o) {
-        const Obstacle& obstacle = scene_.obstacles[o];
-        if (!is_free(event, obstacle, obstacle.at(state_.time), thickness, held_[o])) return false;
-    }
-    return true;
+    return std::all_of(scene_.obstacles.begin(), scene_.obstacles.end(), [&](const Obstacle& obstacle) {
+        return is_free(event, obstacle, obstacle.at(state_.time), thickness);
+    });
 }
 
 double EolGuard::allowance(const SurgeryEvent& event) const

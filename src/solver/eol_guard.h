@@ -57,7 +57,6 @@ class EolGuard {
     StrainLimit limit_;
     bool is_clearing_ = false;
     const ClothSurgery* surgery_ = nullptr;
-    std::vector<std::vector<HeldVertexId>> held_;  ///< on each obstacle
     RelaxationMemo relaxations_;
 };
 

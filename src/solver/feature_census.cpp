@@ -42,7 +42,6 @@ class Census {
         const auto refused = std::find_if(work_.refused.begin(), work_.refused.end(),
                                           [&](const RefusedContact& r) { return is_same(r, contact); });
         if (refused != work_.refused.end()) return refused->cause;
-        if (is_loose(contact)) return RowCause::Released;
         return beside.is_any ? RowCause::BesideEol : RowCause::NotCrossing;
     }
 
@@ -54,15 +53,6 @@ class Census {
         if (!contact.was_active) return RowCause::New;
         return contact.obstacle == state_.eol[entry].obstacle ? RowCause::OtherFeature
                                                               : RowCause::OtherObstacle;
-    }
-
-    bool is_loose(const Contact& contact) const
-    {
-        return contact.is_vertex() &&
-               std::any_of(state_.loose.begin(), state_.loose.end(), [&](const EolVertex& loose) {
-                   return loose.obstacle == contact.obstacle &&
-                          loose.vertex_id == state_.ids[contact.in_frame.vertices[0]];
-               });
     }
 
     /// What EOL vertices a contact has beside it, on the feature that it touches.
@@ -186,7 +176,8 @@ FeatureCensus take_census(const Scene& scene, const State& state, const Workspac
             ++census.eol;
             continue;
         }
-        if (!touches_feature(scene.obstacles[contact.obstacle], contact.in_frame, scene.material.thickness))
+        if (contact.is_fold ||
+            !touches_feature(scene.obstacles[contact.obstacle], contact.in_frame, scene.material.thickness))
             continue;
         ++census.rows;
         if (scene.eol) ++census.by_cause[static_cast<std::size_t>(causes.find_cause(contact))];

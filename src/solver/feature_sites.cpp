@@ -45,7 +45,6 @@ class SiteFinder {
           o_(o),
           thickness_(scene.material.thickness),
           eol_target_(*scene.eol),
-          has_eol_on_wires_(scene.has_eol_on_wires),
           positions_(to_frame(obstacle_.at(state.time), state.mesh.world)),
           feature_(feature_of_edges(obstacle_)),
           stars_(stars)
@@ -222,7 +221,6 @@ class SiteFinder {
             const bool is_at_corner = (nearest.t <= 0.0 && corner_at(obstacle_, ends[0]) >= 0) ||
                                       (nearest.t >= 1.0 && corner_at(obstacle_, ends[1]) >= 0);
             if (!is_near || is_at_corner) return std::nullopt;
-            if (edge.kind == FeatureKind::Wire && !has_eol_on_wires_) return std::nullopt;
             if (edge.kind == FeatureKind::Wire && !is_straight({feature, nearest.t}, length_of(a, b)))
                 return std::nullopt;
             return nearest.s;
@@ -244,7 +242,7 @@ class SiteFinder {
         return s;
     }
 
-    /// Where wires turn, meet or end: around it cloth may hang through their lines on more than two sides.
+    /// Where wires turn, meet or end: no one plane parts the cloth's sides there.
     bool is_of_wires(int point) const
     {
         const ObstacleTopology& topology = obstacle_.topology();
@@ -256,8 +254,7 @@ class SiteFinder {
         return eol_target_.length(0.5 * (state_.mesh.material[a] + state_.mesh.material[b]));
     }
 
-    /// Between two vertices of a trace the wire must not bend away: it would get through the cloth that hangs
-    /// down beside it.
+    /// Between two vertices of a trace the wire must not bend away: it would get through the cloth beside it.
     bool is_straight(const FeaturePlace& place, double length) const
     {
         constexpr double kBend = 0.5;  // thicknesses, over a cell
@@ -316,7 +313,6 @@ class SiteFinder {
     std::int32_t o_;
     double thickness_;
     const MeshTarget& eol_target_;
-    bool has_eol_on_wires_;
     std::vector<Vec3> positions_;
     std::vector<int> feature_;
     const ClothStars& stars_;

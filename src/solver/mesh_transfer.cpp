@@ -136,7 +136,6 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     after.ids = conformed.surgery.ids;
     after.next_id = conformed.surgery.next_id;
     after.eol = conformed.eol;
-    after.loose = conformed.loose;
     const std::size_t n = after.ids.size();
     after.velocity.resize(n);
     after.material_velocity.resize(n);

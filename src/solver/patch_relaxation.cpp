@@ -60,14 +60,13 @@ class Relaxation {
     double energy() const { return energy_; }
     const std::vector<Vec3>& world() const { return patch_.mesh.world; }
 
-    bool is_way_free(const std::vector<Vec3>& begin, double time,
-                     const std::vector<std::vector<FeatureHold>>& holds) const
+    bool is_way_free(const std::vector<Vec3>& begin, double time) const
     {
-        for (std::size_t o = 0; o < scene_.obstacles.size(); ++o) {
-            const Placement now = scene_.obstacles[o].at(time);
+        for (const Obstacle& obstacle : scene_.obstacles) {
+            const Placement now = obstacle.at(time);
             const ClothMotion motion = {&patch_.mesh.faces, &edges_, to_frame(now, begin),
-                                        to_frame(now, patch_.mesh.world), holds[o]};
-            if (!check_sweep(scene_.obstacles[o], motion, scene_.material.thickness).is_clean()) return false;
+                                        to_frame(now, patch_.mesh.world)};
+            if (!check_sweep(obstacle, motion, scene_.material.thickness).is_clean()) return false;
         }
         return true;
     }
@@ -195,17 +194,7 @@ double relax(const Scene& scene, const RelaxedPatch& patch, State& state)
     const double before = relaxation.energy();
     relaxation.run(patch.wanted);
     relaxation.rise_to(patch.wanted);
-    std::vector<std::vector<FeatureHold>> holds(scene.obstacles.size());
-    for (std::size_t o = 0; o < holds.size(); ++o)
-        for (const FeatureHold& hold : holds_on(state, static_cast<int>(o)))
-            if (const auto local = std::find(part.vertices.begin(), part.vertices.end(), hold.vertex);
-                local != part.vertices.end())
-                holds[o].push_back(
-                    {static_cast<int>(local - part.vertices.begin()), hold.is_corner, hold.feature});
-    for (std::vector<FeatureHold>& list : holds)
-        std::sort(list.begin(), list.end(),
-                  [](const FeatureHold& a, const FeatureHold& b) { return a.vertex < b.vertex; });
-    for (int k = 0; !relaxation.is_way_free(begin, state.time, holds); ++k) {
+    for (int k = 0; !relaxation.is_way_free(begin, state.time); ++k) {
         if (k == kMostHalvings) return before;
         relaxation.go_back_half(begin);
     }

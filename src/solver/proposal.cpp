@@ -72,11 +72,13 @@ void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<O
                        const std::vector<HeldVertex>& held, double thickness, double growth,
                        Proposal& proposal)
 {
+    constexpr double kFoldShare = 0.1;  // of the push: what hangs straight is stretched by going aside
     for (const Contact& contact : contacts) {
         const ObstacleContact& local = contact.in_frame;
         const double gap =
             contact.normal.dot(local.at(proposal.world) - steps[contact.obstacle].end(local.point));
-        const double wanted = local.least_gap + (contact.may_grow ? growth : 0.0);
+        const double share = contact.is_fold ? kFoldShare : 1.0;
+        const double wanted = local.least_gap + (contact.may_grow ? share * growth : 0.0);
         const double missing = std::min(contact.mitre * thickness, wanted) - gap;
         if (missing > 0.0) local.shift(missing * contact.normal, proposal.world);
     }

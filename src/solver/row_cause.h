@@ -28,7 +28,7 @@ enum class RowCause {
     OffPlane,      ///< where the mesh could have it is off its plane
     Blocked,       ///< what is ahead of its trace could not be cleared
     GivenUp,       ///< with EOL vertices there an attempt at this step had failed
-    Released,      ///< it was EOL until this step, or until the cloth is off its wire or point
+    Released,      ///< it was EOL until this step
     NoDirection,   ///< as EolRefusal
     AlongBorder,   ///< alike
     EdgeOn,        ///< alike

@@ -13,15 +13,6 @@ bool has_features(const Scene& scene)
     });
 }
 
-bool has_wires(const Scene& scene)
-{
-    return std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const Obstacle& obstacle) {
-        const std::vector<FeatureEdge>& edges = obstacle.features().edges;
-        return std::any_of(edges.begin(), edges.end(),
-                           [](const FeatureEdge& edge) { return edge.kind == FeatureKind::Wire; });
-    });
-}
-
 Placement pin_placement(const Scene& scene, const Pin& pin, double time)
 {
     if (!pin.follows) return pin.motion.at(time);

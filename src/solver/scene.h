@@ -36,12 +36,10 @@ struct Scene {
     std::vector<Pin> pins;
     std::vector<Obstacle> obstacles;
     std::optional<MeshTarget> eol;  ///< what the mesh near features should be; without it none is EOL
-    bool has_eol_on_wires = false;  ///< else they are met by rows
 };
 
 /// Whether any obstacle has a sharp edge, corner, wire or point.
 bool has_features(const Scene& scene);
-bool has_wires(const Scene& scene);
 
 /// Maps where something that `pin` holds was at time 0 to where it has it at `time` (s).
 Placement pin_placement(const Scene& scene, const Pin& pin, double time);

@@ -60,8 +60,7 @@ struct State {
     std::vector<Vec2> previous_material;
     std::vector<Vec2> previous_material_velocity;
 
-    std::vector<EolVertex> eol;    ///< ascending by vertex_id
-    std::vector<EolVertex> loose;  ///< were EOL; cloth beside them still touches their wire or point. As eol
+    std::vector<EolVertex> eol;         ///< ascending by vertex_id
     std::vector<PinAnchor> anchors;     ///< ascending by (pin, vertex_id)
     std::vector<ActiveContact> active;  ///< ascending by (vertex_ids, obstacle, kind, element)
     std::int64_t crossings = 0;         ///< how often, so far, something passed through

@@ -89,7 +89,7 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
 {
     work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
     work.eol.clear();
-    if (!state.eol.empty() || !state.loose.empty())
+    if (!state.eol.empty())
         work.eol = add_eol_contacts(scene, state, work.stars, work.prediction, work.obstacles, work.contacts);
     weigh_start(scene, state, work);
     const std::optional<int> crushed = share_room(work.obstacles, work.prediction, work.contacts).crushed;

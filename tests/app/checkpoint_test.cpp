@@ -28,7 +28,6 @@ Checkpoint make_checkpoint()
     checkpoint.state.active = {{{2, 5, kNo}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1},
                                {{2, kNo, kNo}, ContactKind::Vertex, 1, 7, Vec3::UnitZ(), 1e-7}};
     checkpoint.state.eol = {{1, 0, false, 4, Vec3::UnitZ(), 0}, {5, 1, true, 2, Vec3::UnitX(), 2, -1}};
-    checkpoint.state.loose = {{3, 0, false, 1, Vec3::UnitY(), 4, 1}};
     checkpoint.state.material_velocity[1] = Vec2(0.25, -1e-310);
     checkpoint.state.crossings = 3;
     checkpoint.position = {0.0625, 3};
@@ -64,9 +63,6 @@ TEST(Checkpoint, ReadsBackToTheSameBytes)
     EXPECT_EQ(read.state.eol[1].feature, 2);
     EXPECT_EQ(read.state.eol[1].idle, 2);
     EXPECT_EQ(read.state.eol[1].side, -1);
-    ASSERT_EQ(read.state.loose.size(), 1u);
-    EXPECT_EQ(read.state.loose[0].vertex_id, 3u);
-    EXPECT_EQ(read.state.loose[0].side, 1);
     EXPECT_EQ(read.state.eol[0].outward, Vec3::UnitZ());
     EXPECT_EQ(read.state.material_velocity[1], Vec2(0.25, -1e-310));
     EXPECT_EQ(read.state.crossings, 3);
@@ -141,7 +137,6 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("EOL vertex", [](Checkpoint& c) { c.state.eol[1].vertex_id = 99; });
     refused("EOL direction", [&](Checkpoint& c) { c.state.eol[0].outward.x() = kNan; });
     refused("EOL side", [](Checkpoint& c) { c.state.eol[0].side = 2; });
-    refused("loose vertex", [](Checkpoint& c) { c.state.loose[0].vertex_id = 99; });
     refused("EOL count", [](Checkpoint& c) { c.state.eol[0].idle = -1; });
     refused("crossings", [](Checkpoint& c) { c.state.crossings = -1; });
 }

@@ -197,7 +197,7 @@ TEST(SceneLoad, WritesOutWhatTheSceneLeavesToDefaults)
         "gravity": {"acceleration": [0.0, 0.0, -9.81]},
         "wind": {"velocity": [1.0, 0.0, 0.0], "air_density": 1.2, "drag": 1.0},
         "pull": [{"material": [[1.0, 0.0], [1.0, 1.0]], "force": [0.0, 0.0, 1.0], "start": 0.0, "stop": null}],
-        "eol": {"enabled": true, "wires": false},
+        "eol": {"enabled": true},
         "solver": {"tolerance": 1e-9, "kernel": "exact"},
         "output": {"frames_per_second": 24.0, "formats": ["viewer"]}})");
     EXPECT_EQ(config.as_run.dump(2), expected.dump(2));

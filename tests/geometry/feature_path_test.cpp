@@ -156,15 +156,5 @@ TEST(TracePolyline, BeginsAtAnEndAndCoversIt)
     EXPECT_TRUE(trace_polyline(wire, 5).edges.empty());
 }
 
-TEST(PartsOutside, AreWhatIsLeft)
-{
-    using Parts = std::vector<std::array<double, 2>>;
-    EXPECT_EQ(parts_outside({}, 3), (Parts{{0, 1}}));
-    EXPECT_EQ(parts_outside({{4, 0, 1}}, 3), (Parts{{0, 1}}));
-    EXPECT_EQ(parts_outside({{3, 0, 1}}, 3), (Parts{}));
-    EXPECT_EQ(parts_outside({{3, 0.2, 0.4}}, 3), (Parts{{0, 0.2}, {0.4, 1}}));
-    EXPECT_EQ(parts_outside({{3, 0.3, 1}, {3, 0, 0.1}, {3, 0.25, 0.5}}, 3), (Parts{{0.1, 0.25}}));
-}
-
 }  // namespace
 }  // namespace arris

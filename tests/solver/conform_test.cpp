@@ -199,34 +199,6 @@ TEST(Conform, WhereAWireEndsInTheMiddleOfTheClothTheTraceDoes)
         EXPECT_LT(cloth.state.mesh.world[cloth.state.index_of(eol.vertex_id)].y(), 0.021 + kOnFeature);
 }
 
-TEST(Conform, ATraceOnAWireIsNotReleasedAsLongAsTheClothTouchesIt)
-{
-    for (const double fold : {0.0, 176.0}) {
-        EolCloth cloth(Obstacle("wire", make_wire({{0, -1, 0}, {0, 1, 0}}, false), {}, {}, 30.0),
-                       make_draped({8, 0.0, fold}));
-        cloth.scene.eol = uniform_target(0.05, 10.0);
-        for (Vec3& x : cloth.state.mesh.world) x.z() += kThickness;
-        for (int v = 0; v < cloth.state.mesh.vertex_count(); ++v)
-            if (std::abs(cloth.state.mesh.material[v].x() - 0.2) < 1e-9)
-                cloth.state.eol[cloth.add_eol(v, false, 0)].idle = 3;
-        const std::size_t count = cloth.state.eol.size();
-        const std::optional<ConformedMesh> made = conform(cloth);
-        EXPECT_EQ(made ? made->eol.size() : count, fold == 0.0 ? count : 0u);
-        // Given up all the same, it is remembered which vertices they were, until the cloth is off the wire.
-        FailedFlow failed;
-        for (const EolVertex& eol : cloth.state.eol) failed.given_up.insert(eol.vertex_id);
-        const std::optional<ConformedMesh> given_up = conform(cloth, failed);
-        ASSERT_TRUE(given_up);
-        EXPECT_TRUE(given_up->eol.empty());
-        EXPECT_EQ(given_up->loose.empty(), fold > 0.0);
-        if (fold > 0.0) continue;
-        TransferReport report;
-        State after = transfer(cloth.scene, cloth.state, *given_up, report);
-        EXPECT_GE(after.loose.size(), count);
-        EXPECT_EQ(holds_on(after, 0).size(), after.loose.size());
-    }
-}
-
 TEST(Conform, NeighboursOnTheFeatureAreJoinedAcrossAnEdgeThatDidNotPress)
 {
     EolCloth cloth = lying(0.0);

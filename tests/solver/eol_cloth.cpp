@@ -84,7 +84,6 @@ EolCloth::EolCloth(Obstacle obstacle, ClothMesh mesh)
     scene.material = {0.2, 50.0, 0.3, 1e-5, 0.0, 1e-3};
     scene.obstacles.push_back(std::move(obstacle));
     scene.eol = uniform_target(0.05, 10.0);
-    scene.has_eol_on_wires = true;
     state = make_state(scene, std::move(mesh), Vec3::Zero());
 }
 

@@ -206,17 +206,6 @@ TEST(FeatureCensus, AnEdgeThatEndsAtAnEolVertexOfItsFeatureIsBesideIt)
     EXPECT_EQ(count_at({3, 4, -1}, false), std::pair(0, 1)) << "it is on another feature";
 }
 
-TEST(FeatureCensus, AVertexThatIsLooseHasBeenReleased)
-{
-    Solved solved;
-    const int tip = testing::tip_of(solved.cloth.scene.obstacles[0]);
-    solved.cloth.state.loose = {{solved.cloth.state.ids[9], 0, false, tip, Vec3::UnitZ(), 0}};
-    solved.add(ContactKind::Vertex, {9, -1, -1}, -1, true);  // no element: it is off its own feature
-    solved.add(ContactKind::Vertex, {8, -1, -1}, -1, true);
-    EXPECT_EQ(solved.count(RowCause::Released), 1);
-    EXPECT_EQ(solved.count(RowCause::NotCrossing), 1);
-}
-
 TEST(FeatureCensus, AVertexTouchesAFeatureWhereItsPlaneIsNoFaces)
 {
     const Obstacle box("box", make_box({1, 1, 1}), {}, {}, 30.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A strip of cloth that hangs over a wire, both sides straight down, and slides off without friction: a rope
-// over a pulley of no size. Both sides pass through the wire's line.
+// A strip of cloth that hangs over a wire, both sides straight down but for the angle that holds them apart,
+// and slides off without friction: a rope over a pulley of no size.
 //
 //        o      y" = 2 g y / L,  y: how far the longer side is longer than half of the strip.
 //       | |     It presses while its tension exceeds the flow of momentum around the wire, 2 rho y'^2.
@@ -28,25 +28,25 @@ constexpr double kLiftOff = 0.598076;                         // s, of this rope
 constexpr double kShare = 0.9;                                // of it, over which errors are measured
 constexpr double kStep = 0.005;                               // s
 constexpr double kTimeError = 1.5e-3;     // BDF2's at 5 ms, over y: the rate is twice a table's
-constexpr double kMeshError = 2e-5;       // over y: K and E h^2 are not quite 0 and infinite
+constexpr double kMeshError = 1e-4;       // over y: the sides are held apart by an angle in their first cell
 constexpr double kRise = 1e-4;            // of energy over its start, over what is exchanged
 constexpr double kAreaTolerance = 1e-12;  // round-off of some 100 faces, over the area
-constexpr double kOnWire = 1e-6;          // m, a thousandth of the stand-off: what stretch lifts a vertex by
+constexpr double kOnWire = 5e-5;          // m, of a stand-off of 1e-3: the fold leans by .05 rad at most
 
 struct RopeCase {
     std::array<int, 2> cells = {8, 2};
     GridPattern pattern = GridPattern::Diagonal;
     double pattern_angle = 0.0;  ///< degrees
     Integrator integrator = Integrator::Bdf2;
-    int segments = 1;            ///< of the wire, from y = -1 to 1
-    double bulge_degrees = 0.0;  ///< by which the cloth begins less than folded together
+    int segments = 1;           ///< of the wire, from y = -1 to 1
+    double open_degrees = 0.6;  ///< between its sides at the start: a little more than the least
 };
 
 std::string describe(const RopeCase& rope)
 {
     return fmt::format("{} x {} cells, pattern {}, turned by {}, {} segments, {} degrees open", rope.cells[0],
                        rope.cells[1], static_cast<int>(rope.pattern), rope.pattern_angle, rope.segments,
-                       rope.bulge_degrees);
+                       rope.open_degrees);
 }
 
 double displacement(double time)
@@ -72,7 +72,7 @@ ClothRun make_rope_run(const RopeCase& rope)
     grid.pattern_angle = rope.pattern_angle;
     grid.folds = {{{Vec2(fold, 0.0), Vec2(fold, kWidth)}, 90.0}};
     ClothMesh mesh = make_cloth_grid(grid);
-    const double half = 0.5 * rope.bulge_degrees * M_PI / 180.0;
+    const double half = 0.5 * rope.open_degrees * M_PI / 180.0;
     for (std::size_t v = 0; v < mesh.world.size(); ++v) {
         const double along = mesh.material[v].x() - fold;
         mesh.world[v] = {along * std::sin(half), mesh.material[v].y() - 0.5 * kWidth,
@@ -83,7 +83,6 @@ ClothRun make_rope_run(const RopeCase& rope)
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
     scene.obstacles.push_back(Obstacle("wire", make_wire_of(rope.segments), {}, {}, 10.0));
     scene.eol = make_initial_target(mesh);
-    scene.has_eol_on_wires = true;
     ClothRun run(std::move(scene), std::move(mesh));
     run.settings.integrator = rope.integrator;
     for (int v = 0; v < run.state.mesh.vertex_count(); ++v)
@@ -129,7 +128,7 @@ Slide slide(const RopeCase& rope, double dt)
         EXPECT_EQ(report.rewound, 0);
         EXPECT_EQ(report.crossings, 0);
         EXPECT_EQ(report.feature_rows, 0) << "at " << run.state.time << " s";
-        if (rope.bulge_degrees == 0.0) expect_sound(run.state);
+        expect_sound(run.state);
     });
     const double rate = std::sqrt(2.0 * kG / kLength);
     const double exchanged =

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/fold_contacts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace arris {
+
+namespace {
+
+// rad: nobody gets round by the one in a step; what is farther than the other on the wrong side, where the
+// cloth has passed through itself, stays there.
+constexpr double kFarRound = 1.0, kWrong = 0.5;
+
+// Of the vertex on the wire: its neighbours' mean distance, and the time after which it comes to what now is
+// as far away as it has gone then.
+constexpr double kCells = 4.0, kTime = 0.2;  // s
+
+class FoldSearch {
+  public:
+    FoldSearch(const std::vector<Obstacle>& obstacles, const State& state, const ClothStars& stars,
+               const std::vector<EolCoordinates>& eol, const std::vector<const std::vector<Vec3>*>& positions)
+        : obstacles_(obstacles), state_(state), stars_(stars), eol_(eol), positions_(positions)
+    {
+    }
+
+    std::vector<FoldContact> run()
+    {
+        for (const EolCoordinates& at : eol_) {
+            const EolVertex& vertex = state_.eol[at.entry];
+            if (!is_on_wire(vertex)) continue;
+            const Wire wire = {vertex.obstacle, polyline_of(vertex)};
+            const double reach = find_reach(at.vertex, wire);
+            for_neighbours(at.vertex, wire, [&](int w) {
+                const double angle = angle_behind(at.frame, place_of(w, wire));
+                add(planes_, {w, wire}, {&at, angle < 0.0 ? -1 : 1, std::abs(angle), reach});
+            });
+        }
+        for (std::size_t size = 0; size < planes_.size();) {
+            size = planes_.size();
+            grow();
+        }
+        return contacts();
+    }
+
+  private:
+    using Wire = std::array<int, 2>;  ///< obstacle, polyline
+    struct Key {
+        int vertex;
+        Wire wire;
+        auto operator<=>(const Key&) const = default;
+    };
+    struct Plane {
+        const EolCoordinates* at;
+        int side;      ///< 0 where two planes do not agree
+        double angle;  ///< rad, to its side
+        double reach;  ///< m, material, from its vertex
+    };
+    using Planes = std::map<Key, Plane>;
+
+    bool is_on_wire(const EolVertex& vertex) const
+    {
+        return !vertex.is_corner &&
+               obstacles_[vertex.obstacle].features().edges[vertex.feature].kind == FeatureKind::Wire;
+    }
+
+    int polyline_of(const EolVertex& vertex) const
+    {
+        return obstacles_[vertex.obstacle].features().edges[vertex.feature].polyline;
+    }
+
+    const Vec3& place_of(int vertex, const Wire& wire) const { return (*positions_[wire[0]])[vertex]; }
+
+    /// That are not on the wire themselves.
+    template <typename Visit>
+    void for_neighbours(int vertex, const Wire& wire, const Visit& visit) const
+    {
+        for (const int f : stars_.faces[vertex])
+            for (const int w : state_.mesh.faces[f]) {
+                const int entry = state_.eol_entry(state_.ids[w]);
+                const bool is_there =
+                    entry >= 0 && is_on_wire(state_.eol[entry]) &&
+                    Wire{state_.eol[entry].obstacle, polyline_of(state_.eol[entry])} == wire;
+                if (w != vertex && !is_there) visit(w);
+            }
+    }
+
+    double way(int v, int w) const { return (state_.mesh.material[v] - state_.mesh.material[w]).norm(); }
+
+    /// How far from a vertex on the wire what comes to it soon is, m of material.
+    double find_reach(int vertex, const Wire& wire) const
+    {
+        double sum = 0.0;
+        int count = 0;
+        for_neighbours(vertex, wire, [&](int w) {
+            sum += way(vertex, w);
+            ++count;
+        });
+        const double cell = count > 0 ? sum / count : 0.0;
+        return kCells * cell + kTime * state_.material_velocity[vertex].norm();
+    }
+
+    /// By the neighbours of those that are known, each on the side of its own.
+    void grow()
+    {
+        Planes next;
+        for (const auto& [key, plane] : planes_)
+            for_neighbours(key.vertex, key.wire, [&](int w) {
+                if (planes_.contains({w, key.wire}) || way(plane.at->vertex, w) > plane.reach) return;
+                const double angle = plane.side * angle_behind(plane.at->frame, place_of(w, key.wire));
+                add(next, {w, key.wire}, {plane.at, plane.side, angle, plane.reach});
+            });
+        planes_.merge(next);
+    }
+
+    static void add(Planes& planes, const Key& key, const Plane& plane)
+    {
+        const auto [known, is_new] = planes.try_emplace(key, plane);
+        if (is_new) return;
+        const bool is_disputed = known->second.side != plane.side;
+        if (plane.angle < known->second.angle) known->second = plane;
+        if (is_disputed) known->second.side = 0;
+    }
+
+    std::vector<FoldContact> contacts() const
+    {
+        std::vector<FoldContact> found;
+        for (const auto& [key, plane] : planes_)
+            if (plane.side != 0 && plane.angle < kFarRound && plane.angle > -kWrong)
+                found.push_back({key.vertex, key.wire[0],
+                                 find_fold_bound(plane.at->frame, place_of(key.vertex, key.wire), plane.side),
+                                 plane.at->frame.point});
+        return found;
+    }
+
+    const std::vector<Obstacle>& obstacles_;
+    const State& state_;
+    const ClothStars& stars_;
+    const std::vector<EolCoordinates>& eol_;
+    const std::vector<const std::vector<Vec3>*>& positions_;
+    Planes planes_;
+};
+
+}  // namespace
+
+std::vector<FoldContact> find_fold_contacts(const std::vector<Obstacle>& obstacles, const State& state,
+                                            const ClothStars& stars, const std::vector<EolCoordinates>& eol,
+                                            const std::vector<const std::vector<Vec3>*>& positions)
+{
+    return FoldSearch(obstacles, state, stars, eol, positions).run();
+}
+
+}  // namespace arris

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/fold_contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/obstacle_shapes.h"
+#include "geometry/penetration.h"
+#include "solver/advance.h"
+#include "solver/audit.h"
+#include "solver/step.h"
+#include "tests/solver/eol_cloth.h"
+
+namespace arris {
+namespace {
+
+using testing::EolCloth;
+using testing::kThickness;
+using testing::make_draped;
+
+constexpr int kCells = 16;
+constexpr double kCell = 0.4 / kCells;  // m
+constexpr double kSame = 1e-9;          // m, of material
+
+Obstacle make_line(const std::vector<Vec3>& points = {{0, -1, 0}, {0, 1, 0}})
+{
+    return Obstacle("wire", make_wire(points, false), {}, {}, 30.0);
+}
+
+/// Cloth folded over a wire by `fold` (degrees, 180 is flat), a stand-off above it, with EOL vertices on it
+/// where their material coordinate along it is less than `end`.
+EolCloth make_folded(double fold, double end = 1.0)
+{
+    EolCloth cloth(make_line(), make_draped({kCells, 0.0, fold}));
+    cloth.scene.eol = uniform_target(kCell, 10.0);
+    for (Vec3& x : cloth.state.mesh.world) x.z() += kThickness;
+    for (int v = 0; v < cloth.state.mesh.vertex_count(); ++v)
+        if (std::abs(cloth.state.mesh.material[v].x() - 0.2) < kSame &&
+            cloth.state.mesh.material[v].y() < end)
+            cloth.add_eol(v, false, 0);
+    return cloth;
+}
+
+std::vector<FoldContact> find(const EolCloth& cloth)
+{
+    const ClothStars stars = cloth.stars();
+    std::vector<EolCoordinates> eol;
+    for (const EolVertex& vertex : cloth.state.eol)
+        if (const EolPlacing placing = cloth.place(cloth.state.index_of(vertex.vertex_id));
+            placing.coordinates)
+            eol.push_back(*placing.coordinates);
+    return find_fold_contacts(cloth.scene.obstacles, cloth.state, stars, eol, {&cloth.state.mesh.world});
+}
+
+double along_x(const EolCloth& cloth, const FoldContact& contact)
+{
+    return cloth.state.mesh.material[contact.vertex].x() - 0.2;
+}
+
+TEST(FoldContacts, KeepEachSideOfAFoldOnItsSide)
+{
+    const EolCloth cloth = make_folded(20.0);
+    const std::vector<FoldContact> found = find(cloth);
+    std::vector<int> vertices;
+    for (const FoldContact& contact : found) {
+        EXPECT_GT(contact.bound.normal.x() * along_x(cloth, contact),
+                  0.9 * std::abs(along_x(cloth, contact)));
+        EXPECT_GT(contact.bound.least_gap, 0.0);
+        EXPECT_GT(std::abs(along_x(cloth, contact)), kSame) << "what is on the wire";
+        EXPECT_LT(std::abs(along_x(cloth, contact)), 6.0 * kCell) << "what is far away";
+        vertices.push_back(contact.vertex);
+    }
+    EXPECT_TRUE(std::is_sorted(vertices.begin(), vertices.end()));
+    EXPECT_EQ(std::adjacent_find(vertices.begin(), vertices.end()), vertices.end()) << "twice";
+    for (int v = 0; v < cloth.state.mesh.vertex_count(); ++v) {
+        const double away = std::abs(cloth.state.mesh.material[v].x() - 0.2);
+        if (away < kSame || away > 3.5 * kCell) continue;
+        EXPECT_TRUE(std::binary_search(vertices.begin(), vertices.end(), v)) << v;
+    }
+}
+
+TEST(FoldContacts, AreNoneWhereTheClothIsFarFromThePlane)
+{
+    EXPECT_TRUE(find(make_folded(180.0)).empty());
+    EXPECT_TRUE(find(make_folded(20.0, -1.0)).empty()) << "no vertex is on the wire";
+    // Nor beyond the end of a trace, on the fold's line.
+    const EolCloth ending = make_folded(20.0, 0.2);
+    for (const FoldContact& contact : find(ending)) EXPECT_GT(std::abs(along_x(ending, contact)), kSame);
+}
+
+TEST(FoldContacts, ReachAsFarAsFlowBringsClothSoon)
+{
+    EolCloth cloth = make_folded(20.0);
+    const auto farthest = [&] {
+        double most = 0.0;
+        for (const FoldContact& contact : find(cloth))
+            most = std::max(most, std::abs(along_x(cloth, contact)));
+        return most;
+    };
+    const double resting = farthest();
+    for (const EolVertex& eol : cloth.state.eol)
+        cloth.state.material_velocity[cloth.state.index_of(eol.vertex_id)] = Vec2(0.3, 0.0);
+    EXPECT_GT(farthest(), resting + 0.9 * 0.06 - kCell);
+}
+
+/// Steps that halve where they have to; each is checked by what knows nothing of it. Returns into how many
+/// parts they were made.
+int advance(EolCloth& cloth, Workspace& work, double dt, int steps)
+{
+    int parts = 0;
+    const auto accept = [&](const StepReport& report, bool) {
+        ++parts;
+        EXPECT_EQ(report.crossings, 0);
+        EXPECT_EQ(report.rewound, 0);
+        EXPECT_TRUE(find_penetrations(cloth.scene, cloth.state).empty()) << "at " << cloth.state.time << " s";
+        return !::testing::Test::HasFailure();
+    };
+    for (int k = 0; k < steps && !::testing::Test::HasFailure(); ++k)
+        EXPECT_FALSE(
+            arris::advance(cloth.scene, Settings(), cloth.state.time + dt, cloth.state, work, accept));
+    return parts;
+}
+
+TEST(FoldContacts, SidesThrownAtEachOtherDoNotGetPastTheWire)
+{
+    constexpr int kSteps = 20;
+    for (const double speed : {1.0, 5.0, 20.0})
+        for (const bool are_both : {true, false}) {
+            SCOPED_TRACE(::testing::Message() << speed << " m/s, both " << are_both);
+            EolCloth cloth = make_folded(40.0);
+            for (std::size_t v = 0; v < cloth.state.mesh.world.size(); ++v) {
+                const double across = cloth.state.mesh.material[v].x() - 0.2;
+                if (across < -kSame || (are_both && across > kSame))
+                    cloth.state.velocity[v] = Vec3(across < 0.0 ? speed : -speed, 0.0, 0.0);
+            }
+            Workspace work;
+            EXPECT_LE(advance(cloth, work, 0.005, kSteps), 2 * kSteps) << "the check had to do it alone";
+        }
+}
+
+TEST(FoldContacts, ClothFallsOnWiresThatAreNearerThanAStandOffOrBend)
+{
+    const auto fall_on = [](const ObstacleMesh& wires) {
+        EolCloth cloth(Obstacle("wires", wires, {}, {}, 30.0), make_draped({8, 0.0, 180.0}));
+        cloth.scene.gravity = Gravity{};
+        for (std::size_t v = 0; v < cloth.state.mesh.world.size(); ++v) {
+            cloth.state.mesh.world[v] += Vec3(0.007, 0.0, 0.004);
+            cloth.state.velocity[v] = Vec3(0.0, 0.0, -1.0);
+        }
+        Workspace work;
+        advance(cloth, work, 0.005, 30);
+        return static_cast<int>(cloth.state.eol.size());
+    };
+    for (const double apart : {0.3, 0.9}) {  // stand-offs
+        SCOPED_TRACE(apart);
+        ObstacleMesh wires = make_wire({{0, -1, 0}, {0, 1, 0}}, false);
+        for (const Vec3& p : {Vec3(apart * kThickness, -1, 0), Vec3(apart * kThickness, 1, 0)})
+            wires.points.push_back(p);
+        wires.segments.push_back({2, 3});
+        EXPECT_GT(fall_on(wires), 0);
+    }
+    for (const double bend : {0.3, 3.0, 30.0}) {  // stand-offs, in the middle
+        SCOPED_TRACE(bend);
+        EXPECT_GE(fall_on(make_wire({{0, -1, 0}, {0, 0, bend * kThickness}, {0, 1, 0}}, false)), 0);
+    }
+}
+
+}  // namespace
+}  // namespace arris
