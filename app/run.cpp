@@ -12,6 +12,8 @@
 
 #include "app/check.h"
 #include "app/export_frames.h"
+#include "app/frame.h"
+#include "app/frame_files.h"
 #include "app/interrupt.h"
 #include "app/printable.h"
 #include "app/progress.h"
@@ -332,14 +334,28 @@ void check_references(const std::string& directory, const State& state, const Sc
                                      has_pins ? "parts of obstacles" : "pins"));
 }
 
+/// The cloth as the run began, which says how fine its mesh is to be. Without its frame the run's directory
+/// is refused later.
+ClothMesh read_first_cloth(const std::string& directory, const State& state)
+{
+    const std::string path = frame_file(directory, 0, "ply");
+    if (!std::filesystem::exists(path)) return state.mesh;
+    Frame first = read_frame(path);
+    ClothMesh cloth{std::move(first.material), std::move(first.world), std::move(first.faces)};
+    if (const std::string defect = validate(cloth); !defect.empty())
+        throw InputError(fmt::format("{}: is damaged: {}", printable(path), defect));
+    return cloth;
+}
+
 /// The scene of a checkpoint in `directory`, to end at `until` where that is given. What is left is planned
 /// anew where the new end changes the interval that the run stands in.
 RunConfig load_resumed(const std::string& directory, const std::optional<double>& until,
                        Checkpoint& checkpoint)
 {
     const std::vector<ObstacleRecord> obstacles = read_obstacles(directory);
+    const ClothMesh first = read_first_cloth(directory, checkpoint.state);
     LoadOptions options;
-    options.cloth = &checkpoint.state.mesh;
+    options.cloth = &first;
     options.obstacles = &obstacles;
     RunConfig config = load_scene(checkpoint.source, options);
     check_references(directory, checkpoint.state, config.scene);

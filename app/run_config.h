@@ -53,8 +53,8 @@ SceneSource read_scene_source(const std::string& path, const std::vector<std::st
 
 /// What load_scene takes from elsewhere than the scene.
 struct LoadOptions {
-    /// Of a run that is resumed, whatever became of the files: its cloth, and its obstacles' meshes. Nothing
-    /// is then said of time 0, which is over.
+    /// Of a run that is resumed, whatever became of the files: its cloth at time 0, and its obstacles' meshes.
+    /// Nothing is then said of time 0, which is over.
     const ClothMesh* cloth = nullptr;
     const std::vector<ObstacleRecord>* obstacles = nullptr;
 
