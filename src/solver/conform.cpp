@@ -478,9 +478,9 @@ class Conforming {
         return false;
     }
 
-    ConformedMesh result(std::vector<EolVertex> loose) const
+    ConformedMesh result() const
     {
-        ConformedMesh made{surgery_->result(), surgery_->events(), {}, report_, std::move(loose)};
+        ConformedMesh made{surgery_->result(), surgery_->events(), {}, report_};
         for (std::size_t v = 0; v < made.surgery.ids.size(); ++v) {
             if (made.surgery.roles[v] == TraceRole::Free) continue;
             const VertexId id = made.surgery.ids[v];
