@@ -4,11 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
-#include <tuple>
 
 #include "geometry/feature_frame.h"
-#include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
 #include "geometry/surgery_cleanup.h"
 #include "geometry/trace_insertion.h"
@@ -20,14 +17,14 @@
 #include "solver/feature_flow.h"
 #include "solver/feature_sites.h"
 #include "solver/held_vertices.h"
+#include "solver/trace_order.h"
 
 namespace arris {
 
 namespace {
 
-constexpr double kRoom = 0.15;       // target lengths to a border ahead, below which a trace is released
-constexpr double kCornerRoom = 0.3;  // the same of an obstacle's corner
-constexpr double kInsertRoom = 0.3, kCornerInsertRoom = 0.5;  // and to be made
+// Target lengths to a border ahead, below which no vertex is made.
+constexpr double kInsertRoom = 0.3, kCornerInsertRoom = 0.5;
 // Of flow that must find material ahead. A step may take 30 % of a face's material: of what has room for four
 // no more than that also where the flow gets faster.
 constexpr double kClearSteps = 4.0;
@@ -58,17 +55,6 @@ class FeatureTags {
     int count_ = 0;
 };
 
-/// Whether an EOL vertex is still on the polyline that it is on: not at its end.
-bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3& place)
-{
-    if (vertex.is_corner) return true;
-    const double s = place_on_feature(obstacle, vertex.feature, place).s;
-    if (s > 0.0 && s < 1.0) return true;
-    const ObstacleFeatures& features = obstacle.features();
-    const auto& ends = obstacle.topology().edges[features.edges[vertex.feature].edge].points;
-    return !is_corner(features, ends[s > 0.0 ? 1 : 0]);
-}
-
 class Conforming {
   public:
     Conforming(const Scene& scene, double dt, const State& state, const ClothStars& stars, StrainLimit limit)
@@ -91,7 +77,7 @@ class Conforming {
   private:
     std::optional<ConformedMesh> find_mesh(const FailedFlow& failed)
     {
-        find_releases();
+        released_ = find_releases(scene_, state_, stars_);
         sites_ = find_feature_sites(scene_, state_, stars_);
         if (released_.empty() && sites_.empty() && failed.empty() && !is_flowing()) return std::nullopt;
         surgery_.emplace(state_.mesh, state_.ids, state_.next_id, pinned(), stars_.topology.edges);
@@ -132,42 +118,6 @@ class Conforming {
         for (const HeldVertex& held : find_held_vertices(scene_, state_, state_.time + dt_))
             ids.push_back(state_.ids[held.vertex]);
         return ids;
-    }
-
-    void find_releases()
-    {
-        Placement now;
-        std::vector<Vec3> positions;  // in the frame of obstacle `of`
-        int of = -1;
-        std::vector<EolHold> holds;
-        for (int entry = 0; entry < static_cast<int>(state_.eol.size()); ++entry) {
-            const EolVertex& eol = state_.eol[entry];
-            const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
-            const int v = state_.index_of(eol.vertex_id);
-            if (eol.obstacle != of) {
-                of = eol.obstacle;
-                now = obstacle.at(state_.time);
-                positions = to_frame(now, state_.mesh.world);
-            }
-            holds.push_back(EolHold::None);
-            if (is_at_border(eol) || !is_on_feature(obstacle, eol, positions[v])) continue;
-            const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, positions, now);
-            if (placing.coordinates)
-                holds.back() = find_hold(scene_, state_, stars_, entry, *placing.coordinates, positions[v]);
-        }
-        hold_between(scene_, state_, stars_, holds);
-        for (std::size_t entry = 0; entry < holds.size(); ++entry)
-            if (holds[entry] != EolHold::Firm) released_.push_back(state_.eol[entry].vertex_id);
-    }
-
-    /// Whether an EOL vertex has come so near to the cloth's border that it must go.
-    bool is_at_border(const EolVertex& eol) const
-    {
-        const int v = state_.index_of(eol.vertex_id);
-        const Vec2& X = state_.mesh.material[v];
-        const double room = (eol.is_corner ? kCornerRoom : kRoom) * target_.length(X);
-        return !(room_to_border(scene_, state_, stars_, X, v, stars_.border_neighbours[v][0] >= 0, eol) >
-                 room);
     }
 
     /// Tells the surgery what is on features already.
@@ -342,7 +292,7 @@ class Conforming {
         const Placement now = obstacle.at(state_.time);
         const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, now);
         if (!placing.coordinates) return cause_of(placing.refusal);
-        return is_at_border(eol) ? RowCause::NearBorder : RowCause::Released;
+        return is_at_border(scene_, state_, stars_, eol) ? RowCause::NearBorder : RowCause::Released;
     }
 
     /// A vertex that is EOL, or has just been made, is none from now on: what presses there is a row.
@@ -408,54 +358,10 @@ class Conforming {
     /// Neighbours along a feature that are neighbours in the mesh, too, get a mesh edge between them.
     void join()
     {
-        for (std::size_t o = 0; o < scene_.obstacles.size(); ++o) {
-            const std::vector<FeatureEdge>& edges = scene_.obstacles[o].features().edges;
-            std::set<int> polylines;
-            for (const EolVertex& e : eol_)
-                if (e.obstacle == static_cast<int>(o) && !e.is_corner)
-                    polylines.insert(edges[e.feature].polyline);
-            for (const int p : polylines) join_along(static_cast<int>(o), p);
-        }
-    }
-
-    void join_along(int o, int index)
-    {
-        const Obstacle& obstacle = scene_.obstacles[o];
-        const Polyline polyline = trace_polyline(obstacle, index);
-        std::vector<std::pair<double, EolVertex>> row;  // by length along the polyline
-        for (const EolVertex& e : eol_) {
-            if (e.obstacle != o || !is_on_trace(e.vertex_id)) continue;
-            if (const auto along = length_before(obstacle, polyline, e)) row.emplace_back(*along, e);
-        }
-        std::sort(row.begin(), row.end(), [](const auto& p, const auto& q) {
-            return std::tuple(p.first, p.second.vertex_id) < std::tuple(q.first, q.second.vertex_id);
-        });
-        for (std::size_t i = 1; i < row.size(); ++i) join(row[i - 1].second, row[i].second);
-        if (polyline.is_closed && row.size() > 2) join(row.back().second, row.front().second);
-    }
-
-    /// Of the polyline, m; nothing where the vertex is not on it.
-    std::optional<double> length_before(const Obstacle& obstacle, const Polyline& polyline,
-                                        const EolVertex& eol) const
-    {
-        const ObstacleFeatures& features = obstacle.features();
-        const auto point_at = [&](const PolylineEdge& edge, bool is_end) {
-            return obstacle.topology()
-                .edges[features.edges[edge.feature].edge]
-                .points[edge.is_forward == is_end];
-        };
-        if (eol.is_corner) {
-            const int point = features.corners[eol.feature].point;
-            if (point == point_at(polyline.edges.front(), false)) return 0.0;
-            if (point == point_at(polyline.edges.back(), true)) return polyline.length;
-            return std::nullopt;
-        }
-        const auto at = std::find_if(polyline.edges.begin(), polyline.edges.end(),
-                                     [&](const PolylineEdge& e) { return e.feature == eol.feature; });
-        if (at == polyline.edges.end()) return std::nullopt;
-        const auto [a, b] = feature_segment(obstacle, eol.feature);
-        const double s = place_on_feature(obstacle, eol.feature, placed(eol).place).s;
-        return at->begin + (at->is_forward ? s : 1.0 - s) * (b - a).norm();
+        std::vector<PlacedEol> on_trace;
+        for (const EolVertex& e : eol_)
+            if (is_on_trace(e.vertex_id)) on_trace.push_back(placed(e));
+        for (const auto& [a, b] : find_trace_neighbours(scene_.obstacles, on_trace)) join(*a, *b);
     }
 
     void join(const EolVertex& a, const EolVertex& b)

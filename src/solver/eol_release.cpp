@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "geometry/feature_nodes.h"
+#include "geometry/feature_path.h"
+#include "solver/border_room.h"
 #include "solver/feature_sites.h"
 
 namespace arris {
@@ -23,6 +26,17 @@ bool is_folded(const State& state, const std::vector<int>& faces)
     }
     mean.normalize();
     return !std::all_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(mean) > kFlat; });
+}
+
+/// Whether an EOL vertex is still on the polyline that it is on: not at its end.
+bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3& place)
+{
+    if (vertex.is_corner) return true;
+    const double s = place_on_feature(obstacle, vertex.feature, place).s;
+    if (s > 0.0 && s < 1.0) return true;
+    const ObstacleFeatures& features = obstacle.features();
+    const auto& ends = obstacle.topology().edges[features.edges[vertex.feature].edge].points;
+    return !is_corner(features, ends[s > 0.0 ? 1 : 0]);
 }
 
 }  // namespace
@@ -63,6 +77,43 @@ void hold_between(const Scene& scene, const State& state, const ClothStars& star
     }
     for (EolHold& hold : holds)
         if (hold == EolHold::Loose) hold = EolHold::Firm;
+}
+
+bool is_at_border(const Scene& scene, const State& state, const ClothStars& stars, const EolVertex& eol)
+{
+    constexpr double kRoom = 0.15, kCornerRoom = 0.3;  // target lengths to a border ahead
+    const int v = state.index_of(eol.vertex_id);
+    const Vec2& X = state.mesh.material[v];
+    const double room = (eol.is_corner ? kCornerRoom : kRoom) * scene.eol->length(X);
+    return !(room_to_border(scene, state, stars, X, v, stars.border_neighbours[v][0] >= 0, eol) > room);
+}
+
+std::vector<std::uint32_t> find_releases(const Scene& scene, const State& state, const ClothStars& stars)
+{
+    Placement now;
+    std::vector<Vec3> positions;  // in the frame of obstacle `of`
+    int of = -1;
+    std::vector<EolHold> holds;
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
+        const EolVertex& eol = state.eol[entry];
+        const Obstacle& obstacle = scene.obstacles[eol.obstacle];
+        const int v = state.index_of(eol.vertex_id);
+        if (eol.obstacle != of) {
+            of = eol.obstacle;
+            now = obstacle.at(state.time);
+            positions = to_frame(now, state.mesh.world);
+        }
+        holds.push_back(EolHold::None);
+        if (is_at_border(scene, state, stars, eol) || !is_on_feature(obstacle, eol, positions[v])) continue;
+        const EolPlacing placing = place_eol_vertex(obstacle, state, entry, stars, positions, now);
+        if (placing.coordinates)
+            holds.back() = find_hold(scene, state, stars, entry, *placing.coordinates, positions[v]);
+    }
+    hold_between(scene, state, stars, holds);
+    std::vector<std::uint32_t> released;
+    for (std::size_t entry = 0; entry < holds.size(); ++entry)
+        if (holds[entry] != EolHold::Firm) released.push_back(state.eol[entry].vertex_id);
+    return released;
 }
 
 }  // namespace arris

@@ -6,6 +6,9 @@
 // until it is flat there or far from the edge.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "geometry/patch_quality.h"
 #include "solver/eol_coordinates.h"
 #include "solver/scene.h"
@@ -32,5 +35,12 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
 /// One hold an entry of `state.eol`.
 void hold_between(const Scene& scene, const State& state, const ClothStars& stars,
                   std::vector<EolHold>& holds);
+
+/// Whether an EOL vertex has come so near to the cloth's border that it must go.
+bool is_at_border(const Scene& scene, const State& state, const ClothStars& stars, const EolVertex& eol);
+
+/// Those that go, in the order of `state.eol`: what has no hold, has come to the end of its feature or to the
+/// cloth's border, or has no coordinates any more.
+std::vector<std::uint32_t> find_releases(const Scene& scene, const State& state, const ClothStars& stars);
 
 }  // namespace arris

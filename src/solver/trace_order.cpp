@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/trace_order.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "geometry/feature_path.h"
+#include "solver/feature_sites.h"
+
+namespace arris {
+
+namespace {
+
+/// Of the polyline up to a vertex, m; nothing where the vertex is not on it.
+std::optional<double> length_before(const Obstacle& obstacle, const Polyline& polyline,
+                                    const PlacedEol& placed)
+{
+    const EolVertex& eol = placed.eol;
+    const ObstacleFeatures& features = obstacle.features();
+    const auto point_at = [&](const PolylineEdge& edge, bool is_end) {
+        return obstacle.topology().edges[features.edges[edge.feature].edge].points[edge.is_forward == is_end];
+    };
+    if (eol.is_corner) {
+        const int point = features.corners[eol.feature].point;
+        if (point == point_at(polyline.edges.front(), false)) return 0.0;
+        if (point == point_at(polyline.edges.back(), true)) return polyline.length;
+        return std::nullopt;
+    }
+    const auto at = std::find_if(polyline.edges.begin(), polyline.edges.end(),
+                                 [&](const PolylineEdge& e) { return e.feature == eol.feature; });
+    if (at == polyline.edges.end()) return std::nullopt;
+    const auto [a, b] = feature_segment(obstacle, eol.feature);
+    const double s = place_on_feature(obstacle, eol.feature, placed.place).s;
+    return at->begin + (at->is_forward ? s : 1.0 - s) * (b - a).norm();
+}
+
+using Neighbours = std::vector<std::pair<const EolVertex*, const EolVertex*>>;
+
+void add_along(const Obstacle& obstacle, int o, int index, const std::vector<PlacedEol>& placed,
+               Neighbours& neighbours)
+{
+    const Polyline polyline = trace_polyline(obstacle, index);
+    std::vector<std::pair<double, const EolVertex*>> row;  // by length along the polyline
+    for (const PlacedEol& p : placed) {
+        if (p.eol.obstacle != o) continue;
+        if (const auto along = length_before(obstacle, polyline, p)) row.emplace_back(*along, &p.eol);
+    }
+    std::sort(row.begin(), row.end(), [](const auto& p, const auto& q) {
+        return std::tuple(p.first, p.second->vertex_id) < std::tuple(q.first, q.second->vertex_id);
+    });
+    for (std::size_t i = 1; i < row.size(); ++i) neighbours.emplace_back(row[i - 1].second, row[i].second);
+    if (polyline.is_closed && row.size() > 2) neighbours.emplace_back(row.back().second, row.front().second);
+}
+
+}  // namespace
+
+Neighbours find_trace_neighbours(const std::vector<Obstacle>& obstacles, const std::vector<PlacedEol>& placed)
+{
+    std::set<std::pair<int, int>> polylines;  // of obstacle and index
+    for (const PlacedEol& p : placed)
+        if (!p.eol.is_corner)
+            polylines.emplace(p.eol.obstacle,
+                              obstacles[p.eol.obstacle].features().edges[p.eol.feature].polyline);
+    Neighbours neighbours;
+    for (const auto& [o, index] : polylines) add_along(obstacles[o], o, index, placed, neighbours);
+    return neighbours;
+}
+
+}  // namespace arris
