@@ -67,20 +67,6 @@ void walk(const Obstacle& obstacle, const FeaturePlace& place, int end, double r
     }
 }
 
-void add_stretch(const Obstacle& obstacle, int feature, double a, double b,
-                 std::vector<FeatureStretch>& stretches)
-{
-    if (a == b) return;
-    stretches.push_back({obstacle.features().edges[feature].edge, std::min(a, b), std::max(a, b)});
-}
-
-void sort_stretches(std::vector<FeatureStretch>& stretches)
-{
-    std::sort(stretches.begin(), stretches.end(), [](const FeatureStretch& a, const FeatureStretch& b) {
-        return std::tie(a.edge, a.from, a.to) < std::tie(b.edge, b.from, b.to);
-    });
-}
-
 }  // namespace
 
 PointOnFeature place_on_feature(const Obstacle& obstacle, int feature, const Vec3& place)
@@ -108,34 +94,6 @@ FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& 
         distance = next_distance;
     }
     return {feature, s};
-}
-
-std::vector<FeatureStretch> stretch_around(const Obstacle& obstacle, const FeaturePlace& place, double reach)
-{
-    std::vector<FeatureStretch> stretches;
-    for (const int end : {0, 1})
-        walk(obstacle, place, end, reach, [&](int feature, double from, double to) {
-            add_stretch(obstacle, feature, from, to, stretches);
-            return true;
-        });
-    sort_stretches(stretches);
-    return stretches;
-}
-
-double find_bend(const Obstacle& obstacle, const FeaturePlace& place, double reach)
-{
-    const auto [p, q] = segment_of(obstacle, place.feature);
-    const Vec3 foot = p + place.s * (q - p), tangent = (q - p).normalized();
-    double greatest = 0.0;
-    for (const FeatureStretch& part : stretch_around(obstacle, place, reach)) {
-        const auto& ends = obstacle.topology().edges[part.edge].points;
-        for (const double s : {part.from, part.to}) {
-            const Vec3& a = obstacle.mesh().points[ends[0]];
-            const Vec3 from = a + s * (obstacle.mesh().points[ends[1]] - a) - foot;
-            greatest = std::max(greatest, (from - tangent.dot(from) * tangent).norm());
-        }
-    }
-    return greatest;
 }
 
 std::optional<double> distance_along(const Obstacle& obstacle, const FeaturePlace& a, const FeaturePlace& b,

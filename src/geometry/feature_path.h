@@ -27,19 +27,6 @@ PointOnFeature place_on_feature(const Obstacle& obstacle, int feature, const Vec
 /// the next as long as that is nearer. So a strand of the same polyline that happens to be near is not taken.
 FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& place);
 
-/// A part of an edge.
-struct FeatureStretch {
-    int edge;         ///< of the topology
-    double from, to;  ///< s of its ends, from < to
-};
-
-/// What of a polyline is within `reach` (m, along it) of a place on it, to both sides as far as its corners;
-/// ascending by edge. On a closed one an edge may be named twice.
-std::vector<FeatureStretch> stretch_around(const Obstacle& obstacle, const FeaturePlace& place, double reach);
-
-/// How far a polyline is off its tangent at a place, m, within `reach` of it.
-double find_bend(const Obstacle& obstacle, const FeaturePlace& place, double reach);
-
 /// Length of the polyline between two places on it, m; nothing where it is more than `most`, or where they
 /// are on different ones.
 std::optional<double> distance_along(const Obstacle& obstacle, const FeaturePlace& a, const FeaturePlace& b,

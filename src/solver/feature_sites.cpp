@@ -44,7 +44,6 @@ class SiteFinder {
           obstacle_(scene.obstacles[o]),
           o_(o),
           thickness_(scene.material.thickness),
-          eol_target_(*scene.eol),
           positions_(to_frame(obstacle_.at(state.time), state.mesh.world)),
           feature_(feature_of_edges(obstacle_)),
           stars_(stars)
@@ -221,8 +220,6 @@ class SiteFinder {
             const bool is_at_corner = (nearest.t <= 0.0 && corner_at(obstacle_, ends[0]) >= 0) ||
                                       (nearest.t >= 1.0 && corner_at(obstacle_, ends[1]) >= 0);
             if (!is_near || is_at_corner) return std::nullopt;
-            if (edge.kind == FeatureKind::Wire && !is_straight({feature, nearest.t}, length_of(a, b)))
-                return std::nullopt;
             return nearest.s;
         }
         const std::optional<FeatureFrame> frame =
@@ -247,18 +244,6 @@ class SiteFinder {
     {
         const ObstacleTopology& topology = obstacle_.topology();
         return topology.edge_count_at(point) > 0 && topology.edges[topology.edge_at(point, 0)].faces[0] < 0;
-    }
-
-    double length_of(int a, int b) const
-    {
-        return eol_target_.length(0.5 * (state_.mesh.material[a] + state_.mesh.material[b]));
-    }
-
-    /// Between two vertices of a trace the wire must not bend away: it would get through the cloth beside it.
-    bool is_straight(const FeaturePlace& place, double length) const
-    {
-        constexpr double kBend = 0.5;  // thicknesses, over a cell
-        return find_bend(obstacle_, place, length) <= kBend * thickness_;
     }
 
     std::optional<FeatureSite> in_face(const std::array<int, 3>& v, const ActiveContact& contact) const
@@ -312,7 +297,6 @@ class SiteFinder {
     const Obstacle& obstacle_;
     std::int32_t o_;
     double thickness_;
-    const MeshTarget& eol_target_;
     std::vector<Vec3> positions_;
     std::vector<int> feature_;
     const ClothStars& stars_;

@@ -32,20 +32,6 @@ Obstacle make_bent()
     return make_polyline({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}, {3, 0.1, 0}}, false);
 }
 
-double length_of(const Obstacle& obstacle, const std::vector<FeatureStretch>& stretches)
-{
-    double sum = 0.0;
-    for (const FeatureStretch& part : stretches) {
-        EXPECT_LT(part.from, part.to);
-        EXPECT_GE(part.from, 0.0);
-        EXPECT_LE(part.to, 1.0);
-        const auto& ends = obstacle.topology().edges[part.edge].points;
-        sum += (part.to - part.from) *
-               (obstacle.mesh().points[ends[1]] - obstacle.mesh().points[ends[0]]).norm();
-    }
-    return sum;
-}
-
 TEST(FollowPolyline, GoesOnPastNodesButNotPastCorners)
 {
     const Obstacle wire = make_bent();
@@ -77,34 +63,6 @@ TEST(FollowPolyline, DoesNotJumpToAStrandNearby)
     const Obstacle hairpin = make_polyline(points, false);
     EXPECT_EQ(hairpin.features().polyline_count, 1);
     EXPECT_EQ(follow_polyline(hairpin, 0, Vec3(0.5, 9e-4, 0)).feature, 0);
-}
-
-TEST(StretchAround, HasTheLengthAskedForWhereThereIsAsMuch)
-{
-    const Obstacle loop = make_polygon(30);
-    const double around = 30.0 * 2.0 * std::sin(M_PI / 30.0);
-    for (const double reach : {1e-3, 0.05, 0.3, 1.0, 3.0})
-        EXPECT_NEAR(length_of(loop, stretch_around(loop, {7, 0.3}, reach)), 2.0 * reach, kRoundOff) << reach;
-    EXPECT_GE(length_of(loop, stretch_around(loop, {7, 0.3}, 1e3)), around - kRoundOff);
-
-    const Obstacle wire = make_bent();
-    EXPECT_NEAR(length_of(wire, stretch_around(wire, {0, 0.25}, 0.1)), 0.2, kRoundOff);
-    EXPECT_NEAR(length_of(wire, stretch_around(wire, {0, 0.25}, 0.5)), 0.75, kRoundOff) << "it ends";
-    EXPECT_NEAR(length_of(wire, stretch_around(wire, {0, 1.0}, 0.25)), 0.5, kRoundOff) << "at a node";
-    const double whole = 2.0 + std::hypot(1.0, 0.1);
-    EXPECT_NEAR(length_of(wire, stretch_around(wire, {1, 0.5}, 1e9)), whole, 2.0 * kRoundOff);
-    EXPECT_TRUE(stretch_around(wire, {1, 0.5}, 0.0).empty());
-}
-
-TEST(FindBend, IsTheSagittaOfALoop)
-{
-    const Obstacle loop = make_polygon(720);
-    for (const double reach : {0.01, 0.1, 0.5}) {
-        constexpr double kPolygon = 5e-3;  // of it: segments are chords, and the place is half of one off
-        EXPECT_NEAR(find_bend(loop, {100, 0.5}, reach) / (1.0 - std::cos(reach)), 1.0,
-                    kPolygon + 0.009 / reach);
-    }
-    EXPECT_EQ(find_bend(make_polyline({{0, 0, 0}, {1, 0, 0}}, false), {0, 0.3}, 10.0), 0.0);
 }
 
 TEST(DistanceAlong, GoesTheShorterWayAroundALoop)
