@@ -16,6 +16,7 @@
 #include "geometry/initial_target.h"
 #include "geometry/mesh_quality.h"
 #include "geometry/obstacle_shapes.h"
+#include "grid_patterns.h"
 #include "refinement.h"
 #include "solver/eol_coordinates.h"
 
@@ -45,7 +46,7 @@ struct RopeCase {
 std::string describe(const RopeCase& rope)
 {
     return fmt::format("{} x {} cells, pattern {}, turned by {}, {} segments, {} degrees open", rope.cells[0],
-                       rope.cells[1], static_cast<int>(rope.pattern), rope.pattern_angle, rope.segments,
+                       rope.cells[1], name_of(rope.pattern), rope.pattern_angle, rope.segments,
                        rope.open_degrees);
 }
 
@@ -171,8 +172,7 @@ TEST(RopeOverWire, IsARopeOnAnyMeshAndOverAnyWire)
 {
     Table table("rope_meshes", {"pattern", "turned by", "cells", "segments", "error of y", "energy lost"});
     double least = 1.0, most = 0.0;
-    for (const GridPattern pattern :
-         {GridPattern::Diagonal, GridPattern::Alternating, GridPattern::Cross, GridPattern::Unstructured})
+    for (const GridPattern pattern : kPatterns)
         for (const double angle : {0.0, 17.0, 45.0})
             for (const std::array<int, 2> cells : {std::array{4, 1}, {8, 2}, {16, 4}})
                 for (const int segments : {1, 37}) {
@@ -189,8 +189,8 @@ TEST(RopeOverWire, IsARopeOnAnyMeshAndOverAnyWire)
                     EXPECT_LT(found.rise, kRise) << describe(rope);
                     least = std::min(least, found.displacement);
                     most = std::max(most, found.displacement);
-                    table.add({std::to_string(static_cast<int>(pattern)), fmt::format("{:g}", angle),
-                               fmt::format("{}", cells[0]), std::to_string(segments), percent(found.error),
+                    table.add({name_of(pattern), fmt::format("{:g}", angle), fmt::format("{}", cells[0]),
+                               std::to_string(segments), percent(found.error),
                                fmt::format("{:.1e}", found.loss)});
                 }
     EXPECT_LT(most / least - 1.0, kMeshError);

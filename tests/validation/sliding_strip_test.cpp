@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "geometry/mesh_quality.h"
+#include "grid_patterns.h"
 #include "refinement.h"
 
 namespace arris {
@@ -26,15 +27,6 @@ constexpr double kRise = 1e-4;  // of energy over its start, over what is exchan
 constexpr double kLoss = 0.01;  // BDF2's, alike
 constexpr double kAreaTolerance = 1e-12;  // round-off of some 100 faces, over the area
 constexpr double kOnEdge = 1e-6;          // m, a thousandth of the stand-off: what stretch lifts a vertex by
-
-constexpr std::array kPatterns = {GridPattern::Diagonal, GridPattern::Alternating, GridPattern::Cross,
-                                  GridPattern::Unstructured};
-
-const char* name_of(GridPattern pattern)
-{
-    constexpr std::array kNames = {"diagonal", "alternating", "cross", "unstructured"};
-    return kNames[static_cast<std::size_t>(pattern)];
-}
 
 std::string describe(const StripCase& strip)
 {

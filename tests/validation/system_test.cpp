@@ -10,6 +10,7 @@
 #include <random>
 
 #include "cloth_run.h"
+#include "grid_patterns.h"
 #include "physics/inertia.h"
 
 namespace arris {
@@ -51,9 +52,6 @@ Assembled assemble(const ClothMesh& mesh, const Terms& terms, const Linearizatio
     }
     return result;
 }
-
-constexpr std::array kPatterns = {GridPattern::Diagonal, GridPattern::Alternating, GridPattern::Cross,
-                                  GridPattern::Unstructured};
 
 /// M of the assembled system: without stiffness, as a step of no length.
 Eigen::MatrixXd mass_matrix(const ClothMesh& mesh, double density)
