@@ -46,6 +46,8 @@ class InitialMesh {
         return length;
     }
 
+    double mean_length() const { return mean_; }
+
     double angle(const Vec2& X) const
     {
         const Face& f = faces_[find(X).face];
@@ -120,8 +122,8 @@ class InitialMesh {
 MeshTarget make_initial_target(const ClothMesh& initial, double most_angle)
 {
     const InitialMesh mesh(initial, most_angle);
-    return {[mesh](const Vec2& X) { return mesh.length(X); },
-            [mesh](const Vec2& X) { return mesh.angle(X); }};
+    return {[mesh](const Vec2& X) { return mesh.length(X); }, [mesh](const Vec2& X) { return mesh.angle(X); },
+            mesh.mean_length()};
 }
 
 }  // namespace arris

@@ -9,7 +9,8 @@ namespace arris {
 
 MeshTarget uniform_target(double length, double least_angle)
 {
-    return {[length](const Vec2&) { return length; }, [least_angle](const Vec2&) { return least_angle; }};
+    return {[length](const Vec2&) { return length; }, [least_angle](const Vec2&) { return least_angle; },
+            length};
 }
 
 double least_angle(const PatchFace& face)

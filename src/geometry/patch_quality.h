@@ -11,6 +11,7 @@ namespace arris {
 struct MeshTarget {
     std::function<double(const Vec2&)> length;       ///< m, of edges
     std::function<double(const Vec2&)> least_angle;  ///< degrees, of faces
+    double mean_length = 0.0;                        ///< m, of the whole mesh's edges
 };
 
 /// The same everywhere.

@@ -2,14 +2,32 @@
 #include "solver/creases.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace arris {
 
+namespace {
+
+/// Of all creases, m; 0 where there are none: without a target for the mesh, and where the mesh resolves the
+/// bend. The tension that the cloth's weight makes, T = rho g L, bends it within sqrt(K / T) of a feature.
+double find_crease_width(const Scene& scene, const ClothElements& elements)
+{
+    constexpr double kHeight = 0.87;  // of an equilateral face, in edge lengths
+    if (!scene.eol || !scene.gravity) return 0.0;
+    double area = 0.0;
+    for (const FaceElement& face : elements.faces) area += face.area;
+    const double tension = scene.material.density * scene.gravity->acceleration.norm() * std::sqrt(area);
+    const double h = scene.eol->mean_length;
+    return scene.material.bending_stiffness < tension * h * h ? kHeight * h : 0.0;
+}
+
+}  // namespace
+
 bool mark_creases(const Scene& scene, const State& state, const ClothStars& stars, ClothElements& elements)
 {
-    constexpr double kWidth = 0.87;  // target lengths: the height of an equilateral face
+    const double crease_width = find_crease_width(scene, elements);
     std::vector<std::array<int, 2>> edges;
-    if (scene.eol)  // without a target for the mesh there is no width
+    if (crease_width > 0.0)
         for (const auto& [a, b] : find_trace_edges(scene.obstacles, state, stars))
             edges.push_back({state.index_of(state.eol[a].vertex_id), state.index_of(state.eol[b].vertex_id)});
 
@@ -19,8 +37,7 @@ bool mark_creases(const Scene& scene, const State& state, const ClothStars& star
         const auto [a, b] = std::minmax(hinge.vertices[0], hinge.vertices[1]);
         const bool is_crease = std::binary_search(edges.begin(), edges.end(), std::array{a, b});
         if (!is_crease && !hinge.is_crease()) continue;
-        const Vec2 middle = 0.5 * (state.mesh.material[a] + state.mesh.material[b]);
-        const double width = is_crease ? kWidth * scene.eol->length(middle) : 0.0;
+        const double width = is_crease ? crease_width : 0.0;
         if (width == hinge.crease_width) continue;
         hinge.crease_width = width;
         is_changed[a] = 1;

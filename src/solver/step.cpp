@@ -275,7 +275,7 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     if (report.status != StepStatus::Done && report.status != StepStatus::Infeasible) return false;
 
     // 6. q' = q~ + gamma v', not committed, and the exact check of the whole way.
-    if (report.status == StepStatus::Done && !propose_flow(work)) {
+    if (!propose_flow(work)) {
         report.status = StepStatus::Overrun;
         return false;
     }
@@ -423,7 +423,10 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     report.seconds.move += watch.lap();
 
     // 3. What the cloth may touch: vertices, edges and faces; nothing can move where it has no room.
-    if (!find_contacts(scene, start, work, report)) return report;
+    if (!find_contacts(scene, start, work, report)) {
+        work.failed.note(report, attempt, state, start, {});
+        return report;
+    }
     report.seconds.contacts += watch.lap();
 
     // 4 - 6. Solve, propose, check: what the check finds becomes rows, in bounded rounds.

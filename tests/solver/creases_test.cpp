@@ -19,6 +19,8 @@ EolCloth draped_with(int count)
 {
     const Drape drape;
     EolCloth cloth(make_ridge(90.0), make_draped(drape));
+    cloth.scene.gravity = Gravity{};
+    cloth.scene.material.bending_stiffness = 1e-6;  // of 0.4 m at this density bent within millimetres
     const int tip = tip_of(cloth.scene.obstacles[0]);
     for (int k = 0; k < count; ++k)
         cloth.add_eol(cloth.vertex_at(0.2, 0.1 + k * 0.4 / drape.cells), false, tip);
@@ -57,6 +59,24 @@ TEST(Creases, AreNoneWithoutATargetForTheMesh)
     cloth.scene.eol.reset();
     ClothElements elements = elements_of(cloth.state.mesh);
     EXPECT_FALSE(mark_creases(cloth.scene, cloth.state, cloth.stars(), elements));
+}
+
+TEST(Creases, AreNoneWhereTheMeshResolvesTheBend)
+{
+    EolCloth cloth = draped_with(3);
+    const double h = cloth.scene.eol->mean_length;
+    const double tension = cloth.scene.material.density * 9.81 * 0.4;
+    for (const auto& [stiffness, is_crease] :
+         {std::pair(0.99 * tension * h * h, true), {1.01 * tension * h * h, false}}) {
+        cloth.scene.material.bending_stiffness = stiffness;
+        ClothElements elements = elements_of(cloth.state.mesh);
+        EXPECT_EQ(mark_creases(cloth.scene, cloth.state, cloth.stars(), elements), is_crease);
+        EXPECT_EQ(creases_of(elements).empty(), !is_crease);
+    }
+    cloth.scene.material.bending_stiffness = 1e-6;
+    cloth.scene.gravity.reset();
+    ClothElements elements = elements_of(cloth.state.mesh);
+    EXPECT_FALSE(mark_creases(cloth.scene, cloth.state, cloth.stars(), elements)) << "nothing pulls";
 }
 
 TEST(Creases, AreNoneAnyMoreWhereTheVerticesAreReleased)

@@ -282,6 +282,25 @@ TEST(Crush, AGapBelowZeroIsInfeasibleAndNamesAVertex)
     EXPECT_GT(run.state.time, 0.08) << "it yielded as far as there was room";
 }
 
+TEST(Crush, PinsDrivenIntoATableAreInfeasibleAndLeaveTheStateAsItWas)
+{
+    for (const double youngs_modulus : {50.0, 2e4}) {
+        ObstacleRun run({make_floor()}, make_sheet(0.3, 6, {Mat3::Identity(), Vec3(0, 0, 1e-3)}));
+        run.scene.material.youngs_modulus = youngs_modulus;
+        Pin pin;
+        pin.material = {Vec2(0.3, 0.0), Vec2(0.3, 0.3)};
+        pin.motion.velocity = Vec3(0, 0, -1.0);
+        run.scene.pins = {pin};
+        run.state = make_state(run.scene, run.state.mesh, Vec3::Zero());
+        const ClothMesh first = run.state.mesh;
+        StepStatus status = StepStatus::Done;
+        for (int k = 0; k < 5 && status == StepStatus::Done; ++k) status = run.advance();
+        EXPECT_EQ(status, StepStatus::Infeasible) << youngs_modulus;
+        EXPECT_EQ(run.state.mesh.material, first.material);
+        for (const Vec3& x : run.state.mesh.world) EXPECT_GE(x.z(), 0.0);
+    }
+}
+
 TEST(MovingObstacle, CarriesClothWithoutPushingEnergyIn)
 {
     // A box that rises, stops, and sinks more slowly than cloth falls.
