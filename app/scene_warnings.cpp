@@ -246,6 +246,22 @@ void check_strain(const RunConfig& config, Warnings& warnings)
                         100.0 * (least - 1.0), 100.0 * (greatest - 1.0)));
 }
 
+/// A stand-off as large as the cloth's cells is mostly one in other units.
+void check_thickness(const RunConfig& config, Warnings& warnings)
+{
+    if (config.scene.obstacles.empty()) return;
+    double sum = 0.0;
+    const std::vector<MeshEdge> edges = make_topology(config.cloth.vertex_count(), config.cloth.faces).edges;
+    for (const MeshEdge& edge : edges)
+        sum += (config.cloth.material[edge.b] - config.cloth.material[edge.a]).norm();
+    const double cell = sum / static_cast<double>(edges.size());
+    const double thickness = config.scene.material.thickness;
+    if (thickness > cell)
+        warnings.note(
+            "cloth.material.thickness",
+            fmt::format("is more than an edge of the cloth's mesh ({:.3g} m): it is in metres", cell));
+}
+
 }  // namespace
 
 std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config)
@@ -259,6 +275,7 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_obstacles(config, warnings);
     check_turns(config, warnings);
     check_strain(config, warnings);
+    check_thickness(config, warnings);
     return warnings.lines_;
 }
 

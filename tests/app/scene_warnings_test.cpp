@@ -107,6 +107,19 @@ TEST(SceneWarnings, TellOfAClothThatStartsStrained)
                 ::testing::IsEmpty());
 }
 
+TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
+{
+    const auto load = [](const std::string& thickness) {
+        return load_scene(
+            SceneSource{"s.toml", kBase + "[cloth.material]\nthickness = " + thickness + "\n" + kBox, {}});
+    };
+    const RunConfig config = load("1");
+    ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
+    EXPECT_THAT(config.warnings[0],
+                ::testing::HasSubstr("cloth.material.thickness = 1: is more than an edge"));
+    EXPECT_THAT(load("0.4").warnings, ::testing::IsEmpty());
+}
+
 TEST(SceneWarnings, TellOfATurnThatSlerpCannotMean)
 {
     const auto turned = [](const std::string& degrees) {
