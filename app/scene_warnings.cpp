@@ -51,7 +51,7 @@ bool is_zero(const Vec3& value)
     return is_zero(value.squaredNorm());
 }
 
-void check_cloth(const RunConfig& config, Warnings& warnings)
+void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
 {
     if (!warnings.is_written("cloth.file")) {
         warnings.add("cloth.units", "the cloth is not from a file");
@@ -66,8 +66,7 @@ void check_cloth(const RunConfig& config, Warnings& warnings)
         return warnings.is_written(std::string("cloth.material.") + key);
     });
     if (overrides_all) warnings.add("cloth.material.preset", "all its values are overridden");
-    if (material.bending_stiffness > 0.0 &&
-        make_topology(config.cloth.vertex_count(), config.cloth.faces).hinges.empty())
+    if (material.bending_stiffness > 0.0 && topology.hinges.empty())
         warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
     if (config.scene.obstacles.empty())
         warnings.add("cloth.material.thickness", "there is no obstacle to keep away from");
@@ -227,11 +226,10 @@ void check_turns(const RunConfig& config, Warnings& warnings)
 }
 
 /// A cloth that starts far from its material's size is mostly one whose UVs are not in metres.
-void check_strain(const RunConfig& config, Warnings& warnings)
+void check_strain(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
 {
     constexpr double kSurprising = 0.1;
-    const ClothElements elements =
-        make_elements(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces));
+    const ClothElements elements = make_elements(config.cloth, topology);
     double least = 1.0, greatest = 1.0;
     for (const FaceElement& face : elements.faces) {
         const Vec2 stretches = principal_stretches(FaceState(face, config.cloth.world).F);
@@ -247,14 +245,13 @@ void check_strain(const RunConfig& config, Warnings& warnings)
 }
 
 /// A stand-off as large as the cloth's cells is mostly one in other units.
-void check_thickness(const RunConfig& config, Warnings& warnings)
+void check_thickness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
 {
     if (config.scene.obstacles.empty()) return;
     double sum = 0.0;
-    const std::vector<MeshEdge> edges = make_topology(config.cloth.vertex_count(), config.cloth.faces).edges;
-    for (const MeshEdge& edge : edges)
+    for (const MeshEdge& edge : topology.edges)
         sum += (config.cloth.material[edge.b] - config.cloth.material[edge.a]).norm();
-    const double cell = sum / static_cast<double>(edges.size());
+    const double cell = sum / static_cast<double>(topology.edges.size());
     const double thickness = config.scene.material.thickness;
     if (thickness > cell)
         warnings.note(
@@ -267,15 +264,16 @@ void check_thickness(const RunConfig& config, Warnings& warnings)
 std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config)
 {
     Warnings warnings(document);
+    const MeshTopology topology = make_topology(config.cloth.vertex_count(), config.cloth.faces);
     check_time(config, warnings);
-    check_cloth(config, warnings);
+    check_cloth(config, topology, warnings);
     check_pins(config, warnings);
     check_wind(config, warnings);
     check_pulls(config, warnings);
     check_obstacles(config, warnings);
     check_turns(config, warnings);
-    check_strain(config, warnings);
-    check_thickness(config, warnings);
+    check_strain(config, topology, warnings);
+    check_thickness(config, topology, warnings);
     return warnings.lines_;
 }
 
