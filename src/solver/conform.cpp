@@ -208,11 +208,10 @@ class Conforming {
         return at != eol_.end() && at->vertex_id == v ? &*at : nullptr;
     }
 
-    /// Why the cloth's border leaves no room for a vertex; nothing where it does.
-    std::optional<RowCause> find_border_cause(const FeatureSite& site) const
+    /// Why the cloth's border leaves no room for a vertex; nothing where it does. `v` is the site's vertex,
+    /// `flow` (m/s) the material's over the feature there.
+    std::optional<RowCause> find_border_cause(const FeatureSite& site, int v, const Vec2& flow) const
     {
-        const int v = state_.index_of(site.near);
-        if (v < 0) return std::nullopt;
         const double h = target_.length(site.material);
         const EolVertex eol{site.near, site.obstacle, site.is_corner, site.feature, site.outward, 0};
         if (site.is_on_border && !site.is_corner && is_along_border(scene_, state_, stars_, site.edge, eol))
@@ -224,7 +223,6 @@ class Conforming {
         if (room < (site.is_corner ? kCornerInsertRoom : kInsertRoom) * h) return RowCause::NearBorder;
         // What comes fast would have to go at once.
         constexpr double kAside = 1e-3;  // of the target length: to see how fast the room closes
-        const Vec2 flow = find_feature_flow(scene_, state_, stars_, v, site.obstacle);
         const Vec2 aside = kAside * h * flow.stableNormalized();
         const double closing = (room - room_at(site.material + aside)) / (kAside * h) * flow.norm();
         if (room < kClearSteps * dt_ * closing) return RowCause::BorderAhead;
@@ -260,12 +258,12 @@ class Conforming {
     {
         const int tag = tags_.tag(site.obstacle, site.is_corner, site.feature);
         if (has_failed_) return RowCause::GivenUp;  // the step has failed on the vertices there were
-        if (const std::optional<RowCause> border = find_border_cause(site)) return border;
+        const int v = state_.index_of(site.near);
+        const Vec2 flow = find_feature_flow(scene_, state_, stars_, v, site.obstacle);
+        if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
         if (is_beside_other(site)) return RowCause::OtherFeature;
         if (site.is_corner && has_vertex_on(site)) return RowCause::BesideEol;
         const VertexId near = surgery_->has_vertex(site.near) ? site.near : nearest_to(site.material);
-        const int v = state_.index_of(site.near);
-        const Vec2 flow = find_feature_flow(scene_, state_, stars_, v, site.obstacle);
         const TraceInsertion made = insert_trace_point(
             *surgery_, target_, site.material, near,
             {site.is_corner ? TraceRole::Node : TraceRole::OnTrace, tag, kClearSteps * dt_ * flow});
