@@ -158,12 +158,33 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     return after;
 }
 
-/// A vertex that is EOL from now on has moved so far as it moves now.
-void begin_history(const State& before, State& after)
+/// Whether material flows through each vertex: those of EOL entries that can have coordinates. Surgery beside
+/// one can take them from it, and it is of the material for the step that is left to it.
+std::vector<char> find_flowing(const Scene& scene, const State& state, const ClothStars& stars)
+{
+    std::vector<char> is_flowing(state.ids.size(), 0);
+    Placement now;
+    std::vector<Vec3> positions;  // in the frame of obstacle `of`
+    int of = -1;
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
+        const Obstacle& obstacle = scene.obstacles[state.eol[entry].obstacle];
+        if (state.eol[entry].obstacle != of) {
+            of = state.eol[entry].obstacle;
+            now = obstacle.at(state.time);
+            positions = to_frame(now, state.mesh.world);
+        }
+        const EolPlacing placing = place_eol_vertex(obstacle, state, entry, stars, positions, now);
+        if (placing.coordinates) is_flowing[placing.coordinates->vertex] = 1;
+    }
+    return is_flowing;
+}
+
+/// A vertex that is EOL from now on, or no more, has moved so far as it moves now.
+void begin_history(const State& before, const std::vector<char>& is_flowing, State& after)
 {
     for (const EolVertex& eol : after.eol) {
-        if (before.eol_entry(eol.vertex_id) >= 0) continue;
         const int v = after.index_of(eol.vertex_id);
+        if (before.eol_entry(eol.vertex_id) >= 0 || !is_flowing[v]) continue;
         after.previous_world[v] = after.mesh.world[v] - after.previous_dt * after.velocity[v];
         after.previous_material[v] = after.mesh.material[v] - after.previous_dt * after.material_velocity[v];
         after.previous_velocity[v] = after.velocity[v];
@@ -171,7 +192,7 @@ void begin_history(const State& before, State& after)
     }
     for (const EolVertex& eol : before.eol) {
         const int v = after.index_of(eol.vertex_id);
-        if (v < 0 || after.eol_entry(eol.vertex_id) >= 0) continue;
+        if (v < 0 || is_flowing[v]) continue;
         after.previous_world[v] = after.mesh.world[v] - after.previous_dt * after.velocity[v];
         after.previous_material[v] = after.mesh.material[v];
         after.previous_velocity[v] = after.velocity[v];
@@ -189,17 +210,18 @@ State transfer(const Scene& scene, const State& before, const ConformedMesh& con
         for (const VertexChange& change : event.changes)
             if (event.operation != SurgeryOperation::Collapse) interpolate(event, change, all);
     State after = on_new_mesh(before, conformed, all);
-    for (const EolVertex& eol : before.eol)
-        if (const int v = after.index_of(eol.vertex_id); v >= 0 && after.eol_entry(eol.vertex_id) < 0)
-            after.material_velocity[v].setZero();
     const ClothStars stars = make_stars(after.mesh.vertex_count(), after.mesh.faces);
+    const std::vector<char> is_flowing = find_flowing(scene, after, stars);
+    for (const EolVertex& eol : before.eol)
+        if (const int v = after.index_of(eol.vertex_id); v >= 0 && !is_flowing[v])
+            after.material_velocity[v].setZero();
     drop_contacts_without_element(stars, after);
     const std::vector<std::vector<int>> faces_at_before =
         faces_at_vertices(before.mesh.vertex_count(), before.mesh.faces);
     report = fit_patches(
         scene, before, find_changed_patches({before, after, conformed.events, faces_at_before, stars.faces}),
         stars, most_strain, after);
-    begin_history(before, after);
+    begin_history(before, is_flowing, after);
     return after;
 }
 

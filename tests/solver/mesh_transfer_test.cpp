@@ -309,6 +309,29 @@ TEST(MeshTransfer, AReleasedVertexIsOfTheMaterialAgain)
     EXPECT_LT(report.energy_gain, -1e-6) << "what two sides of a fold did, one velocity cannot";
 }
 
+TEST(MeshTransfer, WhatCanHaveNoCoordinatesAnyMoreIsOfTheMaterialThoughItsEntryIsLeft)
+{
+    EolCloth flat(make_ridge(60.0), make_draped({8, 0.0, 180.0}));
+    const Vec3 uniform(0.5, 0.1, 0.2);
+    for (Vec3& v : flat.state.velocity) v = uniform;
+    const int at_border = flat.vertex_at(0.2, 0.0);
+    flat.add_eol(at_border, false, testing::tip_of(flat.scene.obstacles[0]));
+    ASSERT_TRUE(flat.place(at_border).coordinates);
+    flat.state.velocity[at_border] = Vec3(0.0, 0.1, 0.2);
+    flat.state.material_velocity[at_border] = Vec2(-0.5, 0.0);
+    set_history(flat.state);
+    std::vector<EolVertex> eol = flat.state.eol;
+    eol[0].is_corner = true;  // for which the cloth's border is no place
+    eol[0].feature = testing::end_of(flat.scene.obstacles[0]);
+    const State after = carry(flat, conformed(operate(flat.state), eol));
+    ASSERT_EQ(after.eol.size(), 1u);
+    EXPECT_EQ(after.material_velocity[at_border], Vec2(0, 0));
+    EXPECT_EQ(after.previous_material_velocity[at_border], Vec2(0, 0));
+    EXPECT_EQ(after.previous_material[at_border], after.mesh.material[at_border]);
+    EXPECT_LT((after.velocity[at_border] - uniform).norm(), kRoundOff);
+    EXPECT_EQ(after.previous_velocity[at_border], after.velocity[at_border]);
+}
+
 TEST(MeshTransfer, StopsAtThePatchThatIsStrainedWhereItIsTo)
 {
     // At rest and without weight nothing may strain the cloth; a fold that is cut off at two places does.
