@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "geometry/cloth_grid.h"
+#include "geometry/initial_target.h"
 #include "geometry/mesh_quality.h"
 #include "geometry/obstacle_shapes.h"
 #include "geometry/penetration.h"
@@ -68,8 +69,9 @@ struct ObstacleRun {
     State state;
     Workspace work;
     int rewound = 0, yielded = 0, most_solves = 0;
-    double driven = 0.0;       ///< J, work of what moves, so far
-    double worst_rise = -1.0;  ///< of an accepted part's energy beyond that work, over what it may be
+    double worst_gained = 0.0;  ///< J, by an accepted part, as its report says
+    double driven = 0.0;        ///< J, work of what moves, so far
+    double worst_rise = -1.0;   ///< of an accepted part's energy beyond that work, over what it may be
 
     ObstacleRun(std::vector<Obstacle> obstacles, ClothMesh mesh, const Vec3& velocity = Vec3::Zero(),
                 bool has_gravity = true)
@@ -87,6 +89,7 @@ struct ObstacleRun {
             rewound += report.rewound;
             yielded += report.yielded;
             most_solves = std::max(most_solves, report.solves);
+            worst_gained = std::max(worst_gained, report.energy_rise);
             for (const Obstacle& obstacle : scene.obstacles) expect_free(obstacle);
             return true;
         };
@@ -327,6 +330,34 @@ TEST(MovingObstacle, CarriesClothWithoutPushingEnergyIn)
         const bool is_rising = run.state.time > 0.15 && run.state.time < 0.2999;
         ASSERT_TRUE(!is_rising || std::abs(run.kinetic() - 0.5 * 0.05 * 0.16) < 1e-9);
     }
+}
+
+TEST(MovingObstacle, PulledAwayFromUnderAFoldPushesNoEnergyIn)
+{
+    // Its edge goes 2 cm a step, and presses on nothing any more.
+    RigidMotion motion;
+    motion.velocity = Vec3(-4, 0, 0);
+    motion.start = 0.1;
+    ObstacleMesh table = make_box({2, 2, 1});
+    for (Vec3& p : table.points) p -= Vec3(1, 0, 0.5);
+    ClothGrid grid;
+    grid.size = {0.5, 0.3};
+    grid.resolution = {8, 5};
+    grid.pattern = GridPattern::Diagonal;
+    ClothMesh sheet = make_cloth_grid(grid);
+    for (Vec3& x : sheet.world) x += Vec3(-0.3, -0.15, 0.004);
+    ObstacleRun run({Obstacle("table", table, {}, motion, 30.0)}, std::move(sheet));
+    run.scene.material = {0.1, 2e4, 0.3, 1e-6, 0.002, 1e-3};
+    run.scene.eol = make_initial_target(run.state.mesh);
+    int most_eol = 0;
+    for (int k = 0; k < 60; ++k) {
+        for (const double jump : motion.jumps())
+            if (std::abs(run.state.time - jump) < 1e-9) restart(run.state);
+        ASSERT_EQ(run.advance(), StepStatus::Done);
+        most_eol = std::max(most_eol, static_cast<int>(run.state.eol.size()));
+        ASSERT_EQ(run.worst_gained, 0.0) << run.state.time;
+    }
+    EXPECT_GT(most_eol, 3);
 }
 
 /// Stiff cloth, thrown at what is not flat: the linear solve of a step knows nothing of what it does there.
