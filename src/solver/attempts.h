@@ -12,7 +12,7 @@ namespace arris {
 /// What a step may do where solve and check do not come to an end.
 enum class Attempt {
     Ordinary,  ///< fail: a shorter step may do
-    Last       ///< put patches of cloth back on their way, as `rewind` says
+    Last       ///< on a mesh without EOL vertices, last resorts: `rewind`, and energy that was gained
 };
 
 /// An EOL vertex over which more material would flow than the mesh has.

@@ -51,7 +51,7 @@ bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool m
         relinearise(scene, work, report);
         return true;
     }
-    if (attempt == Attempt::Ordinary || !state.eol.empty()) {
+    if (attempt == Attempt::Ordinary) {
         report.status = StepStatus::EnergyRise;
         return false;
     }

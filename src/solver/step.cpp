@@ -429,8 +429,10 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     }
     report.seconds.contacts += watch.lap();
 
-    // 4 - 6. Solve, propose, check: what the check finds becomes rows, in bounded rounds.
-    while (solve_and_check(scene, settings, end, start, attempt, work, report)) continue;
+    // 4 - 6. Solve, propose, check: what the check finds becomes rows, in bounded rounds. Where there are EOL
+    // vertices, to do without them comes before the last resorts.
+    const Attempt resort = start.eol.empty() ? attempt : Attempt::Ordinary;
+    while (solve_and_check(scene, settings, end, start, resort, work, report)) continue;
     watch.lap();
 
     work.failed.note(report, attempt, state, start, work.overrun);
