@@ -188,6 +188,10 @@ class Conforming {
     void forget_released()
     {
         std::erase_if(eol_, [this](const EolVertex& e) { return !is_on_trace(e.vertex_id); });
+        const auto is_gone = [this](const auto& of) { return !is_on_trace(of.first); };
+        std::erase_if(flow_, is_gone);
+        std::erase_if(ways_, is_gone);
+        std::erase_if(needed_, is_gone);
     }
 
     bool is_on_trace(VertexId v) const
