@@ -138,6 +138,29 @@ void check_obstacle_motion(const RunConfig& config, const RigidMotion& motion, c
                          "the one before is at the end of the run already");
 }
 
+double size_of(const std::vector<Vec3>& points)
+{
+    Box3 box;
+    for (const Vec3& p : points) box.extend(p);
+    return box.diagonal().norm();
+}
+
+/// A file without units that is far larger or smaller than the cloth is mostly one in other units.
+void check_units(const RunConfig& config, std::size_t i, Warnings& warnings)
+{
+    constexpr double kSurprising = 100.0;  // millimetres are a thousand
+    const auto& json = config.as_run["obstacle"][i];
+    if (!json.contains("file") || !json["units"].is_null()) return;
+    const Obstacle& obstacle = config.scene.obstacles[i];
+    const double size = size_of(obstacle.mesh().points), cloth = size_of(config.cloth.world);
+    if (size < kSurprising * cloth && cloth < kSurprising * size) return;
+    warnings.note(
+        fmt::format("obstacle.{}.file", i),
+        fmt::format("is {:.3g} m in size and the cloth {:.3g} m: 'units' or 'scale' say so where the "
+                    "file is not in metres",
+                    size, cloth));
+}
+
 void check_obstacles(const RunConfig& config, Warnings& warnings)
 {
     for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
@@ -150,6 +173,7 @@ void check_obstacles(const RunConfig& config, Warnings& warnings)
         }
         if (!json.contains("wire")) warnings.add(path + ".closed", "the obstacle is no wire");
         if (obstacle.mesh().faces.empty()) warnings.add(path + ".feature_angle", "the obstacle has no faces");
+        check_units(config, i, warnings);
         check_obstacle_motion(config, obstacle.motion(), path, warnings);
     }
     if (config.as_run["eol"]["enabled"].get<bool>() && !config.scene.eol)

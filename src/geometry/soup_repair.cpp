@@ -100,10 +100,12 @@ class SoupRepairer {
 
     void tell(const WeldCounts& counts)
     {
-        if (const int welded = counts.equal_points + counts.near_points; welded > 0)
+        if (counts.near_points > 0)
             warnings_.push_back(fmt::format("welded {} vertices ({} equal to others, {} within {:.3g} m)",
-                                            welded, counts.equal_points, counts.near_points,
-                                            counts.tolerance));
+                                            counts.equal_points + counts.near_points, counts.equal_points,
+                                            counts.near_points, counts.tolerance));
+        else if (counts.equal_points > 0)  // some formats know no shared vertices
+            notes_.push_back(fmt::format("welded {} vertices that equal others", counts.equal_points));
         warn_of(counts.collapsed_faces, "dropped {} faces that name a vertex twice");
         warn_of(counts.duplicate_faces, "dropped {} duplicate faces");
         warn_of(counts.zero_segments, "dropped {} segments of no length");

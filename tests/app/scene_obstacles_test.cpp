@@ -167,6 +167,24 @@ TEST(SceneObstacles, ReadsFilesBesideTheSceneInTheirUnits)
     EXPECT_EQ(config.scene.obstacles[0].topology().is_solid, std::vector<char>{1});
 }
 
+TEST(SceneObstacles, TellOfAFileThatIsMostlyInOtherUnits)
+{
+    const TemporaryDirectory dir;
+    write_bytes(dir / "wedge.obj", kTetrahedron);
+    const auto warnings_of = [&](const std::string& keys) {
+        write_bytes(dir / "s.toml",
+                    kBase + "[[obstacle]]\nfile = \"wedge.obj\"\ntranslate = [0, 0, 500]\n" + keys);
+        return load_scene(dir / "s.toml", {}, with_program()).warnings;
+    };
+    EXPECT_THAT(warnings_of(""), IsEmpty());
+    EXPECT_THAT(warnings_of("scale = 30\n"), IsEmpty());
+    EXPECT_THAT(warnings_of("scale = 100\n"),
+                ElementsAre(AllOf(HasSubstr("obstacle.0.file"),
+                                  HasSubstr("374 m in size and the cloth 1.41 m"), HasSubstr("'units'"))));
+    EXPECT_THAT(warnings_of("scale = 1e-3\n"), SizeIs(1));
+    EXPECT_THAT(warnings_of("scale = 100\nunits = \"m\"\n"), IsEmpty());
+}
+
 TEST(SceneObstacles, BlamesTheKeyThatNamesABadFileAndTellsWhatWasRepaired)
 {
     const TemporaryDirectory dir;
