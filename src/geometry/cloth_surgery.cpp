@@ -176,11 +176,6 @@ const std::vector<SurgeryEvent>& ClothSurgery::events() const
     return implementation_->events;
 }
 
-void ClothSurgery::clear_events()
-{
-    implementation_->events.clear();
-}
-
 std::vector<VertexId> ClothSurgery::take_touched()
 {
     std::vector<VertexId> taken(implementation_->touched.begin(), implementation_->touched.end());

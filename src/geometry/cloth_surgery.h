@@ -187,7 +187,6 @@ class ClothSurgery {
     // --- what happened
 
     const std::vector<SurgeryEvent>& events() const;
-    void clear_events();
     /// Ascending: the vertices of all faces made, and those released or touched by hand, that are still
     /// there, since the last call.
     std::vector<VertexId> take_touched();

@@ -474,7 +474,6 @@ TEST(JoinTraceVertices, RandomLinesInTurnKeepMeshAndVertexCount)
             ASSERT_EQ(check.find_wrong(surgery), "") << cloth.name << " line " << k;
             release_all(surgery);
             clean_up(surgery, target);
-            surgery.clear_events();
             most = std::max(most, surgery.vertex_count());
         }
         fmt::print("{}: vertices {} most {};", cloth.name, cloth.mesh.vertex_count(), most);

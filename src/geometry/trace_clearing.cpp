@@ -9,7 +9,7 @@
 //
 // Clearing ends: a merge removes a vertex, and a flip is made only where it leaves fewer threatened faces, so
 // that (vertices, threatened faces) sinks strictly in lexicographic order.
-#include "geometry/trace_motion.h"
+#include "geometry/trace_clearing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,6 @@
 #include <set>
 #include <tuple>
 
-#include "geometry/surgery_cleanup.h"
-
 namespace arris {
 namespace {
 
@@ -27,7 +25,6 @@ constexpr double kClear = 0.3;       // of the target length
 constexpr double kSoundAngle = 3.0;  // degrees: preferred are ways that leave no thinner face
 constexpr double kLeastAngle = 0.1;  // degrees: where rounding decides which side up a face is
 constexpr int kInstants = 4;         // of the way, at which faces are looked at: corners go straight
-constexpr int kMostSubsteps = 100000;
 constexpr int kMostStages = 100;
 
 std::array<Vec2, 3> ways_of(const PatchFace& face, const TraceWays& ways)
@@ -267,11 +264,21 @@ std::vector<VertexId> find_blocked(const ClothSurgery& surgery, const TraceWays&
     return blocked;
 }
 
+}  // namespace
+
+bool turns_over(const PatchFace& face, const TraceWays& ways)
+{
+    return !(least_area(face, ways) > 0.0);
+}
+
 // In stages of at most kClear of the target length, so that what stands nearest goes first: vertices of one
 // cell after the other can be merged into the trace, but not those behind others. Then up to kClear where the
 // way is shorter: that is room for what comes, which another trace may take, too.
-ClearanceReport clear(ClothSurgery& surgery, const MeshTarget& target, TraceWays ahead)
+ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
+                            const std::vector<TraceAdvance>& advances)
 {
+    TraceWays ahead;
+    for (const TraceAdvance& advance : advances) ahead[advance.vertex] = advance.ahead;
     double stages = 1.0;
     TraceWays room;
     for (auto at = ahead.begin(); at != ahead.end();) {
@@ -299,112 +306,6 @@ ClearanceReport clear(ClothSurgery& surgery, const MeshTarget& target, TraceWays
     report.ways = std::move(room);
     report.needed = std::move(ahead);
     return report;
-}
-
-class TraceMotion {
-  public:
-    TraceMotion(ClothSurgery& surgery, const MeshTarget& target, const std::vector<VertexMove>& moves)
-        : surgery_(surgery), target_(target)
-    {
-        for (const VertexMove& move : moves)
-            rest_[move.vertex] = {move.material - surgery.material(move.vertex), move.keeps_world};
-    }
-
-    TraceMotionReport run()
-    {
-        TraceMotionReport report;
-        const int count = substep_count();
-        for (int k = 0; k < count && report.verdict == Verdict::Done; ++k) {
-            const double share = 1.0 / (count - k);
-            const std::size_t events = surgery_.events().size();
-            TraceWays ahead;
-            for (const auto& [v, way] : rest_) ahead[v] = share * way.vector;
-            report.blocked = clear(surgery_, target_, ahead).blocked;
-            follow(events);
-            report.verdict = take_step(share);
-            if (report.verdict != Verdict::Done) break;
-            const std::size_t cleared = surgery_.events().size();
-            clean_up(surgery_, target_);
-            follow(cleared);
-            ++report.substeps;
-            report.fraction = double(report.substeps) / count;
-        }
-        if (report.verdict == Verdict::Done) report.blocked.clear();
-        return report;
-    }
-
-  private:
-    struct Way {
-        Vec2 vector;
-        bool keeps_world;
-    };
-
-    int substep_count() const
-    {
-        double most = 1.0;
-        for (const auto& [v, way] : rest_)
-            most = std::max(most, way.vector.norm() / (kClear * target_.length(surgery_.material(v))));
-        return static_cast<int>(std::min(std::ceil(most), double(kMostSubsteps)));
-    }
-
-    Verdict take_step(double share)
-    {
-        std::vector<VertexMove> moves;
-        for (auto& [v, way] : rest_)
-            moves.push_back({v, surgery_.material(v) + share * way.vector, way.keeps_world});
-        const Verdict verdict = surgery_.commit(surgery_.propose_moves(moves));
-        if (verdict != Verdict::Done) return verdict;
-        for (auto& [v, way] : rest_) way.vector *= 1.0 - share;
-        return Verdict::Done;
-    }
-
-    // Drops vertices that are gone and takes along those put on the trace.
-    void follow(std::size_t first_event)
-    {
-        for (std::size_t k = first_event; k < surgery_.events().size(); ++k) {
-            const SurgeryEvent& event = surgery_.events()[k];
-            if (event.operation == SurgeryOperation::Collapse) rest_.erase(event.edge[0]);
-            if (event.operation != SurgeryOperation::SplitEdge || event.role == TraceRole::Free) continue;
-            const double s = event.changes[0].weights[1];
-            Way way{Vec2::Zero(), true};
-            for (const auto& [v, weight] : {std::pair(event.edge[0], 1.0 - s), std::pair(event.edge[1], s)}) {
-                const auto at = rest_.find(v);
-                if (at == rest_.end()) continue;
-                way.vector += weight * at->second.vector;
-                way.keeps_world = way.keeps_world && at->second.keeps_world;
-            }
-            rest_[event.changes[0].vertex] = way;
-        }
-    }
-
-    ClothSurgery& surgery_;
-    const MeshTarget& target_;
-    std::map<VertexId, Way> rest_;  // of the way
-};
-
-}  // namespace
-
-bool turns_over(const PatchFace& face, const TraceWays& ways)
-{
-    return !(least_area(face, ways) > 0.0);
-}
-
-ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
-                            const std::vector<TraceAdvance>& advances)
-{
-    TraceWays ahead;
-    for (const TraceAdvance& advance : advances) ahead[advance.vertex] = advance.ahead;
-    return clear(surgery, target, std::move(ahead));
-}
-
-TraceMotionReport move_trace(ClothSurgery& surgery, const MeshTarget& target,
-                             const std::vector<VertexMove>& moves)
-{
-    for (const VertexMove& move : moves) {
-        if (!surgery.has_vertex(move.vertex)) return {Verdict::Missing, 0, 0.0, {}};
-        if (!move.material.allFinite()) return {Verdict::Argument, 0, 0.0, {}};
-    }
-    return TraceMotion(surgery, target, moves).run();
 }
 
 }  // namespace arris
