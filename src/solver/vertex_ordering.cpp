@@ -4,6 +4,7 @@
 #include <cholmod.h>
 
 #include <cassert>
+#include <csignal>
 #include <new>
 #include <stdexcept>
 
@@ -48,12 +49,25 @@ cholmod_sparse view(VertexGraph& graph)
     return sparse;
 }
 
+/// METIS takes SIGTERM for its own while it works, and gives up with a status that says nothing. Whoever sent
+/// it meant the program: that gets it now, and METIS another try.
+bool order_by_metis(cholmod_sparse& graph, std::vector<int>& vertices, cholmod_common& common)
+{
+    const auto has_ordered = [&] {
+        return cholmod_metis(&graph, nullptr, 0, 1, vertices.data(), &common) != 0;
+    };
+    if (has_ordered()) return true;
+    if (common.status != CHOLMOD_INVALID) return false;
+    std::raise(SIGTERM);
+    return has_ordered();
+}
+
 bool order(cholmod_sparse& graph, VertexOrdering ordering, std::vector<int>& vertices, cholmod_common& common)
 {
     std::vector<int> parent(graph.nrow), member(graph.nrow);
     switch (ordering) {
         case VertexOrdering::Metis:
-            return cholmod_metis(&graph, nullptr, 0, 1, vertices.data(), &common) != 0;
+            return order_by_metis(graph, vertices, common);
         case VertexOrdering::NestedDissection:
             return cholmod_nested_dissection(&graph, nullptr, 0, vertices.data(), parent.data(),
                                              member.data(), &common) >= 0;
