@@ -8,6 +8,8 @@
 #include "geometry/closest_point.h"
 #include "geometry/contact_plane.h"
 #include "geometry/feature_nodes.h"
+#include "geometry/feature_path.h"
+#include "solver/feature_sites.h"
 #include "solver/fold_contacts.h"
 
 namespace arris {
@@ -177,11 +179,22 @@ bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordina
            is_of_wire(topology.edge_at(contact.element, 0));
 }
 
+/// Whether a point of the obstacle is within the mitre and a little of the feature of an EOL vertex, wherever
+/// along it: that is where the vertex has gone by the step's end.
+bool is_near_feature(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at,
+                     double thickness, const Vec3& point)
+{
+    const Vec3 nearest =
+        eol.is_corner
+            ? at.frame.point
+            : place_on_feature(obstacle, follow_polyline(obstacle, eol.feature, point).feature, point).point;
+    return (point - nearest).norm() <= kOnFeature * thickness;
+}
+
 /// Whether a contact that the search found is one of an EOL vertex with the feature it is on.
 bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, const Vec3& place,
                 double thickness, const ObstacleContact& contact)
 {
-    constexpr double kNear = 2.5;  // mitre and a little
     const ObstacleFeatures& features = obstacle.features();
     const int corner = eol.is_corner ? features.corners[eol.feature].point : -1;
     if (contact.kind != ContactKind::Vertex && !eol.is_corner &&
@@ -189,8 +202,8 @@ bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordin
         return is_beside(obstacle, eol, at, place, thickness, contact);
     if (contact.kind == ContactKind::Triangle) return contact.element == corner;
     if (contact.kind == ContactKind::Vertex)
-        return (contact.point - at.frame.point).norm() <= kNear * thickness &&
-               contact.normal.dot(at.frame.outward) > 0.0;
+        return contact.normal.dot(at.frame.outward) > 0.0 &&
+               is_near_feature(obstacle, eol, at, thickness, contact.point);
     const ObstacleEdge& edge = obstacle.topology().edges[contact.element];
     if (!eol.is_corner) return contact.element == features.edges[eol.feature].edge;
     return edge.points[0] == corner || edge.points[1] == corner;

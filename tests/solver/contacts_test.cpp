@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/obstacle_shapes.h"
 #include "tests/solver/eol_cloth.h"
 #include "tests/solver/floor.h"
 
@@ -249,6 +250,37 @@ TEST(EolContacts, WhatIsOnItsWayOutIsNotHeldToItsSpeed)
         ASSERT_NE(bound, contacts.end());
         EXPECT_NEAR(bound->in_frame.least_gap, testing::kThickness, kRoundOff) << outward;
         EXPECT_NEAR(bound->gap, 0.0, kRoundOff) << "it may stay where it is";
+    }
+}
+
+TEST(EolContacts, GoAlongWithAVertexThatSlidesAlongItsFeature)
+{
+    // In a step it goes four stand-offs along: what its bound holds is not held a second time by a row there.
+    for (const bool is_wire : {false, true}) {
+        testing::EolCloth cloth = testing::lying(0.0, 0.5 * testing::kLyingCell);
+        if (is_wire) {
+            cloth.scene.obstacles.clear();
+            cloth.scene.obstacles.push_back(
+                Obstacle("wire", make_wire({{0, -0.5, 0}, {0, 0, 0}, {0, 0.5, 0}}, false), {}, {}, 30.0));
+        }
+        for (Vec3& v : cloth.state.velocity) v = Vec3(0.0, 0.8, 0.0);
+        const auto& world = cloth.state.mesh.world;
+        for (std::size_t v = 0; v < world.size(); ++v)
+            if (std::abs(world[v].x()) < 1e-9 && std::abs(world[v].y()) < 0.1)
+                cloth.add_eol(static_cast<int>(v), false,
+                              is_wire ? (world[v].y() > 0.0 ? 1 : 0)
+                                      : testing::tip_of(cloth.scene.obstacles[0]));
+        ASSERT_GT(cloth.state.eol.size(), 2u);
+        const std::vector<MeshEdge> edges = testing::edges_of(cloth.state);
+        const Prediction prediction = predict(cloth.state, Integrator::Bdf2, 0.005);
+        std::vector<ObstacleStep> steps =
+            move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
+        std::vector<Contact> contacts = find_contacts(cloth.scene, cloth.state, prediction, steps);
+        add_eol_contacts(cloth.scene, cloth.state, cloth.stars(), prediction, steps, contacts);
+        for (const Contact& contact : contacts)
+            EXPECT_TRUE(contact.eol >= 0 || !contact.is_vertex() ||
+                        cloth.state.eol_entry(cloth.state.ids[contact.in_frame.vertices[0]]) < 0)
+                << (is_wire ? "wire" : "ridge") << ", at " << contact.in_frame.point.y();
     }
 }
 
