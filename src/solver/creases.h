@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "physics/cloth_elements.h"
 #include "solver/eol_coordinates.h"
 #include "solver/scene.h"
@@ -8,9 +11,21 @@
 
 namespace arris {
 
-/// Makes those hinges of `elements` creases that lie along features between EOL vertices, where the mesh is
-/// too coarse for the bend that the cloth has there, and the others none. `stars` and `elements` are the
-/// state's. True where anything changed: energies known of these elements are old.
-bool mark_creases(const Scene& scene, const State& state, const ClothStars& stars, ClothElements& elements);
+/// Which hinges of a mesh are creases (physics/bending.h).
+struct Creases {
+    double width = 0.0;                     ///< m; 0 where there are none
+    std::vector<std::array<int, 2>> edges;  ///< of the cloth, that lie along features; ends and list ascend
+};
+
+/// Width, m, of the creases of this cloth: none (0) without a target for the mesh, and where the mesh
+/// resolves the bend that the cloth has at a feature.
+double find_crease_width(const Scene& scene, const ClothMesh& cloth);
+
+/// Those between EOL vertices. `stars` are the state's.
+Creases find_creases(const Scene& scene, const State& state, const ClothStars& stars);
+
+/// Makes the hinges of `elements` at these edges creases and the others none. `elements` are the mesh's. True
+/// where anything changed: energies known of these elements are old.
+bool mark_creases(const Creases& creases, const ClothMesh& mesh, ClothElements& elements);
 
 }  // namespace arris

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "solver/strain_allowance.h"
+#include "solver/surgery_energy.h"
 
 namespace arris {
 
@@ -22,7 +23,8 @@ IdFace from_least(IdFace face)
 EolGuard::EolGuard(const Scene& scene, const State& state, StrainLimit limit)
     : scene_(scene),
       state_(state),
-      membrane_(scene.material.youngs_modulus, scene.material.poisson_ratio),
+      terms_(make_terms(scene.material, scene.gravity, {}, {})),
+      crease_width_(find_crease_width(scene, state.mesh)),
       limit_(limit)
 {
 }
@@ -30,20 +32,19 @@ EolGuard::EolGuard(const Scene& scene, const State& state, StrainLimit limit)
 bool EolGuard::allows(const SurgeryEvent& event)
 {
     const double thickness = scene_.material.thickness;
-    if (strain_gain(event) > 0.0 && (limit_ != StrainLimit::GivesWay || !can_give_way(event))) return false;
+    if (strains(event)) return false;
     return std::all_of(scene_.obstacles.begin(), scene_.obstacles.end(), [&](const Obstacle& obstacle) {
         return is_free(event, obstacle, obstacle.at(state_.time), thickness);
     });
 }
 
-double EolGuard::allowance(const SurgeryEvent& event) const
+double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) const
 {
-    constexpr double kShare = 0.01;  // of the patch's stretch energy
+    constexpr double kShare = 0.01;  // of the patch's elastic energy
     // The alternative is to give the trace up: a row that holds all that slides.
     const double clearing = limit_ == StrainLimit::Forced ? 100.0 : 10.0;
-    double before = 0.0, area = 0.0, squared_speed = 0.0;
+    double area = 0.0, squared_speed = 0.0;
     for (const PatchFace& face : event.before) {
-        before += stretch_of(face);
         area += 0.5 * twice_area(face.material[0], face.material[1], face.material[2]);
         for (const VertexId id : face.vertices)
             if (const int v = state_.index_of(id); v >= 0)
@@ -53,23 +54,27 @@ double EolGuard::allowance(const SurgeryEvent& event) const
                           weight_over(scene_, area, scene_.eol->length(event.before[0].material[0]));
     constexpr double kStrain = 1e-6;  // nobody sees; of cloth without strain and motion rounding is all
     const double unseen = scene_.material.youngs_modulus * area * kStrain * kStrain;
-    return (is_clearing_ ? clearing : 1.0) * (kShare * before + kAllowedStrain * motion + unseen);
+    return (is_clearing_ ? clearing : 1.0) * (kShare * elastic_energy + kAllowedStrain * motion + unseen);
 }
 
-double EolGuard::strain_gain(const SurgeryEvent& event) const
+bool EolGuard::strains(const SurgeryEvent& event)
 {
-    double gain = -allowance(event);
-    for (const PatchFace& face : event.before) gain -= stretch_of(face);
-    for (const PatchFace& face : event.after) gain += stretch_of(face);
-    return gain;
+    const bool is_split =
+        event.operation == SurgeryOperation::SplitEdge || event.operation == SurgeryOperation::SplitFace;
+    if (is_split) return false;  // changes no surface, if how wide the hinges are
+    const Energies before = find_energies(*surgery_, event, event.before, terms_, crease_width_);
+    const Energies after = find_energies(*surgery_, event, event.after, terms_, crease_width_);
+    const double allowed = allowance(event, before.stretch + before.bending);
+    if (!(after.sum() - before.sum() > allowed)) return false;
+    return limit_ != StrainLimit::GivesWay || !can_give_way(event, allowed);
 }
 
-bool EolGuard::can_give_way(const SurgeryEvent& event)
+bool EolGuard::can_give_way(const SurgeryEvent& event, double allowed)
 {
     const Neighbourhood around = look_around(event);
-    const double before = find_elastic_energy(scene_, make_patch(event.before, around, event).mesh);
+    const LoosePatch before = make_patch(event.before, around, event);
     return relaxations_.can_relax_to(scene_, make_patch(event.after, around, event),
-                                     before + allowance(event));
+                                     find_patch_energy(scene_, before.creases, before.mesh) + allowed);
 }
 
 EolGuard::Neighbourhood EolGuard::look_around(const SurgeryEvent& event) const
@@ -98,6 +103,7 @@ LoosePatch EolGuard::make_patch(const std::vector<PatchFace>& changed, const Nei
                                 const SurgeryEvent& event) const
 {
     LoosePatch patch;
+    patch.creases.width = crease_width_;
     std::unordered_map<VertexId, int> local;
     const auto add = [&](const PatchFace& face) {
         Face made;
@@ -111,9 +117,14 @@ LoosePatch EolGuard::make_patch(const std::vector<PatchFace>& changed, const Nei
             patch.normals.push_back(find_kept_normal(scene_, state_, face.vertices[i]));
         }
         patch.mesh.faces.push_back(made);
+        for (int i = 0; i < 3; ++i)
+            if (const int a = made[i], b = made[(i + 1) % 3];
+                a < b && is_on_trace(*surgery_, event, face.vertices[i], face.vertices[(i + 1) % 3]))
+                patch.creases.edges.push_back({a, b});
     };
     for (const PatchFace& face : changed) add(face);
     for (const PatchFace& face : around.kept) add(face);
+    std::sort(patch.creases.edges.begin(), patch.creases.edges.end());
     return patch;
 }
 
@@ -127,13 +138,6 @@ bool EolGuard::is_loose(VertexId v, const std::set<VertexId>& near, const Surger
     const VertexRing around = surgery_->ring(v);
     return std::all_of(around.vertices.begin(), around.vertices.end(),
                        [&](VertexId w) { return near.contains(w); });
-}
-
-double EolGuard::stretch_of(const PatchFace& face) const
-{
-    const std::vector<Vec2> X(face.material.begin(), face.material.end());
-    const std::vector<Vec3> x(face.world.begin(), face.world.end());
-    return membrane_.energy(FaceState(make_face_element(X, {0, 1, 2}), x));
 }
 
 }  // namespace arris

@@ -5,7 +5,7 @@
 
 #include "geometry/cloth_surgery.h"
 #include "geometry/surgery_clearance.h"
-#include "physics/membrane.h"
+#include "physics/term.h"
 #include "solver/patch_relaxation.h"
 #include "solver/relaxation_memo.h"
 #include "solver/scene.h"
@@ -21,7 +21,8 @@ enum class StrainLimit {
 };
 
 /// What mesh surgery may do to the cloth of a state: nothing of an obstacle gets through it, and it is hardly
-/// strained.
+/// strained: the sum of stretch, bending and gravity energy does not rise, with the terms and creases of the
+/// step.
 class EolGuard {
   public:
     EolGuard(const Scene& scene, const State& state, StrainLimit limit);
@@ -34,11 +35,10 @@ class EolGuard {
     void set_clearing(bool is_clearing) { is_clearing_ = is_clearing; }
 
   private:
-    /// By how much an operation raises the stretch energy, J, beyond what is allowed; not above 0 otherwise.
-    double strain_gain(const SurgeryEvent& event) const;
-    double stretch_of(const PatchFace& face) const;
-    /// Whether the cloth around could take up what strain an operation makes.
-    bool can_give_way(const SurgeryEvent& event);
+    /// Whether an operation raises the cloth's energy beyond what is allowed, and the cloth around could not
+    /// take up what strain it makes, where it may.
+    bool strains(const SurgeryEvent& event);
+    bool can_give_way(const SurgeryEvent& event, double allowed);
     /// Around an operation: vertices, and the faces between them that it does not replace.
     struct Neighbourhood {
         std::set<VertexId> near;
@@ -49,11 +49,12 @@ class EolGuard {
     LoosePatch make_patch(const std::vector<PatchFace>& changed, const Neighbourhood& around,
                           const SurgeryEvent& event) const;
     bool is_loose(VertexId v, const std::set<VertexId>& near, const SurgeryEvent& event) const;
-    double allowance(const SurgeryEvent& event) const;
+    double allowance(const SurgeryEvent& event, double elastic_energy) const;
 
     const Scene& scene_;
     const State& state_;
-    Membrane membrane_;
+    Terms terms_;          ///< that have an energy
+    double crease_width_;  ///< m
     StrainLimit limit_;
     bool is_clearing_ = false;
     const ClothSurgery* surgery_ = nullptr;

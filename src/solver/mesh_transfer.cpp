@@ -202,25 +202,23 @@ void begin_history(const State& before, const std::vector<char>& is_flowing, Sta
 
 }  // namespace
 
-State transfer(const Scene& scene, const State& before, const ConformedMesh& conformed,
-               TransferReport& report, double most_strain)
+State transfer(const Scene& scene, const State& before, const ClothStars& stars,
+               const ConformedMesh& conformed, TransferReport& report, double most_strain)
 {
     CarriedById all(before);
     for (const SurgeryEvent& event : conformed.events)
         for (const VertexChange& change : event.changes)
             if (event.operation != SurgeryOperation::Collapse) interpolate(event, change, all);
     State after = on_new_mesh(before, conformed, all);
-    const ClothStars stars = make_stars(after.mesh.vertex_count(), after.mesh.faces);
-    const std::vector<char> is_flowing = find_flowing(scene, after, stars);
+    const ClothStars stars_after = make_stars(after.mesh.vertex_count(), after.mesh.faces);
+    const std::vector<char> is_flowing = find_flowing(scene, after, stars_after);
     for (const EolVertex& eol : before.eol)
         if (const int v = after.index_of(eol.vertex_id); v >= 0 && !is_flowing[v])
             after.material_velocity[v].setZero();
-    drop_contacts_without_element(stars, after);
-    const std::vector<std::vector<int>> faces_at_before =
-        faces_at_vertices(before.mesh.vertex_count(), before.mesh.faces);
-    report = fit_patches(
-        scene, before, find_changed_patches({before, after, conformed.events, faces_at_before, stars.faces}),
-        stars, most_strain, after);
+    drop_contacts_without_element(stars_after, after);
+    const std::vector<ChangedPatch> patches =
+        find_changed_patches({before, after, conformed.events, stars.faces, stars_after.faces});
+    report = fit_patches(scene, before, stars, patches, stars_after, most_strain, after);
     begin_history(before, is_flowing, after);
     return after;
 }

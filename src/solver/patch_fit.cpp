@@ -2,9 +2,9 @@
 #include "solver/patch_fit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
-#include "geometry/sub_mesh.h"
 #include "physics/deformation_gradient.h"
 #include "physics/velocity_fit.h"
 #include "solver/held_vertices.h"
@@ -17,12 +17,15 @@ namespace {
 
 class PatchFitter {
   public:
-    PatchFitter(const Scene& scene, const State& before, const ClothStars& stars, State& after)
+    PatchFitter(const Scene& scene, const State& before, const ClothStars& stars_before,
+                const ClothStars& stars, State& after)
         : scene_(scene),
           before_(before),
           stars_(stars),
           after_(after),
-          held_(find_held_vertices(scene, after, after.time))
+          held_(find_held_vertices(scene, after, after.time)),
+          creases_before_(find_creases(scene, before, stars_before)),
+          creases_(find_creases(scene, after, stars))
     {
     }
 
@@ -64,14 +67,13 @@ class PatchFitter {
     }
 
     /// A mesh that strains the cloth more than the one before gives way.
-    /// Returns by how much its elastic energy is above what it was, J.
+    /// Returns by how much its energy is above what it was, J.
     double relax_patch(const ChangedPatch& patch)
     {
-        const double before =
-            find_elastic_energy(scene_, extract_faces(before_.mesh, patch.faces_before).mesh);
-        const double strained = find_elastic_energy(scene_, extract_faces(after_.mesh, patch.faces).mesh);
+        const double before = find_patch_energy(scene_, creases_before_, before_.mesh, patch.faces_before);
+        const double strained = find_patch_energy(scene_, creases_, after_.mesh, patch.faces);
         constexpr double kRounding = 1e-9;  // of sums over the patch: a split leaves the energy as it is
-        if (strained <= (1.0 + kRounding) * before) return 0.0;
+        if (strained - before <= kRounding * std::abs(before)) return 0.0;
 
         const std::size_t n = after_.ids.size();
         RelaxedPatch relaxed{patch.faces, std::vector<char>(n, 0), std::vector<Vec3>(n, Vec3::Zero()),
@@ -82,7 +84,7 @@ class PatchFitter {
             relaxed.normals[v] = find_kept_normal(scene_, after_, after_.ids[v]);
         }
         for (const HeldVertex& held : held_) relaxed.is_free[held.vertex] = 0;
-        return relax(scene_, relaxed, after_) - before;
+        return relax(scene_, creases_, relaxed, after_) - before;
     }
 
     /// Of a patch, over a cell, J.
@@ -164,15 +166,17 @@ class PatchFitter {
     const ClothStars& stars_;
     State& after_;
     std::vector<HeldVertex> held_;
+    Creases creases_before_, creases_;
     std::vector<Vec3> positions_;
 };
 
 }  // namespace
 
-TransferReport fit_patches(const Scene& scene, const State& before, const std::vector<ChangedPatch>& patches,
-                           const ClothStars& stars, double most_strain, State& after)
+TransferReport fit_patches(const Scene& scene, const State& before, const ClothStars& stars_before,
+                           const std::vector<ChangedPatch>& patches, const ClothStars& stars,
+                           double most_strain, State& after)
 {
-    return PatchFitter(scene, before, stars, after).run(patches, most_strain);
+    return PatchFitter(scene, before, stars_before, stars, after).run(patches, most_strain);
 }
 
 }  // namespace arris

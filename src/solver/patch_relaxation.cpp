@@ -3,6 +3,8 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <cmath>
+#include <unordered_map>
 #include <utility>
 
 #include "geometry/mesh_topology.h"
@@ -12,31 +14,58 @@
 #include "physics/linear_system.h"
 #include "physics/term.h"
 #include "solver/contacts.h"
+#include "solver/strain_allowance.h"
 
 namespace arris {
 
 namespace {
 
-/// What the shape costs, and mass.
-Terms make_elastic_terms(const Material& material)
+constexpr int kMostSteps = 8;
+
+/// What has an energy, and mass.
+Terms make_energy_terms(const Scene& scene)
 {
-    return make_terms(material, {}, {}, {});
+    return make_terms(scene.material, scene.gravity, {}, {});
 }
 
-double elastic_energy(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& world)
+/// Of each of the steps, s. In all together nothing falls by more than `kAllowedStrain` of a cell, or twice
+/// that. Without gravity nothing falls: mass only keeps what has no stiffness where it is.
+double find_step_time(const Scene& scene)
 {
-    const Energies energies = compute_energies(elements, terms, world);
-    return energies.stretch + energies.bending;
+    if (!scene.gravity || !scene.eol) return 1.0;
+    return std::sqrt(kAllowedStrain * scene.eol->mean_length /
+                     (kMostSteps * scene.gravity->acceleration.norm()));
+}
+
+/// Those of a part of the cloth, whose vertex i is `vertices[i]` of the whole.
+Creases find_part(const Creases& creases, const std::vector<int>& vertices)
+{
+    Creases part{creases.width, {}};
+    if (creases.edges.empty()) return part;
+    std::unordered_map<int, int> local;  // looked up only
+    for (std::size_t i = 0; i < vertices.size(); ++i) local[vertices[i]] = static_cast<int>(i);
+    for (const auto& [a, b] : creases.edges) {
+        const auto at_a = local.find(a), at_b = local.find(b);
+        if (at_a == local.end() || at_b == local.end()) continue;
+        const auto [first, second] = std::minmax(at_a->second, at_b->second);
+        part.edges.push_back({first, second});
+    }
+    std::sort(part.edges.begin(), part.edges.end());
+    return part;
 }
 
 /// The patch as a small cloth of its own, at rest.
 class Relaxation {
   public:
     Relaxation(const Scene& scene, LoosePatch patch)
-        : scene_(scene), patch_(std::move(patch)), terms_(make_elastic_terms(scene.material))
+        : scene_(scene),
+          patch_(std::move(patch)),
+          terms_(make_energy_terms(scene)),
+          step_time_(find_step_time(scene))
     {
         MeshTopology topology = make_topology(patch_.mesh.vertex_count(), patch_.mesh.faces);
         elements_ = make_elements(patch_.mesh, topology);
+        mark_creases(patch_.creases, patch_.mesh, elements_);
         edges_ = std::move(topology.edges);
         energy_ = energy_at(patch_.mesh.world);
     }
@@ -44,8 +73,7 @@ class Relaxation {
     /// Lowers the energy to `wanted` or below, or as far as a few steps bring it.
     void run(double wanted)
     {
-        constexpr int kMostSteps = 8;
-        for (int k = 0; k < kMostSteps && energy_ > wanted && descend(); ++k) continue;
+        for (int k = 0; k < kMostSteps && energy_ > wanted && descend(wanted); ++k) continue;
     }
 
     /// Back on the last step's way to where the energy has just fallen to `wanted`: what strain the cloth had
@@ -79,18 +107,18 @@ class Relaxation {
     }
 
   private:
-    /// One step of Newton's method that lowers the energy; false where there is none.
-    bool descend()
+    /// One step from rest that lowers the energy; false where there is none.
+    bool descend(double wanted)
     {
         constexpr int kMostHalvings = 8;
-        constexpr double kWorthwhile = 1e-3;  // of the energy
+        constexpr double kWorthwhile = 1e-3;  // of what there is to lower
         const std::vector<Vec3> way = find_way();
         double share = 1.0;
         for (int k = 0; k < kMostHalvings; ++k, share *= 0.5) {
             std::vector<Vec3> next = patch_.mesh.world;
             for (std::size_t v = 0; v < next.size(); ++v) next[v] += share * way[v];
             const double reached = energy_at(next);
-            if (!(reached < (1.0 - kWorthwhile) * energy_)) continue;
+            if (!(reached < energy_ - kWorthwhile * (energy_ - wanted))) continue;
             before_last_ = std::exchange(patch_.mesh.world, std::move(next));
             energy_ = reached;
             return true;
@@ -112,17 +140,17 @@ class Relaxation {
 
     double energy_at(const std::vector<Vec3>& world) const
     {
-        return elastic_energy(elements_, terms_, world);
+        return compute_energies(elements_, terms_, world).sum();
     }
 
-    /// (M + H) way = f, with a step of one second: M only keeps what has no stiffness where it is.
+    /// (M + t^2 H) way = t^2 f: implicit Euler's.
     std::vector<Vec3> find_way()
     {
         const std::size_t n = patch_.mesh.world.size();
         const bool is_first = system_.matrix().rows() == 0;  // many a patch never moves
         if (is_first) system_.make_pattern(elements_);
         Linearization at;
-        at.gamma = 1.0;
+        at.gamma = step_time_;
         at.position = patch_.mesh.world;
         at.v_predicted = at.v_expansion = at.v_last = at.drift = std::vector<Vec3>(n, Vec3::Zero());
         at.basis.assign(n, Mat3::Identity());
@@ -148,7 +176,7 @@ class Relaxation {
         factor_.factorize(matrix);
         std::vector<Vec3> way(n, Vec3::Zero());
         if (factor_.info() != Eigen::Success) return way;
-        const Eigen::VectorXd solution = factor_.solve(rhs);
+        const Eigen::VectorXd solution = step_time_ * factor_.solve(rhs);
         if (!solution.allFinite()) return way;
         for (std::size_t v = 0; v < n; ++v)
             if (patch_.is_free[v]) way[v] = solution.segment<3>(static_cast<Eigen::Index>(3 * v));
@@ -160,6 +188,7 @@ class Relaxation {
     std::vector<MeshEdge> edges_;
     ClothElements elements_;
     Terms terms_;
+    double step_time_;               ///< s
     double energy_ = 0.0;            ///< J, where it is
     std::vector<Vec3> before_last_;  ///< where it was before the last step
     LinearSystem system_;
@@ -180,11 +209,11 @@ Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vert
     return normal;
 }
 
-double relax(const Scene& scene, const RelaxedPatch& patch, State& state)
+double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state)
 {
     constexpr int kMostHalvings = 4;
     SubMesh part = extract_faces(state.mesh, patch.faces);
-    LoosePatch loose{std::move(part.mesh), {}, {}};
+    LoosePatch loose{std::move(part.mesh), {}, {}, find_part(creases, part.vertices)};
     for (const int v : part.vertices) {
         loose.is_free.push_back(patch.is_free[v]);
         loose.normals.push_back(patch.normals[v]);
@@ -213,10 +242,18 @@ bool can_relax_to(const Scene& scene, const LoosePatch& patch, double wanted)
     return relaxation.energy() <= wanted;
 }
 
-double find_elastic_energy(const Scene& scene, const ClothMesh& mesh)
+double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& mesh)
 {
-    const MeshTopology topology = make_topology(mesh.vertex_count(), mesh.faces);
-    return elastic_energy(make_elements(mesh, topology), make_elastic_terms(scene.material), mesh.world);
+    ClothElements elements = make_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
+    mark_creases(creases, mesh, elements);
+    return compute_energies(elements, make_energy_terms(scene), mesh.world).sum();
+}
+
+double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& cloth,
+                         const std::vector<int>& faces)
+{
+    const SubMesh part = extract_faces(cloth, faces);
+    return find_patch_energy(scene, find_part(creases, part.vertices), part.mesh);
 }
 
 }  // namespace arris

@@ -56,7 +56,7 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
         if (!conformed) break;
         if (conformed->report.lost > most_lost) continue;
         TransferReport transferred;
-        work.conformed = transfer(scene, state, *conformed, transferred, most_strain);
+        work.conformed = transfer(scene, state, work.stars, *conformed, transferred, most_strain);
         report.seconds.transfer += watch.lap();
         if (transferred.strain <= most_strain) break;
     }
@@ -402,7 +402,8 @@ void prepare(const Scene& scene, const State& state, Workspace& work)
     if (work.terms.faces.empty())
         work.terms = make_terms(scene.material, scene.gravity, scene.wind, scene.pulls);
     prepare_elements(state, work);
-    if (mark_creases(scene, state, work.stars, work.elements)) work.known.world.clear();
+    const Creases creases = find_creases(scene, state, work.stars);
+    if (mark_creases(creases, state.mesh, work.elements)) work.known.world.clear();
 }
 
 StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,

@@ -62,7 +62,7 @@ ConformedMesh take(EolCloth& cloth)
     std::optional<ConformedMesh> made = conform(cloth);
     EXPECT_TRUE(made);
     TransferReport report;
-    if (made) cloth.state = transfer(cloth.scene, cloth.state, *made, report);
+    if (made) cloth.state = transfer(cloth.scene, cloth.state, cloth.stars(), *made, report);
     return made ? *made : ConformedMesh{};
 }
 
@@ -254,7 +254,7 @@ TEST(Conform, WhereNothingHasChangedTheSecondTimeChangesNothing)
             EXPECT_EQ(flowing->report.released + flowing->report.inserted, 0);
             ++passes;
             TransferReport report;
-            cloth.state = transfer(cloth.scene, cloth.state, *flowing, report);
+            cloth.state = transfer(cloth.scene, cloth.state, cloth.stars(), *flowing, report);
         }
         EXPECT_LE(passes, 2) << turn;
     }

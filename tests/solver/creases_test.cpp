@@ -27,6 +27,11 @@ EolCloth draped_with(int count)
     return cloth;
 }
 
+bool mark(const EolCloth& cloth, ClothElements& elements)
+{
+    return mark_creases(find_creases(cloth.scene, cloth.state, cloth.stars()), cloth.state.mesh, elements);
+}
+
 std::vector<HingeElement> creases_of(const ClothElements& elements)
 {
     std::vector<HingeElement> creases;
@@ -40,7 +45,7 @@ TEST(Creases, AreTheHingesAlongAFeatureBetweenEolVertices)
     for (const int count : {0, 1, 2, 4}) {
         EolCloth cloth = draped_with(count);
         ClothElements elements = elements_of(cloth.state.mesh);
-        EXPECT_EQ(mark_creases(cloth.scene, cloth.state, cloth.stars(), elements), count > 1);
+        EXPECT_EQ(mark(cloth, elements), count > 1);
         const std::vector<HingeElement> creases = creases_of(elements);
         EXPECT_EQ(static_cast<int>(creases.size()), std::max(count - 1, 0));
         for (const HingeElement& crease : creases) {
@@ -58,7 +63,7 @@ TEST(Creases, AreNoneWithoutATargetForTheMesh)
     EolCloth cloth = draped_with(3);
     cloth.scene.eol.reset();
     ClothElements elements = elements_of(cloth.state.mesh);
-    EXPECT_FALSE(mark_creases(cloth.scene, cloth.state, cloth.stars(), elements));
+    EXPECT_FALSE(mark(cloth, elements));
 }
 
 TEST(Creases, AreNoneWhereTheMeshResolvesTheBend)
@@ -70,13 +75,13 @@ TEST(Creases, AreNoneWhereTheMeshResolvesTheBend)
          {std::pair(0.99 * tension * h * h, true), {1.01 * tension * h * h, false}}) {
         cloth.scene.material.bending_stiffness = stiffness;
         ClothElements elements = elements_of(cloth.state.mesh);
-        EXPECT_EQ(mark_creases(cloth.scene, cloth.state, cloth.stars(), elements), is_crease);
+        EXPECT_EQ(mark(cloth, elements), is_crease);
         EXPECT_EQ(creases_of(elements).empty(), !is_crease);
     }
     cloth.scene.material.bending_stiffness = 1e-6;
     cloth.scene.gravity.reset();
     ClothElements elements = elements_of(cloth.state.mesh);
-    EXPECT_FALSE(mark_creases(cloth.scene, cloth.state, cloth.stars(), elements)) << "nothing pulls";
+    EXPECT_FALSE(mark(cloth, elements)) << "nothing pulls";
 }
 
 TEST(Creases, AreNoneAnyMoreWhereTheVerticesAreReleased)
@@ -84,10 +89,10 @@ TEST(Creases, AreNoneAnyMoreWhereTheVerticesAreReleased)
     EolCloth cloth = draped_with(3);
     ClothElements elements = elements_of(cloth.state.mesh);
     const ClothElements plain = elements;
-    ASSERT_TRUE(mark_creases(cloth.scene, cloth.state, cloth.stars(), elements));
-    EXPECT_FALSE(mark_creases(cloth.scene, cloth.state, cloth.stars(), elements)) << "nothing has changed";
+    ASSERT_TRUE(mark(cloth, elements));
+    EXPECT_FALSE(mark(cloth, elements)) << "nothing has changed";
     cloth.state.eol.clear();
-    EXPECT_TRUE(mark_creases(cloth.scene, cloth.state, cloth.stars(), elements));
+    EXPECT_TRUE(mark(cloth, elements));
     EXPECT_TRUE(creases_of(elements).empty());
     for (std::size_t h = 0; h < plain.hinges.size(); ++h)
         EXPECT_EQ(elements.hinges[h].weight, plain.hinges[h].weight);

@@ -18,7 +18,7 @@ using testing::make_ridge;
 /// Flat cloth, a vertex of which is out of place and may move.
 LoosePatch make_patch(const EolCloth& cloth)
 {
-    LoosePatch patch{cloth.state.mesh, {}, {}};
+    LoosePatch patch{cloth.state.mesh, {}, {}, {}};
     patch.is_free.assign(patch.mesh.world.size(), 0);
     patch.normals.assign(patch.mesh.world.size(), Vec3::Zero());
     const int out = cloth.vertex_at(0.2, 0.2);
@@ -46,6 +46,10 @@ TEST(RelaxationMemo, AnswersWhateverHasChangedAsIfItHadNotBeenAskedBefore)
         {"normal", [](LoosePatch& patch, int v) { patch.normals[v] = Vec3::UnitZ(); }},
         {"world", [](LoosePatch& patch, int v) { patch.mesh.world[v == 0 ? 1 : 0].x() += 0.1; }},
         {"material", [](LoosePatch& patch, int v) { patch.mesh.material[v].x() += 0.02; }},
+        {"creases",
+         [](LoosePatch& patch, int v) {
+             patch.creases = {0.1, {{v, patch.mesh.vertex_count()}}};
+         }},
         {"faces", [](LoosePatch& patch, int) { patch.mesh.faces.pop_back(); }},
     };
     int questions = 1;

@@ -41,7 +41,7 @@ void take(EolCloth& cloth)
     const ConformOutcome outcome = conform(cloth);
     ASSERT_TRUE(outcome.mesh);
     TransferReport report;
-    cloth.state = transfer(cloth.scene, cloth.state, *outcome.mesh, report);
+    cloth.state = transfer(cloth.scene, cloth.state, cloth.stars(), *outcome.mesh, report);
     cloth.state.active.clear();
 }
 
