@@ -16,6 +16,7 @@
 #include "solver/eol_release.h"
 #include "solver/feature_flow.h"
 #include "solver/feature_sites.h"
+#include "solver/free_fold.h"
 #include "solver/held_vertices.h"
 #include "solver/trace_order.h"
 
@@ -251,6 +252,30 @@ class Conforming {
         });
     }
 
+    /// Whether an EOL vertex is of a fold that has left its edge.
+    bool has_left(const EolVertex& eol) const
+    {
+        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+        const Vec3 place = placed(eol).place;
+        if (!is_on_convex_edge(obstacle, eol)) return false;
+        const FeatureFrame frame{place_on_feature(obstacle, eol.feature, place).point, Vec3::Zero(),
+                                 Vec3::Zero(), 1.0};
+        return has_left_feature(frame, place, scene_.material.thickness);
+    }
+
+    /// Where a fold has left an edge, what follows it over the edge is not folded.
+    bool follows_free_fold(const FeatureSite& site) const
+    {
+        if (site.is_corner) return false;
+        const std::vector<FeatureEdge>& edges = scene_.obstacles[site.obstacle].features().edges;
+        const double reach = kFreeCells * target_.length(site.material);
+        return std::any_of(eol_.begin(), eol_.end(), [&](const EolVertex& e) {
+            return e.obstacle == site.obstacle && !e.is_corner && is_on_trace(e.vertex_id) &&
+                   edges[e.feature].polyline == edges[site.feature].polyline &&
+                   (surgery_->material(e.vertex_id) - site.material).norm() < reach && has_left(e);
+        });
+    }
+
     void insert(const FeatureSite& site)
     {
         const std::optional<RowCause> cause = try_insert(site);
@@ -266,6 +291,7 @@ class Conforming {
         const Vec2 flow = find_feature_flow(scene_, state_, stars_, v, site.obstacle);
         if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
         if (is_beside_other(site)) return RowCause::OtherFeature;
+        if (follows_free_fold(site)) return RowCause::BesideEol;
         if (site.is_corner && has_vertex_on(site)) return RowCause::BesideEol;
         const VertexId near = surgery_->has_vertex(site.near) ? site.near : nearest_to(site.material);
         const TraceInsertion made = insert_trace_point(
@@ -292,7 +318,8 @@ class Conforming {
         const EolVertex& eol = state_.eol[entry];
         const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
         const Placement now = obstacle.at(state_.time);
-        const EolPlacing placing = place_eol_vertex(obstacle, state_, entry, stars_, now);
+        const EolPlacing placing =
+            place_eol_vertex(obstacle, scene_.material.thickness, state_, entry, stars_, now);
         if (!placing.coordinates) return cause_of(placing.refusal);
         return is_at_border(scene_, state_, stars_, eol) ? RowCause::NearBorder : RowCause::Released;
     }
@@ -323,7 +350,7 @@ class Conforming {
         constexpr double kOff = 0.1;  // thicknesses
         const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
         const Vec3 place = placed(eol).place;
-        if (eol.is_corner) return true;
+        if (eol.is_corner || has_left(eol)) return true;
         if (obstacle.features().edges[eol.feature].kind != FeatureKind::Convex)
             return (place - place_on_feature(obstacle, eol.feature, place).point).norm() <=
                    kOnFeature * scene_.material.thickness;

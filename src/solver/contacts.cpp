@@ -341,7 +341,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     std::vector<int> slot(state.mesh.world.size(), -1);
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
         const int o = state.eol[entry].obstacle;
-        const EolPlacing placing = place_eol_vertex(scene.obstacles[o], state, entry, stars,
+        const EolPlacing placing = place_eol_vertex(scene.obstacles[o], thickness, state, entry, stars,
                                                     steps[o].motion.begin, steps[o].end, prediction.gamma);
         if (!placing.coordinates) continue;
         slot[placing.coordinates->vertex] = static_cast<int>(eol.size());

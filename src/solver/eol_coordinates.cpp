@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "solver/free_fold.h"
 #include "solver/wire_fold.h"
 
 namespace arris {
@@ -64,8 +65,14 @@ Star look_around(const State& state, const std::vector<int>& faces, int vertex,
     return star;
 }
 
+/// Unit directions across a feature in which the cloth leaves it, to the left of its trace and to the right.
+struct Sides {
+    Vec3 left = Vec3::Zero(), right = Vec3::Zero();
+};
+
 /// The two sides of a trace, each with one voice, however many faces it has.
-ClothAround sum_sides(const Star& star, const Vec2& trace, const Vec3& tangent, const EolVertex& eol)
+ClothAround sum_sides(const Star& star, const Vec2& trace, const Vec3& tangent, const EolVertex& eol,
+                      Sides& sides)
 {
     ClothAround cloth{Vec3::Zero(), Vec3::Zero(), eol.outward, eol.side};
     for (const double sign : {1.0, -1.0}) {
@@ -78,8 +85,10 @@ ClothAround sum_sides(const Star& star, const Vec2& trace, const Vec3& tangent, 
         }
         normal = (normal - tangent.dot(normal) * tangent).stableNormalized();
         const Vec3 along = normal.cross(tangent);  // in the side's plane, across the feature
+        Vec3& side = sign > 0.0 ? sides.left : sides.right;
+        side = along.dot(leaving) < 0.0 ? Vec3(-along) : along;
         cloth.normal += normal;
-        cloth.leaving += along.dot(leaving) < 0.0 ? Vec3(-along) : along;
+        cloth.leaving += side;
     }
     return cloth;
 }
@@ -167,6 +176,13 @@ int find_side(const ClothAround& cloth, const EolVertex& eol, const Vec3& outwar
     return std::abs(along) > kSeen ? (along > 0.0 ? 1 : -1) : eol.side;
 }
 
+/// The side that the vertex goes to through the material with `flow` (m/s).
+ArrivingCloth find_arriving(const Sides& sides, const Vec2& trace, const Vec2& flow)
+{
+    const bool is_left = trace.x() * flow.y() - trace.y() * flow.x() > 0.0;
+    return {is_left ? sides.left : sides.right, flow.norm()};
+}
+
 /// A wire's outward direction turns with the cloth; the vertex goes round the wire with it.
 void turn_with_cloth(const Obstacle& obstacle, const State& state, int entry, int vertex,
                      const std::vector<int>& faces, const std::vector<Vec3>& positions, double dt,
@@ -207,6 +223,11 @@ EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)
 }
 
 }  // namespace
+
+bool is_on_convex_edge(const Obstacle& obstacle, const EolVertex& eol)
+{
+    return !eol.is_corner && obstacle.features().edges[eol.feature].kind == FeatureKind::Convex;
+}
 
 ClothStars make_stars(int vertex_count, const std::vector<Face>& faces)
 {
@@ -286,8 +307,9 @@ void follow_features(const std::vector<Obstacle>& obstacles, State& state)
     }
 }
 
-EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
-                            const std::vector<Vec3>& positions, const Placement& end, double dt)
+EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const State& state, int entry,
+                            const ClothStars& stars, const std::vector<Vec3>& positions, const Placement& end,
+                            double dt)
 {
     const EolVertex& eol = state.eol[entry];
     const int v = state.index_of(eol.vertex_id);
@@ -306,11 +328,17 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int en
     if (!eol.is_corner)
         trace = find_trace(obstacle, state, entry, v, stars.faces[v], positions, star, tangent);
     if (!trace.allFinite()) return {std::nullopt, EolRefusal::NoDirection};
-    const ClothAround around = eol.is_corner ? sum_around(star, eol) : sum_sides(star, trace, tangent, eol);
-    const std::optional<FeatureFrame> frame = eol.is_corner
-                                                  ? find_corner_frame(obstacle, eol.feature, place, around)
-                                                  : find_edge_frame(obstacle, eol.feature, place, around);
+    Sides sides;
+    const ClothAround around =
+        eol.is_corner ? sum_around(star, eol) : sum_sides(star, trace, tangent, eol, sides);
+    std::optional<FeatureFrame> frame = eol.is_corner
+                                            ? find_corner_frame(obstacle, eol.feature, place, around)
+                                            : find_edge_frame(obstacle, eol.feature, place, around);
     if (!frame) return {std::nullopt, EolRefusal::NoDirection};
+    if (is_on_convex_edge(obstacle, eol))
+        frame = turn_to_free_fold(obstacle.features().edges[eol.feature],
+                                  find_arriving(sides, trace, state.material_velocity[v]), place, thickness,
+                                  *frame);
     if (is_edge_on(star, frame->outward)) return {std::nullopt, EolRefusal::EdgeOn};
 
     EolCoordinates at{v,
@@ -338,13 +366,13 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int en
     return finish(star, end, at);
 }
 
-EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
-                            const Placement& now)
+EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const State& state, int entry,
+                            const ClothStars& stars, const Placement& now)
 {
     std::vector<Vec3> positions(state.mesh.world.size(), Vec3::Zero());
     for (const int f : stars.faces[state.index_of(state.eol[entry].vertex_id)])
         for (const int v : state.mesh.faces[f]) positions[v] = now.inverse(state.mesh.world[v]);
-    return place_eol_vertex(obstacle, state, entry, stars, positions, now);
+    return place_eol_vertex(obstacle, thickness, state, entry, stars, positions, now);
 }
 
 }  // namespace arris

@@ -49,17 +49,20 @@ enum class EolRefusal {
 };
 
 /// The coordinates of EOL vertex `entry` of the state, or why it can have none. `positions` are the cloth's
-/// in the obstacle's frame, which is at `end` when the step of `dt` (s) ends.
+/// in the obstacle's frame, which is at `end` when the step of `dt` (s) ends. `thickness`: of the cloth, m.
 struct EolPlacing {
     std::optional<EolCoordinates> coordinates;
     EolRefusal refusal = EolRefusal::NoDirection;  ///< where there are none
 };
-EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
-                            const std::vector<Vec3>& positions, const Placement& end, double dt = 0.0);
+EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const State& state, int entry,
+                            const ClothStars& stars, const std::vector<Vec3>& positions, const Placement& end,
+                            double dt = 0.0);
 
 /// The same of an obstacle that stays where it is, at `now`; looks at the cloth around the vertex only.
-EolPlacing place_eol_vertex(const Obstacle& obstacle, const State& state, int entry, const ClothStars& stars,
-                            const Placement& now);
+EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const State& state, int entry,
+                            const ClothStars& stars, const Placement& now);
+
+bool is_on_convex_edge(const Obstacle& obstacle, const EolVertex& eol);
 
 /// An EOL vertex and where it is in its obstacle's frame.
 struct PlacedEol {

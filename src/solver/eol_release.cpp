@@ -7,6 +7,7 @@
 #include "geometry/feature_path.h"
 #include "solver/border_room.h"
 #include "solver/feature_sites.h"
+#include "solver/free_fold.h"
 
 namespace arris {
 
@@ -47,7 +48,8 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
     const EolVertex& eol = state.eol[entry];
     if (eol.idle < kIdleSteps) return EolHold::Firm;
     const double gap = (place - at.frame.point).norm();
-    if (gap > scene.eol->length(state.mesh.material[at.vertex])) return EolHold::None;
+    const double cells = is_on_convex_edge(scene.obstacles[eol.obstacle], eol) ? kFreeCells : 1.0;
+    if (gap > cells * scene.eol->length(state.mesh.material[at.vertex])) return EolHold::None;
     if (is_folded(state, stars.faces[at.vertex])) return EolHold::Firm;
     return gap <= kOnFeature * scene.material.thickness ? EolHold::Loose : EolHold::None;
 }
@@ -105,7 +107,8 @@ std::vector<std::uint32_t> find_releases(const Scene& scene, const State& state,
         }
         holds.push_back(EolHold::None);
         if (is_at_border(scene, state, stars, eol) || !is_on_feature(obstacle, eol, positions[v])) continue;
-        const EolPlacing placing = place_eol_vertex(obstacle, state, entry, stars, positions, now);
+        const EolPlacing placing =
+            place_eol_vertex(obstacle, scene.material.thickness, state, entry, stars, positions, now);
         if (placing.coordinates)
             holds.back() = find_hold(scene, state, stars, entry, *placing.coordinates, positions[v]);
     }

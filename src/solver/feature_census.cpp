@@ -122,8 +122,8 @@ class Census {
     {
         const EolVertex& eol = state_.eol[entry];
         const ObstacleStep& way = work_.obstacles[eol.obstacle];
-        const EolPlacing placing = place_eol_vertex(scene_.obstacles[eol.obstacle], state_, entry,
-                                                    work_.stars, way.motion.begin, way.end);
+        const EolPlacing placing = place_eol_vertex(scene_.obstacles[eol.obstacle], scene_.material.thickness,
+                                                    state_, entry, work_.stars, way.motion.begin, way.end);
         return placing.coordinates ? std::nullopt : std::optional(placing.refusal);
     }
 

@@ -138,8 +138,8 @@ class PatchFitter {
             const std::int32_t o = after_.eol[entry].obstacle;
             const Obstacle& obstacle = scene_.obstacles[o];
             const Placement now = obstacle.at(after_.time);
-            const EolPlacing placing =
-                place_eol_vertex(obstacle, after_, entry, stars_, positions_around(v, now), now);
+            const EolPlacing placing = place_eol_vertex(obstacle, scene_.material.thickness, after_, entry,
+                                                        stars_, positions_around(v, now), now);
             if (placing.coordinates) {
                 basis = placing.coordinates->basis;
                 material_basis = placing.coordinates->material_basis;

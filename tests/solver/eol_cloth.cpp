@@ -111,8 +111,8 @@ ClothStars EolCloth::stars() const
 
 EolPlacing EolCloth::place(int vertex, const Placement& end) const
 {
-    return place_eol_vertex(scene.obstacles[0], state, state.eol_entry(state.ids[vertex]), stars(),
-                            state.mesh.world, end);
+    return place_eol_vertex(scene.obstacles[0], scene.material.thickness, state,
+                            state.eol_entry(state.ids[vertex]), stars(), state.mesh.world, end);
 }
 
 EolCloth lying(double turn, double shift, double half_length)
