@@ -173,7 +173,8 @@ std::vector<char> find_flowing(const Scene& scene, const State& state, const Clo
             now = obstacle.at(state.time);
             positions = to_frame(now, state.mesh.world);
         }
-        const EolPlacing placing = place_eol_vertex(obstacle, state, entry, stars, positions, now);
+        const EolPlacing placing =
+            place_eol_vertex(obstacle, scene.material.thickness, state, entry, stars, positions, now);
         if (placing.coordinates) is_flowing[placing.coordinates->vertex] = 1;
     }
     return is_flowing;
