@@ -263,16 +263,40 @@ class Conforming {
         return has_left_feature(frame, place, scene_.material.thickness);
     }
 
-    /// Where a fold has left an edge, what follows it over the edge is not folded.
+    /// Where a site on an edge of the cloth is.
+    Vec3 world_at(const FeatureSite& site) const
+    {
+        const auto& [a, b] = site.edge;
+        if (a < 0) return state_.mesh.world[state_.index_of(site.near)];
+        const std::vector<Vec2>& X = state_.mesh.material;
+        const double length = (X[b] - X[a]).norm();
+        const double s = length > 0.0 ? (site.material - X[a]).norm() / length : 0.0;
+        return (1.0 - s) * state_.mesh.world[a] + s * state_.mesh.world[b];
+    }
+
+    /// Where a fold has left an edge, what follows it over the edge, as much material away as the fold is
+    /// from the edge, is not folded. What is in one line with the fold is, where some of it has come back.
     bool follows_free_fold(const FeatureSite& site) const
     {
         if (site.is_corner) return false;
-        const std::vector<FeatureEdge>& edges = scene_.obstacles[site.obstacle].features().edges;
-        const double reach = kFreeCells * target_.length(site.material);
+        const Obstacle& obstacle = scene_.obstacles[site.obstacle];
+        const std::vector<FeatureEdge>& edges = obstacle.features().edges;
+        const Vec3 here = obstacle.at(state_.time).inverse(world_at(site));
+        const auto [from, to] = feature_segment(obstacle, site.feature);
+        const double h = target_.length(site.material);
         return std::any_of(eol_.begin(), eol_.end(), [&](const EolVertex& e) {
-            return e.obstacle == site.obstacle && !e.is_corner && is_on_trace(e.vertex_id) &&
-                   edges[e.feature].polyline == edges[site.feature].polyline &&
-                   (surgery_->material(e.vertex_id) - site.material).norm() < reach && has_left(e);
+            if (e.obstacle != site.obstacle || e.is_corner || !is_on_trace(e.vertex_id) ||
+                edges[e.feature].polyline != edges[site.feature].polyline || !has_left(e))
+                return false;
+            constexpr double kShare = 0.5;  // of the fold's way from the edge
+            constexpr double kSoon = 0.05;  // s, in which it flows through the fold
+            const Vec3 off = placed(e).place - here;
+            const double along = std::abs((to - from).normalized().dot(off));
+            const double way = (surgery_->material(e.vertex_id) - site.material).norm();
+            const double across = std::sqrt(std::max(way * way - along * along, 0.0));
+            const double reach = std::min(kFreeCells * h, kSoon * flow_.at(e.vertex_id).norm());
+            return way < reach && along < h &&
+                   across > kShare * std::sqrt(std::max(off.squaredNorm() - along * along, 0.0));
         });
     }
 

@@ -48,7 +48,9 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
     const EolVertex& eol = state.eol[entry];
     if (eol.idle < kIdleSteps) return EolHold::Firm;
     const double gap = (place - at.frame.point).norm();
-    const double cells = is_on_convex_edge(scene.obstacles[eol.obstacle], eol) ? kFreeCells : 1.0;
+    const bool is_free = is_on_convex_edge(scene.obstacles[eol.obstacle], eol) &&
+                         state.material_velocity[at.vertex].norm() > 0.5 * kFreeFlow;
+    const double cells = is_free ? kFreeCells : 1.0;
     if (gap > cells * scene.eol->length(state.mesh.material[at.vertex])) return EolHold::None;
     if (is_folded(state, stars.faces[at.vertex])) return EolHold::Firm;
     return gap <= kOnFeature * scene.material.thickness ? EolHold::Loose : EolHold::None;

@@ -23,14 +23,13 @@ Vec3 find_onward(const FeatureEdge& edge, int k, const Vec3& tangent)
     return along.dot(edge.normals[1 - k]) < 0.0 ? Vec3(-along) : along;
 }
 
-/// How much of what arrives lies along a face, in [0, 1]: all to 14 degrees, nothing beyond 20; and how much
-/// of it arrives at all, as without flow no side is the one that it comes from.
+/// How much of what arrives lies along a face, in [0, 1]: all to 14 degrees, nothing beyond 20; and how fast
+/// it arrives: without flow no side is the one that it comes from.
 double share_of(const ArrivingCloth& arriving, const Vec3& onward)
 {
-    constexpr double kFast = 0.1;  // m/s
     const double none = std::cos(20.0 * M_PI / 180.0), all = std::cos(14.0 * M_PI / 180.0);
     const double along = std::clamp((-onward.dot(arriving.direction) - none) / (all - none), 0.0, 1.0);
-    return along * std::min(arriving.flow / kFast, 1.0);
+    return along * std::min(arriving.flow / kFreeFlow, 1.0);
 }
 
 Vec3 turned(const Vec3& from, const Vec3& to, double share)

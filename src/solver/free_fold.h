@@ -22,6 +22,10 @@ namespace arris {
 /// tension and inertia make it.
 inline constexpr double kFreeCells = 4.0;
 
+/// m/s, of material over an edge: what flows as fast flies over it. What is slower and off it, as stiff cloth
+/// that shakes or hangs between corners, comes back.
+inline constexpr double kFreeFlow = 1.0;
+
 /// Cloth that comes to a fold, in the obstacle's frame.
 struct ArrivingCloth {
     Vec3 direction;  ///< unit, in which it leaves the fold, across the edge; zero where there is none
