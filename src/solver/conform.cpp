@@ -325,7 +325,7 @@ class Conforming {
             return made.verdict == Verdict::Guard ? RowCause::Guard : RowCause::Quality;
         if (find_eol(made.vertex)) return RowCause::BesideEol;
         const EolVertex vertex{made.vertex, site.obstacle, site.is_corner, site.feature, site.outward, 0};
-        if (!is_in_plane(vertex)) {
+        if (!is_in_plane(vertex) || !is_on_side(vertex)) {
             surgery_->release_vertex(made.vertex);
             return RowCause::OffPlane;
         }
@@ -382,6 +382,18 @@ class Conforming {
             find_edge_frame(obstacle, eol.feature, place, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
         const Vec3 across = frame->tangent.cross(frame->outward);
         return std::abs(across.dot(place - frame->point)) <= kOff * scene_.material.thickness;
+    }
+
+    /// Whether a vertex that is to be on a wire or border is on the side to which that has pressed. Its
+    /// outward direction is where it is, and would be against what presses beside it.
+    bool is_on_side(const EolVertex& eol) const
+    {
+        constexpr double kAlong = 0.5;  // cosine
+        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+        if (eol.is_corner || obstacle.features().edges[eol.feature].kind == FeatureKind::Convex) return true;
+        const Vec3 place = placed(eol).place;
+        const Vec3 from = place - place_on_feature(obstacle, eol.feature, place).point;
+        return from.dot(eol.outward) >= kAlong * from.norm();
     }
 
     /// A corner holds one vertex of a cloth that lies over it.

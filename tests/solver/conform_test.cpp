@@ -203,6 +203,38 @@ TEST(Conform, WhereAWireEndsInTheMiddleOfTheClothTheTraceDoes)
         EXPECT_LT(cloth.state.mesh.world[cloth.state.index_of(eol.vertex_id)].y(), 0.021 + kOnFeature);
 }
 
+TEST(Conform, WhatIsNotOnTheSideToWhichAWirePressesIsNoVertexOfIt)
+{
+    // Cloth that hangs beside a wire is pressed aside a little above one of its vertices: that is near
+    // enough, but below the wire, and to be pressed down from there would be against what presses above it.
+    for (const double below : {0.0, 0.5, 2.0}) {
+        EolCloth cloth(Obstacle("wire", make_wire({{0, -0.5, 0}, {0, 0.5, 0}}, false), {}, {}, 30.0),
+                       make_draped({7, 0.0, 180.0}));
+        cloth.scene.eol = uniform_target(kLyingCell, 10.0);
+        State& state = cloth.state;
+        const int v = cloth.vertex_at(0.2 + 0.5 * kLyingCell, 0.2 + 0.5 * kLyingCell);
+        const double height = state.mesh.world[v].x() + below * kThickness;
+        for (Vec3& x : state.mesh.world) x = Vec3(kThickness, x.y(), x.x() - height);
+        for (const MeshEdge& e : edges_of(state)) {
+            const int w = e.a == v ? e.b : e.a;
+            if ((e.a != v && e.b != v) || state.mesh.world[w].z() > state.mesh.world[v].z() - 1e-9) continue;
+            state.active.push_back({{state.ids[e.a], state.ids[e.b], ActiveContact::kNoVertex},
+                                    ContactKind::Edge,
+                                    0,
+                                    cloth.scene.obstacles[0].features().edges[0].edge,
+                                    Vec3::UnitX(),
+                                    1e-6});
+        }
+        ASSERT_FALSE(state.active.empty());
+        const ConformOutcome made =
+            conform_mesh(cloth.scene, kStep, state, cloth.stars(), {}, StrainLimit::GivesWay);
+        EXPECT_EQ(made.mesh ? made.mesh->eol.empty() : true, below > 1.0) << below;
+        for (const RefusedContact& refused : made.refused) {
+            EXPECT_TRUE(below < 1.0 || refused.cause == RowCause::OffPlane) << below;
+        }
+    }
+}
+
 TEST(Conform, NeighboursOnTheFeatureAreJoinedAcrossAnEdgeThatDidNotPress)
 {
     EolCloth cloth = lying(0.0);

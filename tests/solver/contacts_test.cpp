@@ -267,9 +267,9 @@ TEST(EolContacts, GoAlongWithAVertexThatSlidesAlongItsFeature)
         const auto& world = cloth.state.mesh.world;
         for (std::size_t v = 0; v < world.size(); ++v)
             if (std::abs(world[v].x()) < 1e-9 && std::abs(world[v].y()) < 0.1)
-                cloth.add_eol(static_cast<int>(v), false,
-                              is_wire ? (world[v].y() > 0.0 ? 1 : 0)
-                                      : testing::tip_of(cloth.scene.obstacles[0]));
+                cloth.add_eol(
+                    static_cast<int>(v), false,
+                    is_wire ? (world[v].y() > 0.0 ? 1 : 0) : testing::tip_of(cloth.scene.obstacles[0]));
         ASSERT_GT(cloth.state.eol.size(), 2u);
         const std::vector<MeshEdge> edges = testing::edges_of(cloth.state);
         const Prediction prediction = predict(cloth.state, Integrator::Bdf2, 0.005);
