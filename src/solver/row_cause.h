@@ -20,7 +20,8 @@ enum class RowCause {
     New,          ///< it did not press at the end of the step before: a contact is a row first
     NotCrossing,  ///< no place: the cloth does not pass through its edge's plane, or is not near its wire
     AtEol,        ///< it is the contact of an EOL vertex of that feature, seen from beside it
-    BesideEol,  ///< the mesh's place for it is an EOL vertex of that feature, but the cloth touches elsewhere
+    BesideEol,    ///< the mesh's place for it is an EOL vertex of that feature, but the cloth touches
+                ///< elsewhere; or it follows a fold that flies off the feature
     NearBorder,    ///< of the cloth: nearer than where a trace may begin, or where it had to end
     BorderAhead,   ///< of the cloth: so fast that it would have to go within a few steps
     Guard,         ///< the mesh it needs would strain the cloth, or an obstacle is in the way
