@@ -179,6 +179,7 @@ class Clearing {
         double soundness;
         bool is_into_trace;
         bool is_of_trace;  // what would go moves
+        bool is_thin;      // it leaves thin faces
         SurgeryProposal proposal;
 
         // Fewer threatened faces; as many, with the obstacle merged into the trace; fewer, for a vertex less
@@ -190,13 +191,14 @@ class Clearing {
         }
     };
 
-    Candidate judge(SurgeryProposal proposal) const
+    Candidate judge(SurgeryProposal proposal, bool is_thin) const
     {
         const bool is_merge = proposal.event.operation == SurgeryOperation::Collapse;
         Candidate candidate{0,
                             std::numeric_limits<double>::infinity(),
                             is_merge && is_moving(proposal.event.edge[1]),
                             is_merge && is_moving(proposal.event.edge[0]),
+                            is_thin,
                             {}};
         for (const PatchFace& face : proposal.event.after) {
             candidate.change += is_threatened(face) ? 1 : 0;
@@ -210,10 +212,11 @@ class Clearing {
     void consider(SurgeryProposal proposal, std::vector<Candidate>& candidates) const
     {
         if (!proposal.is_legal()) return;
-        if (least_angle(proposal.event.after) < std::min(kLeastAngle, least_angle(proposal.event.before)))
-            return;
+        const double before = least_angle(proposal.event.before);
+        const double after = least_angle(proposal.event.after);
+        if (after < std::min(kLeastAngle, before)) return;
         const bool is_merge = proposal.event.operation == SurgeryOperation::Collapse;
-        Candidate candidate = judge(std::move(proposal));
+        Candidate candidate = judge(std::move(proposal), after < std::min(kSoundAngle, before));
         if (candidate.is_of_trace && need_ == Need::Room) return;
         if (candidate.change < 0 || (is_merge && !candidate.is_of_trace))
             candidates.push_back(std::move(candidate));
@@ -224,9 +227,7 @@ class Clearing {
     static bool is_better(const Candidate& c, const Candidate& d)
     {
         const auto key = [](const Candidate& e) {
-            const SurgeryEvent& event = e.proposal.event;
-            const bool is_thin = least_angle(event.after) < std::min(kSoundAngle, least_angle(event.before));
-            return std::tuple(e.rank(), is_thin, e.change, -e.soundness);
+            return std::tuple(e.rank(), e.is_thin, e.change, -e.soundness);
         };
         return key(c) < key(d);
     }

@@ -58,11 +58,13 @@ class FeatureTags {
 
 class Conforming {
   public:
-    Conforming(const Scene& scene, double dt, const State& state, const ClothStars& stars, StrainLimit limit)
+    Conforming(const Scene& scene, double dt, const State& state, const ClothStars& stars,
+               const FeatureChanges& changes, StrainLimit limit)
         : scene_(scene),
           dt_(dt),
           state_(state),
           stars_(stars),
+          changes_(changes),
           target_(*scene.eol),
           tags_(scene.obstacles),
           guard_(scene, state, limit)
@@ -78,15 +80,14 @@ class Conforming {
   private:
     std::optional<ConformedMesh> find_mesh(const FailedFlow& failed)
     {
-        released_ = find_releases(scene_, state_, stars_);
-        sites_ = find_feature_sites(scene_, state_, stars_);
-        if (released_.empty() && sites_.empty() && failed.empty() && !is_flowing()) return std::nullopt;
+        if (changes_.released.empty() && changes_.sites.empty() && failed.empty() && !is_flowing())
+            return std::nullopt;
         surgery_.emplace(state_.mesh, state_.ids, state_.next_id, pinned(), stars_.topology.edges);
         guard_.watch(*surgery_);
         surgery_->set_guard(
             [this](const SurgeryEvent& event) { return keeps_way(event) && guard_.allows(event); });
         mark();
-        for (const VertexId v : released_) give_up(v, cause_of_release(v));
+        for (const VertexId v : changes_.released) give_up(v, cause_of_release(v));
         for (const VertexId v : failed.given_up)
             if (is_on_trace(v)) give_up(v, RowCause::GivenUp);
         for (const auto& [v, flow] : failed.flow) expect_flow(v, flow);
@@ -94,7 +95,7 @@ class Conforming {
         forget_released();
         has_failed_ = !failed.given_up.empty();
         is_inserting_ = true;
-        for (const FeatureSite& site : sites_) insert(site);
+        for (const FeatureSite& site : changes_.sites) insert(site);
         is_inserting_ = false;
         join();
         report_.operations += clean_up(*surgery_, target_).operations();
@@ -485,10 +486,9 @@ class Conforming {
     double dt_;
     const State& state_;
     const ClothStars& stars_;
+    const FeatureChanges& changes_;
     const MeshTarget& target_;
     FeatureTags tags_;
-    std::vector<VertexId> released_;
-    std::vector<FeatureSite> sites_;
     std::optional<ClothSurgery> surgery_;
     std::vector<EolVertex> eol_;
     std::map<VertexId, Vec2> flow_;  ///< m/s, of those in `eol_`
@@ -504,11 +504,17 @@ class Conforming {
 
 }  // namespace
 
+FeatureChanges find_feature_changes(const Scene& scene, const State& state, const ClothStars& stars)
+{
+    if (!scene.eol) return {};
+    return {find_releases(scene, state, stars), find_feature_sites(scene, state, stars)};
+}
+
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
-                            const FailedFlow& failed, StrainLimit limit)
+                            const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit)
 {
     if (!scene.eol || (state.eol.empty() && state.active.empty())) return {};
-    return Conforming(scene, dt, state, stars, limit).run(failed);
+    return Conforming(scene, dt, state, stars, changes, limit).run(failed);
 }
 
 }  // namespace arris

@@ -12,6 +12,7 @@
 #include "geometry/cloth_surgery.h"
 #include "solver/eol_coordinates.h"
 #include "solver/eol_guard.h"
+#include "solver/feature_sites.h"
 #include "solver/row_cause.h"
 #include "solver/scene.h"
 #include "solver/state.h"
@@ -38,6 +39,15 @@ struct FailedFlow {
     bool empty() const { return flow.empty() && given_up.empty(); }
 };
 
+/// What features ask of the mesh, whatever may strain it.
+struct FeatureChanges {
+    std::vector<VertexId> released;  ///< EOL vertices that go, in the order of the state's
+    std::vector<FeatureSite> sites;  ///< where there may be new ones
+};
+
+/// `stars` are the state's. Nothing without a target for the mesh.
+FeatureChanges find_feature_changes(const Scene& scene, const State& state, const ClothStars& stars);
+
 /// What `conform_mesh` found.
 struct ConformOutcome {
     std::optional<ConformedMesh> mesh;    ///< nothing where it is right as it is
@@ -45,9 +55,9 @@ struct ConformOutcome {
 };
 
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
-/// they have not for long, the way of those that slide cleared, what they left restored. `stars` are the
-/// state's.
+/// they have not for long, the way of those that slide cleared, what they left restored. `stars` and
+/// `changes` are the state's.
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
-                            const FailedFlow& failed, StrainLimit limit);
+                            const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit);
 
 }  // namespace arris

@@ -64,17 +64,9 @@ bool EolGuard::strains(const SurgeryEvent& event)
     if (is_split) return false;  // changes no surface, if how wide the hinges are
     const Energies before = find_energies(*surgery_, event, event.before, terms_, crease_width_);
     const Energies after = find_energies(*surgery_, event, event.after, terms_, crease_width_);
-    const double allowed = allowance(event, before.stretch + before.bending);
-    if (!(after.sum() - before.sum() > allowed)) return false;
-    return limit_ != StrainLimit::GivesWay || !can_give_way(event, allowed);
-}
-
-bool EolGuard::can_give_way(const SurgeryEvent& event, double allowed)
-{
-    const Neighbourhood around = look_around(event);
-    const LoosePatch before = make_patch(event.before, around, event);
-    return relaxations_.can_relax_to(scene_, make_patch(event.after, around, event),
-                                     find_patch_energy(scene_, before.creases, before.mesh) + allowed);
+    const double rise = after.sum() - before.sum() - allowance(event, before.stretch + before.bending);
+    if (!(rise > 0.0)) return false;
+    return limit_ != StrainLimit::GivesWay || !relaxations_.can_relax_by(scene_, make_patch(event), rise);
 }
 
 EolGuard::Neighbourhood EolGuard::look_around(const SurgeryEvent& event) const
@@ -99,9 +91,9 @@ EolGuard::Neighbourhood EolGuard::look_around(const SurgeryEvent& event) const
     return around;
 }
 
-LoosePatch EolGuard::make_patch(const std::vector<PatchFace>& changed, const Neighbourhood& around,
-                                const SurgeryEvent& event) const
+LoosePatch EolGuard::make_patch(const SurgeryEvent& event) const
 {
+    const Neighbourhood around = look_around(event);
     LoosePatch patch;
     patch.creases.width = crease_width_;
     std::unordered_map<VertexId, int> local;
@@ -122,7 +114,7 @@ LoosePatch EolGuard::make_patch(const std::vector<PatchFace>& changed, const Nei
                 a < b && is_on_trace(*surgery_, event, face.vertices[i], face.vertices[(i + 1) % 3]))
                 patch.creases.edges.push_back({a, b});
     };
-    for (const PatchFace& face : changed) add(face);
+    for (const PatchFace& face : event.after) add(face);
     for (const PatchFace& face : around.kept) add(face);
     std::sort(patch.creases.edges.begin(), patch.creases.edges.end());
     return patch;

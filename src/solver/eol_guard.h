@@ -38,16 +38,14 @@ class EolGuard {
     /// Whether an operation raises the cloth's energy beyond what is allowed, and the cloth around could not
     /// take up what strain it makes, where it may.
     bool strains(const SurgeryEvent& event);
-    bool can_give_way(const SurgeryEvent& event, double allowed);
     /// Around an operation: vertices, and the faces between them that it does not replace.
     struct Neighbourhood {
         std::set<VertexId> near;
         std::vector<PatchFace> kept;
     };
     Neighbourhood look_around(const SurgeryEvent& event) const;
-    /// These faces, before or after the operation, and those around.
-    LoosePatch make_patch(const std::vector<PatchFace>& changed, const Neighbourhood& around,
-                          const SurgeryEvent& event) const;
+    /// What the operation makes, and around it.
+    LoosePatch make_patch(const SurgeryEvent& event) const;
     bool is_loose(VertexId v, const std::set<VertexId>& near, const SurgeryEvent& event) const;
     double allowance(const SurgeryEvent& event, double elastic_energy) const;
 

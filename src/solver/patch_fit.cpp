@@ -75,16 +75,17 @@ class PatchFitter {
         constexpr double kRounding = 1e-9;  // of sums over the patch: a split leaves the energy as it is
         if (strained - before <= kRounding * std::abs(before)) return 0.0;
 
-        const std::size_t n = after_.ids.size();
-        RelaxedPatch relaxed{patch.faces, std::vector<char>(n, 0), std::vector<Vec3>(n, Vec3::Zero()),
-                             before};
+        relaxed_.faces = patch.faces;
+        relaxed_.is_free.resize(after_.ids.size());
+        relaxed_.normals.resize(after_.ids.size());
+        relaxed_.wanted = before;
         for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
             const int v = patch.vertices[i];
-            relaxed.is_free[v] = after_.eol_entry(after_.ids[v]) < 0 && patch.is_inside[i];
-            relaxed.normals[v] = find_kept_normal(scene_, after_, after_.ids[v]);
+            relaxed_.is_free[v] = after_.eol_entry(after_.ids[v]) < 0 && patch.is_inside[i];
+            relaxed_.normals[v] = find_kept_normal(scene_, after_, after_.ids[v]);
         }
-        for (const HeldVertex& held : held_) relaxed.is_free[held.vertex] = 0;
-        return relax(scene_, creases_, relaxed, after_) - before;
+        for (const HeldVertex& held : held_) relaxed_.is_free[held.vertex] = 0;
+        return relax(scene_, creases_, relaxed_, after_) - before;
     }
 
     /// Of a patch, over a cell, J.
@@ -167,6 +168,7 @@ class PatchFitter {
     State& after_;
     std::vector<HeldVertex> held_;
     Creases creases_before_, creases_;
+    RelaxedPatch relaxed_;  ///< of vertices of other patches nothing that means anything
     std::vector<Vec3> positions_;
 };
 

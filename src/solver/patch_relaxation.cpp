@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+
 #include <unordered_map>
 #include <utility>
 
@@ -235,9 +236,10 @@ double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& pat
     return relaxation.energy();
 }
 
-bool can_relax_to(const Scene& scene, const LoosePatch& patch, double wanted)
+bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop)
 {
     Relaxation relaxation(scene, patch);
+    const double wanted = relaxation.energy() - drop;
     relaxation.run(wanted);
     return relaxation.energy() <= wanted;
 }

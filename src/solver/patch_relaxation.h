@@ -37,8 +37,8 @@ struct LoosePatch {
     Creases creases;
 };
 
-/// Whether a patch would relax to an energy of `wanted` (J); obstacles are not looked at.
-bool can_relax_to(const Scene& scene, const LoosePatch& patch, double wanted);
+/// Whether a patch would relax by `drop` (J); obstacles are not looked at.
+bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop);
 
 /// Stretch, bending and gravity energy, J, as the step has them, of cloth in this shape; and of some of a
 /// cloth's faces and the hinges between them, whose creases are `creases`.

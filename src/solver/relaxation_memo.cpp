@@ -5,10 +5,10 @@ namespace arris {
 
 namespace {
 
-std::vector<double> make_key(const LoosePatch& patch, double wanted)
+std::vector<double> make_key(const LoosePatch& patch, double drop)
 {
     const ClothMesh& mesh = patch.mesh;
-    std::vector<double> key = {wanted, double(mesh.vertex_count())};
+    std::vector<double> key = {drop, double(mesh.vertex_count())};
     for (std::size_t v = 0; v < mesh.world.size(); ++v) {
         for (const Vec3* u : {&mesh.world[v], &patch.normals[v]}) key.insert(key.end(), u->begin(), u->end());
         key.insert(key.end(), mesh.material[v].begin(), mesh.material[v].end());
@@ -22,10 +22,10 @@ std::vector<double> make_key(const LoosePatch& patch, double wanted)
 
 }  // namespace
 
-bool RelaxationMemo::can_relax_to(const Scene& scene, const LoosePatch& patch, double wanted)
+bool RelaxationMemo::can_relax_by(const Scene& scene, const LoosePatch& patch, double drop)
 {
-    const auto [at, is_new] = known_.try_emplace(make_key(patch, wanted));
-    if (is_new) at->second = arris::can_relax_to(scene, patch, wanted);
+    const auto [at, is_new] = known_.try_emplace(make_key(patch, drop));
+    if (is_new) at->second = arris::can_relax_by(scene, patch, drop);
     return at->second;
 }
 

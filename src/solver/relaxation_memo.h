@@ -8,11 +8,11 @@
 
 namespace arris {
 
-/// Remembers answers of `can_relax_to` for one scene: surgery proposes what was refused again and again. An
+/// Remembers answers of `can_relax_by` for one scene: surgery proposes what was refused again and again. An
 /// answer is found by all that it is a function of, to the bit, so nothing makes one invalid.
 class RelaxationMemo {
   public:
-    bool can_relax_to(const Scene& scene, const LoosePatch& patch, double wanted);
+    bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop);
     int count() const { return static_cast<int>(known_.size()); }  ///< of different questions
 
   private:

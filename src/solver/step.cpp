@@ -46,15 +46,22 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
                   {StrainLimit::AsMade, 0, kAny},
                   {StrainLimit::Forced, kAny, kForcedStrain},
                   {StrainLimit::AsMade, kAny, kAny}};
+    const FeatureChanges changes = find_feature_changes(scene, state, work.stars);
+    std::optional<ConformOutcome> careful;  // as made: it may yet be the best there is
     std::optional<ConformedMesh> conformed;
     for (const auto& [limit, most_lost, most_strain] : kTries) {
-        ConformOutcome outcome =
-            conform_mesh(scene, end - state.time, state, work.stars, work.failed.flow(), limit);
+        ConformOutcome outcome = careful && limit == StrainLimit::AsMade
+                                     ? *std::move(careful)
+                                     : conform_mesh(scene, end - state.time, state, work.stars, changes,
+                                                    work.failed.flow(), limit);
+        report.seconds.conform += watch.lap();
+        if (outcome.mesh && outcome.mesh->report.lost > most_lost) {
+            careful = std::move(outcome);
+            continue;
+        }
         conformed = std::move(outcome.mesh);
         work.refused = std::move(outcome.refused);
-        report.seconds.conform += watch.lap();
         if (!conformed) break;
-        if (conformed->report.lost > most_lost) continue;
         TransferReport transferred;
         work.conformed = transfer(scene, state, work.stars, *conformed, transferred, most_strain);
         report.seconds.transfer += watch.lap();

@@ -53,7 +53,10 @@ void press_corner(EolCloth& cloth)
 
 std::optional<ConformedMesh> conform(const EolCloth& cloth, const FailedFlow& failed = {})
 {
-    return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(), failed, StrainLimit::GivesWay).mesh;
+    return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(),
+                        find_feature_changes(cloth.scene, cloth.state, cloth.stars()), failed,
+                        StrainLimit::GivesWay)
+        .mesh;
 }
 
 /// Conforms and carries the state over.

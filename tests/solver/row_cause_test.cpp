@@ -26,7 +26,8 @@ constexpr double kStep = 0.005;  // s
 ConformOutcome conform(const EolCloth& cloth, const FailedFlow& failed = {},
                        StrainLimit limit = StrainLimit::GivesWay)
 {
-    return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(), failed, limit);
+    return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(),
+                        find_feature_changes(cloth.scene, cloth.state, cloth.stars()), failed, limit);
 }
 
 int count(const ConformOutcome& outcome, RowCause cause)
