@@ -229,8 +229,10 @@ TEST(Conform, WhatIsNotOnTheSideToWhichAWirePressesIsNoVertexOfIt)
                                     1e-6});
         }
         ASSERT_FALSE(state.active.empty());
+        const ClothStars stars = cloth.stars();
         const ConformOutcome made =
-            conform_mesh(cloth.scene, kStep, state, cloth.stars(), {}, StrainLimit::GivesWay);
+            conform_mesh(cloth.scene, kStep, state, stars, find_feature_changes(cloth.scene, state, stars),
+                         {}, StrainLimit::GivesWay);
         EXPECT_EQ(made.mesh ? made.mesh->eol.empty() : true, below > 1.0) << below;
         for (const RefusedContact& refused : made.refused) {
             EXPECT_TRUE(below < 1.0 || refused.cause == RowCause::OffPlane) << below;
