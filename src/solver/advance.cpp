@@ -40,7 +40,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
     constexpr int kMostParts = 64;
     int shrink = 1;                                               // how much shorter parts have become
     int parts = find_flow_parts(scene, state, end - state.time);  // how many are left
-    const bool is_in_parts = parts > 1;
+    const double planned = end - state.time;
     Cost cost;
     work.failed.forget();
     while (state.time < end) {
@@ -51,11 +51,14 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
         if (report.status == StepStatus::Done) {
             cost.put_into(report);
             parts = std::max(parts - 1, 1);
-            if (!accept(report, shrink > 1 || is_in_parts)) return std::nullopt;
+            if (!accept(report, report.dt < planned)) return std::nullopt;
         } else if (report.status == StepStatus::EnergyRise && work.prediction.has_history) {
             restart(state);
         } else if (work.failed.may_mesh_help()) {
-            continue;
+            if (attempt == Attempt::Ordinary || !work.failed.has_given_up_all()) continue;
+            parts =
+                std::max(parts / shrink, 1);  // what was no step for the one mesh may be one for the other
+            shrink = 1;
         } else if (shrink == kMostParts) {
             return report;
         } else {

@@ -6,7 +6,10 @@ namespace arris {
 void FailedAttempts::note(const StepReport& report, Attempt attempt, const State& state, const State& start,
                           const std::vector<Overrun>& overrun)
 {
-    if (report.status == StepStatus::Done) return forget();
+    if (report.status == StepStatus::Done) {
+        if (!has_given_up_all_) forget();
+        return;
+    }
     const bool is_last = attempt == Attempt::Last;
     if (report.status == StepStatus::Overrun) {
         ++overruns_;
@@ -21,6 +24,7 @@ void FailedAttempts::note(const StepReport& report, Attempt attempt, const State
     if (report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite) ++unsolved_;
     const bool is_hopeless = report.status == StepStatus::Overrun ? overruns_ > kMostOverruns : is_last;
     if (!is_hopeless && unsolved_ < 2) return;
+    has_given_up_all_ = true;
     for (const State* tried : {&state, &start})
         for (const EolVertex& eol : tried->eol) flow_.given_up.insert(eol.vertex_id);
 }

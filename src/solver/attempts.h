@@ -23,25 +23,28 @@ struct Overrun {
 
 /// What the attempts at one step have failed on: the next one has to know. The same step on another mesh
 /// comes before a shorter one: with the way of what overran cleared; where that and a shorter step have not
-/// helped, with fewer EOL vertices; in the end with none.
+/// helped, with fewer EOL vertices; in the end, as long as it was at first, with none.
 class FailedAttempts {
   public:
     static constexpr int kMostOverruns = 5;
 
-    /// Of an attempt from `start`, `state` or what conform made of it. One that is done forgets all.
+    /// Of an attempt from `start`, `state` or what conform made of it. One that is done forgets all, but that
+    /// all were given up: that holds until `forget`.
     void note(const StepReport& report, Attempt attempt, const State& state, const State& start,
               const std::vector<Overrun>& overrun);
     void forget() { *this = FailedAttempts(); }
 
     /// Whether the same step may do on the mesh that it now gets.
     bool may_mesh_help() const { return may_mesh_help_; }
+    /// Whether that mesh is to have no EOL vertices.
+    bool has_given_up_all() const { return has_given_up_all_; }
 
     const FailedFlow& flow() const { return flow_; }
 
   private:
     int overruns_ = 0;
     int unsolved_ = 0;  ///< whose velocity could not be solved for
-    bool may_mesh_help_ = false;
+    bool may_mesh_help_ = false, has_given_up_all_ = false;
     FailedFlow flow_;
 };
 

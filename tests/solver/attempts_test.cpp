@@ -69,6 +69,23 @@ TEST(FailedAttempts, WhereNoShorterStepIsLeftAnotherMeshIsTried)
     }
 }
 
+TEST(FailedAttempts, WhatAllWasGivenUpForStaysSoForTheRestOfTheStep)
+{
+    const State state = state_with_eol({1, 2});
+    FailedAttempts failed;
+    failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, {{1, {1.0, 0.0}}});
+    failed.note(with(StepStatus::Done), Attempt::Ordinary, state, state, {});
+    EXPECT_TRUE(failed.flow().empty());
+    EXPECT_FALSE(failed.has_given_up_all());
+    failed.note(with(StepStatus::EnergyRise), Attempt::Last, state, state, {});
+    failed.note(with(StepStatus::Done), Attempt::Ordinary, state, state, {});
+    EXPECT_TRUE(failed.has_given_up_all());
+    EXPECT_EQ(failed.flow().given_up.size(), 2u);
+    failed.forget();
+    EXPECT_FALSE(failed.has_given_up_all());
+    EXPECT_TRUE(failed.flow().empty());
+}
+
 TEST(FailedAttempts, OfStateAndOfWhatConformMadeOfItAllAreGivenUp)
 {
     const State state = state_with_eol({1, 2}), start = state_with_eol({2, 4});
