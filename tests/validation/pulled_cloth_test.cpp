@@ -73,8 +73,9 @@ TEST(PulledCloth, LosesNothingWhereItsFoldLeavesTheTable)
         const std::string name = fmt::format("{} cells, {} s", cells, step);
         ASSERT_FALSE(HasFailure()) << name;
         EXPECT_LT(found.drop, 2e-4) << name;
-        if (cells == 18)  // of others it is more than four away
+        if (cells == 18) {  // of others it is more than four away
             EXPECT_GE(found.fewest, 3) << name << ": the fold is let go";
+        }
         // Rows only, 144 cells at .6 ms: from .0261 to .0540 J.
         EXPECT_NEAR(found.after, 0.0545, 0.1 * 0.0545) << name;
         results.add({fmt::format("{}", cells), fmt::format("{:g} ms", 1e3 * step),
