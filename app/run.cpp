@@ -29,6 +29,7 @@
 #include "solver/advance.h"
 #include "solver/audit.h"
 #include "solver/step.h"
+#include "solver/step_mesh.h"
 #include "solver/stopwatch.h"
 
 namespace arris {

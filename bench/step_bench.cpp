@@ -14,6 +14,7 @@
 #include "geometry/cloth_grid.h"
 #include "solver/factorization.h"
 #include "solver/step.h"
+#include "solver/step_mesh.h"
 #include "tests/solver/floor.h"
 
 namespace arris {

@@ -180,6 +180,30 @@ std::vector<char> find_flowing(const Scene& scene, const State& state, const Clo
     return is_flowing;
 }
 
+/// The fit changes how material flows, on which it depends whether a vertex can have coordinates. One that
+/// has none any more moves with the material around it.
+void stop_flow(const Scene& scene, const ClothStars& stars, std::vector<char>& is_flowing, State& state)
+{
+    const std::vector<char> may_flow = find_flowing(scene, state, stars);
+    for (std::size_t v = 0; v < is_flowing.size(); ++v) {
+        if (!is_flowing[v] || may_flow[v]) continue;
+        Vec3 carried = Vec3::Zero();
+        double area = 0.0;
+        for (const int f : stars.faces[v]) {
+            const auto& [a, b, c] = state.mesh.faces[f];
+            const std::vector<Vec2>& X = state.mesh.material;
+            const std::vector<Vec3>& x = state.mesh.world;
+            const double weight = twice_area(X[a], X[b], X[c]);
+            const Mat32 F = deformation_gradient({X[a], X[b], X[c]}, {x[a], x[b], x[c]});
+            carried += weight * (F * state.material_velocity[v]);
+            area += weight;
+        }
+        state.velocity[v] -= carried / area;
+        state.material_velocity[v].setZero();
+        is_flowing[v] = 0;
+    }
+}
+
 /// A vertex that is EOL from now on, or no more, has moved so far as it moves now.
 void begin_history(const State& before, const std::vector<char>& is_flowing, State& after)
 {
@@ -212,7 +236,7 @@ State transfer(const Scene& scene, const State& before, const ClothStars& stars,
             if (event.operation != SurgeryOperation::Collapse) interpolate(event, change, all);
     State after = on_new_mesh(before, conformed, all);
     const ClothStars stars_after = make_stars(after.mesh.vertex_count(), after.mesh.faces);
-    const std::vector<char> is_flowing = find_flowing(scene, after, stars_after);
+    std::vector<char> is_flowing = find_flowing(scene, after, stars_after);
     for (const EolVertex& eol : before.eol)
         if (const int v = after.index_of(eol.vertex_id); v >= 0 && !is_flowing[v])
             after.material_velocity[v].setZero();
@@ -220,6 +244,7 @@ State transfer(const Scene& scene, const State& before, const ClothStars& stars,
     const std::vector<ChangedPatch> patches =
         find_changed_patches({before, after, conformed.events, stars.faces, stars_after.faces});
     report = fit_patches(scene, before, stars, patches, stars_after, most_strain, after);
+    stop_flow(scene, stars_after, is_flowing, after);
     begin_history(before, is_flowing, after);
     return after;
 }

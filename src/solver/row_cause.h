@@ -17,11 +17,11 @@ namespace arris {
 /// such vertices it is the trace itself. The row there holds what the vertex's bound holds, and neither holds
 /// the material back: it is no contact of its own (`AtEol`). Farther from the vertex it is one (`BesideEol`).
 enum class RowCause {
-    New,          ///< it did not press at the end of the step before: a contact is a row first
-    NotCrossing,  ///< no place: the cloth does not pass through its edge's plane, or is not near its wire
-    AtEol,        ///< it is the contact of an EOL vertex of that feature, seen from beside it
-    BesideEol,    ///< the mesh's place for it is an EOL vertex of that feature, but the cloth touches
-                ///< elsewhere; or it follows a fold that flies off the feature
+    New,           ///< it did not press at the end of the step before: a contact is a row first
+    NotCrossing,   ///< no place: the cloth does not pass through its edge's plane, or is not near its wire
+    AtEol,         ///< it is the contact of an EOL vertex of that feature, seen from beside it
+    BesideEol,     ///< the mesh's place for it is an EOL vertex of that feature, but the cloth touches
+                   ///< elsewhere; or it follows a fold that flies off the feature
     NearBorder,    ///< of the cloth: nearer than where a trace may begin, or where it had to end
     BorderAhead,   ///< of the cloth: so fast that it would have to go within a few steps
     Guard,         ///< the mesh it needs would strain the cloth, or an obstacle is in the way

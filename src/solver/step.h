@@ -22,8 +22,4 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
 /// Drops the integrator's history, so that the next step is implicit Euler: for a jump of the input.
 void restart(State& state);
 
-/// Terms and elements of the scene's cloth as it is, made anew in `work` where they are not those of the
-/// state's mesh.
-void prepare(const Scene& scene, const State& state, Workspace& work);
-
 }  // namespace arris

@@ -7,6 +7,7 @@
 
 #include "geometry/obstacle_shapes.h"
 #include "solver/step.h"
+#include "solver/step_mesh.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {

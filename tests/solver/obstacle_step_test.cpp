@@ -14,6 +14,7 @@
 #include "solver/advance.h"
 #include "solver/energy_balance.h"
 #include "solver/step.h"
+#include "solver/step_mesh.h"
 #include "tests/solver/floor.h"
 
 namespace arris {

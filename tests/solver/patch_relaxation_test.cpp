@@ -9,6 +9,7 @@
 #include "geometry/obstacle_shapes.h"
 #include "solver/audit.h"
 #include "solver/step.h"
+#include "solver/step_mesh.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
@@ -229,7 +230,8 @@ TEST(PatchRelaxation, WhatFallsIsNotPaidByFallingForItsStrain)
     const double weight = scene.material.density * 0.16 * 9.81;
     setting.patch.wanted = find_patch_energy(scene, {}, before.mesh) - 0.05 * weight;  // if it fell by 5 cm
     setting.relax();
-    // Twice, as with a consistent mass the inertia of a vertex whose neighbours are held is half of its weight.
+    // Twice, as with a consistent mass the inertia of a vertex whose neighbours are held is half of its
+    // weight.
     const double most = 2.0 * 0.01 * scene.eol->mean_length;
     double fallen = 0.0;
     for (std::size_t v = 0; v < before.ids.size(); ++v)

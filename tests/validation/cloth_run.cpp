@@ -9,6 +9,7 @@
 
 #include "solver/advance.h"
 #include "solver/energy_balance.h"
+#include "solver/step_mesh.h"
 
 namespace arris {
 
