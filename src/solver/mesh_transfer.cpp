@@ -181,12 +181,12 @@ std::vector<char> find_flowing(const Scene& scene, const State& state, const Clo
 }
 
 /// The fit changes how material flows, on which it depends whether a vertex can have coordinates. One that
-/// has none any more moves with the material around it.
-void stop_flow(const Scene& scene, const ClothStars& stars, std::vector<char>& is_flowing, State& state)
+/// has none moves with the material around it. Which flow.
+std::vector<char> stop_flow(const Scene& scene, const ClothStars& stars, State& state)
 {
-    const std::vector<char> may_flow = find_flowing(scene, state, stars);
+    std::vector<char> is_flowing = find_flowing(scene, state, stars);
     for (std::size_t v = 0; v < is_flowing.size(); ++v) {
-        if (!is_flowing[v] || may_flow[v]) continue;
+        if (is_flowing[v] || state.material_velocity[v].isZero()) continue;
         Vec3 carried = Vec3::Zero();
         double area = 0.0;
         for (const int f : stars.faces[v]) {
@@ -200,8 +200,8 @@ void stop_flow(const Scene& scene, const ClothStars& stars, std::vector<char>& i
         }
         state.velocity[v] -= carried / area;
         state.material_velocity[v].setZero();
-        is_flowing[v] = 0;
     }
+    return is_flowing;
 }
 
 /// A vertex that is EOL from now on, or no more, has moved so far as it moves now.
@@ -236,16 +236,15 @@ State transfer(const Scene& scene, const State& before, const ClothStars& stars,
             if (event.operation != SurgeryOperation::Collapse) interpolate(event, change, all);
     State after = on_new_mesh(before, conformed, all);
     const ClothStars stars_after = make_stars(after.mesh.vertex_count(), after.mesh.faces);
-    std::vector<char> is_flowing = find_flowing(scene, after, stars_after);
+    const std::vector<char> may_flow = find_flowing(scene, after, stars_after);
     for (const EolVertex& eol : before.eol)
-        if (const int v = after.index_of(eol.vertex_id); v >= 0 && !is_flowing[v])
+        if (const int v = after.index_of(eol.vertex_id); v >= 0 && !may_flow[v])
             after.material_velocity[v].setZero();
     drop_contacts_without_element(stars_after, after);
     const std::vector<ChangedPatch> patches =
         find_changed_patches({before, after, conformed.events, stars.faces, stars_after.faces});
     report = fit_patches(scene, before, stars, patches, stars_after, most_strain, after);
-    stop_flow(scene, stars_after, is_flowing, after);
-    begin_history(before, is_flowing, after);
+    begin_history(before, stop_flow(scene, stars_after, after), after);
     return after;
 }
 
