@@ -138,13 +138,6 @@ void check_obstacle_motion(const RunConfig& config, const RigidMotion& motion, c
                          "the one before is at the end of the run already");
 }
 
-double size_of(const std::vector<Vec3>& points)
-{
-    Box3 box;
-    for (const Vec3& p : points) box.extend(p);
-    return box.diagonal().norm();
-}
-
 /// A file without units that is far larger or smaller than the cloth is mostly one in other units.
 void check_units(const RunConfig& config, std::size_t i, Warnings& warnings)
 {
@@ -152,7 +145,9 @@ void check_units(const RunConfig& config, std::size_t i, Warnings& warnings)
     const auto& json = config.as_run["obstacle"][i];
     if (!json.contains("file") || !json["units"].is_null()) return;
     const Obstacle& obstacle = config.scene.obstacles[i];
-    const double size = size_of(obstacle.mesh().points), cloth = size_of(config.cloth.world);
+    Box3 around_cloth;
+    for (const Vec3& x : config.cloth.world) around_cloth.extend(x);
+    const double size = obstacle.bounds().diagonal().norm(), cloth = around_cloth.diagonal().norm();
     if (size < kSurprising * cloth && cloth < kSurprising * size) return;
     warnings.note(
         fmt::format("obstacle.{}.file", i),

@@ -56,8 +56,8 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
             restart(state);
         } else if (work.failed.may_mesh_help()) {
             if (attempt == Attempt::Ordinary || !work.failed.has_given_up_all()) continue;
-            parts =
-                std::max(parts / shrink, 1);  // what was no step for the one mesh may be one for the other
+            // What was no step for the one mesh may be one for the other.
+            parts = std::max(parts / shrink, 1);
             shrink = 1;
         } else if (shrink == kMostParts) {
             return report;

@@ -257,11 +257,10 @@ class Conforming {
     bool has_left(const EolVertex& eol) const
     {
         const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
-        const Vec3 place = placed(eol).place;
         if (!is_on_convex_edge(obstacle, eol)) return false;
-        const FeatureFrame frame{place_on_feature(obstacle, eol.feature, place).point, Vec3::Zero(),
-                                 Vec3::Zero(), 1.0};
-        return has_left_feature(frame, place, scene_.material.thickness);
+        const Vec3 place = placed(eol).place;
+        return has_left_feature(place_on_feature(obstacle, eol.feature, place).point, place,
+                                scene_.material.thickness);
     }
 
     /// Where a site on an edge of the cloth is.

@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/mesh_quality.h"
+
 namespace arris {
 
 double find_crease_width(const Scene& scene, const ClothMesh& cloth)
 {
     constexpr double kHeight = 0.87;  // of an equilateral face, in edge lengths
     if (!scene.eol || !scene.gravity) return 0.0;
-    double area = 0.0;
-    for (const auto& [a, b, c] : cloth.faces)
-        area += 0.5 * twice_area(cloth.material[a], cloth.material[b], cloth.material[c]);
     // The tension that the cloth's weight makes, T = rho g L, bends it within sqrt(K / T) of a feature.
-    const double tension = scene.material.density * scene.gravity->acceleration.norm() * std::sqrt(area);
+    const double tension =
+        scene.material.density * scene.gravity->acceleration.norm() * std::sqrt(material_area(cloth));
     const double h = scene.eol->mean_length;
     return scene.material.bending_stiffness < tension * h * h ? kHeight * h : 0.0;
 }

@@ -375,4 +375,23 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     return place_eol_vertex(obstacle, thickness, state, entry, stars, positions, now);
 }
 
+std::vector<EolPlacing> place_eol_vertices(const std::vector<Obstacle>& obstacles, double thickness,
+                                           const State& state, const ClothStars& stars)
+{
+    std::vector<EolPlacing> placings;
+    Placement now;
+    std::vector<Vec3> positions;  // in the frame of obstacle `of`
+    int of = -1;
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
+        const Obstacle& obstacle = obstacles[state.eol[entry].obstacle];
+        if (state.eol[entry].obstacle != of) {
+            of = state.eol[entry].obstacle;
+            now = obstacle.at(state.time);
+            positions = to_frame(now, state.mesh.world);
+        }
+        placings.push_back(place_eol_vertex(obstacle, thickness, state, entry, stars, positions, now));
+    }
+    return placings;
+}
+
 }  // namespace arris

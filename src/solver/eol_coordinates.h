@@ -62,6 +62,10 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
 EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const State& state, int entry,
                             const ClothStars& stars, const Placement& now);
 
+/// Of all entries of the state, obstacles being where they are at its time.
+std::vector<EolPlacing> place_eol_vertices(const std::vector<Obstacle>& obstacles, double thickness,
+                                           const State& state, const ClothStars& stars);
+
 bool is_on_convex_edge(const Obstacle& obstacle, const EolVertex& eol);
 
 /// An EOL vertex and where it is in its obstacle's frame.

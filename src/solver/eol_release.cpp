@@ -94,25 +94,18 @@ bool is_at_border(const Scene& scene, const State& state, const ClothStars& star
 
 std::vector<std::uint32_t> find_releases(const Scene& scene, const State& state, const ClothStars& stars)
 {
-    Placement now;
-    std::vector<Vec3> positions;  // in the frame of obstacle `of`
-    int of = -1;
+    const std::vector<EolPlacing> placings =
+        place_eol_vertices(scene.obstacles, scene.material.thickness, state, stars);
     std::vector<EolHold> holds;
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
         const EolVertex& eol = state.eol[entry];
         const Obstacle& obstacle = scene.obstacles[eol.obstacle];
-        const int v = state.index_of(eol.vertex_id);
-        if (eol.obstacle != of) {
-            of = eol.obstacle;
-            now = obstacle.at(state.time);
-            positions = to_frame(now, state.mesh.world);
-        }
         holds.push_back(EolHold::None);
-        if (is_at_border(scene, state, stars, eol) || !is_on_feature(obstacle, eol, positions[v])) continue;
-        const EolPlacing placing =
-            place_eol_vertex(obstacle, scene.material.thickness, state, entry, stars, positions, now);
-        if (placing.coordinates)
-            holds.back() = find_hold(scene, state, stars, entry, *placing.coordinates, positions[v]);
+        const Vec3 place = obstacle.at(state.time).inverse(state.mesh.world[state.index_of(eol.vertex_id)]);
+        if (!placings[entry].coordinates || is_at_border(scene, state, stars, eol) ||
+            !is_on_feature(obstacle, eol, place))
+            continue;
+        holds.back() = find_hold(scene, state, stars, entry, *placings[entry].coordinates, place);
     }
     hold_between(scene, state, stars, holds);
     std::vector<std::uint32_t> released;

@@ -39,10 +39,10 @@ Vec3 turned(const Vec3& from, const Vec3& to, double share)
 
 }  // namespace
 
-bool has_left_feature(const FeatureFrame& frame, const Vec3& place, double thickness)
+bool has_left_feature(const Vec3& nearest, const Vec3& place, double thickness)
 {
     constexpr double kOff = 5.0;  // thicknesses: more than any mitre and what chatters on it
-    return across(frame, place).norm() > kOff * thickness;
+    return (place - nearest).norm() > kOff * thickness;
 }
 
 FeatureFrame turn_to_free_fold(const FeatureEdge& edge, const ArrivingCloth& arriving, const Vec3& place,

@@ -32,8 +32,8 @@ struct ArrivingCloth {
     double flow;     ///< m/s, of its material through the fold
 };
 
-/// Whether cloth with a vertex at `place` is off the feature whose nearest point `frame` has.
-bool has_left_feature(const FeatureFrame& frame, const Vec3& place, double thickness);
+/// Whether cloth with a vertex at `place` is off the feature whose nearest point is `nearest`.
+bool has_left_feature(const Vec3& nearest, const Vec3& place, double thickness);
 
 /// `frame` of convex edge `edge` (its outward the bisector), outward turned for a vertex at `place` that is
 /// farther out than its stand-off, all of it in the obstacle's frame: along the face on which what arrives

@@ -163,20 +163,9 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
 std::vector<char> find_flowing(const Scene& scene, const State& state, const ClothStars& stars)
 {
     std::vector<char> is_flowing(state.ids.size(), 0);
-    Placement now;
-    std::vector<Vec3> positions;  // in the frame of obstacle `of`
-    int of = -1;
-    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
-        const Obstacle& obstacle = scene.obstacles[state.eol[entry].obstacle];
-        if (state.eol[entry].obstacle != of) {
-            of = state.eol[entry].obstacle;
-            now = obstacle.at(state.time);
-            positions = to_frame(now, state.mesh.world);
-        }
-        const EolPlacing placing =
-            place_eol_vertex(obstacle, scene.material.thickness, state, entry, stars, positions, now);
+    for (const EolPlacing& placing :
+         place_eol_vertices(scene.obstacles, scene.material.thickness, state, stars))
         if (placing.coordinates) is_flowing[placing.coordinates->vertex] = 1;
-    }
     return is_flowing;
 }
 

@@ -149,8 +149,9 @@ TEST(FreeFold, HasLeftOnlyBeyondWhatAnyMitreKeeps)
 {
     for (const double tip : kTips) {
         const Edge edge(tip, 2);
-        EXPECT_FALSE(has_left_feature(edge.frame, edge.held() + 5.0 * edge.frame.tangent, kThickness));
-        EXPECT_TRUE(has_left_feature(edge.frame, edge.held() + 0.01 * edge.onward[0], kThickness));
+        const Vec3 along = 5.0 * edge.frame.tangent;
+        EXPECT_FALSE(has_left_feature(edge.frame.point + along, edge.held() + along, kThickness));
+        EXPECT_TRUE(has_left_feature(edge.frame.point, edge.held() + 0.01 * edge.onward[0], kThickness));
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <random>
 
@@ -271,17 +272,26 @@ TEST(MeshTransfer, FlatClothInUniformMotionKeepsItWhereAVertexBecomesEol)
     }
 }
 
+/// Flat cloth that moves over the ridge as one, with a vertex that stays on the ridge.
+constexpr std::array<double, 3> kUniform = {0.5, 0.1, 0.2};  // m/s
+EolCloth flat_cloth_through(double u, double v)
+{
+    EolCloth flat(make_ridge(60.0), make_draped({8, 0.0, 180.0}));
+    for (Vec3& velocity : flat.state.velocity) velocity = Vec3(kUniform.data());
+    const int on_ridge = flat.vertex_at(u, v);
+    flat.add_eol(on_ridge, false, testing::tip_of(flat.scene.obstacles[0]));
+    flat.state.velocity[on_ridge] = Vec3(0.0, kUniform[1], kUniform[2]);
+    flat.state.material_velocity[on_ridge] = Vec2(-kUniform[0], 0.0);
+    set_history(flat.state);
+    return flat;
+}
+
 TEST(MeshTransfer, AReleasedVertexIsOfTheMaterialAgain)
 {
     // Of cloth that is flat nothing changes.
-    EolCloth flat(make_ridge(60.0), make_draped({8, 0.0, 180.0}));
-    const Vec3 uniform(0.5, 0.1, 0.2);
-    for (Vec3& v : flat.state.velocity) v = uniform;
+    const EolCloth flat = flat_cloth_through(0.2, 0.2);
+    const Vec3 uniform(kUniform.data());
     const int middle = flat.vertex_at(0.2, 0.2);
-    flat.add_eol(middle, false, testing::tip_of(flat.scene.obstacles[0]));
-    flat.state.velocity[middle] = Vec3(0.0, 0.1, 0.2);
-    flat.state.material_velocity[middle] = Vec2(-0.5, 0.0);
-    set_history(flat.state);
     ClothSurgery surgery = operate(flat.state);
     surgery.release_vertex(flat.state.ids[middle]);
     const State after = carry(flat, conformed(surgery, {}));
@@ -311,15 +321,10 @@ TEST(MeshTransfer, AReleasedVertexIsOfTheMaterialAgain)
 
 TEST(MeshTransfer, WhatCanHaveNoCoordinatesAnyMoreIsOfTheMaterialThoughItsEntryIsLeft)
 {
-    EolCloth flat(make_ridge(60.0), make_draped({8, 0.0, 180.0}));
-    const Vec3 uniform(0.5, 0.1, 0.2);
-    for (Vec3& v : flat.state.velocity) v = uniform;
+    const EolCloth flat = flat_cloth_through(0.2, 0.0);
+    const Vec3 uniform(kUniform.data());
     const int at_border = flat.vertex_at(0.2, 0.0);
-    flat.add_eol(at_border, false, testing::tip_of(flat.scene.obstacles[0]));
     ASSERT_TRUE(flat.place(at_border).coordinates);
-    flat.state.velocity[at_border] = Vec3(0.0, 0.1, 0.2);
-    flat.state.material_velocity[at_border] = Vec2(-0.5, 0.0);
-    set_history(flat.state);
     std::vector<EolVertex> eol = flat.state.eol;
     eol[0].is_corner = true;  // for which the cloth's border is no place
     eol[0].feature = testing::end_of(flat.scene.obstacles[0]);
