@@ -43,6 +43,7 @@ struct FailedFlow {
 struct FeatureChanges {
     std::vector<VertexId> released;  ///< EOL vertices that go, in the order of the state's
     std::vector<FeatureSite> sites;  ///< where there may be new ones
+    bool empty() const { return released.empty() && sites.empty(); }
 };
 
 /// `stars` are the state's. Nothing without a target for the mesh.

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/site_admission.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/feature_frame.h"
+#include "geometry/feature_path.h"
+#include "solver/border_room.h"
+#include "solver/free_fold.h"
+
+namespace arris {
+
+namespace {
+
+// Target lengths to a border ahead, below which no vertex is made.
+constexpr double kInsertRoom = 0.3, kCornerInsertRoom = 0.5;
+
+}  // namespace
+
+std::optional<RowCause> SiteAdmission::find_refusal(const FeatureSite& site, int v, const Vec2& flow) const
+{
+    if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
+    if (is_beside_other(site)) return RowCause::OtherFeature;
+    if (follows_free_fold(site)) return RowCause::BesideEol;
+    if (site.is_corner && has_vertex_on(site)) return RowCause::BesideEol;
+    return std::nullopt;
+}
+
+/// Why the cloth's border leaves no room for a vertex; nothing where it does.
+std::optional<RowCause> SiteAdmission::find_border_cause(const FeatureSite& site, int v,
+                                                         const Vec2& flow) const
+{
+    const double h = scene_.eol->length(site.material);
+    const EolVertex eol{site.near, site.obstacle, site.is_corner, site.feature, site.outward, 0};
+    if (site.is_on_border && !site.is_corner && is_along_border(scene_, state_, stars_, site.edge, eol))
+        return RowCause::AlongBorder;
+    const auto room_at = [&](const Vec2& X) {
+        return room_to_border(scene_, state_, stars_, X, v, site.is_on_border, eol);
+    };
+    const double room = room_at(site.material);
+    if (room < (site.is_corner ? kCornerInsertRoom : kInsertRoom) * h) return RowCause::NearBorder;
+    // What comes fast would have to go at once.
+    constexpr double kAside = 1e-3;  // of the target length: to see how fast the room closes
+    const Vec2 aside = kAside * h * flow.stableNormalized();
+    const double closing = (room - room_at(site.material + aside)) / (kAside * h) * flow.norm();
+    if (room < soon_ * closing) return RowCause::BorderAhead;
+    return std::nullopt;
+}
+
+/// Of edges nearer to each other than the cloth is thick one has a trace: between two there is no room.
+bool SiteAdmission::is_beside_other(const FeatureSite& site) const
+{
+    if (site.is_corner) return false;
+    const Obstacle& obstacle = scene_.obstacles[site.obstacle];
+    const std::vector<FeatureEdge>& edges = obstacle.features().edges;
+    const double h = scene_.eol->length(site.material);
+    return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
+        if (e.obstacle != site.obstacle || e.is_corner || !trace_.is_on_trace(e.vertex_id) ||
+            edges[e.feature].polyline == edges[site.feature].polyline ||
+            !((trace_.surgery().material(e.vertex_id) - site.material).norm() < 1.5 * h))
+            return false;
+        const Vec3 there = place_on_feature(obstacle, e.feature, trace_.placed(e).place).point;
+        const Vec3 here = place_on_feature(obstacle, site.feature, there).point;
+        return (there - here).norm() < scene_.material.thickness;
+    });
+}
+
+/// Whether an EOL vertex is of a fold that has left its edge.
+bool SiteAdmission::has_left(const EolVertex& eol) const
+{
+    const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+    if (!is_on_convex_edge(obstacle, eol)) return false;
+    const Vec3 place = trace_.placed(eol).place;
+    return has_left_feature(place_on_feature(obstacle, eol.feature, place).point, place,
+                            scene_.material.thickness);
+}
+
+/// Where a site on an edge of the cloth is.
+Vec3 SiteAdmission::world_at(const FeatureSite& site) const
+{
+    const auto& [a, b] = site.edge;
+    if (a < 0) return state_.mesh.world[state_.index_of(site.near)];
+    const std::vector<Vec2>& X = state_.mesh.material;
+    const double length = (X[b] - X[a]).norm();
+    const double s = length > 0.0 ? (site.material - X[a]).norm() / length : 0.0;
+    return (1.0 - s) * state_.mesh.world[a] + s * state_.mesh.world[b];
+}
+
+/// Where a fold has left an edge, what follows it over the edge, as much material away as the fold is
+/// from the edge, is not folded. What is in one line with the fold is, where some of it has come back.
+bool SiteAdmission::follows_free_fold(const FeatureSite& site) const
+{
+    if (site.is_corner) return false;
+    const Obstacle& obstacle = scene_.obstacles[site.obstacle];
+    const std::vector<FeatureEdge>& edges = obstacle.features().edges;
+    const Vec3 here = obstacle.at(state_.time).inverse(world_at(site));
+    const auto [from, to] = feature_segment(obstacle, site.feature);
+    const double h = scene_.eol->length(site.material);
+    return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
+        if (e.obstacle != site.obstacle || e.is_corner || !trace_.is_on_trace(e.vertex_id) ||
+            edges[e.feature].polyline != edges[site.feature].polyline || !has_left(e))
+            return false;
+        constexpr double kShare = 0.5;  // of the fold's way from the edge
+        constexpr double kSoon = 0.05;  // s, in which it flows through the fold
+        const Vec3 off = trace_.placed(e).place - here;
+        const double along = std::abs((to - from).normalized().dot(off));
+        const double way = (trace_.surgery().material(e.vertex_id) - site.material).norm();
+        const double across = std::sqrt(std::max(way * way - along * along, 0.0));
+        const double reach = std::min(kFreeCells * h, kSoon * trace_.flow(e.vertex_id).norm());
+        return way < reach && along < h &&
+               across > kShare * std::sqrt(std::max(off.squaredNorm() - along * along, 0.0));
+    });
+}
+
+bool SiteAdmission::is_in_plane(const EolVertex& eol) const
+{
+    constexpr double kOff = 0.1;  // thicknesses
+    const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+    const Vec3 place = trace_.placed(eol).place;
+    if (eol.is_corner || has_left(eol)) return true;
+    if (obstacle.features().edges[eol.feature].kind != FeatureKind::Convex)
+        return (place - place_on_feature(obstacle, eol.feature, place).point).norm() <=
+               kOnFeature * scene_.material.thickness;
+    const std::optional<FeatureFrame> frame =
+        find_edge_frame(obstacle, eol.feature, place, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+    const Vec3 across = frame->tangent.cross(frame->outward);
+    return std::abs(across.dot(place - frame->point)) <= kOff * scene_.material.thickness;
+}
+
+bool SiteAdmission::is_on_side(const EolVertex& eol) const
+{
+    constexpr double kAlong = 0.5;  // cosine
+    const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+    if (eol.is_corner || obstacle.features().edges[eol.feature].kind == FeatureKind::Convex) return true;
+    const Vec3 place = trace_.placed(eol).place;
+    const Vec3 from = place - place_on_feature(obstacle, eol.feature, place).point;
+    return from.dot(eol.outward) >= kAlong * from.norm();
+}
+
+/// A corner holds one vertex of a cloth that lies over it.
+bool SiteAdmission::has_vertex_on(const FeatureSite& corner) const
+{
+    const double h = scene_.eol->length(corner.material);
+    return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
+        return e.is_corner && e.obstacle == corner.obstacle && e.feature == corner.feature &&
+               trace_.is_on_trace(e.vertex_id) &&
+               (trace_.surgery().material(e.vertex_id) - corner.material).norm() < h;
+    });
+}
+
+}  // namespace arris
