@@ -14,6 +14,10 @@
 // what moves with its own motion counts: a fixed pin does none, and a contact that closes takes some. Cloth's
 // V is not convex under compression, and BDF2's energy is monotone only in a norm of two steps; but both
 // damp, and what they leave is far below kRise.
+//
+// Where contact takes energy out, too much strain does not show in that sum, but throws the cloth in the next
+// step: stiff cloth that falls flat on an edge is stopped beside it, and a cell across which it goes on by d
+// is stretched by d^2 / 2. That is seen as what is unforeseen.
 #pragma once
 
 #include <vector>
@@ -40,6 +44,11 @@ void weigh_proposal(const Scene& scene, double dt, Workspace& work);
 /// By how much, J, the proposal in `work`, before anything was moved out to its stand-off, raises the cloth's
 /// energy beyond the work that drives it, where that is more than a step may; else 0. Weigh it first.
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work);
+
+/// Elastic energy, J, that the proposal has gained and that equations linear around `work.expansion` do not
+/// see, as it is of higher than second order in the way from there: about as much, where that is more than a
+/// share of what was in motion or changed kind; else 0. Weigh it first.
+double find_unforeseen_energy(const Scene& scene, const Workspace& work);
 
 /// Whether moving the proposal's positions out to their stand-off in `dt` (s) has cost more elastic energy
 /// than a push at that speed could give, and a share of what there is. Weigh it first.

@@ -42,16 +42,19 @@ bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool m
     constexpr int kMostRelinearisations = 4;  // one does nearly always, three have where they help at all
     const double rise = find_energy_rise(scene, state, work);
     report.energy_rise = rise;
-    if (!(rise > 0.0) || work.is_least_taken) return false;
+    if (work.is_least_taken) return false;
     if (report.relinearisations == 0 || rise < work.least_rise) {
         work.least_rise = rise;
         work.least_at = work.expansion;
     }
-    if (report.relinearisations < kMostRelinearisations && may_solve_again) {
+    const bool may_again = report.relinearisations < kMostRelinearisations && may_solve_again;
+    if (may_again && (rise > 0.0 || find_unforeseen_energy(scene, work) > 0.0)) {
         relinearise(scene, work, report);
         return true;
     }
-    if (attempt == Attempt::Ordinary) {
+    if (!(rise > 0.0)) return false;
+    // Where history is what rises, without it nothing may; else what was found first will do.
+    if (attempt == Attempt::Ordinary && (work.prediction.has_history || work.least_rise > 0.0)) {
         report.status = StepStatus::EnergyRise;
         return false;
     }

@@ -8,9 +8,10 @@
 
 namespace arris {
 
-/// Whether the weighed proposal pushes energy in: then the forces are to be linearised again, at the velocity
-/// found (`work.expansion`), and true means solve again. Where that is no way out, `report.status` says so;
-/// with the last attempt the least that there was is taken.
+/// Whether the weighed proposal pushes energy in, or has much that the equations did not foresee: then the
+/// forces are to be linearised again, at the velocity found (`work.expansion`), and true means solve again.
+/// Where that is no way out, `report.status` says so; with the last attempt the least that there was is
+/// taken.
 bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
                  Workspace& work, StepReport& report);
 

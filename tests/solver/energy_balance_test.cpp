@@ -173,6 +173,36 @@ TEST(EnergyRise, IsNoRoundOffOfASheetThatHangsFarAway)
     }
 }
 
+// Half of the sheet goes straight out of its plane, so its strain is of second order in the way, and its
+// energy of fourth.
+TEST(UnforeseenEnergy, IsTheStretchOfWhatMovesAcrossItself)
+{
+    OneStep one{Scene()};
+    one.work.expansion.world.assign(one.before.velocity.size(), Vec3::Zero());
+    one.work.expansion.material.assign(one.before.velocity.size(), Vec2::Zero());
+    for (std::size_t v = 0; v < one.before.velocity.size(); ++v)
+        one.work.proposal.velocity[v] = Vec3(0, 0, one.before.mesh.material[v].x() > 0.25 ? -1.0 : 0.0);
+    one.weigh();
+    const double stretch = one.work.solved_energy.potential.stretch;
+    EXPECT_GT(stretch, 0.05 * one.work.solved_energy.kinetic);
+    EXPECT_NEAR(find_unforeseen_energy(one.scene, one.work) / stretch, 1.0, 0.02);
+
+    one.work.expansion.world = one.work.proposal.velocity;  // from there nothing is left to see
+    EXPECT_EQ(find_unforeseen_energy(one.scene, one.work), 0.0);
+}
+
+TEST(UnforeseenEnergy, IsNoneOfAStretchInThePlane)
+{
+    OneStep one{Scene()};
+    one.work.expansion.world.assign(one.before.velocity.size(), Vec3::Zero());
+    one.work.expansion.material.assign(one.before.velocity.size(), Vec2::Zero());
+    for (std::size_t v = 0; v < one.before.velocity.size(); ++v)
+        one.work.proposal.velocity[v] = Vec3(0.1 * one.before.mesh.material[v].x(), 0, 0);
+    one.weigh();
+    EXPECT_GT(one.work.solved_energy.potential.stretch, one.work.solved_energy.kinetic);
+    EXPECT_EQ(find_unforeseen_energy(one.scene, one.work), 0.0);
+}
+
 TEST(Push, IsCostlyWhereItStrainsAndFreeWhereItDoesNot)
 {
     OneStep one{Scene()};

@@ -20,7 +20,7 @@ constexpr double kStep = 0.005, kDuration = 0.6;  // s
 
 struct HalfTable {
     int cells;
-    double angle, youngs_modulus;
+    double angle, youngs_modulus, height = 0.05;
 };
 
 ClothRun make_run(const HalfTable& table)
@@ -28,7 +28,7 @@ ClothRun make_run(const HalfTable& table)
     ClothMesh mesh =
         make_sheet(Vec2(1.0, 1.0), {table.cells, table.cells}, GridPattern::Diagonal, table.angle);
     for (std::size_t v = 0; v < mesh.world.size(); ++v)
-        mesh.world[v] = Vec3(mesh.material[v].x() - 0.5, mesh.material[v].y() - 0.5, 0.05);
+        mesh.world[v] = Vec3(mesh.material[v].x() - 0.5, mesh.material[v].y() - 0.5, table.height);
     Scene scene;
     scene.material = {0.05, table.youngs_modulus, 0.01, 1e-5, 0.0, 1e-3};
     scene.gravity = Gravity{};
@@ -81,7 +81,7 @@ TEST(HalfTable, ClothSlidesOffOnAnyMeshSoftOrStiff)
                 const std::string name = fmt::format("{} cells turned by {}, E {}", cells, angle, modulus);
                 ASSERT_FALSE(HasFailure()) << name;
                 // How stiff cloth bounces off the table depends on the mesh, and the slide multiplies it.
-                EXPECT_NEAR(found.kinetic, 0.0915, (modulus < 100.0 ? 0.06 : 0.2) * 0.0915) << name;
+                EXPECT_NEAR(found.kinetic, 0.0915, (modulus < 100.0 ? 0.04 : 0.06) * 0.0915) << name;
                 EXPECT_LT(found.rise, 1e-3) << name;
                 results.add({fmt::format("{:g}", modulus), fmt::format("{:g}", angle),
                              fmt::format("{}", cells), fmt::format("{:.4f} J", found.kinetic),
@@ -97,6 +97,17 @@ TEST(HalfTable, FoldThatLeavesTheEdgeComesBack)
     EXPECT_NEAR(found.kinetic, 0.0944, 0.1 * 0.0944);
     EXPECT_LT(found.rise, 1e-3);
     EXPECT_LT(found.halved, 5);
+}
+
+// Where within its step the impact falls: linear equations stop the cloth on the table and let the rest fall
+// on, across one cell, which they do not see stretched. Snapping back it left the edge: .053 and .077 J here.
+TEST(HalfTable, TheImpactMayFallAnywhereInItsStep)
+{
+    for (const double higher : {5e-4, 1e-3}) {
+        const Slid found = slide_off({32, 30.0, 2000.0, 0.05 + higher});
+        EXPECT_NEAR(found.kinetic, 0.0915, 0.06 * 0.0915) << higher;
+        EXPECT_LT(found.rise, 1e-3) << higher;
+    }
 }
 
 }  // namespace
