@@ -74,15 +74,25 @@ SurfaceSample sample(const std::array<Vec2, 3>& X, const std::array<Vec3, 3>& x,
     return at;
 }
 
-/// The vertex is of the material from now on: it has what the surface has there, now and a step ago.
-void interpolate(const SurgeryEvent& event, const VertexChange& change, CarriedById& all)
+/// Whether a material point was in a face or so near to it that its plane may be continued. Not where the
+/// material has flowed so that a step ago its corners were no face: as near to a line as you like, a plane
+/// through them may lead anywhere.
+bool is_near(const std::array<Vec2, 3>& X, const Vec2& place)
+{
+    constexpr double kMostWeights = 3.0;  // inside they are 1: by how much it makes more of what corners have
+    return twice_area(X[0], X[1], X[2]) > 0.0 && weights_of(X, place).lpNorm<1>() <= kMostWeights;
+}
+
+/// The vertex is of the material from now on: it has what the surface has there, now and a step of `dt` (s)
+/// ago; where that cannot be told it has moved as it moves now.
+void interpolate(const SurgeryEvent& event, const VertexChange& change, double dt, CarriedById& all)
 {
     Carried made{};
     made.X = made.previous_X = change.new_material;
     made.x = change.new_world;
     made.V = made.previous_V = Vec2::Zero();
     made.v = made.previous_v = made.previous_x = Vec3::Zero();
-    double count = 0.0;
+    double count = 0.0, previous_count = 0.0;
     for (const PatchFace& face : event.before) {
         const auto is_of_face = [&](int i) {
             return change.weights[i] == 0.0 || std::find(face.vertices.begin(), face.vertices.end(),
@@ -98,15 +108,18 @@ void interpolate(const SurgeryEvent& event, const VertexChange& change, CarriedB
             previous_x[i] = corner.previous_x, previous_v[i] = corner.previous_v;
         }
         const SurfaceSample now = sample(X, x, v, V, made.X);
-        const SurfaceSample then = sample(previous_X, previous_x, previous_v, previous_V, made.X);
         made.v += now.v;
+        count += 1.0;
+        if (!is_near(previous_X, made.X)) continue;
+        const SurfaceSample then = sample(previous_X, previous_x, previous_v, previous_V, made.X);
         made.previous_x += then.x;
         made.previous_v += then.v;
-        count += 1.0;
+        previous_count += 1.0;
     }
     made.v /= count;
-    made.previous_x /= count;
-    made.previous_v /= count;
+    made.previous_x =
+        previous_count > 0.0 ? Vec3(made.previous_x / previous_count) : Vec3(made.x - dt * made.v);
+    made.previous_v = previous_count > 0.0 ? Vec3(made.previous_v / previous_count) : made.v;
     all.set(change.vertex, made);
 }
 
@@ -222,7 +235,8 @@ State transfer(const Scene& scene, const State& before, const ClothStars& stars,
     CarriedById all(before);
     for (const SurgeryEvent& event : conformed.events)
         for (const VertexChange& change : event.changes)
-            if (event.operation != SurgeryOperation::Collapse) interpolate(event, change, all);
+            if (event.operation != SurgeryOperation::Collapse)
+                interpolate(event, change, before.previous_dt, all);
     State after = on_new_mesh(before, conformed, all);
     const ClothStars stars_after = make_stars(after.mesh.vertex_count(), after.mesh.faces);
     const std::vector<char> may_flow = find_flowing(scene, after, stars_after);

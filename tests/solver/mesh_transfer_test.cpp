@@ -237,6 +237,27 @@ TEST(MeshTransfer, AVertexMadeBesideATraceIsOfTheMaterialAndAlwaysWas)
     EXPECT_LT(field_difference(cloth.state, after), kRoundOff);
 }
 
+TEST(MeshTransfer, AVertexWhoseFacesWereNoFacesAStepAgoHasMovedAsItMovesNow)
+{
+    // Through the fold a cell of material flows in a step: a step ago the faces ahead of it were lines.
+    for (const double cells : {1.0, 1.0 - 1e-14, 1.0 - 1e-9, 1.0 - 1e-3, 1.0 + 1e-14, 1.0 + 1e-3, 1.5, 3.0}) {
+        SCOPED_TRACE(cells);
+        const double speed = cells * 0.05 / kStep;
+        const EolCloth cloth = sliding_cloth(speed);
+        ClothSurgery surgery = operate(cloth.state);
+        const VertexId a = cloth.state.ids[cloth.vertex_at(0.2, 0.2)],
+                       b = cloth.state.ids[cloth.vertex_at(0.25, 0.2)];
+        const SurgeryProposal split = surgery.propose_edge_split(a, b, 0.5);
+        ASSERT_EQ(surgery.commit(split), Verdict::Done);
+        const State after = carry(cloth, conformed(surgery, cloth.state.eol));
+        const int v = after.index_of(split.event.changes[0].vertex);
+        const Vec3 down = speed * Vec3(0.5, 0, -std::sqrt(0.75));
+        EXPECT_LT((after.velocity[v] - down).norm(), kRoundOff * speed);
+        EXPECT_LT((after.previous_velocity[v] - down).norm(), kRoundOff * speed);
+        EXPECT_LT((after.previous_world[v] - (after.mesh.world[v] - kStep * down)).norm(), kRoundOff);
+    }
+}
+
 TEST(MeshTransfer, FlatClothInUniformMotionKeepsItWhereAVertexBecomesEol)
 {
     std::mt19937 random(5);
