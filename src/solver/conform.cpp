@@ -19,8 +19,8 @@ namespace arris {
 
 namespace {
 
-// Of flow that must find material ahead. A step may take 30 % of a face's material: of what has room for four
-// no more than that also where the flow gets faster.
+// Of flow that must find material ahead. A step may take 60 % of a face's material: of what has room for four
+// no more than that also where the flow gets faster, or those beside it do.
 constexpr double kClearSteps = 4.0;
 
 std::vector<VertexId> find_pinned(const Scene& scene, const State& state, double end)

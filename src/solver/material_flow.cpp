@@ -7,10 +7,12 @@ namespace arris {
 
 namespace {
 
-/// Whether every face at an EOL vertex keeps most of the material it has at the step's start.
+/// Whether every face at an EOL vertex keeps its orientation, with enough of the material that it has at the
+/// step's start for its strain to mean something. Whether what is linear in the step follows is another
+/// question, to which the energy's balance has the answer.
 bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
 {
-    constexpr double kLeast = 0.7;
+    constexpr double kLeast = 0.4;
     work.overrun.clear();
     for (const EolCoordinates& eol : work.eol)
         for (const int f : work.stars.faces[eol.vertex]) {
@@ -27,9 +29,9 @@ bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
 
 int find_flow_parts(const Scene& scene, const State& state, double dt)
 {
-    // Of a cell's edges, of which its height is .7 to .9: where the flow is faster, nearly every step takes
-    // more than may be taken of some face.
-    constexpr double kMostCells = 0.35;
+    // Of a cell's edges: with the way cleared ahead, heights there are those of a cell or more, and steps
+    // that take more are hardly ever made.
+    constexpr double kMostCells = 0.6;
     constexpr int kMostParts = 4;  // flow may be wild
     double most = 0.0;
     for (const EolVertex& eol : state.eol) {

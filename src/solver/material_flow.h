@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far material flows through EOL vertices in a step, and that no face beside them loses most of what it
-// has: one whose height changes by a large share has a strain that one linearisation cannot follow.
+// has, or turns over. A strain that changes more than one linearisation can follow is seen in the energy, and
+// linearised again (relinearization.h): a flow that is fast but steady, as over an edge, needs no shorter
+// step.
 #pragma once
 
 #include "solver/state.h"

@@ -156,6 +156,32 @@ TEST(SlidingStrip, IsAChainOnAnyMesh)
     EXPECT_LT(most / least - 1.0, kMeshError);
 }
 
+TEST(SlidingStrip, TakesHalfACellInOneStepAndIsTheSame)
+{
+    constexpr double kLong = 0.0125;       // s
+    constexpr double kLongError = 2.5e-3;  // BDF2's, over x
+    double lengths[2] = {};
+    for (const int k : {0, 1}) {
+        StripCase strip;
+        strip.cells = k == 0 ? std::array{8, 2} : std::array{32, 8};
+        SCOPED_TRACE(describe(strip));
+        ClothRun run = make_strip_run(strip);
+        const double duration = most_of_the_way(strip), steps = std::ceil(duration / kLong);
+        const EnergySpan energy = watch_energy(run, duration, kLong, [&](const StepReport& report) {
+            EXPECT_NEAR(report.dt, duration / steps, 1e-12) << "at " << run.state.time << " s";
+            expect_sound(strip, run.state);
+        });
+        const SlidingChain chain = chain_of(strip);
+        lengths[k] = measure_length_after(strip, run);
+        EXPECT_LT(std::abs(lengths[k] / chain.length_after(duration) - 1.0), kLongError);
+        EXPECT_LT(energy.greatest - energy.first,
+                  kRise * strip_mass(strip) * 0.5 * std::pow(chain.speed(duration), 2));
+        if (k == 0) continue;
+        EXPECT_GT(chain.speed(duration) * duration / steps, 0.45 * strip.length / 32);
+    }
+    EXPECT_LT(std::abs(lengths[1] / lengths[0] - 1.0), 3.0 * kMeshError);
+}
+
 TEST(SlidingStrip, FollowsAnyTwoSlopes)
 {
     Table table("sliding_slopes", {"before", "after", "pattern", "until", "error of x"});
