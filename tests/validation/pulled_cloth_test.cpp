@@ -68,7 +68,9 @@ Pulled pull_off(std::array<int, 2> cells, double step)
 TEST(PulledCloth, LosesNothingWhereItsFoldLeavesTheTable)
 {
     Table results("pulled_cloth", {"cells", "step", "energy at .4 s", "energy at .58 s", "greatest drop"});
-    for (const auto& [cells, step] : {std::pair(18, 5e-3), {18, 2.5e-3}, {18, 1.25e-3}, {36, 2.5e-3}}) {
+    // On 36 cells the fold is let go within the time, as a kink of a cell that rings: longer steps than 1.25
+    // ms take more of that.
+    for (const auto& [cells, step] : {std::pair(18, 5e-3), {18, 2.5e-3}, {18, 1.25e-3}, {36, 1.25e-3}}) {
         const Pulled found = pull_off({cells, cells / 9}, step);
         const std::string name = fmt::format("{} cells, {} s", cells, step);
         ASSERT_FALSE(HasFailure()) << name;
