@@ -149,8 +149,9 @@ class Census {
 
 bool touches_feature(const Obstacle& obstacle, const ObstacleContact& contact, double thickness)
 {
-    if (contact.kind != ContactKind::Vertex) return true;
-    if (is_plane_of_face(obstacle, contact)) return false;
+    if (contact.kind == ContactKind::Vertex && is_plane_of_face(obstacle, contact)) return false;
+    if (contact.kind == ContactKind::Edge && feature_of_edge(obstacle.features(), contact.element) >= 0)
+        return true;
     const double reach = kTouching * thickness;
     const Box3 box(contact.point.array() - reach, contact.point.array() + reach);
     std::vector<int> found;

@@ -22,8 +22,8 @@ struct FeatureCensus {
 FeatureCensus take_census(const Scene& scene, const State& state, const Workspace& work,
                           const std::vector<double>& multiplier);
 
-/// Whether a contact touches a sharp feature: edges and faces of the cloth always do, a vertex where its
-/// contact's plane is none of a face.
+/// Whether a contact touches a sharp feature: its point is on one (edges and faces of the cloth touch a
+/// smooth obstacle's edges and vertices, too), and the plane of a vertex's contact is none of a face.
 bool touches_feature(const Obstacle& obstacle, const ObstacleContact& contact, double thickness);
 
 }  // namespace arris

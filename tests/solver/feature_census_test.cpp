@@ -243,5 +243,32 @@ TEST(FeatureCensus, AVertexTouchesAFeatureWhereItsPlaneIsNoFaces)
     EXPECT_FALSE(touches(smooth, {0.5, 0.2, 0.5}, {1, 0, 1}, top));
 }
 
+TEST(FeatureCensus, AnEdgeOrFaceOfTheClothTouchesAFeatureWhereItsPointIsOnOne)
+{
+    const Obstacle box("box", make_box({1, 1, 1}), {}, {}, 30.0);
+    const Obstacle smooth("smooth", make_box({1, 1, 1}), {}, {}, 179.0);
+    const auto touches = [](const Obstacle& obstacle, ContactKind kind, int element, const Vec3& point) {
+        ObstacleContact contact{};
+        contact.kind = kind;
+        contact.vertices = {0, 1, kind == ContactKind::Edge ? -1 : 2};
+        contact.element = element;
+        contact.point = point;
+        contact.normal = Vec3(1, 0, 1).normalized();
+        return touches_feature(obstacle, contact, kThickness);
+    };
+    const auto& edges = box.topology().edges;
+    int count = 0;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const Vec3 &a = box.mesh().points[edges[e].points[0]], &b = box.mesh().points[edges[e].points[1]];
+        const bool is_sharp = (b - a).norm() < 1.1;  // the others are diagonals of the box's sides
+        EXPECT_EQ(touches(box, ContactKind::Edge, static_cast<int>(e), 0.7 * a + 0.3 * b), is_sharp) << e;
+        EXPECT_TRUE(touches(box, ContactKind::Edge, static_cast<int>(e), a)) << e << ": a corner";
+        EXPECT_FALSE(touches(smooth, ContactKind::Edge, static_cast<int>(e), 0.7 * a + 0.3 * b)) << e;
+        count += is_sharp ? 1 : 0;
+    }
+    EXPECT_EQ(count, 12);
+    EXPECT_TRUE(touches(box, ContactKind::Triangle, 3, box.mesh().points[3]));
+}
+
 }  // namespace
 }  // namespace arris
