@@ -243,9 +243,18 @@ ClothStars make_stars(int vertex_count, const std::vector<Face>& faces)
     return stars;
 }
 
+bool is_of_one_strand(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b)
+{
+    constexpr double kSteepest = 0.7;  // a fold that runs off its edge does so at less than 35 degrees
+    if (!is_on_convex_edge(obstacle, a.eol) || !is_on_convex_edge(obstacle, b.eol)) return true;
+    const Vec3 on_a = place_on_feature(obstacle, a.eol.feature, a.place).point;
+    const Vec3 on_b = place_on_feature(obstacle, b.eol.feature, b.place).point;
+    return ((a.place - on_a) - (b.place - on_b)).norm() <= kSteepest * (on_a - on_b).norm();
+}
+
 bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b)
 {
-    if (a.eol.obstacle != b.eol.obstacle) return false;
+    if (a.eol.obstacle != b.eol.obstacle || !is_of_one_strand(obstacle, a, b)) return false;
     if (!a.eol.is_corner && !b.eol.is_corner && a.eol.feature == b.eol.feature) return true;
     constexpr double kLongestWay = 1.2;  // over the distance: an arc that turns by 120 degrees
     const ObstacleFeatures& features = obstacle.features();

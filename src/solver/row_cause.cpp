@@ -14,6 +14,8 @@ const char* to_string(RowCause cause)
             return "at_eol";
         case RowCause::BesideEol:
             return "beside_eol";
+        case RowCause::FlatBehind:
+            return "flat_behind";
         case RowCause::NearBorder:
             return "near_border";
         case RowCause::BorderAhead:
@@ -50,6 +52,7 @@ bool is_excluded(RowCause cause)
 {
     switch (cause) {
         case RowCause::AtEol:
+        case RowCause::FlatBehind:
         case RowCause::NearBorder:
         case RowCause::NoDirection:
         case RowCause::AlongBorder:

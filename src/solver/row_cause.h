@@ -16,12 +16,18 @@ namespace arris {
 /// nearer to another, nor within the stand-off, on whose rounding both touch; and where both its ends are
 /// such vertices it is the trace itself. The row there holds what the vertex's bound holds, and neither holds
 /// the material back: it is no contact of its own (`AtEol`). Farther from the vertex it is one (`BesideEol`).
+///
+/// Where a fold flies off an edge the cloth behind it lies on one face and goes on beyond its end in the same
+/// plane. What presses there does so along the face's normal: it is what the face holds of the cells that
+/// reach beyond it, turns the cloth by nothing and holds no material back. A vertex of two velocities would
+/// move as an ordinary one does, and be let go at once, as all are where cloth is flat (`FlatBehind`).
 enum class RowCause {
     New,           ///< it did not press at the end of the step before: a contact is a row first
     NotCrossing,   ///< no place: the cloth does not pass through its edge's plane, or is not near its wire
     AtEol,         ///< it is the contact of an EOL vertex of that feature, seen from beside it
     BesideEol,     ///< the mesh's place for it is an EOL vertex of that feature, but the cloth touches
-                   ///< elsewhere; or it follows a fold that flies off the feature
+                   ///< elsewhere; or it follows too near a fold that has just flown off the feature
+    FlatBehind,    ///< it follows a fold that flies off the feature, flat on a face beside that
     NearBorder,    ///< of the cloth: nearer than where a trace may begin, or where it had to end
     BorderAhead,   ///< of the cloth: so fast that it would have to go within a few steps
     Guard,         ///< the mesh it needs would strain the cloth, or an obstacle is in the way
@@ -37,7 +43,7 @@ enum class RowCause {
     OtherFeature,  ///< its vertex is on another feature, or one nearer than a thickness has a trace there
     OtherObstacle  ///< its vertex is on a feature of another obstacle
 };
-inline constexpr std::size_t kRowCauses = 18;
+inline constexpr std::size_t kRowCauses = 19;
 using RowCounts = std::array<int, kRowCauses>;  ///< by RowCause
 
 /// In the columns of steps.csv.

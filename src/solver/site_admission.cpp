@@ -16,13 +16,22 @@ namespace {
 // Target lengths to a border ahead, below which no vertex is made.
 constexpr double kInsertRoom = 0.3, kCornerInsertRoom = 0.5;
 
+/// Whether what presses at a site of an edge is flat on a face beside it.
+bool is_along_face(const Obstacle& obstacle, const FeatureSite& site)
+{
+    constexpr double kFlat = 0.9986;  // cosine of 3 degrees, as where a vertex is let go
+    const auto& normals = obstacle.features().edges[site.feature].normals;
+    return std::any_of(normals.begin(), normals.end(),
+                       [&](const Vec3& n) { return n.dot(site.outward) > kFlat; });
+}
+
 }  // namespace
 
 std::optional<RowCause> SiteAdmission::find_refusal(const FeatureSite& site, int v, const Vec2& flow) const
 {
     if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
     if (is_beside_other(site)) return RowCause::OtherFeature;
-    if (follows_free_fold(site)) return RowCause::BesideEol;
+    if (const std::optional<RowCause> fold = find_fold_cause(site)) return fold;
     if (site.is_corner && has_vertex_on(site)) return RowCause::BesideEol;
     return std::nullopt;
 }
@@ -87,30 +96,45 @@ Vec3 SiteAdmission::world_at(const FeatureSite& site) const
     return (1.0 - s) * state_.mesh.world[a] + s * state_.mesh.world[b];
 }
 
-/// Where a fold has left an edge, what follows it over the edge, as much material away as the fold is
-/// from the edge, is not folded. What is in one line with the fold is, where some of it has come back.
-bool SiteAdmission::follows_free_fold(const FeatureSite& site) const
+/// Where a fold has left an edge, what follows it over the edge, as much material away as the fold is from
+/// the edge, is mostly flat. Where it is not it gets a trace of its own, as soon as there is room for two.
+/// What is in one line with the fold is of its trace, where some of it has come back.
+std::optional<RowCause> SiteAdmission::find_fold_cause(const FeatureSite& site) const
 {
-    if (site.is_corner) return false;
+    constexpr double kRoom = 1.0;  // target lengths: at less two traces are not told apart
+    if (site.is_corner) return std::nullopt;
+    const std::optional<double> way = find_free_fold(site);
+    if (!way) return std::nullopt;
+    const bool is_between = site.contact < 0;  // and presses nowhere itself
+    if (is_between || is_along_face(scene_.obstacles[site.obstacle], site)) return RowCause::FlatBehind;
+    return *way < kRoom * scene_.eol->length(site.material) ? std::optional(RowCause::BesideEol)
+                                                            : std::nullopt;
+}
+
+/// How far the fold that a site follows is from the edge, m: the least, if there are several.
+std::optional<double> SiteAdmission::find_free_fold(const FeatureSite& site) const
+{
     const Obstacle& obstacle = scene_.obstacles[site.obstacle];
     const std::vector<FeatureEdge>& edges = obstacle.features().edges;
     const Vec3 here = obstacle.at(state_.time).inverse(world_at(site));
     const auto [from, to] = feature_segment(obstacle, site.feature);
     const double h = scene_.eol->length(site.material);
-    return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
+    std::optional<double> least;
+    for (const EolVertex& e : trace_.eol()) {
         if (e.obstacle != site.obstacle || e.is_corner || !trace_.is_on_trace(e.vertex_id) ||
             edges[e.feature].polyline != edges[site.feature].polyline || !has_left(e))
-            return false;
+            continue;
         constexpr double kShare = 0.5;  // of the fold's way from the edge
         constexpr double kSoon = 0.05;  // s, in which it flows through the fold
         const Vec3 off = trace_.placed(e).place - here;
         const double along = std::abs((to - from).normalized().dot(off));
         const double way = (trace_.surgery().material(e.vertex_id) - site.material).norm();
         const double across = std::sqrt(std::max(way * way - along * along, 0.0));
+        const double left = std::sqrt(std::max(off.squaredNorm() - along * along, 0.0));
         const double reach = std::min(kFreeCells * h, kSoon * trace_.flow(e.vertex_id).norm());
-        return way < reach && along < h &&
-               across > kShare * std::sqrt(std::max(off.squaredNorm() - along * along, 0.0));
-    });
+        if (way < reach && along < h && across > kShare * left) least = std::min(least.value_or(left), left);
+    }
+    return least;
 }
 
 bool SiteAdmission::is_in_plane(const EolVertex& eol) const

@@ -39,7 +39,8 @@ class SiteAdmission {
   private:
     std::optional<RowCause> find_border_cause(const FeatureSite& site, int v, const Vec2& flow) const;
     bool is_beside_other(const FeatureSite& site) const;
-    bool follows_free_fold(const FeatureSite& site) const;
+    std::optional<RowCause> find_fold_cause(const FeatureSite& site) const;
+    std::optional<double> find_free_fold(const FeatureSite& site) const;
     bool has_vertex_on(const FeatureSite& corner) const;
     bool has_left(const EolVertex& eol) const;
     Vec3 world_at(const FeatureSite& site) const;

@@ -42,16 +42,23 @@ void add_along(const Obstacle& obstacle, int o, int index, const std::vector<Pla
                Neighbours& neighbours)
 {
     const Polyline polyline = trace_polyline(obstacle, index);
-    std::vector<std::pair<double, const EolVertex*>> row;  // by length along the polyline
+    std::vector<std::pair<double, const PlacedEol*>> row;  // by length along the polyline
     for (const PlacedEol& p : placed) {
         if (p.eol.obstacle != o) continue;
-        if (const auto along = length_before(obstacle, polyline, p)) row.emplace_back(*along, &p.eol);
+        if (const auto along = length_before(obstacle, polyline, p)) row.emplace_back(*along, &p);
     }
     std::sort(row.begin(), row.end(), [](const auto& p, const auto& q) {
-        return std::tuple(p.first, p.second->vertex_id) < std::tuple(q.first, q.second->vertex_id);
+        return std::tuple(p.first, p.second->eol.vertex_id) < std::tuple(q.first, q.second->eol.vertex_id);
     });
-    for (std::size_t i = 1; i < row.size(); ++i) neighbours.emplace_back(row[i - 1].second, row[i].second);
-    if (polyline.is_closed && row.size() > 2) neighbours.emplace_back(row.back().second, row.front().second);
+    // Of several strands each has its own order.
+    for (std::size_t i = 0; i < row.size(); ++i)
+        for (std::size_t k = i + 1; k < row.size(); ++k) {
+            if (!is_of_one_strand(obstacle, *row[i].second, *row[k].second)) continue;
+            neighbours.emplace_back(&row[i].second->eol, &row[k].second->eol);
+            break;
+        }
+    if (polyline.is_closed && row.size() > 2)
+        neighbours.emplace_back(&row.back().second->eol, &row.front().second->eol);
 }
 
 }  // namespace

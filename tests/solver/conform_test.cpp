@@ -366,6 +366,70 @@ TEST(Conform, BesideAFoldThatHasLeftTheFeatureAVertexIsPutWhereTheFoldGoesOn)
     EXPECT_TRUE(!made || made->eol.empty());
 }
 
+/// Flat cloth of which a fold that was on the ridge has gone on by some cells, while material flows through
+/// it; rows where cloth edges cross the ridge, with that normal.
+EolCloth flown_off(double cells, const Vec3& normal)
+{
+    constexpr double kFlow = 2.0;  // m/s: more than any fold stays on its edge with
+    EolCloth cloth = lying(0.0);
+    press_edges(cloth);
+    take(cloth);
+    for (Vec3& x : cloth.state.mesh.world) x.x() += cells * kLyingCell;
+    for (Vec3& v : cloth.state.velocity) v = Vec3(kFlow, 0, 0);
+    for (const EolVertex& e : cloth.state.eol) {
+        const int v = cloth.state.index_of(e.vertex_id);
+        cloth.state.velocity[v].setZero();
+        cloth.state.material_velocity[v] = Vec2(-kFlow, 0);
+    }
+    cloth.state.active.clear();
+    press_edges(cloth);
+    for (ActiveContact& contact : cloth.state.active) contact.normal = normal;
+    return cloth;
+}
+
+TEST(Conform, BehindAFoldThatHasFlownOffWhatLiesFlatOnAFaceGetsNoTrace)
+{
+    for (const double cells : {0.2, 0.8, 1.5}) {
+        const Obstacle ridge = make_ridge(60.0);
+        const Vec3 along = ridge.features().edges[testing::tip_of(ridge)].normals[0];
+        const EolCloth cloth = flown_off(cells, along);
+        ASSERT_GT(cloth.state.active.size(), 5u) << cells;
+        const ConformOutcome outcome = conform_mesh(
+            cloth.scene, kStep, cloth.state, cloth.stars(),
+            find_feature_changes(cloth.scene, cloth.state, cloth.stars()), {}, StrainLimit::GivesWay);
+        EXPECT_TRUE(!outcome.mesh || outcome.mesh->eol.size() == cloth.state.eol.size()) << cells;
+        EXPECT_GT(std::count_if(outcome.refused.begin(), outcome.refused.end(),
+                                [](const RefusedContact& r) { return r.cause == RowCause::FlatBehind; }),
+                  5)
+            << cells;
+    }
+}
+
+TEST(Conform, BehindAFoldThatHasFlownOffWhatIsFoldedGetsATraceOfItsOwnWhereThereIsRoom)
+{
+    for (const double cells : {0.2, 0.8, 1.2, 1.5}) {
+        const EolCloth cloth = flown_off(cells, Vec3::UnitZ());
+        ASSERT_GT(cloth.state.active.size(), 5u) << cells;
+        const std::optional<ConformedMesh> made = conform(cloth);
+        ASSERT_TRUE(made) << cells;
+        std::vector<VertexId> on, off;
+        const std::vector<Vec3>& x = made->surgery.mesh.world;
+        const std::vector<VertexId>& ids = made->surgery.ids;
+        for (const EolVertex& e : made->eol) {
+            const auto v = std::lower_bound(ids.begin(), ids.end(), e.vertex_id) - ids.begin();
+            (std::abs(x[v].x()) < kThickness ? on : off).push_back(e.vertex_id);
+        }
+        EXPECT_GE(off.size(), cloth.state.eol.size()) << cells << ": the fold stays";
+        if (cells < 1.0)
+            EXPECT_EQ(on.size(), 0u) << cells;
+        else
+            EXPECT_GT(on.size(), 5u) << cells;
+        for (const SurgeryResult::TaggedEdge& edge : made->surgery.tagged_edges)
+            EXPECT_NEAR(x[edge.a].x(), x[edge.b].x(), kThickness) << cells << ": two traces are joined";
+        EXPECT_EQ(validate(made->surgery.mesh), "");
+    }
+}
+
 TEST(Conform, ACornerBecomesANodeAtWhichTheTraceEnds)
 {
     EolCloth cloth = lying(12.0, 0.003, 0.1);

@@ -83,6 +83,37 @@ TEST(TraceOrder, OfAClosedLineTheLastIsBesideTheFirst)
     EXPECT_EQ(trace.neighbours(), (Pairs{{1, 2}, {2, 3}, {1, 3}}));
 }
 
+TEST(TraceOrder, AFoldThatHasFlownOffAnEdgeAndTheTraceBehindItAreNotMixed)
+{
+    Trace trace;
+    trace.obstacles.emplace_back("table", make_box(Vec3(2, 2, 2)), Placement{}, RigidMotion{}, 30.0);
+    const ObstacleFeatures& features = trace.obstacles[0].features();
+    int along_y = -1;  // at x = z = 1
+    for (std::size_t f = 0; f < features.edges.size(); ++f) {
+        const auto& ends = trace.obstacles[0].topology().edges[features.edges[f].edge].points;
+        const std::vector<Vec3>& at = trace.obstacles[0].mesh().points;
+        if ((0.5 * (at[ends[0]] + at[ends[1]]) - Vec3(1, 0, 1)).norm() < 1e-9) along_y = static_cast<int>(f);
+    }
+    ASSERT_GE(along_y, 0);
+    for (const double off : {0.0, 0.06, 0.5, 5.0}) {
+        trace.eol.clear();
+        trace.places.clear();
+        for (const int k : {0, 1, 2, 3}) {
+            trace.add(10 + k, false, along_y, {1, 0.1 * k, 1});
+            trace.add(20 + k, false, along_y, {1 + off, 0.1 * k + 0.04, 1});
+        }
+        const Pairs one = {{10, 20}, {11, 20}, {11, 21}, {12, 21}, {12, 22}, {13, 22}, {13, 23}};
+        const Pairs two = {{10, 11}, {11, 12}, {12, 13}, {20, 21}, {21, 22}, {22, 23}};
+        EXPECT_EQ(trace.neighbours(), off > 0.0 ? two : one) << off;
+    }
+    // A fold of which some has flown off, up to 31 degrees from the edge, is one.
+    trace.eol.clear();
+    trace.places.clear();
+    for (const int k : {0, 1, 2, 3})
+        trace.add(10 + k, false, along_y, {1 + 0.06 * std::max(k - 1, 0), 0.1 * k, 1});
+    EXPECT_EQ(trace.neighbours(), (Pairs{{10, 11}, {11, 12}, {12, 13}}));
+}
+
 TEST(TraceOrder, LinesOfOneObstacleOrOfTwoAreNotMixed)
 {
     Trace trace;
