@@ -68,12 +68,29 @@ class Relaxation {
         mark_creases(patch_.creases, patch_.mesh, elements_);
         edges_ = std::move(topology.edges);
         energy_ = energy_at(patch_.mesh.world);
+        place_.assign(patch_.is_free.size(), -1);
+        for (std::size_t v = 0; v < patch_.is_free.size(); ++v) {
+            if (!patch_.is_free[v]) continue;
+            place_[v] = static_cast<int>(free_.size());
+            free_.push_back(static_cast<int>(v));
+        }
     }
 
     /// Lowers the energy to `wanted` or below, or as far as a few steps bring it.
     void run(double wanted)
     {
         for (int k = 0; k < kMostSteps && energy_ > wanted && descend(wanted); ++k) continue;
+    }
+
+    /// Whether `run` would come to `wanted`. A step lowers the energy by less than the one before, as every
+    /// mode decays: where as many as are left, each as good as the last, would not do, they are not made.
+    bool can_come_to(double wanted)
+    {
+        for (int left = kMostSteps - 1; left >= 0 && energy_ > wanted; --left) {
+            const double before = energy_;
+            if (!descend(wanted) || energy_ - wanted > left * (before - energy_)) return false;
+        }
+        return energy_ <= wanted;
     }
 
     /// Back on the last step's way to where the energy has just fallen to `wanted`: what strain the cloth had
@@ -143,48 +160,66 @@ class Relaxation {
         return compute_energies(elements_, terms_, world).sum();
     }
 
-    /// (M + t^2 H) way = t^2 f: implicit Euler's.
+    /// (M + t^2 H) way = t^2 f: implicit Euler's, of what is free.
     std::vector<Vec3> find_way()
     {
         const std::size_t n = patch_.mesh.world.size();
+        std::vector<Vec3> way(n, Vec3::Zero());
+        if (free_.empty()) return way;
         const bool is_first = system_.matrix().rows() == 0;  // many a patch never moves
         if (is_first) system_.make_pattern(elements_);
         Linearization at;
         at.gamma = step_time_;
         at.position = patch_.mesh.world;
-        at.v_predicted = at.v_expansion = at.v_last = at.drift = std::vector<Vec3>(n, Vec3::Zero());
+        at.v_predicted = at.v_expansion = at.v_last = at.drift = way;
         at.basis.assign(n, Mat3::Identity());
         at.has_basis.assign(n, 0);
         system_.assemble(patch_.mesh, elements_, terms_, at);
-        Eigen::SparseMatrix<double> matrix = system_.matrix();
-        Eigen::VectorXd rhs = system_.rhs();
+        Eigen::SparseMatrix<double> matrix = find_free_part();
+        Eigen::VectorXd rhs(matrix.rows());
         constexpr double kStiff = 1e6;  // beside the greatest stiffness: held
         const double stiff = kStiff * matrix.diagonal().maxCoeff();
-        for (std::size_t v = 0; v < n; ++v) {
-            const Eigen::Index first = static_cast<Eigen::Index>(3 * v);
-            if (!patch_.is_free[v]) {
-                for (int d = 0; d < 3; ++d) matrix.coeffRef(first + d, first + d) += stiff;
-                rhs.segment<3>(first).setZero();
-                continue;
-            }
-            const Vec3& normal = patch_.normals[v];
+        for (std::size_t k = 0; k < free_.size(); ++k) {
+            const Eigen::Index first = static_cast<Eigen::Index>(3 * k);
+            rhs.segment<3>(first) = system_.rhs().segment<3>(3 * free_[k]);
+            const Vec3& normal = patch_.normals[free_[k]];
             for (int i = 0; i < 3; ++i)
                 for (int j = 0; j < 3; ++j)
                     matrix.coeffRef(first + i, first + j) += stiff * normal[i] * normal[j];
         }
         if (is_first) factor_.analyzePattern(matrix);
         factor_.factorize(matrix);
-        std::vector<Vec3> way(n, Vec3::Zero());
         if (factor_.info() != Eigen::Success) return way;
         const Eigen::VectorXd solution = step_time_ * factor_.solve(rhs);
         if (!solution.allFinite()) return way;
-        for (std::size_t v = 0; v < n; ++v)
-            if (patch_.is_free[v]) way[v] = solution.segment<3>(static_cast<Eigen::Index>(3 * v));
+        for (std::size_t k = 0; k < free_.size(); ++k)
+            way[free_[k]] = solution.segment<3>(static_cast<Eigen::Index>(3 * k));
         return way;
+    }
+
+    /// Rows and columns of the system that are of free vertices.
+    Eigen::SparseMatrix<double> find_free_part() const
+    {
+        const Eigen::SparseMatrix<double>& all = system_.matrix();
+        const Eigen::Index count = static_cast<Eigen::Index>(3 * free_.size());
+        Eigen::SparseMatrix<double> part(count, count);
+        part.reserve(all.nonZeros());
+        for (std::size_t k = 0; k < free_.size(); ++k)
+            for (int c = 0; c < 3; ++c) {
+                const Eigen::Index column = static_cast<Eigen::Index>(3 * k) + c;
+                part.startVec(column);
+                for (Eigen::SparseMatrix<double>::InnerIterator at(all, 3 * free_[k] + c); at; ++at)
+                    if (const int place = place_[at.row() / 3]; place >= 0)
+                        part.insertBack(3 * place + at.row() % 3, column) = at.value();
+            }
+        part.finalize();
+        return part;
     }
 
     const Scene& scene_;
     LoosePatch patch_;
+    std::vector<int> free_;   ///< vertices, ascending
+    std::vector<int> place_;  ///< of each vertex in `free_`; -1 where it is held
     std::vector<MeshEdge> edges_;
     ClothElements elements_;
     Terms terms_;
@@ -239,8 +274,7 @@ bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop)
 {
     Relaxation relaxation(scene, patch);
     const double wanted = relaxation.energy() - drop;
-    relaxation.run(wanted);
-    return relaxation.energy() <= wanted;
+    return relaxation.can_come_to(wanted);
 }
 
 double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& mesh)

@@ -127,6 +127,32 @@ TEST(PatchRelaxation, StopsAtWhatIsWanted)
     }
 }
 
+TEST(PatchRelaxation, CanRelaxByWhatItRelaxesBy)
+{
+    // Under gravity steps are short: what is soft takes all of them.
+    int yes = 0, no = 0;
+    for (const double stiffness : {5.0, 50.0, 5e4})
+        for (const double bending : {0.0, 1e-5, 1e-2})
+            for (const double rough : {1e-3, 5e-3, 0.05})
+                for (const double share : {0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.14, 1.2}) {
+                    Setting setting(rough);
+                    Scene& scene = setting.cloth.scene;
+                    scene.gravity = Gravity{};
+                    scene.material.youngs_modulus = stiffness;
+                    scene.material.bending_stiffness = bending;
+                    const RelaxedPatch& patch = setting.patch;
+                    const LoosePatch loose{setting.cloth.state.mesh, patch.is_free, patch.normals, {}};
+                    const double drop = share * setting.energy();
+                    setting.patch.wanted = find_patch_energy(scene, {}, loose.mesh) - drop;
+                    const bool does = setting.relax() <= setting.patch.wanted;
+                    EXPECT_EQ(can_relax_by(scene, loose, drop), does)
+                        << stiffness << ", " << bending << ", " << rough << ", " << share;
+                    ++(does ? yes : no);
+                }
+    EXPECT_GT(yes, 50);
+    EXPECT_GT(no, 50);
+}
+
 TEST(PatchRelaxation, KeepsTheHeightOfWhatTouches)
 {
     constexpr double kHeld = 1e-6;  // of the way: the spring that holds it is that much stiffer
