@@ -26,10 +26,13 @@ double longest_reach(const ClothMotion& motion, std::span<const int> vertices, d
 ObstacleContact make_contact(const ClothMotion& motion, ContactKind kind, const ClothPoint& cloth_point,
                              int element, const Vec3& normal, const Vec3& point, double thickness)
 {
-    const double before = normal.dot(cloth_point.at(motion.begin) - point);
+    const Vec3 from = cloth_point.at(motion.begin) - point;
+    const double before = normal.dot(from);
     const double after = normal.dot(cloth_point.at(motion.end) - point);
+    // What slides along a curved surface comes to this plane from below it.
+    const double sliding = std::min(after, from.norm());
     ObstacleContact contact{cloth_point, kind,  element,
-                            normal,      point, std::min(thickness, std::max(before, after))};
+                            normal,      point, std::min(thickness, std::max(before, sliding))};
     // Ascending, unused ones last.
     const auto swap_if = [&](int i, int j) {
         const int a = contact.vertices[i], b = contact.vertices[j];

@@ -109,8 +109,9 @@ TEST(VertexContact, GapMayCloseToTheThicknessAndASmallerOneNoFurther)
     };
     EXPECT_NEAR(least_gap(2e-3, 0.1e-3), kThickness, kRounding);
     EXPECT_NEAR(least_gap(0.3e-3, 0.1e-3), 0.3e-3, kRounding);
-    EXPECT_NEAR(least_gap(0.3e-3, 0.7e-3), 0.7e-3, kRounding);
-    EXPECT_NEAR(least_gap(0.3e-3, 2e-3), kThickness, kRounding);
+    // What comes out may be pulled back to where it was: it is not held to its speed.
+    EXPECT_NEAR(least_gap(0.3e-3, 0.7e-3), 0.3e-3, kRounding);
+    EXPECT_NEAR(least_gap(0.3e-3, 2e-3), 0.3e-3, kRounding);
 }
 
 TEST(VertexContact, GapIsOfTheEndNotOfTheReference)
