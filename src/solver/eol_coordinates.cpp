@@ -246,7 +246,8 @@ ClothStars make_stars(int vertex_count, const std::vector<Face>& faces)
 bool is_of_one_strand(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b)
 {
     constexpr double kSteepest = 0.7;  // a fold that runs off its edge does so at less than 35 degrees
-    if (!is_on_convex_edge(obstacle, a.eol) || !is_on_convex_edge(obstacle, b.eol)) return true;
+    const bool is_one_edge = a.eol.is_corner == b.eol.is_corner && a.eol.feature == b.eol.feature;
+    if (!is_one_edge || !is_on_convex_edge(obstacle, a.eol)) return true;
     const Vec3 on_a = place_on_feature(obstacle, a.eol.feature, a.place).point;
     const Vec3 on_b = place_on_feature(obstacle, b.eol.feature, b.place).point;
     return ((a.place - on_a) - (b.place - on_b)).norm() <= kSteepest * (on_a - on_b).norm();

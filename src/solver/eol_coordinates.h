@@ -78,8 +78,9 @@ struct PlacedEol {
 /// polyline, or at its end, and it goes from one to the other nearly straight.
 bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b);
 
-/// Whether two EOL vertices on convex edges are on one line along them: of a fold that has flown off and of a
-/// trace behind it, which is on the edge, they are not. True on all other features.
+/// Whether two EOL vertices on one convex edge are on one line along it: of a fold that has flown off and of
+/// a trace behind it, which is on the edge, they are not. True of all others: where a polyline turns nothing
+/// tells which way they have gone.
 bool is_of_one_strand(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b);
 
 /// The cloth's edges that lie along features at the state's time: the entries in State::eol of their ends,
