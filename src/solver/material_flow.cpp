@@ -2,14 +2,11 @@
 #include "solver/material_flow.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 namespace arris {
 
-namespace {
-
-/// Whether every face at an EOL vertex keeps its orientation, with enough of the material that it has at the
-/// step's start for its strain to mean something. Whether what is linear in the step follows is another
-/// question, to which the energy's balance has the answer.
 bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
 {
     constexpr double kLeast = 0.4;
@@ -23,6 +20,31 @@ bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
             work.overrun.push_back({eol.vertex, way / (work.at.time - work.at.begin)});
         }
     return work.overrun.empty();
+}
+
+namespace {
+
+/// Vertices that would leave faces too little material go back on their way from the step's start, in the
+/// world as in the material, and with their velocity. Which, ascending.
+std::set<int> shorten(const State& state, Workspace& work, MovingCloth& cloth)
+{
+    constexpr int kHalvings = 4;  // then they stay where they are, which is always enough
+    const auto go_back = [](double share, const auto& from, auto& to) { to = from + share * (to - from); };
+    std::set<int> shortened;
+    for (int round = 0; round <= kHalvings && !has_material_left(cloth.material, work); ++round) {
+        const double share = round < kHalvings ? 0.5 : 0.0;
+        std::set<int> vertices;  // once each: they are named for every face
+        for (const Overrun& overrun : work.overrun) vertices.insert(overrun.vertex);
+        for (const int v : vertices) {
+            go_back(share, state.mesh.world[v], cloth.world[v]);
+            go_back(share, state.mesh.material[v], cloth.material[v]);
+            go_back(share, state.velocity[v], cloth.velocity.world[v]);
+            go_back(share, state.material_velocity[v], cloth.velocity.material[v]);
+        }
+        shortened.merge(vertices);
+    }
+    if (!shortened.empty()) has_material_left(cloth.material, work);
+    return shortened;
 }
 
 }  // namespace
@@ -44,17 +66,24 @@ int find_flow_parts(const Scene& scene, const State& state, double dt)
     return parts;
 }
 
-bool linearise_flow(const State& state, const MovingCloth& end, Workspace& work)
+bool linearise_flow(const State& state, Workspace& work)
 {
     const Prediction& prediction = work.prediction;
+    MovingCloth end = find_end(prediction, work.expansion);
+    for (const int v : shorten(state, work, end)) {
+        work.expansion.world[v] = (end.world[v] - prediction.position[v]) / prediction.gamma;
+        work.expansion.material[v] = (end.material[v] - prediction.material[v]) / prediction.gamma;
+    }
+    if (!work.overrun.empty()) return false;
+    MovingCloth past = extrapolate(state, prediction);
+    shorten(state, work, past);
     MaterialFlow& flow = *work.at.flow;
-    flow.position = end.material;
+    flow.position = std::move(end.material);
     flow.v_predicted = prediction.material_velocity;
     flow.v_expansion = work.expansion.material;
     flow.v_last = state.material_velocity;
-    const MovingCloth past = extrapolate(state, prediction);
     flow.extrapolated = {past.world, past.velocity.world, past.material, past.velocity.material};
-    return has_material_left(flow.position, work) && has_material_left(flow.extrapolated.material, work);
+    return work.overrun.empty();
 }
 
 bool propose_flow(Workspace& work)

@@ -6,32 +6,45 @@
 
 #include "solver/constraints.h"
 #include "solver/energy_balance.h"
+#include "solver/material_flow.h"
 
 namespace arris {
 
 namespace {
 
+constexpr int kMostRelinearisations = 4;  // one does nearly always, three have where they help at all
+
+void go_halfway_back(const ClothVelocity& to, ClothVelocity& from)
+{
+    for (std::size_t v = 0; v < from.world.size(); ++v) {
+        from.world[v] = 0.5 * (from.world[v] + to.world[v]);
+        from.material[v] = 0.5 * (from.material[v] + to.material[v]);
+    }
+}
+
+/// v^ goes there; contacts that press now do so in the next solve, too.
+void expand_at(ClothVelocity next, Workspace& work, StepReport& report)
+{
+    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
+    for (std::size_t c = 0; c < work.contacts.size(); ++c) work.contacts[c].is_pressing = multiplier[c] > 0.0;
+    work.expansion = std::move(next);
+    work.has_system = false;
+    ++report.relinearisations;
+}
+
 /// v^ goes to the velocity found, or part of the way where that has more of what the step minimises.
 void relinearise(const Scene& scene, Workspace& work, StepReport& report)
 {
     constexpr double kShortest = 0.1;  // wind and pulls are not in the objective: never stay
-    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
-    for (std::size_t c = 0; c < work.contacts.size(); ++c) work.contacts[c].is_pressing = multiplier[c] > 0.0;
-
     ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
     if (report.relinearisations > 0) {  // the first v^ keeps no contact: no measure
         const double now = compute_step_objective(scene, work, work.expansion);
         for (double share = 1.0; compute_step_objective(scene, work, next) > now && share > kShortest;) {
             share *= 0.5;
-            for (std::size_t v = 0; v < next.world.size(); ++v) {
-                next.world[v] = 0.5 * (next.world[v] + work.expansion.world[v]);
-                next.material[v] = 0.5 * (next.material[v] + work.expansion.material[v]);
-            }
+            go_halfway_back(work.expansion, next);
         }
     }
-    work.expansion = std::move(next);
-    work.has_system = false;
-    ++report.relinearisations;
+    expand_at(std::move(next), work, report);
 }
 
 }  // namespace
@@ -39,7 +52,6 @@ void relinearise(const Scene& scene, Workspace& work, StepReport& report)
 bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
                  Workspace& work, StepReport& report)
 {
-    constexpr int kMostRelinearisations = 4;  // one does nearly always, three have where they help at all
     const double rise = find_energy_rise(scene, state, work);
     report.energy_rise = rise;
     if (work.is_least_taken) return false;
@@ -61,6 +73,24 @@ bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool m
     work.expansion = work.least_at;
     work.has_system = false;
     work.is_least_taken = true;
+    return true;
+}
+
+bool linearise_nearer(Workspace& work, StepReport& report)
+{
+    constexpr double kShortest = 0.1;
+    if (report.relinearisations >= kMostRelinearisations) return false;
+    ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
+    const std::vector<Overrun> overrun = work.overrun;
+    for (double share = 1.0; !has_material_left(find_end(work.prediction, next).material, work);) {
+        share *= 0.5;
+        if (!(share > kShortest)) {
+            work.overrun = overrun;
+            return false;
+        }
+        go_halfway_back(work.expansion, next);
+    }
+    expand_at(std::move(next), work, report);
     return true;
 }
 

@@ -65,10 +65,9 @@ bool assemble(const Scene& scene, double end, const State& state, Workspace& wor
     at.damping = scene.material.damping;
     at.v_predicted = prediction.velocity;
     at.v_last = state.velocity;
-    const MovingCloth end_there = find_end(prediction, work.expansion);
+    if (at.flow && !linearise_flow(state, work)) return false;
     at.v_expansion = work.expansion.world;
-    at.position = end_there.world;
-    if (at.flow && !linearise_flow(state, end_there, work)) return false;
+    at.position = find_end(prediction, work.expansion).world;
     work.system.assemble(state.mesh, work.elements, work.terms, at);
     return true;
 }
@@ -225,8 +224,11 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
 
     // 6. q' = q~ + gamma v', not committed, and the exact check of the whole way.
     if (!propose_flow(work)) {
+        const bool may_solve_again = report.status == StepStatus::Done && report.solves < kMostSolves;
         report.status = StepStatus::Overrun;
-        return false;
+        if (!may_solve_again) return false;
+        propose(scene, 0.0, work);
+        return linearise_nearer(work, report);
     }
     const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
     const Violations violations = propose_and_check(scene, end - state.time, growth, work);

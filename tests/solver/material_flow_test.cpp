@@ -66,30 +66,126 @@ TEST(FlowParts, CountOnlyWhatIsEol)
     EXPECT_EQ(parts_of(cloth), 1);
 }
 
-/// Whether the mesh has the material that flows in a step through the vertex at (0.2, 0.2) of flat cloth on
-/// the ridge, as far as (m) across it; `overrun` are the vertices named.
+/// Flat cloth on the ridge, cells of 0.05 m halved by a diagonal, with an EOL vertex in its middle, before
+/// its velocity is solved for.
+struct FlowingCloth {
+    EolCloth cloth{testing::make_ridge(60.0), testing::make_draped({8, 0.0, 180.0})};
+    int v = cloth.vertex_at(0.2, 0.2);
+    Workspace work;
+
+    FlowingCloth()
+    {
+        cloth.add_eol(v, false, tip_of(cloth.scene.obstacles[0]));
+        prepare(cloth.scene, cloth.state, work);
+        work.eol = {*cloth.place(v).coordinates};
+        work.at.begin = 0.0;
+        work.at.time = kStep;
+        work.at.flow.emplace();
+    }
+    /// Through it flow `now` and, a step ago, `before` cells a step; it rises by as much.
+    void flow(double now, double before)
+    {
+        State& state = cloth.state;
+        state.previous_dt = kStep;
+        state.previous_world = state.mesh.world;
+        state.previous_material = state.mesh.material;
+        const double cell = 0.05;
+        state.material_velocity[v] = Vec2(now * cell / kStep, 0.0);
+        state.previous_material_velocity[v] = Vec2(before * cell / kStep, 0.0);
+        state.previous_material[v].x() -= before * cell;
+        state.velocity[v] = Vec3(0.0, 0.0, now * cell / kStep);
+        work.prediction = predict(state, Integrator::Bdf2, kStep);
+        work.expansion = {state.velocity, state.material_velocity};
+    }
+    /// The least share that a face at the vertex has left there of what it has now.
+    double least_left(const std::vector<Vec2>& material) const
+    {
+        double least = 1.0;
+        for (const int f : work.stars.faces[v]) {
+            const auto& [a, b, c] = cloth.state.mesh.faces[f];
+            const double left = 0.5 * twice_area(material[a], material[b], material[c]);
+            least = std::min(least, left / work.elements.faces[f].area);
+        }
+        return least;
+    }
+};
+
+/// Whether the mesh has the material where in a step as much flows as (m) across the ridge; `overrun` are the
+/// vertices named.
 bool has_material_for(double way, std::vector<Overrun>& overrun)
 {
-    EolCloth cloth(testing::make_ridge(60.0), testing::make_draped({8, 0.0, 180.0}));
-    const int v = cloth.vertex_at(0.2, 0.2);
-    cloth.add_eol(v, false, tip_of(cloth.scene.obstacles[0]));
-    Workspace work;
-    prepare(cloth.scene, cloth.state, work);
-    work.eol = {*cloth.place(v).coordinates};
-    work.prediction.material = cloth.state.mesh.material;
+    FlowingCloth flowing;
+    Workspace& work = flowing.work;
+    const State& state = flowing.cloth.state;
+    work.prediction.material = state.mesh.material;
     work.prediction.gamma = kStep;
-    work.at.begin = 0.0;
-    work.at.time = kStep;
-    work.solution.velocity = Eigen::VectorXd::Zero(3 * cloth.state.mesh.vertex_count());
-    work.solution.velocity[3 * v + 2] = way / kStep;
+    work.solution.velocity = Eigen::VectorXd::Zero(3 * state.mesh.vertex_count());
+    work.solution.velocity[3 * flowing.v + 2] = way / kStep;
     const bool has_left = propose_flow(work);
     overrun = work.overrun;
     return has_left;
 }
 
+TEST(MaterialFlow, IsLinearisedWhereItWouldEndAsLongAsThereIsMaterial)
+{
+    FlowingCloth flowing;
+    flowing.flow(0.4, 0.4);
+    const MovingCloth end = find_end(flowing.work.prediction, flowing.work.expansion);
+    const std::vector<Vec3> expansion = flowing.work.expansion.world;
+    ASSERT_TRUE(linearise_flow(flowing.cloth.state, flowing.work));
+    EXPECT_EQ(flowing.work.at.flow->position, end.material);
+    EXPECT_EQ(flowing.work.expansion.world, expansion);
+}
+
+TEST(MaterialFlow, IsLinearisedOnTheWayThereWhereThereIsNone)
+{
+    for (const double cells : {1.0, 1.5, 3.0, -1.0, 1e3, -1e12}) {
+        SCOPED_TRACE(cells);
+        FlowingCloth flowing;
+        flowing.flow(cells, 0.0);
+        const State& state = flowing.cloth.state;
+        const int v = flowing.v;
+        const MovingCloth end = find_end(flowing.work.prediction, flowing.work.expansion);
+        ASSERT_TRUE(linearise_flow(state, flowing.work));
+        const MovingCloth there = find_end(flowing.work.prediction, flowing.work.expansion);
+        EXPECT_GE(flowing.least_left(there.material), 0.4);
+        EXPECT_GE(flowing.least_left(flowing.work.at.flow->extrapolated.material), 0.4);
+        // World and material have gone the same share of their ways.
+        const double share =
+            (there.material[v] - state.mesh.material[v]).x() / (end.material[v] - state.mesh.material[v]).x();
+        EXPECT_NEAR((there.world[v] - state.mesh.world[v]).z(),
+                    share * (end.world[v] - state.mesh.world[v]).z(), 1e-12);
+        EXPECT_LT(share, 1.0);
+        for (int w = 0; w < state.mesh.vertex_count(); ++w)
+            EXPECT_TRUE(w == v || there.world[w] == end.world[w]) << w;
+    }
+}
+
+TEST(MaterialFlow, ThatTurnsBackIsNotExtrapolatedPastTheMaterial)
+{
+    FlowingCloth flowing;
+    flowing.flow(-0.4, 0.8);
+    const std::vector<Vec2> past = extrapolate(flowing.cloth.state, flowing.work.prediction).material;
+    ASSERT_LT(flowing.least_left(past), 0.4);
+    EXPECT_TRUE(linearise_flow(flowing.cloth.state, flowing.work));
+    EXPECT_GE(flowing.least_left(flowing.work.at.flow->extrapolated.material), 0.4);
+}
+
+TEST(MaterialFlow, ThatIsNotFiniteIsNotLinearised)
+{
+    for (const double cells :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        FlowingCloth flowing;
+        flowing.flow(cells, 0.0);
+        EXPECT_FALSE(linearise_flow(flowing.cloth.state, flowing.work));
+        ASSERT_FALSE(flowing.work.overrun.empty());
+        EXPECT_EQ(flowing.work.overrun[0].vertex, flowing.v);
+    }
+}
+
 TEST(MaterialFlow, TakesHalfOfAFaceButNotAllOfIt)
 {
-    // Cells of 0.05 m halved by a diagonal: what goes by w takes w / 0.05 of a face ahead.
+    // What goes by w takes w / 0.05 of a face ahead.
     std::vector<Overrun> overrun;
     for (const double sign : {1.0, -1.0}) {
         EXPECT_TRUE(has_material_for(sign * 0.55 * 0.05, overrun));
