@@ -56,9 +56,9 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
     constexpr struct {
         StrainLimit limit;
         double most_lost, most_strain;
-    } kTries[] = {{StrainLimit::GivesWay, kAny, kAllowedStrain},
+    } kTries[] = {{StrainLimit::GivesWay, kAny, kPatchStrain},
                   {StrainLimit::AsMade, 0, kAny},
-                  {StrainLimit::Forced, kAny, kForcedStrain},
+                  {StrainLimit::Forced, kAny, kPatchStrain},
                   {StrainLimit::AsMade, kAny, kAny}};
     const FeatureChanges changes = find_feature_changes(scene, state, work.stars);
     std::optional<ConformOutcome> careful;  // as made: it may yet be the best there is

@@ -5,12 +5,13 @@
 
 namespace arris {
 
-/// By what share of what moves a patch of cloth (its kinetic energy, and its weight over a cell) a change of
-/// its mesh may raise its elastic energy: nobody sees that.
+/// By what share of what moves a patch of cloth (its kinetic energy, and its weight over a cell) an operation
+/// on its mesh may raise its elastic energy: nobody sees that.
 inline constexpr double kAllowedStrain = 0.01;
 
-/// The same where less would cost a sliding trace its vertices, and more energy with them.
-inline constexpr double kForcedStrain = 0.03;
+/// The same of all operations of a step on a patch, each within what it may. Less would cost a sliding trace
+/// its vertices, and more energy with them.
+inline constexpr double kPatchStrain = 0.03;
 
 /// What gravity gives cloth of `area` (material, m^2) that falls by `length` (m), J.
 inline double weight_over(const Scene& scene, double area, double length)
