@@ -239,10 +239,6 @@ State transfer(const Scene& scene, const State& before, const ClothStars& stars,
                 interpolate(event, change, before.previous_dt, all);
     State after = on_new_mesh(before, conformed, all);
     const ClothStars stars_after = make_stars(after.mesh.vertex_count(), after.mesh.faces);
-    const std::vector<char> may_flow = find_flowing(scene, after, stars_after);
-    for (const EolVertex& eol : before.eol)
-        if (const int v = after.index_of(eol.vertex_id); v >= 0 && !may_flow[v])
-            after.material_velocity[v].setZero();
     drop_contacts_without_element(stars_after, after);
     const std::vector<ChangedPatch> patches =
         find_changed_patches({before, after, conformed.events, stars.faces, stars_after.faces});
