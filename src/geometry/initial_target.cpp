@@ -11,6 +11,8 @@
 namespace arris {
 namespace {
 
+constexpr double kRounding = 1e-12;  // relative, of a weighted mean of three: far more than it has
+
 Vec3 flat(const Vec2& X)
 {
     return {X.x(), X.y(), 0.0};
@@ -47,6 +49,9 @@ class InitialMesh {
     }
 
     double mean_length() const { return mean_; }
+    // Of what `length` interpolates, with room for its rounding.
+    double shortest() const { return (1.0 - kRounding) * *std::min_element(length_.begin(), length_.end()); }
+    double longest() const { return (1.0 + kRounding) * *std::max_element(length_.begin(), length_.end()); }
 
     double angle(const Vec2& X) const
     {
@@ -122,8 +127,12 @@ class InitialMesh {
 MeshTarget make_initial_target(const ClothMesh& initial, double most_angle)
 {
     const InitialMesh mesh(initial, most_angle);
-    return {[mesh](const Vec2& X) { return mesh.length(X); }, [mesh](const Vec2& X) { return mesh.angle(X); },
-            mesh.mean_length()};
+    return {[mesh](const Vec2& X) { return mesh.length(X); },
+            [mesh](const Vec2& X) { return mesh.angle(X); },
+            mesh.mean_length(),
+            mesh.shortest(),
+            mesh.longest(),
+            most_angle};
 }
 
 }  // namespace arris

@@ -106,7 +106,20 @@ class Cleanup {
         return length(e) / target_.length(0.5 * (surgery_.material(e[0]) + surgery_.material(e[1])));
     }
 
-    double angle_target(const PatchFace& face) const { return target_.least_angle(material_centre(face)); }
+    bool is_short(const Edge& e) const
+    {
+        return length(e) < kShort * target_.longest && relative_length(e) < kShort;
+    }
+
+    bool is_long(const Edge& e) const
+    {
+        return length(e) > kLong * target_.shortest && relative_length(e) > kLong;
+    }
+
+    bool is_thin(const PatchFace& face, double angle) const
+    {
+        return angle < target_.most_angle && angle < target_.least_angle(material_centre(face));
+    }
 
     bool commit(const SurgeryProposal& proposal)
     {
@@ -173,13 +186,13 @@ class Cleanup {
         report_.most_operations += static_cast<int>(patch_.size());
         std::set<std::tuple<double, Edge>> queue;
         const auto add = [&](const Edge& e) {
-            if (relative_length(e) < kShort) queue.insert({length(e), e});
+            if (is_short(e)) queue.insert({length(e), e});
         };
         for (const Edge& e : patch_edges()) add(e);
         while (!queue.empty()) {
             const Edge e = std::get<Edge>(*queue.begin());
             queue.erase(queue.begin());
-            if (!surgery_.has_edge(e[0], e[1]) || relative_length(e) >= kShort) continue;
+            if (!surgery_.has_edge(e[0], e[1]) || !is_short(e)) continue;
             if (!merge_short(e)) continue;
             const VertexId kept = surgery_.has_vertex(e[0]) ? e[0] : e[1];
             for (const VertexId n : surgery_.ring(kept).vertices)
@@ -236,7 +249,7 @@ class Cleanup {
     {
         std::vector<std::tuple<double, Edge>> edges;
         for (const Edge& e : patch_edges())
-            if (relative_length(e) > kLong) edges.emplace_back(-length(e), e);
+            if (is_long(e)) edges.emplace_back(-length(e), e);
         std::sort(edges.begin(), edges.end());
         report_.most_operations += static_cast<int>(edges.size());
         for (const auto& [minus_length, e] : edges)
@@ -251,7 +264,7 @@ class Cleanup {
         for (const IdFace& face : patch_faces()) {
             const PatchFace patch = surgery_.patch_face(face);
             const double angle = least_angle(patch);
-            if (angle < angle_target(patch)) thin.emplace_back(angle, face);
+            if (is_thin(patch, angle)) thin.emplace_back(angle, face);
         }
         std::sort(thin.begin(), thin.end());
         report_.most_operations += static_cast<int>(thin.size());
@@ -330,7 +343,7 @@ class Cleanup {
             const PatchFace patch = surgery_.patch_face(face);
             const double angle = least_angle(patch);
             report_.least_angle = std::min(report_.least_angle, angle);
-            report_.thin_faces += angle < angle_target(patch) ? 1 : 0;
+            report_.thin_faces += is_thin(patch, angle) ? 1 : 0;
         }
     }
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "geometry/surgery_cleanup.h"
@@ -39,6 +41,29 @@ TEST(InitialTarget, IsLinearBetweenVerticesAndFollowsTheMesh)
     const Face& f = cloth.mesh.faces[100];
     const Vec2 a = cloth.mesh.material[f[0]], b = cloth.mesh.material[f[1]];
     EXPECT_NEAR(target.length(0.3 * a + 0.7 * b), 0.3 * target.length(a) + 0.7 * target.length(b), 1e-15);
+}
+
+TEST(InitialTarget, NothingIsBeyondItsBoundsAndTheyAreMet)
+{
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> place(-0.3, 1.3);
+    for (const SurgeryCloth& cloth : {square_cloth(12), graded_cloth(20), bay_cloth(9), holed_cloth(9)}) {
+        const MeshTarget target = make_initial_target(cloth.mesh, 40.0);
+        std::vector<Vec2> points = cloth.mesh.material;
+        for (int k = 0; k < 1000; ++k) points.push_back({place(random), place(random)});
+        double shortest = std::numeric_limits<double>::infinity(), longest = 0.0;
+        for (const Vec2& X : points) {
+            const double length = target.length(X);
+            EXPECT_GE(length, target.shortest);
+            EXPECT_LE(length, target.longest);
+            EXPECT_LE(target.least_angle(X), target.most_angle);
+            shortest = std::min(shortest, length);
+            longest = std::max(longest, length);
+        }
+        EXPECT_NEAR(target.shortest, shortest, 1e-9 * shortest) << cloth.name;
+        EXPECT_NEAR(target.longest, longest, 1e-9 * longest) << cloth.name;
+        EXPECT_EQ(target.most_angle, 40.0);
+    }
 }
 
 TEST(InitialTarget, BeyondTheMeshTheNearestFaceCounts)
