@@ -284,7 +284,7 @@ std::vector<SceneEffect> list_effects(const RunConfig& config)
         by_table(config, "pin", true),
         obstacle_effect(config),
         eol_effect(config),
-        {"remesh", false, "no [remesh]; the mesh does not change"},
+        {"remesh", false, "no [remesh]; the mesh changes near sharp features only, with eol"},
         by_table(config, "friction", false),
         {"self_contact", false, "not in this version: the cloth may pass through itself"},
     };

@@ -273,9 +273,18 @@ void warn_of_first_keyframes(const SceneDocument& document, RunConfig& config)
 void check_meetings(const SceneDocument& document, const RunConfig& config)
 {
     const ClothMesh& cloth = config.cloth;
-    for (std::size_t i = 0; i < config.scene.pins.size(); ++i)
-        if (vertices_in_box(cloth, config.scene.pins[i].material).empty())
-            refuse_miss(document, fmt::format("pin.{}.material", i), cloth, "holds no vertex of the cloth");
+    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
+        const MaterialBox& box = config.scene.pins[i].material;
+        if (!vertices_in_box(cloth, box).empty()) continue;
+        const Vec2 middle = 0.5 * (box.min + box.max);
+        const Vec2 nearest = *std::min_element(
+            cloth.material.begin(), cloth.material.end(), [&](const Vec2& a, const Vec2& b) {
+                return (a - middle).squaredNorm() < (b - middle).squaredNorm();
+            });
+        refuse_miss(document, fmt::format("pin.{}.material", i), cloth,
+                    fmt::format("holds no vertex of the cloth; the nearest is at [{:.6g}, {:.6g}]",
+                                nearest.x(), nearest.y()));
+    }
     for (std::size_t i = 0; i < config.scene.pulls.size(); ++i)
         if (spread_over_box(cloth, config.scene.pulls[i].material).empty())
             refuse_miss(document, fmt::format("pull.{}.material", i), cloth, "meets no cloth");

@@ -25,6 +25,7 @@
 #include "geometry/input_error.h"
 #include "geometry/mesh_file_check.h"
 #include "geometry/mesh_folder_io.h"
+#include "geometry/obj_numbers.h"
 #include "geometry/obstacle_reply.h"
 #include "geometry/soup_repair.h"
 #include "geometry/soup_weld.h"
@@ -109,7 +110,7 @@ class ObstacleImporter {
         const std::string bytes = read_regular_file(path_, kLargestFile);
         warnings_ = check_mesh_bytes(extension_, bytes);
         if (extension_ == "3mf") declared_unit_ = three_mf_unit(bytes);
-        load(bytes);
+        load(extension_ == "obj" ? spell_out_numbers(bytes) : bytes);
         place();
         warn_where_far();
         // All but these two give each face points of its own, whatever the file has.

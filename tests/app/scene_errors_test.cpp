@@ -697,13 +697,13 @@ const std::vector<WrongScene> kWrongScenes = {
     {"PinBesideTheCloth",
      kBase + "[[pin]]\nmaterial = [[2, 0], [2, 1]]\n",
      {},
-     "s.toml:6: pin.0.material = [[2, 0], [2, 1]]: holds no vertex of the cloth; allowed: material "
-     "coordinates of the cloth, within [[0, 0], [1, 1]] (m)"},
+     "s.toml:6: pin.0.material = [[2, 0], [2, 1]]: holds no vertex of the cloth; the nearest is at "
+     "[1, 0.5]; allowed: material coordinates of the cloth, within [[0, 0], [1, 1]] (m)"},
     {"PinBetweenVertices",
      kBase + "[[pin]]\nmaterial = [[0.1, 0.1], [0.15, 0.15]]\n",
      {},
-     "s.toml:6: pin.0.material = [[0.1, 0.1], [0.15, 0.15]]: holds no vertex of the cloth; allowed: material "
-     "coordinates of the cloth, within [[0, 0], [1, 1]] (m)"},
+     "s.toml:6: pin.0.material = [[0.1, 0.1], [0.15, 0.15]]: holds no vertex of the cloth; the nearest is at "
+     "[0, 0]; allowed: material coordinates of the cloth, within [[0, 0], [1, 1]] (m)"},
     {"PullBesideTheCloth",
      kBase + "[[pull]]\nmaterial = [[-1, -1], [-0.5, -0.5]]\nforce = [0, 0, 1]\n",
      {},

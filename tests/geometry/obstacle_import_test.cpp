@@ -64,6 +64,20 @@ class ObstacleImport : public ::testing::Test {
     std::filesystem::path folder_;
 };
 
+// The importer takes no word for a number that begins with its point, and leaves such a vertex out.
+TEST_F(ObstacleImport, ObjNumbersMayBeginWithTheirPoint)
+{
+    const ObstacleFile plain = import("plain.obj", "v 0 0 0\nv 0.5 0 0\nv 1 1 0.25\nv 0 1 0\nf 1 2 3 4\n");
+    for (const char* text : {"v 0 0 0\nv .5 0 0\nv 1 1 .25\nv 0 1 0\nf 1 2 3 4\n",
+                             "o .x\nv 0 0 .0\r\nv\t.5 0 0 # .5\r\nv 1 1 \\\n.25\nv 0 1 0\nf 1 2 3 4",
+                             "v 0 0 0\nv +.5 -.0 0\nv 1 1 .25\nv 0 1 0\nvt .5 .5\nvn .0 .0 1\n"
+                             "f 1/1/1 2/1/1 3/1/1 4/1/1\n"}) {
+        const ObstacleFile found = import("points.obj", text);
+        EXPECT_EQ(found.mesh.points, plain.mesh.points) << text;
+        EXPECT_EQ(found.mesh.faces, plain.mesh.faces) << text;
+    }
+}
+
 // Its sides tell axes apart.
 const Vec3 kSizes(1, 2, 3);
 
