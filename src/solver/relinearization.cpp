@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/relinearization.h"
 
+#include <cassert>
 #include <utility>
 #include <vector>
 
@@ -32,12 +33,13 @@ void expand_at(ClothVelocity next, Workspace& work, StepReport& report)
     ++report.relinearisations;
 }
 
-/// v^ goes to the velocity found, or part of the way where that has more of what the step minimises.
-void relinearise(const Scene& scene, Workspace& work, StepReport& report)
+/// v^ goes to the velocity found, or part of the way where that has more of what the step minimises than v^
+/// has, if this is a measure.
+void relinearise(const Scene& scene, bool is_measure, Workspace& work, StepReport& report)
 {
     constexpr double kShortest = 0.1;  // wind and pulls are not in the objective: never stay
     ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
-    if (report.relinearisations > 0) {  // the first v^ keeps no contact: no measure
+    if (is_measure) {
         const double now = compute_step_objective(scene, work, work.expansion);
         for (double share = 1.0; compute_step_objective(scene, work, next) > now && share > kShortest;) {
             share *= 0.5;
@@ -47,6 +49,14 @@ void relinearise(const Scene& scene, Workspace& work, StepReport& report)
     expand_at(std::move(next), work, report);
 }
 
+void take_least(Workspace& work)
+{
+    assert(work.least_at.world.size() == work.expansion.world.size());
+    work.expansion = work.least_at;
+    work.has_system = false;
+    work.is_least_taken = true;
+}
+
 }  // namespace
 
 bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
@@ -54,14 +64,18 @@ bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool m
 {
     const double rise = find_energy_rise(scene, state, work);
     report.energy_rise = rise;
-    if (work.is_least_taken) return false;
-    if (report.relinearisations == 0 || rise < work.least_rise) {
+    const bool is_first = work.least_at.world.empty();
+    if (is_first || rise < work.least_rise) {
         work.least_rise = rise;
         work.least_at = work.expansion;
     }
+    if (work.is_least_taken) {  // rows may have been added since
+        if (rise > 0.0 && attempt == Attempt::Ordinary) report.status = StepStatus::EnergyRise;
+        return false;
+    }
     const bool may_again = report.relinearisations < kMostRelinearisations && may_solve_again;
     if (may_again && (rise > 0.0 || find_unforeseen_energy(scene, work) > 0.0)) {
-        relinearise(scene, work, report);
+        relinearise(scene, !is_first, work, report);  // the first v^ keeps no contact: no measure
         return true;
     }
     if (!(rise > 0.0)) return false;
@@ -70,9 +84,15 @@ bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool m
         report.status = StepStatus::EnergyRise;
         return false;
     }
-    work.expansion = work.least_at;
-    work.has_system = false;
-    work.is_least_taken = true;
+    take_least(work);
+    return true;
+}
+
+bool fall_back(Workspace& work, StepReport& report)
+{
+    const bool was_good = !work.least_at.world.empty() && !(work.least_rise > 0.0);
+    if (!was_good || work.is_least_taken || report.status == StepStatus::EnergyRise) return false;
+    take_least(work);
     return true;
 }
 

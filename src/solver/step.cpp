@@ -29,6 +29,7 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
         work.expansion.material.assign(state.velocity.size(), Vec2::Zero());
     }
     work.is_least_taken = false;
+    work.least_at = {};
     work.held = find_held_vertices(scene, state, end);
     work.obstacles = move_obstacles(scene, state, work.stars.topology.edges, work.prediction, work.held, end);
 }
@@ -354,7 +355,9 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     // 4 - 6. Solve, propose, check: what the check finds becomes rows, in bounded rounds. Where there are EOL
     // vertices, to do without them comes before the last resorts.
     const Attempt resort = start.eol.empty() ? attempt : Attempt::Ordinary;
-    while (solve_and_check(scene, settings, end, start, resort, work, report)) continue;
+    do {
+        while (solve_and_check(scene, settings, end, start, resort, work, report)) continue;
+    } while (report.status != StepStatus::Done && fall_back(work, report));
     watch.lap();
 
     work.failed.note(report, attempt, state, start, work.overrun);

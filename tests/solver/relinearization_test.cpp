@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/relinearization.h"
+
+#include <gtest/gtest.h>
+
+#include "geometry/cloth_grid.h"
+#include "solver/energy_balance.h"
+#include "solver/step.h"
+
+namespace arris {
+namespace {
+
+constexpr double kStep = 0.01;  // s
+
+/// A sheet at rest after a step of implicit Euler, whose proposal is then made to move.
+struct Proposed {
+    Scene scene;
+    Settings settings;
+    State state;
+    Workspace work;
+    StepReport report;
+
+    explicit Proposed(const Vec3& velocity)
+    {
+        ClothGrid grid;
+        grid.size = {0.5, 0.4};
+        grid.resolution = {5, 4};
+        scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+        settings.integrator = Integrator::ImplicitEuler;
+        state = make_state(scene, make_cloth_grid(grid), Vec3::Zero());
+        EXPECT_EQ(step(scene, settings, kStep, state, work).status, StepStatus::Done);
+        report.status = StepStatus::Done;
+        work.least_at = {};  // as a step begins
+        work.proposal.velocity.assign(state.velocity.size(), velocity);
+        work.proposal.material_velocity.assign(state.velocity.size(), Vec2::Zero());
+        work.proposal.world =
+            find_end(work.prediction, {work.proposal.velocity, work.proposal.material_velocity}).world;
+        weigh_proposal(scene, kStep, work);
+    }
+
+    bool keep(Attempt attempt, bool may_solve_again)
+    {
+        return keep_energy(scene, state, attempt, may_solve_again, work, report);
+    }
+};
+
+const Vec3 kDriven(0.3, 0.0, 0.4);  // m/s, by nothing
+
+TEST(KeepEnergy, SolvesAgainAtWhatWasFoundThenFailsOrTakesTheLeast)
+{
+    Proposed proposed(kDriven);
+    EXPECT_TRUE(proposed.keep(Attempt::Ordinary, true));
+    EXPECT_EQ(proposed.report.relinearisations, 1);
+    EXPECT_EQ(proposed.work.expansion.world, proposed.work.proposal.velocity);
+
+    Proposed last(kDriven);
+    EXPECT_FALSE(last.keep(Attempt::Ordinary, false));
+    EXPECT_EQ(last.report.status, StepStatus::EnergyRise);
+
+    Proposed resort(kDriven);
+    EXPECT_TRUE(resort.keep(Attempt::Last, false));
+    EXPECT_TRUE(resort.work.is_least_taken);
+    EXPECT_FALSE(resort.keep(Attempt::Last, false)) << "whatever it is";
+    EXPECT_EQ(resort.report.status, StepStatus::Done);
+    EXPECT_GT(resort.report.energy_rise, 0.0);
+}
+
+// The forces may have been linearised again for material that ran out, before any energy was weighed.
+TEST(KeepEnergy, TheLeastIsOfThisStepAlsoWhereItIsNotTheFirstLinearisation)
+{
+    Proposed proposed(kDriven);
+    proposed.report.relinearisations = 1;
+    proposed.work.least_rise = 0.0;  // as an earlier step has left it
+    const ClothVelocity expansion = proposed.work.expansion;
+    EXPECT_TRUE(proposed.keep(Attempt::Last, false));
+    EXPECT_EQ(proposed.work.expansion.world, expansion.world);
+    EXPECT_GT(proposed.work.least_rise, 0.0);
+}
+
+TEST(KeepEnergy, WhatWasTakenAndRisesAfterAllFailsAnOrdinaryAttempt)
+{
+    Proposed proposed(kDriven);
+    proposed.work.is_least_taken = true;
+    EXPECT_FALSE(proposed.keep(Attempt::Ordinary, true));
+    EXPECT_EQ(proposed.report.status, StepStatus::EnergyRise);
+}
+
+TEST(FallBack, IsToAVelocityThatRaisedNoEnergyAndOnce)
+{
+    Proposed proposed(Vec3::Zero());
+    proposed.report.status = StepStatus::NotConverged;
+    EXPECT_FALSE(fall_back(proposed.work, proposed.report)) << "there was none";
+    proposed.report.status = StepStatus::Done;
+    EXPECT_FALSE(proposed.keep(Attempt::Ordinary, true));
+    const ClothVelocity good = proposed.work.expansion;
+    proposed.work.expansion.world.front() = kDriven;
+    proposed.report.status = StepStatus::EnergyRise;  // for which there are other ways
+    EXPECT_FALSE(fall_back(proposed.work, proposed.report));
+    proposed.report.status = StepStatus::Overrun;
+    EXPECT_TRUE(fall_back(proposed.work, proposed.report));
+    EXPECT_EQ(proposed.work.expansion.world, good.world);
+    EXPECT_FALSE(fall_back(proposed.work, proposed.report));
+}
+
+}  // namespace
+}  // namespace arris
