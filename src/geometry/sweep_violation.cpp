@@ -24,8 +24,8 @@ struct Meeting {
 };
 
 /// Nothing where the plane does not part the cloth's point at begin, which came along `way`, from that at the
-/// end. The stand-off goes by begin alone: unlike in contacts made before the solve, whose end is a flight
-/// that nothing stops, the end is what is to be mended.
+/// end. The stand-off goes by begin alone: unlike in contacts made before the solve, for which the end tells
+/// what slides along a curve, the end is what is to be mended.
 std::optional<ObstacleContact> as_violation(const Meeting& meeting, ObstacleContact contact,
                                             double least_sine)
 {

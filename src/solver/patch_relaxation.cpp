@@ -82,8 +82,9 @@ class Relaxation {
         for (int k = 0; k < kMostSteps && energy_ > wanted && descend(wanted); ++k) continue;
     }
 
-    /// Whether `run` would come to `wanted`. A step lowers the energy by less than the one before, as every
-    /// mode decays: where as many as are left, each as good as the last, would not do, they are not made.
+    /// Whether `run` would come to `wanted`. A full step lowers the energy by less than the one before, as
+    /// every mode decays: where as many as are left, each as good as the last, would not do, they are not
+    /// made. After one that was cut short that is a guess, on the side of no.
     bool can_come_to(double wanted)
     {
         for (int left = kMostSteps - 1; left >= 0 && energy_ > wanted; --left) {

@@ -202,7 +202,7 @@ TEST(RowCause, WhatHasNoCoordinatesSaysWhy)
     EXPECT_EQ(cause_of(EolRefusal::NoDirection), RowCause::NoDirection);
     for (const RowCause cause :
          {RowCause::NoDirection, RowCause::AlongBorder, RowCause::EdgeOn, RowCause::ClothCorner,
-          RowCause::OtherObstacle, RowCause::NearBorder, RowCause::AtEol})
+          RowCause::OtherObstacle, RowCause::NearBorder, RowCause::AtEol, RowCause::FlatBehind})
         EXPECT_TRUE(is_excluded(cause)) << to_string(cause);
     for (const RowCause cause :
          {RowCause::New, RowCause::NotCrossing, RowCause::BesideEol, RowCause::BorderAhead, RowCause::Guard,
