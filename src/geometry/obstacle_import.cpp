@@ -107,10 +107,11 @@ class ObstacleImporter {
         if (std::find(known.begin(), known.end(), extension_) == known.end())
             throw InputError(fmt::format("unknown format '.{}'; allowed: .{}", one_line(extension_),
                                          fmt::join(known, ", .")));
-        const std::string bytes = read_regular_file(path_, kLargestFile);
+        std::string bytes = read_regular_file(path_, kLargestFile);
         warnings_ = check_mesh_bytes(extension_, bytes);
         if (extension_ == "3mf") declared_unit_ = three_mf_unit(bytes);
-        load(extension_ == "obj" ? spell_out_numbers(bytes) : bytes);
+        if (extension_ == "obj") bytes = spell_out_numbers(bytes);
+        load(bytes);
         place();
         warn_where_far();
         // All but these two give each face points of its own, whatever the file has.

@@ -62,16 +62,6 @@ ClothVelocity velocity_of(const Proposal& proposal)
     return {proposal.velocity, proposal.material_velocity};
 }
 
-ClothVelocity blend(const ClothVelocity& from, const ClothVelocity& to, double share)
-{
-    ClothVelocity between = from;
-    for (std::size_t v = 0; v < between.world.size(); ++v) {
-        between.world[v] += share * (to.world[v] - from.world[v]);
-        between.material[v] += share * (to.material[v] - from.material[v]);
-    }
-    return between;
-}
-
 /// The workspace's elements where material has flowed to `material`.
 ClothElements elements_at(const Workspace& work, const std::vector<Vec2>& material)
 {
@@ -164,12 +154,12 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
     if (!(after.stretch + after.bending - before.stretch - before.bending > least)) return 0.0;
     const ClothVelocity& from = work.expansion;
     const ClothVelocity to = velocity_of(work.proposal);
-    const auto potential_at = [&](double share) {
-        return compute_cloth_energy(scene, work, find_end(work.prediction, blend(from, to, share)))
-            .potential.sum();
+    const auto potential_at = [&](const ClothVelocity& velocity) {
+        return compute_cloth_energy(scene, work, find_end(work.prediction, velocity)).potential.sum();
     };
     const double third =
-        potential_at(1.0) - potential_at(0.0) + 3.0 * (potential_at(1.0 / 3.0) - potential_at(2.0 / 3.0));
+        after.sum() - potential_at(from) +
+        3.0 * (potential_at(blend(from, to, 1.0 / 3.0)) - potential_at(blend(from, to, 2.0 / 3.0)));
     const double unforeseen = kFourthOrder * std::abs(third);
     return unforeseen > least ? unforeseen : 0.0;
 }

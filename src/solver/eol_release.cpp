@@ -16,7 +16,6 @@ namespace {
 /// Whether the cloth turns at the vertex.
 bool is_folded(const State& state, const std::vector<int>& faces)
 {
-    constexpr double kFlat = 0.9986;  // cosine of 3 degrees: w is lost to less than 5e-4 of what moves there
     std::vector<Vec3> normals;
     Vec3 mean = Vec3::Zero();
     for (const int f : faces) {

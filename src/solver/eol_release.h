@@ -19,6 +19,10 @@ namespace arris {
 /// Steps without pressing, before which no vertex is let go: contact that chatters is still contact.
 inline constexpr int kIdleSteps = 3;
 
+/// Cosine of 3 degrees: cloth whose normals are within that is flat. At a vertex w is lost to less than 5e-4
+/// of what moves there.
+inline constexpr double kFlat = 0.9986;
+
 /// Whether an EOL vertex stays.
 enum class EolHold {
     None,   ///< it goes

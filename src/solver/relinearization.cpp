@@ -15,14 +15,6 @@ namespace {
 
 constexpr int kMostRelinearisations = 4;  // one does nearly always, three have where they help at all
 
-void go_halfway_back(const ClothVelocity& to, ClothVelocity& from)
-{
-    for (std::size_t v = 0; v < from.world.size(); ++v) {
-        from.world[v] = 0.5 * (from.world[v] + to.world[v]);
-        from.material[v] = 0.5 * (from.material[v] + to.material[v]);
-    }
-}
-
 /// v^ goes there; contacts that press now do so in the next solve, too.
 void expand_at(ClothVelocity next, Workspace& work, StepReport& report)
 {
@@ -43,7 +35,7 @@ void relinearise(const Scene& scene, bool is_measure, Workspace& work, StepRepor
         const double now = compute_step_objective(scene, work, work.expansion);
         for (double share = 1.0; compute_step_objective(scene, work, next) > now && share > kShortest;) {
             share *= 0.5;
-            go_halfway_back(work.expansion, next);
+            next = blend(work.expansion, next, 0.5);
         }
     }
     expand_at(std::move(next), work, report);
@@ -108,7 +100,7 @@ bool linearise_nearer(Workspace& work, StepReport& report)
             work.overrun = overrun;
             return false;
         }
-        go_halfway_back(work.expansion, next);
+        next = blend(work.expansion, next, 0.5);
     }
     expand_at(std::move(next), work, report);
     return true;

@@ -7,6 +7,7 @@
 #include "geometry/feature_frame.h"
 #include "geometry/feature_path.h"
 #include "solver/border_room.h"
+#include "solver/eol_release.h"
 #include "solver/free_fold.h"
 
 namespace arris {
@@ -19,7 +20,6 @@ constexpr double kInsertRoom = 0.3, kCornerInsertRoom = 0.5;
 /// Whether what presses at a site of an edge is flat on a face beside it.
 bool is_along_face(const Obstacle& obstacle, const FeatureSite& site)
 {
-    constexpr double kFlat = 0.9986;  // cosine of 3 degrees, as where a vertex is let go
     const auto& normals = obstacle.features().edges[site.feature].normals;
     return std::any_of(normals.begin(), normals.end(),
                        [&](const Vec3& n) { return n.dot(site.outward) > kFlat; });

@@ -33,6 +33,16 @@ Prediction predict(const State& state, Integrator integrator, double dt)
     return prediction;
 }
 
+ClothVelocity blend(const ClothVelocity& from, const ClothVelocity& to, double share)
+{
+    ClothVelocity between = from;
+    for (std::size_t v = 0; v < between.world.size(); ++v) {
+        between.world[v] = (1.0 - share) * from.world[v] + share * to.world[v];
+        between.material[v] = (1.0 - share) * from.material[v] + share * to.material[v];
+    }
+    return between;
+}
+
 MovingCloth find_end(const Prediction& prediction, const ClothVelocity& velocity)
 {
     MovingCloth end{prediction.position, prediction.material, velocity};

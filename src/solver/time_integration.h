@@ -32,6 +32,9 @@ struct ClothVelocity {
     std::vector<Vec2> material;
 };
 
+/// `share` of the way from one to the other.
+ClothVelocity blend(const ClothVelocity& from, const ClothVelocity& to, double share);
+
 /// The cloth's vertices at one moment, in the world and in the material, and how they move.
 struct MovingCloth {
     std::vector<Vec3> world;     ///< m

@@ -216,19 +216,28 @@ TEST(MeshTransfer, AVertexMadeOnATraceFlowsLikeItsNeighbours)
     EXPECT_LT(field_difference(cloth.state, after), kRoundOff);
 }
 
+const Vec3 kDown(0.5, 0, -std::sqrt(0.75));  // a flank of the 60 degrees
+
+/// The cloth with a vertex more, halfway from its fold to the next vertex, and its index.
+std::pair<State, int> split_beside_fold(const EolCloth& cloth)
+{
+    ClothSurgery surgery = operate(cloth.state);
+    const VertexId a = cloth.state.ids[cloth.vertex_at(0.2, 0.2)],
+                   b = cloth.state.ids[cloth.vertex_at(0.25, 0.2)];
+    const SurgeryProposal split = surgery.propose_edge_split(a, b, 0.5);
+    EXPECT_EQ(surgery.commit(split), Verdict::Done);
+    State after = carry(cloth, conformed(surgery, cloth.state.eol));
+    const int v = after.index_of(split.event.changes[0].vertex);
+    return {std::move(after), v};
+}
+
 TEST(MeshTransfer, AVertexMadeBesideATraceIsOfTheMaterialAndAlwaysWas)
 {
     // The fold's vertices rest and the material flows through them: halfway to the next vertex it moves.
     const double speed = 0.7;
     const EolCloth cloth = sliding_cloth(speed);
-    ClothSurgery surgery = operate(cloth.state);
-    const VertexId a = cloth.state.ids[cloth.vertex_at(0.2, 0.2)],
-                   b = cloth.state.ids[cloth.vertex_at(0.25, 0.2)];
-    const SurgeryProposal split = surgery.propose_edge_split(a, b, 0.5);
-    ASSERT_EQ(surgery.commit(split), Verdict::Done);
-    const State after = carry(cloth, conformed(surgery, cloth.state.eol));
-    const int v = after.index_of(split.event.changes[0].vertex);
-    const Vec3 down = speed * Vec3(0.5, 0, -std::sqrt(0.75));  // a flank of the 60 degrees
+    const auto [after, v] = split_beside_fold(cloth);
+    const Vec3 down = speed * kDown;
     EXPECT_LT((after.velocity[v] - down).norm(), kRoundOff);
     EXPECT_LT((after.previous_velocity[v] - down).norm(), kRoundOff);
     EXPECT_LT((after.previous_world[v] - (after.mesh.world[v] - kStep * down)).norm(), kRoundOff);
@@ -244,14 +253,8 @@ TEST(MeshTransfer, AVertexWhoseFacesWereNoFacesAStepAgoHasMovedAsItMovesNow)
         SCOPED_TRACE(cells);
         const double speed = cells * 0.05 / kStep;
         const EolCloth cloth = sliding_cloth(speed);
-        ClothSurgery surgery = operate(cloth.state);
-        const VertexId a = cloth.state.ids[cloth.vertex_at(0.2, 0.2)],
-                       b = cloth.state.ids[cloth.vertex_at(0.25, 0.2)];
-        const SurgeryProposal split = surgery.propose_edge_split(a, b, 0.5);
-        ASSERT_EQ(surgery.commit(split), Verdict::Done);
-        const State after = carry(cloth, conformed(surgery, cloth.state.eol));
-        const int v = after.index_of(split.event.changes[0].vertex);
-        const Vec3 down = speed * Vec3(0.5, 0, -std::sqrt(0.75));
+        const auto [after, v] = split_beside_fold(cloth);
+        const Vec3 down = speed * kDown;
         EXPECT_LT((after.velocity[v] - down).norm(), kRoundOff * speed);
         EXPECT_LT((after.previous_velocity[v] - down).norm(), kRoundOff * speed);
         EXPECT_LT((after.previous_world[v] - (after.mesh.world[v] - kStep * down)).norm(), kRoundOff);
