@@ -28,8 +28,14 @@ inline constexpr double kReachThicknesses = 3.0;
 inline constexpr double kReachShareOfWay = 0.25;
 double longest_reach(const ClothMotion& motion, std::span<const int> vertices, double thickness);
 
-/// Fills in vertices in ascending order and `least_gap`.
-ObstacleContact make_contact(const ClothMotion& motion, ContactKind kind, const ClothPoint& cloth_point,
-                             int element, const Vec3& normal, const Vec3& point, double thickness);
+/// Fills in vertices in ascending order.
+ObstacleContact make_contact(ContactKind kind, const ClothPoint& cloth_point, int element, const Vec3& normal,
+                             const Vec3& point, double least_gap);
+
+/// The same of what is found before the solve, with `least_gap` by where the cloth's point began and by where
+/// its free way ends.
+ObstacleContact make_contact(const Obstacle& obstacle, const ClothMotion& motion, ContactKind kind,
+                             const ClothPoint& cloth_point, int element, const Vec3& normal,
+                             const Vec3& point, double thickness);
 
 }  // namespace arris

@@ -147,12 +147,14 @@ bool owns_node(const Obstacle& obstacle, const EdgePair& pair, int point)
     return has_crossing;
 }
 
-std::optional<ObstacleContact> contact_of(const ClothMotion& motion, const EdgePair& pair, double s,
-                                          const Vec3& normal, const Vec3& point)
+std::optional<ObstacleContact> contact_of(const Obstacle& obstacle, const ClothMotion& motion,
+                                          const EdgePair& pair, double s, const Vec3& normal,
+                                          const Vec3& point)
 {
     if (!(normal.squaredNorm() > 0.0)) return std::nullopt;
     const ClothPoint cloth_point{{pair.vertices[0], pair.vertices[1], -1}, {1.0 - s, s, 0.0}};
-    return make_contact(motion, ContactKind::Edge, cloth_point, pair.element, normal, point, pair.thickness);
+    return make_contact(obstacle, motion, ContactKind::Edge, cloth_point, pair.element, normal, point,
+                        pair.thickness);
 }
 
 bool is_inside(double s)
@@ -188,7 +190,7 @@ std::optional<ObstacleContact> contact_at_rest(const Obstacle& obstacle, const C
     if (!(normal.dot(at(pair.begin, closest.s) - closest.second) >=
           -touch_distance(obstacle, pair.thickness)))
         return std::nullopt;
-    return contact_of(motion, pair, closest.s, normal, closest.second);
+    return contact_of(obstacle, motion, pair, closest.s, normal, closest.second);
 }
 
 std::optional<TimedContact> find_pair_contact(const Obstacle& obstacle, const ClothMotion& motion,
@@ -201,7 +203,7 @@ std::optional<TimedContact> find_pair_contact(const Obstacle& obstacle, const Cl
         contact = contact_at_rest(obstacle, motion, pair);
     } else if (is_inside(hit->weights[1])) {
         const Vec3 normal = normal_of_touch(obstacle, pair, hit->time, hit->weights[1], hit->point);
-        contact = contact_of(motion, pair, hit->weights[1], normal, hit->point);
+        contact = contact_of(obstacle, motion, pair, hit->weights[1], normal, hit->point);
     }
     if (!contact) return std::nullopt;
     return TimedContact{*contact, hit ? hit->time : kAtRest};

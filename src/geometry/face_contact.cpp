@@ -147,17 +147,18 @@ const MeshEdge& cloth_edge(const CornerPair& pair, const ClothMotion& motion, in
     return edge_between(motion, pair.vertices[edge], pair.vertices[(edge + 1) % 3]);
 }
 
-std::optional<ObstacleContact> contact_of(const ClothMotion& motion, const CornerPair& pair,
-                                          const ClothPoint& cloth_point, const Vec3& normal)
+std::optional<ObstacleContact> contact_of(const Obstacle& obstacle, const ClothMotion& motion,
+                                          const CornerPair& pair, const ClothPoint& cloth_point,
+                                          const Vec3& normal)
 {
     if (!(normal.squaredNorm() > 0.0)) return std::nullopt;
-    return make_contact(motion, ContactKind::Triangle, cloth_point, pair.element, normal, pair.point,
-                        pair.thickness);
+    return make_contact(obstacle, motion, ContactKind::Triangle, cloth_point, pair.element, normal,
+                        pair.point, pair.thickness);
 }
 
-std::optional<ObstacleContact> contact_of_touch(const ClothMotion& motion, const std::vector<Vec3>& reference,
-                                                const CornerPair& pair, double time,
-                                                const std::array<double, 3>& weights)
+std::optional<ObstacleContact> contact_of_touch(const Obstacle& obstacle, const ClothMotion& motion,
+                                                const std::vector<Vec3>& reference, const CornerPair& pair,
+                                                double time, const std::array<double, 3>& weights)
 {
     if (is_at_vertex(weights)) return std::nullopt;
     const int least = static_cast<int>(std::min_element(weights.begin(), weights.end()) - weights.begin());
@@ -167,7 +168,7 @@ std::optional<ObstacleContact> contact_of_touch(const ClothMotion& motion, const
     const Vec3 normal =
         edge < 0 ? towards_begin(pair, motion, cloth_point, face_normal)
                  : normal_on_edge(pair, motion, reference, cloth_edge(pair, motion, edge), cloth_point, time);
-    return contact_of(motion, pair, cloth_point, normal);
+    return contact_of(obstacle, motion, pair, cloth_point, normal);
 }
 
 // Whether the edge is nearest to the point seen from every face beside it.
@@ -209,7 +210,7 @@ std::optional<ObstacleContact> contact_at_rest(const Obstacle& obstacle, const C
     if (!is_in_point_cone(obstacle, pair.element, normal)) return std::nullopt;
     // Behind the plane the cloth did not begin, or it would be pulled through to where its free flight ends.
     if (!(normal.dot(cloth_point.at(motion.begin) - pair.point) >= -pair.touch)) return std::nullopt;
-    return contact_of(motion, pair, cloth_point, normal);
+    return contact_of(obstacle, motion, pair, cloth_point, normal);
 }
 
 CornerPair make_pair(const Obstacle& obstacle, const ClothMotion& motion, int face, int element,
@@ -232,7 +233,7 @@ std::optional<TimedContact> find_pair_contact(const Obstacle& obstacle, const Cl
         sweep_face_point(triangle_of(motion.begin, pair.vertices), triangle_of(reference, pair.vertices),
                          pair.point, pair.touch);
     const std::optional<ObstacleContact> contact =
-        hit ? contact_of_touch(motion, reference, pair, hit->time, hit->weights)
+        hit ? contact_of_touch(obstacle, motion, reference, pair, hit->time, hit->weights)
             : contact_at_rest(obstacle, motion, reference, pair);
     if (!contact) return std::nullopt;
     return TimedContact{*contact, hit ? hit->time : kAtRest};

@@ -55,9 +55,10 @@ struct ObstacleContact : ClothPoint {  // vertices ascending, unused ones last
                   ///< point of the mesh
     Vec3 normal;  ///< unit, from the obstacle to the cloth
     Vec3 point;   ///< on the obstacle
-    double least_gap;  ///< m: the thickness, or less where the cloth was nearer: its distance from `point` at
-                       ///< the begin, as far as its free way brings it out. More would hold it to the speed
-                       ///< at which it comes out: what else pulls it back would be overcome, step by step.
+    double least_gap;  ///< m: the thickness, or less where the cloth was nearer: its distance from the
+                       ///< obstacle at the begin, as far as its free way brings it there. More would hold it
+                       ///< to the speed at which it comes out: what else pulls it back would be overcome,
+                       ///< step by step.
 };
 
 /// Where the cloth would end if it slid along what is in its way: from `begin` towards `end`, at a face it

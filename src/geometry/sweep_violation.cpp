@@ -43,8 +43,8 @@ std::optional<ObstacleContact> as_violation(const Meeting& meeting, ObstacleCont
 std::optional<ObstacleContact> try_normal(const Meeting& meeting, const Vec3& normal, double least_sine)
 {
     if (!(normal.squaredNorm() > 0.0)) return std::nullopt;
-    const ObstacleContact contact = make_contact(meeting.motion, meeting.kind, meeting.cloth_point,
-                                                 meeting.element, normal, meeting.point, meeting.thickness);
+    const ObstacleContact contact = make_contact(meeting.kind, meeting.cloth_point, meeting.element, normal,
+                                                 meeting.point, meeting.thickness);
     return as_violation(meeting, contact, least_sine);
 }
 

@@ -219,10 +219,9 @@ void append_folds(const Scene& scene, const State& state, const ClothStars& star
     for (const ObstacleStep& step : steps) positions.push_back(&step.motion.begin);
     for (const FoldContact& fold : find_fold_contacts(scene.obstacles, state, stars, eol, positions)) {
         const ObstacleStep& step = steps[fold.obstacle];
-        ObstacleContact contact =
-            make_contact(step.motion, ContactKind::Vertex, {{fold.vertex, -1, -1}, {1.0, 0.0, 0.0}}, -1,
-                         fold.bound.normal, fold.point, thickness);
-        contact.least_gap = fold.bound.least_gap;
+        const ObstacleContact contact =
+            make_contact(ContactKind::Vertex, {{fold.vertex, -1, -1}, {1.0, 0.0, 0.0}}, -1, fold.bound.normal,
+                         fold.point, fold.bound.least_gap);
         contacts.push_back(place_contact(contact, fold.obstacle, step, prediction));
         contacts.back().mitre = fold.bound.wanted / thickness;
         contacts.back().is_fold = true;
@@ -233,12 +232,11 @@ Contact make_eol_contact(const ObstacleStep& step, const Prediction& prediction,
                          int obstacle, const EolCoordinates& at)
 {
     const ClothPoint point = {{at.vertex, -1, -1}, {1.0, 0.0, 0.0}};
-    ObstacleContact contact = make_contact(step.motion, ContactKind::Vertex, point, -1, at.frame.outward,
-                                           at.frame.point, at.frame.mitre * thickness);
     // Never more than it has: on its way out it would be held to the speed it has, and, with its history
     // flattened, pushed out faster step by step.
     const double now = at.frame.outward.dot(step.motion.begin[at.vertex] - at.frame.point);
-    contact.least_gap = std::min(contact.least_gap, now);
+    const ObstacleContact contact = make_contact(ContactKind::Vertex, point, -1, at.frame.outward,
+                                                 at.frame.point, std::min(at.frame.mitre * thickness, now));
     return place_contact(contact, obstacle, step, prediction);
 }
 

@@ -42,6 +42,21 @@ const Obstacle& unit_box()
     return box;
 }
 
+TEST(EdgeContact, ClothThatSlidesOverAWireUnderItsStandOffStaysAsFarAsItWas)
+{
+    // A slope that slides down over the wire: its point that ends above it began far beside.
+    const Obstacle wire = samples::make_obstacle(samples::wire({{0, -1, 0}, {0, 1, 0}}, false));
+    const Vec3 along = Vec3(1, 0, -0.5).normalized(), across = Vec3(0.5, 0, 1).normalized();
+    for (const double share : {0.2, 0.9}) {
+        const Vec3 above = share * kThickness * across;
+        const Segment begin = {above - 0.1 * along, above + 0.1 * along};
+        const Vec3 way = 0.03 * along + kThickness * across;
+        const auto contacts = contacts_of(wire, begin, {begin[0] + way, begin[1] + way});
+        ASSERT_EQ(contacts.size(), 1U);
+        EXPECT_NEAR(contacts[0].least_gap, share * kThickness, kRounding);
+    }
+}
+
 TEST(EdgeContact, AcrossARimIsAPlaneAlongBothEdges)
 {
     for (const double tilt : {-0.3, -0.1, 0.0}) {  // down beyond the rim x = 1

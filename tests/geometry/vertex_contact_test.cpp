@@ -255,12 +255,39 @@ TEST(VertexContact, SmoothFineSurfaceIsOnePlane)
             const Obstacle& obstacle = side > 0.0 ? ball : bowl;
             const Vec3 foot = samples::nearest_point(mesh, (1.0 + side * kThickness) * radial);
             const Vec3 place = foot + side * kThickness * radial;
-            const auto contacts = contacts_at(obstacle, place - 0.005 * tangent, place);
+            const Vec3 from = place - 0.005 * tangent;
+            const Vec3 from_foot = samples::nearest_point(mesh, from);
+            const Vec3 begin = from_foot + kThickness * (from - from_foot).normalized();
+            const auto contacts = contacts_at(obstacle, begin, place);
             ASSERT_EQ(contacts.size(), 1U);
             EXPECT_GT(side * contacts[0].normal.dot(radial), std::cos(4.0 * M_PI / 180.0));
             EXPECT_NEAR(contacts[0].least_gap, kThickness, 0.1 * kThickness);
         }
     }
+}
+
+TEST(VertexContact, WhatSlidesUnderItsStandOffStaysAsFarAsItWas)
+{
+    // Its free way leads out, and along what it is on by much more than the stand-off.
+    const Obstacle wire = samples::make_obstacle(samples::wire({{-1, 0, 0}, {1, 0, 0}}, false));
+    for (const Obstacle* obstacle : {&wire, &unit_box()})
+        for (const double share : {0.0, 0.4, 0.99}) {
+            const Vec3 on = obstacle == &wire ? Vec3(0.1, 0, 0) : Vec3(0.1, 0.5, 1);
+            const Vec3 begin = on + Vec3(0, 0, share * kThickness);
+            const auto contacts = contacts_at(*obstacle, begin, on + Vec3(0.05, 0, 1.5 * kThickness));
+            ASSERT_EQ(contacts.size(), 1U);
+            EXPECT_NEAR(contacts[0].least_gap, share * kThickness, kRounding);
+        }
+}
+
+TEST(VertexContact, WhatSlidesOverARimStaysAsFarAsItWas)
+{
+    // From the side of the box to above its rim: seen from the plane there it began below.
+    const double gap = 0.6 * kThickness;
+    const Vec3 up = Vec3(1, 0, 1).normalized();
+    const auto contacts = contacts_at(unit_box(), Vec3(1 + gap, 0.5, 0.9995), Vec3(1, 0.5, 1) + 2 * gap * up);
+    ASSERT_EQ(contacts.size(), 1U);
+    EXPECT_NEAR(contacts[0].least_gap, gap, kRounding);
 }
 
 struct Sample {
