@@ -5,18 +5,6 @@ namespace arris {
 
 namespace {
 
-template <int N>
-void reduce(const std::array<int, N>& vertices, const Linearization& at, LocalSystem<N>& local)
-{
-    std::array<const Mat3*, N> bases;
-    std::array<const Mat23*, N> material_bases;
-    for (int i = 0; i < N; ++i) {
-        bases[i] = &at.basis[vertices[i]];
-        material_bases[i] = &at.flow->basis[vertices[i]];
-    }
-    local.reduce_eulerian(bases, material_bases);
-}
-
 /// Fdot = sum_j w_j b_j^T as material sees it: that of the extrapolated state.
 Mat32 deformation_rate(const FaceState& face, const ExtrapolatedState& state)
 {
@@ -43,7 +31,6 @@ FaceSystem eulerian_inertia_and_loads(const Face& face, const Terms& terms, cons
     for (int i = 0; i < 3; ++i) local.add_convection(i, 2.0 * (F_rate * there.material_velocity[face[i]]));
     for (const auto& term : terms.faces)
         if (!term->is_elastic()) term->add(state, local);
-    reduce<3>(face, at, local);
     return local;
 }
 
@@ -54,7 +41,6 @@ FaceSystem eulerian_elasticity(const Face& face, const Terms& terms, const Linea
     FaceSystem local(at, face, {state.F, state.F, state.F});
     for (const auto& term : terms.faces)
         if (term->is_elastic()) term->add(state, local);
-    reduce<3>(face, at, local);
     return local;
 }
 
@@ -74,7 +60,6 @@ HingeSystem eulerian_hinge(const HingeElement& hinge, const ClothElements& eleme
     const Mat32 mean = 0.5 * (F_c + F_d);
     HingeSystem local(at, hinge.vertices, {mean, mean, F_c, F_d});
     for (const auto& term : terms.hinges) term->add(state, local);
-    reduce<4>(hinge.vertices, at, local);
     return local;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements with an EOL vertex (see linearization.h), in the reduced coordinates of their vertices. Each is
+// Elements with an EOL vertex (see linearization.h), in corner velocities until they are reduced. Each is
 // made at the material coordinates at which it is evaluated, with its own F in the corner matrices: elastic
 // ones at q^, inertia and loads at the extrapolated state. `at.flow` must be there.
 #pragma once
@@ -27,5 +27,18 @@ FaceSystem eulerian_elasticity(const Face& face, const Terms& terms, const Linea
 /// A hinge's terms. F at a corner is the mean of those of the hinge's faces there.
 HingeSystem eulerian_hinge(const HingeElement& hinge, const ClothElements& elements, const Terms& terms,
                            const Linearization& at);
+
+/// To its vertices' coordinates.
+template <int N>
+void reduce_eulerian(const std::array<int, N>& vertices, const Linearization& at, LocalSystem<N>& local)
+{
+    std::array<const Mat3*, N> bases;
+    std::array<const Mat23*, N> material_bases;
+    for (int i = 0; i < N; ++i) {
+        bases[i] = &at.basis[vertices[i]];
+        material_bases[i] = &at.flow->basis[vertices[i]];
+    }
+    local.reduce_eulerian(bases, material_bases);
+}
 
 }  // namespace arris

@@ -206,15 +206,20 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
     add_elements<FaceState, 3>(
         elements.face_colors, elements.faces, face_blocks_, terms.faces, at, [&](int f) {
             const Face& face = elements.faces[f].vertices;
-            scatter<3>(face, face_blocks_[f].data(), eulerian_inertia_and_loads(face, terms, at));
-            scatter<3>(face, face_blocks_[f].data(), eulerian_elasticity(face, terms, at));
+            for (FaceSystem local :
+                 {eulerian_inertia_and_loads(face, terms, at), eulerian_elasticity(face, terms, at)}) {
+                reduce_eulerian<3>(face, at, local);
+                scatter<3>(face, face_blocks_[f].data(), local);
+            }
         });
     if (terms.hinges.empty()) return;
-    add_elements<HingeState, 4>(
-        elements.hinge_colors, elements.hinges, hinge_blocks_, terms.hinges, at, [&](int h) {
-            const HingeElement& hinge = elements.hinges[h];
-            scatter<4>(hinge.vertices, hinge_blocks_[h].data(), eulerian_hinge(hinge, elements, terms, at));
-        });
+    add_elements<HingeState, 4>(elements.hinge_colors, elements.hinges, hinge_blocks_, terms.hinges, at,
+                                [&](int h) {
+                                    const HingeElement& hinge = elements.hinges[h];
+                                    HingeSystem local = eulerian_hinge(hinge, elements, terms, at);
+                                    reduce_eulerian<4>(hinge.vertices, at, local);
+                                    scatter<4>(hinge.vertices, hinge_blocks_[h].data(), local);
+                                });
 }
 
 }  // namespace arris

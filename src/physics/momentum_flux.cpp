@@ -47,21 +47,30 @@ std::array<Vec3, 2> turned_flow(const Crease& crease, const std::vector<Vec2>& m
 
 }  // namespace
 
-void add_momentum_flux(double density, const ClothElements& elements, const Linearization& at,
-                       Eigen::VectorXd& rhs)
+std::vector<CreaseForce> find_momentum_flux(double density, const ClothElements& elements,
+                                            const Linearization& at)
 {
-    if (!at.flow) return;
+    std::vector<CreaseForce> found;
+    if (!at.flow) return found;
     for (const HingeElement& hinge : elements.hinges) {
         if (!has_eulerian_vertex<2>(*at.flow, {hinge.vertices[0], hinge.vertices[1]})) continue;
         const Crease crease = find_crease(hinge, elements, at.flow->extrapolated);
         const std::array<Vec3, 2> turned = turned_flow(crease, at.flow->extrapolated.material_velocity);
-        const Mat32 mean = 0.5 * (crease.F_c + crease.F_d);
+        found.push_back(
+            {crease.vertices, {-density * turned[0], -density * turned[1]}, 0.5 * (crease.F_c + crease.F_d)});
+    }
+    return found;
+}
+
+void add_momentum_flux(double density, const ClothElements& elements, const Linearization& at,
+                       Eigen::VectorXd& rhs)
+{
+    for (const CreaseForce& crease : find_momentum_flux(density, elements, at))
         for (int i = 0; i < 2; ++i) {
             const int v = crease.vertices[i];
-            const Mat3 G = corner_matrix(mean, at.basis[v], at.flow->basis[v]);
-            rhs.segment<3>(3 * v) -= at.gamma * density * (G.transpose() * turned[i]);
+            const Mat3 G = corner_matrix(crease.F, at.basis[v], at.flow->basis[v]);
+            rhs.segment<3>(3 * v) += at.gamma * (G.transpose() * crease.force[i]);
         }
-    }
 }
 
 }  // namespace arris

@@ -13,15 +13,27 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <vector>
 
 #include "physics/cloth_elements.h"
 #include "physics/linearization.h"
 
 namespace arris {
 
-/// The force (N, in the vertices' coordinates) with which material turned at creases resists, at the
-/// extrapolated state, times gamma, added to `rhs` (3 a vertex). `density` is areal, kg/m^2. Does nothing
-/// where `at.flow` is absent; the cost is a look at each hinge.
+/// A crease's resistance at both its ends.
+struct CreaseForce {
+    std::array<int, 2> vertices;
+    std::array<Vec3, 2> force;  ///< N
+    Mat32 F;                    ///< the mean of its sides'
+};
+
+/// The force with which material turned at creases resists, at the extrapolated state. `density` is areal,
+/// kg/m^2. Nothing where `at.flow` is absent; the cost is a look at each hinge.
+std::vector<CreaseForce> find_momentum_flux(double density, const ClothElements& elements,
+                                            const Linearization& at);
+
+/// The same in the vertices' coordinates, times gamma, added to `rhs` (3 a vertex).
 void add_momentum_flux(double density, const ClothElements& elements, const Linearization& at,
                        Eigen::VectorXd& rhs);
 

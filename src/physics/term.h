@@ -44,6 +44,7 @@ class LocalSystem {
 
     const Mat3& matrix(int i, int j) const { return matrix_[i * (i + 1) / 2 + j]; }  ///< i >= j
     const Vec3& rhs(int i) const { return rhs_[i]; }
+    const Mat32& deformation(int i) const { return deformation_[i]; }  ///< F there, if is_eulerian()
 
     /// Maps to the reduced coordinates: block -> G_i^T block G_j, rhs -> G_i^T rhs.
     void reduce(const std::array<const Mat3*, N>& corner_matrices);

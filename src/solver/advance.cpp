@@ -52,13 +52,15 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
             cost.put_into(report);
             parts = std::max(parts - 1, 1);
             if (!accept(report, report.dt < planned)) return std::nullopt;
-        } else if (report.status == StepStatus::EnergyRise && work.prediction.has_history) {
-            restart(state);
-        } else if (work.failed.may_mesh_help()) {
-            if (attempt == Attempt::Ordinary || !work.failed.has_given_up_all()) continue;
+        } else if (attempt == Attempt::Last && work.failed.may_mesh_help() &&
+                   work.failed.has_given_up_all()) {
             // What was no step for the one mesh may be one for the other.
             parts = std::max(parts / shrink, 1);
             shrink = 1;
+        } else if (report.status == StepStatus::EnergyRise && work.prediction.has_history) {
+            restart(state);
+        } else if (work.failed.may_mesh_help()) {
+            continue;
         } else if (shrink == kMostParts) {
             return report;
         } else {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "physics/energies.h"
+#include "physics/feature_impulse.h"
 #include "physics/inertia.h"
 #include "solver/constraints.h"
 #include "solver/symmetric_product.h"
@@ -42,19 +43,43 @@ double work_of_pins(const State& state, const Workspace& work)
     return sum / work.prediction.gamma;
 }
 
-double work_of_obstacles(const Workspace& work)
+/// Contacts push along their normals on what moves with the obstacle.
+double work_of_rows(const std::vector<double>& multiplier, const Workspace& work)
 {
-    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
     double sum = 0.0;
     for (std::size_t c = 0; c < work.contacts.size(); ++c) {
-        if (!(multiplier[c] > 0.0)) continue;
         const Contact& contact = work.contacts[c];
+        if (contact.eol >= 0) continue;
         const ObstacleStep& step = work.obstacles[contact.obstacle];
         const Vec3& point = contact.in_frame.point;
-        const Vec3 push = contact.eol >= 0 ? work.eol[contact.eol].push : contact.normal;
-        sum += multiplier[c] * push.dot(step.end(point) - step.begin(point));
+        sum += multiplier[c] * contact.normal.dot(step.end(point) - step.begin(point));
     }
     return sum / work.prediction.gamma;
+}
+
+/// What goes with a feature does so by all that holds it there, also across, where material flows: cloth that
+/// leaves to one side pulls at it. What rows do there is theirs.
+double work_of_features(const State& state, const std::vector<double>& multiplier, const Workspace& work)
+{
+    std::vector<Vec3> impulse =
+        compute_feature_impulses(state.mesh, work.elements, work.terms, work.at, work.solution.velocity);
+    for (std::size_t c = 0; c < work.contacts.size(); ++c) {
+        const Contact& contact = work.contacts[c];
+        if (contact.eol >= 0) continue;
+        const ObstacleContact& local = contact.in_frame;
+        for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i)
+            impulse[local.vertices[i]] -= multiplier[c] * local.weights[i] * contact.normal;
+    }
+    double sum = 0.0;
+    for (const EolCoordinates& vertex : work.eol)
+        sum += impulse[vertex.vertex].dot(vertex.carried - state.mesh.world[vertex.vertex]);
+    return sum / work.prediction.gamma;
+}
+
+double work_of_obstacles(const State& state, const Workspace& work)
+{
+    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
+    return work_of_rows(multiplier, work) + work_of_features(state, multiplier, work);
 }
 
 ClothVelocity velocity_of(const Proposal& proposal)
@@ -127,7 +152,7 @@ double compute_driven_work(const State& state, const Workspace& work)
 {
     std::vector<Vec3> displacement = find_end(work.prediction, velocity_of(work.proposal)).world;
     for (std::size_t v = 0; v < displacement.size(); ++v) displacement[v] -= state.mesh.world[v];
-    return work_of_pins(state, work) + work_of_obstacles(work) +
+    return work_of_pins(state, work) + work_of_obstacles(state, work) +
            compute_load_work(state.mesh, work.elements, work.terms, work.at, work.proposal.velocity,
                              displacement);
 }

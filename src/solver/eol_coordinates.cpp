@@ -204,16 +204,6 @@ void turn_with_cloth(const Obstacle& obstacle, const State& state, int entry, in
     place = frame.point + along + (from - along).norm() * frame.outward;
 }
 
-/// Pulled alike by both its sides cloth is in balance with a force halfway between them.
-Vec3 find_push(const Vec3& leaving, const Mat3& basis)
-{
-    constexpr double kLeast = 0.3;  // cosine, from outward: features push no farther aside
-    const Vec3 outward = basis.col(0), tangent = basis.col(1);
-    const Vec3 back = -(leaving - tangent.dot(leaving) * tangent);
-    const double along = back.dot(outward);
-    return along > kLeast * back.norm() ? Vec3(back / along) : outward;
-}
-
 EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)
 {
     at.opening = find_opening(star, at.basis, at.material_basis);
@@ -358,13 +348,11 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
                       Mat3::Zero(),
                       Mat23::Zero(),
                       find_side(around, eol, frame->outward),
-                      Vec3::Zero(),
                       Vec3::UnitX()};
     turn_with_cloth(obstacle, state, entry, v, stars.faces[v], positions, dt, at.frame, at.carried);
     at.carried = end(at.carried);
     at.basis.col(0) = at.frame.outward;
     at.basis.col(1) = at.frame.tangent;
-    at.push = end.rotation * find_push(around.leaving, at.basis);
     if (eol.is_corner) {
         at.material_basis.col(1) = Vec2::UnitX();
         at.material_basis.col(2) = Vec2::UnitY();

@@ -25,10 +25,7 @@ struct EolCoordinates {
     Vec3 carried;        ///< where riding on the obstacle takes it by the step's end, world
     Mat3 basis;          ///< first column: the outward direction at the step's end
     Mat23 material_basis;
-    int side;  ///< EolVertex::side from now on
-    /// World, with 1 along the outward direction: where a feature pushes that has no friction, against where
-    /// the cloth's sides leave it. Its part across does no work but on what moves with the obstacle.
-    Vec3 push;
+    int side;      ///< EolVertex::side from now on
     Vec3 opening;  ///< change of u, (1, ...), that opens the gap with the least kinetic energy
 };
 

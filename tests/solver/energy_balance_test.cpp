@@ -6,6 +6,7 @@
 #include "geometry/cloth_grid.h"
 #include "geometry/mesh_quality.h"
 #include "solver/step.h"
+#include "tests/solver/eol_cloth.h"
 #include "tests/solver/floor.h"
 
 namespace arris {
@@ -134,6 +135,46 @@ TEST(DrivenWork, OfWindIsItsForceAtTheNewVelocityTimesTheWay)
     const double force = c * w * w / (1.0 + 2.0 * c * w * kStep / one.mass());
     const double way = force / one.mass() * kStep * kStep;
     EXPECT_NEAR(one.driven() / (force * way), 1.0, kRoundOff);
+}
+
+TEST(DrivenWork, OfAFeatureIsThatOfAllThatHoldsTheClothThere)
+{
+    // A knife starts off under cloth that has three times as much on one side, where it may be stretched:
+    // that side pulls the fold across, along the knife's way or against it. From rest in a step so short that
+    // no strain changes much R . (q' - q) is the gain of potential and v'^T M v'.
+    constexpr double kShort = 1e-5;  // s
+    for (const double stretch : {1.0, 1.03}) {
+        for (const Vec3& direction : {Vec3(0, 0, 1), Vec3(0.8, 0, 0.6), Vec3(-0.8, 0, 0.6)}) {
+            testing::EolCloth cloth(testing::make_ridge(5.0), testing::make_draped({8, 0.0, 80.0}));
+            Obstacle& knife = cloth.scene.obstacles[0];
+            knife = Obstacle("knife", knife.mesh(), {}, start_off(1e-3 * direction), 30.0);
+            State& state = cloth.state;
+            const double half = 40.0 * M_PI / 180.0;
+            for (int v = 0; v < state.mesh.vertex_count(); ++v) {
+                const Vec2& X = state.mesh.material[v];
+                const double across = (X.x() > 0.1 ? stretch : 1.0) * (X.x() - 0.1);
+                state.mesh.world[v] << across * std::sin(half), X.y() - 0.2,
+                    testing::kThickness - std::abs(across) * std::cos(half);
+                if (std::abs(across) < 1e-9) cloth.add_eol(v, false, testing::tip_of(knife));
+            }
+            state.time = 1.0;
+            state.step = 1;  // nothing is to be found that pressed before
+            cloth.scene.material.bending_stiffness = 0.0;
+            const State before = state;
+            Settings settings;
+            settings.integrator = Integrator::ImplicitEuler;
+            Workspace work;
+            ASSERT_EQ(step(cloth.scene, settings, 1.0 + kShort, state, work).status, StepStatus::Done);
+            ASSERT_EQ(state.mesh.faces, before.mesh.faces);
+            work.proposal.velocity = state.velocity;
+            work.proposal.material_velocity = state.material_velocity;
+            const double kinetic = testing::kinetic_energy_of(cloth.scene, state);
+            const double stored = testing::elastic_energy_of(cloth.scene, state.mesh) -
+                                  testing::elastic_energy_of(cloth.scene, before.mesh);
+            EXPECT_NEAR(compute_driven_work(before, work), 2.0 * kinetic + stored, 1e-2 * kinetic)
+                << stretch << ", " << direction.transpose() << ": " << kinetic << ", " << stored;
+        }
+    }
 }
 
 TEST(DrivenWork, OfWhatDoesNotMoveIsNothing)

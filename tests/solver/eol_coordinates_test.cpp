@@ -75,21 +75,6 @@ TEST(EolCoordinates, OnAnEdgeAreOutwardAlongAndTheFlowAcross)
         }
 }
 
-TEST(EolCoordinates, PushIsHalfwayBetweenTheClothsSides)
-{
-    for (const double lean : {0.0, 10.0, -25.0}) {
-        EolCloth cloth = on_ridge({8, 0.0, 100.0});
-        const Mat3 turn = rotation_about(Vec3::UnitY(), lean);
-        for (Vec3& x : cloth.state.mesh.world) x = turn * x;
-        const EolPlacing placing = place_middle(cloth);
-        ASSERT_TRUE(placing.coordinates);
-        const Vec3 back = turn * Vec3::UnitZ();  // against where both leave
-        EXPECT_LT((placing.coordinates->push - back / back.z()).norm(), kRoundOff) << lean;
-    }
-    // Flat cloth pulls nowhere.
-    EXPECT_LT((place_middle(on_ridge({8, 0.0, 180.0})).coordinates->push - Vec3::UnitZ()).norm(), kRoundOff);
-}
-
 TEST(EolCoordinates, OnAWireAreOutwardWhereTheClothIs)
 {
     for (const double side : {1.0, -1.0}) {
