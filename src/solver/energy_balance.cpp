@@ -58,7 +58,8 @@ double work_of_rows(const std::vector<double>& multiplier, const Workspace& work
 }
 
 /// What goes with a feature does so by all that holds it there, also across, where material flows: cloth that
-/// leaves to one side pulls at it. What rows do there is theirs.
+/// leaves to one side pulls at it. What rows do there is theirs; a vertex that goes round a wire with the
+/// cloth is driven by nothing.
 double work_of_features(const State& state, const std::vector<double>& multiplier, const Workspace& work)
 {
     std::vector<Vec3> impulse =
@@ -71,8 +72,11 @@ double work_of_features(const State& state, const std::vector<double>& multiplie
             impulse[local.vertices[i]] -= multiplier[c] * local.weights[i] * contact.normal;
     }
     double sum = 0.0;
-    for (const EolCoordinates& vertex : work.eol)
-        sum += impulse[vertex.vertex].dot(vertex.carried - state.mesh.world[vertex.vertex]);
+    for (const EolCoordinates& vertex : work.eol) {
+        const int v = vertex.vertex;
+        const ObstacleStep& step = work.obstacles[state.eol[vertex.entry].obstacle];
+        sum += impulse[v].dot(step.end(step.motion.begin[v]) - state.mesh.world[v]);
+    }
     return sum / work.prediction.gamma;
 }
 
