@@ -183,8 +183,9 @@ ArrivingCloth find_arriving(const Sides& sides, const Vec2& trace, const Vec2& f
     return {is_left ? sides.left : sides.right, flow.norm()};
 }
 
-/// A wire's outward direction turns with the cloth; the vertex goes round the wire with it.
-void turn_with_cloth(const Obstacle& obstacle, const State& state, int entry, int vertex,
+/// A wire's outward direction turns with the cloth; the vertex goes round the wire with it. Not where it has
+/// left the wire: carried across cloth that flies it would do work on that.
+void turn_with_cloth(const Obstacle& obstacle, double thickness, const State& state, int entry, int vertex,
                      const std::vector<int>& faces, const std::vector<Vec3>& positions, double dt,
                      FeatureFrame& frame, Vec3& place)
 {
@@ -199,8 +200,9 @@ void turn_with_cloth(const Obstacle& obstacle, const State& state, int entry, in
                                                             {state.eol[other], positions[w]}));
             if (!is_on_wire) beside.push_back(positions[w]);
         }
-    frame.outward = turn_outward(frame, place, beside, dt);
     const Vec3 from = place - frame.point, along = frame.tangent.dot(from) * frame.tangent;
+    if ((from - along).norm() > kOnFeature * thickness) dt = 0.0;
+    frame.outward = turn_outward(frame, place, beside, dt);
     place = frame.point + along + (from - along).norm() * frame.outward;
 }
 
@@ -349,7 +351,8 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
                       Mat23::Zero(),
                       find_side(around, eol, frame->outward),
                       Vec3::UnitX()};
-    turn_with_cloth(obstacle, state, entry, v, stars.faces[v], positions, dt, at.frame, at.carried);
+    turn_with_cloth(obstacle, thickness, state, entry, v, stars.faces[v], positions, dt, at.frame,
+                    at.carried);
     at.carried = end(at.carried);
     at.basis.col(0) = at.frame.outward;
     at.basis.col(1) = at.frame.tangent;

@@ -16,6 +16,9 @@
 
 namespace arris {
 
+/// Thicknesses from a feature, within which cloth lies on it: the mitre and a little.
+inline constexpr double kOnFeature = 2.5;
+
 /// One EOL vertex during a step: xdot = drift + basis u, Xdot = material_basis u, u = (c, a, s) or
 /// (c, s1, s2).
 struct EolCoordinates {

@@ -11,9 +11,6 @@
 
 namespace arris {
 
-/// Thicknesses from a feature, within which cloth lies on it: the mitre and a little.
-inline constexpr double kOnFeature = 2.5;
-
 /// A place of the cloth that a feature presses on.
 struct FeatureSite {
     std::int32_t obstacle;

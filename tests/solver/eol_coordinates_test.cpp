@@ -15,6 +15,7 @@ namespace {
 
 using testing::Drape;
 using testing::EolCloth;
+using testing::kThickness;
 using testing::make_draped;
 using testing::make_ridge;
 
@@ -146,6 +147,24 @@ TEST(EolCoordinates, OnAWireTheVertexFollowsIntoTheOutwardPlane)
     // In no time it stays, and its way out is where it is from the wire.
     EXPECT_LT((place_in(0.0).coordinates->carried - cloth.state.mesh.world[v]).norm(), kRoundOff);
     EXPECT_LT(place_in(0.0).coordinates->basis.col(0).cross(Vec3(0.1, 0.0, 1.0)).norm(), kRoundOff);
+}
+
+TEST(EolCoordinates, WhatHasLeftAWireIsNotCarriedRoundIt)
+{
+    for (const double thicknesses : {1.0, 2.0, 4.0, 40.0}) {
+        EolCloth cloth = on_wire({8, 0.0, 90.0});
+        const int v = cloth.vertex_at(0.2, 0.2);
+        cloth.add_eol(v, false, 0);
+        cloth.state.mesh.world[v] += thicknesses * kThickness * Vec3(0.1, 0.0, 1.0);
+        const EolPlacing placing = place_eol_vertex(cloth.scene.obstacles[0], kThickness, cloth.state, 0,
+                                                    cloth.stars(), cloth.state.mesh.world, {}, 1.0);
+        ASSERT_TRUE(placing.coordinates);
+        const double carried = (placing.coordinates->carried - cloth.state.mesh.world[v]).norm();
+        if (thicknesses > kOnFeature)
+            EXPECT_LT(carried, kRoundOff) << thicknesses;
+        else
+            EXPECT_GT(carried, 0.01 * thicknesses * kThickness) << thicknesses;
+    }
 }
 
 TEST(EolCoordinates, OnACornerAreOutwardAndAnyFlow)
