@@ -98,7 +98,10 @@ int ClothSurgery::tag(VertexId v) const
 int ClothSurgery::edge_tag(VertexId a, VertexId b) const
 {
     const SurgeryMesh& mesh = implementation_->mesh;
-    return has_edge(a, b) ? mesh.edge_tag(mesh.halfedge(a, b)) : kNoTag;
+    const auto is_free = [&](VertexId v) { return !mesh.has(v) || mesh.role(v) == TraceRole::Free; };
+    if (is_free(a) || is_free(b)) return kNoTag;
+    const SurgeryMesh::Halfedge h = mesh.halfedge(a, b);
+    return h == SurgeryMesh::Mesh::null_halfedge() ? kNoTag : mesh.edge_tag(h);
 }
 
 VertexRing ClothSurgery::ring(VertexId v) const

@@ -51,12 +51,13 @@ class Cleanup {
   public:
     Cleanup(ClothSurgery& surgery, const MeshTarget& target) : surgery_(surgery), target_(target)
     {
-        const std::vector<VertexId> touched = surgery_.take_touched();
-        patch_.insert(touched.begin(), touched.end());
-        for (const VertexId v : touched) {
+        patch_ = surgery_.take_touched();
+        for (const VertexId v : std::vector<VertexId>(patch_)) {
             const VertexRing ring = surgery_.ring(v);
-            patch_.insert(ring.vertices.begin(), ring.vertices.end());
+            patch_.insert(patch_.end(), ring.vertices.begin(), ring.vertices.end());
         }
+        std::sort(patch_.begin(), patch_.end());
+        patch_.erase(std::unique(patch_.begin(), patch_.end()), patch_.end());
         report_.patch_vertices = static_cast<int>(patch_.size());
     }
 
@@ -77,26 +78,32 @@ class Cleanup {
   private:
     // --- the patch
 
-    std::set<Edge> patch_edges() const
+    std::vector<Edge> patch_edges() const
     {
-        std::set<Edge> edges;
+        std::vector<Edge> edges;
         for (const VertexId v : patch_)
-            for (const VertexId n : surgery_.ring(v).vertices) edges.insert(edge_of(v, n));
+            for (const VertexId n : surgery_.ring(v).vertices)
+                if (is_first_in_patch(v, n)) edges.push_back(edge_of(v, n));
         return edges;
     }
 
-    std::set<IdFace> patch_faces() const
+    // From their least vertices.
+    std::vector<IdFace> patch_faces() const
     {
-        std::set<IdFace> faces;
+        std::vector<IdFace> faces;
         for (const VertexId v : patch_)
             for (IdFace face : surgery_.faces_at(v)) {
+                if (!is_first_in_patch(v, face[1]) || !is_first_in_patch(v, face[2])) continue;
                 std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-                faces.insert(face);
+                faces.push_back(face);
             }
         return faces;
     }
 
-    bool in_patch(VertexId v) const { return patch_.contains(v); }
+    bool in_patch(VertexId v) const { return std::binary_search(patch_.begin(), patch_.end(), v); }
+
+    // So that what has several vertices in the patch is listed once.
+    bool is_first_in_patch(VertexId v, VertexId other) const { return v < other || !in_patch(other); }
 
     double length(const Edge& e) const { return (surgery_.material(e[1]) - surgery_.material(e[0])).norm(); }
 
@@ -131,14 +138,14 @@ class Cleanup {
         switch (event.operation) {
             case SurgeryOperation::Collapse:
                 ++report_.collapses;
-                patch_.erase(event.edge[0]);
+                patch_.erase(std::lower_bound(patch_.begin(), patch_.end(), event.edge[0]));
                 break;
             case SurgeryOperation::Flip:
                 ++report_.flips;
                 break;
             default:
                 ++report_.splits;
-                patch_.insert(event.changes[0].vertex);
+                patch_.push_back(event.changes[0].vertex);  // new ids ascend
         }
         return true;
     }
@@ -208,26 +215,34 @@ class Cleanup {
         return CGAL::side_of_oriented_circle(at(a), at(b), at(c), at(d)) != CGAL::ON_POSITIVE_SIDE;
     }
 
-    bool wants_flip(const Edge& e, SurgeryProposal& proposal) const
+    bool is_locally_delaunay(const Edge& e) const
     {
-        // Cheapest first: most edges end here.
         const VertexId c = surgery_.apex(e[0], e[1]);
         const VertexId d = surgery_.apex(e[1], e[0]);
-        if (c == kNoVertex || d == kNoVertex || is_locally_delaunay(e[0], e[1], c, d)) return false;
+        return c == kNoVertex || d == kNoVertex || is_locally_delaunay(e[0], e[1], c, d);
+    }
+
+    bool wants_flip(const Edge& e, SurgeryProposal& proposal) const
+    {
+        if (!surgery_.has_edge(e[0], e[1]) || is_locally_delaunay(e)) return false;
         proposal = surgery_.propose_flip(e[0], e[1]);
         return proposal.is_legal() && least_angle(proposal.event.before) < kFlipAngle;
     }
 
     void flip_edges()
     {
-        std::set<Edge> queue = patch_edges();
-        int left = kFlipsPerEdge * static_cast<int>(queue.size());
+        const std::vector<Edge> edges = patch_edges();
+        int left = kFlipsPerEdge * static_cast<int>(edges.size());
         report_.most_operations += left;
+        // Most edges are Delaunay's; of these only a flip beside one makes it another.
+        std::set<Edge> queue;
+        for (const Edge& e : edges)
+            if (!is_locally_delaunay(e)) queue.insert(e);
         SurgeryProposal proposal;
         while (!queue.empty()) {
             const Edge e = *queue.begin();
             queue.erase(queue.begin());
-            if (!surgery_.has_edge(e[0], e[1]) || !wants_flip(e, proposal)) continue;
+            if (!wants_flip(e, proposal)) continue;
             if (left == 0) {
                 report_.is_capped = true;
                 return;
@@ -349,8 +364,8 @@ class Cleanup {
 
     ClothSurgery& surgery_;
     const MeshTarget& target_;
-    std::set<VertexId> patch_;
-    std::set<Edge> kept_apart_;  // by the guard
+    std::vector<VertexId> patch_;  // ascending
+    std::set<Edge> kept_apart_;    // by the guard
     CleanupReport report_;
 };
 

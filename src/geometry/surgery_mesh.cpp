@@ -5,12 +5,31 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 namespace arris {
+namespace {
+
+// Each starts at its least vertex, where few do: counted out by it, then sorted a vertex at a time.
+void sort_faces(int vertex_count, std::vector<Face>& faces)
+{
+    std::vector<std::ptrdiff_t> next(static_cast<std::size_t>(vertex_count) + 1, 0);
+    for (const Face& face : faces) ++next[face[0] + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<Face> sorted(faces.size());
+    for (const Face& face : faces) sorted[next[face[0]]++] = face;
+    std::ptrdiff_t begin = 0;  // `next` now tells where each vertex's end
+    for (int v = 0; v < vertex_count; begin = next[v++])
+        std::sort(sorted.begin() + begin, sorted.begin() + next[v]);
+    faces.swap(sorted);
+}
+
+}  // namespace
 
 SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids,
                          const std::vector<MeshEdge>& edges)
+    : vertices_(ids.size())
 {
     id_ = mesh_.add_property_map<Vertex, VertexId>("v:id", kNoVertex).first;
     world_ = mesh_.add_property_map<Vertex, Vec3>("v:world", Vec3::Zero()).first;
@@ -20,13 +39,12 @@ SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids
     edge_tag_ = mesh_.add_property_map<Mesh::Edge_index, int>("e:tag", kNoTag).first;
     const auto vertices = static_cast<Mesh::size_type>(mesh.vertex_count());
     const auto faces = static_cast<Mesh::size_type>(mesh.face_count());
-    mesh_.reserve(vertices, vertices + faces, faces);
-    vertex_of_.reserve(ids.size());
-    for (int v = 0; v < mesh.vertex_count(); ++v) {
-        const Vertex added = mesh_.add_vertex(to_cgal(mesh.material[v]));
-        id_[added] = ids[v];
-        world_[added] = mesh.world[v];
-        vertex_of_.emplace(ids[v], added);
+    mesh_.resize(vertices, static_cast<Mesh::size_type>(edges.size()), faces);
+    for (const Vertex v : mesh_.vertices()) {
+        mesh_.point(v) = to_cgal(mesh.material[v]);
+        id_[v] = ids[v];
+        world_[v] = mesh.world[v];
+        vertices_.add(ids[v], v);
     }
     connect(mesh, edges);
 }
@@ -45,13 +63,16 @@ void SurgeryMesh::connect(const ClothMesh& mesh, const std::vector<MeshEdge>& ed
         else
             sides[f][(k + 2) % 3] = mesh_.opposite(from_a);
     };
-    for (const MeshEdge& edge : edges) {
-        const Halfedge from_a = mesh_.add_edge(at(edge.a), at(edge.b));
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const MeshEdge& edge = edges[e];
+        const Halfedge from_a = mesh_.halfedge(Mesh::Edge_index(static_cast<Mesh::size_type>(e)));
+        mesh_.set_target(from_a, at(edge.b));
+        mesh_.set_target(mesh_.opposite(from_a), at(edge.a));
         take_side(edge.face_left, edge.a, from_a);
         if (edge.face_right >= 0) take_side(edge.face_right, edge.a, from_a);
     }
-    for (const std::array<Halfedge, 3>& around : sides) {
-        const auto face = mesh_.add_face();
+    for (const auto face : mesh_.faces()) {
+        const std::array<Halfedge, 3>& around = sides[face];
         mesh_.set_halfedge(face, around[0]);
         for (int k = 0; k < 3; ++k) {
             mesh_.set_face(around[k], face);
@@ -73,8 +94,9 @@ void SurgeryMesh::connect(const ClothMesh& mesh, const std::vector<MeshEdge>& ed
 
 SurgeryMesh::Halfedge SurgeryMesh::halfedge(VertexId a, VertexId b) const
 {
-    if (!has(a) || !has(b)) return Mesh::null_halfedge();
-    return mesh_.halfedge(vertex(a), vertex(b));
+    const std::uint32_t at_a = vertices_.find(a), at_b = vertices_.find(b);
+    if (at_a == VertexTable::kNone || at_b == VertexTable::kNone) return Mesh::null_halfedge();
+    return mesh_.halfedge(Vertex(at_a), Vertex(at_b));
 }
 
 VertexRing SurgeryMesh::ring(VertexId v) const
@@ -123,7 +145,7 @@ void SurgeryMesh::move(VertexId v, const Vec2& material, const Vec3& world)
 void SurgeryMesh::name_new_vertex(Vertex v, const VertexChange& made)
 {
     id_[v] = made.vertex;
-    vertex_of_.emplace(made.vertex, v);
+    vertices_.add(made.vertex, v);
     move(made.vertex, made.new_material, made.new_world);
 }
 
@@ -156,7 +178,7 @@ void SurgeryMesh::collapse(VertexId removed, VertexId kept)
     [[maybe_unused]] const Vertex left =
         CGAL::Euler::collapse_edge(mesh_.edge(halfedge(removed, kept)), mesh_);
     assert(left == vertex(kept) && "the other vertex was removed");
-    vertex_of_.erase(removed);
+    vertices_.remove(removed);
     for (const auto& [n, tag] : tags) set_edge_tag(halfedge(kept, n), tag);
 }
 
@@ -167,14 +189,11 @@ void SurgeryMesh::flip(VertexId a, VertexId b)
 
 void SurgeryMesh::write(SurgeryResult& result) const
 {
-    std::vector<std::pair<VertexId, Vertex>> vertices;
-    vertices.reserve(vertex_of_.size());
-    for (const Vertex v : mesh_.vertices()) vertices.emplace_back(id_[v], v);
-    std::sort(vertices.begin(), vertices.end());
     std::vector<int> index(mesh_.number_of_vertices() + mesh_.number_of_removed_vertices());
-    for (const auto& [id, v] : vertices) {
+    for (const std::uint32_t at : vertices_.in_order()) {
+        const Vertex v(at);
         index[v] = static_cast<int>(result.ids.size());
-        result.ids.push_back(id);
+        result.ids.push_back(id_[v]);
         result.mesh.material.push_back(to_eigen(mesh_.point(v)));
         result.mesh.world.push_back(world_[v]);
         result.roles.push_back(role_[v]);
@@ -187,7 +206,7 @@ void SurgeryMesh::write(SurgeryResult& result) const
         std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
         result.mesh.faces.push_back(face);
     }
-    std::sort(result.mesh.faces.begin(), result.mesh.faces.end());
+    sort_faces(result.mesh.vertex_count(), result.mesh.faces);
 }
 
 }  // namespace arris

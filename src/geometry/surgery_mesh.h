@@ -3,10 +3,9 @@
 
 #include <CGAL/Surface_mesh.h>
 
-#include <unordered_map>
-
 #include "geometry/cgal.h"
 #include "geometry/cloth_surgery.h"
+#include "geometry/vertex_table.h"
 
 namespace arris {
 
@@ -21,9 +20,9 @@ class SurgeryMesh {
 
     SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids, const std::vector<MeshEdge>& edges);
 
-    int vertex_count() const { return static_cast<int>(vertex_of_.size()); }
-    bool has(VertexId v) const { return vertex_of_.contains(v); }
-    Vertex vertex(VertexId v) const { return vertex_of_.at(v); }
+    int vertex_count() const { return vertices_.count(); }
+    bool has(VertexId v) const { return vertices_.find(v) != VertexTable::kNone; }
+    Vertex vertex(VertexId v) const { return Vertex(vertices_.find(v)); }
     VertexId id(Vertex v) const { return id_[v]; }
     /// From a to b; null if they are no neighbours.
     Halfedge halfedge(VertexId a, VertexId b) const;
@@ -68,7 +67,7 @@ class SurgeryMesh {
     Mesh::Property_map<Vertex, TraceRole> role_;
     Mesh::Property_map<Vertex, int> tag_;
     Mesh::Property_map<Mesh::Edge_index, int> edge_tag_;
-    std::unordered_map<VertexId, Vertex> vertex_of_;  // looked up, never iterated in its own order
+    VertexTable vertices_;
 };
 
 }  // namespace arris
