@@ -19,11 +19,15 @@ template <typename Visit>
 void for_each_by_color(const ElementColors& colors, const Visit& visit)
 {
     constexpr int kGrain = 128;  // a few tens of microseconds: far above the cost of a task
+    const auto visit_part = [&](const tbb::blocked_range<int>& part) {
+        for (int i = part.begin(); i < part.end(); ++i) visit(colors.order[i]);
+    };
     for (std::size_t k = 0; k + 1 < colors.start.size(); ++k) {
         const tbb::blocked_range<int> range(colors.start[k], colors.start[k + 1], kGrain);
-        tbb::parallel_for(range, [&](const tbb::blocked_range<int>& part) {
-            for (int i = part.begin(); i < part.end(); ++i) visit(colors.order[i]);
-        });
+        if (range.is_divisible())
+            tbb::parallel_for(range, visit_part);
+        else
+            visit_part(range);
     }
 }
 
