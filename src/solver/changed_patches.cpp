@@ -2,7 +2,6 @@
 #include "solver/changed_patches.h"
 
 #include <algorithm>
-#include <set>
 #include <tuple>
 #include <unordered_map>
 
@@ -10,10 +9,22 @@ namespace arris {
 
 namespace {
 
-void sort_unique(std::vector<int>& values)
+template <typename Value>
+void sort_unique(std::vector<Value>& values)
 {
     std::sort(values.begin(), values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+/// Of each of `ids` its place in `others`, or -1; both ascend.
+std::vector<int> find_places(const std::vector<std::uint32_t>& ids, const std::vector<std::uint32_t>& others)
+{
+    std::vector<int> places(ids.size(), -1);
+    for (std::size_t i = 0, k = 0; i < ids.size(); ++i) {
+        while (k < others.size() && others[k] < ids[i]) ++k;
+        if (k < others.size() && others[k] == ids[i]) places[i] = static_cast<int>(k);
+    }
+    return places;
 }
 
 class PatchFinder {
@@ -22,6 +33,8 @@ class PatchFinder {
         : change_(change),
           before_(change.before),
           after_(change.after),
+          then_(find_places(change.after.ids, change.before.ids)),
+          now_(find_places(change.before.ids, change.after.ids)),
           is_near_(change.after.ids.size(), 0),
           patch_(change.after.mesh.faces.size(), -1)
     {
@@ -51,47 +64,51 @@ class PatchFinder {
     /// Vertices at which a face may have changed.
     std::vector<int> touched() const
     {
-        std::set<VertexId> ids;
+        std::vector<VertexId> ids;
+        const auto add = [&](const std::vector<PatchFace>& faces) {
+            for (const PatchFace& face : faces)
+                ids.insert(ids.end(), face.vertices.begin(), face.vertices.end());
+        };
         for (const SurgeryEvent& event : change_.events) {
-            for (const PatchFace& face : event.before) ids.insert(face.vertices.begin(), face.vertices.end());
-            for (const PatchFace& face : event.after) ids.insert(face.vertices.begin(), face.vertices.end());
+            add(event.before);
+            add(event.after);
         }
         for (const State* state : {&before_, &after_})
-            for (const EolVertex& eol : state->eol) ids.insert(eol.vertex_id);
+            for (const EolVertex& eol : state->eol) ids.push_back(eol.vertex_id);
+        sort_unique(ids);
         std::vector<int> vertices;
         for (const VertexId id : ids)
             if (const int v = after_.index_of(id); v >= 0) vertices.push_back(v);
         return vertices;
     }
 
-    /// The same three vertices, once around; -1 where there is none.
-    static int find_face(const State& state, const std::vector<std::vector<int>>& faces_at,
-                         const std::array<VertexId, 3>& ids)
+    /// Of a face of one mesh, by its vertices in the other, the same three once around there; -1 where there
+    /// is none.
+    static int find_face(const ClothMesh& mesh, const std::vector<std::vector<int>>& faces_at,
+                         const Face& vertices)
     {
-        const std::array<int, 3> v = {state.index_of(ids[0]), state.index_of(ids[1]), state.index_of(ids[2])};
-        if (v[0] < 0 || v[1] < 0 || v[2] < 0) return -1;
-        for (const int f : faces_at[v[0]]) {
-            const Face& face = state.mesh.faces[f];
-            const auto first = std::find(face.begin(), face.end(), v[0]) - face.begin();
-            if (face[(first + 1) % 3] == v[1] && face[(first + 2) % 3] == v[2]) return f;
+        const auto [a, b, c] = vertices;
+        if (a < 0 || b < 0 || c < 0) return -1;
+        for (const int f : faces_at[a]) {
+            const Face& face = mesh.faces[f];
+            const auto first = std::find(face.begin(), face.end(), a) - face.begin();
+            if (face[(first + 1) % 3] == b && face[(first + 2) % 3] == c) return f;
         }
         return -1;
     }
 
-    static std::array<VertexId, 3> ids_of(const State& state, int f)
+    static Face map(const Face& face, const std::vector<int>& to)
     {
-        const Face& face = state.mesh.faces[f];
-        return {state.ids[face[0]], state.ids[face[1]], state.ids[face[2]]};
+        return {to[face[0]], to[face[1]], to[face[2]]};
     }
 
     /// Whether it was there before, at the same place in the material, and its vertices were what they are.
     bool is_kept(int f) const
     {
-        if (find_face(before_, change_.faces_at_before, ids_of(after_, f)) < 0) return false;
         const Face& face = after_.mesh.faces[f];
+        if (find_face(before_.mesh, change_.faces_at_before, map(face, then_)) < 0) return false;
         return std::all_of(face.begin(), face.end(), [&](int v) {
-            const int then = before_.index_of(after_.ids[v]);
-            return !is_eol_changed(v) && before_.mesh.material[then] == after_.mesh.material[v];
+            return before_.mesh.material[then_[v]] == after_.mesh.material[v] && !is_eol_changed(v);
         });
     }
 
@@ -177,7 +194,7 @@ class PatchFinder {
         std::unordered_map<int, int> patch_of;  // of a vertex before; looked up only
         for (std::size_t p = 0; p < patches_.size(); ++p)
             for (const int v : patches_[p].vertices)
-                if (const int then = before_.index_of(after_.ids[v]); then >= 0) {
+                if (const int then = then_[v]; then >= 0) {
                     patch_of[then] = static_cast<int>(p);
                     open.push_back(then);
                 }
@@ -187,13 +204,13 @@ class PatchFinder {
             open.pop_back();
             for (const int f : change_.faces_at_before[v]) {
                 if (is_seen[f]) continue;
-                const int now = find_face(after_, change_.faces_at_after, ids_of(before_, f));
+                const Face& face = before_.mesh.faces[f];
+                const int now = find_face(after_.mesh, change_.faces_at_after, map(face, now_));
                 is_seen[f] = 1;
                 if (now >= 0 && patch_[now] < 0) continue;
                 patches_[now >= 0 ? patch_[now] : patch_of.at(v)].faces_before.push_back(f);
-                for (const int w : before_.mesh.faces[f])
-                    if (after_.index_of(before_.ids[w]) < 0 && patch_of.try_emplace(w, patch_of.at(v)).second)
-                        open.push_back(w);
+                for (const int w : face)
+                    if (now_[w] < 0 && patch_of.try_emplace(w, patch_of.at(v)).second) open.push_back(w);
             }
         }
         for (ChangedPatch& patch : patches_) std::sort(patch.faces_before.begin(), patch.faces_before.end());
@@ -202,6 +219,8 @@ class PatchFinder {
     const MeshChange& change_;
     const State& before_;
     const State& after_;
+    std::vector<int> then_;      ///< of each vertex after, before; -1 where it is new
+    std::vector<int> now_;       ///< of each vertex before, after; -1 where it is gone
     std::vector<int> near_;      ///< vertices after
     std::vector<char> is_near_;  ///< of each
     std::vector<int> patch_;     ///< of each face after; -1 outside

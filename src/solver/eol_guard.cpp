@@ -2,7 +2,6 @@
 #include "solver/eol_guard.h"
 
 #include <algorithm>
-#include <set>
 #include <unordered_map>
 
 #include "solver/strain_allowance.h"
@@ -16,6 +15,17 @@ IdFace from_least(IdFace face)
 {
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
     return face;
+}
+
+void sort_unique(std::vector<VertexId>& ids)
+{
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+}
+
+bool contains(const std::vector<VertexId>& ascending, VertexId v)
+{
+    return std::binary_search(ascending.begin(), ascending.end(), v);
 }
 
 }  // namespace
@@ -73,21 +83,32 @@ EolGuard::Neighbourhood EolGuard::look_around(const SurgeryEvent& event) const
 {
     constexpr int kRings = 2;
     Neighbourhood around;
-    std::set<VertexId>& near = around.near;
-    for (const PatchFace& face : event.before) near.insert(face.vertices.begin(), face.vertices.end());
-    for (int ring = 0; ring < kRings; ++ring)
-        for (const VertexId v : std::set<VertexId>(near)) {
+    std::vector<VertexId>& near = around.near;
+    for (const PatchFace& face : event.before)
+        near.insert(near.end(), face.vertices.begin(), face.vertices.end());
+    sort_unique(near);
+    for (int ring = 0; ring < kRings; ++ring) {
+        for (const VertexId v : std::vector<VertexId>(near)) {
             const VertexRing neighbours = surgery_->ring(v);
-            near.insert(neighbours.vertices.begin(), neighbours.vertices.end());
+            near.insert(near.end(), neighbours.vertices.begin(), neighbours.vertices.end());
         }
-    std::set<IdFace> replaced, faces;
-    for (const PatchFace& face : event.before) replaced.insert(from_least(face.vertices));
-    for (const VertexId v : near)
-        for (const IdFace& face : surgery_->faces_at(v))
-            if (std::all_of(face.begin(), face.end(), [&](VertexId w) { return near.contains(w); }))
-                faces.insert(from_least(face));
-    for (const IdFace& face : faces)
-        if (!replaced.contains(face)) around.kept.push_back(surgery_->patch_face(face));
+        sort_unique(near);
+    }
+    std::vector<IdFace> replaced, faces;
+    for (const PatchFace& face : event.before) replaced.push_back(from_least(face.vertices));
+    for (const VertexId v : near) {
+        const VertexRing& ring = around.rings.emplace_back(surgery_->ring(v));
+        const std::size_t n = ring.vertices.size();
+        for (std::size_t k = 0; k + (ring.is_closed ? 0 : 1) < n; ++k) {
+            const IdFace face = {v, ring.vertices[k], ring.vertices[(k + 1) % n]};
+            const bool is_first = v < face[1] && v < face[2];  // each face once
+            if (is_first && contains(near, face[1]) && contains(near, face[2]) &&
+                std::find(replaced.begin(), replaced.end(), face) == replaced.end())
+                faces.push_back(face);
+        }
+    }
+    std::sort(faces.begin(), faces.end());
+    for (const IdFace& face : faces) around.kept.push_back(surgery_->patch_face(face));
     return around;
 }
 
@@ -105,7 +126,7 @@ LoosePatch EolGuard::make_patch(const SurgeryEvent& event) const
             if (!is_new) continue;
             patch.mesh.material.push_back(face.material[i]);
             patch.mesh.world.push_back(face.world[i]);
-            patch.is_free.push_back(is_loose(face.vertices[i], around.near, event));
+            patch.is_free.push_back(is_loose(face.vertices[i], around, event));
             patch.normals.push_back(find_kept_normal(scene_, state_, face.vertices[i]));
         }
         patch.mesh.faces.push_back(made);
@@ -120,16 +141,16 @@ LoosePatch EolGuard::make_patch(const SurgeryEvent& event) const
     return patch;
 }
 
-bool EolGuard::is_loose(VertexId v, const std::set<VertexId>& near, const SurgeryEvent& event) const
+bool EolGuard::is_loose(VertexId v, const Neighbourhood& around, const SurgeryEvent& event) const
 {
     const bool is_changed = std::any_of(event.changes.begin(), event.changes.end(),
                                         [v](const VertexChange& change) { return change.vertex == v; });
     if (is_changed || !surgery_->has_vertex(v) || surgery_->is_fixed(v) ||
         surgery_->role(v) != TraceRole::Free)
         return false;
-    const VertexRing around = surgery_->ring(v);
-    return std::all_of(around.vertices.begin(), around.vertices.end(),
-                       [&](VertexId w) { return near.contains(w); });
+    const auto at = std::lower_bound(around.near.begin(), around.near.end(), v) - around.near.begin();
+    const std::vector<VertexId>& ring = around.rings[at].vertices;
+    return std::all_of(ring.begin(), ring.end(), [&](VertexId w) { return contains(around.near, w); });
 }
 
 }  // namespace arris

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <set>
+#include <vector>
 
 #include "geometry/cloth_surgery.h"
 #include "geometry/surgery_clearance.h"
@@ -40,13 +40,14 @@ class EolGuard {
     bool strains(const SurgeryEvent& event);
     /// Around an operation: vertices, and the faces between them that it does not replace.
     struct Neighbourhood {
-        std::set<VertexId> near;
-        std::vector<PatchFace> kept;
+        std::vector<VertexId> near;     ///< ascending
+        std::vector<VertexRing> rings;  ///< of each
+        std::vector<PatchFace> kept;    ///< ascending, from their least vertices
     };
     Neighbourhood look_around(const SurgeryEvent& event) const;
     /// What the operation makes, and around it.
     LoosePatch make_patch(const SurgeryEvent& event) const;
-    bool is_loose(VertexId v, const std::set<VertexId>& near, const SurgeryEvent& event) const;
+    bool is_loose(VertexId v, const Neighbourhood& around, const SurgeryEvent& event) const;
     double allowance(const SurgeryEvent& event, double elastic_energy) const;
 
     const Scene& scene_;
