@@ -106,6 +106,7 @@ class ClothSurgery::Implementation {
         const VertexRing ring = mesh.ring(v);
         const std::size_t n = ring.vertices.size();
         std::vector<IdFace> faces;
+        faces.reserve(n);
         for (std::size_t k = 0; k + (ring.is_closed ? 0 : 1) < n; ++k)
             faces.push_back({v, ring.vertices[k], ring.vertices[(k + 1) % n]});
         return faces;

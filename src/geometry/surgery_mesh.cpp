@@ -105,6 +105,8 @@ VertexRing SurgeryMesh::ring(VertexId v) const
     // first's opposite.
     const Halfedge first = mesh_.halfedge(vertex(v));
     VertexRing ring;
+    constexpr std::size_t kUsual = 8;  // neighbours, at most
+    ring.vertices.reserve(kUsual);
     std::size_t start = 0;
     for (Halfedge h = first;;) {
         if (mesh_.is_border(h)) {
@@ -190,6 +192,12 @@ void SurgeryMesh::flip(VertexId a, VertexId b)
 void SurgeryMesh::write(SurgeryResult& result) const
 {
     std::vector<int> index(mesh_.number_of_vertices() + mesh_.number_of_removed_vertices());
+    const auto count = static_cast<std::size_t>(vertices_.count());
+    result.ids.reserve(count);
+    result.mesh.material.reserve(count);
+    result.mesh.world.reserve(count);
+    result.roles.reserve(count);
+    result.tags.reserve(count);
     for (const std::uint32_t at : vertices_.in_order()) {
         const Vertex v(at);
         index[v] = static_cast<int>(result.ids.size());

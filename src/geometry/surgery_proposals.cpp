@@ -122,6 +122,8 @@ SurgeryProposal ClothSurgery::propose_collapse(VertexId v, VertexId w) const
     SurgeryEvent& event = proposal.event;
     event.operation = SurgeryOperation::Collapse;
     event.edge = {v, w};
+    event.before.reserve(ring.vertices.size());
+    event.after.reserve(ring.vertices.size());
     for (const IdFace& face : faces_at(v)) {
         event.before.push_back(patch_face(face));
         if (!has(face, w)) event.after.push_back(patch_face(replaced(face, v, w)));

@@ -74,7 +74,9 @@ bool EolGuard::strains(const SurgeryEvent& event)
     if (is_split) return false;  // changes no surface, if how wide the hinges are
     const Energies before = find_energies(*surgery_, event, event.before, terms_, crease_width_);
     const Energies after = find_energies(*surgery_, event, event.after, terms_, crease_width_);
-    const double rise = after.sum() - before.sum() - allowance(event, before.stretch + before.bending);
+    double rise = after.sum() - before.sum();
+    if (!(rise > 0.0)) return false;  // it need not be known what is allowed
+    rise -= allowance(event, before.stretch + before.bending);
     if (!(rise > 0.0)) return false;
     return limit_ != StrainLimit::GivesWay || !relaxations_.can_relax_by(scene_, make_patch(event), rise);
 }

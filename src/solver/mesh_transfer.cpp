@@ -128,6 +128,7 @@ void interpolate(const SurgeryEvent& event, const VertexChange& change, double d
 void drop_contacts_without_element(const ClothStars& stars, State& state)
 {
     const auto has_element = [&](const ActiveContact& contact) {
+        if (contact.kind == ContactKind::Vertex) return state.index_of(contact.vertex_ids[0]) >= 0;
         std::vector<int> vertices;
         for (const std::uint32_t id : contact.vertex_ids)
             if (id != ActiveContact::kNoVertex) vertices.push_back(state.index_of(id));

@@ -71,10 +71,6 @@ class PatchFitter {
     double relax_patch(const ChangedPatch& patch)
     {
         const double before = find_patch_energy(scene_, creases_before_, before_.mesh, patch.faces_before);
-        const double strained = find_patch_energy(scene_, creases_, after_.mesh, patch.faces);
-        constexpr double kRounding = 1e-9;  // of sums over the patch: a split leaves the energy as it is
-        if (strained - before <= kRounding * std::abs(before)) return 0.0;
-
         relaxed_.faces = patch.faces;
         relaxed_.is_free.resize(after_.ids.size());
         relaxed_.normals.resize(after_.ids.size());

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <unordered_map>
 #include <utility>
 
@@ -74,6 +75,8 @@ class Relaxation {
             place_[v] = static_cast<int>(free_.size());
             free_.push_back(static_cast<int>(v));
         }
+        drop_held(elements_.faces, elements_.face_colors);
+        drop_held(elements_.hinges, elements_.hinge_colors);
     }
 
     /// Lowers the energy to `wanted` or below, or as far as a few steps bring it.
@@ -125,6 +128,24 @@ class Relaxation {
     }
 
   private:
+    /// What concerns no free vertex need not be assembled.
+    template <typename Element>
+    void drop_held(const std::vector<Element>& elements, ElementColors& colors) const
+    {
+        const auto is_held = [&](int e) {
+            const auto& vertices = elements[e].vertices;
+            return std::all_of(vertices.begin(), vertices.end(), [&](int v) { return place_[v] < 0; });
+        };
+        ElementColors kept;
+        for (std::size_t k = 0; k + 1 < colors.start.size(); ++k) {
+            kept.start.push_back(static_cast<int>(kept.order.size()));
+            std::copy_if(colors.order.begin() + colors.start[k], colors.order.begin() + colors.start[k + 1],
+                         std::back_inserter(kept.order), [&](int e) { return !is_held(e); });
+        }
+        kept.start.push_back(static_cast<int>(kept.order.size()));
+        colors = std::move(kept);
+    }
+
     /// One step from rest that lowers the energy; false where there is none.
     bool descend(double wanted)
     {
@@ -248,6 +269,7 @@ Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vert
 double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state)
 {
     constexpr int kMostHalvings = 4;
+    constexpr double kRounding = 1e-9;  // of sums over the patch: a split leaves the energy as it is
     SubMesh part = extract_faces(state.mesh, patch.faces);
     LoosePatch loose{std::move(part.mesh), {}, {}, find_part(creases, part.vertices)};
     for (const int v : part.vertices) {
@@ -257,6 +279,7 @@ double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& pat
     Relaxation relaxation(scene, std::move(loose));
     const std::vector<Vec3> begin = relaxation.world();
     const double before = relaxation.energy();
+    if (before - patch.wanted <= kRounding * std::abs(patch.wanted)) return before;
     relaxation.run(patch.wanted);
     relaxation.rise_to(patch.wanted);
     for (int k = 0; !relaxation.is_way_free(begin, state.time); ++k) {

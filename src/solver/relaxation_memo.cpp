@@ -9,6 +9,7 @@ std::vector<double> make_key(const LoosePatch& patch, double drop)
 {
     const ClothMesh& mesh = patch.mesh;
     std::vector<double> key = {drop, double(mesh.vertex_count())};
+    key.reserve(9 * mesh.world.size() + 3 * mesh.faces.size() + 2 * patch.creases.edges.size() + 3);
     for (std::size_t v = 0; v < mesh.world.size(); ++v) {
         for (const Vec3* u : {&mesh.world[v], &patch.normals[v]}) key.insert(key.end(), u->begin(), u->end());
         key.insert(key.end(), mesh.material[v].begin(), mesh.material[v].end());
