@@ -13,19 +13,12 @@ VertexTable::VertexTable(std::size_t count)
     grow(static_cast<int>(std::bit_width(2 * count + 1)));
 }
 
-VertexTable::Slot& VertexTable::slot(VertexId id)
-{
-    std::size_t at = place(id);
-    while (slots_[at].id != id && slots_[at].id != kNoVertex) at = (at + 1) & (slots_.size() - 1);
-    return slots_[at];
-}
-
 void VertexTable::grow(int bits)
 {
     const std::vector<Slot> old = std::exchange(slots_, std::vector<Slot>(std::size_t{1} << bits));
     shift_ = 32 - bits;
     for (const Slot& s : old)
-        if (s.id != kNoVertex) slot(s.id) = s;
+        if (s.id != kNoVertex) slots_[place(s.id)] = s;
 }
 
 void VertexTable::add(VertexId id, std::uint32_t vertex)
@@ -33,13 +26,13 @@ void VertexTable::add(VertexId id, std::uint32_t vertex)
     assert((ids_.empty() || ids_.back() < id) && "ids ascend");
     if (2 * (ids_.size() + 1) > slots_.size()) grow(static_cast<int>(std::bit_width(slots_.size())));
     ids_.push_back(id);
-    slot(id) = {id, vertex};
+    slots_[place(id)] = {id, vertex};
     ++count_;
 }
 
 void VertexTable::remove(VertexId id)
 {
-    slot(id).vertex = kNone;
+    slots_[place(id)].vertex = kNone;
     --count_;
 }
 

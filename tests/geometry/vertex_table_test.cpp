@@ -19,7 +19,7 @@ TEST(VertexTable, FindsWhatAMapFindsWhileIdsComeAndGo)
         std::map<VertexId, std::uint32_t> truth;
         VertexId id = 0;
         for (std::uint32_t k = 0; k < 3000; ++k) {
-            id += 1 + random() % widest;
+            id += 1 + static_cast<VertexId>(random() % widest);
             table.add(id, k);
             truth[id] = k;
             if (k % 3 == 0) {
