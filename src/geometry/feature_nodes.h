@@ -19,6 +19,9 @@ struct FeatureNode {
 
 bool is_corner(const ObstacleFeatures& features, int point);
 
+/// Whether a corner (index in features().corners) is a point with no face and no wire, as the tip of a nail.
+bool is_lone_point(const Obstacle& obstacle, int corner);
+
 /// Ascending by point. Linear in the features but for a sort.
 std::vector<FeatureNode> find_feature_nodes(const Obstacle& obstacle);
 

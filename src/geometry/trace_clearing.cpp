@@ -303,7 +303,10 @@ ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
         clear_part(part, Need::Way);
     }
     clear_part(room, Need::Room);
-    report.blocked = find_blocked(surgery, ahead, watch.vertices());
+    TraceWays least = ahead;
+    for (const TraceAdvance& advance : advances)
+        if (const auto at = least.find(advance.vertex); at != least.end()) at->second *= advance.least;
+    report.blocked = find_blocked(surgery, least, watch.vertices());
     report.ways = std::move(room);
     report.needed = std::move(ahead);
     return report;

@@ -11,7 +11,8 @@ namespace arris {
 /// A trace vertex that is about to move through the material.
 struct TraceAdvance {
     VertexId vertex;
-    Vec2 ahead;  ///< m: how far, and in which direction, the material must be clear
+    Vec2 ahead;          ///< m: how far, and in which direction, the material must be clear
+    double least = 1.0;  ///< share of that without which the vertex is blocked
 };
 
 /// Ways of trace vertices through the material, m.
@@ -24,8 +25,8 @@ struct ClearanceReport {
     int operations = 0;
     TraceWays ways;    ///< that were to be cleared
     TraceWays needed;  ///< of these what must be: `ahead`
-    /// Trace vertices with a face that would turn over on the way and could not be cleared: the border, a
-    /// corner, a fixed vertex, another trace or the guard stands there. Ascending.
+    /// Trace vertices with a face that would turn over on the least of the ways and could not be cleared: the
+    /// border, a corner, a fixed vertex, another trace or the guard stands there. Ascending.
     std::vector<VertexId> blocked;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "geometry/feature_nodes.h"
 #include "geometry/surgery_cleanup.h"
 #include "geometry/trace_clearing.h"
 #include "geometry/trace_insertion.h"
@@ -22,6 +23,10 @@ namespace {
 // Of flow that must find material ahead. A step may take 60 % of a face's material: of what has room for four
 // no more than that also where the flow gets faster, or those beside it do.
 constexpr double kClearSteps = 4.0;
+
+// Of a lone point's these must be. There is no trace that would carry the cloth on, and what stands in the
+// way of a point is a pleat, which takes the less strain to merge the nearer it is.
+constexpr double kPointSteps = 2.0;
 
 std::vector<VertexId> find_pinned(const Scene& scene, const State& state, double end)
 {
@@ -95,9 +100,12 @@ class Conforming {
     void clear_way()
     {
         std::vector<TraceAdvance> advances;
-        for (const EolVertex& e : trace_.eol())
-            if (trace_.is_on_trace(e.vertex_id))
-                advances.push_back({e.vertex_id, soon_ * trace_.flow(e.vertex_id)});
+        for (const EolVertex& e : trace_.eol()) {
+            if (!trace_.is_on_trace(e.vertex_id)) continue;
+            const bool is_point = e.is_corner && is_lone_point(scene_.obstacles[e.obstacle], e.feature);
+            advances.push_back(
+                {e.vertex_id, soon_ * trace_.flow(e.vertex_id), is_point ? kPointSteps / kClearSteps : 1.0});
+        }
         if (advances.empty()) return;
         guard_.set_clearing(true);
         const ClearanceReport cleared = clear_ahead(surgery_, target_, advances);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "geometry/cloth_cone.h"
+#include "geometry/feature_nodes.h"
 #include "solver/free_fold.h"
 #include "solver/wire_fold.h"
 
@@ -35,6 +37,7 @@ struct Star {
     std::vector<Vec2> middles;        ///< material, from the vertex
     std::vector<Mat32> deformations;  ///< F, and
     std::vector<double> areas;        ///< material
+    std::vector<FaceSector> sectors;  ///< seen from the vertex
 };
 
 Star look_around(const State& state, const std::vector<int>& faces, int vertex,
@@ -58,7 +61,8 @@ Star look_around(const State& state, const std::vector<int>& faces, int vertex,
         star.squared_F += area * F.transpose() * F;
         star.F_transposed += area * F.transpose();
         star.normals.push_back(across.normalized());
-        star.leaving.push_back((Dx.col(0).normalized() + Dx.col(1).normalized()).stableNormalized());
+        star.sectors.push_back({Dx.col(0).normalized(), Dx.col(1).normalized()});
+        star.leaving.push_back((star.sectors.back()[0] + star.sectors.back()[1]).stableNormalized());
         star.angles.push_back(std::atan2(across.norm(), Dx.col(0).dot(Dx.col(1))));
         star.middles.push_back(DX.col(0) + DX.col(1));
     }
@@ -183,8 +187,26 @@ ArrivingCloth find_arriving(const Sides& sides, const Vec2& trace, const Vec2& f
     return {is_left ? sides.left : sides.right, flow.norm()};
 }
 
-/// A wire's outward direction turns with the cloth; the vertex goes round the wire with it. Not where it has
-/// left the wire: carried across cloth that flies it would do work on that.
+/// Outward from a lone point is where the cone of the cloth around the vertex has its point, and the vertex
+/// goes round the point with it: held where it was, cloth that hangs ever steeper would come to the point.
+/// Not where it has left the point: carried across cloth that flies it would do work on that.
+void turn_with_cone(const Star& star, double thickness, double dt, FeatureFrame& frame, Vec3& place)
+{
+    constexpr double kSpeed = 0.1;  // m/s, and
+    constexpr double kShare = 0.5;  // of what is missing, a step: the cone turns with cloth that shakes
+    const double height = (place - frame.point).norm();
+    if (!(height > 0.0)) return;
+    if (height > kOnFeature * thickness) dt = 0.0;
+    const Vec3 now = (place - frame.point) / height;
+    const Vec3 wanted = -find_cone_axis(star.sectors, -now);
+    const double angle = std::atan2(now.cross(wanted).norm(), now.dot(wanted));
+    const double share = std::min(kShare, kSpeed * dt / (height * angle));
+    const auto turn = Eigen::Quaterniond::FromTwoVectors(now, wanted);
+    frame.outward = Eigen::Quaterniond::Identity().slerp(angle > 0.0 ? share : 0.0, turn) * now;
+    place = frame.point + height * frame.outward;
+}
+
+/// A wire's outward direction turns with the cloth; the vertex goes round the wire with it, as it does there.
 void turn_with_cloth(const Obstacle& obstacle, double thickness, const State& state, int entry, int vertex,
                      const std::vector<int>& faces, const std::vector<Vec3>& positions, double dt,
                      FeatureFrame& frame, Vec3& place)
@@ -351,6 +373,8 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
                       Mat23::Zero(),
                       find_side(around, eol, frame->outward),
                       Vec3::UnitX()};
+    if (eol.is_corner && is_lone_point(obstacle, eol.feature))
+        turn_with_cone(star, thickness, dt, at.frame, at.carried);
     turn_with_cloth(obstacle, thickness, state, entry, v, stars.faces[v], positions, dt, at.frame,
                     at.carried);
     at.carried = end(at.carried);

@@ -9,6 +9,7 @@
 
 #include "geometry/closest_point.h"
 #include "geometry/feature_frame.h"
+#include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
 #include "geometry/normal_cone.h"
 
@@ -253,10 +254,25 @@ class SiteFinder {
         const Vec3 &a = positions_[v[0]], &b = positions_[v[1]], &c = positions_[v[2]];
         const PointOnTriangle closest = closest_on_triangle(obstacle_.mesh().points[contact.element],
                                                             {a, b, c}, (b - a).cross(c - a).normalized());
+        if (const std::optional<FeatureSite> at = at_corner_of(v, corner)) return at;
         Vec2 X = Vec2::Zero();
         for (int i = 0; i < 3; ++i) X += closest.weights[i] * state_.mesh.material[v[i]];
         const auto heaviest = std::max_element(closest.weights.begin(), closest.weights.end());
         return make_site(true, corner, X, v[heaviest - closest.weights.begin()], contact.normal);
+    }
+
+    /// A vertex of the face that is on a lone point as it is. Cloth around one that was let go has the point
+    /// inside, and touches it with several faces: a vertex in one of them would be beside the others.
+    std::optional<FeatureSite> at_corner_of(const std::array<int, 3>& v, int corner) const
+    {
+        if (!is_lone_point(obstacle_, corner)) return std::nullopt;
+        const Vec3& point = obstacle_.mesh().points[obstacle_.features().corners[corner].point];
+        const auto distance = [&](int w) { return (positions_[w] - point).norm(); };
+        const int nearest =
+            *std::min_element(v.begin(), v.end(), [&](int a, int b) { return distance(a) < distance(b); });
+        if (!(distance(nearest) <= kOnFeature * thickness_)) return std::nullopt;
+        const Vec3 outward = (positions_[nearest] - point).stableNormalized();
+        return make_site(true, corner, state_.mesh.material[nearest], nearest, outward);
     }
 
     /// At a corner, or beside an edge through whose plane an edge of the cloth from here passes.

@@ -272,6 +272,10 @@ TEST(ClearAhead, NamesWhatItCannotClear)
     EXPECT_TRUE(clear_ahead(surgery, target, {{node, {0.0, -0.1}}}).blocked.empty());
     EXPECT_EQ(clear_ahead(surgery, target, {{node, {0.0, -0.13}}}).blocked, (std::vector<VertexId>{node}));
     EXPECT_EQ(check.find_wrong(surgery), "");
+    // Not by what is beyond the least of its way.
+    EXPECT_TRUE(clear_ahead(surgery, target, {{node, {0.0, -0.2}, 0.5}}).blocked.empty());
+    EXPECT_EQ(clear_ahead(surgery, target, {{node, {0.0, -0.26}, 0.5}}).blocked,
+              (std::vector<VertexId>{node}));
     // A vertex that rests threatens nothing.
     EXPECT_EQ(clear_ahead(surgery, target, {{node, {0.0, 0.0}}}).operations, 0);
 }

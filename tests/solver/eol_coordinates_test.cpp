@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "geometry/cloth_cone.h"
 #include "geometry/obstacle_shapes.h"
 #include "tests/solver/eol_cloth.h"
 
@@ -183,6 +184,78 @@ TEST(EolCoordinates, OnACornerAreOutwardAndAnyFlow)
     EXPECT_TRUE(at.material_basis.col(0).isZero());
     const Mat2 flow = at.material_basis.rightCols<2>();
     EXPECT_GT(std::abs(flow.determinant()), 0.5) << "the material flows any way";
+}
+
+/// A tent on a nail, its top a thickness from that in this direction, its sides steep but for one.
+EolCloth on_nail(const Vec3& top)
+{
+    EolCloth cloth(Obstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0), make_draped({8, 0.0, 180.0}));
+    for (Vec3& x : cloth.state.mesh.world)
+        x.z() = -1.5 * std::hypot(x.x(), x.y()) + 0.5 * std::max(x.x(), 0.0);
+    const int v = cloth.vertex_at(0.2, 0.2);
+    for (Vec3& x : cloth.state.mesh.world) x += kThickness * top;
+    cloth.add_eol(v, true, 0);
+    return cloth;
+}
+
+/// Sine of the angle between the faces around the vertex and the nail's tip seen from there.
+double room_at(const EolCloth& cloth, int v, const Vec3& place)
+{
+    const ClothStars stars = cloth.stars();
+    double room = 1.0;
+    for (const int f : stars.faces[v]) {
+        FaceSector sector;
+        int k = 0;
+        for (const int w : cloth.state.mesh.faces[f])
+            if (w != v) sector[k++] = (cloth.state.mesh.world[w] - cloth.state.mesh.world[v]).normalized();
+        room = std::min(room, sine_to_sector(sector, -place.normalized()));
+    }
+    return room;
+}
+
+TEST(EolCoordinates, OnANailTheVertexGoesRoundItToWhereItsClothHasRoomForIt)
+{
+    constexpr double kStep = 5e-3;  // s: in which .1 m/s is half a thickness
+    for (const Vec3& top : {Vec3(0.0, 0.0, 1.0), Vec3(0.1, 0.4, 0.9), Vec3(-0.3, -0.1, 0.9)}) {
+        EolCloth cloth = on_nail(top.normalized());
+        const int v = cloth.vertex_at(0.2, 0.2);
+        const Vec3 before = cloth.state.mesh.world[v];
+        const double room = room_at(cloth, v, before);
+        Vec3 place = before;
+        for (int step = 0; step < 10; ++step) {
+            const EolPlacing placing = place_eol_vertex(cloth.scene.obstacles[0], kThickness, cloth.state, 0,
+                                                        cloth.stars(), cloth.state.mesh.world, {}, kStep);
+            ASSERT_TRUE(placing.coordinates);
+            const EolCoordinates& at = *placing.coordinates;
+            EXPECT_NEAR(at.carried.norm(), kThickness, kRoundOff) << "as far from the tip as it was";
+            EXPECT_LT((at.carried - place).norm(), 0.1 * kStep);
+            EXPECT_NEAR((at.basis.col(0) - at.carried.normalized()).norm(), 0.0, 1e-9);
+            EXPECT_TRUE(at.basis.rightCols<2>().isZero());
+            place = at.carried;
+            for (Vec3& x : cloth.state.mesh.world) x += place - cloth.state.mesh.world[v];  // its cone stays
+        }
+        EXPECT_GT(room_at(cloth, v, place), 1.05 * room);
+        EXPECT_GT((place - before).norm(), 0.1 * kThickness);
+    }
+}
+
+TEST(EolCoordinates, OnANailTheVertexStaysWhereItsClothHasMostRoomAndInNoTime)
+{
+    EolCloth cloth(Obstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0), make_draped({8, 0.0, 180.0}));
+    for (Vec3& x : cloth.state.mesh.world)
+        x.z() = kThickness - 0.8 * std::max(std::abs(x.x()), std::abs(x.y()));
+    const int v = cloth.vertex_at(0.2, 0.2);
+    cloth.add_eol(v, true, 0);
+    for (const double step : {5e-3, 5e-5}) {
+        const EolPlacing placing = place_eol_vertex(cloth.scene.obstacles[0], kThickness, cloth.state, 0,
+                                                    cloth.stars(), cloth.state.mesh.world, {}, step);
+        ASSERT_TRUE(placing.coordinates);
+        EXPECT_LT((placing.coordinates->carried - cloth.state.mesh.world[v]).norm(), kRoundOff);
+    }
+    EolCloth beside = on_nail(Vec3(0.1, 0.4, 0.9).normalized());
+    const EolPlacing placing = beside.place(v);
+    ASSERT_TRUE(placing.coordinates);
+    EXPECT_LT((placing.coordinates->carried - beside.state.mesh.world[v]).norm(), kRoundOff);
 }
 
 TEST(EolCoordinates, OnTheClothsBorderFlowAlongTheBorder)

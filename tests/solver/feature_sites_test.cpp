@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/obstacle_shapes.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
@@ -159,6 +160,30 @@ TEST(FeatureSites, AreAtAVertexThatIsAllButInThePlaneWhereTheClothEndsThere)
             if (site.contact < 0 || off < 0.0) continue;
             EXPECT_EQ(site.edge, (std::array{border, border}));
             EXPECT_EQ(site.material, cloth.state.mesh.material[border]);
+        }
+    }
+}
+
+TEST(FeatureSites, OnANailIsAVertexThatIsOnItAlreadyWhateverFaceOfItPresses)
+{
+    // A vertex a thickness above the tip, or farther, and each face around it.
+    for (const double height : {0.2, 1.0, 2.4, 2.6}) {
+        EolCloth cloth(Obstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0),
+                       testing::make_draped({8, 0.0, 180.0}));
+        for (Vec3& x : cloth.state.mesh.world) x.z() = height * kThickness - 0.5 * std::hypot(x.x(), x.y());
+        const int v = cloth.vertex_at(0.2, 0.2);
+        const ClothStars stars = cloth.stars();
+        for (const int f : stars.faces[v]) {
+            std::array<std::uint32_t, 3> ids;
+            for (int k = 0; k < 3; ++k) ids[k] = cloth.state.ids[cloth.state.mesh.faces[f][k]];
+            std::sort(ids.begin(), ids.end());
+            cloth.state.active = {{ids, ContactKind::Triangle, 0, 0, Vec3::UnitZ(), 1e-6}};
+            const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, cloth.state, stars);
+            ASSERT_EQ(sites.size(), 1u);
+            EXPECT_TRUE(sites[0].is_corner);
+            EXPECT_EQ(sites[0].contact, 0);
+            EXPECT_EQ(sites[0].near, cloth.state.ids[v]);
+            EXPECT_EQ(sites[0].material == cloth.state.mesh.material[v], height < kOnFeature) << height;
         }
     }
 }

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A silk cloth falls on three nails, which have no shaft: it slides over them as it sags between, hangs down
+// around them in pleats, and hardly any of it may be held by rows, on whatever mesh.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "cloth_run.h"
+#include "geometry/initial_target.h"
+#include "geometry/obstacle_shapes.h"
+#include "solver/advance.h"
+#include "solver/audit.h"
+
+namespace arris {
+namespace {
+
+ClothRun make_run(int cells)
+{
+    ClothMesh mesh = make_sheet(Vec2(0.6, 0.6), {cells, cells}, GridPattern::Cross);
+    for (std::size_t v = 0; v < mesh.world.size(); ++v)
+        mesh.world[v] = Vec3(mesh.material[v].x() - 0.3, mesh.material[v].y() - 0.3, 0.02);
+    Scene scene;
+    scene.material = *find_material_preset("silk");
+    scene.material.damping = 0.002;
+    scene.gravity = Gravity{};
+    scene.obstacles.push_back(Obstacle(
+        "nails", make_points({{-0.15, -0.1, 0.0}, {0.16, -0.09, 0.0}, {0.01, 0.15, 0.0}}), {}, {}, 30.0));
+    scene.eol = make_initial_target(mesh);
+    return ClothRun(std::move(scene), std::move(mesh));
+}
+
+struct Pressing {
+    int eol = 0, rows = 0;  ///< rows: that pressed before and could be EOL
+    double rise = 0.0;      ///< J
+
+    double share() const { return eol / double(eol + rows); }
+};
+
+Pressing fall(int cells)
+{
+    constexpr int kSteps = 120;  // for .6 s
+    ClothRun run = make_run(cells);
+    Pressing found;
+    const auto accept = [&](const StepReport& report, bool) {
+        found.eol += report.eol_pressing;
+        for (std::size_t k = 0; k < kRowCauses; ++k) {
+            const auto cause = static_cast<RowCause>(k);
+            if (cause != RowCause::New && !is_excluded(cause)) found.rows += report.rows_by_cause[k];
+        }
+        found.rise = std::max(found.rise, report.energy_rise);
+        EXPECT_EQ(report.crossings, 0);
+        return true;
+    };
+    for (int k = 1; k <= kSteps && !testing::Test::HasFailure(); ++k)
+        EXPECT_FALSE(advance(run.scene, run.settings, k * 0.6 / kSteps, run.state, run.work, accept));
+    EXPECT_EQ(audit(run.scene, run.state.mesh, run.state.time).obstacle, -1);
+    return found;
+}
+
+TEST(ClothOnNails, IsEolOnThemWhateverItsMesh)
+{
+    constexpr double kShare = 0.96;       // of all runs together, and
+    constexpr double kLeastShare = 0.85;  // of each: a pleat that stands in a nail's way may have it for long
+    Pressing all;
+    for (const int cells : {7, 8, 9, 10, 11, 12, 13, 14, 16}) {
+        const Pressing found = fall(cells);
+        ASSERT_FALSE(HasFailure()) << cells;
+        EXPECT_EQ(found.rise, 0.0) << cells;
+        EXPECT_GT(found.share(), kLeastShare) << cells;
+        all.eol += found.eol;
+        all.rows += found.rows;
+    }
+    EXPECT_GT(all.share(), kShare);
+}
+
+}  // namespace
+}  // namespace arris
