@@ -28,6 +28,19 @@ bool is_folded(const State& state, const std::vector<int>& faces)
     return !std::all_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(mean) > kFlat; });
 }
 
+/// Whether an EOL vertex is of a lone point, which presses on a face of the cloth: it holds one vertex, and
+/// is where that face is.
+bool is_point_under_face(const Scene& scene, const State& state, const EolVertex& eol)
+{
+    const Obstacle& obstacle = scene.obstacles[eol.obstacle];
+    if (!eol.is_corner || !is_lone_point(obstacle, eol.feature)) return false;
+    const int point = obstacle.features().corners[eol.feature].point;
+    return std::any_of(state.active.begin(), state.active.end(), [&](const ActiveContact& contact) {
+        return contact.obstacle == eol.obstacle && contact.kind == ContactKind::Triangle &&
+               contact.element == point;
+    });
+}
+
 /// Whether an EOL vertex is still on the polyline that it is on: not at its end.
 bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3& place)
 {
@@ -51,6 +64,8 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
                          state.material_velocity[at.vertex].norm() > 0.5 * kFreeFlow;
     const double cells = is_free ? kFreeCells : 1.0;
     if (gap > cells * scene.eol->length(state.mesh.material[at.vertex])) return EolHold::None;
+    const bool has_left = gap > kOnFeature * scene.material.thickness;
+    if (has_left && is_point_under_face(scene, state, eol)) return EolHold::None;
     if (is_folded(state, stars.faces[at.vertex])) return EolHold::Firm;
     return gap <= kOnFeature * scene.material.thickness ? EolHold::Loose : EolHold::None;
 }

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "geometry/obstacle_shapes.h"
+#include "solver/feature_sites.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
@@ -84,6 +88,30 @@ TEST(EolRelease, ComesAtTheLatestACellFromTheFeatureOrFourWhereTheFoldFlies)
             const double cell = lifted.cloth.scene.eol->length(Vec2(0.2, 0.2));
             for (Vec3& x : lifted.cloth.state.mesh.world) x.z() += share * cells * cell;
             EXPECT_EQ(lifted.can_be_let_go(), is_far) << speed;
+        }
+}
+
+TEST(EolRelease, OfATentThatIsOffItsNailComesWhereTheNailPressesOnAnotherFace)
+{
+    for (const double height : {2.0, 3.0})  // thicknesses
+        for (const bool is_pressing : {false, true}) {
+            EolCloth cloth(Obstacle("nails", make_points({{1.0, 0.0, 0.0}, Vec3::Zero()}), {}, {}, 30.0),
+                           testing::make_draped({8, 0.0, 180.0}));
+            for (Vec3& x : cloth.state.mesh.world)
+                x.z() = height * testing::kThickness - 0.5 * std::hypot(x.x(), x.y());
+            const int v = cloth.vertex_at(0.2, 0.2);
+            const int entry = cloth.add_eol(v, true, 1);
+            cloth.state.eol[entry].idle = kIdleSteps;
+            // Of another nail, and, perhaps, of its own.
+            for (const int nail : {0, 1})
+                if (nail == 0 || is_pressing)
+                    cloth.state.active.push_back(
+                        {{0, 1, 10}, ContactKind::Triangle, 0, nail, Vec3::UnitZ(), 1e-6});
+            const EolPlacing placing = cloth.place(v);
+            ASSERT_TRUE(placing.coordinates);
+            const EolHold hold = find_hold(cloth.scene, cloth.state, cloth.stars(), entry,
+                                           *placing.coordinates, cloth.state.mesh.world[v]);
+            EXPECT_EQ(hold, is_pressing && height > kOnFeature ? EolHold::None : EolHold::Firm) << height;
         }
 }
 
