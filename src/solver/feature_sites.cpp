@@ -188,8 +188,24 @@ class SiteFinder {
     {
         const int feature = feature_[contact.element];
         if (feature < 0) return std::nullopt;
-        const std::optional<FeatureSite> crossing = cross(a, b, feature, contact.normal, kInPlane);
-        return crossing ? crossing : cross(a, b, feature, contact.normal, kAsGood);
+        for (const double in_plane : {kInPlane, kAsGood})
+            if (const auto crossing = cross(a, b, feature, contact.normal, in_plane)) return crossing;
+        return beyond_end(a, b, feature, contact.normal);
+    }
+
+    /// Cloth a stand-off above an edge passes through its plane a little beyond where it is nearest: where an
+    /// edge of it ends between the two, on one that goes on from there.
+    std::optional<FeatureSite> beyond_end(int a, int b, int feature, const Vec3& normal) const
+    {
+        if (obstacle_.features().edges[feature].kind != FeatureKind::Convex) return std::nullopt;
+        const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
+        const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
+        const int end = nearest.s < 0.5 ? a : b;
+        if (!((positions_[end] - nearest.second).norm() <= kOnFeature * thickness_)) return std::nullopt;
+        for (const int w : neighbours(end))
+            if (w != a && w != b)
+                if (const auto site = cross(end, w, feature, normal)) return site;
+        return std::nullopt;
     }
 
     bool is_eol(int v) const { return state_.eol_entry(state_.ids[v]) >= 0; }

@@ -188,6 +188,39 @@ TEST(FeatureSites, OnANailIsAVertexThatIsOnItAlreadyWhateverFaceOfItPresses)
     }
 }
 
+TEST(FeatureSites, AreOnTheNextEdgeWhereOneEndsBetweenItsNearestPointAndThePlane)
+{
+    // A plane of cloth a thickness off the tip, aslant: it passes through the ridge's plane .84 of that
+    // beyond where it is nearest. At `end`, in thicknesses from there, is a vertex.
+    const double slope = 40.0 * M_PI / 180.0;
+    const Vec3 normal(std::sin(slope), 0.0, std::cos(slope)), down(std::cos(slope), 0.0, -std::sin(slope));
+    for (const double end : {-0.2, -0.4, -0.9}) {
+        EolCloth cloth(testing::make_ridge(60.0, 0.5), testing::make_draped({8, 0.0, 180.0}));
+        State& state = cloth.state;
+        for (int v = 0; v < state.mesh.vertex_count(); ++v) {
+            const Vec2 X = state.mesh.material[v] - Vec2::Constant(0.2);
+            state.mesh.world[v] =
+                kThickness * normal + (X.x() + end * kThickness) * down + X.y() * Vec3::UnitY();
+        }
+        const int from = cloth.vertex_at(0.2, 0.2), to = cloth.vertex_at(0.25, 0.2);
+        const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+        state.active.push_back(
+            {{state.ids[std::min(from, to)], state.ids[std::max(from, to)], ActiveContact::kNoVertex},
+             ContactKind::Edge,
+             0,
+             cloth.scene.obstacles[0].features().edges[tip].edge,
+             normal,
+             1e-6});
+        const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, state, cloth.stars());
+        const auto site =
+            std::find_if(sites.begin(), sites.end(), [](const auto& s) { return s.contact == 0; });
+        ASSERT_NE(site, sites.end()) << end;
+        const double crossing = 0.2 - (end + std::tan(slope)) * kThickness;
+        EXPECT_NEAR(site->material.x(), crossing, 1e-9) << end;
+        EXPECT_EQ(site->edge == (std::array{std::min(from, to), std::max(from, to)}), end < -0.84) << end;
+    }
+}
+
 TEST(FeatureSites, AreNoneWhereNothingPresses)
 {
     EXPECT_TRUE(RidgeCloth(kTurn).sites().empty());
