@@ -4,7 +4,7 @@
 namespace arris {
 
 void FailedAttempts::note(const StepReport& report, Attempt attempt, const State& state, const State& start,
-                          const std::vector<Overrun>& overrun)
+                          const std::vector<Overrun>& overrun, const std::vector<int>& pinched)
 {
     if (report.status == StepStatus::Done) {
         if (!has_given_up_all_) forget();
@@ -19,7 +19,11 @@ void FailedAttempts::note(const StepReport& report, Attempt attempt, const State
         }
         may_mesh_help_ = overruns_ <= kMostOverruns + 1 && (overruns_ != 2 || is_last);
     } else {
-        may_mesh_help_ = is_last && !start.eol.empty();
+        // A shorter step would find them in the same place: they are ordinary vertices first.
+        const bool is_pinched = !pinched.empty() && pinched_++ < kMostPinched;
+        if (is_pinched)
+            for (const int v : pinched) flow_.given_up.insert(start.ids[v]);
+        may_mesh_help_ = is_pinched || (is_last && !start.eol.empty());
     }
     if (report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite) ++unsolved_;
     const bool is_hopeless = report.status == StepStatus::Overrun ? overruns_ > kMostOverruns : is_last;

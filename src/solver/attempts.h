@@ -27,11 +27,13 @@ struct Overrun {
 class FailedAttempts {
   public:
     static constexpr int kMostOverruns = 5;
+    static constexpr int kMostPinched = 3;
 
-    /// Of an attempt from `start`, `state` or what conform made of it. One that is done forgets all, but that
+    /// Of an attempt from `start`, `state` or what conform made of it. `pinched`: EOL vertices that move in
+    /// contacts which cannot be met. One that is done forgets all, but that
     /// all were given up: that holds until `forget`.
     void note(const StepReport& report, Attempt attempt, const State& state, const State& start,
-              const std::vector<Overrun>& overrun);
+              const std::vector<Overrun>& overrun, const std::vector<int>& pinched);
     void forget() { *this = FailedAttempts(); }
 
     /// Whether the same step may do on the mesh that it now gets.
@@ -43,6 +45,7 @@ class FailedAttempts {
 
   private:
     int overruns_ = 0;
+    int pinched_ = 0;   ///< whose contacts could not be met by the ways that EOL vertices have
     int unsolved_ = 0;  ///< whose velocity could not be solved for
     bool may_mesh_help_ = false, has_given_up_all_ = false;
     FailedFlow flow_;

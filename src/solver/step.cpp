@@ -137,6 +137,20 @@ std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
     return named;
 }
 
+/// EOL vertices of contacts that nothing could meet: they move in a plane or on a line only.
+std::vector<int> find_pinched(const State& state, const Workspace& work, const StepReport& report)
+{
+    std::vector<int> pinched;
+    if (report.status != StepStatus::Infeasible) return pinched;
+    for (const int row : work.solution.infeasible_rows)
+        for (const Contact& contact : work.contacts) {
+            if (contact.row != row) continue;
+            for (const int v : contact.in_frame.vertices)
+                if (v >= 0 && state.eol_entry(state.ids[v]) >= 0) pinched.push_back(v);
+        }
+    return pinched;
+}
+
 /// Contacts that cannot be met together keep less, in a new system; false where none can. The impulses of
 /// a solution that meets them as well as it can are no contact forces: it is not used.
 bool yield_infeasible(const Scene& scene, Workspace& work)
@@ -347,7 +361,7 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
 
     // 3. What the cloth may touch: vertices, edges and faces; nothing can move where it has no room.
     if (!find_contacts(scene, start, work, report)) {
-        work.failed.note(report, attempt, state, start, {});
+        work.failed.note(report, attempt, state, start, {}, {});
         return report;
     }
     report.seconds.contacts += watch.lap();
@@ -360,7 +374,7 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     } while (report.status != StepStatus::Done && fall_back(work, report));
     watch.lap();
 
-    work.failed.note(report, attempt, state, start, work.overrun);
+    work.failed.note(report, attempt, state, start, work.overrun, find_pinched(start, work, report));
 
     // 7. Swapped in, or the state stays as it was.
     commit(scene, end, work, start, report);
