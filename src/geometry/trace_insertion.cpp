@@ -51,9 +51,12 @@ bool is_at(const ClothSurgery& surgery, const MeshTarget& target, VertexId v, co
     return surgery.is_border(v) ? distance <= kOnEdge * target.length(X) : surgery.material(v) == X;
 }
 
-bool is_of(const ClothSurgery& surgery, VertexId v, int tag)
+// Whether it may be taken for the new vertex: what slides along the trace is not where a node is to be.
+bool is_like(const ClothSurgery& surgery, VertexId v, const TraceVertex& made)
 {
-    return surgery.role(v) != TraceRole::Free && surgery.tag(v) == tag;
+    const TraceRole role = surgery.role(v);
+    return role != TraceRole::Free && surgery.tag(v) == made.tag &&
+           (role == TraceRole::Node || made.role == TraceRole::OnTrace);
 }
 
 // A trace at X that goes so leaves v behind: what is thin between them opens.
@@ -90,6 +93,21 @@ Verdict split(ClothSurgery& surgery, VertexId a, VertexId b, double s, const Tra
     const SurgeryProposal proposal = surgery.propose_edge_split(a, b, s, made.role, made.tag);
     if (proposal.is_legal()) vertex = proposal.event.changes[0].vertex;
     return surgery.commit(proposal);
+}
+
+// Flips the edge a-b beside a new vertex where that opens angles. A trace that went along it goes through the
+// vertex instead.
+void flip_away(ClothSurgery& surgery, VertexId a, VertexId b, VertexId vertex, int tag)
+{
+    const bool is_of_trace = surgery.edge_tag(a, b) == tag;
+    if (is_of_trace) surgery.set_edge_tag(a, b, kNoTag);
+    const SurgeryProposal flip = surgery.propose_flip(a, b);
+    const bool is_flipped = flip.is_legal() &&
+                            least_angle(flip.event.after) > least_angle(flip.event.before) &&
+                            surgery.commit(flip) == Verdict::Done;
+    if (!is_of_trace) return;
+    if (!is_flipped) return surgery.set_edge_tag(a, b, tag);
+    for (const VertexId end : {a, b}) surgery.set_edge_tag(end, vertex, tag);
 }
 
 // --- the walk
@@ -318,7 +336,7 @@ TraceInsertion insert_edge_crossing(ClothSurgery& surgery, const MeshTarget& tar
     if (s > 0.5) std::swap(ends[0], ends[1]);
     for (const VertexId v : ends) {
         if (!((surgery.material(v) - X).norm() <= reach)) continue;
-        if (is_of(surgery, v, made.tag)) return {Verdict::Done, v};
+        if (is_like(surgery, v, made)) return {Verdict::Done, v};
         if (surgery.role(v) != TraceRole::Free) continue;
         if (!is_at(surgery, target, v, X)) {
             if (surgery.is_border(v) && !surgery.is_border_edge(a, b)) continue;
@@ -354,7 +372,7 @@ TraceInsertion insert_face_point(ClothSurgery& surgery, const MeshTarget& target
     for (const int k : order) {
         const VertexId v = face[k];
         if (!((corners[k] - X).norm() <= kSnap * target.length(X))) break;
-        if (is_of(surgery, v, made.tag)) return {Verdict::Done, v};
+        if (is_like(surgery, v, made)) return {Verdict::Done, v};
         if (surgery.is_border(v)) continue;
         const Verdict snapped = snap(surgery, v, X);
         if (snapped == Verdict::Guard && !may_stay(surgery, target, v, X, made.way))
@@ -369,10 +387,9 @@ TraceInsertion insert_face_point(ClothSurgery& surgery, const MeshTarget& target
     // The face between the point and the edge opposite the least weight is the thinnest.
     int thin = 0;
     weights.minCoeff(&thin);
-    const SurgeryProposal flip = surgery.propose_flip(face[(thin + 1) % 3], face[(thin + 2) % 3]);
-    if (flip.is_legal() && least_angle(flip.event.after) > least_angle(flip.event.before))
-        surgery.commit(flip);
-    return {Verdict::Done, proposal.event.changes[0].vertex};
+    const VertexId vertex = proposal.event.changes[0].vertex;
+    flip_away(surgery, face[(thin + 1) % 3], face[(thin + 2) % 3], vertex, made.tag);
+    return {Verdict::Done, vertex};
 }
 
 TraceInsertion insert_trace_point(ClothSurgery& surgery, const MeshTarget& target, const Vec2& material,

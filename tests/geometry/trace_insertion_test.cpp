@@ -207,6 +207,26 @@ TEST(InsertFacePoint, BesideACornerThatTheGuardKeepsSplitsWhereTheTraceLeavesItB
     EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
 }
 
+TEST(InsertFacePoint, ANodeIsNotWhatSlidesAlongItsTraceAndTheTraceGoesThroughIt)
+{
+    // Beside an edge of its own trace, and near one of its ends.
+    const SurgeryCloth cloth = square_cloth(8);
+    ClothSurgery surgery = cloth.surgery();
+    const MeshTarget target = target_of(cloth);
+    const TraceInsertion a = insert_trace_point(surgery, target, {0.375, 0.5}, 0, {TraceRole::OnTrace, 7});
+    const TraceInsertion b = insert_trace_point(surgery, target, {0.5, 0.5}, 0, {TraceRole::OnTrace, 7});
+    ASSERT_EQ(join_trace_vertices(surgery, target, a.vertex, b.vertex, 7).verdict, Verdict::Done);
+    const Vec2 X(0.4, 0.505);
+    const TraceInsertion slides = insert_trace_point(surgery, target, X, a.vertex, {TraceRole::OnTrace, 7});
+    EXPECT_EQ(slides.vertex, a.vertex) << "what slides is there already";
+    const TraceInsertion node = insert_trace_point(surgery, target, X, a.vertex, {TraceRole::Node, 7});
+    ASSERT_EQ(node.verdict, Verdict::Done);
+    EXPECT_NE(node.vertex, a.vertex);
+    EXPECT_LT((surgery.material(node.vertex) - X).norm(), kStraight);
+    EXPECT_FALSE(surgery.has_edge(a.vertex, b.vertex)) << "its chord is flipped away";
+    for (const VertexId end : {a.vertex, b.vertex}) EXPECT_EQ(surgery.edge_tag(node.vertex, end), 7);
+}
+
 TEST(InsertFacePoint, CoincidentPointsAreOneVertex)
 {
     const SurgeryCloth cloth = square_cloth(8);
