@@ -61,6 +61,7 @@ void write_state(BinaryWriter& out, const State& state)
         out.vector(vertex.outward);
         out.number(vertex.idle);
         out.number(vertex.side);
+        out.number(vertex.turn);
     });
     out.list(state.anchors, [&](const PinAnchor& anchor) {
         out.number(anchor.pin);
@@ -99,7 +100,7 @@ State read_state(BinaryReader& in)
     state.previous_velocity = in.vectors();
     state.previous_material = read_vectors(in);
     state.previous_material_velocity = read_vectors(in);
-    constexpr std::size_t kEolBytes = 6 * sizeof(std::int32_t) + 3 * sizeof(double);
+    constexpr std::size_t kEolBytes = 7 * sizeof(std::int32_t) + 3 * sizeof(double);
     state.eol = in.list<EolVertex>(kEolBytes, [&] {
         EolVertex vertex;
         vertex.vertex_id = in.number<std::uint32_t>();
@@ -109,6 +110,7 @@ State read_state(BinaryReader& in)
         vertex.outward = in.vector();
         vertex.idle = in.number<std::int32_t>();
         vertex.side = in.number<std::int32_t>();
+        vertex.turn = in.number<std::int32_t>();
         return vertex;
     });
     state.anchors = in.list<PinAnchor>(2 * sizeof(std::uint32_t) + 3 * sizeof(double), [&] {
@@ -159,7 +161,8 @@ std::string find_defect(const std::vector<EolVertex>& eol, const std::vector<std
 {
     for (std::size_t k = 0; k < eol.size(); ++k) {
         if (k > 0 && eol[k].vertex_id <= eol[k - 1].vertex_id) return "EOL vertices do not ascend";
-        if (!eol[k].outward.allFinite() || eol[k].idle < 0 || std::abs(eol[k].side) > 1)
+        const bool is_turn_sound = eol[k].turn >= -1 && eol[k].turn <= (eol[k].is_corner ? -1 : 1);
+        if (!eol[k].outward.allFinite() || eol[k].idle < 0 || std::abs(eol[k].side) > 1 || !is_turn_sound)
             return fmt::format("EOL vertex {} cannot be", k);
         if (!std::binary_search(ids.begin(), ids.end(), eol[k].vertex_id))
             return fmt::format("EOL vertex {} is on no vertex", k);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/closest_point.h"
+#include "geometry/feature_path.h"
 #include "geometry/normal_cone.h"
 
 namespace arris {
@@ -126,6 +127,16 @@ std::optional<FeatureFrame> find_edge_frame(const Obstacle& obstacle, int edge, 
     if (feature.kind == FeatureKind::Convex)
         frame.mitre = mitre_of(std::abs(feature.normals[0].dot(frame.outward)));
     return frame;
+}
+
+std::optional<FeatureFrame> find_turn_frame(const Obstacle& obstacle, int edge, int end,
+                                            const ClothAround& cloth)
+{
+    const FeatureTurn turn{edge, end};
+    const Vec3 tangent = tangent_at(obstacle, turn);
+    const std::optional<Vec3> outward = outward_of_cloth(cloth, tangent);
+    if (!outward) return std::nullopt;
+    return FeatureFrame{turn_point(obstacle, turn), tangent, *outward, 1.0};
 }
 
 std::optional<FeatureFrame> find_corner_frame(const Obstacle& obstacle, int corner, const Vec3& place,

@@ -33,6 +33,10 @@ struct ClothAround {
 std::optional<FeatureFrame> find_edge_frame(const Obstacle& obstacle, int edge, const Vec3& place,
                                             const ClothAround& cloth);
 
+/// Where a wire turns at end `end` (0 or 1) of edge `edge`: as on an edge that runs halfway between both.
+std::optional<FeatureFrame> find_turn_frame(const Obstacle& obstacle, int edge, int end,
+                                            const ClothAround& cloth);
+
 /// On corner `corner` (index in features().corners). On a solid the direction whose least part along the
 /// normals of its patches is greatest, on a sheet the same against its edges; wires' nodes and lone points as
 /// a wire. Nothing where that least part is below 0.1 (a saddle: no direction opens all gaps).

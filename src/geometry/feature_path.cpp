@@ -23,6 +23,13 @@ double length_of(const Obstacle& obstacle, int feature)
     return (b - a).norm();
 }
 
+/// Unit.
+Vec3 direction_of(const Obstacle& obstacle, int feature)
+{
+    const auto [a, b] = segment_of(obstacle, feature);
+    return (b - a).normalized();
+}
+
 /// The edge of the same polyline on the other side of end `end` (0 or 1) of an edge, and which of its ends is
 /// there.
 struct Step {
@@ -94,6 +101,38 @@ FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& 
         distance = next_distance;
     }
     return {feature, s};
+}
+
+std::optional<FeatureTurn> find_turn(const Obstacle& obstacle, int point)
+{
+    constexpr double kLeast = 0.0175;  // sine of a degree
+    const ObstacleTopology& topology = obstacle.topology();
+    const ObstacleFeatures& features = obstacle.features();
+    for (int k = 0; k < topology.edge_count_at(point); ++k) {
+        const int edge = topology.edge_at(point, k);
+        const int feature = feature_of_edge(features, edge);
+        if (feature < 0 || features.edges[feature].kind != FeatureKind::Wire) continue;
+        const int end = topology.edges[edge].points[0] == point ? 0 : 1;
+        const std::optional<Step> next = across(obstacle, feature, end);
+        if (!next) continue;
+        const Vec3 sine = direction_of(obstacle, feature).cross(direction_of(obstacle, next->feature));
+        if (sine.norm() > kLeast) return FeatureTurn{feature, end};
+    }
+    return std::nullopt;
+}
+
+Vec3 turn_point(const Obstacle& obstacle, const FeatureTurn& turn)
+{
+    return segment_of(obstacle, turn.feature)[turn.end];
+}
+
+Vec3 tangent_at(const Obstacle& obstacle, const FeatureTurn& turn)
+{
+    const Vec3 way = direction_of(obstacle, turn.feature);
+    const std::optional<Step> next = across(obstacle, turn.feature, turn.end);
+    if (!next) return way;
+    const Vec3 onward = direction_of(obstacle, next->feature);
+    return (way + (next->end == turn.end ? Vec3(-onward) : onward)).normalized();
 }
 
 std::optional<double> distance_along(const Obstacle& obstacle, const FeaturePlace& a, const FeaturePlace& b,

@@ -27,6 +27,19 @@ PointOnFeature place_on_feature(const Obstacle& obstacle, int feature, const Vec
 /// the next as long as that is nearer. So a strand of the same polyline that happens to be near is not taken.
 FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& place);
 
+/// Where a wire turns: an end (0 or 1) of one of its edges, beyond which the polyline goes on elsewhere.
+struct FeatureTurn {
+    int feature;
+    int end;
+};
+
+/// At a point of the mesh: the first edge there of a wire that turns by more than a degree but has no corner.
+std::optional<FeatureTurn> find_turn(const Obstacle& obstacle, int point);
+
+Vec3 turn_point(const Obstacle& obstacle, const FeatureTurn& turn);
+/// Unit, halfway between the directions of both edges there, seen along the turn's own.
+Vec3 tangent_at(const Obstacle& obstacle, const FeatureTurn& turn);
+
 /// Length of the polyline between two places on it, m; nothing where it is more than `most`, or where they
 /// are on different ones.
 std::optional<double> distance_along(const Obstacle& obstacle, const FeaturePlace& a, const FeaturePlace& b,

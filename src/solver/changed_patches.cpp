@@ -57,8 +57,8 @@ class PatchFinder {
         const std::uint32_t id = after_.ids[v];
         const int now = after_.eol_entry(id), then = before_.eol_entry(id);
         if ((now < 0) != (then < 0)) return true;
-        return now >= 0 && std::tuple(after_.eol[now].obstacle, after_.eol[now].is_corner) !=
-                               std::tuple(before_.eol[then].obstacle, before_.eol[then].is_corner);
+        const auto kind_of = [](const EolVertex& e) { return std::tuple(e.obstacle, e.is_corner, e.turn); };
+        return now >= 0 && kind_of(after_.eol[now]) != kind_of(before_.eol[then]);
     }
 
     /// Vertices at which a face may have changed.

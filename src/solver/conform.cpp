@@ -161,7 +161,12 @@ class Conforming {
         const int v = state_.index_of(site.near);
         const Vec2 flow = find_feature_flow(scene_, state_, stars_, v, site.obstacle);
         if (const std::optional<RowCause> cause = admission_.find_refusal(site, v, flow)) return cause;
-        const TraceVertex wanted{site.is_corner ? TraceRole::Node : TraceRole::OnTrace,
+        if (site.turn >= 0) {
+            const std::optional<VertexId> beside = find_beside(site);
+            if (beside && surgery_.role(*beside) == TraceRole::Node) return RowCause::BesideEol;
+            if (beside && hold_at(*beside, site)) return std::nullopt;
+        }
+        const TraceVertex wanted{site.is_corner || site.turn >= 0 ? TraceRole::Node : TraceRole::OnTrace,
                                  trace_.tags().tag(site.obstacle, site.is_corner, site.feature),
                                  soon_ * flow};
         const VertexId near = surgery_.has_vertex(site.near) ? site.near : trace_.nearest_to(site.material);
@@ -169,7 +174,9 @@ class Conforming {
         if (made.verdict != Verdict::Done)
             return made.verdict == Verdict::Guard ? RowCause::Guard : RowCause::Quality;
         if (trace_.find(made.vertex)) return RowCause::BesideEol;
-        const EolVertex vertex{made.vertex, site.obstacle, site.is_corner, site.feature, site.outward, 0};
+        EolVertex vertex{made.vertex, site.obstacle, site.is_corner, site.feature, site.outward, 0};
+        vertex.turn = site.turn;
+        vertex.side = trace_.side_beside(wanted.tag, site.material);
         if (!admission_.is_in_plane(vertex) || !admission_.is_on_side(vertex)) {
             surgery_.release_vertex(made.vertex);
             return RowCause::OffPlane;
@@ -178,6 +185,35 @@ class Conforming {
         if (site.contact >= 0) contact_of_[made.vertex] = site.contact;
         ++report_.inserted;
         return std::nullopt;
+    }
+
+    /// The vertex of its trace that is in a turn's way: one that is held, nearer than two may be, else one
+    /// that slides, nearer than clean-up lets two be.
+    std::optional<VertexId> find_beside(const FeatureSite& turn) const
+    {
+        constexpr double kHeld = 0.2, kSliding = 0.5;  // target lengths
+        const int tag = trace_.tags().tag(turn.obstacle, false, turn.feature);
+        const double h = target_.length(turn.material);
+        double least = kSliding * h;
+        std::optional<VertexId> nearest;
+        for (const EolVertex& e : trace_.eol()) {
+            if (!trace_.is_on_trace(e.vertex_id) || surgery_.tag(e.vertex_id) != tag) continue;
+            const double distance = (surgery_.material(e.vertex_id) - turn.material).norm();
+            const bool is_held = surgery_.role(e.vertex_id) == TraceRole::Node;
+            if (is_held && distance < kHeld * h) return e.vertex_id;
+            if (is_held || !(distance < least)) continue;
+            nearest = e.vertex_id;
+            least = distance;
+        }
+        return nearest;
+    }
+
+    bool hold_at(VertexId v, const FeatureSite& turn)
+    {
+        if (surgery_.commit(surgery_.propose_moves({{v, turn.material}})) != Verdict::Done) return false;
+        trace_.hold(v, turn.feature, turn.turn);
+        ++report_.inserted;
+        return true;
     }
 
     RowCause cause_of_release(VertexId v) const

@@ -147,6 +147,23 @@ std::optional<Vec2> find_border(const State& state, const ClothStars& stars, int
     return before.dot(after) < kStraight ? Vec2(Vec2::Zero()) : Vec2((before + after).normalized());
 }
 
+/// Of the feature through the vertex; zero on a corner.
+Vec3 tangent_of(const Obstacle& obstacle, const EolVertex& eol)
+{
+    if (eol.is_corner) return Vec3::Zero();
+    if (eol.turn >= 0) return tangent_at(obstacle, {eol.feature, eol.turn});
+    const auto& ends = obstacle.topology().edges[obstacle.features().edges[eol.feature].edge].points;
+    return (obstacle.mesh().points[ends[1]] - obstacle.mesh().points[ends[0]]).normalized();
+}
+
+std::optional<FeatureFrame> find_frame(const Obstacle& obstacle, const EolVertex& eol, const Vec3& place,
+                                       const ClothAround& around)
+{
+    if (eol.is_corner) return find_corner_frame(obstacle, eol.feature, place, around);
+    if (eol.turn >= 0) return find_turn_frame(obstacle, eol.feature, eol.turn, around);
+    return find_edge_frame(obstacle, eol.feature, place, around);
+}
+
 /// Where the cloth neither turns nor spreads across the outward direction, flow and world coincide.
 bool is_edge_on(const Star& star, const Vec3& outward)
 {
@@ -238,6 +255,11 @@ EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)
 
 }  // namespace
 
+bool is_fixed(const EolVertex& eol)
+{
+    return eol.is_corner || eol.turn >= 0;
+}
+
 bool is_on_convex_edge(const Obstacle& obstacle, const EolVertex& eol)
 {
     return !eol.is_corner && obstacle.features().edges[eol.feature].kind == FeatureKind::Convex;
@@ -324,7 +346,7 @@ std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& ob
 void follow_features(const std::vector<Obstacle>& obstacles, State& state)
 {
     for (EolVertex& eol : state.eol) {
-        if (eol.is_corner) continue;
+        if (eol.is_corner || eol.turn >= 0) continue;
         const Obstacle& obstacle = obstacles[eol.obstacle];
         const Vec3& world = state.mesh.world[state.index_of(eol.vertex_id)];
         eol.feature = follow_polyline(obstacle, eol.feature, obstacle.at(state.time).inverse(world)).feature;
@@ -340,13 +362,9 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     const Vec3& place = positions[v];
     const std::optional<Vec2> border = find_border(state, stars, v);
     if (border && border->isZero()) return {std::nullopt, EolRefusal::ClothCorner};
-    if (border && eol.is_corner) return {std::nullopt, EolRefusal::AlongBorder};
+    if (border && is_fixed(eol)) return {std::nullopt, EolRefusal::AlongBorder};
 
-    Vec3 tangent = Vec3::Zero();
-    if (!eol.is_corner) {
-        const auto& ends = obstacle.topology().edges[obstacle.features().edges[eol.feature].edge].points;
-        tangent = (obstacle.mesh().points[ends[1]] - obstacle.mesh().points[ends[0]]).normalized();
-    }
+    const Vec3 tangent = tangent_of(obstacle, eol);
     const Star star = look_around(state, stars.faces[v], v, positions);
     Vec2 trace = Vec2::Zero();
     if (!eol.is_corner)
@@ -355,9 +373,7 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     Sides sides;
     const ClothAround around =
         eol.is_corner ? sum_around(star, eol) : sum_sides(star, trace, tangent, eol, sides);
-    std::optional<FeatureFrame> frame = eol.is_corner
-                                            ? find_corner_frame(obstacle, eol.feature, place, around)
-                                            : find_edge_frame(obstacle, eol.feature, place, around);
+    std::optional<FeatureFrame> frame = find_frame(obstacle, eol, place, around);
     if (!frame) return {std::nullopt, EolRefusal::NoDirection};
     if (is_on_convex_edge(obstacle, eol))
         frame = turn_to_free_fold(obstacle.features().edges[eol.feature],
@@ -379,7 +395,7 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
                     at.carried);
     at.carried = end(at.carried);
     at.basis.col(0) = at.frame.outward;
-    at.basis.col(1) = at.frame.tangent;
+    if (!is_fixed(eol)) at.basis.col(1) = at.frame.tangent;
     if (eol.is_corner) {
         at.material_basis.col(1) = Vec2::UnitX();
         at.material_basis.col(2) = Vec2::UnitY();
@@ -387,6 +403,7 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     }
     if (border && std::abs(border->x() * trace.y() - border->y() * trace.x()) < kSin20)
         return {std::nullopt, EolRefusal::AlongBorder};
+    if (eol.turn >= 0) at.material_basis.col(1) = trace;
     at.material_basis.col(2) = border ? *border : perpendicular(trace);
     return finish(star, end, at);
 }

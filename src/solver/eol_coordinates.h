@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A vertex on a sharp feature has three unknowns like any other: away from the feature (c), along it (a), and
-// the material's flow over it (s); on a corner c and two of flow. So contact is the bound c >= ..., and the
-// system stays positive definite where the cloth is flat, where the world's and the material's motion across
-// the feature are one and the same.
+// the material's flow over it (s); on a corner, or where a wire turns, c and two of flow. So contact is the
+// bound c >= ..., and the system stays positive definite where the cloth is flat, where the world's and the
+// material's motion across the feature are one and the same.
 #pragma once
 
 #include <optional>
@@ -65,6 +65,10 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
 /// Of all entries of the state, obstacles being where they are at its time.
 std::vector<EolPlacing> place_eol_vertices(const std::vector<Obstacle>& obstacles, double thickness,
                                            const State& state, const ClothStars& stars);
+
+/// Whether it stays where it is along its feature, and material flows along it, too: on a corner, or where a
+/// wire turns.
+bool is_fixed(const EolVertex& eol);
 
 bool is_on_convex_edge(const Obstacle& obstacle, const EolVertex& eol);
 

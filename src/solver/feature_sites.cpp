@@ -12,6 +12,7 @@
 #include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
 #include "geometry/normal_cone.h"
+#include "solver/turn_sites.h"
 
 namespace arris {
 
@@ -68,6 +69,9 @@ class SiteFinder {
         }
         return std::nullopt;
     }
+
+    /// Of the cloth, in the obstacle's frame.
+    const std::vector<Vec3>& positions() const { return positions_; }
 
     /// Adds to sites of convex edge `feature` what of the cloth lies on it between them and EOL vertices.
     void complete(int feature, std::vector<FeatureSite>& sites) const
@@ -188,6 +192,7 @@ class SiteFinder {
     {
         const int feature = feature_[contact.element];
         if (feature < 0) return std::nullopt;
+        if (const std::optional<FeatureSite> turn = on_turn(a, b, feature, contact.normal)) return turn;
         for (const double in_plane : {kInPlane, kAsGood})
             if (const auto crossing = cross(a, b, feature, contact.normal, in_plane)) return crossing;
         return beyond_end(a, b, feature, contact.normal);
@@ -206,6 +211,39 @@ class SiteFinder {
             if (w != a && w != b)
                 if (const auto site = cross(end, w, feature, normal)) return site;
         return std::nullopt;
+    }
+
+    /// Where the end of a wire's edge that is nearest to the cloth's is a turn.
+    std::optional<FeatureSite> on_turn(int a, int b, int feature, const Vec3& normal) const
+    {
+        const SegmentPair nearest =
+            closest_between_segments({positions_[a], positions_[b]}, feature_segment(obstacle_, feature));
+        if (nearest.t > 0.0 && nearest.t < 1.0) return std::nullopt;
+        const int end = nearest.t > 0.0 ? 1 : 0;
+        const auto turn = find_turn(
+            obstacle_, obstacle_.topology().edges[obstacle_.features().edges[feature].edge].points[end]);
+        if (!turn || !((nearest.first - nearest.second).norm() <= kOnFeature * thickness_))
+            return std::nullopt;
+        return make_turn(*turn, {a, b, -1}, {1.0 - nearest.s, nearest.s, 0.0}, normal);
+    }
+
+    /// In a face, on an edge or at a vertex of the cloth.
+    FeatureSite make_turn(const FeatureTurn& turn, const std::array<int, 3>& v,
+                          const std::array<double, 3>& weights, const Vec3& normal) const
+    {
+        Vec2 X = Vec2::Zero();
+        int near = 0, border = 0, count = 0;
+        for (int i = 0; i < 3 && v[i] >= 0; ++i) {
+            X += weights[i] * state_.mesh.material[v[i]];
+            if (weights[i] > weights[near]) near = i;
+            if (!(weights[i] > 0.0)) continue;
+            ++count;
+            border += stars_.border_neighbours[v[i]][0] >= 0 ? 1 : 0;
+        }
+        FeatureSite site = make_site(false, turn.feature, X, v[near], normal);
+        site.turn = turn.end;
+        site.is_on_border = count < 3 && border == count;
+        return site;
     }
 
     bool is_eol(int v) const { return state_.eol_entry(state_.ids[v]) >= 0; }
@@ -265,6 +303,7 @@ class SiteFinder {
 
     std::optional<FeatureSite> in_face(const std::array<int, 3>& v, const ActiveContact& contact) const
     {
+        if (const auto turn = find_turn(obstacle_, contact.element)) return at_turn(*turn, v, contact.normal);
         const int corner = corner_at(obstacle_, contact.element);
         if (corner < 0 || v[2] < 0 || is_of_wires(contact.element)) return std::nullopt;
         const Vec3 &a = positions_[v[0]], &b = positions_[v[1]], &c = positions_[v[2]];
@@ -291,6 +330,21 @@ class SiteFinder {
         return make_site(true, corner, state_.mesh.material[nearest], nearest, outward);
     }
 
+    /// Where a turn is nearest to a face, or to the edge between two.
+    std::optional<FeatureSite> at_turn(const FeatureTurn& turn, const std::array<int, 3>& v,
+                                       const Vec3& normal) const
+    {
+        const Vec3 point = turn_point(obstacle_, turn);
+        const Vec3 &a = positions_[v[0]], &b = positions_[v[1]];
+        if (v[2] >= 0) {
+            const Vec3& c = positions_[v[2]];
+            const Vec3 up = (b - a).cross(c - a).normalized();
+            return make_turn(turn, v, closest_on_triangle(point, {a, b, c}, up).weights, normal);
+        }
+        const double s = closest_on_segment(point, a, b);
+        return make_turn(turn, v, {1.0 - s, s, 0.0}, normal);
+    }
+
     /// At a corner, or beside an edge through whose plane an edge of the cloth from here passes.
     std::optional<FeatureSite> at_vertex(int v, const Vec3& normal) const
     {
@@ -307,6 +361,11 @@ class SiteFinder {
                 return make_site(true, c, state_.mesh.material[v], v, normal);
         }
         obstacle_.find_feature_edges(box, found);
+        for (const int f : found)
+            for (const int point : obstacle_.topology().edges[obstacle_.features().edges[f].edge].points)
+                if (const auto turn = find_turn(obstacle_, point);
+                    turn && (place - obstacle_.mesh().points[point]).norm() <= reach)
+                    return make_turn(*turn, {v, -1, -1}, {1.0, 0.0, 0.0}, normal);
         for (const int f : found)
             for (const int w : neighbours(v))
                 if (const std::optional<FeatureSite> site = cross(v, w, f, normal)) return site;
@@ -368,9 +427,20 @@ std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& sta
         finder_of(feature[0]).complete(feature[1], found);
         sites.insert(sites.end(), found.begin(), found.end());
     }
+    for (const auto& [o, finder] : finders) {
+        std::vector<FeatureSite> of_obstacle;
+        for (const FeatureSite& site : sites)
+            if (site.obstacle == o) of_obstacle.push_back(site);
+        const std::vector<FeatureSite> turns =
+            find_turn_sites(scene, state, stars, o, finder.positions(), of_obstacle);
+        sites.insert(sites.end(), turns.begin(), turns.end());
+    }
     std::sort(sites.begin(), sites.end(), [](const FeatureSite& a, const FeatureSite& b) {
-        return std::tuple(!a.is_corner, a.obstacle, a.feature, a.material.x(), a.material.y()) <
-               std::tuple(!b.is_corner, b.obstacle, b.feature, b.material.x(), b.material.y());
+        const auto key_of = [](const FeatureSite& s) {
+            return std::tuple(!s.is_corner, s.turn < 0, s.obstacle, s.feature, s.material.x(),
+                              s.material.y());
+        };
+        return key_of(a) < key_of(b);
     });
     return sites;
 }

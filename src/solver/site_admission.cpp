@@ -32,7 +32,7 @@ std::optional<RowCause> SiteAdmission::find_refusal(const FeatureSite& site, int
     if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
     if (is_beside_other(site)) return RowCause::OtherFeature;
     if (const std::optional<RowCause> fold = find_fold_cause(site)) return fold;
-    if (site.is_corner && has_vertex_on(site)) return RowCause::BesideEol;
+    if ((site.is_corner || site.turn >= 0) && has_vertex_on(site)) return RowCause::BesideEol;
     return std::nullopt;
 }
 
@@ -42,6 +42,7 @@ std::optional<RowCause> SiteAdmission::find_border_cause(const FeatureSite& site
 {
     const double h = scene_.eol->length(site.material);
     const EolVertex eol{site.near, site.obstacle, site.is_corner, site.feature, site.outward, 0};
+    if (site.is_on_border && site.turn >= 0) return RowCause::NearBorder;
     if (site.is_on_border && !site.is_corner && is_along_border(scene_, state_, stars_, site.edge, eol))
         return RowCause::AlongBorder;
     const auto room_at = [&](const Vec2& X) {
@@ -162,14 +163,14 @@ bool SiteAdmission::is_on_side(const EolVertex& eol) const
     return from.dot(eol.outward) >= kAlong * from.norm();
 }
 
-/// A corner holds one vertex of a cloth that lies over it.
-bool SiteAdmission::has_vertex_on(const FeatureSite& corner) const
+/// A corner or turn holds one vertex of a cloth that lies over it.
+bool SiteAdmission::has_vertex_on(const FeatureSite& site) const
 {
-    const double h = scene_.eol->length(corner.material);
+    const double h = scene_.eol->length(site.material);
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
-        return e.is_corner && e.obstacle == corner.obstacle && e.feature == corner.feature &&
-               trace_.is_on_trace(e.vertex_id) &&
-               (trace_.surgery().material(e.vertex_id) - corner.material).norm() < h;
+        return is_fixed(e) && e.obstacle == site.obstacle && e.is_corner == site.is_corner &&
+               e.feature == site.feature && e.turn == site.turn && trace_.is_on_trace(e.vertex_id) &&
+               (trace_.surgery().material(e.vertex_id) - site.material).norm() < h;
     });
 }
 

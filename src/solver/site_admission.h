@@ -41,7 +41,7 @@ class SiteAdmission {
     bool is_beside_other(const FeatureSite& site) const;
     std::optional<RowCause> find_fold_cause(const FeatureSite& site) const;
     std::optional<double> find_free_fold(const FeatureSite& site) const;
-    bool has_vertex_on(const FeatureSite& corner) const;
+    bool has_vertex_on(const FeatureSite& site) const;
     bool has_left(const EolVertex& eol) const;
     Vec3 world_at(const FeatureSite& site) const;
 

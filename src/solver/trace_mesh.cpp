@@ -26,13 +26,14 @@ int FeatureTags::tag(std::int32_t obstacle, bool is_corner, std::int32_t feature
 TraceMesh::TraceMesh(const Scene& scene, const State& state, const ClothStars& stars,
                      const std::vector<VertexId>& pinned)
     : obstacles_(scene.obstacles),
+      target_(*scene.eol),
       state_(state),
       tags_(scene.obstacles),
       surgery_(state.mesh, state.ids, state.next_id, pinned, stars.topology.edges),
       eol_(state.eol)
 {
     for (const EolVertex& e : eol_) {
-        surgery_.set_role(e.vertex_id, e.is_corner ? TraceRole::Node : TraceRole::OnTrace, tags_.tag(e));
+        surgery_.set_role(e.vertex_id, is_fixed(e) ? TraceRole::Node : TraceRole::OnTrace, tags_.tag(e));
         flow_[e.vertex_id] = state.material_velocity[state.index_of(e.vertex_id)];
     }
     for (const auto& [a, b] : find_trace_edges(obstacles_, state, stars)) {
@@ -65,6 +66,15 @@ void TraceMesh::add(const EolVertex& made, const Vec2& flow)
     flow_.try_emplace(made.vertex_id, flow);
 }
 
+void TraceMesh::hold(VertexId v, int feature, int turn)
+{
+    surgery_.set_role(v, TraceRole::Node, surgery_.tag(v));
+    EolVertex& held = eol_[static_cast<std::size_t>(place_of(v) - eol_.begin())];
+    held.feature = feature;
+    held.turn = turn;
+    held.idle = 0;
+}
+
 void TraceMesh::forget_released()
 {
     std::erase_if(eol_, [this](const EolVertex& e) { return !is_on_trace(e.vertex_id); });
@@ -92,10 +102,25 @@ std::optional<EolVertex> TraceMesh::like_neighbour(VertexId v, int tag) const
         EolVertex made = *known;
         made.vertex_id = v;
         made.idle = 0;
+        made.turn = -1;
         made.feature = follow_polyline(obstacles_[made.obstacle], made.feature, placed(made).place).feature;
         return made;
     }
     return std::nullopt;
+}
+
+int TraceMesh::side_beside(int tag, const Vec2& material) const
+{
+    constexpr double kBeside = 2.0;  // target lengths
+    double least = kBeside * target_.length(material);
+    int side = 0;
+    for (const EolVertex& e : eol_) {
+        if (e.side == 0 || !is_on_trace(e.vertex_id) || tags_.tag(e) != tag) continue;
+        const double distance = (surgery_.material(e.vertex_id) - material).norm();
+        if (distance < least) side = e.side;
+        least = std::min(least, distance);
+    }
+    return side;
 }
 
 VertexId TraceMesh::nearest_to(const Vec2& material) const

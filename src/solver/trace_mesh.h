@@ -47,6 +47,8 @@ class TraceMesh {
     /// A new entry; a flow that is known stays.
     void add(const EolVertex& made, const Vec2& flow);
     void forget_released();
+    /// One that slides along its wire is held where that turns, from now on (EolVertex::turn).
+    void hold(VertexId v, int feature, int turn);
 
     /// In the obstacle's frame, where the surgery has it.
     PlacedEol placed(const EolVertex& eol) const;
@@ -55,6 +57,9 @@ class TraceMesh {
     /// A vertex on the trace with that tag but without an entry, which clean-up or a join has put there, is
     /// like its neighbour along it. Nothing where there is none.
     std::optional<EolVertex> like_neighbour(VertexId v, int tag) const;
+    /// On which side of the cloth (EolVertex::side) a wire is beside X: that of the nearest vertex of its
+    /// trace which knows it, as none gets through the cloth; 0 where there is none near.
+    int side_beside(int tag, const Vec2& material) const;
     /// The state's vertex nearest to X among those that are left.
     VertexId nearest_to(const Vec2& material) const;
 
@@ -62,6 +67,7 @@ class TraceMesh {
     std::vector<EolVertex>::const_iterator place_of(VertexId v) const;
 
     const std::vector<Obstacle>& obstacles_;
+    const MeshTarget& target_;
     const State& state_;
     FeatureTags tags_;
     ClothSurgery surgery_;

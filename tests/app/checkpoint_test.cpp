@@ -27,7 +27,7 @@ Checkpoint make_checkpoint()
     constexpr std::uint32_t kNo = ActiveContact::kNoVertex;
     checkpoint.state.active = {{{2, 5, kNo}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1},
                                {{2, kNo, kNo}, ContactKind::Vertex, 1, 7, Vec3::UnitZ(), 1e-7}};
-    checkpoint.state.eol = {{1, 0, false, 4, Vec3::UnitZ(), 0}, {5, 1, true, 2, Vec3::UnitX(), 2, -1}};
+    checkpoint.state.eol = {{1, 0, false, 4, Vec3::UnitZ(), 0, 0, 1}, {5, 1, true, 2, Vec3::UnitX(), 2, -1}};
     checkpoint.state.material_velocity[1] = Vec2(0.25, -1e-310);
     checkpoint.state.crossings = 3;
     checkpoint.position = {0.0625, 3};
@@ -63,6 +63,8 @@ TEST(Checkpoint, ReadsBackToTheSameBytes)
     EXPECT_EQ(read.state.eol[1].feature, 2);
     EXPECT_EQ(read.state.eol[1].idle, 2);
     EXPECT_EQ(read.state.eol[1].side, -1);
+    EXPECT_EQ(read.state.eol[0].turn, 1);
+    EXPECT_EQ(read.state.eol[1].turn, -1);
     EXPECT_EQ(read.state.eol[0].outward, Vec3::UnitZ());
     EXPECT_EQ(read.state.material_velocity[1], Vec2(0.25, -1e-310));
     EXPECT_EQ(read.state.crossings, 3);
@@ -137,6 +139,8 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("EOL vertex", [](Checkpoint& c) { c.state.eol[1].vertex_id = 99; });
     refused("EOL direction", [&](Checkpoint& c) { c.state.eol[0].outward.x() = kNan; });
     refused("EOL side", [](Checkpoint& c) { c.state.eol[0].side = 2; });
+    refused("EOL turn", [](Checkpoint& c) { c.state.eol[0].turn = 2; });
+    refused("EOL turn of a corner", [](Checkpoint& c) { c.state.eol[1].turn = 0; });
     refused("EOL count", [](Checkpoint& c) { c.state.eol[0].idle = -1; });
     refused("crossings", [](Checkpoint& c) { c.state.crossings = -1; });
 }

@@ -65,6 +65,41 @@ TEST(FollowPolyline, DoesNotJumpToAStrandNearby)
     EXPECT_EQ(follow_polyline(hairpin, 0, Vec3(0.5, 9e-4, 0)).feature, 0);
 }
 
+TEST(FindTurn, IsWhereAWireGoesOnElsewhereButNoCorner)
+{
+    const Obstacle wire = make_bent();
+    for (const auto& [point, is_turn] : {std::pair(0, false), {1, true}, {2, true}, {3, false}})
+        EXPECT_EQ(find_turn(wire, point).has_value(), is_turn) << point;
+    const FeatureTurn first = *find_turn(wire, 1);
+    EXPECT_EQ(turn_point(wire, first), Vec3(1, 0, 0));
+    const Vec3 halfway = (Vec3::UnitX() + Vec3(1, 0.1, 0).normalized()).normalized();
+    EXPECT_LT((tangent_at(wire, first) - halfway).norm(), kRoundOff);
+    const Obstacle right = make_polyline({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, false);
+    EXPECT_FALSE(find_turn(right, 1)) << "a corner";
+    const Obstacle straight = make_polyline({{0, 0, 0}, {1, 0, 0}, {2, 0.017, 0}}, false);
+    EXPECT_FALSE(find_turn(straight, 1)) << "less than a degree";
+    const Obstacle box = samples::make_obstacle(samples::box({-1, -1, -1}, {1, 1, 1}));
+    EXPECT_FALSE(find_turn(box, 0)) << "no wire";
+}
+
+TEST(FindTurn, HasATangentAlongItsEdgeWhicheverWayTheOthersRun)
+{
+    // The last edge of a loop begins where the first one does.
+    for (const int count : {8, 24}) {
+        const Obstacle loop = make_polygon(count);
+        for (int point = 0; point < count; ++point) {
+            const std::optional<FeatureTurn> turn = find_turn(loop, point);
+            ASSERT_TRUE(turn) << point;
+            const Vec3& at = loop.mesh().points[point];
+            EXPECT_EQ(turn_point(loop, *turn), at);
+            const Vec3 tangent = tangent_at(loop, *turn);
+            EXPECT_NEAR(std::abs(tangent.dot(Vec3::UnitZ().cross(at))), 1.0, kRoundOff) << point;
+            const auto& ends = loop.topology().edges[loop.features().edges[turn->feature].edge].points;
+            EXPECT_GT(tangent.dot(loop.mesh().points[ends[1]] - loop.mesh().points[ends[0]]), 0.0);
+        }
+    }
+}
+
 TEST(DistanceAlong, GoesTheShorterWayAroundALoop)
 {
     const Obstacle loop = make_polygon(30);

@@ -31,12 +31,10 @@ using testing::press_edges;
 constexpr double kStep = 0.005;
 constexpr double kOnFeature = 1e-9;  // m: crossings of straight lines at 1 m
 
-/// The corner at the ridge's end presses into the face around it.
-void press_corner(EolCloth& cloth)
+/// A point of the obstacle presses into the face around it.
+void press_point(EolCloth& cloth, int point)
 {
-    const Obstacle& ridge = cloth.scene.obstacles[0];
-    const int point = ridge.features().corners[testing::end_of(ridge)].point;
-    const Vec3& at = ridge.mesh().points[point];
+    const Vec3& at = cloth.scene.obstacles[0].mesh().points[point];
     for (const Face& f : cloth.state.mesh.faces) {
         const auto flat = [&](int i) -> Vec2 { return cloth.state.mesh.world[f[i]].head<2>(); };
         const Vec2 p = at.head<2>();
@@ -49,6 +47,13 @@ void press_corner(EolCloth& cloth)
         cloth.state.active.push_back({ids, ContactKind::Triangle, 0, point, Vec3::UnitZ(), 1e-6});
         return;
     }
+}
+
+/// The corner at the ridge's end.
+void press_corner(EolCloth& cloth)
+{
+    const Obstacle& ridge = cloth.scene.obstacles[0];
+    press_point(cloth, ridge.features().corners[testing::end_of(ridge)].point);
 }
 
 std::optional<ConformedMesh> conform(const EolCloth& cloth, const FailedFlow& failed = {})
@@ -192,6 +197,92 @@ TEST(Conform, AWireThatBendsWithinACellHasATrace)
             const Vec3 nearest = place_on_feature(cloth.scene.obstacles[0], eol.feature, x).point;
             EXPECT_NEAR((x - nearest).norm(), kThickness, kOnFeature);
         }
+    }
+}
+
+/// The least distance of a vertex that is held at a turn from where it is to be; 1 m where there is none.
+double held_off(const State& state, const Vec3& place)
+{
+    double nearest = 1.0;
+    for (const EolVertex& e : state.eol)
+        if (e.turn >= 0)
+            nearest = std::min(nearest, (state.mesh.world[state.index_of(e.vertex_id)] - place).norm());
+    return nearest;
+}
+
+/// A wire over the cloth's middle that turns at (0, `y`, 0) by `degrees`.
+Obstacle make_turning(double y, double degrees)
+{
+    const double aside = -0.3 * std::tan(degrees * M_PI / 360.0);
+    return Obstacle("wire", make_wire({{aside, y - 0.3, 0}, {0, y, 0}, {aside, y + 0.3, 0}}, false), {}, {},
+                    30.0);
+}
+
+TEST(Conform, WhereAWireTurnsItsTraceHasAVertexThatIsHeldThere)
+{
+    // It is not pressed there: the chord over the turn would miss it by more than half a thickness.
+    for (const double degrees : {8.0, 15.0, 45.0})
+        for (const double turn : {0.0, 10.0, 20.0, 33.0, 45.0}) {
+            const double y = 0.01;
+            EolCloth cloth = lying_on(make_turning(y, degrees), turn);
+            take(cloth);
+            expect_sound(cloth.state, 0.16);
+            EXPECT_LT(held_off(cloth.state, Vec3(0, y, kThickness)), kOnFeature) << degrees << ", " << turn;
+            const std::vector<int> row = along_ridge(cloth.state);
+            for (std::size_t k = 1; k < row.size(); ++k)
+                EXPECT_TRUE(has_edge(cloth.state, row[k - 1], row[k])) << degrees << ", " << turn;
+            EXPECT_GT(least_material_angle(cloth.state.mesh), 3.0) << degrees << ", " << turn;
+            // And it stays there: no clean-up merges it into others.
+            cloth.state.active.clear();
+            const std::optional<ConformedMesh> again = conform(cloth);
+            EXPECT_FALSE(again && !again->events.empty()) << degrees << ", " << turn;
+        }
+}
+
+TEST(Conform, WhereAWireHardlyTurnsItsTraceSlides)
+{
+    EolCloth cloth = lying_on(make_turning(0.01, 0.5), 10.0);
+    take(cloth);
+    EXPECT_GT(cloth.state.eol.size(), 5u);
+    EXPECT_EQ(held_off(cloth.state, Vec3::Zero()), 1.0);
+}
+
+TEST(Conform, ATurnThatPressesTakesTheVertexThatSlidesBesideIt)
+{
+    const double y = 0.01;
+    EolCloth cloth = lying_on(make_turning(y, 15.0), 10.0);
+    take(cloth);
+    for (EolVertex& e : cloth.state.eol) e.turn = -1;
+    const std::size_t count = cloth.state.eol.size();
+    cloth.state.active.clear();
+    for (Vec3& x : cloth.state.mesh.world) x.y() += 0.01;  // it has slid along
+    press_point(cloth, 1);
+    ASSERT_EQ(cloth.state.active.size(), 1u);
+    take(cloth);
+    expect_sound(cloth.state, 0.16);
+    EXPECT_LT(held_off(cloth.state, Vec3(0, y, kThickness)), 1e-4);
+    EXPECT_LE(cloth.state.eol.size(), count + 1);
+    const auto held = std::count_if(cloth.state.eol.begin(), cloth.state.eol.end(),
+                                    [](const EolVertex& e) { return e.turn >= 0; });
+    EXPECT_EQ(held, 1);
+}
+
+TEST(Conform, ANewVertexOnAWireIsOnTheSideOfTheTraceBesideIt)
+{
+    for (const int side : {1, -1}) {
+        EolCloth cloth = lying_on(make_turning(0.01, 0.5), 10.0);
+        const std::vector<ActiveContact> pressing = cloth.state.active;
+        cloth.state.active.resize(pressing.size() / 2);
+        take(cloth);
+        ASSERT_FALSE(cloth.state.eol.empty());
+        for (EolVertex& e : cloth.state.eol) e.side = side;
+        const std::size_t before = cloth.state.eol.size();
+        cloth.state.active = pressing;
+        take(cloth);
+        ASSERT_GT(cloth.state.eol.size(), before);
+        int near = 0;
+        for (const EolVertex& e : cloth.state.eol) near += e.side == side ? 1 : 0;
+        EXPECT_GT(near, static_cast<int>(before));
     }
 }
 

@@ -168,6 +168,34 @@ TEST(EolCoordinates, WhatHasLeftAWireIsNotCarriedRoundIt)
     }
 }
 
+TEST(EolCoordinates, WhereAWireTurnsAreOutwardAndFlowBothWays)
+{
+    // Held there, and the frame halfway between both edges; folded over it as over a straight one.
+    for (const double fold : {180.0, 90.0, 20.0}) {
+        EolCloth cloth(
+            Obstacle("wire", make_wire({{0.1, -1, 0}, {0, 0, 0}, {0.1, 1, 0}}, false), {}, {}, 30.0),
+            make_draped({8, 0.0, fold}));
+        const int v = cloth.vertex_at(0.2, 0.2);
+        const std::optional<FeatureTurn> turn = find_turn(cloth.scene.obstacles[0], 1);
+        ASSERT_TRUE(turn);
+        EolVertex& eol = cloth.state.eol[cloth.add_eol(v, false, turn->feature)];
+        eol.outward = Vec3::UnitZ();
+        eol.turn = turn->end;
+        const EolPlacing placing = cloth.place(v);
+        ASSERT_TRUE(placing.coordinates) << fold;
+        const EolCoordinates& at = *placing.coordinates;
+        EXPECT_LT((at.basis.col(0) - Vec3::UnitZ()).norm(), kRoundOff) << fold;
+        EXPECT_TRUE(at.basis.rightCols(2).isZero(0.0)) << "it stays where the wire turns";
+        EXPECT_LT((at.frame.point - Vec3::Zero()).norm(), kRoundOff);
+        EXPECT_NEAR(std::abs(at.frame.tangent.y()), 1.0, kRoundOff);
+        expect_parallel(at.material_basis.col(1), Vec2::UnitY());
+        expect_parallel(at.material_basis.col(2), Vec2::UnitX());
+        follow_features(cloth.scene.obstacles, cloth.state);
+        EXPECT_EQ(cloth.state.eol[0].feature, turn->feature);
+        EXPECT_EQ(cloth.state.eol[0].turn, turn->end);
+    }
+}
+
 TEST(EolCoordinates, OnACornerAreOutwardAndAnyFlow)
 {
     EolCloth cloth(make_ridge(60.0, 0.0001 + 0.2), make_draped({8, 0.0, 60.0}));

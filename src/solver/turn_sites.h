@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+//         *       wire      Where a wire turns between two vertices of a trace their
+//       /   \               chord passes by the turn. The cloth folds over the chord,
+//     p-------q   chord     and the turn presses through its face beside that. Put
+//                           there while the cloth is flat, a vertex changes nothing;
+//                           in folded cloth it would have to move the fold.
+#pragma once
+
+#include <vector>
+
+#include "solver/feature_sites.h"
+
+namespace arris {
+
+/// Turns of wires between neighbours along a trace, these being EOL vertices or `sites`, that their chord
+/// misses by more than half a thickness, where the cloth is near enough to be put on them: of each pair the
+/// one that it misses most. `positions`: the cloth's in the frame of obstacle `o`. None that has a vertex or
+/// site already.
+std::vector<FeatureSite> find_turn_sites(const Scene& scene, const State& state, const ClothStars& stars,
+                                         std::int32_t o, const std::vector<Vec3>& positions,
+                                         const std::vector<FeatureSite>& sites);
+
+}  // namespace arris
