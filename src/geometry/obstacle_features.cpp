@@ -15,6 +15,7 @@ namespace {
 // Rounding of turns near the threshold, so that at 90 degrees a turned box is what an upright one is.
 constexpr double kTurnSlack = 1e-6;  // degrees
 constexpr double kCornerTurn = 30.0;
+constexpr double kWireCornerTurn = 60.0;  // wires have one plane halfway between both edges up to there
 constexpr double kCornerDefect = 60.0;
 
 // Faces of one plane: their normals agree as well as coordinates in single precision let them.
@@ -192,7 +193,8 @@ bool is_node(const ObstacleMesh& mesh, const ObstacleTopology& topology,
     const Vec3& to = mesh.points[other_end(topology.edges[second.edge], point)];
     const double turn = angle_between((mesh.points[point] - from).stableNormalized(),
                                       (to - mesh.points[point]).stableNormalized());
-    return degrees(turn) > kCornerTurn + kTurnSlack;
+    const double most = first.kind == FeatureKind::Wire ? kWireCornerTurn : kCornerTurn;
+    return degrees(turn) > most + kTurnSlack;
 }
 
 /// 3 face + corner.

@@ -35,9 +35,10 @@ struct ObstacleFeatures {
 /// Features of a mesh that passes `validate`. An edge is sharp where its faces turn by more than
 /// `feature_angle` (degrees, + 1e-6). A solid's are convex or reflex by an exact predicate, faces folded flat
 /// onto one another convex; reflex ones are no features. Corners: where the number of feature edges is
-/// neither none nor two, where two turn by more than 30 degrees or differ in kind, or where the angle defect
-/// of the faces exceeds 60 degrees (a cone's apex, but no solid's pit). A triangle lower than rounding in
-/// single precision (3e-7 of the mesh's diagonal) has the normal of the neighbour at its longest side.
+/// neither none nor two, where two turn by more than 30 degrees (of a wire: 60) or differ in kind, or where
+/// the angle defect of the faces exceeds 60 degrees (a cone's apex, but no solid's pit). A triangle lower
+/// than rounding in single precision (3e-7 of the mesh's diagonal) has the normal of the neighbour at its
+/// longest side.
 ObstacleFeatures find_features(const ObstacleMesh& mesh, const ObstacleTopology& topology,
                                double feature_angle);
 

@@ -384,10 +384,10 @@ TEST(ObstacleFeatures, AClosedSmoothWireIsOnePolylineWithoutCorners)
     EXPECT_THAT(polyline_lengths(features_of(nailed)), ElementsAre(32));
 }
 
-TEST(ObstacleFeatures, AWireTurnsAtMoreThanThirtyDegrees)
+TEST(ObstacleFeatures, AWireTurnsAtMoreThanSixtyDegrees)
 {
     for (const auto& [turn, corners] :
-         std::map<double, int>{{0, 2}, {29.9, 2}, {30, 2}, {30.1, 3}, {180, 3}}) {
+         std::map<double, int>{{0, 2}, {29.9, 2}, {30.1, 2}, {60, 2}, {60.1, 3}, {180, 3}}) {
         const double angle = turn * std::numbers::pi / 180;
         const Vec3 end = Vec3(1, 0, 0) + 2.0 * Vec3(std::cos(angle), std::sin(angle), 0);
         const ObstacleMesh mesh = samples::wire({{0, 0, 0}, {1, 0, 0}, end}, false);
