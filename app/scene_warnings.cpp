@@ -66,6 +66,10 @@ void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings
         return warnings.is_written(std::string("cloth.material.") + key);
     });
     if (overrides_all) warnings.add("cloth.material.preset", "all its values are overridden");
+    constexpr double kStiffest = 1e6;  // N/m: ten times what sailcloth has
+    if (material.youngs_modulus > kStiffest && warnings.is_written("cloth.material.youngs_modulus"))
+        warnings.note("cloth.material.youngs_modulus",
+                      "is in N/m, a modulus in Pa times the cloth's own thickness in m");
     if (material.bending_stiffness > 0.0 && topology.hinges.empty())
         warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
     if (config.scene.obstacles.empty())

@@ -58,10 +58,15 @@ std::vector<ProbeSample> sample_probes(const std::vector<Probe>& probes, const S
     for (const Probe& probe : probes) {
         const MaterialLocation at = locate(state.mesh, probe.material);
         ProbeSample sample;
-        for (int k = 0; k < 3 && at.face >= 0; ++k) {
-            const int v = state.mesh.faces[at.face][k];
-            sample.position += at.weights[k] * state.mesh.world[v];
-            sample.velocity += at.weights[k] * state.velocity[v];
+        if (at.face >= 0) {
+            const Face& face = state.mesh.faces[at.face];
+            const FaceElement element = make_face_element(state.mesh.material, face);
+            const Mat32 F = FaceState(element, state.mesh.world).F;
+            for (int k = 0; k < 3; ++k) {
+                const int v = face[k];
+                sample.position += at.weights[k] * state.mesh.world[v];
+                sample.velocity += at.weights[k] * (state.velocity[v] - F * state.material_velocity[v]);
+            }
         }
         samples.push_back(sample);
     }

@@ -121,6 +121,15 @@ std::optional<FeatureTurn> find_turn(const Obstacle& obstacle, int point)
     return std::nullopt;
 }
 
+double missed_by_chord(const Obstacle& obstacle, const FeatureTurn& turn, double reach)
+{
+    const std::optional<Step> next = across(obstacle, turn.feature, turn.end);
+    if (!next || std::min(length_of(obstacle, turn.feature), length_of(obstacle, next->feature)) < reach)
+        return 0.0;
+    // Half the angle between the ways is what lies between either and the tangent.
+    return reach * direction_of(obstacle, turn.feature).cross(tangent_at(obstacle, turn)).norm();
+}
+
 Vec3 turn_point(const Obstacle& obstacle, const FeatureTurn& turn)
 {
     return segment_of(obstacle, turn.feature)[turn.end];

@@ -36,6 +36,10 @@ struct FeatureTurn {
 /// At a point of the mesh: the first edge there of a wire that turns by more than a degree but has no corner.
 std::optional<FeatureTurn> find_turn(const Obstacle& obstacle, int point);
 
+/// By how much a chord from `reach` before a turn to as far behind it passes it by, m. 0 where one of its two
+/// edges is shorter than that: it is one of many then, and its wire a curve.
+double missed_by_chord(const Obstacle& obstacle, const FeatureTurn& turn, double reach);
+
 Vec3 turn_point(const Obstacle& obstacle, const FeatureTurn& turn);
 /// Unit, halfway between the directions of both edges there, seen along the turn's own.
 Vec3 tangent_at(const Obstacle& obstacle, const FeatureTurn& turn);

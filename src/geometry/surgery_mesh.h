@@ -3,6 +3,8 @@
 
 #include <CGAL/Surface_mesh.h>
 
+#include <cassert>
+
 #include "geometry/cgal.h"
 #include "geometry/cloth_surgery.h"
 #include "geometry/vertex_table.h"
@@ -22,7 +24,11 @@ class SurgeryMesh {
 
     int vertex_count() const { return vertices_.count(); }
     bool has(VertexId v) const { return vertices_.find(v) != VertexTable::kNone; }
-    Vertex vertex(VertexId v) const { return Vertex(vertices_.find(v)); }
+    Vertex vertex(VertexId v) const
+    {
+        assert(has(v) && "a vertex of this mesh");
+        return Vertex(vertices_.find(v));
+    }
     VertexId id(Vertex v) const { return id_[v]; }
     /// From a to b; null if they are no neighbours.
     Halfedge halfedge(VertexId a, VertexId b) const;

@@ -32,6 +32,7 @@ void VertexTable::add(VertexId id, std::uint32_t vertex)
 
 void VertexTable::remove(VertexId id)
 {
+    assert(find(id) != kNone && "a vertex of this table");
     slots_[place(id)].vertex = kNone;
     --count_;
 }

@@ -42,7 +42,8 @@ int corner_at(const Obstacle& obstacle, int point)
 class SiteFinder {
   public:
     SiteFinder(const Scene& scene, const State& state, const ClothStars& stars, std::int32_t o)
-        : state_(state),
+        : scene_(scene),
+          state_(state),
           obstacle_(scene.obstacles[o]),
           o_(o),
           thickness_(scene.material.thickness),
@@ -213,6 +214,14 @@ class SiteFinder {
         return std::nullopt;
     }
 
+    /// At a point of the obstacle's mesh beside vertex `v` of the cloth.
+    std::optional<FeatureTurn> find_held_turn(int point, int v) const
+    {
+        const std::optional<FeatureTurn> turn = find_turn(obstacle_, point);
+        const bool is_held = turn && is_held_at(scene_, obstacle_, *turn, state_.mesh.material[v]);
+        return is_held ? turn : std::nullopt;
+    }
+
     /// Where the end of a wire's edge that is nearest to the cloth's is a turn.
     std::optional<FeatureSite> on_turn(int a, int b, int feature, const Vec3& normal) const
     {
@@ -220,8 +229,8 @@ class SiteFinder {
             closest_between_segments({positions_[a], positions_[b]}, feature_segment(obstacle_, feature));
         if (nearest.t > 0.0 && nearest.t < 1.0) return std::nullopt;
         const int end = nearest.t > 0.0 ? 1 : 0;
-        const auto turn = find_turn(
-            obstacle_, obstacle_.topology().edges[obstacle_.features().edges[feature].edge].points[end]);
+        const auto turn = find_held_turn(
+            obstacle_.topology().edges[obstacle_.features().edges[feature].edge].points[end], a);
         if (!turn || !((nearest.first - nearest.second).norm() <= kOnFeature * thickness_))
             return std::nullopt;
         return make_turn(*turn, {a, b, -1}, {1.0 - nearest.s, nearest.s, 0.0}, normal);
@@ -303,7 +312,7 @@ class SiteFinder {
 
     std::optional<FeatureSite> in_face(const std::array<int, 3>& v, const ActiveContact& contact) const
     {
-        if (const auto turn = find_turn(obstacle_, contact.element)) return at_turn(*turn, v, contact.normal);
+        if (const auto turn = find_held_turn(contact.element, v[0])) return at_turn(*turn, v, contact.normal);
         const int corner = corner_at(obstacle_, contact.element);
         if (corner < 0 || v[2] < 0 || is_of_wires(contact.element)) return std::nullopt;
         const Vec3 &a = positions_[v[0]], &b = positions_[v[1]], &c = positions_[v[2]];
@@ -363,7 +372,7 @@ class SiteFinder {
         obstacle_.find_feature_edges(box, found);
         for (const int f : found)
             for (const int point : obstacle_.topology().edges[obstacle_.features().edges[f].edge].points)
-                if (const auto turn = find_turn(obstacle_, point);
+                if (const auto turn = find_held_turn(point, v);
                     turn && (place - obstacle_.mesh().points[point]).norm() <= reach)
                     return make_turn(*turn, {v, -1, -1}, {1.0, 0.0, 0.0}, normal);
         for (const int f : found)
@@ -384,6 +393,7 @@ class SiteFinder {
         return found;
     }
 
+    const Scene& scene_;
     const State& state_;
     const Obstacle& obstacle_;
     std::int32_t o_;

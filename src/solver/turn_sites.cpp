@@ -15,7 +15,7 @@ namespace arris {
 
 namespace {
 
-constexpr double kMissed = 0.5;   // thicknesses: nearer to its turn a chord is as good
+constexpr double kMissed = 1.0;   // thicknesses: nearer to its turn a chord is as good
 constexpr double kLongest = 2.0;  // target lengths between neighbours along a trace
 
 /// On a wire: an EOL vertex or a site.
@@ -134,7 +134,8 @@ class TurnFinder {
         double most = kMissed * scene_.material.thickness;
         for (const Turn& turn : turns)
             for (const double along : {turn.along, turn.along + length}) {
-                if (!(along > p.along && along < q.along) || turn.point == p.turn || turn.point == q.turn)
+                if (!(along > p.along && along < q.along) || turn.point == p.turn || turn.point == q.turn ||
+                    !is_held_at(scene_, obstacle_, turn.turn, p.material))
                     continue;
                 const Vec3& at = obstacle_.mesh().points[static_cast<std::size_t>(turn.point)];
                 const double s = closest_on_segment(at, p.point, q.point);
@@ -200,6 +201,12 @@ class TurnFinder {
 };
 
 }  // namespace
+
+bool is_held_at(const Scene& scene, const Obstacle& obstacle, const FeatureTurn& turn, const Vec2& material)
+{
+    const double half_cell = 0.5 * scene.eol->length(material);
+    return missed_by_chord(obstacle, turn, half_cell) > kMissed * scene.material.thickness;
+}
 
 std::vector<FeatureSite> find_turn_sites(const Scene& scene, const State& state, const ClothStars& stars,
                                          std::int32_t o, const std::vector<Vec3>& positions,

@@ -9,14 +9,20 @@
 
 #include <vector>
 
+#include "geometry/feature_path.h"
 #include "solver/feature_sites.h"
 
 namespace arris {
 
+/// Whether a vertex at this turn is held there: where a chord over a cell of the cloth at `material` misses
+/// it by more than a thickness. A trace of vertices that slide follows a wire of shorter edges as well
+/// as its cells can, and vertices held nearer to each other than cells are would hold the cloth.
+bool is_held_at(const Scene& scene, const Obstacle& obstacle, const FeatureTurn& turn, const Vec2& material);
+
 /// Turns of wires between neighbours along a trace, these being EOL vertices or `sites`, that their chord
-/// misses by more than half a thickness, where the cloth is near enough to be put on them: of each pair the
-/// one that it misses most. `positions`: the cloth's in the frame of obstacle `o`. None that has a vertex or
-/// site already.
+/// misses by more than a thickness, where vertices are held and the cloth is near enough to be put on
+/// them: of each pair the one that it misses most. `positions`: the cloth's in the frame of obstacle `o`.
+/// None that has a vertex or site already.
 std::vector<FeatureSite> find_turn_sites(const Scene& scene, const State& state, const ClothStars& stars,
                                          std::int32_t o, const std::vector<Vec3>& positions,
                                          const std::vector<FeatureSite>& sites);

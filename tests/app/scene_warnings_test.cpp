@@ -120,6 +120,18 @@ TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
     EXPECT_THAT(load("0.4").warnings, ::testing::IsEmpty());
 }
 
+TEST(SceneWarnings, TellOfAModulusInPascal)
+{
+    const auto load = [](const std::string& modulus) {
+        return load_scene(
+            SceneSource{"s.toml", kBase + "[cloth.material]\nyoungs_modulus = " + modulus + "\n", {}});
+    };
+    const RunConfig config = load("2e9");
+    ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
+    EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("youngs_modulus = 2e9: is in N/m"));
+    EXPECT_THAT(load("1e5").warnings, ::testing::IsEmpty());
+}
+
 TEST(SceneWarnings, TellOfATurnThatSlerpCannotMean)
 {
     const auto turned = [](const std::string& degrees) {

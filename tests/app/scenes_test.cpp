@@ -48,7 +48,9 @@ TEST_P(Scenes, FinishFreeOfTheirObstaclesAndKeepTheirMaterial)
     // Of contacts with features; the least is that of the rim of a tub, .978, all others have .99 and more.
     constexpr double kLeastShare = 0.97;
     const nlohmann::json& share = report["feature_contacts"]["eol_share"];
-    if (!share.is_null()) EXPECT_GE(share.get<double>(), kLeastShare);
+    if (!share.is_null()) {
+        EXPECT_GE(share.get<double>(), kLeastShare);
+    }
 
     const CsvTable steps = read_csv(dir + "/steps.csv");
     const auto size = report["scene"]["cloth"]["size"];

@@ -100,6 +100,23 @@ TEST(FindTurn, HasATangentAlongItsEdgeWhicheverWayTheOthersRun)
     }
 }
 
+TEST(MissedByChord, IsTheHeightOfTheTurnOverItWhereBothEdgesAreAsLong)
+{
+    for (const double degrees : {2.0, 15.0, 50.0}) {
+        const double turn = degrees * M_PI / 180.0;
+        const Vec3 onward(std::cos(turn), std::sin(turn), 0);
+        const Obstacle wire = make_polyline({{-1, 0, 0}, {0, 0, 0}, 0.5 * onward, 2.0 * onward}, false);
+        const FeatureTurn at = *find_turn(wire, 1);
+        for (const double reach : {0.1, 0.5}) {
+            const Vec3 middle = 0.5 * reach * (onward - Vec3::UnitX());
+            EXPECT_NEAR(missed_by_chord(wire, at, reach), middle.norm(), kRoundOff) << degrees;
+        }
+        EXPECT_EQ(missed_by_chord(wire, at, 0.51), 0.0) << "the edge after it is shorter";
+    }
+    // A circle of short edges is a curve to what reaches farther.
+    EXPECT_EQ(missed_by_chord(make_polygon(200), *find_turn(make_polygon(200), 7), 0.05), 0.0);
+}
+
 TEST(DistanceAlong, GoesTheShorterWayAroundALoop)
 {
     const Obstacle loop = make_polygon(30);

@@ -220,8 +220,8 @@ Obstacle make_turning(double y, double degrees)
 
 TEST(Conform, WhereAWireTurnsItsTraceHasAVertexThatIsHeldThere)
 {
-    // It is not pressed there: the chord over the turn would miss it by more than half a thickness.
-    for (const double degrees : {8.0, 15.0, 45.0})
+    // It is not pressed there: the chord over the turn would miss it by more than a thickness.
+    for (const double degrees : {15.0, 30.0, 45.0})
         for (const double turn : {0.0, 10.0, 20.0, 33.0, 45.0}) {
             const double y = 0.01;
             EolCloth cloth = lying_on(make_turning(y, degrees), turn);
@@ -244,6 +244,19 @@ TEST(Conform, WhereAWireHardlyTurnsItsTraceSlides)
     EolCloth cloth = lying_on(make_turning(0.01, 0.5), 10.0);
     take(cloth);
     EXPECT_GT(cloth.state.eol.size(), 5u);
+    EXPECT_EQ(held_off(cloth.state, Vec3::Zero()), 1.0);
+}
+
+TEST(Conform, OnAWireOfShortEdgesItsTraceSlides)
+{
+    // An arc of edges of a third of a cell that turns by 12 degrees from each to the next.
+    std::vector<Vec3> points;
+    Vec3 at(-0.06, -0.18, 0);
+    for (int k = -9; k <= 9; ++k, at += 0.02 * Vec3(-std::sin(0.1 * k), std::cos(0.1 * k), 0))
+        points.push_back(at);
+    EolCloth cloth = lying_on(Obstacle("wire", make_wire(points, false), {}, {}, 30.0), 10.0);
+    take(cloth);
+    EXPECT_GT(cloth.state.eol.size(), 3u);
     EXPECT_EQ(held_off(cloth.state, Vec3::Zero()), 1.0);
 }
 
