@@ -161,10 +161,11 @@ TEST(EolCoordinates, WhatHasLeftAWireIsNotCarriedRoundIt)
                                                     cloth.stars(), cloth.state.mesh.world, {}, 1.0);
         ASSERT_TRUE(placing.coordinates);
         const double carried = (placing.coordinates->carried - cloth.state.mesh.world[v]).norm();
-        if (thicknesses > kOnFeature)
+        if (thicknesses > kOnFeature) {
             EXPECT_LT(carried, kRoundOff) << thicknesses;
-        else
+        } else {
             EXPECT_GT(carried, 0.01 * thicknesses * kThickness) << thicknesses;
+        }
     }
 }
 
