@@ -17,7 +17,7 @@ namespace arris {
 
 namespace {
 
-constexpr FileKind kKind = {"ARRIS checkpoint\n", kVersion, "there is no checkpoint to resume from",
+constexpr FileKind kKind = {"ARRIS checkpoint\n", kCheckpointVersion, "there is no checkpoint to resume from",
                             "is not a checkpoint of arris"};
 
 void write_vectors(BinaryWriter& out, const std::vector<Vec2>& vectors)
