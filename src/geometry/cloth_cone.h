@@ -2,14 +2,18 @@
 //
 // Cloth around a vertex that hangs over a point is a cone with the point inside, mostly a pleated one: cloth
 // that hangs steeper than it can without pleats. Its faces' normals then have no middle, and their mean may
-// lead out of it; what the point needs is room. Seen from the vertex the faces are arcs on a sphere:
+// lead out of it; what the point needs is room. Seen from the vertex the faces are arcs on a sphere, and the
+// axis is the centre of the largest circle about the point's direction that can be grown among them:
 //
-//        ___          The axis is the centre of the largest circle about the point's direction q that can be
-//     __/   \_        grown among them. Around q each arc is kept off by the great circle that touches it
-//     where \  q    \_      it is nearest; the middle of these half spaces has as much room as q at least,
-//     and no arc
-//      \_ o ___/      is between q and it: so it may be gone to, and from there again.
+//        ___
+//     __/   \_
+//     \  q    \_     q: the point's direction, o: the axis
+//      \_ o ___/
 //        \_/
+//
+// Around q each arc is kept off by the great circle that touches it where it is nearest. The middle of these
+// half spaces has as much room as q at least, and no arc is between q and it: so it may be gone to, and from
+// there again.
 #pragma once
 
 #include <array>

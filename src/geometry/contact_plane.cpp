@@ -50,11 +50,11 @@ namespace {
 double distance_between_elements(const Obstacle& obstacle, const ClothMotion& motion,
                                  const ObstacleContact& contact)
 {
+    if (contact.vertices[1] < 0) return std::numeric_limits<double>::infinity();
     std::array<Vec3, 3> cloth;
     for (int i = 0; i < 3; ++i)
         cloth[i] = motion.begin[contact.vertices[i] < 0 ? contact.vertices[0] : contact.vertices[i]];
     const auto from = [&](const Vec3& place) { return (place - contact.point).norm(); };
-    if (contact.vertices[1] < 0) return std::numeric_limits<double>::infinity();
     if (contact.kind == ContactKind::Edge) {
         const std::vector<Vec3>& points = obstacle.mesh().points;
         const auto& [a, b] = obstacle.topology().edges[contact.element].points;

@@ -130,6 +130,11 @@ double missed_by_chord(const Obstacle& obstacle, const FeatureTurn& turn, double
     return reach * direction_of(obstacle, turn.feature).cross(tangent_at(obstacle, turn)).norm();
 }
 
+int point_at(const Obstacle& obstacle, const FeatureTurn& turn)
+{
+    return obstacle.topology().edges[obstacle.features().edges[turn.feature].edge].points[turn.end];
+}
+
 Vec3 turn_point(const Obstacle& obstacle, const FeatureTurn& turn)
 {
     return segment_of(obstacle, turn.feature)[turn.end];

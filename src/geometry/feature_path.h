@@ -40,6 +40,8 @@ std::optional<FeatureTurn> find_turn(const Obstacle& obstacle, int point);
 /// edges is shorter than that: it is one of many then, and its wire a curve.
 double missed_by_chord(const Obstacle& obstacle, const FeatureTurn& turn, double reach);
 
+/// Of the mesh, and where that is.
+int point_at(const Obstacle& obstacle, const FeatureTurn& turn);
 Vec3 turn_point(const Obstacle& obstacle, const FeatureTurn& turn);
 /// Unit, halfway between the directions of both edges there, seen along the turn's own.
 Vec3 tangent_at(const Obstacle& obstacle, const FeatureTurn& turn);

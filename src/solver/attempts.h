@@ -30,8 +30,8 @@ class FailedAttempts {
     static constexpr int kMostPinched = 3;
 
     /// Of an attempt from `start`, `state` or what conform made of it. `pinched`: EOL vertices that move in
-    /// contacts which cannot be met. One that is done forgets all, but that
-    /// all were given up: that holds until `forget`.
+    /// contacts which cannot be met. One that is done forgets all, but that all were given up: that holds
+    /// until `forget`.
     void note(const StepReport& report, Attempt attempt, const State& state, const State& start,
               const std::vector<Overrun>& overrun, const std::vector<int>& pinched);
     void forget() { *this = FailedAttempts(); }

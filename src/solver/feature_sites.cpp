@@ -229,30 +229,16 @@ class SiteFinder {
             closest_between_segments({positions_[a], positions_[b]}, feature_segment(obstacle_, feature));
         if (nearest.t > 0.0 && nearest.t < 1.0) return std::nullopt;
         const int end = nearest.t > 0.0 ? 1 : 0;
-        const auto turn = find_held_turn(
-            obstacle_.topology().edges[obstacle_.features().edges[feature].edge].points[end], a);
+        const auto turn = find_held_turn(point_at(obstacle_, {feature, end}), a);
         if (!turn || !((nearest.first - nearest.second).norm() <= kOnFeature * thickness_))
             return std::nullopt;
         return make_turn(*turn, {a, b, -1}, {1.0 - nearest.s, nearest.s, 0.0}, normal);
     }
 
-    /// In a face, on an edge or at a vertex of the cloth.
     FeatureSite make_turn(const FeatureTurn& turn, const std::array<int, 3>& v,
                           const std::array<double, 3>& weights, const Vec3& normal) const
     {
-        Vec2 X = Vec2::Zero();
-        int near = 0, border = 0, count = 0;
-        for (int i = 0; i < 3 && v[i] >= 0; ++i) {
-            X += weights[i] * state_.mesh.material[v[i]];
-            if (weights[i] > weights[near]) near = i;
-            if (!(weights[i] > 0.0)) continue;
-            ++count;
-            border += stars_.border_neighbours[v[i]][0] >= 0 ? 1 : 0;
-        }
-        FeatureSite site = make_site(false, turn.feature, X, v[near], normal);
-        site.turn = turn.end;
-        site.is_on_border = count < 3 && border == count;
-        return site;
+        return make_turn_site(state_, stars_, o_, turn, v, weights, normal);
     }
 
     bool is_eol(int v) const { return state_.eol_entry(state_.ids[v]) >= 0; }

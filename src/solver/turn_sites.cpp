@@ -63,16 +63,11 @@ class TurnFinder {
     }
 
   private:
-    int point_at(const FeatureTurn& turn) const
-    {
-        return obstacle_.topology().edges[obstacle_.features().edges[turn.feature].edge].points[turn.end];
-    }
-
     std::vector<Turn> turns_of(const Polyline& polyline) const
     {
         std::vector<Turn> turns;
         for (const PolylineEdge& edge : polyline.edges) {
-            const int point = point_at({edge.feature, edge.is_forward ? 0 : 1});
+            const int point = point_at(obstacle_, {edge.feature, edge.is_forward ? 0 : 1});
             if (const auto turn = find_turn(obstacle_, point)) turns.push_back({edge.begin, point, *turn});
         }
         return turns;
@@ -97,7 +92,7 @@ class TurnFinder {
             Place at = place_at(*edge->second, place);
             at.material = material;
             at.vertex = vertex;
-            if (turn >= 0) at.turn = point_at({feature, turn});
+            if (turn >= 0) at.turn = point_at(obstacle_, {feature, turn});
             places.push_back(at);
         };
         for (const EolVertex& eol : state_.eol) {
@@ -160,24 +155,9 @@ class TurnFinder {
             const double distance = (closest.point - point).norm();
             if (!(distance < least)) continue;
             least = distance;
-            site = make_site(turn, state_.mesh.faces[f], closest, (closest.point - point) / distance);
+            site = make_turn_site(state_, stars_, o_, turn.turn, state_.mesh.faces[f], closest.weights,
+                                  (closest.point - point) / distance);
         }
-        return site;
-    }
-
-    FeatureSite make_site(const Turn& turn, const Face& face, const PointOnTriangle& at,
-                          const Vec3& outward) const
-    {
-        Vec2 X = Vec2::Zero();
-        int near = 0, inner = 0;
-        for (int i = 0; i < 3; ++i) {
-            X += at.weights[i] * state_.mesh.material[face[i]];
-            if (at.weights[i] > at.weights[near]) near = i;
-            if (at.weights[i] > 0.0 && stars_.border_neighbours[face[i]][0] < 0) ++inner;
-        }
-        FeatureSite site{o_, false, turn.turn.feature, X, state_.ids[face[near]], outward};
-        site.turn = turn.turn.end;
-        site.is_on_border = inner == 0 && (at.edge >= 0 || at.corner >= 0);
         return site;
     }
 
@@ -206,6 +186,25 @@ bool is_held_at(const Scene& scene, const Obstacle& obstacle, const FeatureTurn&
 {
     const double half_cell = 0.5 * scene.eol->length(material);
     return missed_by_chord(obstacle, turn, half_cell) > kMissed * scene.material.thickness;
+}
+
+FeatureSite make_turn_site(const State& state, const ClothStars& stars, std::int32_t o,
+                           const FeatureTurn& turn, const std::array<int, 3>& vertices,
+                           const std::array<double, 3>& weights, const Vec3& outward)
+{
+    Vec2 X = Vec2::Zero();
+    int near = 0, count = 0, border = 0;
+    for (int i = 0; i < 3 && vertices[i] >= 0; ++i) {
+        X += weights[i] * state.mesh.material[vertices[i]];
+        if (weights[i] > weights[near]) near = i;
+        if (!(weights[i] > 0.0)) continue;
+        ++count;
+        border += stars.border_neighbours[vertices[i]][0] >= 0 ? 1 : 0;
+    }
+    FeatureSite site{o, false, turn.feature, X, state.ids[vertices[near]], outward};
+    site.turn = turn.end;
+    site.is_on_border = count < 3 && border == count;
+    return site;
 }
 
 std::vector<FeatureSite> find_turn_sites(const Scene& scene, const State& state, const ClothStars& stars,

@@ -7,6 +7,7 @@
 //                           in folded cloth it would have to move the fold.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "geometry/feature_path.h"
@@ -18,6 +19,12 @@ namespace arris {
 /// it by more than a thickness. A trace of vertices that slide follows a wire of shorter edges as well
 /// as its cells can, and vertices held nearer to each other than cells are would hold the cloth.
 bool is_held_at(const Scene& scene, const Obstacle& obstacle, const FeatureTurn& turn, const Vec2& material);
+
+/// Where obstacle `o` turns, in a face, on an edge or at a vertex of the cloth: `vertices`, -1 where there
+/// are fewer, with their `weights`.
+FeatureSite make_turn_site(const State& state, const ClothStars& stars, std::int32_t o,
+                           const FeatureTurn& turn, const std::array<int, 3>& vertices,
+                           const std::array<double, 3>& weights, const Vec3& outward);
 
 /// Turns of wires between neighbours along a trace, these being EOL vertices or `sites`, that their chord
 /// misses by more than a thickness, where vertices are held and the cloth is near enough to be put on
