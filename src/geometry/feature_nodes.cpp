@@ -18,10 +18,9 @@ bool is_corner(const ObstacleFeatures& features, int point)
     return found != corners.end() && found->point == point;
 }
 
-bool is_lone_point(const Obstacle& obstacle, int corner)
+bool is_tip(const Obstacle& obstacle, int corner)
 {
-    const FeatureCorner& feature = obstacle.features().corners[corner];
-    return feature.normals.empty() && obstacle.topology().edge_count_at(feature.point) == 0;
+    return obstacle.features().corners[corner].normals.empty();
 }
 
 std::vector<FeatureNode> find_feature_nodes(const Obstacle& obstacle)

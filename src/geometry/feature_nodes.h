@@ -19,8 +19,9 @@ struct FeatureNode {
 
 bool is_corner(const ObstacleFeatures& features, int point);
 
-/// Whether a corner (index in features().corners) is a point with no face and no wire, as the tip of a nail.
-bool is_lone_point(const Obstacle& obstacle, int corner);
+/// Whether a corner (index in features().corners) has no face: the tip of a nail, an end of a wire, or where
+/// wires turn sharply or meet. Cloth on it is a cone around it.
+bool is_tip(const Obstacle& obstacle, int corner);
 
 /// Ascending by point. Linear in the features but for a sort.
 std::vector<FeatureNode> find_feature_nodes(const Obstacle& obstacle);

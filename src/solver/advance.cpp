@@ -57,6 +57,8 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
             // What was no step for the one mesh may be one for the other.
             parts = std::max(parts / shrink, 1);
             shrink = 1;
+        } else if (work.failed.may_staying_help()) {
+            continue;
         } else if (report.status == StepStatus::EnergyRise && work.prediction.has_history) {
             restart(state);
         } else if (work.failed.may_mesh_help()) {

@@ -4,25 +4,29 @@
 namespace arris {
 
 void FailedAttempts::note(const StepReport& report, Attempt attempt, const State& state, const State& start,
-                          const std::vector<Overrun>& overrun, const std::vector<int>& pinched)
+                          const Failure& failure)
 {
+    const bool is_staying = is_staying_;
     if (report.status == StepStatus::Done) {
         if (!has_given_up_all_) forget();
+        is_staying_ = is_staying;
         return;
     }
+    is_staying_ = is_staying || (report.status == StepStatus::EnergyRise && failure.has_turned);
+    may_staying_help_ = is_staying_ && !is_staying;
     const bool is_last = attempt == Attempt::Last;
     if (report.status == StepStatus::Overrun) {
         ++overruns_;
-        for (const auto& [v, flow] : overrun) {
+        for (const auto& [v, flow] : failure.overrun) {
             flow_.flow[start.ids[v]] = flow;
             if (overruns_ > 2) flow_.given_up.insert(start.ids[v]);
         }
         may_mesh_help_ = overruns_ <= kMostOverruns + 1 && (overruns_ != 2 || is_last);
     } else {
         // A shorter step would find them in the same place: they are ordinary vertices first.
-        const bool is_pinched = !pinched.empty() && pinched_++ < kMostPinched;
+        const bool is_pinched = !failure.pinched.empty() && pinched_++ < kMostPinched;
         if (is_pinched)
-            for (const int v : pinched) flow_.given_up.insert(start.ids[v]);
+            for (const int v : failure.pinched) flow_.given_up.insert(start.ids[v]);
         may_mesh_help_ = is_pinched || (is_last && !start.eol.empty());
     }
     if (report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite) ++unsolved_;

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/feature_sites.h"
-
 namespace arris {
 
 namespace {
@@ -15,9 +13,7 @@ namespace {
 Vec3 tangent_of(const Scene& scene, const State& state, const EolVertex& eol)
 {
     const Obstacle& obstacle = scene.obstacles[eol.obstacle];
-    if (eol.is_corner) return Vec3::Zero();
-    const auto [a, b] = feature_segment(obstacle, eol.feature);
-    return obstacle.at(state.time).rotation * (b - a).normalized();
+    return obstacle.at(state.time).rotation * feature_tangent(obstacle, eol);
 }
 
 bool is_cloth_corner(const State& state, const ClothStars& stars, int v)
@@ -47,7 +43,7 @@ double room_to_border(const Scene& scene, const State& state, const ClothStars& 
             for (const int next : stars.border_neighbours[w]) {
                 const Vec3 way = (state.mesh.world[next] - state.mesh.world[w]).normalized();
                 constexpr double kAlong = 0.7;  // cosine
-                if (!eol.is_corner && !(std::abs(way.dot(tangent)) > kAlong)) continue;
+                if (!is_fixed(eol) && !(std::abs(way.dot(tangent)) > kAlong)) continue;
                 const Vec2 &a = state.mesh.material[w], &b = state.mesh.material[next];
                 const double s = std::clamp((X - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
                 least = std::min(least, (X - a - s * (b - a)).norm());

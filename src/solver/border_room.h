@@ -8,7 +8,7 @@
 namespace arris {
 
 /// How far, m, material point X near vertex v is from where a trace leaves the cloth: on the border from its
-/// corners, else from borders that run along the trace; a corner of the obstacle from any. Infinite where
+/// corners, else from borders that run along the trace; what is held at a point from any. Infinite where
 /// there is none among the faces at v. Of `eol` the feature counts.
 double room_to_border(const Scene& scene, const State& state, const ClothStars& stars, const Vec2& X, int v,
                       bool is_on_border, const EolVertex& eol);

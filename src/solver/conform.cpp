@@ -24,7 +24,7 @@ namespace {
 // no more than that also where the flow gets faster, or those beside it do.
 constexpr double kClearSteps = 4.0;
 
-// Of a lone point's these must be. There is no trace that would carry the cloth on, and what stands in the
+// Of a tip's these must be. There is no trace that would carry the cloth on, and what stands in the
 // way of a point is a pleat, which takes the less strain to merge the nearer it is.
 constexpr double kPointSteps = 2.0;
 
@@ -102,7 +102,7 @@ class Conforming {
         std::vector<TraceAdvance> advances;
         for (const EolVertex& e : trace_.eol()) {
             if (!trace_.is_on_trace(e.vertex_id)) continue;
-            const bool is_point = e.is_corner && is_lone_point(scene_.obstacles[e.obstacle], e.feature);
+            const bool is_point = e.is_corner && is_tip(scene_.obstacles[e.obstacle], e.feature);
             advances.push_back(
                 {e.vertex_id, soon_ * trace_.flow(e.vertex_id), is_point ? kPointSteps / kClearSteps : 1.0});
         }

@@ -161,6 +161,21 @@ void shift_along(const std::vector<EolCoordinates>& eol, const Contact& contact,
     material[at.vertex] += amount * (at.material_basis * at.opening);
 }
 
+/// Of the obstacle's mesh, where a vertex is on a corner; else -1.
+int corner_of(const Obstacle& obstacle, const EolVertex& eol)
+{
+    return eol.is_corner ? obstacle.features().corners[eol.feature].point : -1;
+}
+
+/// On a wire or at its end.
+bool is_on_wire(const Obstacle& obstacle, const EolVertex& eol)
+{
+    if (!eol.is_corner) return obstacle.features().edges[eol.feature].kind == FeatureKind::Wire;
+    const ObstacleTopology& topology = obstacle.topology();
+    const int point = corner_of(obstacle, eol);
+    return topology.edge_count_at(point) > 0 && topology.edges[topology.edge_at(point, 0)].faces[0] < 0;
+}
+
 /// Whether a wire's contact with cloth that is joined to a vertex on it is beside that vertex.
 bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, const Vec3& place,
                double thickness, const ObstacleContact& contact)
@@ -169,11 +184,15 @@ bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordina
     const ObstacleFeatures& features = obstacle.features();
     const double height = std::max((place - at.frame.point).norm(), thickness);
     if ((contact.point - at.frame.point).norm() > kReach * height) return false;
+    const int corner = corner_of(obstacle, eol);
     const auto is_of_wire = [&](int edge) {
+        const auto& ends = obstacle.topology().edges[edge].points;
+        if (eol.is_corner) return ends[0] == corner || ends[1] == corner;
         const int feature = feature_of_edge(features, edge);
         return feature >= 0 && features.edges[feature].polyline == features.edges[eol.feature].polyline;
     };
     if (contact.kind == ContactKind::Edge) return is_of_wire(contact.element);
+    if (eol.is_corner) return contact.element == corner;
     const ObstacleTopology& topology = obstacle.topology();
     return !is_corner(features, contact.element) && topology.edge_count_at(contact.element) > 0 &&
            is_of_wire(topology.edge_at(contact.element, 0));
@@ -196,9 +215,8 @@ bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordin
                 double thickness, const ObstacleContact& contact)
 {
     const ObstacleFeatures& features = obstacle.features();
-    const int corner = eol.is_corner ? features.corners[eol.feature].point : -1;
-    if (contact.kind != ContactKind::Vertex && !eol.is_corner &&
-        features.edges[eol.feature].kind == FeatureKind::Wire)
+    const int corner = corner_of(obstacle, eol);
+    if (contact.kind != ContactKind::Vertex && is_on_wire(obstacle, eol))
         return is_beside(obstacle, eol, at, place, thickness, contact);
     if (contact.kind == ContactKind::Triangle) return contact.element == corner;
     if (contact.kind == ContactKind::Vertex)
@@ -330,7 +348,7 @@ std::vector<Contact> find_contacts(const Scene& scene, const State& state, const
 }
 
 std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& state, const ClothStars& stars,
-                                             const Prediction& prediction,
+                                             const Prediction& prediction, double turning,
                                              const std::vector<ObstacleStep>& steps,
                                              std::vector<Contact>& contacts)
 {
@@ -340,7 +358,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
         const int o = state.eol[entry].obstacle;
         const EolPlacing placing = place_eol_vertex(scene.obstacles[o], thickness, state, entry, stars,
-                                                    steps[o].motion.begin, steps[o].end, prediction.gamma);
+                                                    steps[o].motion.begin, steps[o].end, turning);
         if (!placing.coordinates) continue;
         slot[placing.coordinates->vertex] = static_cast<int>(eol.size());
         eol.push_back(*placing.coordinates);

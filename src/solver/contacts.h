@@ -51,9 +51,10 @@ std::vector<Contact> find_contacts(const Scene& scene, const State& state, const
 
 /// The coordinates of the state's EOL vertices, whose own contact is the bound on their first: those that
 /// the search found of them with the feature they are on are dropped, and the bounds are appended. Nothing
-/// for a vertex that can have no coordinates any more: it is then like any other.
+/// for a vertex that can have no coordinates any more: it is then like any other. For `turning` (s) vertices
+/// go round wires and tips with the cloth.
 std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& state, const ClothStars& stars,
-                                             const Prediction& prediction,
+                                             const Prediction& prediction, double turning,
                                              const std::vector<ObstacleStep>& steps,
                                              std::vector<Contact>& contacts);
 

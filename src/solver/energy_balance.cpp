@@ -121,23 +121,6 @@ double round_off_energy(const Scene& scene, const State& state, const ClothEleme
     return scene.material.youngs_modulus * area * kRoundOff * kRoundOff * far * far / squared_length;
 }
 
-/// J, that was in motion at the step's start, or changed kind in it.
-double energy_at_stake(const Workspace& work)
-{
-    constexpr double kRoundOff = 1e-9;  // of the energies themselves, which are sums over all elements
-    const ClothEnergy& before = work.energy;
-    const ClothEnergy& after = work.solved_energy;
-    double exchanged = 0.0, size = 0.0;
-    for (const auto& [a, b] : {std::pair(before.kinetic, after.kinetic),
-                               std::pair(before.potential.gravity, after.potential.gravity),
-                               std::pair(before.potential.stretch, after.potential.stretch),
-                               std::pair(before.potential.bending, after.potential.bending)}) {
-        exchanged += std::abs(b - a);
-        size += std::abs(a) + std::abs(b);
-    }
-    return before.kinetic + exchanged + kRoundOff * size;
-}
-
 }  // namespace
 
 ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, const MovingCloth& cloth)
@@ -159,6 +142,22 @@ double compute_driven_work(const State& state, const Workspace& work)
     return work_of_pins(state, work) + work_of_obstacles(state, work) +
            compute_load_work(state.mesh, work.elements, work.terms, work.at, work.proposal.velocity,
                              displacement);
+}
+
+double energy_at_stake(const Workspace& work)
+{
+    constexpr double kRoundOff = 1e-9;  // of the energies themselves, which are sums over all elements
+    const ClothEnergy& before = work.energy;
+    const ClothEnergy& after = work.solved_energy;
+    double exchanged = 0.0, size = 0.0;
+    for (const auto& [a, b] : {std::pair(before.kinetic, after.kinetic),
+                               std::pair(before.potential.gravity, after.potential.gravity),
+                               std::pair(before.potential.stretch, after.potential.stretch),
+                               std::pair(before.potential.bending, after.potential.bending)}) {
+        exchanged += std::abs(b - a);
+        size += std::abs(a) + std::abs(b);
+    }
+    return before.kinetic + exchanged + kRoundOff * size;
 }
 
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work)

@@ -41,6 +41,9 @@ void weigh_start(const Scene& scene, const State& state, Workspace& work);
 /// `work.solved_energy` and `work.proposed_energy` of a proposal after `dt` (s).
 void weigh_proposal(const Scene& scene, double dt, Workspace& work);
 
+/// J, of the cloth of a weighed proposal: what was in motion at the step's start, or changed kind in it.
+double energy_at_stake(const Workspace& work);
+
 /// By how much, J, the proposal in `work`, before anything was moved out to its stand-off, raises the cloth's
 /// energy beyond the work that drives it, where that is more than a step may; else 0. Weigh it first.
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work);

@@ -147,15 +147,6 @@ std::optional<Vec2> find_border(const State& state, const ClothStars& stars, int
     return before.dot(after) < kStraight ? Vec2(Vec2::Zero()) : Vec2((before + after).normalized());
 }
 
-/// Of the feature through the vertex; zero on a corner.
-Vec3 tangent_of(const Obstacle& obstacle, const EolVertex& eol)
-{
-    if (eol.is_corner) return Vec3::Zero();
-    if (eol.turn >= 0) return tangent_at(obstacle, {eol.feature, eol.turn});
-    const auto& ends = obstacle.topology().edges[obstacle.features().edges[eol.feature].edge].points;
-    return (obstacle.mesh().points[ends[1]] - obstacle.mesh().points[ends[0]]).normalized();
-}
-
 std::optional<FeatureFrame> find_frame(const Obstacle& obstacle, const EolVertex& eol, const Vec3& place,
                                        const ClothAround& around)
 {
@@ -204,7 +195,7 @@ ArrivingCloth find_arriving(const Sides& sides, const Vec2& trace, const Vec2& f
     return {is_left ? sides.left : sides.right, flow.norm()};
 }
 
-/// Outward from a lone point is where the cone of the cloth around the vertex has its point, and the vertex
+/// Outward from a tip is where the cone of the cloth around the vertex has its point, and the vertex
 /// goes round the point with it: held where it was, cloth that hangs ever steeper would come to the point.
 /// Not where it has left the point: carried across cloth that flies it would do work on that.
 void turn_with_cone(const Star& star, double thickness, double dt, FeatureFrame& frame, Vec3& place)
@@ -258,6 +249,14 @@ EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)
 bool is_fixed(const EolVertex& eol)
 {
     return eol.is_corner || eol.turn >= 0;
+}
+
+Vec3 feature_tangent(const Obstacle& obstacle, const EolVertex& eol)
+{
+    if (eol.is_corner) return Vec3::Zero();
+    if (eol.turn >= 0) return tangent_at(obstacle, {eol.feature, eol.turn});
+    const auto& ends = obstacle.topology().edges[obstacle.features().edges[eol.feature].edge].points;
+    return (obstacle.mesh().points[ends[1]] - obstacle.mesh().points[ends[0]]).normalized();
 }
 
 bool is_on_convex_edge(const Obstacle& obstacle, const EolVertex& eol)
@@ -364,7 +363,7 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     if (border && border->isZero()) return {std::nullopt, EolRefusal::ClothCorner};
     if (border && is_fixed(eol)) return {std::nullopt, EolRefusal::AlongBorder};
 
-    const Vec3 tangent = tangent_of(obstacle, eol);
+    const Vec3 tangent = feature_tangent(obstacle, eol);
     const Star star = look_around(state, stars.faces[v], v, positions);
     Vec2 trace = Vec2::Zero();
     if (!eol.is_corner)
@@ -389,7 +388,7 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
                       Mat23::Zero(),
                       find_side(around, eol, frame->outward),
                       Vec3::UnitX()};
-    if (eol.is_corner && is_lone_point(obstacle, eol.feature))
+    if (eol.is_corner && is_tip(obstacle, eol.feature))
         turn_with_cone(star, thickness, dt, at.frame, at.carried);
     turn_with_cloth(obstacle, thickness, state, entry, v, stars.faces[v], positions, dt, at.frame,
                     at.carried);

@@ -70,6 +70,9 @@ std::vector<EolPlacing> place_eol_vertices(const std::vector<Obstacle>& obstacle
 /// wire turns.
 bool is_fixed(const EolVertex& eol);
 
+/// Unit, of the feature that the vertex is on, in the obstacle's frame; zero on a corner.
+Vec3 feature_tangent(const Obstacle& obstacle, const EolVertex& eol);
+
 bool is_on_convex_edge(const Obstacle& obstacle, const EolVertex& eol);
 
 /// An EOL vertex and where it is in its obstacle's frame.

@@ -289,18 +289,11 @@ class SiteFinder {
         return s;
     }
 
-    /// Where wires turn, meet or end: no one plane parts the cloth's sides there.
-    bool is_of_wires(int point) const
-    {
-        const ObstacleTopology& topology = obstacle_.topology();
-        return topology.edge_count_at(point) > 0 && topology.edges[topology.edge_at(point, 0)].faces[0] < 0;
-    }
-
     std::optional<FeatureSite> in_face(const std::array<int, 3>& v, const ActiveContact& contact) const
     {
         if (const auto turn = find_held_turn(contact.element, v[0])) return at_turn(*turn, v, contact.normal);
         const int corner = corner_at(obstacle_, contact.element);
-        if (corner < 0 || v[2] < 0 || is_of_wires(contact.element)) return std::nullopt;
+        if (corner < 0 || v[2] < 0) return std::nullopt;
         const Vec3 &a = positions_[v[0]], &b = positions_[v[1]], &c = positions_[v[2]];
         const PointOnTriangle closest = closest_on_triangle(obstacle_.mesh().points[contact.element],
                                                             {a, b, c}, (b - a).cross(c - a).normalized());
@@ -311,11 +304,11 @@ class SiteFinder {
         return make_site(true, corner, X, v[heaviest - closest.weights.begin()], contact.normal);
     }
 
-    /// A vertex of the face that is on a lone point as it is. Cloth around one that was let go has the point
+    /// A vertex of the face that is on a tip as it is. Cloth around one that was let go has the tip
     /// inside, and touches it with several faces: a vertex in one of them would be beside the others.
     std::optional<FeatureSite> at_corner_of(const std::array<int, 3>& v, int corner) const
     {
-        if (!is_lone_point(obstacle_, corner)) return std::nullopt;
+        if (!is_tip(obstacle_, corner)) return std::nullopt;
         const Vec3& point = obstacle_.mesh().points[obstacle_.features().corners[corner].point];
         const auto distance = [&](int w) { return (positions_[w] - point).norm(); };
         const int nearest =
@@ -350,7 +343,6 @@ class SiteFinder {
         obstacle_.find_corners(box, found);
         for (const int c : found) {
             const int point = obstacle_.features().corners[c].point;
-            if (is_of_wires(point)) continue;
             const Vec3 from = place - obstacle_.mesh().points[point];
             if (from.norm() <= reach && is_in_point_cone(obstacle_, point, from.normalized()))
                 return make_site(true, c, state_.mesh.material[v], v, normal);

@@ -41,7 +41,8 @@ std::optional<RowCause> SiteAdmission::find_border_cause(const FeatureSite& site
                                                          const Vec2& flow) const
 {
     const double h = scene_.eol->length(site.material);
-    const EolVertex eol{site.near, site.obstacle, site.is_corner, site.feature, site.outward, 0};
+    EolVertex eol{site.near, site.obstacle, site.is_corner, site.feature, site.outward, 0};
+    eol.turn = site.turn;
     if (site.is_on_border && site.turn >= 0) return RowCause::NearBorder;
     if (site.is_on_border && !site.is_corner && is_along_border(scene_, state_, stars_, site.edge, eol))
         return RowCause::AlongBorder;
@@ -49,7 +50,7 @@ std::optional<RowCause> SiteAdmission::find_border_cause(const FeatureSite& site
         return room_to_border(scene_, state_, stars_, X, v, site.is_on_border, eol);
     };
     const double room = room_at(site.material);
-    if (room < (site.is_corner ? kCornerInsertRoom : kInsertRoom) * h) return RowCause::NearBorder;
+    if (room < (is_fixed(eol) ? kCornerInsertRoom : kInsertRoom) * h) return RowCause::NearBorder;
     // What comes fast would have to go at once.
     constexpr double kAside = 1e-3;  // of the target length: to see how fast the room closes
     const Vec2 aside = kAside * h * flow.stableNormalized();

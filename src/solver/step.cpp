@@ -9,6 +9,7 @@
 #include "solver/energy_balance.h"
 #include "solver/feature_census.h"
 #include "solver/material_flow.h"
+#include "solver/pinched_vertices.h"
 #include "solver/relinearization.h"
 #include "solver/step_mesh.h"
 #include "solver/stopwatch.h"
@@ -39,8 +40,11 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
 {
     work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
     work.eol.clear();
-    if (!state.eol.empty())
-        work.eol = add_eol_contacts(scene, state, work.stars, work.prediction, work.obstacles, work.contacts);
+    if (!state.eol.empty()) {
+        const double turning = work.failed.may_turn() ? work.prediction.gamma : 0.0;
+        work.eol = add_eol_contacts(scene, state, work.stars, work.prediction, turning, work.obstacles,
+                                    work.contacts);
+    }
     weigh_start(scene, state, work);
     const std::optional<int> crushed = share_room(work.obstacles, work.prediction, work.contacts).crushed;
     flatten_history(scene, state, work.obstacles, work.eol, 0, work.contacts, work.prediction);
@@ -137,20 +141,6 @@ std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
     return named;
 }
 
-/// EOL vertices of contacts that nothing could meet: they move in a plane or on a line only.
-std::vector<int> find_pinched(const State& state, const Workspace& work, const StepReport& report)
-{
-    std::vector<int> pinched;
-    if (report.status != StepStatus::Infeasible) return pinched;
-    for (const int row : work.solution.infeasible_rows)
-        for (const Contact& contact : work.contacts) {
-            if (contact.row != row) continue;
-            for (const int v : contact.in_frame.vertices)
-                if (v >= 0 && state.eol_entry(state.ids[v]) >= 0) pinched.push_back(v);
-        }
-    return pinched;
-}
-
 /// Contacts that cannot be met together keep less, in a new system; false where none can. The impulses of
 /// a solution that meets them as well as it can are no contact forces: it is not used.
 bool yield_infeasible(const Scene& scene, Workspace& work)
@@ -165,6 +155,15 @@ bool yield_infeasible(const Scene& scene, Workspace& work)
     }
     work.has_system = work.has_system && !is_changed;
     return is_changed;
+}
+
+/// Whether an EOL vertex goes round its wire or tip.
+bool has_turned(const Workspace& work, const State& state)
+{
+    return std::any_of(work.eol.begin(), work.eol.end(), [&](const EolCoordinates& eol) {
+        const ObstacleStep& step = work.obstacles[state.eol[eol.entry].obstacle];
+        return eol.carried != step.end(step.motion.begin[eol.vertex]);
+    });
 }
 
 /// Rounds have run out, or the check names nothing that a row could mend.
@@ -248,6 +247,10 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
     const Violations violations = propose_and_check(scene, end - state.time, growth, work);
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
+    if (is_done && !find_squeezed_vertices(work).empty()) {
+        report.status = StepStatus::Infeasible;
+        return false;
+    }
     if (is_done && keep_energy(scene, state, attempt, report.solves < kMostSolves, work, report)) return true;
     const bool is_again = !is_done && report.status == StepStatus::Done && report.solves < kMostSolves &&
                           add_violations(scene, state, violations, work);
@@ -361,7 +364,7 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
 
     // 3. What the cloth may touch: vertices, edges and faces; nothing can move where it has no room.
     if (!find_contacts(scene, start, work, report)) {
-        work.failed.note(report, attempt, state, start, {}, {});
+        work.failed.note(report, attempt, state, start, {});
         return report;
     }
     report.seconds.contacts += watch.lap();
@@ -374,7 +377,8 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     } while (report.status != StepStatus::Done && fall_back(work, report));
     watch.lap();
 
-    work.failed.note(report, attempt, state, start, work.overrun, find_pinched(start, work, report));
+    work.failed.note(report, attempt, state, start,
+                     {work.overrun, find_pinched_vertices(start, work, report), has_turned(work, start)});
 
     // 7. Swapped in, or the state stays as it was.
     commit(scene, end, work, start, report);

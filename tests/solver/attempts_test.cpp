@@ -27,7 +27,7 @@ TEST(FailedAttempts, WhatOverrunsIsClearedThenShortenedThenGivenUpOneByOneThenAl
     FailedAttempts failed;
     const std::vector<Overrun> overrun = {{2, {1.0, 0.0}}};
     const auto fail = [&] {
-        failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, overrun, {});
+        failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, {overrun});
     };
     fail();
     EXPECT_TRUE(failed.may_mesh_help());
@@ -53,18 +53,18 @@ TEST(FailedAttempts, WhereNoShorterStepIsLeftAnotherMeshIsTried)
     const State state = state_with_eol({1, 2});
     FailedAttempts failed;
     for (int k = 0; k <= FailedAttempts::kMostOverruns; ++k) {
-        failed.note(with(StepStatus::Overrun), Attempt::Last, state, state, {{1, {1.0, 0.0}}}, {});
+        failed.note(with(StepStatus::Overrun), Attempt::Last, state, state, {{{1, {1.0, 0.0}}}});
         EXPECT_TRUE(failed.may_mesh_help()) << k;
     }
     EXPECT_EQ(failed.flow().given_up.size(), 2u);
     for (const StepStatus status :
          {StepStatus::NotConverged, StepStatus::NotFinite, StepStatus::Penetration, StepStatus::Infeasible}) {
         FailedAttempts other;
-        other.note(with(status), Attempt::Last, state, state, {}, {});
+        other.note(with(status), Attempt::Last, state, state, {});
         EXPECT_TRUE(other.may_mesh_help());
         EXPECT_EQ(other.flow().given_up.size(), 2u);
         const State none = state_with_eol({});
-        other.note(with(status), Attempt::Last, none, none, {}, {});
+        other.note(with(status), Attempt::Last, none, none, {});
         EXPECT_FALSE(other.may_mesh_help());  // all are gone, and it still fails
     }
 }
@@ -73,12 +73,12 @@ TEST(FailedAttempts, WhatAllWasGivenUpForStaysSoForTheRestOfTheStep)
 {
     const State state = state_with_eol({1, 2});
     FailedAttempts failed;
-    failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, {{1, {1.0, 0.0}}}, {});
-    failed.note(with(StepStatus::Done), Attempt::Ordinary, state, state, {}, {});
+    failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, {{{1, {1.0, 0.0}}}});
+    failed.note(with(StepStatus::Done), Attempt::Ordinary, state, state, {});
     EXPECT_TRUE(failed.flow().empty());
     EXPECT_FALSE(failed.has_given_up_all());
-    failed.note(with(StepStatus::EnergyRise), Attempt::Last, state, state, {}, {});
-    failed.note(with(StepStatus::Done), Attempt::Ordinary, state, state, {}, {});
+    failed.note(with(StepStatus::EnergyRise), Attempt::Last, state, state, {});
+    failed.note(with(StepStatus::Done), Attempt::Ordinary, state, state, {});
     EXPECT_TRUE(failed.has_given_up_all());
     EXPECT_EQ(failed.flow().given_up.size(), 2u);
     failed.forget();
@@ -91,14 +91,14 @@ TEST(FailedAttempts, WhatContactsPinchIsGivenUpBeforeAShorterStepIsTried)
     const State state = state_with_eol({1, 2, 3});
     FailedAttempts failed;
     for (int k = 0; k < FailedAttempts::kMostPinched; ++k) {
-        failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {}, {2});
+        failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {{}, {2}});
         EXPECT_TRUE(failed.may_mesh_help()) << k;
         EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{2}));
     }
-    failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {}, {2});
+    failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {{}, {2}});
     EXPECT_FALSE(failed.may_mesh_help());  // bounded
     failed.forget();
-    failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {}, {});
+    failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {});
     EXPECT_FALSE(failed.may_mesh_help());  // rows alone: no mesh is better
     EXPECT_TRUE(failed.flow().given_up.empty());
 }
@@ -107,10 +107,10 @@ TEST(FailedAttempts, OfStateAndOfWhatConformMadeOfItAllAreGivenUp)
 {
     const State state = state_with_eol({1, 2}), start = state_with_eol({2, 4});
     FailedAttempts failed;
-    failed.note(with(StepStatus::NotConverged), Attempt::Ordinary, state, start, {}, {});
+    failed.note(with(StepStatus::NotConverged), Attempt::Ordinary, state, start, {});
     EXPECT_FALSE(failed.may_mesh_help());
     EXPECT_TRUE(failed.flow().empty());
-    failed.note(with(StepStatus::NotFinite), Attempt::Ordinary, state, start, {}, {});
+    failed.note(with(StepStatus::NotFinite), Attempt::Ordinary, state, start, {});
     EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{1, 2, 4}));
 }
 
@@ -118,10 +118,36 @@ TEST(FailedAttempts, AStepThatIsDoneForgets)
 {
     const State state = state_with_eol({1});
     FailedAttempts failed;
-    failed.note(with(StepStatus::Overrun), Attempt::Last, state, state, {{1, {1.0, 0.0}}}, {});
-    failed.note(with(StepStatus::Done), Attempt::Last, state, state, {}, {});
+    failed.note(with(StepStatus::Overrun), Attempt::Last, state, state, {{{1, {1.0, 0.0}}}});
+    failed.note(with(StepStatus::Done), Attempt::Last, state, state, {});
     EXPECT_FALSE(failed.may_mesh_help());
     EXPECT_TRUE(failed.flow().empty());
+}
+
+// Going round a wire with the cloth is no step of the equations: where that pushes energy in, it is left, for
+// as long as the step that was planned takes.
+TEST(FailedAttempts, WhereTurningRaisesTheEnergyVerticesStay)
+{
+    const State state = state_with_eol({1});
+    const auto fail = [&](FailedAttempts& failed, StepStatus status, bool has_turned) {
+        failed.note(with(status), Attempt::Ordinary, state, state, {{}, {}, has_turned});
+    };
+    FailedAttempts failed;
+    EXPECT_TRUE(failed.may_turn());
+    fail(failed, StepStatus::EnergyRise, false);
+    EXPECT_FALSE(failed.may_staying_help());
+    EXPECT_TRUE(failed.may_turn());
+    fail(failed, StepStatus::EnergyRise, true);
+    EXPECT_TRUE(failed.may_staying_help());
+    EXPECT_FALSE(failed.may_turn());
+    fail(failed, StepStatus::EnergyRise, false);
+    EXPECT_FALSE(failed.may_staying_help());  // once
+    fail(failed, StepStatus::Done, false);
+    EXPECT_FALSE(failed.may_turn());  // nor in the rest of it
+    failed.forget();
+    EXPECT_TRUE(failed.may_turn());
+    fail(failed, StepStatus::NotConverged, true);
+    EXPECT_TRUE(failed.may_turn());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/contact_plane.h"
 #include "geometry/obstacle_shapes.h"
 #include "tests/solver/eol_cloth.h"
 #include "tests/solver/floor.h"
@@ -242,9 +243,10 @@ TEST(EolContacts, WhatIsOnItsWayOutIsNotHeldToItsSpeed)
         std::vector<ObstacleStep> steps =
             move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
         std::vector<Contact> contacts = find_contacts(cloth.scene, cloth.state, prediction, steps);
-        ASSERT_EQ(
-            add_eol_contacts(cloth.scene, cloth.state, cloth.stars(), prediction, steps, contacts).size(),
-            1u);
+        ASSERT_EQ(add_eol_contacts(cloth.scene, cloth.state, cloth.stars(), prediction, prediction.gamma,
+                                   steps, contacts)
+                      .size(),
+                  1u);
         const auto bound = std::find_if(contacts.begin(), contacts.end(),
                                         [](const Contact& contact) { return contact.eol == 0; });
         ASSERT_NE(bound, contacts.end());
@@ -276,11 +278,41 @@ TEST(EolContacts, GoAlongWithAVertexThatSlidesAlongItsFeature)
         std::vector<ObstacleStep> steps =
             move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
         std::vector<Contact> contacts = find_contacts(cloth.scene, cloth.state, prediction, steps);
-        add_eol_contacts(cloth.scene, cloth.state, cloth.stars(), prediction, steps, contacts);
+        add_eol_contacts(cloth.scene, cloth.state, cloth.stars(), prediction, prediction.gamma, steps,
+                         contacts);
         for (const Contact& contact : contacts)
             EXPECT_TRUE(contact.eol >= 0 || !contact.is_vertex() ||
                         cloth.state.eol_entry(cloth.state.ids[contact.in_frame.vertices[0]]) < 0)
                 << (is_wire ? "wire" : "ridge") << ", at " << contact.in_frame.point.y();
+    }
+}
+
+TEST(EolContacts, OnAWiresEndCoverItsShaftOnlyNearby)
+{
+    // Cloth that hangs from the wire's end and swings against the wire far below it: that is a row of its
+    // own.
+    for (const double below : {0.005, 0.1}) {
+        testing::EolCloth cloth(
+            Obstacle("needle", make_wire({Vec3::Zero(), {0.0, 0.0, -1.0}}, false), {}, {}, 30.0),
+            testing::make_draped({8, 0.0, 20.0}));
+        State& state = cloth.state;
+        const int v = cloth.vertex_at(0.2, 0.2);
+        state.mesh.world[v].z() = testing::kThickness;
+        cloth.add_eol(v, true, 0);
+        const Prediction prediction = predict(state, Integrator::Bdf2, 0.005);
+        const std::vector<MeshEdge> edges = testing::edges_of(state);
+        std::vector<ObstacleStep> steps = move_obstacles(cloth.scene, state, edges, prediction, {}, 0.005);
+        const int w = state.mesh.faces[cloth.stars().faces[v].front()][0] == v
+                          ? state.mesh.faces[cloth.stars().faces[v].front()][1]
+                          : state.mesh.faces[cloth.stars().faces[v].front()][0];
+        const ObstacleContact at_shaft =
+            make_contact(ContactKind::Edge, {{std::min(v, w), std::max(v, w), -1}, {0.5, 0.5, 0.0}}, 0,
+                         Vec3::UnitX(), Vec3(0.0, 0.0, -below), testing::kThickness);
+        std::vector<Contact> contacts = {place_contact(at_shaft, 0, steps[0], prediction)};
+        ASSERT_EQ(
+            add_eol_contacts(cloth.scene, state, cloth.stars(), prediction, 0.0, steps, contacts).size(), 1u);
+        const auto is_row = [](const Contact& contact) { return !contact.is_vertex(); };
+        EXPECT_EQ(std::any_of(contacts.begin(), contacts.end(), is_row), below > 0.01) << below;
     }
 }
 

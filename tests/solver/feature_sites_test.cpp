@@ -164,28 +164,42 @@ TEST(FeatureSites, AreAtAVertexThatIsAllButInThePlaneWhereTheClothEndsThere)
     }
 }
 
-TEST(FeatureSites, OnANailIsAVertexThatIsOnItAlreadyWhateverFaceOfItPresses)
+/// Of which a corner is the origin, its first point.
+std::vector<ObstacleMesh> make_tips()
+{
+    const Vec3 tip = Vec3::Zero();
+    ObstacleMesh star = make_wire({tip, {0.4, 0.0, -0.3}}, false);  // wires that meet
+    for (const Vec3& end : {Vec3(-0.2, 0.3, -0.3), Vec3(-0.2, -0.3, -0.3)}) {
+        star.segments.push_back({0, static_cast<int>(star.points.size())});
+        star.points.push_back(end);
+    }
+    return {make_points({tip}), make_wire({tip, {0.0, 0.0, -1.0}}, false),
+            make_wire({tip, {0.4, 0.0, -0.4}, {0.0, 0.0, -0.8}, {-0.4, 0.0, -0.4}}, true), star};
+}
+
+TEST(FeatureSites, OnATipIsAVertexThatIsOnItAlreadyWhateverFaceOfItPresses)
 {
     // A vertex a thickness above the tip, or farther, and each face around it.
-    for (const double height : {0.2, 1.0, 2.4, 2.6}) {
-        EolCloth cloth(Obstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0),
-                       testing::make_draped({8, 0.0, 180.0}));
-        for (Vec3& x : cloth.state.mesh.world) x.z() = height * kThickness - 0.5 * std::hypot(x.x(), x.y());
-        const int v = cloth.vertex_at(0.2, 0.2);
-        const ClothStars stars = cloth.stars();
-        for (const int f : stars.faces[v]) {
-            std::array<std::uint32_t, 3> ids;
-            for (int k = 0; k < 3; ++k) ids[k] = cloth.state.ids[cloth.state.mesh.faces[f][k]];
-            std::sort(ids.begin(), ids.end());
-            cloth.state.active = {{ids, ContactKind::Triangle, 0, 0, Vec3::UnitZ(), 1e-6}};
-            const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, cloth.state, stars);
-            ASSERT_EQ(sites.size(), 1u);
-            EXPECT_TRUE(sites[0].is_corner);
-            EXPECT_EQ(sites[0].contact, 0);
-            EXPECT_EQ(sites[0].near, cloth.state.ids[v]);
-            EXPECT_EQ(sites[0].material == cloth.state.mesh.material[v], height < kOnFeature) << height;
+    for (const ObstacleMesh& mesh : make_tips())
+        for (const double height : {0.2, 1.0, 2.4, 2.6}) {
+            EolCloth cloth(Obstacle("tip", mesh, {}, {}, 30.0), testing::make_draped({8, 0.0, 180.0}));
+            for (Vec3& x : cloth.state.mesh.world)
+                x.z() = height * kThickness - 0.5 * std::hypot(x.x(), x.y());
+            const int v = cloth.vertex_at(0.2, 0.2);
+            const ClothStars stars = cloth.stars();
+            for (const int f : stars.faces[v]) {
+                std::array<std::uint32_t, 3> ids;
+                for (int k = 0; k < 3; ++k) ids[k] = cloth.state.ids[cloth.state.mesh.faces[f][k]];
+                std::sort(ids.begin(), ids.end());
+                cloth.state.active = {{ids, ContactKind::Triangle, 0, 0, Vec3::UnitZ(), 1e-6}};
+                const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, cloth.state, stars);
+                ASSERT_EQ(sites.size(), 1u);
+                EXPECT_TRUE(sites[0].is_corner);
+                EXPECT_EQ(sites[0].contact, 0);
+                EXPECT_EQ(sites[0].near, cloth.state.ids[v]);
+                EXPECT_EQ(sites[0].material == cloth.state.mesh.material[v], height < kOnFeature) << height;
+            }
         }
-    }
 }
 
 TEST(FeatureSites, AreOnTheNextEdgeWhereOneEndsBetweenItsNearestPointAndThePlane)

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/pinched_vertices.h"
+
+#include <algorithm>
+
+#include "solver/constraints.h"
+#include "solver/energy_balance.h"
+
+namespace arris {
+
+namespace {
+
+/// What all contacts of one EOL vertex do.
+struct Press {
+    double impulse = 0.0;  ///< N s, sum of magnitudes
+    Vec3 net = Vec3::Zero();
+    double work = 0.0;  ///< J, of the obstacles' motion
+};
+
+Press sum_contacts(int vertex, const std::vector<double>& multiplier, const Workspace& work)
+{
+    Press sum;
+    for (std::size_t c = 0; c < work.contacts.size(); ++c) {
+        const Contact& contact = work.contacts[c];
+        const ObstacleContact& local = contact.in_frame;
+        for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
+            if (local.vertices[i] != vertex) continue;
+            const double impulse = local.weights[i] * multiplier[c];
+            const ObstacleStep& step = work.obstacles[contact.obstacle];
+            sum.impulse += impulse;
+            sum.net += impulse * contact.normal;
+            sum.work += impulse * contact.normal.dot(step.end(local.point) - step.begin(local.point)) /
+                        work.prediction.gamma;
+        }
+    }
+    return sum;
+}
+
+/// In contacts that no velocity meets.
+std::vector<int> find_unmet_vertices(const State& state, const Workspace& work)
+{
+    std::vector<int> unmet;
+    for (const int row : work.solution.infeasible_rows)
+        for (const Contact& contact : work.contacts) {
+            if (contact.row != row) continue;
+            for (const int v : contact.in_frame.vertices)
+                if (v >= 0 && state.eol_entry(state.ids[v]) >= 0) unmet.push_back(v);
+        }
+    return unmet;
+}
+
+}  // namespace
+
+std::vector<int> find_squeezed_vertices(const Workspace& work)
+{
+    constexpr double kInVain = 2.0;  // of impulses that add up: faces of a groove of 60 degrees
+    constexpr double kWork = 0.1;    // of the energy at stake
+    std::vector<int> squeezed;
+    const double least = kWork * energy_at_stake(work);
+    if (!(work.solved_energy.sum() - work.energy.sum() > least)) return squeezed;
+    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
+    for (const EolCoordinates& eol : work.eol) {
+        const Press press = sum_contacts(eol.vertex, multiplier, work);
+        if (press.work > least && press.impulse > kInVain * press.net.norm()) squeezed.push_back(eol.vertex);
+    }
+    return squeezed;
+}
+
+std::vector<int> find_pinched_vertices(const State& state, const Workspace& work, const StepReport& report)
+{
+    if (report.status != StepStatus::Infeasible) return {};
+    return work.solution.infeasible_rows.empty() ? find_squeezed_vertices(work)
+                                                 : find_unmet_vertices(state, work);
+}
+
+}  // namespace arris

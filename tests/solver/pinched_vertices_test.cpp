@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/pinched_vertices.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "geometry/contact_plane.h"
+#include "solver/constraints.h"
+
+namespace arris {
+namespace {
+
+/// A solved step of an EOL vertex between two obstacles, whose contacts' normals are `angle` (degrees) apart.
+/// Both press with 1 N s; the first obstacle goes its contact's way by a millimetre, against the second or
+/// with it.
+Workspace make_vise(double angle, bool is_together)
+{
+    Workspace work;
+    work.prediction.gamma = 0.005;
+    const double half = 0.5 * angle * M_PI / 180.0;
+    const std::array<Vec3, 2> normals = {Vec3(std::cos(half), std::sin(half), 0.0),
+                                         Vec3(std::cos(half), -std::sin(half), 0.0)};
+    for (int o = 0; o < 2; ++o) {
+        ObstacleStep step;
+        if (o == 0 || is_together) step.end.translation = 1e-3 * normals[0];
+        work.obstacles.push_back(step);
+        const ObstacleContact in_frame = make_contact(ContactKind::Vertex, {{7, -1, -1}, {1.0, 0.0, 0.0}}, -1,
+                                                      normals[o], Vec3::Zero(), 0.0);
+        Contact contact{in_frame, o, normals[o], 0.0, false};
+        contact.row = o;
+        work.contacts.push_back(contact);
+    }
+    work.solution.row_multipliers = Eigen::VectorXd::Ones(2);
+    const FeatureFrame frame{Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), 1.0};
+    work.eol = {{7, 0, frame, Vec3::Zero(), Mat3::Identity(), Mat23::Zero(), 1, Vec3::UnitX()}};
+    work.energy.kinetic = 1e-3;
+    work.solved_energy.kinetic = 0.2;
+    return work;
+}
+
+TEST(SqueezedVertices, AreThoseWhoseContactsPushAgainstEachOther)
+{
+    EXPECT_EQ(find_squeezed_vertices(make_vise(170.0, false)), std::vector{7});
+    EXPECT_TRUE(find_squeezed_vertices(make_vise(90.0, false)).empty()) << "a groove";
+    EXPECT_TRUE(find_squeezed_vertices(make_vise(170.0, true)).empty()) << "carried by both";
+    Workspace resting = make_vise(170.0, false);
+    resting.solved_energy.kinetic = resting.energy.kinetic;
+    EXPECT_TRUE(find_squeezed_vertices(resting).empty()) << "nothing is gained";
+    Workspace ordinary = make_vise(170.0, false);
+    ordinary.eol.clear();
+    EXPECT_TRUE(find_squeezed_vertices(ordinary).empty()) << "it may slip out";
+}
+
+TEST(PinchedVertices, AreOfAnInfeasibleStepOnly)
+{
+    const Workspace work = make_vise(170.0, false);
+    StepReport report;
+    EXPECT_TRUE(find_pinched_vertices(State(), work, report).empty());
+    report.status = StepStatus::Infeasible;
+    EXPECT_EQ(find_pinched_vertices(State(), work, report), std::vector{7});
+}
+
+}  // namespace
+}  // namespace arris
