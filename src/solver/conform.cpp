@@ -159,7 +159,7 @@ class Conforming {
     std::optional<RowCause> try_insert(const FeatureSite& site)
     {
         const int v = state_.index_of(site.near);
-        const Vec2 flow = find_feature_flow(scene_, state_, stars_, v, site.obstacle);
+        const Vec2 flow = find_feature_flow(scene_, state_, stars_, site);
         if (const std::optional<RowCause> cause = admission_.find_refusal(site, v, flow)) return cause;
         if (site.turn >= 0) {
             const std::optional<VertexId> beside = find_beside(site);

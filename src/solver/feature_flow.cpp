@@ -12,13 +12,25 @@
 
 namespace arris {
 
-Vec2 find_feature_flow(const Scene& scene, const State& state, const ClothStars& stars, int v,
-                       std::int32_t obstacle)
+namespace {
+
+/// What the faces around a vertex tell of how it would be carried: by area.
+struct Carrying {
+    Mat2 squared_F = Mat2::Zero();                             ///< sum A F^T F
+    Eigen::Matrix<double, 2, 3> F_transposed = Mat23::Zero();  ///< sum A F^T
+    Vec2 lag = Vec2::Zero();                                   ///< sum A F^T (v_obs - w)
+
+    Vec2 flow() const { return squared_F.inverse() * lag; }
+    /// The material's direction that F maps nearest to one of the world's.
+    Vec2 direction(const Vec3& along) const { return squared_F.inverse() * (F_transposed * along); }
+};
+
+Carrying look_around(const Scene& scene, const State& state, const ClothStars& stars, int v,
+                     std::int32_t obstacle)
 {
     const std::vector<Vec2>& X = state.mesh.material;
     const std::vector<Vec3>& x = state.mesh.world;
-    Mat2 squared = Mat2::Zero();
-    Vec2 sum = Vec2::Zero();
+    Carrying carrying;
     for (const int f : stars.faces[v]) {
         const auto& [a, b, c] = state.mesh.faces[f];
         const Mat32 F = deformation_gradient({X[a], X[b], X[c]}, {x[a], x[b], x[c]});
@@ -28,11 +40,40 @@ Vec2 find_feature_flow(const Scene& scene, const State& state, const ClothStars&
             lag += (scene.obstacles[obstacle].velocity_after(state.time, x[k]) - state.velocity[k] +
                     F * state.material_velocity[k]) /
                    3.0;
-        squared += area * F.transpose() * F;
-        sum += area * F.transpose() * lag;
+        carrying.squared_F += area * F.transpose() * F;
+        carrying.F_transposed += area * F.transpose();
+        carrying.lag += area * F.transpose() * lag;
     }
-    const Vec2 flow = squared.inverse() * sum;
+    return carrying;
+}
+
+Vec2 finite_or_zero(const Vec2& flow)
+{
     return flow.allFinite() ? flow : Vec2(Vec2::Zero());
+}
+
+/// Unit, of the cloth's border through a site that is on it.
+Vec2 border_through(const State& state, const ClothStars& stars, const FeatureSite& site)
+{
+    const auto& [a, b] = site.edge;
+    const auto [from, to] = a == b ? stars.border_neighbours[a] : site.edge;
+    return (state.mesh.material[to] - state.mesh.material[from]).normalized();
+}
+
+}  // namespace
+
+Vec2 find_feature_flow(const Scene& scene, const State& state, const ClothStars& stars,
+                       const FeatureSite& site)
+{
+    const Carrying carrying = look_around(scene, state, stars, state.index_of(site.near), site.obstacle);
+    const Vec2 flow = carrying.flow();
+    if (site.is_corner || site.turn >= 0) return finite_or_zero(flow);
+    const Obstacle& obstacle = scene.obstacles[site.obstacle];
+    const auto [from, to] = feature_segment(obstacle, site.feature);
+    const Vec2 trace = carrying.direction(obstacle.at(state.time).rotation * (to - from)).normalized();
+    const Vec2 across(trace.y(), -trace.x());
+    const Vec2 way = site.is_on_border ? border_through(state, stars, site) : across;
+    return finite_or_zero(across.dot(flow) / across.dot(way) * way);
 }
 
 }  // namespace arris

@@ -18,9 +18,27 @@ using testing::make_ridge;
 
 constexpr double kRoundOff = 1e-12;  // m/s, at 1 m/s
 
+enum class On { Edge, EdgeAtBorder, Corner };
+
+/// At a vertex of the cloth on the ridge.
+Vec2 flow_at(const EolCloth& cloth, double u, double v, On on)
+{
+    const int near = cloth.vertex_at(u, v);
+    const FeatureSite site{0,
+                           on == On::Corner,
+                           testing::tip_of(cloth.scene.obstacles[0]),
+                           cloth.state.mesh.material[near],
+                           cloth.state.ids[near],
+                           Vec3::UnitZ(),
+                           on == On::EdgeAtBorder,
+                           {near, near}};
+    return find_feature_flow(cloth.scene, cloth.state, cloth.stars(), site);
+}
+
+/// Of all of it, as on a corner.
 Vec2 flow_at_middle(const EolCloth& cloth)
 {
-    return find_feature_flow(cloth.scene, cloth.state, cloth.stars(), cloth.vertex_at(0.2, 0.2), 0);
+    return flow_at(cloth, 0.2, 0.2, On::Corner);
 }
 
 /// Cloth that slides over the ridge with `speed` towards x > 0, as it is folded.
@@ -71,11 +89,27 @@ TEST(FeatureFlow, IsRelativeToTheObstacleAndCountsWhatFlowsAlready)
     EXPECT_LT((flow_at_middle(cloth) - Vec2(-0.4, 0.5)).norm(), kRoundOff);
 }
 
+TEST(FeatureFlow, OfWhatSlidesAlongItsFeatureIsAcrossTheTraceOrAlongTheBorderAsMuch)
+{
+    for (const double turn : {0.0, 17.0, -40.0}) {
+        EolCloth cloth(make_ridge(60.0), make_draped({8, turn, 180.0}));
+        for (Vec3& v : cloth.state.velocity) v = Vec3(0.7, 0.4, 0.0);
+        const double angle = turn * std::numbers::pi / 180.0;
+        const Vec2 across(std::cos(angle), -std::sin(angle)), along(std::sin(angle), std::cos(angle));
+        EXPECT_LT((flow_at(cloth, 0.2, 0.2, On::Edge) + 0.7 * across).norm(), kRoundOff) << turn;
+        EXPECT_LT((flow_at(cloth, 0.2, 0.2, On::Corner) + 0.7 * across + 0.4 * along).norm(), kRoundOff)
+            << turn;
+        const Vec2 at_border = flow_at(cloth, 0.2, 0.0, On::EdgeAtBorder);
+        EXPECT_LT(std::abs(at_border.y()), kRoundOff) << turn;
+        EXPECT_NEAR(at_border.dot(across), -0.7, kRoundOff) << turn;
+    }
+}
+
 TEST(FeatureFlow, OfCollapsedClothIsNone)
 {
     EolCloth cloth = sliding(0.0, 180.0, 1.0);
     for (Vec3& x : cloth.state.mesh.world) x.setZero();
-    EXPECT_EQ(flow_at_middle(cloth), Vec2(0.0, 0.0));
+    for (const On on : {On::Edge, On::Corner}) EXPECT_EQ(flow_at(cloth, 0.2, 0.2, on), Vec2(0.0, 0.0));
 }
 
 }  // namespace
