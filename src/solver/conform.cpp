@@ -121,11 +121,24 @@ class Conforming {
     }
 
     /// What has been cleared stays clear.
-    bool keeps_way(const SurgeryEvent& event) const
+    bool keeps_way(const SurgeryEvent& event)
     {
-        const auto is_in_way = [&](const PatchFace& face) { return turns_over(face, *kept_); };
+        if (making_ && !event.changes.empty()) name_made(event.changes[0].vertex);
+        const auto is_in_way = [&](const PatchFace& face) { return stands_in_way(face); };
         return kept_->empty() || std::none_of(event.after.begin(), event.after.end(), is_in_way) ||
                std::any_of(event.before.begin(), event.before.end(), is_in_way);
+    }
+
+    /// A new vertex may be in the way only where it is also as it goes its own: beside others on its obstacle
+    /// it goes with them.
+    bool stands_in_way(const PatchFace& face) const
+    {
+        if (!turns_over(face, *kept_)) return false;
+        TraceWays together;
+        for (const VertexId v : face.vertices)
+            for (const TraceWays* ways : {&coming_, kept_})
+                if (const auto at = ways->find(v); at != ways->end()) together[v] = at->second;
+        return turns_over(face, together);
     }
 
     void release(VertexId v)
@@ -170,7 +183,7 @@ class Conforming {
                                  trace_.tags().tag(site.obstacle, site.is_corner, site.feature),
                                  soon_ * flow};
         const VertexId near = surgery_.has_vertex(site.near) ? site.near : trace_.nearest_to(site.material);
-        const TraceInsertion made = insert_trace_point(surgery_, target_, site.material, near, wanted);
+        const TraceInsertion made = make_vertex(site.material, near, wanted);
         if (made.verdict != Verdict::Done)
             return made.verdict == Verdict::Guard ? RowCause::Guard : RowCause::Quality;
         if (trace_.find(made.vertex)) return RowCause::BesideEol;
@@ -179,12 +192,31 @@ class Conforming {
         vertex.side = trace_.side_beside(wanted.tag, site.material);
         if (!admission_.is_in_plane(vertex) || !admission_.is_on_side(vertex)) {
             surgery_.release_vertex(made.vertex);
+            coming_.erase(made.vertex);
             return RowCause::OffPlane;
         }
         trace_.add(vertex, flow);
         if (site.contact >= 0) contact_of_[made.vertex] = site.contact;
         ++report_.inserted;
         return std::nullopt;
+    }
+
+    TraceInsertion make_vertex(const Vec2& material, VertexId near, const TraceVertex& wanted)
+    {
+        making_ = &wanted;
+        const TraceInsertion made = insert_trace_point(surgery_, target_, material, near, wanted);
+        if (made.verdict != Verdict::Done) coming_.erase(made_);
+        making_ = nullptr;
+        made_ = kNoVertex;
+        return made;
+    }
+
+    /// The vertex that is proposed to become the one that is being made.
+    void name_made(VertexId v)
+    {
+        coming_.erase(made_);
+        made_ = v;
+        coming_[v] = making_->way;
     }
 
     /// The vertex of its trace that is in a turn's way: one that is held, nearer than two may be, else one
@@ -299,10 +331,13 @@ class Conforming {
     ClothSurgery& surgery_;  ///< its own
     SiteAdmission admission_;
     EolGuard guard_;
-    TraceWays ways_;                      ///< of the vertices that flow, as far as is well
-    TraceWays needed_;                    ///< as far as they may soon go: new vertices leave that much
-    const TraceWays* kept_ = &ways_;      ///< of the two
-    std::map<VertexId, int> contact_of_;  ///< index in State::active, of vertices made where one pressed
+    TraceWays ways_;                       ///< of the vertices that flow, as far as is well
+    TraceWays needed_;                     ///< as far as they may soon go: new vertices leave that much
+    const TraceWays* kept_ = &ways_;       ///< of the two
+    TraceWays coming_;                     ///< of new vertices
+    const TraceVertex* making_ = nullptr;  ///< the one that is being made
+    VertexId made_ = kNoVertex;            ///< which vertex that would be
+    std::map<VertexId, int> contact_of_;   ///< index in State::active, of vertices made where one pressed
     std::vector<RefusedContact> refused_;
     ConformReport report_;
 };

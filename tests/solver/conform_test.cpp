@@ -552,6 +552,28 @@ TEST(Conform, ACornerBecomesANodeAtWhichTheTraceEnds)
     for (std::size_t k = 1; k < row.size(); ++k) EXPECT_TRUE(has_edge(cloth.state, row[k - 1], row[k])) << k;
 }
 
+TEST(Conform, ACornerGoesWithATraceThatComesToItAsTheClothSlides)
+{
+    for (const double speed : {0.0, 1.0}) {
+        EolCloth cloth = lying(0.0, 0.003, 0.1);
+        press_edges(cloth);
+        take(cloth);
+        State& state = cloth.state;
+        for (std::size_t v = 0; v < state.ids.size(); ++v) {
+            const bool is_eol = state.eol_entry(state.ids[v]) >= 0;
+            state.velocity[v] = Vec3(is_eol ? 0.0 : speed, 0.0, 0.0);
+            state.material_velocity[v] = Vec2(is_eol ? -speed : 0.0, 0.0);
+        }
+        state.active.clear();
+        press_corner(cloth);
+        ASSERT_EQ(state.active.size(), 1u);
+        const auto made = conform(cloth);
+        const bool has_corner = made && std::any_of(made->eol.begin(), made->eol.end(),
+                                                    [](const EolVertex& e) { return e.is_corner; });
+        EXPECT_TRUE(has_corner) << speed;
+    }
+}
+
 TEST(Conform, WhatHasNotPressedForThreeStepsIsReleased)
 {
     EolCloth cloth = lying(17.0);
