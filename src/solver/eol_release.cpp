@@ -28,12 +28,12 @@ bool is_folded(const State& state, const std::vector<int>& faces)
     return !std::all_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(mean) > kFlat; });
 }
 
-/// Whether an EOL vertex is of a tip, which presses on a face of the cloth: it holds one vertex, and
-/// is where that face is.
-bool is_point_under_face(const Scene& scene, const State& state, const EolVertex& eol)
+/// Whether an EOL vertex is of a corner which presses on a face of the cloth: it holds one vertex, and is
+/// where that face is.
+bool is_corner_under_face(const Scene& scene, const State& state, const EolVertex& eol)
 {
     const Obstacle& obstacle = scene.obstacles[eol.obstacle];
-    if (!eol.is_corner || !is_tip(obstacle, eol.feature)) return false;
+    if (!eol.is_corner) return false;
     const int point = obstacle.features().corners[eol.feature].point;
     return std::any_of(state.active.begin(), state.active.end(), [&](const ActiveContact& contact) {
         return contact.obstacle == eol.obstacle && contact.kind == ContactKind::Triangle &&
@@ -65,7 +65,7 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
     const double cells = is_free ? kFreeCells : 1.0;
     if (gap > cells * scene.eol->length(state.mesh.material[at.vertex])) return EolHold::None;
     const bool has_left = gap > kOnFeature * scene.material.thickness;
-    if (has_left && is_point_under_face(scene, state, eol)) return EolHold::None;
+    if (has_left && is_corner_under_face(scene, state, eol)) return EolHold::None;
     if (is_folded(state, stars.faces[at.vertex])) return EolHold::Firm;
     return gap <= kOnFeature * scene.material.thickness ? EolHold::Loose : EolHold::None;
 }

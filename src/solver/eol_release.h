@@ -31,7 +31,7 @@ enum class EolHold {
 };
 
 /// Of EOL vertex `entry`, at `place` in its obstacle's frame. Firm where it presses; none more than a cell
-/// from its feature, more than kFreeCells where a fold flies off an edge (free_fold.h), nor off a tip
+/// from its feature, more than kFreeCells where a fold flies off an edge (free_fold.h), nor off a corner
 /// that presses on a face now; firm where the cloth is folded, by more than 6 degrees.
 EolHold find_hold(const Scene& scene, const State& state, const ClothStars& stars, int entry,
                   const EolCoordinates& at, const Vec3& place);

@@ -115,6 +115,31 @@ TEST(EolRelease, OfATentThatIsOffItsNailComesWhereTheNailPressesOnAnotherFace)
         }
 }
 
+TEST(EolRelease, OfATentThatIsOffACornerComesWhereThatPressesOnAnotherFace)
+{
+    for (const bool is_pressing : {false, true}) {
+        EolCloth cloth(testing::make_ridge(60.0, 0.1), testing::make_draped({8, 0.0, 180.0}));
+        for (Vec3& x : cloth.state.mesh.world)
+            x.z() = 3.0 * testing::kThickness - 0.5 * std::hypot(x.x(), x.y() - 0.1);
+        const Obstacle& ridge = cloth.scene.obstacles[0];
+        const int v = cloth.vertex_at(0.2, 0.3), corner = testing::end_of(ridge);
+        const int entry = cloth.add_eol(v, true, corner);
+        cloth.state.eol[entry].idle = kIdleSteps;
+        if (is_pressing)
+            cloth.state.active.push_back({{0, 1, 10},
+                                          ContactKind::Triangle,
+                                          0,
+                                          ridge.features().corners[corner].point,
+                                          Vec3::UnitZ(),
+                                          1e-6});
+        const EolPlacing placing = cloth.place(v);
+        ASSERT_TRUE(placing.coordinates);
+        const EolHold hold = find_hold(cloth.scene, cloth.state, cloth.stars(), entry, *placing.coordinates,
+                                       cloth.state.mesh.world[v]);
+        EXPECT_EQ(hold, is_pressing ? EolHold::None : EolHold::Firm);
+    }
+}
+
 /// What becomes of the holds of a row of EOL vertices along the ridge, F, L or N each, in the material's
 /// order.
 std::string hold_between_of(const std::string& along)
