@@ -24,9 +24,10 @@ namespace {
 // no more than that also where the flow gets faster, or those beside it do.
 constexpr double kClearSteps = 4.0;
 
-// Of a tip's these must be. There is no trace that would carry the cloth on, and what stands in the
-// way of a point is a pleat, which takes the less strain to merge the nearer it is.
-constexpr double kPointSteps = 2.0;
+// Of a tip's the next must be. There is no trace that would carry the cloth on, and what stands in the
+// way of a point is a pleat, which takes the less strain to merge the nearer it is: one that is let go for a
+// step slips into the pleat, and is held there by rows for good.
+constexpr double kPointSteps = 1.0;
 
 std::vector<VertexId> find_pinned(const Scene& scene, const State& state, double end)
 {
