@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "geometry/closest_point.h"
+#include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
 #include "solver/feature_sites.h"
 
@@ -15,6 +16,7 @@ namespace arris {
 namespace {
 
 constexpr double kTouching = 1e-6;  // thicknesses: the contact's point is the closest of the obstacle
+constexpr double kAtEnd = 0.95;     // weight of an edge's end: no vertex is put nearer to another
 
 bool is_plane_of_face(const Obstacle& obstacle, const ObstacleContact& contact)
 {
@@ -80,10 +82,7 @@ class Census {
             beside.refusal = find_refusal(entry);
             if (!beside.refusal) return beside;
         }
-        const auto& [a, b, c] = contact.in_frame.vertices;
-        if (contact.in_frame.kind == ContactKind::Edge && has_end(contact, a) && has_end(contact, b))
-            return {true, true, {}};
-        return beside;
+        return is_on_trace(contact) ? Beside{true, true, {}} : beside;
     }
 
     /// Whether an EOL vertex is on the feature that a contact touches: at an end of the cloth's edge on the
@@ -99,22 +98,50 @@ class Census {
         const int v = state_.index_of(eol.vertex_id);
         const int feature = feature_of_edge(features, local.element);
         if (feature < 0 || (local.vertices[0] != v && local.vertices[1] != v)) return false;
-        if (!eol.is_corner) return features.edges[eol.feature].polyline == features.edges[feature].polyline;
-        constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-        return distance_to_corner(scene_.obstacles[contact.obstacle], {feature, 0.5}, eol.feature, kAnywhere)
-            .has_value();
+        return is_along(eol, feature);
     }
 
-    bool has_end(const Contact& contact, int v) const
+    /// Whether an EOL vertex is on the polyline of a feature edge of its obstacle, or at an end of it.
+    bool is_along(const EolVertex& eol, int feature) const
     {
-        const int entry = state_.eol_entry(state_.ids[v]);
-        return entry >= 0 && is_of(contact, state_.eol[entry]) && !find_refusal(entry);
+        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+        const auto& edges = obstacle.features().edges;
+        if (!eol.is_corner) return edges[eol.feature].polyline == edges[feature].polyline;
+        constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+        return distance_to_corner(obstacle, {feature, 0.5}, eol.feature, kAnywhere).has_value();
+    }
+
+    /// Whether a contact is of the trace's own edge: the cloth's edge is that, or its face has that and
+    /// touches a vertex of the obstacle's mesh there, in the middle of a convex edge.
+    bool is_on_trace(const Contact& contact) const
+    {
+        const ObstacleContact& local = contact.in_frame;
+        const auto has_eol = [&](int v, int feature) {
+            const int entry = state_.eol_entry(state_.ids[v]);
+            return entry >= 0 && state_.eol[entry].obstacle == contact.obstacle &&
+                   is_along(state_.eol[entry], feature) && !find_refusal(entry);
+        };
+        const auto is_trace = [&](int feature, int a, int b) {
+            return feature >= 0 && has_eol(local.vertices[a], feature) && has_eol(local.vertices[b], feature);
+        };
+        const Obstacle& obstacle = scene_.obstacles[contact.obstacle];
+        const ObstacleFeatures& features = obstacle.features();
+        if (local.kind == ContactKind::Edge) return is_trace(feature_of_edge(features, local.element), 0, 1);
+        if (local.kind != ContactKind::Triangle || is_corner(features, local.element)) return false;
+        const ObstacleTopology& topology = obstacle.topology();
+        for (int k = 0; k < topology.edge_count_at(local.element); ++k) {
+            const int feature = feature_of_edge(features, topology.edge_at(local.element, k));
+            if (feature < 0 || features.edges[feature].kind != FeatureKind::Convex) continue;
+            for (int i = 0; i < 3; ++i)
+                if (local.weights[i] < 1.0 - kAtEnd && is_trace(feature, (i + 1) % 3, (i + 2) % 3))
+                    return true;
+        }
+        return false;
     }
 
     /// Whether the cloth touches at that vertex, as far as can be told (row_cause.h).
     bool is_at(const Contact& contact, int vertex) const
     {
-        constexpr double kAtEnd = 0.95;  // weight of an edge's end: no vertex is put nearer to another
         const ObstacleContact& local = contact.in_frame;
         Vec2 material = Vec2::Zero();
         for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {

@@ -14,8 +14,10 @@ namespace arris {
 /// A contact is a place of the cloth on a feature. Of an edge of the cloth that ends at an EOL vertex of the
 /// same feature nothing can be told apart from that vertex within 5 % of its length, as no vertex is put
 /// nearer to another, nor within the stand-off, on whose rounding both touch; and where both its ends are
-/// such vertices it is the trace itself. The row there holds what the vertex's bound holds, and neither holds
-/// the material back: it is no contact of its own (`AtEol`). Farther from the vertex it is one (`BesideEol`).
+/// such vertices it is the trace itself; so it is where a face that has that edge touches, within 5 % of it,
+/// a vertex that the obstacle's mesh has in the middle of a convex edge. The row there holds what the
+/// vertex's bound holds, and neither holds the material back: it is no contact of its own (`AtEol`). Farther
+/// from the vertex it is one (`BesideEol`).
 ///
 /// Where a fold flies off an edge the cloth behind it lies on one face and goes on beyond its end in the same
 /// plane. What presses there does so along the face's normal: it is what the face holds of the cells that

@@ -158,6 +158,56 @@ TEST(FeatureCensus, ARowAtTheEolVertexOfItsFeatureIsTheSameContact)
     EXPECT_EQ(cause_at(0.5, true), RowCause::AtEol) << "the edge is the trace";
 }
 
+/// The ridge with a point of its mesh in the middle of its tip, the last one.
+Obstacle make_split_ridge()
+{
+    ObstacleMesh mesh = testing::make_ridge(60.0).mesh();
+    const int middle = static_cast<int>(mesh.points.size());
+    const auto is_of_tip = [&](int p) { return p == middle || mesh.points[p].z() > -1e-9; };
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& p : std::vector<Vec3>(mesh.points)) sum += p.z() > -1e-9 ? p : Vec3(Vec3::Zero());
+    mesh.points.push_back(0.5 * sum);
+    for (std::size_t f = 0, n = mesh.faces.size(); f < n; ++f)
+        for (int k = 0; k < 3; ++k) {
+            const int from = mesh.faces[f][k], to = mesh.faces[f][(k + 1) % 3];
+            if (from == middle || to == middle || !is_of_tip(from) || !is_of_tip(to)) continue;
+            auto half = mesh.faces[f];
+            half[k] = middle;
+            mesh.faces[f][(k + 1) % 3] = middle;
+            mesh.faces.push_back(half);
+            break;
+        }
+    return Obstacle("ridge", std::move(mesh), {}, {}, 30.0);
+}
+
+TEST(FeatureCensus, AFaceOnAPointInTheMiddleOfAnEdgeTouchesTheTraceThere)
+{
+    const auto cause_at = [](const Obstacle& ridge, int point, double off, bool has_trace) {
+        Solved solved;
+        solved.cloth.scene.obstacles[0] = ridge;
+        const int tip = testing::tip_of(ridge);
+        const int v = solved.cloth.vertex_at(0.2, 0.2);
+        const Vec2 middle = solved.cloth.state.mesh.material[v];
+        const int w = solved.cloth.vertex_at(middle.x(), middle.y() + testing::kLyingCell);
+        const int beside = solved.cloth.vertex_at(middle.x() + testing::kLyingCell, middle.y());
+        solved.cloth.add_eol(v, false, tip);
+        if (has_trace) solved.cloth.add_eol(w, false, tip);
+        Contact& contact = solved.add(ContactKind::Triangle, {v, w, beside}, point, true);
+        contact.in_frame.weights = {0.6 - off, 0.4, off};
+        contact.in_frame.point = ridge.mesh().points[point];
+        EXPECT_EQ(solved.take().rows, 1);
+        return solved.count(RowCause::AtEol) == 1;
+    };
+    const Obstacle ridge = make_split_ridge();
+    const int middle = static_cast<int>(ridge.mesh().points.size()) - 1;
+    ASSERT_EQ(ridge.features().corners.size(), testing::make_ridge(60.0).features().corners.size());
+    EXPECT_TRUE(cause_at(ridge, middle, 0.04, true));
+    EXPECT_FALSE(cause_at(ridge, middle, 0.06, true)) << "6 % of the face away";
+    EXPECT_FALSE(cause_at(ridge, middle, 0.04, false)) << "no trace";
+    const int end = ridge.features().corners[testing::end_of(ridge)].point;
+    EXPECT_FALSE(cause_at(ridge, end, 0.04, true)) << "a corner has a vertex of its own";
+}
+
 TEST(FeatureCensus, ARowAtAnEolVertexWithoutCoordinatesSaysWhyThatHasNone)
 {
     const auto count_at = [](double weight) {
