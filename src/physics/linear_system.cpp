@@ -62,13 +62,20 @@ void reduce(const std::array<int, N>& vertices, const Linearization& at, LocalSy
 
 void LinearSystem::make_pattern(const ClothElements& elements)
 {
+    make_pattern(elements, {});
+}
+
+void LinearSystem::make_pattern(const ClothElements& elements, std::vector<int> places)
+{
+    places_ = std::move(places);
     // Neighbours below the diagonal, by column: below[first[j]] .. below[last[j] - 1].
-    const int n = elements.vertex_count;
+    const int n =
+        places_.empty() ? elements.vertex_count : 1 + *std::max_element(places_.begin(), places_.end());
     const auto for_each_pair = [&](const auto& visit) {
         const auto visit_pairs = [&](const auto& vertices) {
-            for (const int i : vertices)
-                for (const int j : vertices)
-                    if (i > j) visit(i, j);
+            for (const int v : vertices)
+                for (const int w : vertices)
+                    if (const int i = place_of(v), j = place_of(w); i > j && j >= 0) visit(i, j);
         };
         for (const FaceElement& face : elements.faces) visit_pairs(face.vertices);
         for (const HingeElement& hinge : elements.hinges) visit_pairs(hinge.vertices);
@@ -107,9 +114,10 @@ void LinearSystem::make_pattern(const ClothElements& elements)
     const auto find_blocks = [&](const auto& vertices, auto& blocks) {
         int k = 0;
         for (std::size_t i = 1; i < vertices.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j)
-                blocks[k++] =
-                    find_block(std::max(vertices[i], vertices[j]), std::min(vertices[i], vertices[j]));
+            for (std::size_t j = 0; j < i; ++j) {
+                const auto [low, high] = std::minmax({place_of(vertices[i]), place_of(vertices[j])});
+                blocks[k++] = low < 0 ? -1 : find_block(high, low);
+            }
     };
     face_blocks_.resize(elements.faces.size());
     hinge_blocks_.resize(elements.hinges.size());
@@ -128,6 +136,13 @@ int LinearSystem::find_block(int row, int column) const
     return static_cast<int>(found - matrix_.innerIndexPtr());
 }
 
+void LinearSystem::add_to_vertex(int place, const Mat3& block)
+{
+    double* values = matrix_.valuePtr() + matrix_.outerIndexPtr()[3 * place];
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) values[c * column_height_[place] + r] += block(r, c);
+}
+
 template <int N>
 void LinearSystem::scatter(const std::array<int, N>& vertices, const int* blocks, const LocalSystem<N>& local)
 {
@@ -136,13 +151,21 @@ void LinearSystem::scatter(const std::array<int, N>& vertices, const int* blocks
         for (int c = 0; c < 3; ++c)
             for (int r = 0; r < 3; ++r) values[first + c * height + r] += block(r, c);
     };
+    std::array<int, N> places = vertices;
+    if (!places_.empty())
+        for (int& v : places) v = places_[v];
     int k = 0;
     for (int i = 0; i < N; ++i) {
-        const int v = vertices[i];
+        const int v = places[i];
+        if (v < 0) {
+            k += i;
+            continue;
+        }
         rhs_.segment<3>(3 * v) += local.rhs(i);
         add(matrix_.outerIndexPtr()[3 * v], column_height_[v], local.matrix(i, i));
         for (int j = 0; j < i; ++j, ++k) {
-            const int w = vertices[j];
+            const int w = places[j];
+            if (w < 0) continue;
             if (v > w)
                 add(blocks[k], column_height_[w], local.matrix(i, j));
             else
@@ -185,7 +208,8 @@ void LinearSystem::set_loads(const ClothMesh& mesh, const Terms& terms, const Li
     std::vector<Vec3> load(mesh.vertex_count(), Vec3::Zero());
     for (const auto& term : terms.loads) term->add(loaded, at, load);
     for (int v = 0; v < mesh.vertex_count(); ++v)
-        rhs_.segment<3>(3 * v) = at.basis[v].transpose() * (at.gamma * load[v]);
+        if (const int place = place_of(v); place >= 0)
+            rhs_.segment<3>(3 * place) = at.basis[v].transpose() * (at.gamma * load[v]);
     if (!flowed) return;
 
     for (const auto& term : terms.loads)
@@ -204,6 +228,7 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
                             const Linearization& at)
 {
     assert((!at.flow || is_consistent(*at.flow, mesh)) && "material flows through EOL vertices only");
+    assert((!at.flow || places_.empty()) && "nothing flows where some are held");
     matrix_.coeffs().setZero();
     set_loads(mesh, terms, at);
     add_momentum_flux(terms.density, elements, at, rhs_);

@@ -19,6 +19,10 @@ class LinearSystem {
     /// The pattern of every pair of vertices that share a face or a hinge, values zero. O(n log n).
     void make_pattern(const ClothElements& elements);
 
+    /// The same where some vertices are held and have no unknowns: `places` (one a vertex) tells which of the
+    /// system's vertices it is, ascending, or -1. Then nothing may flow, and what is held does not move.
+    void make_pattern(const ClothElements& elements, std::vector<int> places);
+
     /// Sums all terms at `at`; `mesh` and `elements` are those of the step's start. The result does not
     /// depend on the number of threads. Elements with an EOL vertex (`at.flow`) are made anew, at the
     /// material coordinates of q^ and of the extrapolated state; the others are summed as if there were none.
@@ -28,7 +32,11 @@ class LinearSystem {
     const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
     const Eigen::VectorXd& rhs() const { return rhs_; }
 
+    /// Adds to the diagonal block of one of the system's vertices.
+    void add_to_vertex(int place, const Mat3& block);
+
   private:
+    int place_of(int v) const { return places_.empty() ? v : places_[v]; }
     int find_block(int row, int column) const;
     template <int N>
     void scatter(const std::array<int, N>& vertices, const int* blocks, const LocalSystem<N>& local);
@@ -41,8 +49,10 @@ class LinearSystem {
 
     Eigen::SparseMatrix<double> matrix_;
     Eigen::VectorXd rhs_;
+    std::vector<int> places_;                       ///< of each vertex; empty where all are their own
     std::vector<int> column_height_;                ///< entries in each column of a vertex
-    std::vector<std::array<int, 3>> face_blocks_;   ///< first entry of blocks (1,0), (2,0), (2,1)
+    std::vector<std::array<int, 3>> face_blocks_;   ///< first entry of blocks (1,0), (2,0), (2,1);
+                                                    ///< -1 where one of both is held
     std::vector<std::array<int, 6>> hinge_blocks_;  ///< ... (1,0), (2,0), (2,1), (3,0), (3,1), (3,2)
 };
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "physics/deformation_gradient.h"
+#include "physics/symmetric_ordering.h"
 
 namespace arris {
 
@@ -23,6 +24,11 @@ struct Polygon {
     std::array<Vec2, 12> corners;
     int count = 0;
 
+    Polygon() = default;
+    explicit Polygon(const std::array<Vec2, 3>& triangle)
+    {
+        for (const Vec2& corner : triangle) add(corner);
+    }
     void add(const Vec2& corner)
     {
         if (count < static_cast<int>(corners.size())) corners[count++] = corner;
@@ -46,8 +52,7 @@ Polygon clip(const Polygon& polygon, const Vec2& a, const Vec2& b)
 
 Polygon overlap(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b)
 {
-    Polygon polygon;
-    for (const Vec2& corner : a) polygon.add(corner);
+    Polygon polygon(a);
     for (int i = 0; i < 3 && polygon.count > 0; ++i) polygon = clip(polygon, b[i], b[(i + 1) % 3]);
     return polygon;
 }
@@ -127,23 +132,47 @@ class OldField {
     double widest_ = 0.0;  ///< m, of the boxes along the axis
 };
 
-/// Integrals over a new triangle of its shape functions times the old velocity, times density.
+/// Adds integrals over part of a triangle of its shape functions times the velocity of an old one there,
+/// times density.
+void add_integrals(double density, const std::array<Vec2, 3>& triangle, const Polygon& part,
+                   const std::array<Vec2, 3>& old, const std::array<Vec3, 3>& old_velocity,
+                   std::array<Vec3, 3>& sums)
+{
+    for (int k = 2; k < part.count; ++k) {
+        // Products of linear functions: the three middles of the sides are exact.
+        const Vec2 &p = part.corners[0], &q = part.corners[k - 1], &r = part.corners[k];
+        const double weight = density * 0.5 * cross(q - p, r - p) / 3.0;
+        for (const Vec2& middle : {Vec2(0.5 * (p + q)), Vec2(0.5 * (q + r)), Vec2(0.5 * (r + p))}) {
+            const Vec3 velocity = at(old_velocity, barycentric(old, middle));
+            const Vec3 shape = barycentric(triangle, middle);
+            for (int i = 0; i < 3; ++i) sums[i] += weight * shape[i] * velocity;
+        }
+    }
+}
+
+bool is_same(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b)
+{
+    return std::any_of(b.begin(), b.end(), [&](const Vec2& first) {
+        const auto k = &first - b.data();
+        return a[0] == first && a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3];
+    });
+}
+
+/// The integrals over all of a new triangle.
 std::array<Vec3, 3> integrate_old(double density, const OldField& old, const std::array<Vec2, 3>& triangle)
 {
     std::array<Vec3, 3> sums = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-    for (const int t : old.find_near(triangle)) {
-        const Polygon common = overlap(triangle, old.triangle(t));
-        for (int k = 2; k < common.count; ++k) {
-            // Products of linear functions: the three middles of the sides are exact.
-            const Vec2 &p = common.corners[0], &q = common.corners[k - 1], &r = common.corners[k];
-            const double weight = density * 0.5 * cross(q - p, r - p) / 3.0;
-            for (const Vec2& middle : {Vec2(0.5 * (p + q)), Vec2(0.5 * (q + r)), Vec2(0.5 * (r + p))}) {
-                const Vec3 velocity = at(old.velocity(t), barycentric(old.triangle(t), middle));
-                const Vec3 shape = barycentric(triangle, middle);
-                for (int i = 0; i < 3; ++i) sums[i] += weight * shape[i] * velocity;
-            }
-        }
+    const std::vector<int> near = old.find_near(triangle);
+    // Most are there as they were; what lies beside has no part in these.
+    const auto same =
+        std::find_if(near.begin(), near.end(), [&](int t) { return is_same(triangle, old.triangle(t)); });
+    if (same != near.end()) {
+        add_integrals(density, triangle, Polygon(triangle), old.triangle(*same), old.velocity(*same), sums);
+        return sums;
     }
+    for (const int t : near)
+        add_integrals(density, triangle, overlap(triangle, old.triangle(t)), old.triangle(t), old.velocity(t),
+                      sums);
     return sums;
 }
 
@@ -212,7 +241,8 @@ class NormalEquations {
     {
         Eigen::SparseMatrix<double> mass(rhs_.size(), rhs_.size());
         mass.setFromTriplets(lower_.begin(), lower_.end());
-        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor(mass);
+        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, SymmetricAmdOrdering> factor(
+            mass);
         if (factor.info() != Eigen::Success) return std::nullopt;
         const Eigen::Matrix<double, Eigen::Dynamic, 3> of_unit = factor.solve(carried_.transpose());
         const Eigen::PartialPivLU<Mat3> schur(carried_ * of_unit);

@@ -13,6 +13,7 @@
 #include "geometry/sweep_check.h"
 #include "physics/energies.h"
 #include "physics/linear_system.h"
+#include "physics/symmetric_ordering.h"
 #include "physics/term.h"
 #include "solver/contacts.h"
 #include "solver/strain_allowance.h"
@@ -53,6 +54,17 @@ Creases find_part(const Creases& creases, const std::vector<int>& vertices)
     }
     std::sort(part.edges.begin(), part.edges.end());
     return part;
+}
+
+/// Of `count` vertices that do not move and have no coordinates of their own; where they are is left open.
+Linearization at_rest(std::size_t count, double step_time)
+{
+    Linearization at;
+    at.gamma = step_time;
+    at.v_predicted = at.v_expansion = at.v_last = at.drift = std::vector<Vec3>(count, Vec3::Zero());
+    at.basis.assign(count, Mat3::Identity());
+    at.has_basis.assign(count, 0);
+    return at;
 }
 
 /// The patch as a small cloth of its own, at rest.
@@ -185,57 +197,34 @@ class Relaxation {
     /// (M + t^2 H) way = t^2 f: implicit Euler's, of what is free.
     std::vector<Vec3> find_way()
     {
-        const std::size_t n = patch_.mesh.world.size();
-        std::vector<Vec3> way(n, Vec3::Zero());
+        std::vector<Vec3> way(patch_.mesh.world.size(), Vec3::Zero());
         if (free_.empty()) return way;
         const bool is_first = system_.matrix().rows() == 0;  // many a patch never moves
-        if (is_first) system_.make_pattern(elements_);
-        Linearization at;
-        at.gamma = step_time_;
-        at.position = patch_.mesh.world;
-        at.v_predicted = at.v_expansion = at.v_last = at.drift = way;
-        at.basis.assign(n, Mat3::Identity());
-        at.has_basis.assign(n, 0);
-        system_.assemble(patch_.mesh, elements_, terms_, at);
-        Eigen::SparseMatrix<double> matrix = find_free_part();
-        Eigen::VectorXd rhs(matrix.rows());
-        constexpr double kStiff = 1e6;  // beside the greatest stiffness: held
-        const double stiff = kStiff * matrix.diagonal().maxCoeff();
-        for (std::size_t k = 0; k < free_.size(); ++k) {
-            const Eigen::Index first = static_cast<Eigen::Index>(3 * k);
-            rhs.segment<3>(first) = system_.rhs().segment<3>(3 * free_[k]);
-            const Vec3& normal = patch_.normals[free_[k]];
-            for (int i = 0; i < 3; ++i)
-                for (int j = 0; j < 3; ++j)
-                    matrix.coeffRef(first + i, first + j) += stiff * normal[i] * normal[j];
+        if (is_first) {
+            system_.make_pattern(elements_, place_);
+            at_ = at_rest(patch_.mesh.world.size(), step_time_);
         }
-        if (is_first) factor_.analyzePattern(matrix);
-        factor_.factorize(matrix);
+        at_.position = patch_.mesh.world;
+        system_.assemble(patch_.mesh, elements_, terms_, at_);
+        keep_heights();
+        if (is_first) factor_.analyzePattern(system_.matrix());
+        factor_.factorize(system_.matrix());
         if (factor_.info() != Eigen::Success) return way;
-        const Eigen::VectorXd solution = step_time_ * factor_.solve(rhs);
+        const Eigen::VectorXd solution = step_time_ * factor_.solve(system_.rhs());
         if (!solution.allFinite()) return way;
         for (std::size_t k = 0; k < free_.size(); ++k)
             way[free_[k]] = solution.segment<3>(static_cast<Eigen::Index>(3 * k));
         return way;
     }
 
-    /// Rows and columns of the system that are of free vertices.
-    Eigen::SparseMatrix<double> find_free_part() const
+    /// Of free vertices that have a normal.
+    void keep_heights()
     {
-        const Eigen::SparseMatrix<double>& all = system_.matrix();
-        const Eigen::Index count = static_cast<Eigen::Index>(3 * free_.size());
-        Eigen::SparseMatrix<double> part(count, count);
-        part.reserve(all.nonZeros());
+        constexpr double kStiff = 1e6;  // beside the greatest stiffness: held
+        const double stiff = kStiff * system_.matrix().diagonal().maxCoeff();
         for (std::size_t k = 0; k < free_.size(); ++k)
-            for (int c = 0; c < 3; ++c) {
-                const Eigen::Index column = static_cast<Eigen::Index>(3 * k) + c;
-                part.startVec(column);
-                for (Eigen::SparseMatrix<double>::InnerIterator at(all, 3 * free_[k] + c); at; ++at)
-                    if (const int place = place_[at.row() / 3]; place >= 0)
-                        part.insertBack(3 * place + at.row() % 3, column) = at.value();
-            }
-        part.finalize();
-        return part;
+            if (const Vec3& normal = patch_.normals[free_[k]]; !normal.isZero(0.0))
+                system_.add_to_vertex(static_cast<int>(k), stiff * normal * normal.transpose());
     }
 
     const Scene& scene_;
@@ -248,8 +237,10 @@ class Relaxation {
     double step_time_;               ///< s
     double energy_ = 0.0;            ///< J, where it is
     std::vector<Vec3> before_last_;  ///< where it was before the last step
-    LinearSystem system_;
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;  ///< of one pattern
+    Linearization at_;
+    LinearSystem system_;  ///< of what is free
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, SymmetricAmdOrdering>
+        factor_;  ///< of one pattern
 };
 
 }  // namespace

@@ -137,6 +137,37 @@ TEST(LinearSystem, DriftIsWhatAShiftOfTheUnknownWouldBe)
               1e-12 * (rhs.norm() + (matrix * drift).norm()));
 }
 
+TEST(LinearSystem, OfWhatIsNotHeldIsThatPartOfTheWhole)
+{
+    Sheet sheet = make_sheet({5, 4}, GridPattern::Cross);
+    sheet.system.assemble(sheet.mesh, sheet.elements, sheet.terms, sheet.at);
+    const Eigen::MatrixXd whole = dense(sheet.system);
+    const Eigen::VectorXd rhs = sheet.system.rhs();
+
+    // Two vertices in three.
+    std::vector<int> places(sheet.mesh.world.size(), -1), loose;
+    for (int v = 0; v < sheet.mesh.vertex_count(); ++v) {
+        if (v % 3 == 0) continue;
+        places[v] = static_cast<int>(loose.size());
+        loose.push_back(v);
+    }
+    sheet.system.make_pattern(sheet.elements, places);
+    sheet.system.assemble(sheet.mesh, sheet.elements, sheet.terms, sheet.at);
+    sheet.system.add_to_vertex(1, Vec3(1, 2, 3) * Vec3(1, 2, 3).transpose());
+    Eigen::MatrixXd part = dense(sheet.system);
+    part.block<3, 3>(3, 3) -= Vec3(1, 2, 3) * Vec3(1, 2, 3).transpose();
+    ASSERT_EQ(part.rows(), static_cast<Eigen::Index>(3 * loose.size()));
+    for (int i = 0; i < static_cast<int>(loose.size()); ++i) {
+        const Vec3 of_part = sheet.system.rhs().segment<3>(3 * i), of_whole = rhs.segment<3>(3 * loose[i]);
+        EXPECT_EQ(of_part, of_whole) << i;
+        for (int j = 0; j < static_cast<int>(loose.size()); ++j) {
+            const Mat3 difference =
+                part.block<3, 3>(3 * i, 3 * j) - whole.block<3, 3>(3 * loose[i], 3 * loose[j]);
+            EXPECT_LT(difference.norm(), 1e-15 * whole.norm()) << i << " " << j;
+        }
+    }
+}
+
 TEST(LinearSystem, IsBitIdenticalForAnyNumberOfThreads)
 {
     Sheet sheet = make_sheet({40, 40}, GridPattern::Cross);

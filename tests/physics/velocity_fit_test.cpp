@@ -96,6 +96,23 @@ TEST(VelocityFit, ChangesNothingWhereTheMeshIsTheSame)
     EXPECT_NEAR(fit->energy_gain, 0.0, kRoundOff);
 }
 
+TEST(VelocityFit, DoesNotDependOnTheCornerAtWhichATriangleStarts)
+{
+    Random random;
+    const FitPatch patch = make_patch(3, false);
+    const std::vector<Vec3> velocity = random_velocities(patch.material.size(), random);
+    VelocityField field = field_of(patch, velocity);
+    for (std::size_t t = 0; t < field.triangles.size(); ++t) {
+        const auto by = static_cast<std::ptrdiff_t>(t % 3);
+        std::rotate(field.triangles[t].begin(), field.triangles[t].begin() + by, field.triangles[t].end());
+        std::rotate(field.velocity[t].begin(), field.velocity[t].begin() + by, field.velocity[t].end());
+    }
+    const auto fit = fit_velocity(kDensity, field, patch);
+    ASSERT_TRUE(fit);
+    for (std::size_t v = 0; v < velocity.size(); ++v)
+        EXPECT_NEAR((fit->velocity[v] - velocity[v]).norm(), 0.0, kRoundOff);
+}
+
 TEST(VelocityFit, KeepsMomentumAndGainsNoEnergyInFreeClothOnAnotherMesh)
 {
     Random random;
