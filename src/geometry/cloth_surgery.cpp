@@ -24,8 +24,11 @@ ClothSurgery::ClothSurgery(const ClothMesh& mesh, const std::vector<VertexId>& i
     assert(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>()) == ids.end());
     assert((ids.empty() || ids.back() < next_id) && "ids must be below the next");
     SurgeryMesh& inner = implementation_->mesh;
-    for (const VertexId v : ids)
-        if (implementation_->is_corner(v)) inner.fix(v);
+    for (const MeshEdge& edge : edges) {
+        if (edge.face_right >= 0) continue;
+        for (const VertexId v : {ids[edge.a], ids[edge.b]})
+            if (implementation_->is_corner(v)) inner.fix(v);
+    }
     for (const VertexId v : fixed) inner.fix(v);
 }
 

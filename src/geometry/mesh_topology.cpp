@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
 #include <numeric>
-#include <tuple>
 
 #include "geometry/cgal.h"
 
@@ -15,10 +15,23 @@ namespace {
 
 // One side of a face: from corner `corner` to the next. `low` < `high` are its vertices.
 struct Side {
-    int low, high;
-    int face, corner;
-    bool is_forward;  // runs from low to high
+    std::uint64_t key;  // by what those with one `low` are sorted: `high`, those that run backward last, face
+    int low, corner;
+
+    int high() const { return static_cast<int>(key >> 32); }
+    bool is_forward() const { return (key & kBackward) == 0; }  // runs from low to high
+    int face() const { return static_cast<int>(key & (kBackward - 1)); }
+
+    static constexpr std::uint64_t kBackward = std::uint64_t{1} << 31;
 };
+
+Side make_side(const Face& face, int f, int corner)
+{
+    const int a = face[corner], b = face[(corner + 1) % 3];
+    const std::uint64_t high = static_cast<std::uint64_t>(std::max(a, b));
+    return {high << 32 | (a < b ? 0 : Side::kBackward) | static_cast<std::uint64_t>(f), std::min(a, b),
+            corner};
+}
 
 // By `low`, then `high`; of one edge those that run forward first.
 std::vector<Side> sorted_sides(int vertex_count, const std::vector<Face>& faces)
@@ -32,23 +45,21 @@ std::vector<Side> sorted_sides(int vertex_count, const std::vector<Face>& faces)
     std::vector<Side> sides(3 * faces.size());
     for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
         for (int k = 0; k < 3; ++k) {
-            const int a = faces[f][k];
-            const int b = faces[f][(k + 1) % 3];
-            sides[next[std::min(a, b)]++] = {std::min(a, b), std::max(a, b), f, k, a < b};
+            const Side side = make_side(faces[f], f, k);
+            sides[next[side.low]++] = side;
         }
     }
-    const auto key = [](const Side& s) { return std::tuple(s.high, !s.is_forward, s.face); };
     std::size_t begin = 0;  // `next` now tells where each vertex's end
     for (int v = 0; v < vertex_count; begin = next[v++])
         std::sort(sides.begin() + static_cast<std::ptrdiff_t>(begin),
                   sides.begin() + static_cast<std::ptrdiff_t>(next[v]),
-                  [&](const Side& s, const Side& t) { return key(s) < key(t); });
+                  [&](const Side& s, const Side& t) { return s.key < t.key; });
     return sides;
 }
 
 bool same_edge(const Side& s, const Side& t)
 {
-    return s.low == t.low && s.high == t.high;
+    return s.low == t.low && s.high() == t.high();
 }
 
 // What the sentences call vertices and faces.
@@ -61,7 +72,7 @@ struct Names {
 
 int opposite_vertex(const std::vector<Face>& faces, const Side& side)
 {
-    return faces[side.face][(side.corner + 2) % 3];
+    return faces[side.face()][(side.corner + 2) % 3];
 }
 
 std::string find_bad_index(const ClothMesh& mesh, const Names& names)
@@ -106,11 +117,11 @@ std::string find_bad_edge(const std::vector<Side>& sides, const Names& names)
         if (!same_edge(s, t)) continue;
         if (i + 2 < sides.size() && same_edge(s, sides[i + 2]))
             return fmt::format("edge ({}, {}) has more than two faces ({}, {}, {})", names.vertex(s.low),
-                               names.vertex(s.high), names.face(s.face), names.face(t.face),
-                               names.face(sides[i + 2].face));
-        if (s.is_forward == t.is_forward)
-            return fmt::format("faces {} and {} run along edge ({}, {}) the same way", names.face(s.face),
-                               names.face(t.face), names.vertex(s.low), names.vertex(s.high));
+                               names.vertex(s.high()), names.face(s.face()), names.face(t.face()),
+                               names.face(sides[i + 2].face()));
+        if (s.is_forward() == t.is_forward())
+            return fmt::format("faces {} and {} run along edge ({}, {}) the same way", names.face(s.face()),
+                               names.face(t.face()), names.vertex(s.low), names.vertex(s.high()));
     }
     return {};
 }
@@ -129,8 +140,8 @@ std::string find_bow_tie(const ClothMesh& mesh, const std::vector<Side>& sides, 
         const Side& t = sides[i + 1];
         if (!same_edge(s, t)) continue;
         // Where s starts, t ends.
-        parent[root(3 * s.face + s.corner)] = root(3 * t.face + (t.corner + 1) % 3);
-        parent[root(3 * s.face + (s.corner + 1) % 3)] = root(3 * t.face + t.corner);
+        parent[root(3 * s.face() + s.corner)] = root(3 * t.face() + (t.corner + 1) % 3);
+        parent[root(3 * s.face() + (s.corner + 1) % 3)] = root(3 * t.face() + t.corner);
     }
     std::vector<int> fan(mesh.world.size(), -1);
     for (int c = 0; c < static_cast<int>(parent.size()); ++c) {
@@ -166,29 +177,28 @@ MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces)
     for (std::size_t i = 0; i < sides.size(); ++i) {
         const Side& s = sides[i];
         if (i + 1 == sides.size() || !same_edge(s, sides[i + 1])) {
-            topology.edges.push_back({s.low, s.high, s.face, -1});
-            topology.is_border[s.low] = topology.is_border[s.high] = 1;
+            topology.edges.push_back({s.low, s.high(), s.face(), -1});
+            topology.is_border[s.low] = topology.is_border[s.high()] = 1;
             continue;
         }
         const Side& t = sides[++i];
-        assert(s.is_forward && !t.is_forward && "faces must form an oriented manifold");
-        topology.edges.push_back({s.low, s.high, s.face, t.face});
+        assert(s.is_forward() && !t.is_forward() && "faces must form an oriented manifold");
+        topology.edges.push_back({s.low, s.high(), s.face(), t.face()});
         topology.hinges.push_back(
-            {s.low, s.high, opposite_vertex(faces, s), opposite_vertex(faces, t), s.face, t.face});
+            {s.low, s.high(), opposite_vertex(faces, s), opposite_vertex(faces, t), s.face(), t.face()});
     }
     return topology;
 }
 
-std::vector<std::vector<int>> faces_at_vertices(int vertex_count, const std::vector<Face>& faces)
+VertexFaces::VertexFaces(int vertex_count, const std::vector<Face>& faces)
+    : begin_(static_cast<std::size_t>(vertex_count) + 1, 0), faces_(3 * faces.size())
 {
-    std::vector<int> count(static_cast<std::size_t>(vertex_count), 0);
     for (const Face& face : faces)
-        for (const int v : face) ++count[v];
-    std::vector<std::vector<int>> faces_at(static_cast<std::size_t>(vertex_count));
-    for (int v = 0; v < vertex_count; ++v) faces_at[v].reserve(count[v]);
+        for (const int v : face) ++begin_[v + 1];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    std::vector<int> next(begin_.begin(), begin_.end() - 1);
     for (int f = 0; f < static_cast<int>(faces.size()); ++f)
-        for (const int v : faces[f]) faces_at[v].push_back(f);
-    return faces_at;
+        for (const int v : faces[f]) faces_[next[v]++] = f;
 }
 
 std::string validate(const ClothMesh& mesh, const ElementNumbers& numbers)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,21 @@ struct MeshTopology {
 MeshTopology make_topology(int vertex_count, const std::vector<Face>& faces);
 
 /// The faces at each vertex, ascending.
-std::vector<std::vector<int>> faces_at_vertices(int vertex_count, const std::vector<Face>& faces);
+class VertexFaces {
+  public:
+    VertexFaces() = default;
+    VertexFaces(int vertex_count, const std::vector<Face>& faces);
+
+    bool empty() const { return faces_.empty(); }
+    std::span<const int> operator[](int v) const
+    {
+        return {faces_.data() + begin_[v], static_cast<std::size_t>(begin_[v + 1] - begin_[v])};
+    }
+
+  private:
+    std::vector<int> begin_;  // of each vertex's, and the end of the last's
+    std::vector<int> faces_;
+};
 
 /// What a sentence calls a mesh's vertices and faces; where empty, their indices, counted from 0.
 struct ElementNumbers {

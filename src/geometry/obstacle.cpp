@@ -54,6 +54,7 @@ Box3 box_of(const ObstacleMesh& mesh)
 struct Obstacle::Trees {
     std::vector<Triangle> triangles;
     std::vector<Segment> feature_edges;
+    std::vector<Box3> edge_boxes;
     FaceTree faces;
     SegmentTree edges;
     std::vector<Vec3> corners;
@@ -68,6 +69,7 @@ struct Obstacle::Trees {
             const std::array<int, 2>& ends = topology.edges[feature.edge].points;
             feature_edges.emplace_back(arris::to_cgal(mesh.points[ends[0]]),
                                        arris::to_cgal(mesh.points[ends[1]]));
+            edge_boxes.push_back(Box3(mesh.points[ends[0]]).extend(mesh.points[ends[1]]));
         }
         // Built now: a tree that builds itself at its first query does so under a lock.
         faces.insert(triangles.cbegin(), triangles.cend());
@@ -131,8 +133,15 @@ void Obstacle::find_faces(const Box3& box, std::vector<int>& found) const
 
 void Obstacle::find_feature_edges(const Box3& box, std::vector<int>& found) const
 {
+    constexpr std::size_t kFew = 16;  // a box's: one after the other is sooner than down a tree
     found.clear();
-    if (box.intersects(bounds_)) find_in(trees_->edges, to_cgal(box), trees_->feature_edges, found);
+    if (!box.intersects(bounds_)) return;
+    if (trees_->feature_edges.size() > kFew)
+        return find_in(trees_->edges, to_cgal(box), trees_->feature_edges, found);
+    for (std::size_t f = 0; f < trees_->feature_edges.size(); ++f)
+        if (trees_->edge_boxes[f].intersects(box) &&
+            CGAL::do_intersect(to_cgal(box), trees_->feature_edges[f]))
+            found.push_back(static_cast<int>(f));
 }
 
 void Obstacle::find_corners(const Box3& box, std::vector<int>& found) const

@@ -15,16 +15,14 @@ MeshTarget uniform_target(double length, double least_angle)
 
 double least_angle(const PatchFace& face)
 {
-    // At each corner tan = cross / dot; atan2 needs no division and no clamp.
+    // At each corner tan = cross / dot; atan2 needs no division and no clamp. The cross product is the same
+    // at all, so that the dot product tells which is least.
     const auto& X = face.material;
     const double doubled = twice_area(X[0], X[1], X[2]);
-    double least = std::numbers::pi;
-    for (int k = 0; k < 3; ++k) {
-        const Vec2 to_next = X[(k + 1) % 3] - X[k];
-        const Vec2 to_last = X[(k + 2) % 3] - X[k];
-        least = std::min(least, std::atan2(doubled, to_next.dot(to_last)));
-    }
-    return least * 180.0 / std::numbers::pi;
+    std::array<double, 3> dots;
+    for (int k = 0; k < 3; ++k) dots[k] = (X[(k + 1) % 3] - X[k]).dot(X[(k + 2) % 3] - X[k]);
+    const auto [low, high] = std::minmax_element(dots.begin(), dots.end());
+    return std::atan2(doubled, doubled < 0.0 ? *low : *high) * 180.0 / std::numbers::pi;
 }
 
 double least_angle(const std::vector<PatchFace>& faces)

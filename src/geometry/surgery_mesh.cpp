@@ -11,6 +11,13 @@
 namespace arris {
 namespace {
 
+Face from_least(const Face& face)
+{
+    const auto [a, b, c] = face;
+    if (a < b && a < c) return face;
+    return b < c ? Face{b, c, a} : Face{c, a, b};
+}
+
 // Each starts at its least vertex, where few do: counted out by it, then sorted a vertex at a time.
 void sort_faces(int vertex_count, std::vector<Face>& faces)
 {
@@ -21,7 +28,8 @@ void sort_faces(int vertex_count, std::vector<Face>& faces)
     for (const Face& face : faces) sorted[next[face[0]]++] = face;
     std::ptrdiff_t begin = 0;  // `next` now tells where each vertex's end
     for (int v = 0; v < vertex_count; begin = next[v++])
-        std::sort(sorted.begin() + begin, sorted.begin() + next[v]);
+        std::sort(sorted.begin() + begin, sorted.begin() + next[v],
+                  [](const Face& f, const Face& g) { return f[1] < g[1] || (f[1] == g[1] && f[2] < g[2]); });
     faces.swap(sorted);
 }
 
@@ -54,6 +62,7 @@ void SurgeryMesh::connect(const ClothMesh& mesh, const std::vector<MeshEdge>& ed
 {
     const auto at = [](int v) { return Vertex(static_cast<Mesh::size_type>(v)); };
     std::vector<std::array<Halfedge, 3>> sides(mesh.faces.size());  // that leaves each corner of a face
+    std::vector<Halfedge> border;
     const auto take_side = [&](int f, int a, Halfedge from_a) {
         const Face& face = mesh.faces[f];
         const auto k = std::find(face.begin(), face.end(), a) - face.begin();
@@ -62,14 +71,18 @@ void SurgeryMesh::connect(const ClothMesh& mesh, const std::vector<MeshEdge>& ed
             sides[f][k] = from_a;
         else
             sides[f][(k + 2) % 3] = mesh_.opposite(from_a);
+        return is_forward;
     };
     for (std::size_t e = 0; e < edges.size(); ++e) {
         const MeshEdge& edge = edges[e];
         const Halfedge from_a = mesh_.halfedge(Mesh::Edge_index(static_cast<Mesh::size_type>(e)));
         mesh_.set_target(from_a, at(edge.b));
         mesh_.set_target(mesh_.opposite(from_a), at(edge.a));
-        take_side(edge.face_left, edge.a, from_a);
-        if (edge.face_right >= 0) take_side(edge.face_right, edge.a, from_a);
+        const bool is_forward = take_side(edge.face_left, edge.a, from_a);
+        if (edge.face_right >= 0)
+            take_side(edge.face_right, edge.a, from_a);
+        else
+            border.push_back(is_forward ? mesh_.opposite(from_a) : from_a);
     }
     for (const auto face : mesh_.faces()) {
         const std::array<Halfedge, 3>& around = sides[face];
@@ -82,10 +95,8 @@ void SurgeryMesh::connect(const ClothMesh& mesh, const std::vector<MeshEdge>& ed
     }
     // On the border each goes on to the one that leaves its end, and is the one that its end knows.
     std::vector<Halfedge> leaving(static_cast<std::size_t>(mesh.vertex_count()));
-    for (const Halfedge h : mesh_.halfedges())
-        if (mesh_.is_border(h)) leaving[mesh_.source(h)] = h;
-    for (const Halfedge h : mesh_.halfedges()) {
-        if (!mesh_.is_border(h)) continue;
+    for (const Halfedge h : border) leaving[mesh_.source(h)] = h;
+    for (const Halfedge h : border) {
         mesh_.set_next(h, leaving[mesh_.target(h)]);
         mesh_.set_halfedge(mesh_.target(h), h);
     }
@@ -211,8 +222,7 @@ void SurgeryMesh::write(SurgeryResult& result) const
     for (const auto f : mesh_.faces()) {
         const Halfedge h = mesh_.halfedge(f);
         Face face = {index[mesh_.source(h)], index[mesh_.target(h)], index[mesh_.target(mesh_.next(h))]};
-        std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-        result.mesh.faces.push_back(face);
+        result.mesh.faces.push_back(from_least(face));
     }
     sort_faces(result.mesh.vertex_count(), result.mesh.faces);
 }

@@ -18,6 +18,8 @@
 #include <set>
 #include <tuple>
 
+#include "geometry/vertex_table.h"
+
 namespace arris {
 namespace {
 
@@ -26,6 +28,36 @@ constexpr double kSoundAngle = 3.0;  // degrees: preferred are ways that leave n
 constexpr double kLeastAngle = 0.1;  // degrees: where rounding decides which side up a face is
 constexpr int kInstants = 4;         // of the way, at which faces are looked at: corners go straight
 constexpr int kMostStages = 100;
+
+/// Ways as they are looked up: of every face there is, three times.
+class WayTable {
+  public:
+    explicit WayTable(const TraceWays& ways) : places_(ways.size())
+    {
+        ways_.reserve(ways.size());
+        for (const auto& [v, way] : ways) {
+            places_.add(v, static_cast<std::uint32_t>(ways_.size()));
+            ways_.push_back(way);
+        }
+    }
+
+    bool contains(VertexId v) const { return places_.find(v) != VertexTable::kNone; }
+    /// Zero where it has none.
+    Vec2 of(VertexId v) const
+    {
+        const std::uint32_t at = places_.find(v);
+        return at != VertexTable::kNone ? ways_[at] : Vec2(Vec2::Zero());
+    }
+
+  private:
+    VertexTable places_;
+    std::vector<Vec2> ways_;
+};
+
+std::array<Vec2, 3> ways_of(const PatchFace& face, const WayTable& ways)
+{
+    return {ways.of(face.vertices[0]), ways.of(face.vertices[1]), ways.of(face.vertices[2])};
+}
 
 std::array<Vec2, 3> ways_of(const PatchFace& face, const TraceWays& ways)
 {
@@ -38,9 +70,8 @@ std::array<Vec2, 3> ways_of(const PatchFace& face, const TraceWays& ways)
 }
 
 // The least doubled area on the way.
-double least_area(const PatchFace& face, const TraceWays& ways)
+double least_area(const PatchFace& face, const std::array<Vec2, 3>& way)
 {
-    const std::array<Vec2, 3> way = ways_of(face, ways);
     double least = std::numeric_limits<double>::infinity();
     for (int i = 1; i <= kInstants; ++i) {
         std::array<Vec2, 3> X = face.material;
@@ -51,15 +82,15 @@ double least_area(const PatchFace& face, const TraceWays& ways)
 }
 
 // That over the square of the longest side as it is: how far from turning.
-double soundness(const PatchFace& face, const TraceWays& ways)
+double soundness(const PatchFace& face, const WayTable& ways)
 {
     double side = 0.0;
     for (int k = 0; k < 3; ++k) side = std::max(side, (face.material[(k + 1) % 3] - face.material[k]).norm());
-    return least_area(face, ways) / (side * side);
+    return least_area(face, ways_of(face, ways)) / (side * side);
 }
 
 // False where the doubled area, (b + t db) x (c + t dc), is above zero for certain at every t in [0, 1].
-bool is_at_risk(const PatchFace& face, const TraceWays& ways)
+bool is_at_risk(const PatchFace& face, const WayTable& ways)
 {
     constexpr double kRounding = 1e-6;  // of the sides' squares: far above any in the area
     const auto cross = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
@@ -76,10 +107,10 @@ bool is_at_risk(const PatchFace& face, const TraceWays& ways)
 // there is nothing to clear.
 class RiskWatch {
   public:
-    RiskWatch(const ClothSurgery& surgery, const std::array<const TraceWays*, 2>& ways)
-        : surgery_(surgery), ways_(ways), events_(surgery.events().size())
+    RiskWatch(const ClothSurgery& surgery, const TraceWays& ahead, const TraceWays& room)
+        : surgery_(surgery), ways_{WayTable(ahead), WayTable(room)}, events_(surgery.events().size())
     {
-        for (const auto& [v, way] : *ways[0])
+        for (const auto& [v, way] : ahead)
             for (const IdFace& face : surgery.faces_at(v))
                 if (is_at_risk(surgery.patch_face(face))) watched_.insert(v);
     }
@@ -91,7 +122,7 @@ class RiskWatch {
             for (const PatchFace& face : surgery_.events()[events_].after) {
                 if (!is_at_risk(face)) continue;
                 for (const VertexId v : face.vertices)
-                    if (ways_[0]->contains(v)) watched_.insert(v);
+                    if (ways_[0].contains(v)) watched_.insert(v);
             }
     }
 
@@ -107,12 +138,12 @@ class RiskWatch {
   private:
     bool is_at_risk(const PatchFace& face) const
     {
-        return arris::is_at_risk(face, *ways_[0]) || arris::is_at_risk(face, *ways_[1]);
+        return arris::is_at_risk(face, ways_[0]) || arris::is_at_risk(face, ways_[1]);
     }
 
     const ClothSurgery& surgery_;
-    std::array<const TraceWays*, 2> ways_;  // of the same vertices
-    std::size_t events_;                    // that have been taken in
+    std::array<WayTable, 2> ways_;  // of the same vertices
+    std::size_t events_;            // that have been taken in
     std::set<VertexId> watched_;
 };
 
@@ -134,7 +165,7 @@ class Clearing {
         int operations = 0;
         std::set<IdFace> queue;
         const auto add = [&](const PatchFace& face) {
-            if (turns_over(face, ahead_)) queue.insert(from_least(face.vertices));
+            if (turns_over(face)) queue.insert(from_least(face.vertices));
         };
         for (const VertexId v : vertices)
             for (const IdFace& face : surgery_.faces_at(v)) add(surgery_.patch_face(face));
@@ -162,8 +193,9 @@ class Clearing {
     double soundness(const PatchFace& face) const { return arris::soundness(face, ahead_); }
     bool is_threatened(const PatchFace& face) const
     {
-        return !(need_ == Need::Room && is_between_traces(face)) && turns_over(face, ahead_);
+        return !(need_ == Need::Room && is_between_traces(face)) && turns_over(face);
     }
+    bool turns_over(const PatchFace& face) const { return !(least_area(face, ways_of(face, ahead_)) > 0.0); }
 
     bool is_between_traces(const PatchFace& face) const
     {
@@ -248,7 +280,7 @@ class Clearing {
     }
 
     ClothSurgery& surgery_;
-    const TraceWays& ahead_;
+    const WayTable ahead_;
     const Need need_;
 };
 
@@ -269,7 +301,7 @@ std::vector<VertexId> find_blocked(const ClothSurgery& surgery, const TraceWays&
 
 bool turns_over(const PatchFace& face, const TraceWays& ways)
 {
-    return !(least_area(face, ways) > 0.0);
+    return !(least_area(face, ways_of(face, ways)) > 0.0);
 }
 
 // In stages of at most kClear of the target length, so that what stands nearest goes first: vertices of one
@@ -292,7 +324,7 @@ ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
     }
     const int count = static_cast<int>(std::min(stages, double(kMostStages)));
     ClearanceReport report;
-    RiskWatch watch(surgery, {&ahead, &room});
+    RiskWatch watch(surgery, ahead, room);
     const auto clear_part = [&](const TraceWays& part, Need need) {
         report.operations += Clearing(surgery, part, need).run(watch.vertices());
         watch.follow();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace arris {
 
@@ -30,7 +31,7 @@ bool is_cloth_corner(const State& state, const ClothStars& stars, int v)
 double room_to_border(const Scene& scene, const State& state, const ClothStars& stars, const Vec2& X, int v,
                       bool is_on_border, const EolVertex& eol)
 {
-    const Vec3 tangent = tangent_of(scene, state, eol);
+    std::optional<Vec3> tangent;  // most are not asked for
     double least = std::numeric_limits<double>::infinity();
     for (const int f : stars.faces[v])
         for (const int w : state.mesh.faces[f]) {
@@ -43,7 +44,8 @@ double room_to_border(const Scene& scene, const State& state, const ClothStars& 
             for (const int next : stars.border_neighbours[w]) {
                 const Vec3 way = (state.mesh.world[next] - state.mesh.world[w]).normalized();
                 constexpr double kAlong = 0.7;  // cosine
-                if (!is_fixed(eol) && !(std::abs(way.dot(tangent)) > kAlong)) continue;
+                if (!tangent) tangent = tangent_of(scene, state, eol);
+                if (!is_fixed(eol) && !(std::abs(way.dot(*tangent)) > kAlong)) continue;
                 const Vec2 &a = state.mesh.material[w], &b = state.mesh.material[next];
                 const double s = std::clamp((X - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
                 least = std::min(least, (X - a - s * (b - a)).norm());

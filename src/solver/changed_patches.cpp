@@ -35,6 +35,7 @@ class PatchFinder {
           after_(change.after),
           then_(find_places(change.after.ids, change.before.ids)),
           now_(find_places(change.before.ids, change.after.ids)),
+          is_eol_changed_(change.after.ids.size(), 0),
           is_near_(change.after.ids.size(), 0),
           patch_(change.after.mesh.faces.size(), -1)
     {
@@ -52,17 +53,16 @@ class PatchFinder {
     }
 
   private:
-    bool is_eol_changed(int v) const
+    /// Of one that is EOL in one of both or in both; -1 where it is none.
+    bool is_eol_changed(int now, int then) const
     {
-        const std::uint32_t id = after_.ids[v];
-        const int now = after_.eol_entry(id), then = before_.eol_entry(id);
         if ((now < 0) != (then < 0)) return true;
         const auto kind_of = [](const EolVertex& e) { return std::tuple(e.obstacle, e.is_corner, e.turn); };
-        return now >= 0 && kind_of(after_.eol[now]) != kind_of(before_.eol[then]);
+        return kind_of(after_.eol[now]) != kind_of(before_.eol[then]);
     }
 
     /// Vertices at which a face may have changed.
-    std::vector<int> touched() const
+    std::vector<int> touched()
     {
         std::vector<VertexId> ids;
         const auto add = [&](const std::vector<PatchFace>& faces) {
@@ -74,7 +74,12 @@ class PatchFinder {
             add(event.after);
         }
         for (const State* state : {&before_, &after_})
-            for (const EolVertex& eol : state->eol) ids.push_back(eol.vertex_id);
+            for (const EolVertex& eol : state->eol) {
+                ids.push_back(eol.vertex_id);
+                if (const int v = after_.index_of(eol.vertex_id); v >= 0)
+                    is_eol_changed_[v] =
+                        is_eol_changed(after_.eol_entry(eol.vertex_id), before_.eol_entry(eol.vertex_id));
+            }
         sort_unique(ids);
         std::vector<int> vertices;
         for (const VertexId id : ids)
@@ -84,8 +89,7 @@ class PatchFinder {
 
     /// Of a face of one mesh, by its vertices in the other, the same three once around there; -1 where there
     /// is none.
-    static int find_face(const ClothMesh& mesh, const std::vector<std::vector<int>>& faces_at,
-                         const Face& vertices)
+    static int find_face(const ClothMesh& mesh, const VertexFaces& faces_at, const Face& vertices)
     {
         const auto [a, b, c] = vertices;
         if (a < 0 || b < 0 || c < 0) return -1;
@@ -108,7 +112,7 @@ class PatchFinder {
         const Face& face = after_.mesh.faces[f];
         if (find_face(before_.mesh, change_.faces_at_before, map(face, then_)) < 0) return false;
         return std::all_of(face.begin(), face.end(), [&](int v) {
-            return before_.mesh.material[then_[v]] == after_.mesh.material[v] && !is_eol_changed(v);
+            return before_.mesh.material[then_[v]] == after_.mesh.material[v] && !is_eol_changed_[v];
         });
     }
 
@@ -180,7 +184,7 @@ class PatchFinder {
                                   after_.mesh.faces[f].end());
         sort_unique(patch.vertices);
         for (const int v : patch.vertices) {
-            const std::vector<int>& around = change_.faces_at_after[v];
+            const std::span<const int> around = change_.faces_at_after[v];
             patch.is_inside.push_back(std::all_of(
                 around.begin(), around.end(), [&](int f) { return patch_[f] == patch_[patch.faces[0]]; }));
         }
@@ -219,11 +223,12 @@ class PatchFinder {
     const MeshChange& change_;
     const State& before_;
     const State& after_;
-    std::vector<int> then_;      ///< of each vertex after, before; -1 where it is new
-    std::vector<int> now_;       ///< of each vertex before, after; -1 where it is gone
-    std::vector<int> near_;      ///< vertices after
-    std::vector<char> is_near_;  ///< of each
-    std::vector<int> patch_;     ///< of each face after; -1 outside
+    std::vector<int> then_;             ///< of each vertex after, before; -1 where it is new
+    std::vector<int> now_;              ///< of each vertex before, after; -1 where it is gone
+    std::vector<char> is_eol_changed_;  ///< of each vertex after: as what it is EOL, or whether
+    std::vector<int> near_;             ///< vertices after
+    std::vector<char> is_near_;         ///< of each
+    std::vector<int> patch_;            ///< of each face after; -1 outside
     std::vector<ChangedPatch> patches_;
 };
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geometry/cloth_surgery.h"
+#include "geometry/mesh_topology.h"
 #include "solver/state.h"
 
 namespace arris {
@@ -22,8 +23,8 @@ struct MeshChange {
     const State& before;
     const State& after;
     const std::vector<SurgeryEvent>& events;  ///< that led from one to the other
-    const std::vector<std::vector<int>>& faces_at_before;
-    const std::vector<std::vector<int>>& faces_at_after;
+    const VertexFaces& faces_at_before;
+    const VertexFaces& faces_at_after;
 };
 
 /// In the order of their first faces; no two share a vertex. Looks at what the events name, and

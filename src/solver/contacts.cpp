@@ -96,7 +96,7 @@ class RememberedPairs {
     /// A face with these vertices, of which there may be two; -1 where the mesh has none any more.
     int find_face(const std::array<int, 3>& vertices)
     {
-        if (faces_at_.empty()) faces_at_ = faces_at_vertices(state_.mesh.vertex_count(), state_.mesh.faces);
+        if (faces_at_.empty()) faces_at_ = VertexFaces(state_.mesh.vertex_count(), state_.mesh.faces);
         for (const int f : faces_at_[vertices[0]]) {
             const Face& face = state_.mesh.faces[f];
             const auto is_in_face = [&](int v) {
@@ -110,7 +110,7 @@ class RememberedPairs {
     const Scene& scene_;
     const State& state_;
     const std::vector<ObstacleStep>& steps_;
-    std::vector<std::vector<int>> faces_at_;  ///< of each vertex; made when it is first asked for
+    VertexFaces faces_at_;  ///< of each vertex; made when it is first asked for
 };
 
 void update_gap(const ObstacleStep& step, const Prediction& prediction, Contact& contact)

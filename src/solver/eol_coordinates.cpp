@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "geometry/cloth_cone.h"
 #include "geometry/feature_nodes.h"
@@ -27,23 +26,34 @@ Face turned_to(const Face& face, int vertex)
     return {face[at], face[(at + 1) % 3], face[(at + 2) % 3]};
 }
 
+/// A face at a vertex, and what it looks like from there.
+struct StarFace {
+    Vec3 normal;
+    Vec3 leaving;  ///< unit, away from the vertex, halfway between its edges
+    Vec2 middle;   ///< material, from the vertex
+    Mat32 F;
+    double area;  ///< material
+    FaceSector sector;
+    Mat32 sides;  ///< its edges from the vertex
+
+    double angle() const  ///< rad
+    {
+        return std::atan2(sides.col(0).cross(sides.col(1)).norm(), sides.col(0).dot(sides.col(1)));
+    }
+};
+
 /// What tells how the cloth lies around a vertex.
 struct Star {
     Mat2 squared_F = Mat2::Zero();                             ///< sum A F^T F
     Eigen::Matrix<double, 2, 3> F_transposed = Mat23::Zero();  ///< sum A F^T
-    std::vector<Vec3> normals;                                 ///< of its faces, and their
-    std::vector<Vec3> leaving;        ///< unit directions away from the vertex, halfway between their edges
-    std::vector<double> angles;       ///< there, rad
-    std::vector<Vec2> middles;        ///< material, from the vertex
-    std::vector<Mat32> deformations;  ///< F, and
-    std::vector<double> areas;        ///< material
-    std::vector<FaceSector> sectors;  ///< seen from the vertex
+    std::vector<StarFace> faces;
 };
 
-Star look_around(const State& state, const std::vector<int>& faces, int vertex,
+Star look_around(const State& state, std::span<const int> faces, int vertex,
                  const std::vector<Vec3>& positions)
 {
     Star star;
+    star.faces.reserve(faces.size());
     for (const int f : faces) {
         const Face face = turned_to(state.mesh.faces[f], vertex);
         Mat32 Dx;
@@ -56,15 +66,11 @@ Star look_around(const State& state, const std::vector<int>& faces, int vertex,
         if (!(across.norm() > 0.0)) continue;  // collapsed: tells no direction
         const Mat32 F = Dx * DX.inverse();
         const double area = 0.5 * DX.determinant();
-        star.deformations.push_back(F);
-        star.areas.push_back(area);
         star.squared_F += area * F.transpose() * F;
         star.F_transposed += area * F.transpose();
-        star.normals.push_back(across.normalized());
-        star.sectors.push_back({Dx.col(0).normalized(), Dx.col(1).normalized()});
-        star.leaving.push_back((star.sectors.back()[0] + star.sectors.back()[1]).stableNormalized());
-        star.angles.push_back(std::atan2(across.norm(), Dx.col(0).dot(Dx.col(1))));
-        star.middles.push_back(DX.col(0) + DX.col(1));
+        const FaceSector sector = {Dx.col(0).normalized(), Dx.col(1).normalized()};
+        star.faces.push_back({across.normalized(), (sector[0] + sector[1]).stableNormalized(),
+                              DX.col(0) + DX.col(1), F, area, sector, Dx});
     }
     return star;
 }
@@ -81,11 +87,10 @@ ClothAround sum_sides(const Star& star, const Vec2& trace, const Vec3& tangent, 
     ClothAround cloth{Vec3::Zero(), Vec3::Zero(), eol.outward, eol.side};
     for (const double sign : {1.0, -1.0}) {
         Vec3 normal = Vec3::Zero(), leaving = Vec3::Zero();
-        for (std::size_t f = 0; f < star.normals.size(); ++f) {
-            const Vec2& middle = star.middles[f];
-            if (!(sign * (trace.x() * middle.y() - trace.y() * middle.x()) > 0.0)) continue;
-            normal += star.areas[f] * star.normals[f];
-            leaving += star.areas[f] * star.leaving[f];
+        for (const StarFace& face : star.faces) {
+            if (!(sign * (trace.x() * face.middle.y() - trace.y() * face.middle.x()) > 0.0)) continue;
+            normal += face.area * face.normal;
+            leaving += face.area * face.leaving;
         }
         normal = (normal - tangent.dot(normal) * tangent).stableNormalized();
         const Vec3 along = normal.cross(tangent);  // in the side's plane, across the feature
@@ -101,9 +106,10 @@ ClothAround sum_sides(const Star& star, const Vec2& trace, const Vec3& tangent, 
 ClothAround sum_around(const Star& star, const EolVertex& eol)
 {
     ClothAround cloth{Vec3::Zero(), Vec3::Zero(), eol.outward, eol.side};
-    for (std::size_t f = 0; f < star.normals.size(); ++f) {
-        cloth.normal += star.angles[f] * star.normals[f];
-        cloth.leaving += star.angles[f] * star.leaving[f];
+    for (const StarFace& face : star.faces) {
+        const double angle = face.angle();
+        cloth.normal += angle * face.normal;
+        cloth.leaving += angle * face.leaving;
     }
     return cloth;
 }
@@ -116,7 +122,7 @@ Vec2 perpendicular(const Vec2& v)
 /// Material direction of the feature through the vertex: along the cloth's edges that lie on it, else what F
 /// maps nearest to the tangent.
 Vec2 find_trace(const Obstacle& obstacle, const State& state, int entry, int vertex,
-                const std::vector<int>& faces, const std::vector<Vec3>& positions, const Star& star,
+                std::span<const int> faces, const std::vector<Vec3>& positions, const Star& star,
                 const Vec3& tangent)
 {
     Vec2 along = Vec2::Zero();
@@ -159,11 +165,11 @@ std::optional<FeatureFrame> find_frame(const Obstacle& obstacle, const EolVertex
 bool is_edge_on(const Star& star, const Vec3& outward)
 {
     Vec3 mean = Vec3::Zero();
-    for (const Vec3& n : star.normals) mean += n;
+    for (const StarFace& face : star.faces) mean += face.normal;
     if (!(mean.norm() > 0.0)) return false;
     mean.normalize();
-    const bool is_flat = std::all_of(star.normals.begin(), star.normals.end(),
-                                     [&](const Vec3& n) { return n.dot(mean) > kCos10; });
+    const bool is_flat = std::all_of(star.faces.begin(), star.faces.end(),
+                                     [&](const StarFace& face) { return face.normal.dot(mean) > kCos10; });
     return is_flat && std::abs(mean.dot(outward)) < kSin10;
 }
 
@@ -172,9 +178,9 @@ bool is_edge_on(const Star& star, const Vec3& outward)
 Vec3 find_opening(const Star& star, const Mat3& basis, const Mat23& material_basis)
 {
     Mat3 inertia = Mat3::Zero();
-    for (std::size_t f = 0; f < star.areas.size(); ++f) {
-        const Mat3 G = basis - star.deformations[f] * material_basis;
-        inertia += star.areas[f] * G.transpose() * G;
+    for (const StarFace& face : star.faces) {
+        const Mat3 G = basis - face.F * material_basis;
+        inertia += face.area * G.transpose() * G;
     }
     const Vec3 response = inertia.inverse().col(0);
     return response / response[0];
@@ -206,7 +212,9 @@ void turn_with_cone(const Star& star, double thickness, double dt, FeatureFrame&
     if (!(height > 0.0)) return;
     if (height > kOnFeature * thickness) dt = 0.0;
     const Vec3 now = (place - frame.point) / height;
-    const Vec3 wanted = -find_cone_axis(star.sectors, -now);
+    std::vector<FaceSector> sectors;
+    for (const StarFace& face : star.faces) sectors.push_back(face.sector);
+    const Vec3 wanted = -find_cone_axis(sectors, -now);
     const double angle = std::atan2(now.cross(wanted).norm(), now.dot(wanted));
     const double share = std::min(kShare, kSpeed * dt / (height * angle));
     const auto turn = Eigen::Quaterniond::FromTwoVectors(now, wanted);
@@ -216,7 +224,7 @@ void turn_with_cone(const Star& star, double thickness, double dt, FeatureFrame&
 
 /// A wire's outward direction turns with the cloth; the vertex goes round the wire with it, as it does there.
 void turn_with_cloth(const Obstacle& obstacle, double thickness, const State& state, int entry, int vertex,
-                     const std::vector<int>& faces, const std::vector<Vec3>& positions, double dt,
+                     std::span<const int> faces, const std::vector<Vec3>& positions, double dt,
                      FeatureFrame& frame, Vec3& place)
 {
     const EolVertex& eol = state.eol[entry];
@@ -268,7 +276,7 @@ ClothStars make_stars(int vertex_count, const std::vector<Face>& faces)
 {
     ClothStars stars;
     stars.topology = make_topology(vertex_count, faces);
-    stars.faces = faces_at_vertices(vertex_count, faces);
+    stars.faces = VertexFaces(vertex_count, faces);
     stars.border_neighbours.assign(vertex_count, {-1, -1});
     for (const MeshEdge& edge : stars.topology.edges) {
         if (edge.face_right >= 0) continue;
@@ -322,19 +330,23 @@ std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& ob
                                                  const ClothStars& stars)
 {
     std::vector<std::array<int, 2>> found;
+    std::vector<int> later;  // neighbours
     const auto add_from = [&](int a) {
         const int v = state.index_of(state.eol[a].vertex_id);
         const Obstacle& obstacle = obstacles[static_cast<std::size_t>(state.eol[a].obstacle)];
-        const Placement now = obstacle.at(state.time);
-        std::set<int> beside;  // later entries
+        later.clear();
         for (const int f : stars.faces[v])
             for (const int w : state.mesh.faces[f])
-                if (w > v)
-                    if (const int b = state.eol_entry(state.ids[w]); b >= 0) beside.insert(b);
-        for (const int b : beside) {
-            const int w = state.index_of(state.eol[b].vertex_id);
-            if (is_trace_edge(obstacle, {state.eol[a], now.inverse(state.mesh.world[v])},
-                              {state.eol[b], now.inverse(state.mesh.world[w])}))
+                if (w > v) later.push_back(w);
+        std::sort(later.begin(), later.end());
+        later.erase(std::unique(later.begin(), later.end()), later.end());
+        std::optional<Placement> now;
+        for (const int w : later) {
+            const int b = state.eol_entry(state.ids[w]);
+            if (b < 0) continue;
+            if (!now) now = obstacle.at(state.time);
+            if (is_trace_edge(obstacle, {state.eol[a], now->inverse(state.mesh.world[v])},
+                              {state.eol[b], now->inverse(state.mesh.world[w])}))
                 found.push_back({a, b});
         }
     };

@@ -35,7 +35,7 @@ struct EolCoordinates {
 /// The cloth around each vertex: what EOL coordinates are made of. Made anew where the mesh changes.
 struct ClothStars {
     MeshTopology topology;
-    std::vector<std::vector<int>> faces;                ///< at each vertex, ascending
+    VertexFaces faces;
     std::vector<std::array<int, 2>> border_neighbours;  ///< of a border vertex, ascending; -1 elsewhere
 };
 ClothStars make_stars(int vertex_count, const std::vector<Face>& faces);

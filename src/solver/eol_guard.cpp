@@ -2,7 +2,7 @@
 #include "solver/eol_guard.h"
 
 #include <algorithm>
-#include <unordered_map>
+#include <utility>
 
 #include "solver/strain_allowance.h"
 #include "solver/surgery_energy.h"
@@ -21,6 +21,12 @@ void sort_unique(std::vector<VertexId>& ids)
 {
     std::sort(ids.begin(), ids.end());
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+}
+
+std::size_t find_place(const std::vector<VertexId>& ascending, VertexId v)
+{
+    return static_cast<std::size_t>(std::lower_bound(ascending.begin(), ascending.end(), v) -
+                                    ascending.begin());
 }
 
 bool contains(const std::vector<VertexId>& ascending, VertexId v)
@@ -84,34 +90,50 @@ bool EolGuard::strains(const SurgeryEvent& event)
 EolGuard::Neighbourhood EolGuard::look_around(const SurgeryEvent& event) const
 {
     constexpr int kRings = 2;
-    Neighbourhood around;
-    std::vector<VertexId>& near = around.near;
+    std::vector<std::pair<VertexId, VertexRing>> found;  // ring after ring
+    std::vector<VertexId> near, added;                   // ascending
     for (const PatchFace& face : event.before)
-        near.insert(near.end(), face.vertices.begin(), face.vertices.end());
-    sort_unique(near);
-    for (int ring = 0; ring < kRings; ++ring) {
-        for (const VertexId v : std::vector<VertexId>(near)) {
-            const VertexRing neighbours = surgery_->ring(v);
-            near.insert(near.end(), neighbours.vertices.begin(), neighbours.vertices.end());
+        added.insert(added.end(), face.vertices.begin(), face.vertices.end());
+    for (int ring = 0; ring <= kRings; ++ring) {
+        sort_unique(added);
+        std::erase_if(added, [&](VertexId v) { return contains(near, v); });
+        const auto known = static_cast<std::ptrdiff_t>(near.size());
+        near.insert(near.end(), added.begin(), added.end());
+        std::inplace_merge(near.begin(), near.begin() + known, near.end());
+        std::vector<VertexId> next;
+        for (const VertexId v : added) {
+            const VertexRing& around = found.emplace_back(v, surgery_->ring(v)).second;
+            next.insert(next.end(), around.vertices.begin(), around.vertices.end());
         }
-        sort_unique(near);
+        added.swap(next);
     }
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    Neighbourhood around;
+    around.near = std::move(near);
+    for (auto& [v, ring] : found) around.rings.push_back(std::move(ring));
+    add_kept_faces(event, around);
+    return around;
+}
+
+void EolGuard::add_kept_faces(const SurgeryEvent& event, Neighbourhood& around) const
+{
     std::vector<IdFace> replaced, faces;
     for (const PatchFace& face : event.before) replaced.push_back(from_least(face.vertices));
-    for (const VertexId v : near) {
-        const VertexRing& ring = around.rings.emplace_back(surgery_->ring(v));
+    for (std::size_t i = 0; i < around.near.size(); ++i) {
+        const VertexId v = around.near[i];
+        const VertexRing& ring = around.rings[i];
         const std::size_t n = ring.vertices.size();
         for (std::size_t k = 0; k + (ring.is_closed ? 0 : 1) < n; ++k) {
             const IdFace face = {v, ring.vertices[k], ring.vertices[(k + 1) % n]};
             const bool is_first = v < face[1] && v < face[2];  // each face once
-            if (is_first && contains(near, face[1]) && contains(near, face[2]) &&
+            if (is_first && contains(around.near, face[1]) && contains(around.near, face[2]) &&
                 std::find(replaced.begin(), replaced.end(), face) == replaced.end())
                 faces.push_back(face);
         }
     }
     std::sort(faces.begin(), faces.end());
+    around.kept.reserve(faces.size());
     for (const IdFace& face : faces) around.kept.push_back(surgery_->patch_face(face));
-    return around;
 }
 
 LoosePatch EolGuard::make_patch(const SurgeryEvent& event) const
@@ -119,17 +141,21 @@ LoosePatch EolGuard::make_patch(const SurgeryEvent& event) const
     const Neighbourhood around = look_around(event);
     LoosePatch patch;
     patch.creases.width = crease_width_;
-    std::unordered_map<VertexId, int> local;
+    std::vector<int> local(around.near.size(), -1);
     const auto add = [&](const PatchFace& face) {
         Face made;
         for (int i = 0; i < 3; ++i) {
-            const auto [at, is_new] = local.try_emplace(face.vertices[i], patch.mesh.vertex_count());
-            made[i] = at->second;
-            if (!is_new) continue;
-            patch.mesh.material.push_back(face.material[i]);
-            patch.mesh.world.push_back(face.world[i]);
-            patch.is_free.push_back(is_loose(face.vertices[i], around, event));
-            patch.normals.push_back(find_kept_normal(scene_, state_, face.vertices[i]));
+            const VertexId v = face.vertices[i];
+            const auto at = find_place(around.near, v);
+            if (local[at] < 0) {
+                local[at] = patch.mesh.vertex_count();
+                patch.mesh.material.push_back(face.material[i]);
+                patch.mesh.world.push_back(face.world[i]);
+                const bool is_free = is_loose(v, around.rings[at], around.near, event);
+                patch.is_free.push_back(is_free);
+                patch.normals.push_back(is_free ? find_kept_normal(scene_, state_, v) : Vec3(Vec3::Zero()));
+            }
+            made[i] = local[at];
         }
         patch.mesh.faces.push_back(made);
         for (int i = 0; i < 3; ++i)
@@ -143,16 +169,16 @@ LoosePatch EolGuard::make_patch(const SurgeryEvent& event) const
     return patch;
 }
 
-bool EolGuard::is_loose(VertexId v, const Neighbourhood& around, const SurgeryEvent& event) const
+bool EolGuard::is_loose(VertexId v, const VertexRing& ring, const std::vector<VertexId>& near,
+                        const SurgeryEvent& event) const
 {
     const bool is_changed = std::any_of(event.changes.begin(), event.changes.end(),
                                         [v](const VertexChange& change) { return change.vertex == v; });
     if (is_changed || !surgery_->has_vertex(v) || surgery_->is_fixed(v) ||
         surgery_->role(v) != TraceRole::Free)
         return false;
-    const auto at = std::lower_bound(around.near.begin(), around.near.end(), v) - around.near.begin();
-    const std::vector<VertexId>& ring = around.rings[at].vertices;
-    return std::all_of(ring.begin(), ring.end(), [&](VertexId w) { return contains(around.near, w); });
+    return std::all_of(ring.vertices.begin(), ring.vertices.end(),
+                       [&](VertexId w) { return contains(near, w); });
 }
 
 }  // namespace arris

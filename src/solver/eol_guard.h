@@ -45,9 +45,12 @@ class EolGuard {
         std::vector<PatchFace> kept;    ///< ascending, from their least vertices
     };
     Neighbourhood look_around(const SurgeryEvent& event) const;
+    void add_kept_faces(const SurgeryEvent& event, Neighbourhood& around) const;
     /// What the operation makes, and around it.
     LoosePatch make_patch(const SurgeryEvent& event) const;
-    bool is_loose(VertexId v, const Neighbourhood& around, const SurgeryEvent& event) const;
+    /// Whether a vertex, with its ring, may move: what is around it is near, too.
+    bool is_loose(VertexId v, const VertexRing& ring, const std::vector<VertexId>& near,
+                  const SurgeryEvent& event) const;
     double allowance(const SurgeryEvent& event, double elastic_energy) const;
 
     const Scene& scene_;

@@ -14,7 +14,7 @@ namespace arris {
 namespace {
 
 /// Whether the cloth turns at the vertex.
-bool is_folded(const State& state, const std::vector<int>& faces)
+bool is_folded(const State& state, std::span<const int> faces)
 {
     std::vector<Vec3> normals;
     Vec3 mean = Vec3::Zero();
@@ -102,8 +102,9 @@ bool is_at_border(const Scene& scene, const State& state, const ClothStars& star
     constexpr double kRoom = 0.15, kCornerRoom = 0.3;  // target lengths to a border ahead
     const int v = state.index_of(eol.vertex_id);
     const Vec2& X = state.mesh.material[v];
-    const double room = (eol.is_corner ? kCornerRoom : kRoom) * scene.eol->length(X);
-    return !(room_to_border(scene, state, stars, X, v, stars.border_neighbours[v][0] >= 0, eol) > room);
+    const double wanted = eol.is_corner ? kCornerRoom : kRoom;
+    const double room = room_to_border(scene, state, stars, X, v, stars.border_neighbours[v][0] >= 0, eol);
+    return !(room > wanted * scene.eol->longest) && !(room > wanted * scene.eol->length(X));
 }
 
 std::vector<std::uint32_t> find_releases(const Scene& scene, const State& state, const ClothStars& stars)

@@ -133,7 +133,7 @@ void drop_contacts_without_element(const ClothStars& stars, State& state)
         for (const std::uint32_t id : contact.vertex_ids)
             if (id != ActiveContact::kNoVertex) vertices.push_back(state.index_of(id));
         if (*std::min_element(vertices.begin(), vertices.end()) < 0) return false;
-        const std::vector<int>& around = stars.faces[vertices[0]];
+        const std::span<const int> around = stars.faces[vertices[0]];
         return std::any_of(around.begin(), around.end(), [&](int f) {
             const Face& face = state.mesh.faces[f];
             return std::all_of(vertices.begin(), vertices.end(),
@@ -192,7 +192,7 @@ std::vector<char> stop_flow(const Scene& scene, const ClothStars& stars, State& 
         if (is_flowing[v] || state.material_velocity[v].isZero()) continue;
         Vec3 carried = Vec3::Zero();
         double area = 0.0;
-        for (const int f : stars.faces[v]) {
+        for (const int f : stars.faces[static_cast<int>(v)]) {
             const auto& [a, b, c] = state.mesh.faces[f];
             const std::vector<Vec2>& X = state.mesh.material;
             const std::vector<Vec3>& x = state.mesh.world;

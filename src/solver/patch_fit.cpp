@@ -37,7 +37,7 @@ class PatchFitter {
             const double gain = relax_patch(patch);
             const std::optional<VelocityFit> fit = fit_patch(patch);
             if (gain > 0.0)
-                report.strain = std::max(report.strain, gain / ((fit ? fit->energy : 0.0) + weight(patch)));
+                report.strain = most_strain_of(patch, gain, fit ? fit->energy : 0.0, report.strain);
             if (!fit) continue;
             ++report.patches;
             report.energy_gain += fit->energy_gain;
@@ -78,23 +78,32 @@ class PatchFitter {
         for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
             const int v = patch.vertices[i];
             relaxed_.is_free[v] = after_.eol_entry(after_.ids[v]) < 0 && patch.is_inside[i];
-            relaxed_.normals[v] = find_kept_normal(scene_, after_, after_.ids[v]);
         }
         for (const HeldVertex& held : held_) relaxed_.is_free[held.vertex] = 0;
+        for (const int v : patch.vertices)
+            relaxed_.normals[v] =
+                relaxed_.is_free[v] ? find_kept_normal(scene_, after_, after_.ids[v]) : Vec3(Vec3::Zero());
         return relax(scene_, creases_, relaxed_, after_) - before;
     }
 
-    /// Of a patch, over a cell, J.
-    double weight(const ChangedPatch& patch) const
+    /// The greater of `known` and what `gain` is beside all that moves a patch: its kinetic energy, and its
+    /// weight over a cell.
+    double most_strain_of(const ChangedPatch& patch, double gain, double kinetic, double known) const
     {
-        double area = 0.0, length = 0.0;
+        const std::vector<Vec2>& X = after_.mesh.material;
+        double area = 0.0;
         for (const int f : patch.faces) {
-            const Face& face = after_.mesh.faces[f];
-            const Vec2& X = after_.mesh.material[face[0]];
-            area += 0.5 * twice_area(X, after_.mesh.material[face[1]], after_.mesh.material[face[2]]);
-            length = std::max(length, scene_.eol->length(X));
+            const auto& [a, b, c] = after_.mesh.faces[f];
+            area += 0.5 * twice_area(X[a], X[b], X[c]);
         }
-        return weight_over(scene_, area, length);
+        const auto strain = [&](double cell) { return gain / (kinetic + weight_over(scene_, area, cell)); };
+        if (!(strain(scene_.eol->shortest) > known)) return known;
+        double cell = 0.0;
+        int last = -1;
+        for (const int f : patch.faces)
+            if (const int v = after_.mesh.faces[f][0]; v != last)
+                cell = std::max(cell, scene_.eol->length(X[last = v]));
+        return std::max(known, strain(cell));
     }
 
     std::optional<VelocityFit> fit_patch(const ChangedPatch& changed)

@@ -14,10 +14,7 @@ namespace {
 class Shares {
   public:
     Shares(const std::vector<Face>& faces, const std::vector<HeldVertex>& held, std::size_t count)
-        : faces_(faces),
-          share_(count, 1.0),
-          is_held_(count, 0),
-          faces_at_(faces_at_vertices(static_cast<int>(count), faces))
+        : faces_(faces), share_(count, 1.0), is_held_(count, 0), faces_at_(static_cast<int>(count), faces)
     {
         for (const HeldVertex& vertex : held) is_held_[vertex.vertex] = 1;
     }
@@ -63,7 +60,7 @@ class Shares {
     const std::vector<Face>& faces_;
     std::vector<double> share_;
     std::vector<char> is_held_;
-    std::vector<std::vector<int>> faces_at_;
+    VertexFaces faces_at_;
 };
 
 }  // namespace

@@ -40,7 +40,7 @@ double area(ClothMesh mesh)
     return material_area(mesh);
 }
 
-bool has_positive_faces(const ClothMesh& mesh, const std::vector<int>& faces)
+bool has_positive_faces(const ClothMesh& mesh, std::span<const int> faces)
 {
     return std::all_of(faces.begin(), faces.end(), [&](int f) {
         const auto& [a, b, c] = mesh.faces[f];
@@ -139,7 +139,7 @@ SurgeryCloth sabotaged_cloth(int n, unsigned seed)
     cloth.name = fmt::format("sabotaged {}", seed);
     ClothMesh& mesh = cloth.mesh;
     const MeshTopology topology = make_topology(mesh.vertex_count(), mesh.faces);
-    const auto faces_at = faces_at_vertices(mesh.vertex_count(), mesh.faces);
+    const VertexFaces faces_at(mesh.vertex_count(), mesh.faces);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     for (int v = 0; v < mesh.vertex_count(); ++v) {

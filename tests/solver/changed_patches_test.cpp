@@ -18,11 +18,9 @@ using testing::EolCloth;
 using testing::make_draped;
 using testing::make_ridge;
 
-using Faces = std::vector<std::vector<int>>;
-
-Faces faces_at(const State& state)
+VertexFaces faces_at(const State& state)
 {
-    return faces_at_vertices(state.mesh.vertex_count(), state.mesh.faces);
+    return VertexFaces(state.mesh.vertex_count(), state.mesh.faces);
 }
 
 std::array<VertexId, 3> ids_of(const State& state, const Face& face)
@@ -135,7 +133,7 @@ State after_surgery(const State& before, const ClothSurgery& surgery)
 std::vector<ChangedPatch> find(const State& before, const State& after,
                                const std::vector<SurgeryEvent>& events)
 {
-    const Faces then = faces_at(before), now = faces_at(after);
+    const VertexFaces then = faces_at(before), now = faces_at(after);
     return find_changed_patches({before, after, events, then, now});
 }
 
