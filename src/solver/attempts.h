@@ -23,9 +23,9 @@ struct Overrun {
 
 /// On what one attempt has failed.
 struct Failure {
-    std::vector<Overrun> overrun;
-    std::vector<int> pinched;  ///< EOL vertices in contacts that their ways cannot meet
-    bool has_turned = false;   ///< EOL vertices have gone round wires or tips with the cloth
+    std::vector<Overrun> overrun = {};
+    std::vector<int> pinched = {};  ///< EOL vertices in contacts that their ways cannot meet
+    bool has_turned = false;        ///< EOL vertices have gone round wires or tips with the cloth
 };
 
 /// What the attempts at one step have failed on: the next one has to know. Where energy rises as vertices go
