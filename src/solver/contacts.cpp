@@ -363,7 +363,19 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         slot[placing.coordinates->vertex] = static_cast<int>(eol.size());
         eol.push_back(*placing.coordinates);
     }
+    // The cloth's edge between two vertices on one wire is the trace itself: a row there is all but singular.
+    const auto is_trace = [&](const Contact& contact) {
+        const auto& [a, b, c] = contact.in_frame.vertices;
+        if (contact.in_frame.kind != ContactKind::Edge || slot[a] < 0 || slot[b] < 0) return false;
+        const int o = contact.obstacle;
+        const EolVertex &p = state.eol[eol[slot[a]].entry], &q = state.eol[eol[slot[b]].entry];
+        return p.obstacle == o && !p.is_corner && !q.is_corner && is_on_wire(scene.obstacles[o], p) &&
+               feature_of_edge(scene.obstacles[o].features(), contact.in_frame.element) >= 0 &&
+               is_trace_edge(scene.obstacles[o], {p, steps[o].motion.begin[a]},
+                             {q, steps[o].motion.begin[b]});
+    };
     std::erase_if(contacts, [&](const Contact& contact) {
+        if (is_trace(contact)) return true;
         const int o = contact.obstacle;
         for (const int v : contact.in_frame.vertices) {
             if (v < 0 || slot[v] < 0) continue;

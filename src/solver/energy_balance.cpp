@@ -43,7 +43,8 @@ double work_of_pins(const State& state, const Workspace& work)
     return sum / work.prediction.gamma;
 }
 
-/// Contacts push along their normals on what moves with the obstacle.
+/// Contacts push along their normals on what moves with the obstacle where the cloth is: the plane that keeps
+/// a fold's sides apart is far from its wire there.
 double work_of_rows(const std::vector<double>& multiplier, const Workspace& work)
 {
     double sum = 0.0;
@@ -51,8 +52,8 @@ double work_of_rows(const std::vector<double>& multiplier, const Workspace& work
         const Contact& contact = work.contacts[c];
         if (contact.eol >= 0) continue;
         const ObstacleStep& step = work.obstacles[contact.obstacle];
-        const Vec3& point = contact.in_frame.point;
-        sum += multiplier[c] * contact.normal.dot(step.end(point) - step.begin(point));
+        const Vec3 place = contact.in_frame.at(step.motion.begin);
+        sum += multiplier[c] * contact.normal.dot(step.end(place) - step.begin(place));
     }
     return sum / work.prediction.gamma;
 }

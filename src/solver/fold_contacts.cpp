@@ -71,6 +71,13 @@ class FoldSearch {
         return obstacles_[vertex.obstacle].features().edges[vertex.feature].polyline;
     }
 
+    /// On another feature, or the wire's end: that holds it, and it has no way to go where a bound leads.
+    bool is_eol(int vertex) const
+    {
+        return std::any_of(eol_.begin(), eol_.end(),
+                           [&](const EolCoordinates& at) { return at.vertex == vertex; });
+    }
+
     const Vec3& place_of(int vertex, const Wire& wire) const { return (*positions_[wire[0]])[vertex]; }
 
     /// That are not on the wire themselves.
@@ -128,7 +135,7 @@ class FoldSearch {
     {
         std::vector<FoldContact> found;
         for (const auto& [key, plane] : planes_)
-            if (plane.side != 0 && plane.angle < kFarRound && plane.angle > -kWrong)
+            if (plane.side != 0 && plane.angle < kFarRound && plane.angle > -kWrong && !is_eol(key.vertex))
                 found.push_back({key.vertex, key.wire[0],
                                  find_fold_bound(plane.at->frame, place_of(key.vertex, key.wire), plane.side),
                                  plane.at->frame.point});

@@ -29,8 +29,9 @@ Press sum_contacts(int vertex, const std::vector<double>& multiplier, const Work
             const ObstacleStep& step = work.obstacles[contact.obstacle];
             sum.impulse += impulse;
             sum.net += impulse * contact.normal;
-            sum.work += impulse * contact.normal.dot(step.end(local.point) - step.begin(local.point)) /
-                        work.prediction.gamma;
+            const Vec3 place = local.at(step.motion.begin);
+            sum.work +=
+                impulse * contact.normal.dot(step.end(place) - step.begin(place)) / work.prediction.gamma;
         }
     }
     return sum;
@@ -53,15 +54,17 @@ std::vector<int> find_unmet_vertices(const State& state, const Workspace& work)
 
 std::vector<int> find_squeezed_vertices(const Workspace& work)
 {
-    constexpr double kInVain = 2.0;  // of impulses that add up: faces of a groove of 60 degrees
-    constexpr double kWork = 0.1;    // of the energy at stake
+    constexpr double kInVain =
+        2.0;                       // of impulses that add up: faces of a groove of 60 degrees, or one across
+    constexpr double kWork = 0.1;  // of the energy at stake
     std::vector<int> squeezed;
     const double least = kWork * energy_at_stake(work);
     if (!(work.solved_energy.sum() - work.energy.sum() > least)) return squeezed;
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
     for (const EolCoordinates& eol : work.eol) {
         const Press press = sum_contacts(eol.vertex, multiplier, work);
-        if (press.work > least && press.impulse > kInVain * press.net.norm()) squeezed.push_back(eol.vertex);
+        if (press.work > least && press.impulse > kInVain * (eol.basis.transpose() * press.net).norm())
+            squeezed.push_back(eol.vertex);
     }
     return squeezed;
 }

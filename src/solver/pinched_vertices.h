@@ -12,9 +12,9 @@
 
 namespace arris {
 
-/// EOL vertices whose contacts push against each other, most of their impulses in vain, and do work, J, on
-/// them all the same: more than a tenth of the energy at stake in the step. The proposal in `work` is
-/// weighed.
+/// EOL vertices whose contacts push against each other or against what holds the vertex to its feature, most
+/// of their impulses in vain, and do work, J, on them all the same: more than a tenth of the energy at stake
+/// in a step in which the cloth gains as much. The proposal in `work` is weighed.
 std::vector<int> find_squeezed_vertices(const Workspace& work);
 
 /// Those of an infeasible step: in contacts that no velocity meets, or squeezed.

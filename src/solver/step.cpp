@@ -249,6 +249,7 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
     if (is_done && !find_squeezed_vertices(work).empty()) {
         report.status = StepStatus::Infeasible;
+        report.seconds.check += watch.lap();
         return false;
     }
     if (is_done && keep_energy(scene, state, attempt, report.solves < kMostSolves, work, report)) return true;

@@ -100,6 +100,19 @@ TEST(DrivenWork, OfAnObstacleIsItsPressureTimesItsWay)
     EXPECT_NEAR(one.driven() / (one.mass() * 0.25), 1.0, kRoundOff);
 }
 
+TEST(DrivenWork, OfATurningObstacleIsThatWhereTheClothIsWhereverItsPlaneIsNamed)
+{
+    Scene scene;
+    RigidMotion motion = start_off(Vec3(0, 0, 0.5));
+    motion.angular_velocity = Vec3(0, 0.5, 0);
+    scene.obstacles.push_back(Obstacle("lift", make_floor().mesh(), {}, motion, 30.0));
+    OneStep one(scene, kEverywhere, 1.0);
+    const double driven = one.driven();
+    ASSERT_GT(driven, 0.0);
+    for (Contact& contact : one.work.contacts) contact.in_frame.point += Vec3(0.3, 0.0, 0.0);
+    EXPECT_NEAR(one.driven() / driven, 1.0, kRoundOff);
+}
+
 TEST(DrivenWork, OfAPinAgainstAFixedObstacleIsThePinsAlone)
 {
     Scene scene;

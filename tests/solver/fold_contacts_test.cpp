@@ -51,7 +51,9 @@ std::vector<FoldContact> find(const EolCloth& cloth)
         if (const EolPlacing placing = cloth.place(cloth.state.index_of(vertex.vertex_id));
             placing.coordinates)
             eol.push_back(*placing.coordinates);
-    return find_fold_contacts(cloth.scene.obstacles, cloth.state, stars, eol, {&cloth.state.mesh.world});
+    const std::vector<const std::vector<Vec3>*> positions(cloth.scene.obstacles.size(),
+                                                          &cloth.state.mesh.world);
+    return find_fold_contacts(cloth.scene.obstacles, cloth.state, stars, eol, positions);
 }
 
 double along_x(const EolCloth& cloth, const FoldContact& contact)
@@ -79,6 +81,24 @@ TEST(FoldContacts, KeepEachSideOfAFoldOnItsSide)
         if (away < kSame || away > 3.5 * kCell) continue;
         EXPECT_TRUE(std::binary_search(vertices.begin(), vertices.end(), v)) << v;
     }
+}
+
+TEST(FoldContacts, AreNoneOfAVertexThatIsHeldElsewhere)
+{
+    // On a nail beside the fold.
+    EolCloth cloth = make_folded(20.0);
+    const auto is_of = [&](int v) {
+        const std::vector<FoldContact> found = find(cloth);
+        return std::any_of(found.begin(), found.end(), [&](const FoldContact& c) { return c.vertex == v; });
+    };
+    const int beside = cloth.vertex_at(0.2 + kCell, 0.2), other = cloth.vertex_at(0.2 - kCell, 0.2);
+    ASSERT_TRUE(is_of(beside));
+    ASSERT_TRUE(is_of(other));
+    cloth.scene.obstacles.push_back(Obstacle(
+        "nail", make_points({cloth.state.mesh.world[beside] - Vec3(0.0, 0.0, kThickness)}), {}, {}, 30.0));
+    cloth.state.eol[static_cast<std::size_t>(cloth.add_eol(beside, true, 0))].obstacle = 1;
+    EXPECT_FALSE(is_of(beside));
+    EXPECT_TRUE(is_of(other));
 }
 
 TEST(FoldContacts, AreNoneWhereTheClothIsFarFromThePlane)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/contact_plane.h"
+#include "geometry/rigid_motion.h"
 #include "solver/constraints.h"
 
 namespace arris {
@@ -23,6 +24,7 @@ Workspace make_vise(double angle, bool is_together)
                                          Vec3(std::cos(half), -std::sin(half), 0.0)};
     for (int o = 0; o < 2; ++o) {
         ObstacleStep step;
+        step.motion.begin.assign(8, Vec3::Zero());
         if (o == 0 || is_together) step.end.translation = 1e-3 * normals[0];
         work.obstacles.push_back(step);
         const ObstacleContact in_frame = make_contact(ContactKind::Vertex, {{7, -1, -1}, {1.0, 0.0, 0.0}}, -1,
@@ -50,6 +52,18 @@ TEST(SqueezedVertices, AreThoseWhoseContactsPushAgainstEachOther)
     Workspace ordinary = make_vise(170.0, false);
     ordinary.eol.clear();
     EXPECT_TRUE(find_squeezed_vertices(ordinary).empty()) << "it may slip out";
+}
+
+TEST(SqueezedVertices, AreThoseWhoseContactIsAcrossTheirWay)
+{
+    // It can go one way only, which leans against what presses on it.
+    for (const double lean : {85.0, 20.0}) {
+        Workspace work = make_vise(0.0, false);
+        work.contacts.pop_back();
+        work.eol[0].basis = Mat3::Zero();
+        work.eol[0].basis.col(0) = rotation_about(Vec3::UnitZ(), lean) * Vec3::UnitX();
+        EXPECT_EQ(find_squeezed_vertices(work).empty(), lean < 60.0) << lean;
+    }
 }
 
 TEST(PinchedVertices, AreOfAnInfeasibleStepOnly)
