@@ -70,7 +70,6 @@ class Cleanup {
         for (int round = 0; round < kThinRounds; ++round)
             if (!open_thin_faces()) break;
         flip_edges();
-        judge();
         surgery_.take_touched();
         return report_;
     }
@@ -350,16 +349,6 @@ class Cleanup {
             if (is_opening(proposal) && commit(proposal)) return true;
         }
         return false;
-    }
-
-    void judge()
-    {
-        for (const IdFace& face : patch_faces()) {
-            const PatchFace patch = surgery_.patch_face(face);
-            const double angle = least_angle(patch);
-            report_.least_angle = std::min(report_.least_angle, angle);
-            report_.thin_faces += is_thin(patch, angle) ? 1 : 0;
-        }
     }
 
     ClothSurgery& surgery_;

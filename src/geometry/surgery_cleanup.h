@@ -12,9 +12,7 @@ struct CleanupReport {
     int splits = 0;
     int most_operations = 0;  ///< proven bound on their sum
     bool is_capped =
-        false;           ///< a cap on flips was hit: the mesh is valid, perhaps not as good as it could be
-    int thin_faces = 0;  ///< of the patch, still below their angle
-    double least_angle = 180.0;  ///< degrees, of the patch's faces
+        false;  ///< a cap on flips was hit: the mesh is valid, perhaps not as good as it could be
 
     int operations() const { return collapses + flips + splits; }
 };

@@ -79,9 +79,13 @@ TEST(InitialTarget, AsksNoWorkOfTheMeshItWasMadeOf)
     for (const SurgeryCloth& cloth : {square_cloth(12), graded_cloth(20), bay_cloth(9), holed_cloth(9)}) {
         ClothSurgery surgery = cloth.surgery();
         for (const VertexId v : cloth.ids()) surgery.touch(v);
-        const CleanupReport report = clean_up(surgery, make_initial_target(cloth.mesh));
-        EXPECT_EQ(report.operations(), 0) << cloth.name;
-        EXPECT_EQ(report.thin_faces, 0) << cloth.name;
+        const MeshTarget target = make_initial_target(cloth.mesh);
+        EXPECT_EQ(clean_up(surgery, target).operations(), 0) << cloth.name;
+        for (const VertexId v : cloth.ids())
+            for (const IdFace& face : surgery.faces_at(v)) {
+                const PatchFace patch = surgery.patch_face(face);
+                EXPECT_GE(least_angle(patch), target.least_angle(material_centre(patch))) << cloth.name;
+            }
     }
 }
 

@@ -52,7 +52,7 @@ TEST(CleanUp, LeavesAGoodMeshAlone)
         touch_all(surgery);
         const CleanupReport report = clean_up(surgery, target_of(cloth));
         EXPECT_EQ(report.operations(), 0) << cloth.name;
-        EXPECT_EQ(report.thin_faces, 0);
+        EXPECT_GE(least_material_angle(surgery.result().mesh), kAngle) << cloth.name;
     }
 }
 
@@ -175,9 +175,8 @@ TEST(CleanUp, CapBesideATraceIsOpened)
     const VertexId cap = nearest_vertex(surgery, {0.5, 0.625});
     ASSERT_EQ(surgery.commit(surgery.propose_moves({{cap, {0.44, 0.501}}})), Verdict::Done);
     EXPECT_LT(least_material_angle(surgery.result().mesh), 2.0);
-    const CleanupReport report = clean_up(surgery, target_of(cloth));
-    EXPECT_EQ(report.thin_faces, 0);
-    EXPECT_GT(report.least_angle, kAngle);
+    clean_up(surgery, target_of(cloth));
+    EXPECT_GT(least_material_angle(surgery.result().mesh), kAngle);
     EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
 }
 
