@@ -49,14 +49,12 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
 std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
                                    std::vector<ObstacleStep>& steps);
 
-/// The coordinates of the state's EOL vertices, whose own contact is the bound on their first: those that
-/// the search found of them with the feature they are on are dropped, and the bounds are appended. Nothing
-/// for a vertex that can have no coordinates any more: it is then like any other. For `turning` (s) vertices
-/// go round wires and tips with the cloth.
-std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& state, const ClothStars& stars,
-                                             const Prediction& prediction, double turning,
-                                             const std::vector<ObstacleStep>& steps,
-                                             std::vector<Contact>& contacts);
+/// Whether the contact is one of `state.active`: of an edge or face with the same element of the obstacle, of
+/// a vertex with about the same normal, as a vertex slides from face to face.
+bool was_active(const State& state, const Contact& contact);
+
+/// How far, m, the obstacle goes along the contact's normal in the step, where the cloth is.
+double way_along(const ObstacleStep& step, const Contact& contact);
 
 /// The contact in the world, its gap that of the prediction.
 Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,

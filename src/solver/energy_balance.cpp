@@ -51,9 +51,7 @@ double work_of_rows(const std::vector<double>& multiplier, const Workspace& work
     for (std::size_t c = 0; c < work.contacts.size(); ++c) {
         const Contact& contact = work.contacts[c];
         if (contact.eol >= 0) continue;
-        const ObstacleStep& step = work.obstacles[contact.obstacle];
-        const Vec3 place = contact.in_frame.at(step.motion.begin);
-        sum += multiplier[c] * contact.normal.dot(step.end(place) - step.begin(place));
+        sum += multiplier[c] * way_along(work.obstacles[contact.obstacle], contact);
     }
     return sum / work.prediction.gamma;
 }

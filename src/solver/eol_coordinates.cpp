@@ -259,6 +259,12 @@ bool is_fixed(const EolVertex& eol)
     return eol.is_corner || eol.turn >= 0;
 }
 
+int held_point(const Obstacle& obstacle, const EolVertex& eol)
+{
+    if (eol.is_corner) return obstacle.features().corners[eol.feature].point;
+    return eol.turn >= 0 ? point_at(obstacle, {eol.feature, eol.turn}) : -1;
+}
+
 Vec3 feature_tangent(const Obstacle& obstacle, const EolVertex& eol)
 {
     if (eol.is_corner) return Vec3::Zero();

@@ -70,6 +70,9 @@ std::vector<EolPlacing> place_eol_vertices(const std::vector<Obstacle>& obstacle
 /// wire turns.
 bool is_fixed(const EolVertex& eol);
 
+/// The point of the obstacle's mesh at which a fixed vertex is held; -1 of one that slides.
+int held_point(const Obstacle& obstacle, const EolVertex& eol);
+
 /// Unit, of the feature that the vertex is on, in the obstacle's frame; zero on a corner.
 Vec3 feature_tangent(const Obstacle& obstacle, const EolVertex& eol);
 

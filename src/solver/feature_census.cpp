@@ -26,13 +26,6 @@ bool is_plane_of_face(const Obstacle& obstacle, const ObstacleContact& contact)
            std::abs(normals[contact.element].dot(contact.normal)) > 1.0 - kSame;
 }
 
-/// Of the obstacle's mesh, where a vertex is held.
-int point_of(const Obstacle& obstacle, const EolVertex& eol)
-{
-    return eol.is_corner ? obstacle.features().corners[eol.feature].point
-                         : point_at(obstacle, {eol.feature, eol.turn});
-}
-
 class Census {
   public:
     Census(const Scene& scene, const State& state, const Workspace& work)
@@ -93,7 +86,7 @@ class Census {
         const ObstacleFeatures& features = scene_.obstacles[contact.obstacle].features();
         const ObstacleContact& local = contact.in_frame;
         if (local.kind == ContactKind::Triangle)
-            return is_fixed(eol) && point_of(scene_.obstacles[contact.obstacle], eol) == local.element;
+            return held_point(scene_.obstacles[contact.obstacle], eol) == local.element;
         if (local.kind != ContactKind::Edge) return false;
         const int v = state_.index_of(eol.vertex_id);
         const int feature = feature_of_edge(features, local.element);

@@ -22,8 +22,14 @@ class FoldSearch {
   public:
     FoldSearch(const std::vector<Obstacle>& obstacles, const State& state, const ClothStars& stars,
                const std::vector<EolCoordinates>& eol, const std::vector<const std::vector<Vec3>*>& positions)
-        : obstacles_(obstacles), state_(state), stars_(stars), eol_(eol), positions_(positions)
+        : obstacles_(obstacles),
+          state_(state),
+          stars_(stars),
+          eol_(eol),
+          positions_(positions),
+          is_eol_(state.ids.size(), 0)
     {
+        for (const EolCoordinates& at : eol) is_eol_[at.vertex] = 1;
     }
 
     std::vector<FoldContact> run()
@@ -69,13 +75,6 @@ class FoldSearch {
     int polyline_of(const EolVertex& vertex) const
     {
         return obstacles_[vertex.obstacle].features().edges[vertex.feature].polyline;
-    }
-
-    /// On another feature, or the wire's end: that holds it, and it has no way to go where a bound leads.
-    bool is_eol(int vertex) const
-    {
-        return std::any_of(eol_.begin(), eol_.end(),
-                           [&](const EolCoordinates& at) { return at.vertex == vertex; });
     }
 
     const Vec3& place_of(int vertex, const Wire& wire) const { return (*positions_[wire[0]])[vertex]; }
@@ -135,7 +134,7 @@ class FoldSearch {
     {
         std::vector<FoldContact> found;
         for (const auto& [key, plane] : planes_)
-            if (plane.side != 0 && plane.angle < kFarRound && plane.angle > -kWrong && !is_eol(key.vertex))
+            if (plane.side != 0 && plane.angle < kFarRound && plane.angle > -kWrong && !is_eol_[key.vertex])
                 found.push_back({key.vertex, key.wire[0],
                                  find_fold_bound(plane.at->frame, place_of(key.vertex, key.wire), plane.side),
                                  plane.at->frame.point});
@@ -147,6 +146,9 @@ class FoldSearch {
     const ClothStars& stars_;
     const std::vector<EolCoordinates>& eol_;
     const std::vector<const std::vector<Vec3>*>& positions_;
+    /// Also on another feature, or the wire's end: that holds it, and it has no way to go where a bound
+    /// leads.
+    std::vector<char> is_eol_;
     Planes planes_;
 };
 

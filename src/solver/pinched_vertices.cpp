@@ -26,12 +26,10 @@ Press sum_contacts(int vertex, const std::vector<double>& multiplier, const Work
         for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
             if (local.vertices[i] != vertex) continue;
             const double impulse = local.weights[i] * multiplier[c];
-            const ObstacleStep& step = work.obstacles[contact.obstacle];
             sum.impulse += impulse;
             sum.net += impulse * contact.normal;
-            const Vec3 place = local.at(step.motion.begin);
             sum.work +=
-                impulse * contact.normal.dot(step.end(place) - step.begin(place)) / work.prediction.gamma;
+                impulse * way_along(work.obstacles[contact.obstacle], contact) / work.prediction.gamma;
         }
     }
     return sum;

@@ -7,6 +7,7 @@
 
 #include "solver/constraints.h"
 #include "solver/energy_balance.h"
+#include "solver/eol_contacts.h"
 #include "solver/feature_census.h"
 #include "solver/material_flow.h"
 #include "solver/pinched_vertices.h"

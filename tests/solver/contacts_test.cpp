@@ -11,6 +11,7 @@
 
 #include "geometry/contact_plane.h"
 #include "geometry/obstacle_shapes.h"
+#include "solver/eol_contacts.h"
 #include "tests/solver/eol_cloth.h"
 #include "tests/solver/floor.h"
 
