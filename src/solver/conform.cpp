@@ -206,7 +206,8 @@ class Conforming {
     {
         making_ = &wanted;
         const TraceInsertion made = insert_trace_point(surgery_, target_, material, near, wanted);
-        if (made.verdict != Verdict::Done) coming_.erase(made_);
+        coming_.erase(made_);  // proposed last, which need not be the one that was made
+        if (made.verdict == Verdict::Done) coming_[made.vertex] = wanted.way;
         making_ = nullptr;
         made_ = kNoVertex;
         return made;

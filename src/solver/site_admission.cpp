@@ -144,10 +144,14 @@ bool SiteAdmission::is_in_plane(const EolVertex& eol) const
     constexpr double kOff = 0.1;  // thicknesses
     const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
     const Vec3 place = trace_.placed(eol).place;
-    if (eol.is_corner || has_left(eol)) return true;
-    if (obstacle.features().edges[eol.feature].kind != FeatureKind::Convex)
-        return (place - place_on_feature(obstacle, eol.feature, place).point).norm() <=
-               kOnFeature * scene_.material.thickness;
+    if (eol.is_corner) return true;
+    const FeatureEdge& edge = obstacle.features().edges[eol.feature];
+    const Vec3 off = place - place_on_feature(obstacle, eol.feature, place).point;
+    if (edge.kind != FeatureKind::Convex) return off.norm() <= kOnFeature * scene_.material.thickness;
+    if (has_left(eol))  // and may be anywhere beyond both faces
+        return std::all_of(edge.normals.begin(), edge.normals.end(), [&](const Vec3& normal) {
+            return normal.dot(off) >= -kOff * scene_.material.thickness;
+        });
     const std::optional<FeatureFrame> frame =
         find_edge_frame(obstacle, eol.feature, place, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
     const Vec3 across = frame->tangent.cross(frame->outward);

@@ -30,7 +30,7 @@ class SiteAdmission {
 
     /// Whether a vertex that has been made is where its coordinates can hold it. Surgery at one site bends
     /// the surface a little differently at the next. Off the plane of a convex edge a vertex would stay off
-    /// it, as it may only move in it.
+    /// it, as it may only move in it; and one of a fold that has left the edge is beyond both its faces.
     bool is_in_plane(const EolVertex& eol) const;
     /// Whether one that is to be on a wire or border is on the side to which that has pressed. Its outward
     /// direction is where it is, and would be against what presses beside it.

@@ -19,13 +19,13 @@ std::optional<double> length_before(const Obstacle& obstacle, const Polyline& po
 {
     const EolVertex& eol = placed.eol;
     const ObstacleFeatures& features = obstacle.features();
-    const auto point_at = [&](const PolylineEdge& edge, bool is_end) {
-        return obstacle.topology().edges[features.edges[edge.feature].edge].points[edge.is_forward == is_end];
+    const auto point_of = [&](const PolylineEdge& edge, bool is_end) {
+        return point_at(obstacle, {edge.feature, edge.is_forward == is_end ? 1 : 0});
     };
     if (eol.is_corner) {
         const int point = features.corners[eol.feature].point;
-        if (point == point_at(polyline.edges.front(), false)) return 0.0;
-        if (point == point_at(polyline.edges.back(), true)) return polyline.length;
+        if (point == point_of(polyline.edges.front(), false)) return 0.0;
+        if (point == point_of(polyline.edges.back(), true)) return polyline.length;
         return std::nullopt;
     }
     const auto at = std::find_if(polyline.edges.begin(), polyline.edges.end(),
