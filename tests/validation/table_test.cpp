@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cloth dropped onto a table that is under four sevenths of it slides off over the table's long edge, on any
-// mesh. Without friction nothing but the fall's impact takes energy: cloth that snags loses most of what it
-// has (rows only: .025 J of .091 J at .6 s on 16 cells).
+// mesh, and off a small one around its corners. Without friction nothing but impacts take energy: cloth that
+// snags loses most of what it has (rows only: .025 J of .091 J at .6 s on 16 cells).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,23 +18,29 @@ namespace {
 
 constexpr double kStep = 0.005, kDuration = 0.6;  // s
 
-struct HalfTable {
+struct TableTop {
+    Vec3 size, middle;  ///< m
+};
+const TableTop kHalfTable = {Vec3(3.0, 3.0, 1.0), Vec3(-1.2, 0.0, -0.5)};
+const TableTop kSmallTable = {Vec3(0.6, 0.6, 1.0), Vec3(0.12, 0.0, -0.5)};
+
+struct Drop {
     int cells;
     double angle, youngs_modulus, height = 0.05;
+    TableTop table = kHalfTable;
 };
 
-ClothRun make_run(const HalfTable& table)
+ClothRun make_run(const Drop& drop)
 {
-    ClothMesh mesh =
-        make_sheet(Vec2(1.0, 1.0), {table.cells, table.cells}, GridPattern::Diagonal, table.angle);
+    ClothMesh mesh = make_sheet(Vec2(1.0, 1.0), {drop.cells, drop.cells}, GridPattern::Diagonal, drop.angle);
     for (std::size_t v = 0; v < mesh.world.size(); ++v)
-        mesh.world[v] = Vec3(mesh.material[v].x() - 0.5, mesh.material[v].y() - 0.5, table.height);
+        mesh.world[v] = Vec3(mesh.material[v].x() - 0.5, mesh.material[v].y() - 0.5, drop.height);
     Scene scene;
-    scene.material = {0.05, table.youngs_modulus, 0.01, 1e-5, 0.0, 1e-3};
+    scene.material = {0.05, drop.youngs_modulus, 0.01, 1e-5, 0.0, 1e-3};
     scene.gravity = Gravity{};
     Placement place;
-    place.translation = Vec3(-1.2, 0.0, -0.5);
-    scene.obstacles.push_back(Obstacle("table", make_box(Vec3(3.0, 3.0, 1.0)), place, {}, 30.0));
+    place.translation = drop.table.middle;
+    scene.obstacles.push_back(Obstacle("table", make_box(drop.table.size), place, {}, 30.0));
     scene.eol = make_initial_target(mesh);
     return ClothRun(std::move(scene), std::move(mesh));
 }
@@ -42,12 +48,29 @@ ClothRun make_run(const HalfTable& table)
 struct Slid {
     double kinetic = 0.0;  ///< J, at the end
     double rise = 0.0;     ///< J, greatest of the energy over its running minimum
+    double runaway = 0.0;  ///< greatest flow of material over the greatest speed of cloth at its time
     int halved = 0;
 };
 
-Slid slide_off(const HalfTable& table)
+double greatest_flow(const State& state)
 {
-    ClothRun run = make_run(table);
+    double most = 0.0;
+    for (const Vec2& flow : state.material_velocity) most = std::max(most, flow.norm());
+    return most;
+}
+
+/// Of what is not EOL, so that it goes with its material.
+double greatest_speed(const State& state)
+{
+    double most = 0.0;
+    for (std::size_t v = 0; v < state.velocity.size(); ++v)
+        if (state.eol_entry(state.ids[v]) < 0) most = std::max(most, state.velocity[v].norm());
+    return most;
+}
+
+Slid slide_off(const Drop& drop)
+{
+    ClothRun run = make_run(drop);
     Slid found;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 1; k * kStep <= kDuration + 1e-9 && !testing::Test::HasFailure(); ++k) {
@@ -58,6 +81,7 @@ Slid slide_off(const HalfTable& table)
             const ClothEnergy energy = measure_energy(run);
             found.kinetic = energy.kinetic;
             found.rise = std::max(found.rise, energy.sum() - least);
+            found.runaway = std::max(found.runaway, greatest_flow(run.state) / greatest_speed(run.state));
             least = std::min(least, energy.sum());
             return true;
         };
@@ -66,6 +90,7 @@ Slid slide_off(const HalfTable& table)
         EXPECT_NEAR(material_area(run.state.mesh), 1.0, 1e-12);
     }
     EXPECT_EQ(audit(run.scene, run.state.mesh, run.state.time).obstacle, -1);
+    EXPECT_LT(found.runaway, 2.0);
     return found;
 }
 
@@ -108,6 +133,21 @@ TEST(HalfTable, TheImpactMayFallAnywhereInItsStep)
         EXPECT_NEAR(found.kinetic, 0.0915, 0.06 * 0.0915) << higher;
         EXPECT_LT(found.rise, 1e-3) << higher;
     }
+}
+
+// Around corners the fold ends at the corner and the cloth beside it crumples, which differs from mesh to
+// mesh; but it catches nowhere: a pleat that was held beside a corner left .014 to .024 J in one run of ten.
+TEST(SmallTable, SoftClothSlidesAroundItsCorners)
+{
+    double sum = 0.0;
+    const std::vector<double> heights = {0.0490, 0.0495, 0.0500, 0.0505, 0.0510};
+    for (const double height : heights) {
+        const Slid found = slide_off({16, 0.0, 50.0, height, kSmallTable});
+        EXPECT_GT(found.kinetic, 0.03) << height;
+        EXPECT_LT(found.rise, 1e-3) << height;
+        sum += found.kinetic;
+    }
+    EXPECT_NEAR(sum / static_cast<double>(heights.size()), 0.049, 0.01);
 }
 
 }  // namespace
