@@ -160,6 +160,30 @@ test("a view shows the cloth and what is near of the obstacles", () => {
   assert.ok(Math.hypot(...far.surroundings.size) < 3 * diagonal, "a floor does not make the cloth a dot");
 });
 
+test("cloth that has left is not followed by the first view", () => {
+  /** The page with its cloth `drop` metres lower in each frame from the `first`-th on than in the one before. */
+  const dropped = (text, first, drop) => text.replace(/(id="arris-meta">)([^<]*)/, (_, head, json) => {
+    const meta = JSON.parse(json);
+    meta.frames.forEach((frame, k) => (frame.least[2] -= drop * Math.max(0, k - first + 1)));
+    return head + JSON.stringify(meta);
+  });
+  const lowest = (box) => box.least[2];
+
+  const { surroundings } = open(obstaclesPage);
+  const fallen = open(dropped(obstaclesPage, 12, 10));
+  assert.ok(Math.hypot(...fallen.bounds.size) > 100, "it fell far");
+  assert.ok(Math.hypot(...fallen.surroundings.size) < 1.2 * Math.hypot(...surroundings.size), "the view stays");
+  assert.ok(lowest(open(dropped(obstaclesPage, 24, 0.3)).surroundings) < lowest(surroundings) - 0.1,
+            "cloth that is still near is seen whole");
+  const back = dropped(obstaclesPage, 12, 1).replace(/"least":\[[^\]]*\](?![^]*"least":)/, '"least":[0,0,0.4]');
+  assert.ok(Math.hypot(...open(back).surroundings.size) > 10, "cloth that comes back is followed all the way");
+
+  const free = open(dropped(page, 1, 10));
+  const size = Math.hypot(...free.frames[0].size);
+  assert.ok(Math.hypot(...free.bounds.size) > 100 && Math.hypot(...free.surroundings.size) < 5 * size,
+            "free fall is followed for some of the cloth's sizes");
+});
+
 const kMeshBreaks = {
   "a placement that is none": (text) => text.replace(/"placements":\[\[[^,]*,/, '"placements":[[null,'),
   "too few placements": (text) => text.replace(/("name":"wire".*?"placements":\[)\[[^\]]*\],/, "$1"),

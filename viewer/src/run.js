@@ -5,7 +5,8 @@
 const kFormat = 1;
 const kCacheBytes = 64e6;
 const kLevels = 65535;
-const kNear = 0.2; // of the cloth's diagonal: obstacles are shown that far around it
+const kNear = 0.2; // of a box's diagonal: obstacles are shown that far around the cloth
+const kWay = 2; // cloth's sizes: how far from its start cloth without obstacles is followed
 
 /** What is wrong with the data, in words for the person who opened the page. */
 export class BrokenData extends Error {}
@@ -195,6 +196,25 @@ class Cache {
   }
 }
 
+/** Boxes { least, size }: the one around both; one with a margin; what is in both of it, or null. */
+function joined(a, b) {
+  const least = a.least.map((value, axis) => Math.min(value, b.least[axis]));
+  const size = least.map((value, axis) =>
+    Math.max(a.least[axis] + a.size[axis], b.least[axis] + b.size[axis]) - value);
+  return { least, size };
+}
+
+function grown({ least, size }, margin) {
+  return { least: least.map((value) => value - margin), size: size.map((value) => value + 2 * margin) };
+}
+
+function clipped(a, b) {
+  const least = a.least.map((value, axis) => Math.max(value, b.least[axis]));
+  const size = least.map((value, axis) =>
+    Math.min(a.least[axis] + a.size[axis], b.least[axis] + b.size[axis]) - value);
+  return size.every((value) => value >= 0) ? { least, size } : null;
+}
+
 export class Run {
   #document;
   #topologies;
@@ -211,10 +231,11 @@ export class Run {
     this.strain = meta.strain;
     this.frames = meta.frames;
     this.#topologies = new Map(meta.topologies.map((topology) => [topology.id, topology]));
-    this.bounds = this.#computeBounds();
+    this.bounds = meta.frames.reduce(joined);
     this.origin = this.bounds.least.map((least, axis) => least + this.bounds.size[axis] / 2);
     this.meshes = meta.meshes;
     this.leftOut = meta.left_out;
+    this.stage = this.#computeStage();
     this.surroundings = this.#computeSurroundings();
   }
 
@@ -226,25 +247,34 @@ export class Run {
     return { least: half.map((value, row) => placement[4 * row + 3] - value), size: half.map((value) => 2 * value) };
   }
 
-  /** The cloth's box with what is near of the obstacles, at the first frame and at the last: all that a view shows. */
-  #computeSurroundings() {
-    const reach = kNear * Math.hypot(...this.bounds.size);
-    const least = [...this.bounds.least];
-    const most = least.map((value, axis) => value + this.bounds.size[axis]);
-    const [low, high] = [least.map((value) => value - reach), most.map((value) => value + reach)];
-    for (const mesh of this.meshes) {
-      for (const position of [0, this.frames.length - 1]) {
-        const box = this.#meshBox(mesh, position);
-        const isNear = low.every((value, axis) =>
-          box.least[axis] < high[axis] && box.least[axis] + box.size[axis] > value);
-        if (!isNear) continue;
-        for (let axis = 0; axis < 3; ++axis) {
-          least[axis] = Math.min(least[axis], Math.max(box.least[axis], low[axis]));
-          most[axis] = Math.max(most[axis], Math.min(box.least[axis] + box.size[axis], high[axis]));
-        }
-      }
+  /** The last frame in which the cloth's box is within `reach` of an obstacle's; -1 if in none. */
+  #lastNear(reach) {
+    for (let position = this.frames.length - 1; position >= 0; --position) {
+      const around = grown(this.frames[position], reach);
+      if (this.meshes.some((mesh) => clipped(this.#meshBox(mesh, position), around))) return position;
     }
-    return { least, size: most.map((value, axis) => value - least[axis]) };
+    return -1;
+  }
+
+  /**
+   * The box that the cloth plays in: of every frame until it has left the obstacles for good; where it never met any,
+   * of its way as far as it stays near. Cloth that falls or flies off for the rest of the run would make all else a dot.
+   */
+  #computeStage() {
+    const sizes = this.frames.map((frame) => Math.hypot(...frame.size)).sort((a, b) => a - b);
+    const size = sizes[sizes.length >> 1];
+    const last = this.#lastNear(kNear * size);
+    if (last >= 0) return this.frames.slice(0, last + 1).reduce(joined);
+    const around = grown(this.frames[0], kWay * size);
+    return this.frames.map((frame) => clipped(frame, around)).filter((box) => box).reduce(joined);
+  }
+
+  /** That box with what is near of the obstacles, at the first frame and at the last: all that a view shows. */
+  #computeSurroundings() {
+    const around = grown(this.stage, kNear * Math.hypot(...this.stage.size));
+    const boxes = [0, this.frames.length - 1].flatMap((position) =>
+      this.meshes.map((mesh) => clipped(this.#meshBox(mesh, position), around)));
+    return boxes.filter((box) => box).reduce(joined, this.stage);
   }
 
   /** Where the `position`-th frame has an obstacle: 3 x 4 numbers by rows, relative to `origin`. */
@@ -275,18 +305,6 @@ export class Run {
       const reason = error instanceof BrokenData ? error.message : `its data are damaged: ${error.message}`;
       throw new BrokenData(`The obstacle ${name} cannot be shown: ${reason}.`);
     }
-  }
-
-  #computeBounds() {
-    const least = [Infinity, Infinity, Infinity];
-    const most = [-Infinity, -Infinity, -Infinity];
-    for (const frame of this.frames) {
-      for (let axis = 0; axis < 3; ++axis) {
-        least[axis] = Math.min(least[axis], frame.least[axis]);
-        most[axis] = Math.max(most[axis], frame.least[axis] + frame.size[axis]);
-      }
-    }
-    return { least, size: most.map((value, axis) => value - least[axis]) };
   }
 
   time(position) {

@@ -188,7 +188,7 @@ export class Stage {
   /** A grid and the shadow at the lowest z of the run's view, a hair below so that what lies there is not cut by it. */
   #addGround() {
     const { least } = this.#run.surroundings;
-    const { radius } = ballAround(this.#run.bounds, this.#run.origin);
+    const { radius } = ballAround(this.#run.stage, this.#run.origin);
     const reach = 5 * radius;
     const cell = 10 ** Math.floor(Math.log10(radius / 1.5));
     const [x, y] = this.#run.origin;
