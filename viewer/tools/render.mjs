@@ -8,6 +8,26 @@ import { Browser } from "./browser.mjs";
 
 const kUsage = "usage: scripts/render [--size WxH] [--dark] [--view FRAGMENT] RUN_DIR OUT_PREFIX [FRAME...]\n";
 
+// What a view may say, as viewer/README.md lists it, but for the frame, which is an argument of its own.
+const isNumber = (text) => text.trim() !== "" && Number.isFinite(Number(text));
+const kNumber = { holds: isNumber, allowed: "a number" };
+const kPositive = { holds: (text) => isNumber(text) && Number(text) > 0, allowed: "a number above 0" };
+const oneOf = (...values) => ({ holds: (text) => values.includes(text), allowed: values.join(", ") });
+const kView = {
+  colour: oneOf("none", "strain", "contact"), top: kPositive, edges: oneOf("0", "1"), ui: oneOf("0", "1"),
+  azimuth: kNumber, elevation: kNumber, zoom: kPositive, fit: oneOf("frame"), play: oneOf("0", "1"),
+};
+
+/** What is wrong with a view, which a page would pass over in silence; null if nothing. */
+function findFault(view) {
+  for (const [name, value] of new URLSearchParams(view)) {
+    if (name === "frame") return "--view frame: frames stand behind OUT_PREFIX";
+    if (!Object.hasOwn(kView, name)) return `--view ${name}: unknown; allowed: ${Object.keys(kView).join(", ")}`;
+    if (!kView[name].holds(value)) return `--view ${name}=${value}: allowed: ${kView[name].allowed}`;
+  }
+  return null;
+}
+
 function readArguments(words) {
   const options = { width: 1280, height: 800, scheme: "light", view: "ui=0" };
   const rest = [];
@@ -27,6 +47,14 @@ function readArguments(words) {
   const [run, prefix, ...frames] = rest;
   if (!prefix || !frames.every((frame) => /^\d+$/.test(frame))) return null;
   return { ...options, run, prefix, frames: frames.length > 0 ? frames.map(Number) : [0] };
+}
+
+function write(picture, bytes) {
+  try {
+    writeFileSync(picture, bytes);
+  } catch (error) {
+    throw new Error(`${picture}: cannot be written (${error.code}); OUT_PREFIX begins with a folder that is there`);
+  }
 }
 
 async function render({ run, prefix, frames, view, ...size }) {
@@ -49,7 +77,7 @@ async function render({ run, prefix, frames, view, ...size }) {
       await page.until(`document.documentElement.dataset.frame === "${frame}"`);
       await page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))");
       const picture = `${prefix}${String(frame).padStart(5, "0")}.png`;
-      writeFileSync(picture, await page.screenshot());
+      write(picture, await page.screenshot());
       console.log(picture);
     }
   } finally {
@@ -60,6 +88,11 @@ async function render({ run, prefix, frames, view, ...size }) {
 const options = readArguments(process.argv.slice(2));
 if (!options) {
   process.stderr.write(kUsage);
+  process.exit(2);
+}
+const fault = findFault(options.view);
+if (fault) {
+  process.stderr.write(`scripts/render: ${fault}\n`);
   process.exit(2);
 }
 try {
