@@ -17,7 +17,8 @@ namespace arris {
 
 namespace {
 
-constexpr FileKind kKind = {"ARRIS checkpoint\n", kCheckpointVersion, "there is no checkpoint to resume from",
+constexpr FileKind kKind = {"ARRIS checkpoint\n", kCheckpointVersion,
+                            "there is no checkpoint to resume from; arris run makes the run anew",
                             "is not a checkpoint of arris"};
 
 void write_vectors(BinaryWriter& out, const std::vector<Vec2>& vectors)

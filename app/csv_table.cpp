@@ -208,7 +208,11 @@ void CsvWriter::append(const std::string& row)
 void truncate_csv(const std::string& path, std::int64_t rows)
 {
     std::ifstream in(path, std::ios::binary);
-    if (!in) throw InputError(path + ": cannot be opened");
+    if (!in)
+        throw InputError(
+            fmt::format("{}: cannot be opened: {}; a run goes on only with all it has written, arris run "
+                        "makes it anew",
+                        path, std::generic_category().message(errno)));
     std::string line;
     std::uint64_t bytes = 0;
     for (std::int64_t whole = 0; whole <= rows; ++whole) {

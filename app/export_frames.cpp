@@ -89,7 +89,8 @@ const Format& find_format(const std::string& name)
 nlohmann::ordered_json read_report(const std::string& path)
 {
     std::ifstream in(path);
-    if (!in) throw InputError(path + ": not found: this directory holds no run");
+    if (!in || !std::filesystem::is_regular_file(path))
+        throw InputError(path + ": is not there or cannot be read; allowed: the report of a run");
     nlohmann::ordered_json report = nlohmann::ordered_json::parse(in, nullptr, /*allow_exceptions=*/false);
     if (!report.is_object() || !report.contains("scene") || !report["scene"].is_object())
         throw InputError(path + ": not a run's report: it has no scene");
@@ -105,6 +106,7 @@ std::string exported_path(const std::string& run_dir, const std::string& format)
 
 ExportOptions read_export_options(const std::string& run_dir)
 {
+    require_run(run_dir);
     const std::string path = run_dir + "/report.json";
     if (!std::filesystem::exists(path) && std::filesystem::exists(checkpoint_file(run_dir))) {
         // A run that was killed before its first report.

@@ -9,6 +9,7 @@
 #include <exception>
 
 #include "app/command_line.h"
+#include "app/error_line.h"
 #include "app/printable.h"
 #include "geometry/input_error.h"
 #include "geometry/obstacle_import.h"
@@ -35,7 +36,7 @@ int main(int argc, char** argv)
         return 2;
     } catch (const std::exception& error) {
         // A disk that refuses, memory that is not there: not the input's fault.
-        fmt::print(stderr, "arris: {}\n", arris::printable(error.what()));
+        fmt::print(stderr, "arris: {}\n", arris::printable(arris::error_line(error)));
         return 1;
     }
 }

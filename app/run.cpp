@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "app/check.h"
+#include "app/error_line.h"
 #include "app/export_frames.h"
 #include "app/frame.h"
 #include "app/frame_files.h"
@@ -252,7 +253,7 @@ Ending write_results(const Run& run, Ending ending, int threads)
             export_frames(dir, run.config.output.formats,
                           {run.config.title, run.config.output.frames_per_second});
     } catch (const std::runtime_error& error) {  // the disk, or frames that a format cannot hold
-        ending = {RunStatus::IoError, error.what()};
+        ending = {RunStatus::IoError, error_line(error)};
     }
     const RunReport report = make_report(run, ending, watch.lap(), threads);
     write_report_json((std::filesystem::path(dir) / "report.json").string(), report);
@@ -281,7 +282,7 @@ RunStatus run_to_the_end(Run& run, bool is_quiet, int threads)
     try {
         ending = simulate(run, is_quiet);
     } catch (const std::exception& error) {  // the disk, or memory for a factor that does not fit
-        ending = {RunStatus::IoError, error.what()};
+        ending = {RunStatus::IoError, error_line(error)};
     }
     ending = write_results(run, ending, threads);
     tell_ending(run, ending, is_quiet);
@@ -297,6 +298,15 @@ void tell_warnings(const RunConfig& config)
 {
     for (const std::string& warning : config.warnings)
         fmt::print(stderr, "warning: {}\n", printable(warning));
+}
+
+/// Of a run that is resumed and has no step left to make.
+void tell_is_over(const Run& run)
+{
+    const std::string dir = printable(run.files.path());
+    fmt::print("nothing to do: the run has come to its end, t = {} s\n", run.at.state.time);
+    fmt::print("go on   arris resume {} --until T, T a later time in s\n", dir);
+    fmt::print("        (more frames a second, --set output.frames_per_second, are a new run's)\n");
 }
 
 /// A checkpoint is untrusted input: what it names must be in its scene.
@@ -411,11 +421,13 @@ RunStatus resume(const ResumeRequest& request)
 {
     const int threads = thread_count(request.threads);
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    require_run(request.directory);
     Checkpoint checkpoint = read_checkpoint(checkpoint_file(request.directory));
     const RunConfig config = load_resumed(request.directory, request.until, checkpoint);
     tell_warnings(config);
     RunDirectory files = RunDirectory::reopen(request.directory, checkpoint, config);
     Run run(config, std::move(files), std::move(checkpoint));
+    if (run.timeline.is_over(run.at.position) && !request.is_quiet) tell_is_over(run);
     return run_to_the_end(run, request.is_quiet, threads);
 }
 

@@ -42,7 +42,8 @@ std::vector<std::string> probe_names(const RunConfig& config)
 
 bool holds_run(const std::string& dir)
 {
-    return fs::exists(checkpoint_file(dir)) || fs::exists(steps_file(dir));
+    std::error_code error;  // what cannot be looked at is told where it is to be used
+    return fs::exists(checkpoint_file(dir), error) || fs::exists(steps_file(dir), error);
 }
 
 /// What a frame's file shows, and when: "table" and 7 of table_00007.obj.
@@ -89,6 +90,19 @@ std::set<std::string> stored_names(const std::string& dir)
     return names;
 }
 
+/// Removes what an earlier run has left, and nothing else.
+void remove_run(const std::string& dir)
+{
+    remove_frames(dir, 0, stored_names(dir));
+    for (const char* name : kRunFiles) {
+        std::error_code error;
+        fs::remove(fs::path(dir) / name, error);
+        if (error)
+            throw InputError(
+                fmt::format("-o {}: its {} cannot be replaced: {}", printable(dir), name, error.message()));
+    }
+}
+
 void make_folders(const std::string& path)
 {
     std::error_code error;
@@ -109,6 +123,22 @@ std::string steps_file(const std::string& run_dir)
 std::string probes_file(const std::string& run_dir)
 {
     return (fs::path(run_dir) / "probes.csv").string();
+}
+
+void require_run(const std::string& path)
+{
+    constexpr const char* kAllowed = "allowed: a folder that arris run has written";
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status))
+        throw InputError(fmt::format("{}: {}; {}", path.empty() ? "\"\"" : printable(path),
+                                     error ? error.message() : "is not there", kAllowed));
+    if (!fs::is_directory(status))
+        throw InputError(fmt::format("{}: is not a folder; {}", printable(path), kAllowed));
+    const bool has_report = fs::exists(fs::path(path) / "report.json", error);
+    if (!holds_run(path) && !has_report)
+        throw InputError(fmt::format("{}: holds no run (no checkpoint, steps.csv or report.json); {}",
+                                     printable(path), kAllowed));
 }
 
 FolderLock::FolderLock(const std::string& path)
@@ -134,17 +164,15 @@ RunDirectory::RunDirectory(std::string path, FolderLock lock, CsvWriter steps, C
 
 RunDirectory RunDirectory::create(const std::string& path, bool is_overwriting, const RunConfig& config)
 {
-    if (fs::exists(path) && !fs::is_directory(path))
+    std::error_code error;  // what cannot be looked at cannot be made either, and that says why
+    if (fs::exists(path, error) && !fs::is_directory(path, error))
         throw InputError(fmt::format("-o {}: is not a folder", printable(path)));
     if (holds_run(path) && !is_overwriting)
         throw InputError(fmt::format(
             "-o {}: holds a run already; --overwrite replaces it, another -o keeps it", printable(path)));
     make_folders(path);
     FolderLock lock(path);
-    if (holds_run(path)) {
-        remove_frames(path, 0, stored_names(path));
-        for (const char* name : kRunFiles) fs::remove(fs::path(path) / name);
-    }
+    if (holds_run(path)) remove_run(path);
     RunDirectory files(path, std::move(lock), CsvWriter::create(steps_file(path), step_header()),
                        CsvWriter::create(probes_file(path), probe_header(probe_names(config))));
     if (!config.scene.obstacles.empty()) write_obstacles(path, record_obstacles(config));

@@ -55,6 +55,9 @@ class RunDirectory {
     CsvWriter steps_, probes_;
 };
 
+/// InputError, which says what is missing, unless `path` is the folder of a run.
+void require_run(const std::string& path);
+
 /// <run_dir>/checkpoint, <run_dir>/steps.csv, <run_dir>/probes.csv
 std::string checkpoint_file(const std::string& run_dir);
 std::string steps_file(const std::string& run_dir);

@@ -11,7 +11,7 @@
 namespace arris {
 namespace {
 
-constexpr const char* kScene = "duration = 0.02\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";
+constexpr const char* kScene = "duration = 0.02\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n[gravity]\n";
 
 TEST(CommandLine, BadArgumentsAreOneLineAndStatusTwo)
 {
@@ -48,6 +48,53 @@ TEST(CommandLine, BadArgumentsAreOneLineAndStatusTwo)
         EXPECT_EQ(err.rfind("arris: ", 0), 0u) << call << ": " << err;
         EXPECT_EQ(program.out(), "") << call;
     }
+}
+
+TEST(CommandLine, WhatIsNoRunIsToldWithWhatWouldBeOne)
+{
+    const TemporaryDirectory folder;
+    const std::string empty = folder / "empty", file = folder / "file", loop = folder / "loop",
+                      full = folder / "full", scene = folder / "scene.toml",
+                      name = folder / std::string(300, 'a');
+    write_bytes(scene, kScene);
+    write_bytes(file, "");
+    std::filesystem::create_directories(empty);
+    std::filesystem::create_directories(full + "/report.json/in_it");
+    std::filesystem::create_directory_symlink(loop, loop);
+    const std::string kAllowed = "; allowed: a folder that arris run has written\n";
+    const auto line_of = [&](const std::vector<std::string>& arguments) {
+        Program program(folder, arguments);
+        EXPECT_EQ(program.wait(), 2) << program.err();
+        return program.err();
+    };
+    for (const std::vector<std::string>& rest :
+         std::vector<std::vector<std::string>>{{"resume"}, {"export", "--formats", "obj"}}) {
+        const auto line = [&](const std::string& directory) {
+            std::vector<std::string> arguments = rest;
+            arguments.insert(arguments.begin() + 1, directory);
+            return line_of(arguments);
+        };
+        EXPECT_EQ(line(empty),
+                  "arris: " + empty + ": holds no run (no checkpoint, steps.csv or report.json)" + kAllowed);
+        EXPECT_EQ(line(file), "arris: " + file + ": is not a folder" + kAllowed);
+        EXPECT_EQ(line(folder / "none"),
+                  "arris: " + (folder / "none") + ": No such file or directory" + kAllowed);
+        EXPECT_EQ(line(loop), "arris: " + loop + ": Too many levels of symbolic links" + kAllowed);
+        EXPECT_NE(line(name).find(": File name too long" + kAllowed), std::string::npos);
+    }
+    EXPECT_EQ(
+        line_of({"export", full, "--formats", "obj"}),
+        "arris: " + full + "/report.json: is not there or cannot be read; allowed: the report of a run\n");
+    EXPECT_EQ(line_of({"resume", full}),
+              "arris: " + full +
+                  "/checkpoint: there is no checkpoint to resume from; arris run makes the run anew\n");
+    EXPECT_EQ(line_of({"run", scene, "-o", name}),
+              "arris: -o " + name + ": cannot be made: File name too long\n");
+    std::filesystem::create_directories(folder / "kept/viewer.html/in_it");
+    write_bytes(folder / "kept/steps.csv", "");
+    EXPECT_EQ(
+        line_of({"run", scene, "-o", folder / "kept", "--overwrite"}),
+        "arris: -o " + (folder / "kept") + ": its viewer.html cannot be replaced: Directory not empty\n");
 }
 
 TEST(CommandLine, HelpAndVersionAreNoErrors)

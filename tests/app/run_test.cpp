@@ -148,6 +148,24 @@ TEST_F(Run, AnAbsentEffectHasEmptyColumns)
     for (const double cell : steps.column("kinetic_energy")) EXPECT_EQ(cell, 0.0);
 }
 
+TEST_F(Run, ResumedAtItsEndSaysThatNothingIsLeftAndHowToGoOn)
+{
+    const std::string dir = run_through("through", {"--quiet"});
+    const std::string steps = read_bytes(dir + "/steps.csv");
+    Program resumed(folder, {"resume", dir});
+    EXPECT_EQ(resumed.wait(), 0) << resumed.err();
+    EXPECT_EQ(resumed.out().rfind("nothing to do: the run has come to its end, t = 0.5 s\n", 0), 0U)
+        << resumed.out();
+    EXPECT_NE(resumed.out().find("arris resume " + dir + " --until T"), std::string::npos) << resumed.out();
+    EXPECT_TRUE(read_bytes(dir + "/steps.csv") == steps);
+    Program further(folder, {"resume", dir, "--until", "0.51"});
+    EXPECT_EQ(further.wait(), 0) << further.err();
+    EXPECT_EQ(further.out().find("nothing to do"), std::string::npos) << further.out();
+    Program quiet(folder, {"resume", dir, "--quiet"});
+    EXPECT_EQ(quiet.wait(), 0);
+    EXPECT_EQ(quiet.out() + quiet.err(), "");
+}
+
 TEST_F(Run, IsBitIdenticalForAnyNumberOfThreads)
 {
     const std::string one = run_through("one", {"--threads", "1"});
