@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "app/printable.h"
 #include "app/scene_estimate.h"
@@ -53,7 +54,7 @@ double material_area(const ClothMesh& cloth)
     return twice / 2.0;
 }
 
-void describe_cloth(const RunConfig& config, Lines& lines)
+void describe_cloth(const RunConfig& config, const EdgeLengths& edges, Lines& lines)
 {
     const ClothMesh& cloth = config.cloth;
     const Material& material = config.scene.material;
@@ -61,6 +62,8 @@ void describe_cloth(const RunConfig& config, Lines& lines)
     lines.push_back(fmt::format("cloth: {} of material, {:.6g} m^2, {:.4g} kg; {} vertices, {} faces",
                                 extent(cloth.material), area, material.density * area, cloth.vertex_count(),
                                 cloth.face_count()));
+    lines.push_back(fmt::format("  edges of the mesh: {:.4g} m in the mean, {:.4g} to {:.4g} m", edges.mean,
+                                edges.least, edges.greatest));
     lines.push_back(fmt::format("  placed within {} of the world", extent(cloth.world)));
     lines.push_back(fmt::format(
         "  {}: density {:g} kg/m^2, membrane {:g} N/m, Poisson ratio {:g}, bending {:g} J, damping {:g} s, "
@@ -127,21 +130,34 @@ Box3 bounds_at(const Obstacle& obstacle, double time)
     return box;
 }
 
-std::string features_in_words(const Obstacle& obstacle)
+/// Of each line of sharp edges, m.
+std::vector<double> line_lengths(const Obstacle& obstacle)
 {
     const ObstacleFeatures& features = obstacle.features();
-    double length = 0.0;
+    std::vector<double> lengths(static_cast<std::size_t>(features.polyline_count), 0.0);
     for (const FeatureEdge& feature : features.edges) {
         const auto& [a, b] = obstacle.topology().edges[static_cast<std::size_t>(feature.edge)].points;
-        length += (obstacle.mesh().points[static_cast<std::size_t>(a)] -
-                   obstacle.mesh().points[static_cast<std::size_t>(b)])
-                      .norm();
+        lengths[static_cast<std::size_t>(feature.polyline)] +=
+            (obstacle.mesh().points[static_cast<std::size_t>(a)] -
+             obstacle.mesh().points[static_cast<std::size_t>(b)])
+                .norm();
     }
+    return lengths;
+}
+
+/// Features against `cell`, the cloth's mean edge (m).
+std::string features_in_words(const Obstacle& obstacle, double cell)
+{
+    const ObstacleFeatures& features = obstacle.features();
+    const std::vector<double> lengths = line_lengths(obstacle);
     Lines parts;
-    if (!features.edges.empty())
-        parts.push_back(
-            fmt::format("{} in {}, {:.6g} m", counted(features.edges.size(), "edge", "edges"),
-                        counted(static_cast<std::size_t>(features.polyline_count), "line", "lines"), length));
+    if (!lengths.empty()) {
+        const double least = *std::min_element(lengths.begin(), lengths.end());
+        parts.push_back(fmt::format(
+            "{} in {}, {:.6g} m, the shortest {:.4g} m: {:.3g} of the cloth's mean edge",
+            counted(features.edges.size(), "edge", "edges"), counted(lengths.size(), "line", "lines"),
+            std::accumulate(lengths.begin(), lengths.end(), 0.0), least, least / cell));
+    }
     if (!features.corners.empty())
         parts.push_back(counted(features.corners.size(), "corner or point", "corners or points"));
     return parts.empty() ? "no sharp features" : fmt::format("sharp features: {}", fmt::join(parts, "; "));
@@ -164,7 +180,7 @@ std::string motion_in_words(const RigidMotion& motion)
     return std::isfinite(motion.stop) ? words + fmt::format(" to {:g} s", motion.stop) : words + " on";
 }
 
-void describe_obstacles(const RunConfig& config, Lines& lines)
+void describe_obstacles(const RunConfig& config, const EdgeLengths& edges, Lines& lines)
 {
     for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
         const Obstacle& obstacle = config.scene.obstacles[i];
@@ -176,7 +192,7 @@ void describe_obstacles(const RunConfig& config, Lines& lines)
         lines.push_back(fmt::format("  {:.6g} x {:.6g} x {:.6g} m, from {} to {} of the world at time 0",
                                     sizes.x(), sizes.y(), sizes.z(), in_words(Vec3(bounds.min())),
                                     in_words(Vec3(bounds.max()))));
-        lines.push_back("  " + features_in_words(obstacle));
+        lines.push_back("  " + features_in_words(obstacle, edges.mean));
         lines.push_back("  " + motion_in_words(obstacle.motion()));
     }
     for (const std::string& intersection : config.intersections)
@@ -293,8 +309,10 @@ std::vector<SceneEffect> list_effects(const RunConfig& config)
 std::vector<std::string> describe_scene(const RunConfig& config)
 {
     Lines lines = {fmt::format("title: {}", config.title)};
-    describe_cloth(config, lines);
-    describe_obstacles(config, lines);
+    const EdgeLengths edges =
+        measure_edges(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces));
+    describe_cloth(config, edges, lines);
+    describe_obstacles(config, edges, lines);
     describe_effects(config, lines);
     describe_meetings(config, lines);
     describe_run(config, lines);

@@ -44,6 +44,19 @@ void estimate_grid(const ClothGrid& grid, SceneEstimate& estimate)
     estimate.faces = count.faces;
 }
 
+EdgeLengths measure_edges(const ClothMesh& cloth, const MeshTopology& topology)
+{
+    EdgeLengths lengths;
+    lengths.least = std::numeric_limits<double>::infinity();
+    for (const MeshEdge& edge : topology.edges) {
+        const double length = (cloth.material[edge.b] - cloth.material[edge.a]).norm();
+        lengths.least = std::min(lengths.least, length);
+        lengths.greatest = std::max(lengths.greatest, length);
+        lengths.mean += length / static_cast<double>(topology.edges.size());
+    }
+    return lengths;
+}
+
 double count_frames(double duration, double frames_per_second)
 {
     if (!(frames_per_second > 0.0)) return 0.0;

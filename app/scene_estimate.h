@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/cloth_grid.h"
+#include "geometry/mesh_topology.h"
 #include "geometry/obstacle.h"
 
 namespace arris {
@@ -30,6 +31,12 @@ inline constexpr double kMaxObstacleElements = 5e6;
 
 /// Vertices and faces of a grid, before it is made; throws what estimate_cloth_grid throws.
 void estimate_grid(const ClothGrid& grid, SceneEstimate& estimate);
+
+/// Lengths of the cloth's edges in the material, m: what it can resolve.
+struct EdgeLengths {
+    double least = 0.0, mean = 0.0, greatest = 0.0;
+};
+EdgeLengths measure_edges(const ClothMesh& cloth, const MeshTopology& topology);
 
 /// Frames from time 0 to `duration` (s), both included where a frame falls on them.
 double count_frames(double duration, double frames_per_second);

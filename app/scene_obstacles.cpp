@@ -137,6 +137,16 @@ void check_sizes(const SceneDocument& document, const RunConfig& config)
         document.fail("obstacle", excess->wrong, excess->allowed);
 }
 
+/// What to do about a cloth that starts in obstacle `i`.
+std::string remedy(const RunConfig& config, std::size_t i)
+{
+    const auto is_from_file = [](const nlohmann::ordered_json& json) { return json.contains("file"); };
+    const bool has_units = is_from_file(config.as_run["obstacle"][i]) || is_from_file(config.as_run["cloth"]);
+    return fmt::format("move one of them ('translate'), at best {:g} m apart, the cloth's thickness{}",
+                       config.scene.material.thickness,
+                       has_units ? "; a file in other units than metres needs 'units', or 'up'" : "");
+}
+
 }  // namespace
 
 std::vector<ObstaclePlan> plan_obstacles(const Json& scene)
@@ -200,12 +210,12 @@ std::vector<std::string> find_intersections(const SceneDocument& document, const
         const auto& [depth, place] = std::pair(audited.found.depth, audited.found.place);
         const std::string how =
             depth > 0.0 ? fmt::format("reaches {:.3g} m deep into", depth) : std::string("intersects");
-        lines.push_back(
-            fmt::format("{}: at time 0 the cloth {} {}, at [{:.6g}, {:.6g}, {:.6g}] (m); allowed: cloth that "
-                        "starts clear "
-                        "of every obstacle",
-                        document.describe(fmt::format("obstacle.{}", i)), how,
-                        config.scene.obstacles[i].name(), place.x(), place.y(), place.z()));
+        lines.push_back(fmt::format(
+            "{}: at time 0 the cloth {} {}, at [{:.6g}, {:.6g}, {:.6g}] (m); allowed: cloth that starts "
+            "clear "
+            "of every obstacle: {}",
+            document.describe(fmt::format("obstacle.{}", i)), how, config.scene.obstacles[i].name(),
+            place.x(), place.y(), place.z(), remedy(config, i)));
     }
     return lines;
 }

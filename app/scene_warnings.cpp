@@ -8,7 +8,9 @@
 #include <cmath>
 #include <map>
 
+#include "app/printable.h"
 #include "app/scene_estimate.h"
+#include "app/still_scene.h"
 #include "geometry/mesh_topology.h"
 #include "physics/cloth_elements.h"
 #include "physics/membrane.h"
@@ -33,6 +35,12 @@ class Warnings {
     void note(const std::string& key, const std::string& what)
     {
         lines_.push_back(fmt::format("{}: {}", document_.describe(key), what));
+    }
+
+    /// Of the scene as a whole.
+    void note(const std::string& what)
+    {
+        lines_.push_back(fmt::format("{}: {}", printable(document_.path()), what));
     }
 
     std::vector<std::string> lines_;
@@ -271,15 +279,20 @@ void check_strain(const RunConfig& config, const MeshTopology& topology, Warning
 void check_thickness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
 {
     if (config.scene.obstacles.empty()) return;
-    double sum = 0.0;
-    for (const MeshEdge& edge : topology.edges)
-        sum += (config.cloth.material[edge.b] - config.cloth.material[edge.a]).norm();
-    const double cell = sum / static_cast<double>(topology.edges.size());
+    const double cell = measure_edges(config.cloth, topology).mean;
     const double thickness = config.scene.material.thickness;
     if (thickness > cell)
         warnings.note(
             "cloth.material.thickness",
             fmt::format("is more than an edge of the cloth's mesh ({:.3g} m): it is in metres", cell));
+}
+
+void check_stillness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
+{
+    if (stays_still(config, topology))
+        warnings.note(
+            "nothing moves the cloth: there is no [gravity], no wind or [[pull]] that acts, no pin or "
+            "obstacle that moves and no cloth.velocity, and it starts flat and unstrained");
 }
 
 }  // namespace
@@ -297,6 +310,7 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_turns(config, warnings);
     check_strain(config, topology, warnings);
     check_thickness(config, topology, warnings);
+    check_stillness(config, topology, warnings);
     return warnings.lines_;
 }
 

@@ -28,8 +28,9 @@ TEST(Check, DescribesTheScene)
                             "[output]\nframes_per_second = 0\n"));
     EXPECT_EQ(lines[0], "title: a\\u001b[31mb");
     EXPECT_EQ(lines[1], "cloth: 2 x 0.5 m of material, 1 m^2, 0.15 kg; 23 vertices, 32 faces");
-    EXPECT_EQ(lines[2], "  placed within 0.5 x 2 x 0 m of the world");
-    EXPECT_THAT(lines[3], HasSubstr("cotton: density 0.15 kg/m^2, membrane 500 N/m"));
+    EXPECT_EQ(lines[2], "  edges of the mesh: 0.323 m in the mean, 0.25 to 0.5 m");
+    EXPECT_EQ(lines[3], "  placed within 0.5 x 2 x 0 m of the world");
+    EXPECT_THAT(lines[4], HasSubstr("cotton: density 0.15 kg/m^2, membrane 500 N/m"));
     EXPECT_THAT(lines, Contains("  gravity: [gravity] is there"));
     EXPECT_THAT(lines, Contains("  wind: no [wind]"));
     EXPECT_THAT(lines, Contains("  damping: cloth.material.damping is 0 s"));
@@ -55,7 +56,7 @@ TEST(Check, SaysWhichEffectsAreOnAndWhy)
 
 TEST(Check, EndsWithTheWarnings)
 {
-    const auto lines = describe_scene(load("units = \"m\"\n"));
+    const auto lines = describe_scene(load("units = \"m\"\n[gravity]\n"));
     EXPECT_EQ(lines.back(),
               "warning: s.toml:6: cloth.units = \"m\": has no effect: the cloth is not from a file");
 }
@@ -73,7 +74,8 @@ TEST(Check, DescribesObstaclesWithTheirFeaturesAndMotion)
     EXPECT_THAT(lines, Contains("obstacle table: box, 12 triangles in 1 closed surface"));
     EXPECT_THAT(lines,
                 Contains("  1 x 2 x 0.5 m, from [-0.5, -1, 4.75] to [0.5, 1, 5.25] of the world at time 0"));
-    EXPECT_THAT(lines, Contains("  sharp features: 12 edges in 12 lines, 14 m; 8 corners or points"));
+    EXPECT_THAT(lines, Contains("  sharp features: 12 edges in 12 lines, 14 m, the shortest 0.5 m: 1.55 "
+                                "of the cloth's mean edge; 8 corners or points"));
     EXPECT_THAT(lines, Contains("  moves with [0, 0, 1] m/s from 0.5 s on"));
     EXPECT_THAT(lines, Contains("obstacle obstacle1: points, 2 lone points"));
     EXPECT_THAT(lines, Contains("  sharp features: 2 corners or points"));

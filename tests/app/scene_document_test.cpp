@@ -131,7 +131,7 @@ TEST(SceneOverride, IsRefusedWhereItIsNotUtf8)
 
 TEST(SceneOverride, StandsForFileAndLineInWarnings)
 {
-    const RunConfig config = load(kBase, {"cloth.units=cm"});
+    const RunConfig config = load(kBase, {"cloth.units=cm", "gravity={}"});
     ASSERT_EQ(config.warnings.size(), 1u);
     EXPECT_EQ(config.warnings[0],
               "--set cloth.units=cm: cloth.units = cm: has no effect: the cloth is not from a file");

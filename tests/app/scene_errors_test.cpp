@@ -13,6 +13,7 @@ namespace arris {
 namespace {
 
 const std::string kCloth = "[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";
+const std::string kRemedy = "move one of them ('translate'), at best 0.001 m apart, the cloth's thickness";
 const std::string kBase = "duration = 1\n" + kCloth;
 const std::string kNail = "[[obstacle]]\npoints = [[0, 0, 9]]\n";
 
@@ -647,17 +648,20 @@ const std::vector<WrongScene> kWrongScenes = {
      {},
      "s.toml:5: obstacle.0: at time 0 the cloth reaches 0.1 m deep into crate, at [0.5, 0.5, 0] (m); "
      "allowed: "
-     "cloth that starts clear of every obstacle"},
+     "cloth that starts clear of every obstacle: " +
+         kRemedy},
     {"ClothThroughAWire",
      kBase + "[[obstacle]]\nwire = [[0.3, 0.3, -1], [0.3, 0.3, 1]]\n",
      {},
      "s.toml:5: obstacle.0: at time 0 the cloth intersects obstacle0, at [0.3, 0.3, 0] (m); allowed: cloth "
-     "that starts clear of every obstacle"},
+     "that starts clear of every obstacle: " +
+         kRemedy},
     {"ClothOnANail",
      kBase + "[[obstacle]]\npoints = [[0.25, 0.25, 0]]\n",
      {},
      "s.toml:5: obstacle.0: at time 0 the cloth intersects obstacle0, at [0.25, 0.25, 0] (m); allowed: cloth "
-     "that starts clear of every obstacle"},
+     "that starts clear of every obstacle: " +
+         kRemedy},
     {"Friction",
      kBase + "[friction]\n",
      {},

@@ -293,7 +293,7 @@ TEST(SceneLoad, LetsTheLastOfOverlappingPinsPlaceTheirVertices)
 TEST(SceneLoad, DoesNotMoveVerticesToAnIdentityKeyframe)
 {
     const RunConfig config =
-        load(kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nkeyframes = [ { time = 0 } ]\n");
+        load(kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nkeyframes = [ { time = 0 } ]\n[gravity]\n");
     EXPECT_THAT(config.warnings, IsEmpty());
     EXPECT_EQ(config.cloth.world[0], Vec3(0.0, 0.0, 0.0));
 }

@@ -18,6 +18,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr double kRoundOff = 1e-14;  // of lengths of about 1 m
@@ -62,7 +63,7 @@ TEST(SceneObstacles, BuildsEveryShape)
              "[[obstacle]]\nwire = [[0, 0, 1], [1, 0, 1], [1, 1, 1]]\n"
              "[[obstacle]]\nwire = [[0, 0, 1], [1, 0, 1], [1, 1, 1]]\nclosed = true\n"
              "[[obstacle]]\nteeth = { count = 2, pitch = 0.5, height = 0.25, width = 2, tip_degrees = 60 }\n"
-             "translate = [0, 0, -4]\n");
+             "translate = [0, 0, -4]\n[gravity]\n");
     const std::vector<Obstacle>& obstacles = config.scene.obstacles;
     ASSERT_EQ(obstacles.size(), 5U);
     EXPECT_EQ(obstacles[0].name(), "obstacle0");
@@ -172,8 +173,8 @@ TEST(SceneObstacles, TellOfAFileThatIsMostlyInOtherUnits)
     const TemporaryDirectory dir;
     write_bytes(dir / "wedge.obj", kTetrahedron);
     const auto warnings_of = [&](const std::string& keys) {
-        write_bytes(dir / "s.toml",
-                    kBase + "[[obstacle]]\nfile = \"wedge.obj\"\ntranslate = [0, 0, 500]\n" + keys);
+        write_bytes(dir / "s.toml", kBase + "[[obstacle]]\nfile = \"wedge.obj\"\ntranslate = [0, 0, 500]\n" +
+                                        keys + "[gravity]\n");
         return load_scene(dir / "s.toml", {}, with_program()).warnings;
     };
     EXPECT_THAT(warnings_of(""), IsEmpty());
@@ -189,7 +190,7 @@ TEST(SceneObstacles, BlamesTheKeyThatNamesABadFileAndTellsWhatWasRepaired)
 {
     const TemporaryDirectory dir;
     const std::string scene = dir / "s.toml";
-    write_bytes(scene, kBase + "[[obstacle]]\nfile = \"table.obj\"\ntranslate = [0, 0, 5]\n");
+    write_bytes(scene, kBase + "[[obstacle]]\nfile = \"table.obj\"\ntranslate = [0, 0, 5]\n[gravity]\n");
     const auto refusal = [&] { return error_of([&] { load_scene(scene, {}, with_program()); }); };
     EXPECT_THAT(refusal(), HasSubstr("s.toml:6: obstacle.0.file = \"table.obj\": "));
     write_bytes(dir / "table.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -234,7 +235,9 @@ const std::string kCrate = "[[obstacle]]\nname = \"crate\"\nbox = [0.4, 0.4, 0.4
 TEST(SceneObstacles, RefuseClothThatIntersectsThemOnlyAtTime0)
 {
     const std::string inside = kBase + kCrate + "translate = [0.5, 0.5, 0.1]\n";
-    EXPECT_THAT(error_of([&] { load(inside); }), AllOf(HasSubstr("crate"), HasSubstr("0.1 m deep")));
+    EXPECT_THAT(error_of([&] { load(inside); }),
+                AllOf(HasSubstr("crate"), HasSubstr("0.1 m deep"),
+                      HasSubstr("move one of them ('translate')"), Not(HasSubstr("'units'"))));
 
     LoadOptions telling = with_program();
     telling.tells_intersections = true;
@@ -247,6 +250,16 @@ TEST(SceneObstacles, RefuseClothThatIntersectsThemOnlyAtTime0)
     resumed.cloth = &told.cloth;
     resumed.obstacles = &records;
     EXPECT_EQ(load(inside, resumed).cloth.world, told.cloth.world);
+}
+
+TEST(SceneObstacles, AskAfterUnitsWhereAFileIntersectsTheCloth)
+{
+    const TemporaryDirectory dir;
+    write_bytes(dir / "wedge.obj", kTetrahedron);
+    write_bytes(dir / "s.toml",
+                kBase + "[[obstacle]]\nfile = \"wedge.obj\"\ntranslate = [0.2, 0.2, -0.1]\n[gravity]\n");
+    EXPECT_THAT(error_of([&] { load_scene(dir / "s.toml", {}, with_program()); }),
+                AllOf(HasSubstr("at best 0.001 m apart"), HasSubstr("'units'")));
 }
 
 TEST(SceneObstacles, MeetTheClothWherePinsHaveItAtTime0)
@@ -262,7 +275,7 @@ TEST(SceneObstacles, MeetTheClothWherePinsHaveItAtTime0)
 TEST(SceneObstacles, MoveClothOutThatIsClearButNearerThanItsThickness)
 {
     // The crate's top is 0.2 mm below the cloth, whose middle vertex is above it.
-    const RunConfig config = load(kBase + kCrate + "translate = [0.5, 0.5, -0.2002]\n");
+    const RunConfig config = load(kBase + kCrate + "translate = [0.5, 0.5, -0.2002]\n[gravity]\n");
     EXPECT_THAT(config.warnings,
                 ElementsAre(AllOf(HasSubstr("nearer to obstacles than its thickness, 0.001 m"),
                                   HasSubstr("of its vertices moved out to it"))));
@@ -271,7 +284,7 @@ TEST(SceneObstacles, MoveClothOutThatIsClearButNearerThanItsThickness)
             EXPECT_GE(config.cloth.world[static_cast<std::size_t>(v)].z(),
                       0.0008 - 1e-9);  // thickness - 0.2 mm
         }
-    EXPECT_THAT(load(kBase + kCrate + "translate = [0.5, 0.5, -0.2012]\n").warnings, IsEmpty());
+    EXPECT_THAT(load(kBase + kCrate + "translate = [0.5, 0.5, -0.2012]\n[gravity]\n").warnings, IsEmpty());
 }
 
 }  // namespace

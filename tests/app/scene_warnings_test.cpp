@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace arris {
 namespace {
 
@@ -11,6 +13,7 @@ const std::string kBase = "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [2
 const std::string kPin = "[[pin]]\nmaterial = [[0, 0], [0, 1]]\n";
 const std::string kBox = "[[obstacle]]\nbox = [1, 1, 1]\ntranslate = [0, 0, 9]\n";
 const std::string kPull = "[[pull]]\nmaterial = [[1, 0], [1, 1]]\n";
+const std::string kMoving = "cloth.velocity=[0,0,-1]";  // or a warning says that nothing moves
 
 struct IneffectiveKey {
     std::string name;
@@ -27,7 +30,7 @@ class IneffectiveKeyTest : public ::testing::TestWithParam<IneffectiveKey> {};
 
 TEST_P(IneffectiveKeyTest, IsTheOneWarning)
 {
-    const RunConfig config = load_scene(SceneSource{"s.toml", kBase + GetParam().text, {}});
+    const RunConfig config = load_scene(SceneSource{"s.toml", kBase + GetParam().text, {kMoving}});
     EXPECT_THAT(config.warnings, ::testing::ElementsAre("s.toml:" + GetParam().warning));
 }
 
@@ -103,15 +106,15 @@ TEST(SceneWarnings, TellOfAClothThatStartsStrained)
     const RunConfig config = load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=3"}});
     ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
     EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("starts strained, from 0 % to +200 %"));
-    EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=1.05"}}).warnings,
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=1.05", kMoving}}).warnings,
                 ::testing::IsEmpty());
 }
 
 TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
 {
     const auto load = [](const std::string& thickness) {
-        return load_scene(
-            SceneSource{"s.toml", kBase + "[cloth.material]\nthickness = " + thickness + "\n" + kBox, {}});
+        return load_scene(SceneSource{
+            "s.toml", kBase + "[cloth.material]\nthickness = " + thickness + "\n" + kBox, {kMoving}});
     };
     const RunConfig config = load("1");
     ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
@@ -124,7 +127,7 @@ TEST(SceneWarnings, TellOfAModulusInPascal)
 {
     const auto load = [](const std::string& modulus) {
         return load_scene(
-            SceneSource{"s.toml", kBase + "[cloth.material]\nyoungs_modulus = " + modulus + "\n", {}});
+            SceneSource{"s.toml", kBase + "[cloth.material]\nyoungs_modulus = " + modulus + "\n", {kMoving}});
     };
     const RunConfig config = load("2e9");
     ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
@@ -139,16 +142,16 @@ TEST(SceneWarnings, TellOfATurnThatSlerpCannotMean)
                "keyframes = [ { time = 0 }, { time = 0.5, rotate = { axis = [0, 0, 1], degrees = " + degrees +
                " } } ]\n";
     };
-    const RunConfig config = load_scene(SceneSource{"s.toml", turned("360"), {}});
+    const RunConfig config = load_scene(SceneSource{"s.toml", turned("360"), {kMoving}});
     ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
     EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("turns by 360 degrees"));
-    EXPECT_THAT(load_scene(SceneSource{"s.toml", turned("180"), {}}).warnings, ::testing::IsEmpty());
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", turned("180"), {kMoving}}).warnings, ::testing::IsEmpty());
 }
 
 TEST(SceneWarnings, AreNotGivenForDefaultsOfTheSameValue)
 {
     const RunConfig config =
-        load_scene(SceneSource{"s.toml", kBase + kPin + "[output]\nframes_per_second = 0\n", {}});
+        load_scene(SceneSource{"s.toml", kBase + kPin + "[output]\nframes_per_second = 0\n", {kMoving}});
     EXPECT_TRUE(config.warnings.empty());
 }
 
@@ -158,7 +161,34 @@ TEST(SceneWarnings, AreNotGivenForKeysThatWork)
         kBase + "[time]\nstep = 0.05\n[output]\nframes_per_second = 20\n" + kPin +
         "velocity = [0, 0, 1]\nangular_velocity = [0, 0, 1]\npivot = [0, 0, 1]\nrelease = 0.5\n" + kPull +
         "force = [0, 0, 1]\nstart = 0.5\nstop = 0.9\n[cloth.material]\npreset = \"silk\"\ndensity = 1\n";
-    EXPECT_THAT(load_scene(SceneSource{"s.toml", text, {}}).warnings, ::testing::IsEmpty());
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", text, {kMoving}}).warnings, ::testing::IsEmpty());
+}
+
+TEST(SceneWarnings, TellOfAClothThatNothingMoves)
+{
+    const auto is_told = [](const std::string& text, const std::vector<std::string>& overrides = {}) {
+        const auto warnings = load_scene(SceneSource{"s.toml", kBase + text, overrides}).warnings;
+        return std::any_of(warnings.begin(), warnings.end(), [](const std::string& line) {
+            return line.starts_with("s.toml: nothing moves the cloth: there is no [gravity], ");
+        });
+    };
+    for (const std::string& text : {std::string(), kPin, kBox, "[gravity]\nacceleration = [0, 0, 0]\n" + kPin,
+                                    kPull + "force = [0, 0, 0]\n", kPull + "force = [0, 0, 1]\nstart = 1\n",
+                                    std::string("[wind]\nvelocity = [0, 0, 0]\n"),
+                                    std::string("[wind]\nvelocity = [1, 0, 0]\ndrag = 0\n"),
+                                    kPin + "velocity = [0, 0, 1]\nrelease = 0\n",
+                                    kBox + "motion = { velocity = [0, 0, 1], start = 1 }\n"})
+        EXPECT_TRUE(is_told(text)) << text;
+    for (const std::string& text :
+         {std::string("[gravity]\n"), std::string("[wind]\nvelocity = [1, 0, 0]\n"),
+          kPull + "force = [0, 0, 1]\n", kPin + "velocity = [0, 0, 1]\n",
+          kPin + "keyframes = [ { time = 0 }, { time = 0.5, translate = [0, 0, 1] } ]\n",
+          kPin + "keyframes = [ { time = 0, translate = [0.1, 0, 0] } ]\n",
+          kBox + "motion = { velocity = [0, 0, -1] }\n",
+          std::string("folds = [ { line = [[0.5, 0], [0.5, 1]], degrees = 60 } ]\n"),
+          std::string("velocity = [1, 0, 0]\n")})
+        EXPECT_FALSE(is_told(text)) << text;
+    EXPECT_FALSE(is_told("", {"cloth.scale=1.01"})) << "it pulls itself to its size";
 }
 
 }  // namespace
