@@ -17,14 +17,20 @@ namespace {
 struct Phase {
     const char* name;
     double PhaseSeconds::*seconds;
+    const char* what;
 };
 
 constexpr Phase kPhases[] = {
-    {"move", &PhaseSeconds::move},         {"contacts", &PhaseSeconds::contacts},
-    {"conform", &PhaseSeconds::conform},   {"transfer", &PhaseSeconds::transfer},
-    {"assemble", &PhaseSeconds::assemble}, {"factorise", &PhaseSeconds::factorise},
-    {"solve", &PhaseSeconds::solve},       {"check", &PhaseSeconds::check},
-    {"advance", &PhaseSeconds::advance},   {"output", &PhaseSeconds::output},
+    {"move", &PhaseSeconds::move, "obstacles and pins go to where they are at the step's end"},
+    {"contacts", &PhaseSeconds::contacts, "finds where the cloth meets obstacles"},
+    {"conform", &PhaseSeconds::conform, "puts vertices on sharp features and mends the mesh around them"},
+    {"transfer", &PhaseSeconds::transfer, "carries velocities over to the mesh that conform has made"},
+    {"assemble", &PhaseSeconds::assemble, "forces and the matrix"},
+    {"factorise", &PhaseSeconds::factorise, "factorises the matrix"},
+    {"solve", &PhaseSeconds::solve, "the velocity under the contacts"},
+    {"check", &PhaseSeconds::check, "proves that the whole step passes through nothing"},
+    {"advance", &PhaseSeconds::advance, "takes the step over; loading the scene"},
+    {"output", &PhaseSeconds::output, "frames, tables, viewer and other formats"},
 };
 
 // A value that is not finite must not vanish behind `<`, which is false for it.
@@ -115,7 +121,7 @@ StepTotals sum_steps(const std::string& steps_csv)
 std::vector<NamedSeconds> list_phases(const PhaseSeconds& phases)
 {
     std::vector<NamedSeconds> list;
-    for (const Phase& phase : kPhases) list.push_back({phase.name, phases.*phase.seconds});
+    for (const Phase& phase : kPhases) list.push_back({phase.name, phases.*phase.seconds, phase.what});
     return list;
 }
 

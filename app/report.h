@@ -45,10 +45,11 @@ struct StepTotals {
 /// Reads steps.csv in constant memory; a torn last line is left out. InputError if it is not one.
 StepTotals sum_steps(const std::string& steps_csv);
 
-/// The phases in the order of a step, with the names that report.json gives them.
+/// The phases in the order of a step, with the names that report.json gives them, and what is done in them.
 struct NamedSeconds {
     const char* name;
     double seconds;
+    const char* what;
 };
 std::vector<NamedSeconds> list_phases(const PhaseSeconds& phases);
 

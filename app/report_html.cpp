@@ -13,6 +13,7 @@
 
 #include "app/atomic_file.h"
 #include "app/html_escape.h"
+#include "app/report_features.h"
 #include "app/report_plots.h"
 #include "app/svg_plot.h"
 #include "embedded/report_template.h"
@@ -77,16 +78,23 @@ std::string status_html(const RunReport& report)
     return html;
 }
 
-std::string fact(std::string_view name, std::string_view value, std::string_view note = "",
-                 bool is_bad = false)
+/// A figure with its name, a short addition, and one line that says what it is.
+struct Fact {
+    std::string_view name;
+    std::string value, note;
+    std::string_view what;
+    bool is_bad = false;
+};
+
+std::string fact_html(const Fact& fact)
 {
-    std::string html =
-        fmt::format("<div class=\"fact{}\"><dt>{}</dt><dd>{}", is_bad ? " bad" : "", name, value);
-    if (!note.empty()) html += fmt::format("<small>{}</small>", note);
-    return html + "</dd></div>\n";
+    std::string html = fmt::format("<div class=\"fact{}\"><dt>{}</dt><dd>{}", fact.is_bad ? " bad" : "",
+                                   fact.name, fact.value);
+    if (!fact.note.empty()) html += fmt::format("<small>{}</small>", fact.note);
+    return html + fmt::format("</dd><dd class=\"why\">{}</dd></div>\n", fact.what);
 }
 
-std::string facts_html(const RunReport& report, std::optional<double> tolerance)
+std::vector<Fact> work_facts(const RunReport& report)
 {
     const StepTotals& totals = report.totals;
     const std::string halved =
@@ -94,23 +102,60 @@ std::string facts_html(const RunReport& report, std::optional<double> tolerance)
     const std::string a_step =
         totals.steps > 0 ? format_seconds(totals.wall_seconds / static_cast<double>(totals.steps)) + " a step"
                          : "";
+    const std::string threads = fmt::format("{} thread{}", report.threads, report.threads == 1 ? "" : "s");
+    return {
+        {"Simulated", fmt::format("{:.6g} s", totals.simulated_seconds), "", "Time in the scene, from 0 on."},
+        {"Steps", fmt::format("{}", totals.steps), halved,
+         totals.halved_steps > 0 ? "Accepted ones. Halved: shorter than planned, as the whole step was not "
+                                   "accepted or too much material would have flowed in it."
+                                 : "Accepted ones, all of them as long as planned."},
+        {"Wall time", format_seconds(totals.wall_seconds), a_step, "By the clock, files included."},
+        {"CPU time", format_seconds(totals.cpu_seconds), threads, "Of all threads together."},
+        {"Peak memory", format_bytes(report.peak_memory_bytes), "", "The most that was held at one time."},
+    };
+}
+
+std::vector<Fact> quality_facts(const RunReport& report, std::optional<double> tolerance)
+{
+    const StepTotals& totals = report.totals;
+    std::vector<Fact> facts;
     // Without an obstacle there is nothing that the cloth could have passed through.
-    const bool has_obstacles =
-        std::find(report.effects.begin(), report.effects.end(), "obstacle") != report.effects.end();
-    const std::string obstacles =
-        has_obstacles ? fact("Greatest penetration", fmt::format("{:.3g} m", totals.max_penetration), "",
-                             totals.max_penetration > 0) +
-                            fact("Crossings", fmt::format("{}", totals.crossings), "", totals.crossings > 0)
-                      : "";
-    const std::string allowed = tolerance ? fmt::format("{:.3g} allowed", *tolerance) : "";
-    return fact("Simulated", fmt::format("{:.6g} s", totals.simulated_seconds)) +
-           fact("Steps", fmt::format("{}", totals.steps), halved) +
-           fact("Wall time", format_seconds(totals.wall_seconds), a_step) +
-           fact("CPU time", format_seconds(totals.cpu_seconds),
-                fmt::format("{} thread{}", report.threads, report.threads == 1 ? "" : "s")) +
-           fact("Peak memory", format_bytes(report.peak_memory_bytes)) + obstacles +
-           fact("Greatest KKT residual", fmt::format("{:.2e}", totals.max_kkt_residual), allowed,
-                tolerance && !(totals.max_kkt_residual <= *tolerance));
+    if (std::find(report.effects.begin(), report.effects.end(), "obstacle") != report.effects.end()) {
+        facts.push_back({"Greatest penetration", fmt::format("{:.3g} m", totals.max_penetration), "",
+                         "Depth of the cloth in an obstacle, looked for anew at each frame: 0 is right.",
+                         totals.max_penetration > 0});
+        facts.push_back({"Crossings", fmt::format("{}", totals.crossings), "",
+                         "How often anything has passed through an obstacle: 0 is right.",
+                         totals.crossings > 0});
+    }
+    if (totals.features)
+        facts.push_back({"EOL share", format_share(totals.features->eol_share()), "",
+                         "Of the contacts that press on sharp features for a second step or longer: those "
+                         "that the cloth slides over by a vertex on the feature. The rest may snag."});
+    facts.push_back({"Greatest KKT residual", fmt::format("{:.2e}", totals.max_kkt_residual),
+                     tolerance ? fmt::format("{:.3g} allowed", *tolerance) : "",
+                     "By how much the worst velocity solve misses balance of forces and contact "
+                     "conditions, relative: 1e-15 is rounding.",
+                     tolerance && !(totals.max_kkt_residual <= *tolerance)});
+    return facts;
+}
+
+std::string facts_html(const RunReport& report, std::optional<double> tolerance)
+{
+    std::string html;
+    for (const Fact& fact : work_facts(report)) html += fact_html(fact);
+    for (const Fact& fact : quality_facts(report, tolerance)) html += fact_html(fact);
+    return html;
+}
+
+std::string features_html(const StepTotals& totals)
+{
+    if (!totals.features) return "";
+    return "<section><h2>Contacts on sharp features</h2>\n<p class=\"why\">What pressed on the obstacles' "
+           "sharp edges, corners, wires and nails, counted once a step. An EOL vertex lets material flow "
+           "over the feature; a row only keeps the cloth off it. After each row why it is one.</p>\n"
+           "<table class=\"causes\"><tbody>\n" +
+           feature_rows_html(*totals.features) + "</tbody></table></section>";
 }
 
 std::string effects_html(const RunReport& report)
@@ -136,10 +181,9 @@ std::string phases_html(const StepTotals& totals)
     for (const NamedSeconds& phase : list_phases(totals.phases)) {
         const double share = totals.wall_seconds > 0.0 ? 100.0 * phase.seconds / totals.wall_seconds : 0.0;
         html += fmt::format(
-            "<tr><th scope=\"row\">{}</th><td class=\"bar\"><span class=\"fill c{}\" "
-            "style=\"width:{:.1f}%\"></span></td>"
-            "<td>{}</td><td>{:.1f} %</td></tr>\n",
-            phase.name, colour++, share, format_seconds(phase.seconds), share);
+            "<tr><th scope=\"row\">{}<small class=\"why\">{}</small></th><td class=\"bar\"><span "
+            "class=\"fill c{}\" style=\"width:{:.1f}%\"></span></td><td>{}</td><td>{:.1f} %</td></tr>\n",
+            phase.name, phase.what, colour++, share, format_seconds(phase.seconds), share);
     }
     return html;
 }
@@ -222,6 +266,7 @@ void write_report_html(const std::string& run_dir, const RunReport& report)
                                       {"facts", facts_html(report, tolerance)},
                                       {"effects", effects_html(report)},
                                       {"warnings", warnings_html(report)},
+                                      {"features", features_html(report.totals)},
                                       {"phases", phases_html(report.totals)},
                                       {"plots", plots_html(plot_steps(run_dir + "/steps.csv", tolerance))},
                                       {"probes", probes_html(run_dir + "/probes.csv")},

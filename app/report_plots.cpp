@@ -28,6 +28,7 @@ struct PlotSpec {
     PlotKind kind;
     Shown shown;
     double scale;  ///< from the column's unit to the plot's
+    const char* note;
     std::vector<Series> series;
 };
 
@@ -40,6 +41,7 @@ const std::vector<PlotSpec>& step_plots()
          kLines,
          Shown::Always,
          1.0,
+         "Of the whole cloth. The total falls, but where wind, pulls, pins or obstacles do work on it.",
          {{"kinetic", {"kinetic_energy"}},
           {"gravity", {"gravity_energy"}},
           {"stretch", {"stretch_energy"}},
@@ -50,12 +52,14 @@ const std::vector<PlotSpec>& step_plots()
          kLines,
          Shown::Always,
          1.0,
+         "The same without gravity, which is mostly far larger.",
          {{"kinetic", {"kinetic_energy"}}, {"stretch", {"stretch_energy"}}, {"bending", {"bending_energy"}}}},
         {"Wall time of a step by phase",
          "ms",
          PlotKind::Stacked,
          Shown::Always,
          1e3,
+         "What the phases are stands at \"Wall time by phase\".",
          {{"move", {"move_s"}},
           {"contacts", {"contacts_s"}},
           {"conform", {"conform_s"}},
@@ -71,6 +75,8 @@ const std::vector<PlotSpec>& step_plots()
          kLines,
          Shown::IfPositive,
          1.0,
+         "What presses; EOL vertices, which lie on sharp features of obstacles; and the pressing contacts on "
+         "features that are rows of the velocity solve instead.",
          {{"pressing constraints", {"contacts"}},
           {"EOL vertices", {"eol_vertices"}},
           {"feature rows", {"feature_rows"}}}},
@@ -79,23 +85,52 @@ const std::vector<PlotSpec>& step_plots()
          PlotKind::LogLines,
          Shown::Always,
          1.0,
+         "By how much its velocities miss balance of forces and contact conditions: 1e-15 is rounding; above "
+         "the tolerance a step is not accepted.",
          {{"residual", {"kkt_residual"}}}},
-        {"Length of a step", "ms", kLines, Shown::Always, 1e3, {{"dt", {"dt"}}}},
+        {"Length of a step",
+         "ms",
+         kLines,
+         Shown::Always,
+         1e3,
+         "Shorter than planned where a step is halved: made in parts, as the whole of it was not accepted or "
+         "too much material would have flowed.",
+         {{"dt", {"dt"}}}},
         {"Work of the velocity solve",
          "a step",
          kLines,
          Shown::Always,
          1.0,
+         "Factorisations of the matrix are what a step costs most; an NLopt evaluation is cheap.",
          {{"factorisations", {"factorisations"}}, {"NLopt evaluations", {"nlopt_evaluations"}}}},
-        {"Mesh", "", kLines, Shown::IfChanging, 1.0, {{"vertices", {"vertices"}}, {"faces", {"faces"}}}},
+        {"Mesh",
+         "",
+         kLines,
+         Shown::IfChanging,
+         1.0,
+         "Vertices come and go where the cloth slides over sharp features.",
+         {{"vertices", {"vertices"}}, {"faces", {"faces"}}}},
         {"Least angle of the mesh",
          "degrees",
          kLines,
          Shown::IfChanging,
          1.0,
+         "Of its faces, in the material.",
          {{"least angle", {"min_angle"}}}},
-        {"Penetration", "m", kLines, Shown::IfPositive, 1.0, {{"greatest depth", {"max_penetration"}}}},
-        {"Crossings so far", "", kLines, Shown::IfPositive, 1.0, {{"crossings", {"crossings"}}}},
+        {"Penetration",
+         "m",
+         kLines,
+         Shown::IfPositive,
+         1.0,
+         "Of the cloth into an obstacle: anything above 0 ends a run.",
+         {{"greatest depth", {"max_penetration"}}}},
+        {"Crossings so far",
+         "",
+         kLines,
+         Shown::IfPositive,
+         1.0,
+         "How often something has passed through an obstacle: anything above 0 is a fault.",
+         {{"crossings", {"crossings"}}}},
     };
     return kSpecs;
 }
@@ -127,7 +162,7 @@ class PlotBuilder {
 
     Plot finish() const
     {
-        Plot plot{spec_.title, spec_.unit, spec_.kind, {}};
+        Plot plot{spec_.title, spec_.unit, spec_.kind, {}, spec_.note};
         for (std::size_t i = 0; i < spec_.series.size(); ++i) {
             PlotLine line{spec_.series[i].name, {}, spec_.series[i].is_dashed};
             const bool is_stacked = spec_.kind == PlotKind::Stacked;
@@ -201,7 +236,7 @@ std::vector<std::string> probe_names(const CsvReader& reader)
 
 Plot make_probe_plot(const std::string& name, const PeakSampler* samplers)
 {
-    Plot plot{"Probe " + name, "m", PlotKind::Lines, {}};
+    Plot plot{"Probe " + name, "m", PlotKind::Lines, {}, "Where this point of the material is."};
     for (std::size_t k = 0; k < 3; ++k) {
         PlotLine line{kDirections[k], {}};
         for (const Sample& sample : samplers[k].samples())

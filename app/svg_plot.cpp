@@ -253,7 +253,8 @@ std::string draw_plot(const Plot& plot)
 {
     std::string title = "<span class=\"name\">" + escape_html(plot.title) + "</span>";
     if (!plot.unit.empty()) title += " <span class=\"unit\">" + escape_html(plot.unit) + "</span>";
-    return "<figure><figcaption>" + title + "</figcaption>" + draw_legend(plot) + draw_svg(plot) +
+    const std::string note = plot.note.empty() ? "" : "<p class=\"why\">" + escape_html(plot.note) + "</p>";
+    return "<figure><figcaption>" + title + "</figcaption>" + note + draw_legend(plot) + draw_svg(plot) +
            "</figure>\n";
 }
 

@@ -25,11 +25,12 @@ struct Plot {
     std::string unit;  ///< of y; empty for counts
     PlotKind kind = PlotKind::Lines;
     std::vector<PlotLine> lines;
+    std::string note;  ///< one line that says what is shown; may be empty
     std::string x_label = "time (s)";
 };
 
-/// A <figure> with title, legend and an inline SVG, coloured by the page's CSS classes c0, c1, ... Names and
-/// titles are escaped. A plot without a point says so.
+/// A <figure> with title, note, legend and an inline SVG, coloured by the page's CSS classes c0, c1, ...
+/// Names, notes and titles are escaped. A plot without a point says so.
 std::string draw_plot(const Plot& plot);
 
 /// Round values (1, 2, 5 times a power of ten), about `count`, spanning [least, greatest]: the first is not

@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "app/csv_table.h"
+#include "app/report_features.h"
+#include "app/report_plots.h"
 #include "embedded/report_template.h"
 #include "geometry/input_error.h"
 #include "tests/app/temporary_directory.h"
@@ -131,6 +133,52 @@ TEST(ReportHtml, ShowsWhatTheReportSays)
          {"<h1>Tablecloth</h1>", "not converged", "step 20 did not converge", "4 threads", "512.0 MiB",
           "1 of them halved", "<dd>20<", "0.2 s", "cloth.size", "[1.0,2.5]", "obstacle.0.name"})
         EXPECT_THAT(html, HasSubstr(part));
+}
+
+TEST(ReportHtml, TellsTheShareOfEolVerticesAndWhyRowsAreRows)
+{
+    const TemporaryDirectory dir;
+    write_steps(dir, 4, [](StepRow& row) {
+        row.eol_vertices = row.eol_pressing = 9;
+        row.rows_by_cause.emplace().fill(0);
+        (*row.rows_by_cause)[static_cast<std::size_t>(RowCause::Guard)] = 1;
+        (*row.rows_by_cause)[static_cast<std::size_t>(RowCause::NearBorder)] = 3;
+    });
+    const std::string html = html_of(dir);
+    EXPECT_NO_THROW(elements_of(html));
+    for (const std::string& part :
+         {std::string("<dt>EOL share</dt><dd>90 %"), std::string("Contacts on sharp features"),
+          std::string("<th scope=\"row\">EOL vertex</th><td class=\"count\">45</td>"),
+          std::string("row: guard</th><td class=\"count\">5</td><td>") + explain(RowCause::Guard) + "</td>",
+          std::string("row: near_border</th><td class=\"count\">15</td><td>") +
+              explain(RowCause::NearBorder) + " (left out of the share)</td>"})
+        EXPECT_THAT(html, HasSubstr(part));
+    EXPECT_THAT(html, Not(HasSubstr("row: blocked"))) << "what did not happen says nothing";
+
+    write_steps(dir, 4);
+    const std::string without = html_of(dir);
+    EXPECT_THAT(without, AllOf(Not(HasSubstr("EOL share")), Not(HasSubstr("Contacts on sharp features"))));
+}
+
+TEST(ReportHtml, ExplainsEveryFigureItShows)
+{
+    for (std::size_t k = 0; k < kRowCauses; ++k)
+        EXPECT_GT(std::string(explain(static_cast<RowCause>(k))).size(), 15U) << k;
+    for (const NamedSeconds& phase : list_phases({}))
+        EXPECT_GT(std::string(phase.what).size(), 10U) << phase.name;
+    const TemporaryDirectory dir;
+    write_steps(dir, 20, [](StepRow& row) {
+        row.max_penetration = row.min_angle = static_cast<double>(row.step);
+        row.crossings = row.vertices = row.contacts = row.step;
+        row.gravity_energy = 1.0;
+    });
+    for (const Plot& plot : plot_steps(dir / "steps.csv", 1e-9))
+        EXPECT_GT(plot.note.size(), 10U) << plot.title;
+    RunReport report;
+    report.effects = {"obstacle"};
+    const std::string html = html_of(dir, report);
+    EXPECT_EQ(count(html, "<div class=\"fact"), count(html, "<dd class=\"why\">"));
+    EXPECT_EQ(count(html, "<dd class=\"why\"></dd>"), 0U);
 }
 
 TEST(ReportHtml, ShowsRunsWithoutStepsFramesOrRows)

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "app/csv_table.h"
 #include "geometry/input_error.h"
@@ -211,6 +212,22 @@ TEST(Report, MeasuresThisProcess)
     volatile double sink = 0.0;
     for (int i = 0; i < 10000000; ++i) sink = sink + 1.0;
     EXPECT_GT(process_cpu_seconds(), before);
+}
+
+TEST(Report, DocsNameEveryColumnOfStepsAndEveryKeyOfTheReport)
+{
+    const std::string text = read_bytes(std::string(ARRIS_SOURCE_DIR) + "/docs/output.md");
+    const auto is_named = [&](const std::string& name) {
+        return text.find("`" + name + "`") != std::string::npos;
+    };
+    std::istringstream columns(step_header());
+    for (std::string column; std::getline(columns, column, ',');) EXPECT_TRUE(is_named(column)) << column;
+
+    RunReport report;
+    report.totals.features.emplace();
+    const ordered_json json = to_json(report);
+    for (const auto& [key, value] : json.items()) EXPECT_TRUE(is_named(key)) << key;
+    for (const auto& [key, value] : json["feature_contacts"].items()) EXPECT_TRUE(is_named(key)) << key;
 }
 
 }  // namespace
