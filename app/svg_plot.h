@@ -25,7 +25,7 @@ struct Plot {
     std::string unit;  ///< of y; empty for counts
     PlotKind kind = PlotKind::Lines;
     std::vector<PlotLine> lines;
-    std::string note;  ///< one line that says what is shown; may be empty
+    std::string note = {};  ///< one line that says what is shown; may be empty
     std::string x_label = "time (s)";
 };
 
