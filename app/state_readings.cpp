@@ -4,7 +4,8 @@
 #include <algorithm>
 
 #include "physics/inertia.h"
-#include "solver/eol_coordinates.h"
+#include "solver/cloth_stars.h"
+#include "solver/eol_features.h"
 
 namespace arris {
 

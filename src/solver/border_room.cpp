@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/border_room.h"
+#include "solver/eol_features.h"
 
 #include <algorithm>
 #include <cmath>

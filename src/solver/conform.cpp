@@ -9,6 +9,8 @@
 #include "geometry/surgery_cleanup.h"
 #include "geometry/trace_clearing.h"
 #include "geometry/trace_insertion.h"
+#include "solver/eol_coordinates.h"
+#include "solver/eol_features.h"
 #include "solver/eol_release.h"
 #include "solver/feature_flow.h"
 #include "solver/held_vertices.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "geometry/cloth_surgery.h"
-#include "solver/eol_coordinates.h"
+#include "solver/cloth_stars.h"
 #include "solver/eol_guard.h"
 #include "solver/feature_sites.h"
 #include "solver/row_cause.h"

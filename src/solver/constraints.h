@@ -5,6 +5,7 @@
 
 #include "physics/linearization.h"
 #include "solver/contacts.h"
+#include "solver/eol_coordinates.h"
 #include "solver/held_vertices.h"
 #include "solver/velocity_solve.h"
 

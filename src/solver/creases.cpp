@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/mesh_quality.h"
+#include "solver/eol_features.h"
 
 namespace arris {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "physics/cloth_elements.h"
-#include "solver/eol_coordinates.h"
+#include "solver/cloth_stars.h"
 #include "solver/scene.h"
 #include "solver/state.h"
 

@@ -8,6 +8,7 @@
 #include "physics/feature_impulse.h"
 #include "physics/inertia.h"
 #include "solver/constraints.h"
+#include "solver/eol_coordinates.h"
 #include "solver/symmetric_product.h"
 
 namespace arris {

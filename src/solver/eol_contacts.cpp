@@ -6,6 +6,8 @@
 #include "geometry/contact_plane.h"
 #include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
+#include "solver/eol_coordinates.h"
+#include "solver/eol_features.h"
 #include "solver/fold_contacts.h"
 
 namespace arris {

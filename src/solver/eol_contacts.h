@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/contacts.h"
+#include "solver/eol_coordinates.h"
 
 namespace arris {
 

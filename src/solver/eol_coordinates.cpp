@@ -8,6 +8,7 @@
 
 #include "geometry/cloth_cone.h"
 #include "geometry/feature_nodes.h"
+#include "solver/eol_features.h"
 #include "solver/free_fold.h"
 #include "solver/wire_fold.h"
 
@@ -18,62 +19,6 @@ namespace {
 const double kSin20 = std::sin(20.0 * M_PI / 180.0);
 const double kCos10 = std::cos(10.0 * M_PI / 180.0);
 const double kSin10 = std::sin(10.0 * M_PI / 180.0);
-
-/// A face of the star with `vertex` first.
-Face turned_to(const Face& face, int vertex)
-{
-    const auto at = std::find(face.begin(), face.end(), vertex) - face.begin();
-    return {face[at], face[(at + 1) % 3], face[(at + 2) % 3]};
-}
-
-/// A face at a vertex, and what it looks like from there.
-struct StarFace {
-    Vec3 normal;
-    Vec3 leaving;  ///< unit, away from the vertex, halfway between its edges
-    Vec2 middle;   ///< material, from the vertex
-    Mat32 F;
-    double area;  ///< material
-    FaceSector sector;
-    Mat32 sides;  ///< its edges from the vertex
-
-    double angle() const  ///< rad
-    {
-        return std::atan2(sides.col(0).cross(sides.col(1)).norm(), sides.col(0).dot(sides.col(1)));
-    }
-};
-
-/// What tells how the cloth lies around a vertex.
-struct Star {
-    Mat2 squared_F = Mat2::Zero();                             ///< sum A F^T F
-    Eigen::Matrix<double, 2, 3> F_transposed = Mat23::Zero();  ///< sum A F^T
-    std::vector<StarFace> faces;
-};
-
-Star look_around(const State& state, std::span<const int> faces, int vertex,
-                 const std::vector<Vec3>& positions)
-{
-    Star star;
-    star.faces.reserve(faces.size());
-    for (const int f : faces) {
-        const Face face = turned_to(state.mesh.faces[f], vertex);
-        Mat32 Dx;
-        Mat2 DX;
-        for (int k = 0; k < 2; ++k) {
-            Dx.col(k) = positions[face[k + 1]] - positions[vertex];
-            DX.col(k) = state.mesh.material[face[k + 1]] - state.mesh.material[vertex];
-        }
-        const Vec3 across = Dx.col(0).cross(Dx.col(1));
-        if (!(across.norm() > 0.0)) continue;  // collapsed: tells no direction
-        const Mat32 F = Dx * DX.inverse();
-        const double area = 0.5 * DX.determinant();
-        star.squared_F += area * F.transpose() * F;
-        star.F_transposed += area * F.transpose();
-        const FaceSector sector = {Dx.col(0).normalized(), Dx.col(1).normalized()};
-        star.faces.push_back({across.normalized(), (sector[0] + sector[1]).stableNormalized(),
-                              DX.col(0) + DX.col(1), F, area, sector, Dx});
-    }
-    return star;
-}
 
 /// Unit directions across a feature in which the cloth leaves it, to the left of its trace and to the right.
 struct Sides {
@@ -140,17 +85,6 @@ Vec2 find_trace(const Obstacle& obstacle, const State& state, int entry, int ver
             along += way.dot(estimate) >= 0.0 ? way : Vec2(-way);
         }
     return along.norm() > 0.0 ? along.normalized() : estimate.normalized();
-}
-
-/// The border's direction through a border vertex; nothing elsewhere, and at a corner of the cloth zero.
-std::optional<Vec2> find_border(const State& state, const ClothStars& stars, int vertex)
-{
-    constexpr double kStraight = 0.9;  // cosine: a corner of the cloth turns by more than 26 degrees
-    const auto [a, b] = stars.border_neighbours[vertex];
-    if (a < 0) return std::nullopt;
-    const Vec2 before = (state.mesh.material[vertex] - state.mesh.material[a]).normalized();
-    const Vec2 after = (state.mesh.material[b] - state.mesh.material[vertex]).normalized();
-    return before.dot(after) < kStraight ? Vec2(Vec2::Zero()) : Vec2((before + after).normalized());
 }
 
 std::optional<FeatureFrame> find_frame(const Obstacle& obstacle, const EolVertex& eol, const Vec3& place,
@@ -254,122 +188,6 @@ EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)
 
 }  // namespace
 
-bool is_fixed(const EolVertex& eol)
-{
-    return eol.is_corner || eol.turn >= 0;
-}
-
-int held_point(const Obstacle& obstacle, const EolVertex& eol)
-{
-    if (eol.is_corner) return obstacle.features().corners[eol.feature].point;
-    return eol.turn >= 0 ? point_at(obstacle, {eol.feature, eol.turn}) : -1;
-}
-
-Vec3 feature_tangent(const Obstacle& obstacle, const EolVertex& eol)
-{
-    if (eol.is_corner) return Vec3::Zero();
-    if (eol.turn >= 0) return tangent_at(obstacle, {eol.feature, eol.turn});
-    const auto& ends = obstacle.topology().edges[obstacle.features().edges[eol.feature].edge].points;
-    return (obstacle.mesh().points[ends[1]] - obstacle.mesh().points[ends[0]]).normalized();
-}
-
-bool is_on_convex_edge(const Obstacle& obstacle, const EolVertex& eol)
-{
-    return !eol.is_corner && obstacle.features().edges[eol.feature].kind == FeatureKind::Convex;
-}
-
-ClothStars make_stars(int vertex_count, const std::vector<Face>& faces)
-{
-    ClothStars stars;
-    stars.topology = make_topology(vertex_count, faces);
-    stars.faces = VertexFaces(vertex_count, faces);
-    stars.border_neighbours.assign(vertex_count, {-1, -1});
-    for (const MeshEdge& edge : stars.topology.edges) {
-        if (edge.face_right >= 0) continue;
-        for (const auto& [v, w] : {std::pair(edge.a, edge.b), std::pair(edge.b, edge.a)})
-            stars.border_neighbours[v][stars.border_neighbours[v][0] < 0 ? 0 : 1] = w;
-    }
-    return stars;
-}
-
-bool is_of_one_strand(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b)
-{
-    constexpr double kSteepest = 0.7;  // a fold that runs off its edge does so at less than 35 degrees
-    const bool is_one_edge = a.eol.is_corner == b.eol.is_corner && a.eol.feature == b.eol.feature;
-    if (!is_one_edge || !is_on_convex_edge(obstacle, a.eol)) return true;
-    const Vec3 on_a = place_on_feature(obstacle, a.eol.feature, a.place).point;
-    const Vec3 on_b = place_on_feature(obstacle, b.eol.feature, b.place).point;
-    return ((a.place - on_a) - (b.place - on_b)).norm() <= kSteepest * (on_a - on_b).norm();
-}
-
-bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b)
-{
-    if (a.eol.obstacle != b.eol.obstacle || !is_of_one_strand(obstacle, a, b)) return false;
-    if (!a.eol.is_corner && !b.eol.is_corner && a.eol.feature == b.eol.feature) return true;
-    constexpr double kLongestWay = 1.2;  // over the distance: an arc that turns by 120 degrees
-    const ObstacleFeatures& features = obstacle.features();
-    const auto place_of = [&](const PlacedEol& at) {
-        return at.eol.is_corner ? obstacle.mesh().points[features.corners[at.eol.feature].point]
-                                : place_on_feature(obstacle, at.eol.feature, at.place).point;
-    };
-    const double most = kLongestWay * (place_of(a) - place_of(b)).norm();
-    const auto on = [&](const PlacedEol& at) {
-        return FeaturePlace{at.eol.feature, place_on_feature(obstacle, at.eol.feature, at.place).s};
-    };
-    if (!a.eol.is_corner && !b.eol.is_corner) return distance_along(obstacle, on(a), on(b), most).has_value();
-    if (a.eol.is_corner != b.eol.is_corner) {
-        const PlacedEol &corner = a.eol.is_corner ? a : b, &other = a.eol.is_corner ? b : a;
-        return distance_to_corner(obstacle, on(other), corner.eol.feature, most).has_value();
-    }
-    const int point = features.corners[a.eol.feature].point;
-    const ObstacleTopology& topology = obstacle.topology();
-    for (int k = 0; k < topology.edge_count_at(point); ++k) {
-        const int edge = topology.edge_at(point, k);
-        const int feature = feature_of_edge(features, edge);
-        const double s = topology.edges[edge].points[0] == point ? 0.0 : 1.0;
-        if (feature >= 0 && distance_to_corner(obstacle, {feature, s}, b.eol.feature, most)) return true;
-    }
-    return false;
-}
-
-std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& obstacles, const State& state,
-                                                 const ClothStars& stars)
-{
-    std::vector<std::array<int, 2>> found;
-    std::vector<int> later;  // neighbours
-    const auto add_from = [&](int a) {
-        const int v = state.index_of(state.eol[a].vertex_id);
-        const Obstacle& obstacle = obstacles[static_cast<std::size_t>(state.eol[a].obstacle)];
-        later.clear();
-        for (const int f : stars.faces[v])
-            for (const int w : state.mesh.faces[f])
-                if (w > v) later.push_back(w);
-        std::sort(later.begin(), later.end());
-        later.erase(std::unique(later.begin(), later.end()), later.end());
-        std::optional<Placement> now;
-        for (const int w : later) {
-            const int b = state.eol_entry(state.ids[w]);
-            if (b < 0) continue;
-            if (!now) now = obstacle.at(state.time);
-            if (is_trace_edge(obstacle, {state.eol[a], now->inverse(state.mesh.world[v])},
-                              {state.eol[b], now->inverse(state.mesh.world[w])}))
-                found.push_back({a, b});
-        }
-    };
-    for (int a = 0; a < static_cast<int>(state.eol.size()); ++a) add_from(a);
-    return found;
-}
-
-void follow_features(const std::vector<Obstacle>& obstacles, State& state)
-{
-    for (EolVertex& eol : state.eol) {
-        if (eol.is_corner || eol.turn >= 0) continue;
-        const Obstacle& obstacle = obstacles[eol.obstacle];
-        const Vec3& world = state.mesh.world[state.index_of(eol.vertex_id)];
-        eol.feature = follow_polyline(obstacle, eol.feature, obstacle.at(state.time).inverse(world)).feature;
-    }
-}
-
 EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const State& state, int entry,
                             const ClothStars& stars, const std::vector<Vec3>& positions, const Placement& end,
                             double dt)
@@ -377,12 +195,12 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     const EolVertex& eol = state.eol[entry];
     const int v = state.index_of(eol.vertex_id);
     const Vec3& place = positions[v];
-    const std::optional<Vec2> border = find_border(state, stars, v);
+    const std::optional<Vec2> border = find_border(state.mesh, stars, v);
     if (border && border->isZero()) return {std::nullopt, EolRefusal::ClothCorner};
     if (border && is_fixed(eol)) return {std::nullopt, EolRefusal::AlongBorder};
 
     const Vec3 tangent = feature_tangent(obstacle, eol);
-    const Star star = look_around(state, stars.faces[v], v, positions);
+    const Star star = look_around(state.mesh, stars.faces[v], v, positions);
     Vec2 trace = Vec2::Zero();
     if (!eol.is_corner)
         trace = find_trace(obstacle, state, entry, v, stars.faces[v], positions, star, tangent);

@@ -6,6 +6,7 @@
 #include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
 #include "solver/border_room.h"
+#include "solver/eol_features.h"
 #include "solver/feature_sites.h"
 #include "solver/free_fold.h"
 

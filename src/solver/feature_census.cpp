@@ -9,6 +9,8 @@
 #include "geometry/closest_point.h"
 #include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
+#include "solver/eol_coordinates.h"
+#include "solver/eol_features.h"
 #include "solver/feature_sites.h"
 
 namespace arris {

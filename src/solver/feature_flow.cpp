@@ -14,37 +14,23 @@ namespace arris {
 
 namespace {
 
-/// What the faces around a vertex tell of how it would be carried: by area.
-struct Carrying {
-    Mat2 squared_F = Mat2::Zero();                             ///< sum A F^T F
-    Eigen::Matrix<double, 2, 3> F_transposed = Mat23::Zero();  ///< sum A F^T
-    Vec2 lag = Vec2::Zero();                                   ///< sum A F^T (v_obs - w)
-
-    Vec2 flow() const { return squared_F.inverse() * lag; }
-    /// The material's direction that F maps nearest to one of the world's.
-    Vec2 direction(const Vec3& along) const { return squared_F.inverse() * (F_transposed * along); }
-};
-
-Carrying look_around(const Scene& scene, const State& state, const ClothStars& stars, int v,
-                     std::int32_t obstacle)
+/// sum A F^T (v_obs - w) of the faces around a vertex.
+Vec2 find_lag(const Scene& scene, const State& state, const ClothStars& stars, int v, std::int32_t obstacle)
 {
     const std::vector<Vec2>& X = state.mesh.material;
     const std::vector<Vec3>& x = state.mesh.world;
-    Carrying carrying;
+    Vec2 lag = Vec2::Zero();
     for (const int f : stars.faces[v]) {
         const auto& [a, b, c] = state.mesh.faces[f];
         const Mat32 F = deformation_gradient({X[a], X[b], X[c]}, {x[a], x[b], x[c]});
-        const double area = twice_area(X[a], X[b], X[c]);
-        Vec3 lag = Vec3::Zero();  // mean of v_obs - w
+        Vec3 mean = Vec3::Zero();  // of v_obs - w
         for (const int k : {a, b, c})
-            lag += (scene.obstacles[obstacle].velocity_after(state.time, x[k]) - state.velocity[k] +
-                    F * state.material_velocity[k]) /
-                   3.0;
-        carrying.squared_F += area * F.transpose() * F;
-        carrying.F_transposed += area * F.transpose();
-        carrying.lag += area * F.transpose() * lag;
+            mean += (scene.obstacles[obstacle].velocity_after(state.time, x[k]) - state.velocity[k] +
+                     F * state.material_velocity[k]) /
+                    3.0;
+        lag += 0.5 * twice_area(X[a], X[b], X[c]) * F.transpose() * mean;
     }
-    return carrying;
+    return lag;
 }
 
 Vec2 finite_or_zero(const Vec2& flow)
@@ -65,12 +51,15 @@ Vec2 border_through(const State& state, const ClothStars& stars, const FeatureSi
 Vec2 find_feature_flow(const Scene& scene, const State& state, const ClothStars& stars,
                        const FeatureSite& site)
 {
-    const Carrying carrying = look_around(scene, state, stars, state.index_of(site.near), site.obstacle);
-    const Vec2 flow = carrying.flow();
+    const int v = state.index_of(site.near);
+    const Star star = look_around(state.mesh, stars.faces[v], v, state.mesh.world);
+    const Mat2 inverse = star.squared_F.inverse();
+    const Vec2 flow = inverse * find_lag(scene, state, stars, v, site.obstacle);
     if (site.is_corner || site.turn >= 0) return finite_or_zero(flow);
     const Obstacle& obstacle = scene.obstacles[site.obstacle];
     const auto [from, to] = feature_segment(obstacle, site.feature);
-    const Vec2 trace = carrying.direction(obstacle.at(state.time).rotation * (to - from)).normalized();
+    const Vec3 tangent = obstacle.at(state.time).rotation * (to - from);
+    const Vec2 trace = (inverse * (star.F_transposed * tangent)).normalized();  // F maps it nearest
     const Vec2 across(trace.y(), -trace.x());
     const Vec2 way = site.is_on_border ? border_through(state, stars, site) : across;
     return finite_or_zero(across.dot(flow) / across.dot(way) * way);

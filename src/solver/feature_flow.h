@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "solver/eol_coordinates.h"
+#include "solver/cloth_stars.h"
 #include "solver/feature_sites.h"
 #include "solver/scene.h"
 #include "solver/state.h"

@@ -12,6 +12,7 @@
 #include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
 #include "geometry/normal_cone.h"
+#include "solver/eol_features.h"
 #include "solver/turn_sites.h"
 
 namespace arris {

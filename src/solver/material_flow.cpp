@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/material_flow.h"
+#include "solver/eol_coordinates.h"
 
 #include <algorithm>
 #include <set>

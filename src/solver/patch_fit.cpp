@@ -7,6 +7,7 @@
 
 #include "physics/deformation_gradient.h"
 #include "physics/velocity_fit.h"
+#include "solver/eol_coordinates.h"
 #include "solver/held_vertices.h"
 #include "solver/patch_relaxation.h"
 #include "solver/strain_allowance.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solver/changed_patches.h"
-#include "solver/eol_coordinates.h"
+#include "solver/cloth_stars.h"
 #include "solver/scene.h"
 #include "solver/state.h"
 

@@ -5,6 +5,7 @@
 
 #include "solver/constraints.h"
 #include "solver/energy_balance.h"
+#include "solver/eol_coordinates.h"
 
 namespace arris {
 

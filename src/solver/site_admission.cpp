@@ -7,6 +7,7 @@
 #include "geometry/feature_frame.h"
 #include "geometry/feature_path.h"
 #include "solver/border_room.h"
+#include "solver/eol_features.h"
 #include "solver/eol_release.h"
 #include "solver/free_fold.h"
 

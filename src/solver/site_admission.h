@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "solver/eol_coordinates.h"
+#include "solver/cloth_stars.h"
 #include "solver/feature_sites.h"
 #include "solver/row_cause.h"
 #include "solver/scene.h"

@@ -8,6 +8,8 @@
 #include "solver/constraints.h"
 #include "solver/energy_balance.h"
 #include "solver/eol_contacts.h"
+#include "solver/eol_coordinates.h"
+#include "solver/eol_features.h"
 #include "solver/feature_census.h"
 #include "solver/material_flow.h"
 #include "solver/pinched_vertices.h"

@@ -35,10 +35,10 @@ struct StepReport {
     int eol_pressing = 0;                 ///< EOL vertices with a positive multiplier
     int crossings = 0;                    ///< in this step
     int solves = 0;                       ///< velocity solves: more than one where the check found violations
-    int relinearisations = 0;  ///< solves of forces linearised again (relinearization.h)
-    double energy_rise = 0.0;  ///< J, what was pushed in by a step that nothing mended
-    int yielded = 0;           ///< contacts that could not keep their stand-off
-    int rewound = 0;           ///< vertices put back on their way, so that nothing is passed
+    int relinearisations = 0;             ///< solves of forces linearised again (relinearization.h)
+    double energy_rise = 0.0;             ///< J, what was pushed in by a step that nothing mended
+    int yielded = 0;                      ///< contacts that could not keep their stand-off
+    int rewound = 0;                      ///< vertices put back on their way, so that nothing is passed
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;

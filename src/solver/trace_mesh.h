@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "geometry/cloth_surgery.h"
-#include "solver/eol_coordinates.h"
+#include "solver/cloth_stars.h"
+#include "solver/eol_features.h"
 #include "solver/scene.h"
 #include "solver/state.h"
 

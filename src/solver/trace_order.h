@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "solver/eol_coordinates.h"
+#include "solver/eol_features.h"
 
 namespace arris {
 

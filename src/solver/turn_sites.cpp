@@ -10,6 +10,7 @@
 
 #include "geometry/closest_point.h"
 #include "geometry/feature_path.h"
+#include "solver/eol_features.h"
 
 namespace arris {
 

@@ -9,6 +9,7 @@
 #include "physics/term.h"
 #include "solver/attempts.h"
 #include "solver/contacts.h"
+#include "solver/eol_coordinates.h"
 #include "solver/proposal.h"
 #include "solver/row_cause.h"
 #include "solver/velocity_solve.h"

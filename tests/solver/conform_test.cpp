@@ -12,6 +12,7 @@
 #include "solver/advance.h"
 #include "solver/audit.h"
 #include "solver/contacts.h"
+#include "solver/eol_features.h"
 #include "solver/mesh_transfer.h"
 #include "solver/step.h"
 #include "tests/solver/eol_cloth.h"

@@ -9,6 +9,7 @@
 #include "geometry/obstacle_shapes.h"
 #include "physics/energies.h"
 #include "physics/inertia.h"
+#include "solver/eol_coordinates.h"
 #include "solver/step.h"
 
 namespace arris::testing {

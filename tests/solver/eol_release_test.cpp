@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "geometry/obstacle_shapes.h"
+#include "solver/eol_coordinates.h"
+#include "solver/eol_features.h"
 #include "solver/feature_sites.h"
 #include "tests/solver/eol_cloth.h"
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geometry/obstacle_shapes.h"
+#include "solver/eol_features.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {

@@ -10,6 +10,7 @@
 #include "geometry/penetration.h"
 #include "solver/advance.h"
 #include "solver/audit.h"
+#include "solver/eol_coordinates.h"
 #include "solver/step.h"
 #include "tests/solver/eol_cloth.h"
 

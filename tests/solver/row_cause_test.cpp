@@ -9,6 +9,7 @@
 #include <string>
 
 #include "solver/conform.h"
+#include "solver/eol_coordinates.h"
 #include "solver/eol_release.h"
 #include "solver/mesh_transfer.h"
 #include "tests/solver/eol_cloth.h"

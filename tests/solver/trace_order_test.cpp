@@ -7,6 +7,7 @@
 #include <set>
 
 #include "geometry/obstacle_shapes.h"
+#include "solver/eol_features.h"
 
 namespace arris {
 namespace {

@@ -19,7 +19,7 @@
 #include "geometry/obstacle_shapes.h"
 #include "grid_patterns.h"
 #include "refinement.h"
-#include "solver/eol_coordinates.h"
+#include "solver/eol_features.h"
 
 namespace arris {
 namespace {
