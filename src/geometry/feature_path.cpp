@@ -103,6 +103,15 @@ FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& 
     return {feature, s};
 }
 
+bool is_past_end(const Obstacle& obstacle, int feature, const Vec3& place)
+{
+    const double s = place_on_feature(obstacle, feature, place).s;
+    if (s > 0.0 && s < 1.0) return false;
+    const ObstacleFeatures& features = obstacle.features();
+    const auto& ends = obstacle.topology().edges[features.edges[feature].edge].points;
+    return is_corner(features, ends[s > 0.0 ? 1 : 0]);
+}
+
 std::optional<FeatureTurn> find_turn(const Obstacle& obstacle, int point)
 {
     constexpr double kLeast = 0.0175;  // sine of a degree

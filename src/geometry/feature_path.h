@@ -27,6 +27,9 @@ PointOnFeature place_on_feature(const Obstacle& obstacle, int feature, const Vec
 /// the next as long as that is nearer. So a strand of the same polyline that happens to be near is not taken.
 FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& place);
 
+/// Whether what of feature edge `feature` is nearest to a place is an end of its polyline.
+bool is_past_end(const Obstacle& obstacle, int feature, const Vec3& place);
+
 /// Where a wire turns: an end (0 or 1) of one of its edges, beyond which the polyline goes on elsewhere.
 struct FeatureTurn {
     int feature;

@@ -45,12 +45,7 @@ bool is_corner_under_face(const Scene& scene, const State& state, const EolVerte
 /// Whether an EOL vertex is still on the polyline that it is on: not at its end.
 bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3& place)
 {
-    if (vertex.is_corner) return true;
-    const double s = place_on_feature(obstacle, vertex.feature, place).s;
-    if (s > 0.0 && s < 1.0) return true;
-    const ObstacleFeatures& features = obstacle.features();
-    const auto& ends = obstacle.topology().edges[features.edges[vertex.feature].edge].points;
-    return !is_corner(features, ends[s > 0.0 ? 1 : 0]);
+    return vertex.is_corner || !is_past_end(obstacle, vertex.feature, place);
 }
 
 }  // namespace

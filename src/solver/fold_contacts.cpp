@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "geometry/feature_path.h"
+
 namespace arris {
 
 namespace {
@@ -108,16 +110,31 @@ class FoldSearch {
         return kCells * cell + kTime * state_.material_velocity[vertex].norm();
     }
 
-    /// By the neighbours of those that are known, each on the side of its own.
+    /// Beyond the wire's end there is nothing to get round. Cloth that hangs down there lies in the very
+    /// plane of what is on the wire, and is on neither side of it.
+    bool is_past_end(const EolCoordinates& at, int w, const Wire& wire) const
+    {
+        const Obstacle& obstacle = obstacles_[wire[0]];
+        const Vec3& place = place_of(w, wire);
+        const int edge = follow_polyline(obstacle, state_.eol[at.entry].feature, place).feature;
+        return arris::is_past_end(obstacle, edge, place);
+    }
+
+    /// By the neighbours of those that are known, each on the side of its own. What is held elsewhere, as at
+    /// the wire's end, is on no side that it could hand on.
     void grow()
     {
         Planes next;
-        for (const auto& [key, plane] : planes_)
+        for (const auto& [key, plane] : planes_) {
+            if (is_eol_[key.vertex]) continue;
             for_neighbours(key.vertex, key.wire, [&](int w) {
-                if (planes_.contains({w, key.wire}) || way(plane.at->vertex, w) > plane.reach) return;
+                if (planes_.contains({w, key.wire}) || way(plane.at->vertex, w) > plane.reach ||
+                    is_past_end(*plane.at, w, key.wire))
+                    return;
                 const double angle = plane.side * angle_behind(plane.at->frame, place_of(w, key.wire));
                 add(next, {w, key.wire}, {plane.at, plane.side, angle, plane.reach});
             });
+        }
         planes_.merge(next);
     }
 

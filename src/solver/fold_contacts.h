@@ -17,8 +17,9 @@ struct FoldContact {
 };
 
 /// Of the neighbours of the vertices on wires, and of theirs, which sliding will make such: each against the
-/// plane that it is nearest to. `positions`: the cloth's in the frame of each obstacle at the step's start.
-/// Sorted by (vertex, obstacle, polyline), each once.
+/// plane that it is nearest to; what is past the wire's end only where it is a neighbour. `positions`: the
+/// cloth's in the frame of each obstacle at the step's start. Sorted by (vertex, obstacle, polyline), each
+/// once.
 std::vector<FoldContact> find_fold_contacts(const std::vector<Obstacle>& obstacles, const State& state,
                                             const ClothStars& stars, const std::vector<EolCoordinates>& eol,
                                             const std::vector<const std::vector<Vec3>*>& positions);

@@ -45,6 +45,17 @@ TEST(FollowPolyline, GoesOnPastNodesButNotPastCorners)
     EXPECT_EQ(follow_polyline(right, 0, Vec3(1, 0.5, 0)).feature, 0) << "it ends at the corner";
 }
 
+TEST(PastEnd, IsWhatIsNearestToACornerNotToANode)
+{
+    const Obstacle wire = make_bent();
+    EXPECT_TRUE(is_past_end(wire, 0, Vec3(-0.3, 0.05, 0.4)));
+    EXPECT_TRUE(is_past_end(wire, 2, Vec3(3.2, 0.0, -0.1)));
+    for (const int feature : {0, 1, 2})
+        EXPECT_FALSE(is_past_end(wire, feature, Vec3(feature + 0.5, 0.2, 0.1)));
+    EXPECT_FALSE(is_past_end(wire, 0, Vec3(1.5, 0.0, 0.0))) << "the polyline goes on";
+    EXPECT_FALSE(is_past_end(make_polygon(12), 0, Vec3(5.0, -5.0, 0.0))) << "and has no end";
+}
+
 TEST(FollowPolyline, ExactlyAtANodeStaysWhereItWas)
 {
     const Obstacle wire = make_bent();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/obstacle_shapes.h"
 #include "geometry/penetration.h"
@@ -32,9 +33,9 @@ Obstacle make_line(const std::vector<Vec3>& points = {{0, -1, 0}, {0, 1, 0}})
 
 /// Cloth folded over a wire by `fold` (degrees, 180 is flat), a stand-off above it, with EOL vertices on it
 /// where their material coordinate along it is less than `end`.
-EolCloth make_folded(double fold, double end = 1.0)
+EolCloth make_folded(double fold, double end = 1.0, Obstacle wire = make_line())
 {
-    EolCloth cloth(make_line(), make_draped({kCells, 0.0, fold}));
+    EolCloth cloth(std::move(wire), make_draped({kCells, 0.0, fold}));
     cloth.scene.eol = uniform_target(kCell, 10.0);
     for (Vec3& x : cloth.state.mesh.world) x.z() += kThickness;
     for (int v = 0; v < cloth.state.mesh.vertex_count(); ++v)
@@ -109,6 +110,40 @@ TEST(FoldContacts, AreNoneWhereTheClothIsFarFromThePlane)
     // Nor beyond the end of a trace, on the fold's line.
     const EolCloth ending = make_folded(20.0, 0.2);
     for (const FoldContact& contact : find(ending)) EXPECT_GT(std::abs(along_x(ending, contact)), kSame);
+}
+
+TEST(FoldContacts, AreNoneOfWhatHangsDownPastTheWiresEnd)
+{
+    // The fold goes on past the end, where its line hangs down in the very plane behind what is on the wire.
+    EolCloth cloth = make_folded(20.0, 0.2 - 0.5 * kCell, make_line({{0, -1, 0}, {0, 0, 0}}));
+    for (int v = 0; v < cloth.state.mesh.vertex_count(); ++v) {
+        const Vec2 past = cloth.state.mesh.material[v] - Vec2(0.2, 0.2);
+        if (past.y() > kSame) cloth.state.mesh.world[v] = Vec3(0.3 * past.x(), 0.1 * past.y(), -past.y());
+    }
+    for (const FoldContact& contact : find(cloth))
+        EXPECT_LT(cloth.state.mesh.material[contact.vertex].y(), 0.2 + kSame);
+}
+
+TEST(FoldContacts, DoNotLearnTheirSideFromWhatIsHeldAtTheWiresEnd)
+{
+    for (const double aside : {-1e-5, 1e-5}) {  // m, of what is held: it has no side
+        EolCloth cloth = make_folded(20.0, 0.2 - 0.5 * kCell, make_line({{0, -1, 0}, {0, 0.3 * kCell, 0}}));
+        const int held = cloth.vertex_at(0.2, 0.2);
+        cloth.state.mesh.world[held].x() += aside;
+        const Obstacle& obstacle = cloth.scene.obstacles[0];
+        for (std::size_t c = 0; c < obstacle.features().corners.size(); ++c)
+            if (obstacle.mesh().points[obstacle.features().corners[c].point].y() > 0.0)
+                cloth.add_eol(held, true, static_cast<int>(c));
+        const std::vector<FoldContact> found = find(cloth);
+        for (int v = 0; v < cloth.state.mesh.vertex_count(); ++v) {
+            const Vec2 from = cloth.state.mesh.material[v] - Vec2(0.2, 0.2);
+            if (std::abs(from.x()) < kSame || std::abs(from.x()) > 2.5 * kCell || from.y() > kSame) continue;
+            const auto of =
+                std::find_if(found.begin(), found.end(), [&](const FoldContact& c) { return c.vertex == v; });
+            ASSERT_NE(of, found.end()) << from.transpose();
+            EXPECT_GT(of->bound.normal.x() * from.x(), 0.9 * std::abs(from.x())) << from.transpose();
+        }
+    }
 }
 
 TEST(FoldContacts, ReachAsFarAsFlowBringsClothSoon)
