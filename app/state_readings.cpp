@@ -6,6 +6,7 @@
 #include "physics/inertia.h"
 #include "solver/cloth_stars.h"
 #include "solver/eol_features.h"
+#include "solver/fold_contacts.h"
 
 namespace arris {
 
@@ -42,7 +43,7 @@ Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, con
     frame.contact.assign(state.ids.size(), 0);
     for (const ActiveContact& contact : state.active)
         for (const std::uint32_t id : contact.vertex_ids) {
-            if (id == ActiveContact::kNoVertex) continue;
+            if (id == ActiveContact::kNoVertex || is_fold(contact)) continue;  // which is in mid-air
             frame.contact[state.index_of(id)] = 1;
         }
     frame.faces = state.mesh.faces;

@@ -85,8 +85,8 @@ void append_folds(const Scene& scene, const State& state, const ClothStars& star
     for (const FoldContact& fold : find_fold_contacts(scene.obstacles, state, stars, eol, positions)) {
         const ObstacleStep& step = steps[fold.obstacle];
         const ObstacleContact contact =
-            make_contact(ContactKind::Vertex, {{fold.vertex, -1, -1}, {1.0, 0.0, 0.0}}, -1, fold.bound.normal,
-                         fold.point, fold.bound.least_gap);
+            make_contact(ContactKind::Vertex, {{fold.vertex, -1, -1}, {1.0, 0.0, 0.0}}, kFoldElement,
+                         fold.bound.normal, fold.point, fold.bound.least_gap);
         contacts.push_back(place_contact(contact, fold.obstacle, step, prediction));
         contacts.back().mitre = fold.bound.wanted / thickness;
         contacts.back().is_fold = true;

@@ -11,6 +11,7 @@
 #include "solver/eol_coordinates.h"
 #include "solver/eol_features.h"
 #include "solver/feature_census.h"
+#include "solver/fold_contacts.h"
 #include "solver/material_flow.h"
 #include "solver/pinched_vertices.h"
 #include "solver/relinearization.h"
@@ -292,7 +293,8 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     state.active = active_contacts(state, work.contacts, multiplier);
     count_idle(work.contacts, work.eol, multiplier, state.eol);
     state.crossings += report.crossings;
-    report.contacts = static_cast<int>(state.active.size());
+    report.contacts = static_cast<int>(state.active.size() -
+                                       std::count_if(state.active.begin(), state.active.end(), is_fold));
     report.eol_vertices = static_cast<int>(state.eol.size());
     state.previous_world.swap(state.mesh.world);
     state.previous_velocity.swap(state.velocity);

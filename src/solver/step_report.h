@@ -29,7 +29,7 @@ struct StepReport {
     StepStatus status = StepStatus::Done;
     double dt = 0.0;                      ///< s
     std::int64_t infeasible_vertex = -1;  ///< id of one whose pins and contacts no velocity meets
-    int contacts = 0;                     ///< constraints with a positive multiplier
+    int contacts = 0;                     ///< that press, without planes behind wires
     int feature_rows = 0;                 ///< those at a sharp edge, corner, wire or point but EOL vertices
     RowCounts rows_by_cause{};            ///< these, by why they are rows, in a scene with EOL vertices
     int eol_pressing = 0;                 ///< EOL vertices with a positive multiplier

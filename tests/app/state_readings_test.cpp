@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/cloth_grid.h"
+#include "solver/fold_contacts.h"
 #include "solver/step.h"
 
 namespace arris {
@@ -30,6 +31,22 @@ TEST(Probes, ReadTheMaterialsVelocityWhereItFlowsThroughAVertexAtRest)
         ASSERT_EQ(samples.size(), 1u);
         EXPECT_LT((samples[0].velocity - velocity).norm(), 1e-12) << X.transpose();
     }
+}
+
+TEST(Frames, MarkWhatAnObstaclePressesAndNoPlaneBehindAWire)
+{
+    ClothGrid grid;
+    grid.resolution = {4, 4};
+    State state = make_state(Scene{}, make_cloth_grid(grid), Vec3::Zero());
+    constexpr std::uint32_t kNo = ActiveContact::kNoVertex;
+    state.active = {{{2, kNo, kNo}, ContactKind::Vertex, 0, -1, Vec3::UnitZ(), 1.0},
+                    {{3, 8, kNo}, ContactKind::Edge, 0, 0, Vec3::UnitZ(), 1.0},
+                    {{5, kNo, kNo}, ContactKind::Vertex, 0, kFoldElement, Vec3::UnitX(), 1.0}};
+    const ClothElements elements =
+        make_elements(state.mesh, make_topology(state.mesh.vertex_count(), state.mesh.faces));
+    const Frame frame = make_frame({}, state, elements, {});
+    for (std::size_t v = 0; v < frame.contact.size(); ++v)
+        EXPECT_EQ(frame.contact[v], v == 2 || v == 3 || v == 8) << v;
 }
 
 }  // namespace

@@ -196,6 +196,27 @@ TEST(FoldContacts, SidesThrownAtEachOtherDoNotGetPastTheWire)
         }
 }
 
+TEST(FoldContacts, AreToldFromWhatPressesOnTheObstacle)
+{
+    EolCloth cloth = make_folded(40.0);
+    for (std::size_t v = 0; v < cloth.state.mesh.world.size(); ++v)
+        if (cloth.state.mesh.material[v].x() < 0.2 - kSame) cloth.state.velocity[v] = Vec3(5.0, 0.0, 0.0);
+    Workspace work;
+    int planes = 0;
+    for (int k = 0; k < 10; ++k) {
+        const StepReport report = step(cloth.scene, Settings(), cloth.state.time + 0.005, cloth.state, work);
+        int count = 0;
+        for (const ActiveContact& contact : cloth.state.active) {
+            if (!is_fold(contact)) continue;
+            ++count;
+            EXPECT_LT(cloth.state.eol_entry(contact.vertex_ids[0]), 0);
+        }
+        EXPECT_EQ(report.contacts, static_cast<int>(cloth.state.active.size()) - count);
+        planes += count;
+    }
+    EXPECT_GT(planes, 0);
+}
+
 TEST(FoldContacts, ClothFallsOnWiresThatAreNearerThanAStandOffOrBend)
 {
     const auto fall_on = [](const ObstacleMesh& wires) {
