@@ -2,7 +2,8 @@
 //
 // A fixed sequence of passes over a patch P of vertices, fixed at the start but for those that splits add:
 //
-//   merge short edges -> flip -> split long edges -> flip -> open thin faces (at most 3 rounds) -> flip
+//   merge short edges -> flip -> split long edges -> flip (while there are any, at most 8 rounds)
+//                     -> open thin faces (at most 3 rounds) -> flip
 //
 // Why it ends, whatever the mesh and whatever the guard refuses:
 //   merge   each success removes a vertex of P: at most |P|. A refused edge is tried again only after a
@@ -11,7 +12,9 @@
 //           (X, Y, X^2 + Y^2) over the faces sinks strictly, so no triangulation of the same points comes
 //           twice, and there are finitely many. That bound is useless as a figure, so there is a cap, linear
 //           in the patch, which is reported when it is hit.
-//   split   the list of long edges is made once, each is split at most once.
+//   split   the list of a round is made once, each is split at most once. Halves and what flips make of them
+//           may be long still, and there may be no later time: where the trace that has left them is gone
+//           from the cloth nothing comes to mend the mesh again.
 //   open    the list of a round is made once; a face costs at most one operation.
 // `most_operations` is the sum of these bounds.
 //
@@ -36,6 +39,7 @@ constexpr double kLong = 2.0;        // four times that, so that a split never m
 constexpr double kFlipAngle = 30.0;  // degrees
 constexpr double kKeepAngle = 10.0;  // degrees: a merge may not leave thinner faces than it found, below this
 constexpr double kSplitAngle = 0.5;  // of the least angle before: what a split may leave for the next round
+constexpr int kSplitRounds = 8;      // for edges of 500 target lengths
 constexpr int kThinRounds = 3;
 constexpr int kFlipsPerEdge = 8;
 constexpr double kLeastFoot = 0.15;  // of an edge: where it is split opposite a vertex
@@ -65,8 +69,7 @@ class Cleanup {
     {
         merge_short_edges();
         flip_edges();
-        split_long_edges();
-        flip_edges();
+        for (int round = 0; round < kSplitRounds && split_long_edges(); ++round) flip_edges();
         for (int round = 0; round < kThinRounds; ++round)
             if (!open_thin_faces()) break;
         flip_edges();
@@ -259,8 +262,9 @@ class Cleanup {
 
     // --- splits
 
-    void split_long_edges()
+    bool split_long_edges()
     {
+        const int splits = report_.splits;
         std::vector<std::tuple<double, Edge>> edges;
         for (const Edge& e : patch_edges())
             if (is_long(e)) edges.emplace_back(-length(e), e);
@@ -268,6 +272,7 @@ class Cleanup {
         report_.most_operations += static_cast<int>(edges.size());
         for (const auto& [minus_length, e] : edges)
             if (surgery_.has_edge(e[0], e[1])) commit(surgery_.propose_edge_split(e[0], e[1], 0.5));
+        return report_.splits > splits;
     }
 
     // --- thin faces

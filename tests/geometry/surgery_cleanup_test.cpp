@@ -164,6 +164,28 @@ TEST(CleanUp, LongEdgesAreSplitOnATraceTooAndNoneIsLeft)
     EXPECT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
 }
 
+// What a trace has swallowed up to a border it leaves behind in a few huge faces, and there is no second
+// time.
+TEST(CleanUp, OfEdgesManyTimesTooLongNoneIsLeftTheFirstTime)
+{
+    for (const double length : {0.1, 0.02}) {
+        const SurgeryCloth cloth = square_cloth(2);
+        ClothSurgery surgery = cloth.surgery();
+        const SurgeryCheck check(surgery);
+        touch_all(surgery);
+        const CleanupReport report = clean_up(surgery, uniform_target(length, kAngle));
+        EXPECT_FALSE(report.is_capped);
+        EXPECT_LE(report.operations(), report.most_operations);
+        EXPECT_EQ(check.find_wrong(surgery), "");
+        const ClothMesh made = surgery.result().mesh;
+        for (const MeshEdge& e : make_topology(made.vertex_count(), made.faces).edges)
+            EXPECT_LE((made.material[e.b] - made.material[e.a]).norm(), 2.0 * length);
+        // No finer than the target asks for: of a square's side it would have that many.
+        EXPECT_LT(made.vertex_count(), std::pow(1.0 + 1.0 / length, 2.0));
+        EXPECT_GT(least_material_angle(made), kAngle);
+    }
+}
+
 TEST(CleanUp, CapBesideATraceIsOpened)
 {
     // A free vertex close to the middle of a long edge of a trace.
