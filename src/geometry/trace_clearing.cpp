@@ -18,6 +18,7 @@
 #include <set>
 #include <tuple>
 
+#include "geometry/material_walk.h"
 #include "geometry/vertex_table.h"
 
 namespace arris {
@@ -284,6 +285,13 @@ class Clearing {
     const Need need_;
 };
 
+// The way, made longer as far as that stays on the cloth, to the factor 2.
+Vec2 find_room(const ClothSurgery& surgery, VertexId v, const Vec2& way, double times)
+{
+    while (times > 1.0 && leads_off(surgery, v, times * way)) times *= 0.5;
+    return std::max(times, 1.0) * way;
+}
+
 std::vector<VertexId> find_blocked(const ClothSurgery& surgery, const TraceWays& ahead,
                                    const std::vector<VertexId>& vertices)
 {
@@ -311,14 +319,17 @@ ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
                             const std::vector<TraceAdvance>& advances)
 {
     TraceWays ahead;
-    for (const TraceAdvance& advance : advances) ahead[advance.vertex] = advance.ahead;
+    for (const TraceAdvance& advance : advances) {
+        const bool is_whole = !leads_off(surgery, advance.vertex, advance.ahead);
+        ahead[advance.vertex] = (is_whole ? 1.0 : advance.least) * advance.ahead;
+    }
     double stages = 1.0;
     TraceWays room;
     for (auto at = ahead.begin(); at != ahead.end();) {
         const auto& [v, way] = *at;
         const double length = way.norm();
         const double least = kClear * target.length(surgery.material(v));
-        if (length > 0.0) room[v] = std::max(1.0, least / length) * way;
+        if (length > 0.0) room[v] = find_room(surgery, v, way, least / length);
         stages = std::max(stages, std::ceil(length / least));
         at = length > 0.0 ? std::next(at) : ahead.erase(at);
     }
@@ -337,7 +348,8 @@ ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
     clear_part(room, Need::Room);
     TraceWays least = ahead;
     for (const TraceAdvance& advance : advances)
-        if (const auto at = least.find(advance.vertex); at != least.end()) at->second *= advance.least;
+        if (const auto at = least.find(advance.vertex); at != least.end())
+            at->second = advance.least * advance.ahead;
     report.blocked = find_blocked(surgery, least, watch.vertices());
     report.ways = std::move(room);
     report.needed = std::move(ahead);

@@ -12,7 +12,8 @@ namespace arris {
 struct TraceAdvance {
     VertexId vertex;
     Vec2 ahead;          ///< m: how far, and in which direction, the material must be clear
-    double least = 1.0;  ///< share of that without which the vertex is blocked
+    double least = 1.0;  ///< share of that without which the vertex is blocked; no more where it leads off
+                         ///< the cloth
 };
 
 /// Ways of trace vertices through the material, m.
@@ -33,8 +34,8 @@ struct ClearanceReport {
 /// Clears the way ahead of moving trace vertices, so that every face keeps its orientation while all of them
 /// go their way together: what stands there is merged into the trace, or away from it, or an edge across the
 /// way is flipped; of vertices of a trace that come upon each other some are merged, and are gone then. The
-/// way is at least 0.3 of the target length long, or `ahead` where that is longer; a vertex whose `ahead` is
-/// zero counts as resting. Vertices must exist.
+/// way is at least 0.3 of the target length long where that does not lead off the cloth, or `ahead` where
+/// that is longer; a vertex whose `ahead` is zero counts as resting. Vertices must exist.
 ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
                             const std::vector<TraceAdvance>& advances);
 

@@ -22,6 +22,7 @@
 
 #include "geometry/cgal.h"
 #include "geometry/material_location.h"
+#include "geometry/material_walk.h"
 
 namespace arris {
 namespace {
@@ -112,51 +113,13 @@ void flip_away(ClothSurgery& surgery, VertexId a, VertexId b, VertexId vertex, i
 
 // --- the walk
 
-// What the line from one vertex to a point meets first on that vertex's ring: a vertex p (q == kNoVertex) or
-// the inside of the edge from p to q, p right of the line. Nothing: p == kNoVertex.
-struct RingHit {
-    VertexId p = kNoVertex;
-    VertexId q = kNoVertex;
-};
-
-RingHit first_hit(const ClothSurgery& surgery, VertexId from, const Vec2& to)
-{
-    const Vec2 origin = surgery.material(from);
-    const auto side = [&](VertexId v) { return exact_orientation(origin, to, surgery.material(v)); };
-    const auto is_ahead = [&](VertexId v) { return (surgery.material(v) - origin).dot(to - origin) > 0.0; };
-    for (const IdFace& face : surgery.faces_at(from)) {
-        const int right = side(face[1]);
-        const int left = side(face[2]);
-        if (right == 0 && is_ahead(face[1])) return {face[1], kNoVertex};
-        if (left == 0 && is_ahead(face[2])) return {face[2], kNoVertex};
-        if (right < 0 && left > 0) return {face[1], face[2]};
-    }
-    return {};
-}
-
-// How many edges and vertices the line crosses, for the walk's bound. Each crossing is nearer to the end; in
-// a valid mesh no face is met twice, so this ends.
+// How many edges and vertices the line crosses, for the walk's bound.
 int count_crossings(const ClothSurgery& surgery, VertexId from, VertexId end)
 {
-    const Vec2 to = surgery.material(end);
-    const Vec2 origin = surgery.material(from);
+    MaterialWalk walk(surgery, from, surgery.material(end));
     int count = 0;
-    VertexId vertex = from;
-    RingHit hit = first_hit(surgery, vertex, to);
-    while (hit.p != kNoVertex && hit.p != end && count < 4 * surgery.vertex_count()) {
-        ++count;
-        if (hit.q == kNoVertex) {
-            vertex = hit.p;
-            hit = first_hit(surgery, vertex, to);
-            continue;
-        }
-        const VertexId apex = surgery.apex(hit.q, hit.p);
-        if (apex == kNoVertex || apex == end) break;
-        const int side = exact_orientation(origin, to, surgery.material(apex));
-        if (side == 0) hit = {apex, kNoVertex};
-        if (side < 0) hit.p = apex;
-        if (side > 0) hit.q = apex;
-    }
+    for (; !walk.has_left() && walk.hit().p != end && count < 4 * surgery.vertex_count(); ++count)
+        walk.advance();
     return count;
 }
 

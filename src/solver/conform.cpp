@@ -6,6 +6,7 @@
 #include <map>
 
 #include "geometry/feature_nodes.h"
+#include "geometry/material_walk.h"
 #include "geometry/surgery_cleanup.h"
 #include "geometry/trace_clearing.h"
 #include "geometry/trace_insertion.h"
@@ -100,15 +101,30 @@ class Conforming {
         trace_.set_flow(v, failed * std::min(1.0, most / failed.norm()));
     }
 
-    void clear_way()
+    TraceAdvance advance_of(const EolVertex& e) const
     {
-        std::vector<TraceAdvance> advances;
+        const bool is_point = e.is_corner && is_tip(scene_.obstacles[e.obstacle], e.feature);
+        return {e.vertex_id, soon_ * trace_.flow(e.vertex_id), is_point ? kPointSteps / kClearSteps : 1.0};
+    }
+
+    /// Where the cloth's border comes so soon no clearing helps, and as ordinary vertices they are in no
+    /// one's way.
+    void give_up_leaving()
+    {
         for (const EolVertex& e : trace_.eol()) {
             if (!trace_.is_on_trace(e.vertex_id)) continue;
-            const bool is_point = e.is_corner && is_tip(scene_.obstacles[e.obstacle], e.feature);
-            advances.push_back(
-                {e.vertex_id, soon_ * trace_.flow(e.vertex_id), is_point ? kPointSteps / kClearSteps : 1.0});
+            const TraceAdvance advance = advance_of(e);
+            if (leads_off(surgery_, e.vertex_id, advance.least * advance.ahead))
+                give_up(e.vertex_id, RowCause::Blocked);
         }
+    }
+
+    void clear_way()
+    {
+        give_up_leaving();
+        std::vector<TraceAdvance> advances;
+        for (const EolVertex& e : trace_.eol())
+            if (trace_.is_on_trace(e.vertex_id)) advances.push_back(advance_of(e));
         if (advances.empty()) return;
         guard_.set_clearing(true);
         const ClearanceReport cleared = clear_ahead(surgery_, target_, advances);

@@ -280,6 +280,28 @@ TEST(ClearAhead, NamesWhatItCannotClear)
     EXPECT_EQ(clear_ahead(surgery, target, {{node, {0.0, 0.0}}}).operations, 0);
 }
 
+// The room that nothing needs is not looked for beyond the border, whose vertices would be merged for it.
+TEST(ClearAhead, TheBorderStaysAsItIsWhereATraceComesNearIt)
+{
+    for (const SurgeryCloth& cloth : {square_cloth(8), turned_cloth(8)}) {
+        const MeshTarget target = target_of(cloth);
+        ClothSurgery surgery = cloth.surgery();
+        const Vec2 u = surgery.material(nearest_vertex(surgery, {1, 0})), v(-u.y(), u.x());
+        cut(surgery, target, {0.1 * u + 0.03 * v, 0.9 * u + 0.03 * v}, 1);
+        clean_up(surgery, target);
+        const int vertices = surgery.vertex_count();
+        std::vector<TraceAdvance> advances;
+        for (const VertexMove& move : shifted(surgery, 1, {0, 0})) {
+            // Beyond the border, too, where only a share of the way that is on the cloth must be clear.
+            const bool is_tip = advances.size() % 2 == 1;
+            advances.push_back({move.vertex, (is_tip ? -0.04 : -0.02) * v, is_tip ? 0.5 : 1.0});
+        }
+        EXPECT_GT(advances.size(), 5u);
+        EXPECT_TRUE(clear_ahead(surgery, target, advances).blocked.empty()) << cloth.name;
+        EXPECT_EQ(surgery.vertex_count(), vertices) << cloth.name;
+    }
+}
+
 TEST(ClearAhead, IsBlockedByFixedVerticesOtherTracesAndTheGuard)
 {
     const SurgeryCloth cloth = square_cloth(8);

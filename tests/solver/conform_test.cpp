@@ -427,6 +427,26 @@ TEST(Conform, WhereTheClothComesFastItWouldHaveToGoAtOnce)
     }
 }
 
+TEST(Conform, WhereTheBorderComesAtOnceTheTraceGoesAndTheBorderStays)
+{
+    EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
+    press_edges(cloth);
+    take(cloth);
+    State& state = cloth.state;
+    ASSERT_GT(state.eol.size(), 5u);
+    for (const EolVertex& e : state.eol)
+        state.material_velocity[state.index_of(e.vertex_id)] = Vec2(-3.0, 0.0);
+    const auto on_border = [](const ClothMesh& mesh) {
+        return std::count_if(mesh.material.begin(), mesh.material.end(),
+                             [](const Vec2& X) { return X.x() <= 0.0; });
+    };
+    const std::optional<ConformedMesh> made = conform(cloth);
+    ASSERT_TRUE(made);
+    EXPECT_TRUE(made->eol.empty());
+    EXPECT_EQ(on_border(made->surgery.mesh), on_border(state.mesh));
+    EXPECT_EQ(validate(made->surgery.mesh), "");
+}
+
 /// Cloth folded along a mesh line that has come a millimetre and a half off the ridge; its faces are those of
 /// cloth folded on it. Beside the fold its edges press on the ridge.
 EolCloth folded_beside(double speed)

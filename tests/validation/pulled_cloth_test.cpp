@@ -6,7 +6,9 @@
 
 #include "cloth_run.h"
 #include "geometry/initial_target.h"
+#include "geometry/mesh_quality.h"
 #include "geometry/obstacle_shapes.h"
+#include "grid_patterns.h"
 #include "refinement.h"
 #include "solver/advance.h"
 #include "solver/audit.h"
@@ -83,6 +85,61 @@ TEST(PulledCloth, LosesNothingWhereItsFoldLeavesTheTable)
         results.add({fmt::format("{}", cells), fmt::format("{:g} ms", 1e3 * step),
                      fmt::format("{:.4f} J", found.before), fmt::format("{:.4f} J", found.after),
                      fmt::format("{:.1e} J", found.drop)});
+    }
+}
+
+/// Cotton on a box, a tenth of it over the edge, pulled there by its front border.
+ClothRun make_sheet_run(GridPattern pattern)
+{
+    const Vec2 size(0.8, 0.5);
+    ClothMesh mesh = make_sheet(size, {20, 12}, pattern);
+    for (std::size_t v = 0; v < mesh.world.size(); ++v)
+        mesh.world[v] = Vec3(mesh.material[v].x() - 0.7, mesh.material[v].y() - 0.25, 0.002);
+    Scene scene;
+    scene.material = {0.15, 500.0, 0.3, 1e-5, 0.0, 1e-3};
+    scene.gravity = Gravity{};
+    scene.pulls.push_back({{Vec2(size.x(), 0.0), size}, Vec3(0.0, 0.0, -0.3)});
+    Placement place;
+    place.translation = Vec3(-1.0, 0.0, -0.4);
+    scene.obstacles.push_back(Obstacle("box", make_box(Vec3(2.0, 1.0, 0.8)), place, {}, 30.0));
+    scene.eol = make_initial_target(mesh);
+    return ClothRun(std::move(scene), std::move(mesh));
+}
+
+double largest_face(const ClothMesh& mesh)
+{
+    double largest = 0.0;
+    for (const auto& [a, b, c] : mesh.faces)
+        largest = std::max(largest, 0.5 * twice_area(mesh.material[a], mesh.material[b], mesh.material[c]));
+    return largest;
+}
+
+// What stands ahead of a trace is merged and comes back behind it: at the rear border, too, after which the
+// trace is gone and nothing changes the mesh any more.
+TEST(PulledCloth, HasFacesOfTheirOwnSizeWhereItsRearBorderHasPassedTheEdge)
+{
+    for (const GridPattern pattern : {GridPattern::Diagonal, GridPattern::Cross}) {
+        ClothRun run = make_sheet_run(pattern);
+        const double before = largest_face(run.state.mesh);
+        const int vertices = run.state.mesh.vertex_count();
+        const double area = material_area(run.state.mesh);
+        int most = 0;
+        const auto accept = [&](const StepReport& report, bool) {
+            EXPECT_EQ(report.crossings, 0);
+            EXPECT_LE(report.energy_rise, 0.0);
+            most = std::max(most, static_cast<int>(run.state.eol.size()));
+            return true;
+        };
+        for (int k = 1; k <= 110 && !HasFailure(); ++k) {
+            EXPECT_FALSE(advance(run.scene, run.settings, 0.005 * k, run.state, run.work, accept));
+            EXPECT_EQ(validate(run.state.mesh), "");
+        }
+        EXPECT_GT(most, 5) << "it has passed over a trace";
+        EXPECT_TRUE(run.state.eol.empty());
+        ASSERT_LT(largest_face(run.state.mesh), 4.0 * before) << name_of(pattern);
+        EXPECT_LT(run.state.mesh.vertex_count(), 1.1 * vertices);
+        EXPECT_GT(run.state.mesh.vertex_count(), 0.6 * vertices);
+        EXPECT_NEAR(material_area(run.state.mesh), area, 1e-12);
     }
 }
 
