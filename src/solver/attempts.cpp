@@ -18,6 +18,11 @@ void FailedAttempts::note(const StepReport& report, Attempt attempt, const State
     if (report.status == StepStatus::Overrun) {
         ++overruns_;
         for (const auto& [v, flow] : failure.overrun) {
+            // The next attempt makes what is new anew: it is known by its place.
+            if (state.eol_entry(start.ids[v]) < 0) {
+                if (overruns_ > 2) flow_.made_at.push_back(start.mesh.material[v]);
+                continue;
+            }
             flow_.flow[start.ids[v]] = flow;
             if (overruns_ > 2) flow_.given_up.insert(start.ids[v]);
         }

@@ -88,7 +88,7 @@ class Conforming {
             report_.operations += clean_up(surgery_, target_).operations();
         }
         if (surgery_.events().empty() && report_.released == 0 && report_.inserted == 0) return std::nullopt;
-        return result();
+        return result(failed);
     }
 
     /// With which an attempt has failed. That may be wild: what is cleared for it is a cell, or twice what
@@ -180,11 +180,20 @@ class Conforming {
         kept_ = &needed_;
         for (const FeatureSite& site : sites) {
             // The step has failed on the vertices there were.
-            const std::optional<RowCause> cause =
-                failed.given_up.empty() ? try_insert(site) : RowCause::GivenUp;
+            const bool has_failed = !failed.given_up.empty() || is_near_failed(site.material, failed);
+            const std::optional<RowCause> cause = has_failed ? RowCause::GivenUp : try_insert(site);
             if (cause && site.contact >= 0) refuse(state_.active[site.contact], *cause);
         }
         kept_ = &ways_;
+    }
+
+    /// Where a new vertex was, a moment ago, that had not enough material.
+    bool is_near_failed(const Vec2& material, const FailedFlow& failed) const
+    {
+        constexpr double kNear = 0.5;  // target lengths: clean-up may have moved it
+        const double reach = kNear * target_.length(material);
+        return std::any_of(failed.made_at.begin(), failed.made_at.end(),
+                           [&](const Vec2& at) { return (at - material).norm() < reach; });
     }
 
     /// Why there is no new EOL vertex; nothing where there is one.
@@ -327,7 +336,7 @@ class Conforming {
         return false;
     }
 
-    ConformedMesh result() const
+    ConformedMesh result(const FailedFlow& failed) const
     {
         ConformedMesh made{surgery_.result(), surgery_.events(), {}, report_};
         for (std::size_t v = 0; v < made.surgery.ids.size(); ++v) {
@@ -336,7 +345,8 @@ class Conforming {
             if (const EolVertex* known = trace_.find(id))
                 made.eol.push_back(*known);
             else if (const auto between = trace_.like_neighbour(id, made.surgery.tags[v]);
-                     between && admission_.is_in_plane(*between))
+                     between && admission_.is_in_plane(*between) &&
+                     !is_near_failed(surgery_.material(id), failed))
                 made.eol.push_back(*between);
         }
         return made;

@@ -34,9 +34,10 @@ struct ConformedMesh {
 
 /// What earlier attempts of a step have found out about the flow of material.
 struct FailedFlow {
-    std::map<VertexId, Vec2> flow;  ///< m/s: with it the mesh had not enough material at that vertex
-    std::set<VertexId> given_up;    ///< vertices for which no attempt had room: they are released
-    bool empty() const { return flow.empty() && given_up.empty(); }
+    std::map<VertexId, Vec2> flow;   ///< m/s: with it the mesh had not enough material at that vertex
+    std::set<VertexId> given_up;     ///< vertices for which no attempt had room: they are released
+    std::vector<Vec2> made_at = {};  ///< material, m: where new EOL vertices had not enough
+    bool empty() const { return flow.empty() && given_up.empty() && made_at.empty(); }
 };
 
 /// What features ask of the mesh, whatever may strain it.

@@ -48,6 +48,20 @@ TEST(FailedAttempts, WhatOverrunsIsClearedThenShortenedThenGivenUpOneByOneThenAl
     EXPECT_FALSE(failed.may_mesh_help());  // bounded, whatever goes on to fail
 }
 
+TEST(FailedAttempts, WhatIsNewIsGivenUpByItsPlace)
+{
+    const State state = state_with_eol({1});
+    State start = state_with_eol({1, 3});
+    start.mesh.material = {{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}, {3.0, 0.0}, {4.0, 0.0}};
+    FailedAttempts failed;
+    for (int k = 0; k < 3; ++k)
+        failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, start, {{{3, {1.0, 0.0}}}});
+    EXPECT_TRUE(failed.may_mesh_help());
+    EXPECT_FALSE(failed.has_given_up_all());
+    EXPECT_EQ(failed.flow().made_at, (std::vector<Vec2>{{3.0, 0.0}}));
+    EXPECT_TRUE(failed.flow().given_up.empty()) << "the next attempt's vertex may have another id";
+}
+
 TEST(FailedAttempts, WhereNoShorterStepIsLeftAnotherMeshIsTried)
 {
     const State state = state_with_eol({1, 2});

@@ -671,6 +671,35 @@ TEST(Conform, AVertexThatIsGivenUpIsReleasedTheOthersOfItsTraceStayAndNothingIsI
     EXPECT_EQ(validate(made->surgery.mesh), "");
 }
 
+TEST(Conform, WhereANewVertexHadNotEnoughMaterialNoneIsMadeAndOthersAre)
+{
+    EolCloth cloth = lying(17.0);
+    press_edges(cloth);
+    const std::optional<ConformedMesh> first = conform(cloth);
+    ASSERT_TRUE(first);
+    const auto nearest = [](const ConformedMesh& made, const Vec2& at) {
+        double least = 1.0;
+        for (const EolVertex& e : made.eol) {
+            const auto& ids = made.surgery.ids;
+            const auto v = std::lower_bound(ids.begin(), ids.end(), e.vertex_id) - ids.begin();
+            least = std::min(least, (made.surgery.mesh.material[static_cast<std::size_t>(v)] - at).norm());
+        }
+        return least;
+    };
+    const std::uint32_t failed = first->eol[first->eol.size() / 2].vertex_id;
+    const auto& ids = first->surgery.ids;
+    const auto v = std::lower_bound(ids.begin(), ids.end(), failed) - ids.begin();
+    const Vec2 at = first->surgery.mesh.material[static_cast<std::size_t>(v)];
+    FailedFlow flow;
+    flow.made_at = {at};
+    const std::optional<ConformedMesh> second = conform(cloth, flow);
+    ASSERT_TRUE(second);
+    EXPECT_EQ(nearest(*first, at), 0.0);
+    EXPECT_GT(nearest(*second, at), 0.45 * kLyingCell);
+    EXPECT_GT(second->eol.size(), first->eol.size() / 2);
+    EXPECT_EQ(validate(second->surgery.mesh), "");
+}
+
 TEST(Conform, WithoutATargetOrWithoutContactsThereIsNothingToDo)
 {
     EolCloth cloth = lying(17.0);
