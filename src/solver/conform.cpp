@@ -32,6 +32,11 @@ constexpr double kClearSteps = 4.0;
 // step slips into the pleat, and is held there by rows for good.
 constexpr double kPointSteps = 1.0;
 
+// Of cloth folded over a wire or a sheet's border: as long as a step can be made, which takes 60 % of what is
+// there at most. What is ahead may hang on the fold's other side for some steps, as both sides swing, and
+// cannot be merged past the wire; and rows at a vertex that is let go hold the fold from both sides.
+constexpr double kWireSteps = 1.0 / 0.6;
+
 std::vector<VertexId> find_pinned(const Scene& scene, const State& state, double end)
 {
     std::vector<VertexId> ids;
@@ -101,10 +106,17 @@ class Conforming {
         trace_.set_flow(v, failed * std::min(1.0, most / failed.norm()));
     }
 
+    /// Of its flow, without which a vertex is let go.
+    double least_steps(const EolVertex& eol) const
+    {
+        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+        if (eol.is_corner) return is_tip(obstacle, eol.feature) ? kPointSteps : kClearSteps;
+        return is_on_convex_edge(obstacle, eol) ? kClearSteps : kWireSteps;
+    }
+
     TraceAdvance advance_of(const EolVertex& e) const
     {
-        const bool is_point = e.is_corner && is_tip(scene_.obstacles[e.obstacle], e.feature);
-        return {e.vertex_id, soon_ * trace_.flow(e.vertex_id), is_point ? kPointSteps / kClearSteps : 1.0};
+        return {e.vertex_id, soon_ * trace_.flow(e.vertex_id), least_steps(e) / kClearSteps};
     }
 
     /// Where the cloth's border comes so soon no clearing helps, and as ordinary vertices they are in no

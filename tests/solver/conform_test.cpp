@@ -700,6 +700,40 @@ TEST(Conform, WhereANewVertexHadNotEnoughMaterialNoneIsMadeAndOthersAre)
     EXPECT_EQ(validate(second->surgery.mesh), "");
 }
 
+/// Cloth whose trace flows at cells that are held, by `share` of the way to them in a step.
+std::optional<ConformedMesh> flow_at_held(EolCloth cloth, double share)
+{
+    take(cloth);
+    State& state = cloth.state;
+    double ahead = 1.0, trace = 0.0;
+    for (const EolVertex& e : state.eol) trace = state.mesh.material[state.index_of(e.vertex_id)].x();
+    for (int v = 0; v < state.mesh.vertex_count(); ++v) {
+        const double way = state.mesh.material[v].x() - trace;
+        if (state.eol_entry(state.ids[v]) >= 0) continue;
+        if (way > 0.0) ahead = std::min(ahead, way);
+        const Vec2& X = state.mesh.material[v];
+        cloth.scene.pins.push_back({{X - Vec2(1e-6, 1e-6), X + Vec2(1e-6, 1e-6)}, {}});
+    }
+    for (const EolVertex& e : state.eol)
+        state.material_velocity[state.index_of(e.vertex_id)] = Vec2(share * ahead / kStep, 0.0);
+    return conform(cloth);
+}
+
+TEST(Conform, WhatCannotBeClearedIsLetGoFourStepsAheadOnAnEdgeAndWhereTheNextIsNotClearOnAWire)
+{
+    const auto wire =
+        lying_on(Obstacle("wire", make_wire({{0, -0.3, 0}, {0, 0.3, 0}}, false), {}, {}, 30.0), 0.0);
+    EolCloth ridge = lying(0.0, 0.003);
+    press_edges(ridge);
+    const auto released = [](const std::optional<ConformedMesh>& made) {
+        return made ? made->report.released : 0;
+    };
+    EXPECT_GT(released(flow_at_held(ridge, 0.4)), 0);
+    EXPECT_EQ(released(flow_at_held(wire, 0.4)), 0);
+    EXPECT_GT(released(flow_at_held(wire, 0.8)), 0);
+    EXPECT_EQ(released(flow_at_held(ridge, 0.2)), 0);
+}
+
 TEST(Conform, WithoutATargetOrWithoutContactsThereIsNothingToDo)
 {
     EolCloth cloth = lying(17.0);
