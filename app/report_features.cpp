@@ -39,7 +39,7 @@ const char* explain(RowCause cause)
         case RowCause::OffPlane:
             return "the mesh could have a vertex only off the place where the cloth passes over the feature";
         case RowCause::Blocked:
-            return "what is ahead of its vertices could not be cleared";
+            return "what is ahead of its vertices could not be cleared, or is beyond the cloth's border";
         case RowCause::GivenUp:
             return "with EOL vertices there no such step could be made";
         case RowCause::Released:

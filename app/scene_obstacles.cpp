@@ -212,8 +212,8 @@ std::vector<std::string> find_intersections(const SceneDocument& document, const
             depth > 0.0 ? fmt::format("reaches {:.3g} m deep into", depth) : std::string("intersects");
         lines.push_back(fmt::format(
             "{}: at time 0 the cloth {} {}, at [{:.6g}, {:.6g}, {:.6g}] (m); allowed: cloth that starts "
-            "clear "
-            "of every obstacle: {}",
+            "clear of "
+            "every obstacle: {}",
             document.describe(fmt::format("obstacle.{}", i)), how, config.scene.obstacles[i].name(),
             place.x(), place.y(), place.z(), remedy(config, i)));
     }

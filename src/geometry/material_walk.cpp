@@ -6,7 +6,7 @@
 namespace arris {
 namespace {
 
-// From corner to corner the border is straight.
+// From corner to corner the border is straight, and every border has corners, which are fixed.
 bool leads_off_border(const ClothSurgery& surgery, VertexId v, const Vec2& way)
 {
     const Vec2 X = surgery.material(v);

@@ -69,8 +69,10 @@ class Cleanup {
     {
         merge_short_edges();
         flip_edges();
-        for (int round = 0; round < kSplitRounds && split_long_edges(); ++round) flip_edges();
-        for (int round = 0; round < kThinRounds; ++round)
+        int round = 0;
+        for (; round < kSplitRounds && split_long_edges(); ++round) flip_edges();
+        report_.is_capped |= round == kSplitRounds;
+        for (round = 0; round < kThinRounds; ++round)
             if (!open_thin_faces()) break;
         flip_edges();
         surgery_.take_touched();

@@ -11,8 +11,8 @@ struct CleanupReport {
     int flips = 0;
     int splits = 0;
     int most_operations = 0;  ///< proven bound on their sum
-    bool is_capped =
-        false;  ///< a cap on flips was hit: the mesh is valid, perhaps not as good as it could be
+    bool is_capped = false;   ///< a cap on flips or rounds was hit: the mesh is valid, perhaps not as good as
+                              ///< it could be
 
     int operations() const { return collapses + flips + splits; }
 };

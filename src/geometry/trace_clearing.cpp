@@ -323,13 +323,14 @@ ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
         const bool is_whole = !leads_off(surgery, advance.vertex, advance.ahead);
         ahead[advance.vertex] = (is_whole ? 1.0 : advance.least) * advance.ahead;
     }
+    constexpr double kResting = 1e-12;  // of the room there is to be: its direction is rounding
     double stages = 1.0;
     TraceWays room;
     for (auto at = ahead.begin(); at != ahead.end();) {
         const auto& [v, way] = *at;
         const double length = way.norm();
         const double least = kClear * target.length(surgery.material(v));
-        if (length > 0.0) room[v] = find_room(surgery, v, way, least / length);
+        if (length > kResting * least) room[v] = find_room(surgery, v, way, least / length);
         stages = std::max(stages, std::ceil(length / least));
         at = length > 0.0 ? std::next(at) : ahead.erase(at);
     }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/border_room.h"
-#include "solver/eol_features.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+
+#include "solver/eol_features.h"
 
 namespace arris {
 

@@ -191,7 +191,7 @@ class Conforming {
     {
         kept_ = &needed_;
         for (const FeatureSite& site : sites) {
-            // The step has failed on the vertices there were.
+            // The step has failed on the vertices there were, or on one that was made here.
             const bool has_failed = !failed.given_up.empty() || is_near_failed(site.material, failed);
             const std::optional<RowCause> cause = has_failed ? RowCause::GivenUp : try_insert(site);
             if (cause && site.contact >= 0) refuse(state_.active[site.contact], *cause);
@@ -246,7 +246,7 @@ class Conforming {
         making_ = &wanted;
         const TraceInsertion made = insert_trace_point(surgery_, target_, material, near, wanted);
         coming_.erase(made_);  // proposed last, which need not be the one that was made
-        if (made.verdict == Verdict::Done) coming_[made.vertex] = wanted.way;
+        if (made.verdict == Verdict::Done && !trace_.find(made.vertex)) coming_[made.vertex] = wanted.way;
         making_ = nullptr;
         made_ = kNoVertex;
         return made;

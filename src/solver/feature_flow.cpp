@@ -6,6 +6,7 @@
 //     (sum A F^T F) V = sum A F^T (v_obs - w)
 #include "solver/feature_flow.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "physics/deformation_gradient.h"
@@ -22,6 +23,7 @@ Vec2 find_lag(const Scene& scene, const State& state, const ClothStars& stars, i
     Vec2 lag = Vec2::Zero();
     for (const int f : stars.faces[v]) {
         const auto& [a, b, c] = state.mesh.faces[f];
+        if (!((x[b] - x[a]).cross(x[c] - x[a]).norm() > 0.0)) continue;  // as in look_around
         const Mat32 F = deformation_gradient({X[a], X[b], X[c]}, {x[a], x[b], x[c]});
         Vec3 mean = Vec3::Zero();  // of v_obs - w
         for (const int k : {a, b, c})

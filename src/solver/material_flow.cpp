@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/material_flow.h"
-#include "solver/eol_coordinates.h"
 
 #include <algorithm>
 #include <set>
 #include <utility>
+
+#include "solver/eol_coordinates.h"
 
 namespace arris {
 

@@ -188,12 +188,12 @@ export class Stage {
   /** A grid and the shadow at the lowest z of the run's view, a hair below so that what lies there is not cut by it. */
   #addGround() {
     const { least } = this.#run.surroundings;
-    const { radius } = ballAround(this.#run.stage, this.#run.origin);
+    const { centre, radius } = ballAround(this.#run.stage, this.#run.origin);
     const reach = 5 * radius;
     const cell = 10 ** Math.floor(Math.log10(radius / 1.5));
-    const [x, y] = this.#run.origin;
     // World zero is on a line: the offset, modulo the coarse cells, in double precision.
-    const offset = [x, y].map((value) => value - Math.floor(value / (10 * cell)) * 10 * cell);
+    const offset = ["x", "y"].map((axis, k) => this.#run.origin[k] + centre[axis])
+      .map((value) => value - Math.floor(value / (10 * cell)) * 10 * cell);
     this.#grid = new Mesh(new PlaneGeometry(2 * reach, 2 * reach), new ShaderMaterial({
       ...kGridShader, transparent: true, depthWrite: false, side: DoubleSide,
       uniforms: {
@@ -205,7 +205,7 @@ export class Stage {
     this.#floor.receiveShadow = true;
     this.#floor.renderOrder = -1;
     for (const plane of [this.#grid, this.#floor]) {
-      plane.position.z = least[2] - this.#run.origin[2] - 1e-3 * radius;
+      plane.position.set(centre.x, centre.y, least[2] - this.#run.origin[2] - 1e-3 * radius);
       this.#scene.add(plane);
     }
   }
