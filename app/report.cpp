@@ -73,10 +73,8 @@ std::string to_string(RunStatus status)
 std::optional<double> FeatureTotals::eol_share() const
 {
     std::int64_t rows = 0;
-    for (std::size_t k = 0; k < kRowCauses; ++k) {
-        const auto cause = static_cast<RowCause>(k);
-        if (cause != RowCause::New && !is_excluded(cause)) rows += by_cause[k];
-    }
+    for (std::size_t k = 0; k < kRowCauses; ++k)
+        if (counts_in_share(static_cast<RowCause>(k))) rows += by_cause[k];
     if (eol + rows == 0) return std::nullopt;
     return static_cast<double>(eol) / static_cast<double>(eol + rows);
 }

@@ -73,9 +73,9 @@ std::string feature_rows_html(const FeatureTotals& features)
     for (std::size_t k = 0; k < kRowCauses; ++k) {
         const auto cause = static_cast<RowCause>(k);
         if (features.by_cause[k] == 0) continue;
-        const bool is_counted = cause != RowCause::New && !is_excluded(cause);
-        html += feature_row(fmt::format("row: {}", to_string(cause)), features.by_cause[k],
-                            std::string(explain(cause)) + (is_counted ? "" : " (left out of the share)"));
+        html += feature_row(
+            fmt::format("row: {}", to_string(cause)), features.by_cause[k],
+            std::string(explain(cause)) + (counts_in_share(cause) ? "" : " (left out of the share)"));
     }
     return html;
 }

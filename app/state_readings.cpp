@@ -5,8 +5,8 @@
 
 #include "physics/inertia.h"
 #include "solver/cloth_stars.h"
+#include "solver/contacts.h"
 #include "solver/eol_features.h"
-#include "solver/fold_contacts.h"
 
 namespace arris {
 

@@ -320,8 +320,8 @@ ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
 {
     TraceWays ahead;
     for (const TraceAdvance& advance : advances) {
-        const bool is_whole = !leads_off(surgery, advance.vertex, advance.ahead);
-        ahead[advance.vertex] = (is_whole ? 1.0 : advance.least) * advance.ahead;
+        const bool is_cut = advance.least < 1.0 && leads_off(surgery, advance.vertex, advance.ahead);
+        ahead[advance.vertex] = (is_cut ? advance.least : 1.0) * advance.ahead;
     }
     constexpr double kResting = 1e-12;  // of the room there is to be: its direction is rounding
     double stages = 1.0;

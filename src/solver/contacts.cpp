@@ -254,7 +254,7 @@ SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& 
 {
     std::vector<Contact*> of_vertices;
     for (Contact& contact : contacts)
-        if (contact.is_vertex() && !contact.is_fold) of_vertices.push_back(&contact);
+        if (contact.is_vertex() && !contact.is_fold()) of_vertices.push_back(&contact);
     const auto vertex_of = [](const Contact* contact) { return contact->in_frame.vertices[0]; };
     std::stable_sort(of_vertices.begin(), of_vertices.end(),
                      [&](const Contact* a, const Contact* b) { return vertex_of(a) < vertex_of(b); });
@@ -277,7 +277,7 @@ bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& p
     const ObstacleStep& step = steps[contact.obstacle];
     ObstacleContact& local = contact.in_frame;
     const double now = local.normal.dot(local.at(step.motion.begin) - local.point);
-    if (contact.is_fold) {  // no stand-off, but a help: the check will say where it is missed
+    if (contact.is_fold()) {  // no stand-off, but a help: the check will say where it is missed
         if (local.least_gap <= -kFree) return false;
         local.least_gap = -kFree;
     } else {

@@ -20,6 +20,15 @@ struct ObstacleStep {
     std::vector<Vec3> reference;   ///< where it would be if it slid along what is
 };
 
+/// `element` of a contact that is none with the obstacle but keeps one side of cloth folded over a wire from
+/// passing to the other's (fold_contacts.h).
+inline constexpr int kFoldElement = -2;
+
+inline bool is_fold(const ActiveContact& contact)
+{
+    return contact.kind == ContactKind::Vertex && contact.element == kFoldElement;
+}
+
 /// A contact in the world, and which constraint of the velocity solve it is.
 struct Contact {
     ObstacleContact in_frame;
@@ -29,13 +38,13 @@ struct Contact {
     bool was_active;
     bool is_pressing = false;  ///< in the last solve of this step, linearised elsewhere
     bool may_grow = true;      ///< its gap, towards the stand-off; not where it has yielded
-    bool is_fold = false;      ///< keeps one side of cloth folded over a wire from passing to the other's
     double mitre = 1.0;        ///< its stand-off is this times the thickness
     int eol = -1;              ///< of which EOL coordinates it is the bound on the first
     int bound = -1;            ///< coordinate of the velocity solve, 3 a vertex
     int row = -1;              ///< or row
 
     bool is_vertex() const { return in_frame.kind == ContactKind::Vertex; }
+    bool is_fold() const { return is_vertex() && in_frame.element == kFoldElement; }
 };
 
 /// Where the scene's obstacles are during the step that ends at `end` (s), and how the cloth would move past

@@ -89,7 +89,6 @@ void append_folds(const Scene& scene, const State& state, const ClothStars& star
                          fold.bound.normal, fold.point, fold.bound.least_gap);
         contacts.push_back(place_contact(contact, fold.obstacle, step, prediction));
         contacts.back().mitre = fold.bound.wanted / thickness;
-        contacts.back().is_fold = true;
     }
 }
 

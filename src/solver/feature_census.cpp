@@ -206,7 +206,7 @@ FeatureCensus take_census(const Scene& scene, const State& state, const Workspac
             ++census.eol;
             continue;
         }
-        if (contact.is_fold ||
+        if (contact.is_fold() ||
             !touches_feature(scene.obstacles[contact.obstacle], contact.in_frame, scene.material.thickness))
             continue;
         ++census.rows;

@@ -16,14 +16,6 @@ struct FoldContact {
     Vec3 point;  ///< of the wire
 };
 
-/// `element` of a contact that is none with the obstacle but keeps a vertex off such a plane.
-inline constexpr int kFoldElement = -2;
-
-inline bool is_fold(const ActiveContact& contact)
-{
-    return contact.kind == ContactKind::Vertex && contact.element == kFoldElement;
-}
-
 /// Of the neighbours of the vertices on wires, and of theirs, which sliding will make such: each against the
 /// plane that it is nearest to; what is past the wire's end only where it is a neighbour. `positions`: the
 /// cloth's in the frame of each obstacle at the step's start. Sorted by (vertex, obstacle, polyline), each

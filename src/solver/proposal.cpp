@@ -74,7 +74,7 @@ void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<O
         const ObstacleContact& local = contact.in_frame;
         const double gap =
             contact.normal.dot(local.at(proposal.world) - steps[contact.obstacle].end(local.point));
-        const double share = contact.is_fold ? kFoldShare : 1.0;
+        const double share = contact.is_fold() ? kFoldShare : 1.0;
         const double wanted = local.least_gap + (contact.may_grow ? share * growth : 0.0);
         const double missing = std::min(contact.mitre * thickness, wanted) - gap;
         if (missing > 0.0) local.shift(missing * contact.normal, proposal.world);

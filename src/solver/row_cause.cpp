@@ -65,6 +65,11 @@ bool is_excluded(RowCause cause)
     }
 }
 
+bool counts_in_share(RowCause cause)
+{
+    return cause != RowCause::New && !is_excluded(cause);
+}
+
 RowCause cause_of(EolRefusal refusal)
 {
     switch (refusal) {

@@ -55,6 +55,9 @@ const char* to_string(RowCause cause);
 /// cloth's border at once, or is there.
 bool is_excluded(RowCause cause);
 
+/// Whether such rows count in the share of contacts that are EOL: not excluded, and not in their first step.
+bool counts_in_share(RowCause cause);
+
 RowCause cause_of(EolRefusal refusal);
 
 /// A contact that pressed at the step's start, and why none of EOL vertices has come of it.

@@ -11,7 +11,6 @@
 #include "solver/eol_coordinates.h"
 #include "solver/eol_features.h"
 #include "solver/feature_census.h"
-#include "solver/fold_contacts.h"
 #include "solver/material_flow.h"
 #include "solver/pinched_vertices.h"
 #include "solver/relinearization.h"
