@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/attempts.h"
 
+#include <algorithm>
+
 namespace arris {
 
 void FailedAttempts::note(const StepReport& report, Attempt attempt, const State& state, const State& start,
@@ -17,6 +19,11 @@ void FailedAttempts::note(const StepReport& report, Attempt attempt, const State
     const bool is_last = attempt == Attempt::Last;
     if (report.status == StepStatus::Overrun) {
         ++overruns_;
+        const bool is_all_new =
+            std::none_of(failure.overrun.begin(), failure.overrun.end(),
+                         [&](const Overrun& at) { return state.eol_entry(start.ids[at.vertex]) >= 0; });
+        // The next attempt can clear no way for what it makes itself: it would be this one again.
+        if (is_all_new) overruns_ = std::max(overruns_, is_last ? 3 : 2);
         for (const auto& [v, flow] : failure.overrun) {
             // The next attempt makes what is new anew: it is known by its place.
             if (state.eol_entry(start.ids[v]) < 0) {

@@ -91,16 +91,11 @@ class Relaxation {
         drop_held(elements_.hinges, elements_.hinge_colors);
     }
 
-    /// Lowers the energy to `wanted` or below, or as far as a few steps bring it.
-    void run(double wanted)
-    {
-        for (int k = 0; k < kMostSteps && energy_ > wanted && descend(wanted); ++k) continue;
-    }
-
-    /// Whether `run` would come to `wanted`. A full step lowers the energy by less than the one before, as
-    /// every mode decays: where as many as are left, each as good as the last, would not do, they are not
-    /// made. After one that was cut short that is a guess, on the side of no.
-    bool can_come_to(double wanted)
+    /// Lowers the energy to `wanted`, or until it is seen that a few steps do not bring it there, which it
+    /// tells. A full step lowers the energy by less than the one before, as every mode decays: where as many
+    /// as are left, each as good as the last, would not do, they are not made. After one that was cut short
+    /// that is a guess, on the side of no.
+    bool run(double wanted)
     {
         for (int left = kMostSteps - 1; left >= 0 && energy_ > wanted; --left) {
             const double before = energy_;
@@ -289,7 +284,7 @@ bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop)
 {
     Relaxation relaxation(scene, patch);
     const double wanted = relaxation.energy() - drop;
-    return relaxation.can_come_to(wanted);
+    return relaxation.run(wanted);
 }
 
 double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& mesh)

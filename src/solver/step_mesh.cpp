@@ -43,6 +43,80 @@ void prepare_elements(const State& state, Workspace& work)
     work.material_of_elements = state.mesh.material;
 }
 
+constexpr double kAny = std::numeric_limits<double>::infinity();
+
+/// A mesh, and the state on it where that has been carried over.
+struct TriedMesh {
+    ConformOutcome outcome;
+    State state;
+    double strain = kAny;
+
+    int lost() const { return outcome.mesh ? outcome.mesh->report.lost : 0; }
+};
+
+/// The meshes that a step may have.
+class MeshTries {
+  public:
+    MeshTries(const Scene& scene, double dt, const State& state, Workspace& work, Stopwatch& watch,
+              PhaseSeconds& seconds)
+        : scene_(scene),
+          dt_(dt),
+          state_(state),
+          work_(work),
+          changes_(find_feature_changes(scene, state, work.stars)),
+          watch_(watch),
+          seconds_(seconds)
+    {
+    }
+
+    /// The best of them. More carefully made where the cloth could not give way as it should have. Where
+    /// that would cost a trace its vertices the first, if it strains but little more than it should, or one
+    /// made by force, if that is not felt.
+    TriedMesh find_best()
+    {
+        TriedMesh giving = make(StrainLimit::GivesWay);
+        carry_over(giving, kFeltStrain);
+        if (giving.strain <= kPatchStrain) return giving;
+        TriedMesh careful = make(StrainLimit::AsMade);
+        if (careful.lost() > 0) {
+            if (giving.strain <= kFeltStrain) return giving;
+            TriedMesh forced = make(StrainLimit::Forced);
+            carry_over(forced, kPatchStrain);
+            if (forced.strain <= kPatchStrain) return forced;
+        }
+        carry_over(careful, kAny);
+        return careful;
+    }
+
+  private:
+    TriedMesh make(StrainLimit limit)
+    {
+        TriedMesh made;
+        made.outcome = conform_mesh(scene_, dt_, state_, work_.stars, changes_, work_.failed.flow(), limit);
+        seconds_.conform += watch_.lap();
+        return made;
+    }
+
+    /// Not to the end where a patch would be strained by more than `most_strain`.
+    void carry_over(TriedMesh& made, double most_strain)
+    {
+        made.strain = 0.0;
+        if (!made.outcome.mesh) return;
+        TransferReport transferred;
+        made.state = transfer(scene_, state_, work_.stars, *made.outcome.mesh, transferred, most_strain);
+        made.strain = transferred.strain;
+        seconds_.transfer += watch_.lap();
+    }
+
+    const Scene& scene_;
+    double dt_;  ///< s
+    const State& state_;
+    const Workspace& work_;
+    FeatureChanges changes_;
+    Stopwatch& watch_;
+    PhaseSeconds& seconds_;
+};
+
 }  // namespace
 
 State& conform(const Scene& scene, double end, State& state, Workspace& work, StepReport& report)
@@ -50,42 +124,15 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
     Stopwatch watch;
     prepare_stars(state, work);
     report.seconds.move += watch.lap();
-    // More carefully where the cloth could not give way as it should have; by force where that would cost a
-    // trace its vertices, unless that is felt.
-    constexpr double kAny = std::numeric_limits<double>::infinity();
-    constexpr struct {
-        StrainLimit limit;
-        double most_lost, most_strain;
-    } kTries[] = {{StrainLimit::GivesWay, kAny, kPatchStrain},
-                  {StrainLimit::AsMade, 0, kAny},
-                  {StrainLimit::Forced, kAny, kPatchStrain},
-                  {StrainLimit::AsMade, kAny, kAny}};
-    const FeatureChanges changes = find_feature_changes(scene, state, work.stars);
-    std::optional<ConformOutcome> careful;  // as made: it may yet be the best there is
-    std::optional<ConformedMesh> conformed;
-    for (const auto& [limit, most_lost, most_strain] : kTries) {
-        ConformOutcome outcome = careful && limit == StrainLimit::AsMade
-                                     ? *std::move(careful)
-                                     : conform_mesh(scene, end - state.time, state, work.stars, changes,
-                                                    work.failed.flow(), limit);
-        report.seconds.conform += watch.lap();
-        if (outcome.mesh && outcome.mesh->report.lost > most_lost) {
-            careful = std::move(outcome);
-            continue;
-        }
-        conformed = std::move(outcome.mesh);
-        work.refused = std::move(outcome.refused);
-        if (!conformed) break;
-        TransferReport transferred;
-        work.conformed = transfer(scene, state, work.stars, *conformed, transferred, most_strain);
-        report.seconds.transfer += watch.lap();
-        if (transferred.strain <= most_strain) break;
+    TriedMesh best = MeshTries(scene, end - state.time, state, work, watch, report.seconds).find_best();
+    work.refused = std::move(best.outcome.refused);
+    const bool is_new = best.outcome.mesh.has_value();
+    if (is_new) {
+        report.inserted = best.outcome.mesh->report.inserted;
+        report.released = best.outcome.mesh->report.released;
+        work.conformed = std::move(best.state);
     }
-    if (conformed) {
-        report.inserted = conformed->report.inserted;
-        report.released = conformed->report.released;
-    }
-    State& start = conformed ? work.conformed : state;
+    State& start = is_new ? work.conformed : state;
     prepare(scene, start, work);
     report.seconds.move += watch.lap();
     return start;

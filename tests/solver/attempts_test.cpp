@@ -54,12 +54,22 @@ TEST(FailedAttempts, WhatIsNewIsGivenUpByItsPlace)
     State start = state_with_eol({1, 3});
     start.mesh.material = {{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}, {3.0, 0.0}, {4.0, 0.0}};
     FailedAttempts failed;
-    for (int k = 0; k < 3; ++k)
-        failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, start, {{{3, {1.0, 0.0}}}});
+    const auto fail = [&](Attempt attempt) {
+        failed.note(with(StepStatus::Overrun), attempt, state, start, {{{3, {1.0, 0.0}}}});
+    };
+    fail(Attempt::Ordinary);
+    EXPECT_FALSE(failed.may_mesh_help()) << "the same attempt again is of no use";
+    EXPECT_TRUE(failed.flow().empty());
+    fail(Attempt::Ordinary);
     EXPECT_TRUE(failed.may_mesh_help());
     EXPECT_FALSE(failed.has_given_up_all());
     EXPECT_EQ(failed.flow().made_at, (std::vector<Vec2>{{3.0, 0.0}}));
     EXPECT_TRUE(failed.flow().given_up.empty()) << "the next attempt's vertex may have another id";
+
+    failed.forget();
+    fail(Attempt::Last);
+    EXPECT_TRUE(failed.may_mesh_help());
+    EXPECT_EQ(failed.flow().made_at.size(), 1u) << "there is no shorter step";
 }
 
 TEST(FailedAttempts, WhereNoShorterStepIsLeftAnotherMeshIsTried)
