@@ -74,9 +74,10 @@ void MaterialWalk::advance()
 
 bool leads_off(const ClothSurgery& surgery, VertexId v, const Vec2& way)
 {
-    if (way.isZero(0.0)) return false;
+    const Vec2 to = surgery.material(v) + way;
+    if (to == surgery.material(v)) return false;  // also where the way is lost in rounding
     if (surgery.is_border(v)) return leads_off_border(surgery, v, way);
-    MaterialWalk walk(surgery, v, surgery.material(v) + way);
+    MaterialWalk walk(surgery, v, to);
     // In a valid mesh it comes to the end long before.
     for (int left = 4 * surgery.vertex_count(); left > 0; --left) {
         if (walk.has_left()) return true;

@@ -56,6 +56,8 @@ TEST(MaterialWalk, ALineThroughVerticesIsFollowed)
         EXPECT_TRUE(leads_off(surgery, middle, 2.0 * along));
     }
     EXPECT_FALSE(leads_off(surgery, middle, Vec2::Zero()));
+    for (const double tiny : {1e-300, 1e-20, 1e-16})
+        EXPECT_FALSE(leads_off(surgery, middle, tiny * Vec2(1.0, -0.7))) << tiny;
 }
 
 // Rounding puts the border's vertices beside the line along which they go.

@@ -272,7 +272,8 @@ TEST(SlidingStrip, LiftsOffWhenTurningItsMaterialTakesAllTension)
     constexpr double kWatched = 1.06;  // of the time until lift-off: 4 cells do it at 1.04
     Table table("sliding_lift_off", {"cells", "step", "side bears last at", "last presses at", "lift-off"});
     for (const double dt : {kStep, 0.001})
-        for (const int cells : {4, 8, 16, 32}) {
+        for (const int cells : {4, 8, 16, 32, 64}) {
+            if (cells > 32 && !is_deep()) continue;
             StripCase strip;
             strip.cells = {cells, std::max(cells / 4, 1)};
             const SlidingChain chain = chain_of(strip);
