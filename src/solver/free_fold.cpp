@@ -37,6 +37,20 @@ Vec3 turned(const Vec3& from, const Vec3& to, double share)
     return ((1.0 - share) * from + share * to).normalized();
 }
 
+/// The nearest to `outward` that leads into neither face; `between` where there is none. What has come back
+/// over one face goes down on it: along the bisector its bound would hold it up above the face.
+Vec3 turned_between(const FeatureEdge& edge, const Vec3& outward, const Vec3& between)
+{
+    Vec3 nearest = outward;
+    for (const Vec3& normal : edge.normals)
+        if (const double into = normal.dot(nearest); into < 0.0) nearest -= into * normal;
+    nearest = nearest.stableNormalized();
+    constexpr double kRounding = 1e-9;
+    for (const Vec3& normal : edge.normals)
+        if (!(normal.dot(nearest) >= -kRounding)) return between;
+    return nearest.isZero(0.0) ? between : nearest;
+}
+
 }  // namespace
 
 bool has_left_feature(const Vec3& nearest, const Vec3& place, double thickness)
@@ -56,8 +70,7 @@ FeatureFrame turn_to_free_fold(const FeatureEdge& edge, const ArrivingCloth& arr
 
     // Away from where the edge holds it: so it also comes back there.
     Vec3 outward = (off - stand_off * frame.outward).stableNormalized();
-    for (const Vec3& normal : edge.normals)
-        if (!(normal.dot(outward) >= 0.0)) outward = frame.outward;
+    outward = turned_between(edge, outward, frame.outward);
     const std::array<Vec3, 2> onward = {find_onward(edge, 0, frame.tangent),
                                         find_onward(edge, 1, frame.tangent)};
     const std::array<double, 2> shares = {share_of(arriving, onward[0]), share_of(arriving, onward[1])};

@@ -2,7 +2,6 @@
 #include "solver/step_mesh.h"
 
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "solver/conform.h"
@@ -57,7 +56,7 @@ struct TriedMesh {
 /// The meshes that a step may have.
 class MeshTries {
   public:
-    MeshTries(const Scene& scene, double dt, const State& state, Workspace& work, Stopwatch& watch,
+    MeshTries(const Scene& scene, double dt, const State& state, const Workspace& work, Stopwatch& watch,
               PhaseSeconds& seconds)
         : scene_(scene),
           dt_(dt),
@@ -75,11 +74,11 @@ class MeshTries {
     TriedMesh find_best()
     {
         TriedMesh giving = make(StrainLimit::GivesWay);
-        carry_over(giving, kFeltStrain);
+        carry_over(giving, kTraceStrain);
         if (giving.strain <= kPatchStrain) return giving;
         TriedMesh careful = make(StrainLimit::AsMade);
-        if (careful.lost() > 0) {
-            if (giving.strain <= kFeltStrain) return giving;
+        if (careful.lost() > giving.lost()) {
+            if (giving.strain <= kTraceStrain) return giving;
             TriedMesh forced = make(StrainLimit::Forced);
             carry_over(forced, kPatchStrain);
             if (forced.strain <= kPatchStrain) return forced;

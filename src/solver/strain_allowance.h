@@ -14,7 +14,7 @@ inline constexpr double kAllowedStrain = 0.01;
 inline constexpr double kPatchStrain = 0.03;
 
 /// The same, where less would cost a trace vertices: those come back a step later, at more cost.
-inline constexpr double kFeltStrain = 0.06;
+inline constexpr double kTraceStrain = 0.06;
 
 /// What gravity gives cloth of `area` (material, m^2) that falls by `length` (m), J.
 inline double weight_over(const Scene& scene, double area, double length)

@@ -145,6 +145,29 @@ TEST(FreeFold, TurnsEvenlyAsItLeavesAndAsFlowTurns)
     expect_even([&](double tilt) { return outward(0.02, kFlow, tilt); }, -0.6, 0.6, 1e-3, 30.0);
 }
 
+// Along the bisector its bound would hold it up there, and what is between it and the edge would stay slack.
+TEST(FreeFold, ComesDownOnTheFaceOverWhichItHasComeBack)
+{
+    for (const double tip : {0.5 * M_PI, 2.0, 2.5})
+        for (const int k : {0, 1})
+            for (const double inside : {0.002, 0.005}) {  // less than it is high
+                const Edge edge(tip, 9);
+                const Vec3& normal = edge.feature.normals[k];
+                const Vec3 place = edge.point + 0.008 * normal - inside * edge.onward[k];
+                const FeatureFrame free = edge.free(place, -edge.onward[k], 0.0);
+                const double down = free.outward.dot(place - edge.point) - free.mitre * kThickness;
+                const double height = normal.dot(place - down * free.outward - edge.point);
+                EXPECT_GT(height, 0.0) << tip << " " << inside;
+                EXPECT_LT(height, 1.01 * kThickness) << tip << " " << inside;
+            }
+    const Edge edge(0.5 * M_PI, 9);
+    const auto outward = [&](double aside) {
+        return edge.free(edge.point + edge.at(aside, 0.008), -edge.onward[0], 0.0).outward;
+    };
+    for (double aside = -0.03; aside < 0.03; aside += 1e-5)
+        ASSERT_LT((outward(aside + 1e-5) - outward(aside)).norm(), 3e2 * 1e-5) << aside;
+}
+
 TEST(FreeFold, HasLeftOnlyBeyondWhatAnyMitreKeeps)
 {
     for (const double tip : kTips) {
