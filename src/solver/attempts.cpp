@@ -5,6 +5,13 @@
 
 namespace arris {
 
+namespace {
+
+/// Which overrun of a step asks for a shorter one, and from which on vertices are given up.
+constexpr int kShortens = 2, kGivesUp = 3;
+
+}  // namespace
+
 void FailedAttempts::note(const StepReport& report, Attempt attempt, const State& state, const State& start,
                           const Failure& failure)
 {
@@ -23,17 +30,17 @@ void FailedAttempts::note(const StepReport& report, Attempt attempt, const State
             std::none_of(failure.overrun.begin(), failure.overrun.end(),
                          [&](const Overrun& at) { return state.eol_entry(start.ids[at.vertex]) >= 0; });
         // The next attempt can clear no way for what it makes itself: it would be this one again.
-        if (is_all_new) overruns_ = std::max(overruns_, is_last ? 3 : 2);
+        if (is_all_new) overruns_ = std::max(overruns_, is_last ? kGivesUp : kShortens);
         for (const auto& [v, flow] : failure.overrun) {
             // The next attempt makes what is new anew: it is known by its place.
             if (state.eol_entry(start.ids[v]) < 0) {
-                if (overruns_ > 2) flow_.made_at.push_back(start.mesh.material[v]);
+                if (overruns_ >= kGivesUp) flow_.made_at.push_back(start.mesh.material[v]);
                 continue;
             }
             flow_.flow[start.ids[v]] = flow;
-            if (overruns_ > 2) flow_.given_up.insert(start.ids[v]);
+            if (overruns_ >= kGivesUp) flow_.given_up.insert(start.ids[v]);
         }
-        may_mesh_help_ = overruns_ <= kMostOverruns + 1 && (overruns_ != 2 || is_last);
+        may_mesh_help_ = overruns_ <= kMostOverruns + 1 && (overruns_ != kShortens || is_last);
     } else {
         // A shorter step would find them in the same place: they are ordinary vertices first.
         const bool is_pinched = !failure.pinched.empty() && pinched_++ < kMostPinched;

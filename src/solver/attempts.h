@@ -30,8 +30,8 @@ struct Failure {
 
 /// What the attempts at one step have failed on: the next one has to know. Where energy rises as vertices go
 /// round wires and tips they stay, for the rest of the step. The same step on another mesh comes before a
-/// shorter one: with the way of what overran cleared; where that and a shorter step have not helped, with
-/// fewer EOL vertices; in the end, as long as it was at first, with none.
+/// shorter one: with the way of what overran cleared, but where all of that is new; where a shorter step has
+/// not helped, with fewer EOL vertices; in the end, as long as it was at first, with none.
 class FailedAttempts {
   public:
     static constexpr int kMostOverruns = 5;

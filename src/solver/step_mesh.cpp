@@ -70,7 +70,7 @@ class MeshTries {
 
     /// The best of them. More carefully made where the cloth could not give way as it should have. Where
     /// that would cost a trace its vertices the first, if it strains but little more than it should, or one
-    /// made by force, if that is not felt.
+    /// made by force, if that strains no more than it should.
     TriedMesh find_best()
     {
         TriedMesh giving = make(StrainLimit::GivesWay);
