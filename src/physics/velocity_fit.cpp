@@ -287,17 +287,17 @@ class NormalEquations {
     Vec3 momentum_ = Vec3::Zero();                      ///< p
 };
 
-double energy_before(double density, const VelocityField& old)
+}  // namespace
+
+double compute_energy(double density, const VelocityField& field)
 {
     double energy = 0.0;
-    for (std::size_t t = 0; t < old.triangles.size(); ++t) {
-        const std::array<Vec2, 3>& X = old.triangles[t];
-        energy += energy_of(density * 0.5 * cross(X[1] - X[0], X[2] - X[0]), old.velocity[t]);
+    for (std::size_t t = 0; t < field.triangles.size(); ++t) {
+        const std::array<Vec2, 3>& X = field.triangles[t];
+        energy += energy_of(density * 0.5 * cross(X[1] - X[0], X[2] - X[0]), field.velocity[t]);
     }
     return energy;
 }
-
-}  // namespace
 
 std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old, const FitPatch& patch)
 {
@@ -317,8 +317,7 @@ std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old
         fit.velocity.push_back(patch.drift[v] + patch.basis[v] * (*u)[v]);
         fit.material_velocity.push_back(patch.material_drift[v] + patch.material_basis[v] * (*u)[v]);
     }
-    fit.energy = energy_before(density, old);
-    fit.energy_gain = -fit.energy;
+    fit.energy_gain = -compute_energy(density, old);
     for (std::size_t f = 0; f < patch.faces.size(); ++f) {
         std::array<Vec3, 3> corner;
         for (int i = 0; i < 3; ++i) {

@@ -17,6 +17,8 @@ struct VelocityField {
     std::vector<std::array<Vec2, 3>> triangles;  ///< X of the corners, m, counter-clockwise
     std::vector<std::array<Vec3, 3>> velocity;   ///< m/s, of the corners
 };
+/// Kinetic, J; `density`: kg/m^2.
+double compute_energy(double density, const VelocityField& field);
 
 /// The patch after the change: as VelocityField's triangles it covers the same part of the cloth.
 struct FitPatch {
@@ -37,7 +39,6 @@ struct VelocityFit {
     std::vector<Vec3> velocity;           ///< xdot, m/s
     std::vector<Vec2> material_velocity;  ///< Xdot, m/s
     double energy_gain = 0.0;             ///< kinetic, J: after minus before
-    double energy = 0.0;                  ///< kinetic, J: before
 };
 
 /// Minimises the integral of density / 2 |new - old|^2 over the patch under equality of linear momentum.

@@ -70,20 +70,22 @@ class Conforming {
             [this](const SurgeryEvent& event) { return keeps_way(event) && guard_.allows(event); });
     }
 
-    ConformOutcome run(const FeatureChanges& changes, const FailedFlow& failed)
+    ConformOutcome run(const FeatureChanges& changes, const FailedFlow& failed, int most_lost)
     {
-        std::optional<ConformedMesh> mesh = find_mesh(changes, failed);
-        return {std::move(mesh), std::move(refused_)};
+        std::optional<ConformedMesh> mesh = find_mesh(changes, failed, most_lost);
+        return {std::move(mesh), std::move(refused_), lost_};
     }
 
   private:
-    std::optional<ConformedMesh> find_mesh(const FeatureChanges& changes, const FailedFlow& failed)
+    std::optional<ConformedMesh> find_mesh(const FeatureChanges& changes, const FailedFlow& failed,
+                                           int most_lost)
     {
         for (const VertexId v : changes.released) give_up(v, cause_of_release(v));
         for (const VertexId v : failed.given_up)
             if (trace_.is_on_trace(v)) give_up(v, RowCause::GivenUp);
         for (const auto& [v, flow] : failed.flow) expect_flow(v, flow);
         clear_way();
+        if (lost_ > most_lost) return std::nullopt;
         forget_released();
         insert(changes.sites, failed);
         join();
@@ -147,8 +149,7 @@ class Conforming {
         // What stands in the way and cannot give way: there the feature is met by rows. Only there: the rest
         // of the trace carries the cloth on.
         for (const VertexId v : cleared.blocked) give_up(v, RowCause::Blocked);
-        for (const TraceAdvance& advance : advances)
-            report_.lost += trace_.is_on_trace(advance.vertex) ? 0 : 1;
+        for (const TraceAdvance& advance : advances) lost_ += trace_.is_on_trace(advance.vertex) ? 0 : 1;
     }
 
     /// What has been cleared stays clear.
@@ -381,6 +382,7 @@ class Conforming {
     VertexId made_ = kNoVertex;            ///< which vertex that would be
     std::map<VertexId, int> contact_of_;   ///< index in State::active, of vertices made where one pressed
     std::vector<RefusedContact> refused_;
+    int lost_ = 0;  ///< ConformOutcome::lost
     ConformReport report_;
 };
 
@@ -393,11 +395,12 @@ FeatureChanges find_feature_changes(const Scene& scene, const State& state, cons
 }
 
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
-                            const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit)
+                            const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit,
+                            int most_lost)
 {
     if (!scene.eol || (state.eol.empty() && state.active.empty())) return {};
     if (changes.empty() && failed.empty() && !is_flowing(state)) return {};
-    return Conforming(scene, dt, state, stars, limit).run(changes, failed);
+    return Conforming(scene, dt, state, stars, limit).run(changes, failed, most_lost);
 }
 
 }  // namespace arris

@@ -4,6 +4,7 @@
 // does not, the contact stays a row, which is always safe: any of this may be refused.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -21,7 +22,6 @@ namespace arris {
 
 struct ConformReport {
     int inserted = 0, released = 0, operations = 0;
-    int lost = 0;  ///< EOL vertices that clearing has cost: blocked, or merged into others
 };
 
 /// What the surgery has done and who is EOL now.
@@ -54,12 +54,14 @@ FeatureChanges find_feature_changes(const Scene& scene, const State& state, cons
 struct ConformOutcome {
     std::optional<ConformedMesh> mesh;    ///< nothing where it is right as it is
     std::vector<RefusedContact> refused;  ///< that pressed on a feature and stay or become rows
+    int lost = 0;  ///< EOL vertices that clearing has cost: blocked, or merged into others
 };
 
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
 /// they have not for long, the way of those that slide cleared, what they left restored. `stars` and
-/// `changes` are the state's.
+/// `changes` are the state's. Unfinished, without a mesh, as soon as more than `most_lost` are lost.
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
-                            const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit);
+                            const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit,
+                            int most_lost = std::numeric_limits<int>::max());
 
 }  // namespace arris

@@ -244,6 +244,7 @@ State transfer(const Scene& scene, const State& before, const ClothStars& stars,
     const std::vector<ChangedPatch> patches =
         find_changed_patches({before, after, conformed.events, stars.faces, stars_after.faces});
     report = fit_patches(scene, before, stars, patches, stars_after, most_strain, after);
+    if (report.strain > most_strain) return after;  // nobody takes it
     begin_history(before, stop_flow(scene, stars_after, after), after);
     return after;
 }

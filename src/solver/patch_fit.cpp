@@ -33,12 +33,17 @@ class PatchFitter {
     TransferReport run(const std::vector<ChangedPatch>& patches, double most_strain)
     {
         TransferReport report;
+        std::vector<VelocityField> fields;
         for (const ChangedPatch& patch : patches) {
-            if (report.strain > most_strain) break;
             const double gain = relax_patch(patch);
-            const std::optional<VelocityFit> fit = fit_patch(patch);
+            fields.push_back(old_field(patch));
             if (gain > 0.0)
-                report.strain = most_strain_of(patch, gain, fit ? fit->energy : 0.0, report.strain);
+                report.strain = most_strain_of(
+                    patch, gain, compute_energy(scene_.material.density, fields.back()), report.strain);
+            if (report.strain > most_strain) return report;
+        }
+        for (std::size_t i = 0; i < patches.size(); ++i) {
+            const std::optional<VelocityFit> fit = fit_patch(patches[i], fields[i]);
             if (!fit) continue;
             ++report.patches;
             report.energy_gain += fit->energy_gain;
@@ -107,7 +112,7 @@ class PatchFitter {
         return std::max(known, strain(cell));
     }
 
-    std::optional<VelocityFit> fit_patch(const ChangedPatch& changed)
+    std::optional<VelocityFit> fit_patch(const ChangedPatch& changed, const VelocityField& old)
     {
         FitPatch patch;
         std::unordered_map<int, int> local;
@@ -119,8 +124,7 @@ class PatchFitter {
             const Face& face = after_.mesh.faces[f];
             patch.faces.push_back({local[face[0]], local[face[1]], local[face[2]]});
         }
-        const std::optional<VelocityFit> fit =
-            fit_velocity(scene_.material.density, old_field(changed), patch);
+        const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch);
         if (!fit) return fit;
         for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
             after_.velocity[changed.vertices[i]] = fit->velocity[i];

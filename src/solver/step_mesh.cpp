@@ -43,14 +43,13 @@ void prepare_elements(const State& state, Workspace& work)
 }
 
 constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr int kAnyNumber = std::numeric_limits<int>::max();
 
 /// A mesh, and the state on it where that has been carried over.
 struct TriedMesh {
     ConformOutcome outcome;
     State state;
-    double strain = kAny;
-
-    int lost() const { return outcome.mesh ? outcome.mesh->report.lost : 0; }
+    double strain = 0.0;
 };
 
 /// The meshes that a step may have.
@@ -76,9 +75,10 @@ class MeshTries {
         TriedMesh giving = make(StrainLimit::GivesWay);
         carry_over(giving, kTraceStrain);
         if (giving.strain <= kPatchStrain) return giving;
-        TriedMesh careful = make(StrainLimit::AsMade);
-        if (careful.lost() > giving.lost()) {
-            if (giving.strain <= kTraceStrain) return giving;
+        const bool may_stay = giving.strain <= kTraceStrain;
+        TriedMesh careful = make(StrainLimit::AsMade, may_stay ? giving.outcome.lost : kAnyNumber);
+        if (careful.outcome.lost > giving.outcome.lost) {
+            if (may_stay) return giving;
             TriedMesh forced = make(StrainLimit::Forced);
             carry_over(forced, kPatchStrain);
             if (forced.strain <= kPatchStrain) return forced;
@@ -88,10 +88,11 @@ class MeshTries {
     }
 
   private:
-    TriedMesh make(StrainLimit limit)
+    TriedMesh make(StrainLimit limit, int most_lost = kAnyNumber)
     {
         TriedMesh made;
-        made.outcome = conform_mesh(scene_, dt_, state_, work_.stars, changes_, work_.failed.flow(), limit);
+        made.outcome =
+            conform_mesh(scene_, dt_, state_, work_.stars, changes_, work_.failed.flow(), limit, most_lost);
         seconds_.conform += watch_.lap();
         return made;
     }
@@ -99,7 +100,6 @@ class MeshTries {
     /// Not to the end where a patch would be strained by more than `most_strain`.
     void carry_over(TriedMesh& made, double most_strain)
     {
-        made.strain = 0.0;
         if (!made.outcome.mesh) return;
         TransferReport transferred;
         made.state = transfer(scene_, state_, work_.stars, *made.outcome.mesh, transferred, most_strain);
