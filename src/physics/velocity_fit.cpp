@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "physics/deformation_gradient.h"
-#include "physics/symmetric_ordering.h"
+#include "physics/vertex_ordering.h"
 
 namespace arris {
 
@@ -241,7 +241,7 @@ class NormalEquations {
     {
         Eigen::SparseMatrix<double> mass(rhs_.size(), rhs_.size());
         mass.setFromTriplets(lower_.begin(), lower_.end());
-        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, SymmetricAmdOrdering> factor(
+        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, VertexAmdOrdering> factor(
             mass);
         if (factor.info() != Eigen::Success) return std::nullopt;
         const Eigen::Matrix<double, Eigen::Dynamic, 3> of_unit = factor.solve(carried_.transpose());

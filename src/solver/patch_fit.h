@@ -21,7 +21,7 @@ struct TransferReport {
 /// Brings `after`, whose new vertices have what the surface had there, to where each patch may stay: one that
 /// its new mesh strains gives way, and its velocity is the nearest to the old that has the same momentum.
 /// `stars_before`, `stars` are those of `before`, `after`. Stops, unfinished, at a patch that stays strained
-/// by more than `most_strain`.
+/// by more than `most_strain`, before any velocity is fitted.
 TransferReport fit_patches(const Scene& scene, const State& before, const ClothStars& stars_before,
                            const std::vector<ChangedPatch>& patches, const ClothStars& stars,
                            double most_strain, State& after);

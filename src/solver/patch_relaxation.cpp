@@ -3,7 +3,9 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <unordered_map>
 #include <utility>
@@ -13,8 +15,8 @@
 #include "geometry/sweep_check.h"
 #include "physics/energies.h"
 #include "physics/linear_system.h"
-#include "physics/symmetric_ordering.h"
 #include "physics/term.h"
+#include "physics/vertex_ordering.h"
 #include "solver/contacts.h"
 #include "solver/strain_allowance.h"
 
@@ -109,8 +111,20 @@ class Relaxation {
     void rise_to(double wanted)
     {
         if (!(energy_ < wanted) || before_last_.empty()) return;
-        patch_.mesh.world = stop_at(wanted, patch_.mesh.world);
-        energy_ = energy_at(patch_.mesh.world);
+        const std::vector<Vec3> end = std::move(patch_.mesh.world);
+        const auto energy_along = [&](double share) {
+            patch_.mesh.world = before_last_;
+            for (std::size_t v = 0; v < end.size(); ++v)
+                patch_.mesh.world[v] += share * (end[v] - before_last_[v]);
+            return energy_at(patch_.mesh.world);
+        };
+        constexpr int kBits = 12;  // of the share
+        std::uintmax_t most_evaluations = 50;
+        const auto [above, below] = boost::math::tools::toms748_solve(
+            [&](double share) { return energy_along(share) - wanted; }, 0.0, 1.0,
+            energy_before_last_ - wanted, energy_ - wanted, boost::math::tools::eps_tolerance<double>(kBits),
+            most_evaluations);
+        energy_ = energy_along(below);
     }
 
     double energy() const { return energy_; }
@@ -166,22 +180,10 @@ class Relaxation {
             const double reached = energy_at(next);
             if (!(reached < energy_ - kWorthwhile * (energy_ - wanted))) continue;
             before_last_ = std::exchange(patch_.mesh.world, std::move(next));
-            energy_ = reached;
+            energy_before_last_ = std::exchange(energy_, reached);
             return true;
         }
         return false;
-    }
-
-    /// Where on the way to `beyond` the energy has just fallen to `wanted`.
-    std::vector<Vec3> stop_at(double wanted, std::vector<Vec3> beyond) const
-    {
-        constexpr int kBisections = 12;
-        std::vector<Vec3> before = before_last_, middle = before_last_;
-        for (int k = 0; k < kBisections; ++k) {
-            for (std::size_t v = 0; v < middle.size(); ++v) middle[v] = 0.5 * (before[v] + beyond[v]);
-            (energy_at(middle) > wanted ? before : beyond) = middle;
-        }
-        return beyond;
     }
 
     double energy_at(const std::vector<Vec3>& world) const
@@ -229,12 +231,13 @@ class Relaxation {
     std::vector<MeshEdge> edges_;
     ClothElements elements_;
     Terms terms_;
-    double step_time_;               ///< s
-    double energy_ = 0.0;            ///< J, where it is
-    std::vector<Vec3> before_last_;  ///< where it was before the last step
+    double step_time_;                 ///< s
+    double energy_ = 0.0;              ///< J, where it is
+    std::vector<Vec3> before_last_;    ///< where it was before the last step
+    double energy_before_last_ = 0.0;  ///< J, there
     Linearization at_;
     LinearSystem system_;  ///< of what is free
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, SymmetricAmdOrdering>
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, VertexAmdOrdering>
         factor_;  ///< of one pattern
 };
 

@@ -361,7 +361,7 @@ TEST(MeshTransfer, WhatCanHaveNoCoordinatesAnyMoreIsOfTheMaterialThoughItsEntryI
     EXPECT_EQ(after.previous_velocity[at_border], after.velocity[at_border]);
 }
 
-TEST(MeshTransfer, StopsAtThePatchThatIsStrainedWhereItIsTo)
+TEST(MeshTransfer, FitsNothingWhereAPatchIsStrainedByMoreThanItMay)
 {
     // At rest and without weight nothing may strain the cloth; a fold that is cut off at two places does.
     EolCloth cloth(make_ridge(60.0), make_draped({16, 0.0, 90.0}));
@@ -375,7 +375,7 @@ TEST(MeshTransfer, StopsAtThePatchThatIsStrainedWhereItIsTo)
     }
     const ConformedMesh mesh = conformed(surgery, {});
     constexpr double kAny = std::numeric_limits<double>::infinity();
-    for (const auto& [most_strain, patches] : {std::pair{kAny, 2}, {0.01, 1}}) {
+    for (const auto& [most_strain, patches] : {std::pair{kAny, 2}, {0.01, 0}}) {
         TransferReport report;
         transfer(cloth.scene, cloth.state, cloth.stars(), mesh, report, most_strain);
         EXPECT_GT(report.strain, 0.01);

@@ -223,22 +223,44 @@ TEST(RowCause, WhereHeldVerticesLeaveNoPlaceTheMeshIsTheReason)
     EXPECT_EQ(count(outcome, RowCause::Guard), 0);
 }
 
-TEST(RowCause, AWayThatCannotBeClearedIsCounted)
+/// A trace that flows towards a held row, which is half a cell away: it is there before the four steps that
+/// are cleared.
+EolCloth heading_for_held_row()
 {
     EolCloth cloth = lying(0.0);
     press_edges(cloth);
     take(cloth);
     hold(cloth, 4.0 * kLyingCell - 1e-6, 4.0 * kLyingCell + 1e-6);
-    // Towards the held row, which is half a cell away: it is there before the four steps that are cleared.
     for (const EolVertex& e : cloth.state.eol)
         cloth.state.material_velocity[cloth.state.index_of(e.vertex_id)] =
             Vec2(0.25 * kLyingCell / kStep, 0.0);
     press_edges(cloth);
-    const ConformOutcome outcome = conform(cloth);
+    return cloth;
+}
+
+TEST(RowCause, AWayThatCannotBeClearedIsCounted)
+{
+    const ConformOutcome outcome = conform(heading_for_held_row());
     ASSERT_TRUE(outcome.mesh);
     EXPECT_GT(outcome.mesh->report.released, 2);
     EXPECT_EQ(count(outcome, RowCause::Blocked), outcome.mesh->report.released);
+    EXPECT_GE(outcome.lost, outcome.mesh->report.released) << "others may have been merged";
     EXPECT_EQ(count(outcome, RowCause::GivenUp), 0);
+}
+
+TEST(RowCause, AMeshThatLosesMoreVerticesThanItMayIsNotMade)
+{
+    const EolCloth cloth = heading_for_held_row();
+    const int lost = conform(cloth).lost;
+    const auto conform_within = [&](int most_lost) {
+        return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(),
+                            find_feature_changes(cloth.scene, cloth.state, cloth.stars()), {},
+                            StrainLimit::GivesWay, most_lost);
+    };
+    EXPECT_TRUE(conform_within(lost).mesh);
+    const ConformOutcome unfinished = conform_within(lost - 1);
+    EXPECT_FALSE(unfinished.mesh);
+    EXPECT_EQ(unfinished.lost, lost);
 }
 
 TEST(RowCause, WhatIsMadeAndFindsNoWayIsCountedAsTheContactItWas)
