@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cloth_run.h"
-#include "geometry/initial_target.h"
 #include "geometry/mesh_quality.h"
-#include "geometry/obstacle_shapes.h"
 #include "grid_patterns.h"
 #include "refinement.h"
 #include "solver/audit.h"
@@ -26,16 +25,10 @@ ClothRun make_run(int cells, GridPattern pattern, double pull)
 {
     const Vec2 size(kLength, kWidth);
     ClothMesh mesh = make_sheet(size, {cells, std::max(cells / 2, 1)}, pattern);
-    for (std::size_t v = 0; v < mesh.world.size(); ++v)
-        mesh.world[v] = Vec3(mesh.material[v].x() - kLength, mesh.material[v].y() - 0.5 * kWidth, kThickness);
-    Scene scene;
-    scene.material = {kDensity, 2e4, 0.3, 1e-7, 0.0, kThickness};
-    scene.gravity = Gravity{};
+    lay(mesh, Vec3(-kLength, -0.5 * kWidth, kThickness));
+    Scene scene = make_table_scene(mesh, {kDensity, 2e4, 0.3, 1e-7, 0.0, kThickness}, Vec3(1.6, 0.9, 0.5),
+                                   Vec3(-0.8, 0.0, -0.25));
     scene.pulls.push_back({{Vec2::Zero(), size}, Vec3(pull * kDensity * kLength * kWidth, 0.0, 0.0)});
-    Placement place;
-    place.translation = Vec3(-0.8, 0.0, -0.25);
-    scene.obstacles.push_back(Obstacle("table", make_box(Vec3(1.6, 0.9, 0.5)), place, {}, 30.0));
-    scene.eol = make_initial_target(mesh);
     return ClothRun(std::move(scene), std::move(mesh));
 }
 

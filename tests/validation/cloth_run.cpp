@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/initial_target.h"
+#include "geometry/obstacle_shapes.h"
 #include "solver/advance.h"
 #include "solver/energy_balance.h"
 #include "solver/step_mesh.h"
@@ -21,6 +23,24 @@ ClothMesh make_sheet(Vec2 size, std::array<int, 2> resolution, GridPattern patte
     grid.pattern = pattern;
     grid.pattern_angle = pattern_angle;
     return make_cloth_grid(grid);
+}
+
+void lay(ClothMesh& mesh, const Vec3& corner)
+{
+    for (std::size_t v = 0; v < mesh.world.size(); ++v)
+        mesh.world[v] = Vec3(mesh.material[v].x(), mesh.material[v].y(), 0.0) + corner;
+}
+
+Scene make_table_scene(const ClothMesh& mesh, const Material& material, const Vec3& size, const Vec3& middle)
+{
+    Scene scene;
+    scene.material = material;
+    scene.gravity = Gravity{};
+    Placement place;
+    place.translation = middle;
+    scene.obstacles.push_back(Obstacle("table", make_box(size), place, {}, 30.0));
+    scene.eol = make_initial_target(mesh);
+    return scene;
 }
 
 ClothRun::ClothRun(Scene a_scene, ClothMesh mesh, const Vec3& velocity)

@@ -12,6 +12,12 @@ namespace arris {
 ClothMesh make_sheet(Vec2 size, std::array<int, 2> resolution, GridPattern pattern,
                      double pattern_angle = 0.0);
 
+/// Flat, the material's origin at `corner`, m.
+void lay(ClothMesh& mesh, const Vec3& corner);
+
+/// Cloth with EOL vertices under gravity, and a table: a box of `size` (m) about `middle`.
+Scene make_table_scene(const ClothMesh& mesh, const Material& material, const Vec3& size, const Vec3& middle);
+
 /// Everything a run needs. Cloth at rest unless `velocity` (m/s) says otherwise.
 struct ClothRun {
     Scene scene;

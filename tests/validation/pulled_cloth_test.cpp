@@ -5,9 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "cloth_run.h"
-#include "geometry/initial_target.h"
 #include "geometry/mesh_quality.h"
-#include "geometry/obstacle_shapes.h"
 #include "grid_patterns.h"
 #include "refinement.h"
 #include "solver/advance.h"
@@ -22,16 +20,10 @@ constexpr double kBefore = 0.4, kAfter = 0.58;  // s: all of it on the edge; the
 ClothRun make_run(std::array<int, 2> cells)
 {
     ClothMesh mesh = make_sheet(Vec2(0.9, 0.1), cells, GridPattern::Cross);
-    for (std::size_t v = 0; v < mesh.world.size(); ++v)
-        mesh.world[v] = Vec3(mesh.material[v].x() - 0.8, mesh.material[v].y() - 0.05, 0.004);
-    Scene scene;
-    scene.material = {0.4, 2000.0, 0.3, 1e-4, 0.0, 1e-3};
-    scene.gravity = Gravity{};
+    lay(mesh, Vec3(-0.8, -0.05, 0.004));
+    Scene scene = make_table_scene(mesh, {0.4, 2000.0, 0.3, 1e-4, 0.0, 1e-3}, Vec3(1.6, 0.9, 0.5),
+                                   Vec3(-0.8, 0.0, -0.25));
     scene.pulls.push_back({{Vec2(0.9, 0.0), Vec2(0.9, 0.1)}, Vec3(0.08, 0.0, -0.04)});
-    Placement place;
-    place.translation = Vec3(-0.8, 0.0, -0.25);
-    scene.obstacles.push_back(Obstacle("table", make_box(Vec3(1.6, 0.9, 0.5)), place, {}, 30.0));
-    scene.eol = make_initial_target(mesh);
     return ClothRun(std::move(scene), std::move(mesh));
 }
 
@@ -93,16 +85,10 @@ ClothRun make_sheet_run(GridPattern pattern)
 {
     const Vec2 size(0.8, 0.5);
     ClothMesh mesh = make_sheet(size, {20, 12}, pattern);
-    for (std::size_t v = 0; v < mesh.world.size(); ++v)
-        mesh.world[v] = Vec3(mesh.material[v].x() - 0.7, mesh.material[v].y() - 0.25, 0.002);
-    Scene scene;
-    scene.material = {0.15, 500.0, 0.3, 1e-5, 0.0, 1e-3};
-    scene.gravity = Gravity{};
+    lay(mesh, Vec3(-0.7, -0.25, 0.002));
+    Scene scene = make_table_scene(mesh, {0.15, 500.0, 0.3, 1e-5, 0.0, 1e-3}, Vec3(2.0, 1.0, 0.8),
+                                   Vec3(-1.0, 0.0, -0.4));
     scene.pulls.push_back({{Vec2(size.x(), 0.0), size}, Vec3(0.0, 0.0, -0.3)});
-    Placement place;
-    place.translation = Vec3(-1.0, 0.0, -0.4);
-    scene.obstacles.push_back(Obstacle("box", make_box(Vec3(2.0, 1.0, 0.8)), place, {}, 30.0));
-    scene.eol = make_initial_target(mesh);
     return ClothRun(std::move(scene), std::move(mesh));
 }
 

@@ -6,9 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "cloth_run.h"
-#include "geometry/initial_target.h"
 #include "geometry/mesh_quality.h"
-#include "geometry/obstacle_shapes.h"
 #include "refinement.h"
 #include "solver/advance.h"
 #include "solver/audit.h"
@@ -33,15 +31,9 @@ struct Drop {
 ClothRun make_run(const Drop& drop)
 {
     ClothMesh mesh = make_sheet(Vec2(1.0, 1.0), {drop.cells, drop.cells}, GridPattern::Diagonal, drop.angle);
-    for (std::size_t v = 0; v < mesh.world.size(); ++v)
-        mesh.world[v] = Vec3(mesh.material[v].x() - 0.5, mesh.material[v].y() - 0.5, drop.height);
-    Scene scene;
-    scene.material = {0.05, drop.youngs_modulus, 0.01, 1e-5, 0.0, 1e-3};
-    scene.gravity = Gravity{};
-    Placement place;
-    place.translation = drop.table.middle;
-    scene.obstacles.push_back(Obstacle("table", make_box(drop.table.size), place, {}, 30.0));
-    scene.eol = make_initial_target(mesh);
+    lay(mesh, Vec3(-0.5, -0.5, drop.height));
+    Scene scene = make_table_scene(mesh, {0.05, drop.youngs_modulus, 0.01, 1e-5, 0.0, 1e-3}, drop.table.size,
+                                   drop.table.middle);
     return ClothRun(std::move(scene), std::move(mesh));
 }
 
