@@ -2,6 +2,7 @@
 #include "app/scene_warnings.h"
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -82,6 +83,24 @@ void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings
         warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
     if (config.scene.obstacles.empty())
         warnings.add("cloth.material.thickness", "there is no obstacle to keep away from");
+}
+
+/// A cloth that is no cloth's size is mostly one in other units.
+void check_cloth_size(const RunConfig& config, Warnings& warnings)
+{
+    constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m: of its longer side
+    Eigen::AlignedBox2d material;
+    for (const Vec2& X : config.cloth.material) material.extend(X);
+    const Vec2 sides = material.sizes();
+    if (sides.maxCoeff() >= kSmallest && sides.maxCoeff() <= kLargest) return;
+    const bool is_from_file = warnings.is_written("cloth.file");
+    warnings.note(
+        is_from_file ? "cloth.file" : "cloth.size",
+        fmt::format("the cloth is {:.4g} x {:.4g} m: {}", sides.x(), sides.y(),
+                    is_from_file
+                        ? "a file in other units than metres needs 'units', such as \"mm\"; UVs, where "
+                          "it has them, are in metres whatever its units"
+                        : "sizes are in metres"));
 }
 
 void check_wind(const RunConfig& config, Warnings& warnings)
@@ -303,6 +322,7 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     const MeshTopology topology = make_topology(config.cloth.vertex_count(), config.cloth.faces);
     check_time(config, warnings);
     check_cloth(config, topology, warnings);
+    check_cloth_size(config, warnings);
     check_pins(config, warnings);
     check_wind(config, warnings);
     check_pulls(config, warnings);

@@ -6,8 +6,15 @@
 
 #include <algorithm>
 
+#include "tests/app/temporary_directory.h"
+
 namespace arris {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 const std::string kBase = "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";  // 4 lines
 const std::string kPin = "[[pin]]\nmaterial = [[0, 0], [0, 1]]\n";
@@ -108,6 +115,40 @@ TEST(SceneWarnings, TellOfAClothThatStartsStrained)
     EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("starts strained, from 0 % to +200 %"));
     EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=1.05", kMoving}}).warnings,
                 ::testing::IsEmpty());
+}
+
+/// A square of two triangles with this side, in the file's unit; with UVs of `uv` metres where that is given.
+std::string square_obj(const std::string& side, const std::string& uv = "")
+{
+    std::string text = "v 0 0 0\nv " + side + " 0 0\nv " + side + " " + side + " 0\nv 0 " + side + " 0\n";
+    if (uv.empty()) return text + "f 1 2 3\nf 1 3 4\n";
+    text += "vt 0 0\nvt " + uv + " 0\nvt " + uv + " " + uv + "\nvt 0 " + uv + "\n";
+    return text + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+}
+
+TEST(SceneWarnings, TellOfAClothWhoseSizeIsNoCloths)
+{
+    const TemporaryDirectory dir;
+    const auto of_file = [&](const std::string& obj, const std::string& keys) {
+        write_bytes(dir / "c.obj", obj);
+        write_bytes(dir / "s.toml", "duration = 1\n[cloth]\nfile = \"c.obj\"\n" + keys);
+        return load_scene(dir / "s.toml", {kMoving}).warnings;
+    };
+    EXPECT_THAT(of_file(square_obj("500"), ""),
+                ElementsAre(AllOf(HasSubstr("s.toml:3: cloth.file = \"c.obj\": the cloth is 500 x 500 m: "),
+                                  HasSubstr("'units'"))));
+    EXPECT_THAT(of_file(square_obj("500"), "units = \"mm\"\n"), IsEmpty());
+    EXPECT_THAT(of_file(square_obj("0.5"), "units = \"mm\"\n"),
+                ElementsAre(HasSubstr("the cloth is 0.0005 x 0.0005 m")));
+    EXPECT_THAT(of_file(square_obj("500", "500"), ""), ElementsAre(HasSubstr("UVs, where it has them")));
+    EXPECT_THAT(of_file(square_obj("500", "0.5"), "units = \"mm\"\n"), IsEmpty());
+
+    const auto of_size = [](const std::string& size) {
+        return load_scene(SceneSource{"s.toml", kBase, {"cloth.size=" + size, kMoving}}).warnings;
+    };
+    EXPECT_THAT(of_size("[300,400]"),
+                ElementsAre(HasSubstr("the cloth is 300 x 400 m: sizes are in metres")));
+    EXPECT_THAT(of_size("[0.001,50]"), IsEmpty()) << "a ribbon";
 }
 
 TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
