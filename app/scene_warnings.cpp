@@ -13,6 +13,7 @@
 #include "app/scene_estimate.h"
 #include "app/still_scene.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/sheet_opening.h"
 #include "physics/cloth_elements.h"
 #include "physics/membrane.h"
 
@@ -187,6 +188,28 @@ void check_units(const RunConfig& config, std::size_t i, Warnings& warnings)
                     size, cloth));
 }
 
+/// A surface that closes but for a hole looks solid, and is none.
+void check_inside(const RunConfig& config, std::size_t i, Warnings& warnings)
+{
+    constexpr double kMostlyClosed = 0.5;
+    const auto& json = config.as_run["obstacle"][i];
+    if (!json.contains("file")) return;
+    const Obstacle& obstacle = config.scene.obstacles[i];
+    int count = 0, border_edges = 0;
+    for (const SheetOpening& opening : find_sheet_openings(obstacle.mesh(), obstacle.topology())) {
+        if (!(opening.share < kMostlyClosed)) continue;
+        ++count;
+        border_edges += opening.border_edges;
+    }
+    if (count == 0) return;
+    const std::string which = count == 1 ? "a surface" : fmt::format("each of {} surfaces", count);
+    warnings.note(
+        fmt::format("obstacle.{}.file", i),
+        fmt::format("{} closes but for a hole ({} border edges{}) and so is a sheet that has no inside: "
+                    "cloth may come in by the hole; close the mesh where a solid is meant",
+                    which, border_edges, count == 1 ? "" : " in all"));
+}
+
 void check_obstacles(const RunConfig& config, Warnings& warnings)
 {
     for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
@@ -200,6 +223,7 @@ void check_obstacles(const RunConfig& config, Warnings& warnings)
         if (!json.contains("wire")) warnings.add(path + ".closed", "the obstacle is no wire");
         if (obstacle.mesh().faces.empty()) warnings.add(path + ".feature_angle", "the obstacle has no faces");
         check_units(config, i, warnings);
+        check_inside(config, i, warnings);
         check_obstacle_motion(config, obstacle.motion(), path, warnings);
     }
     if (config.as_run["eol"]["enabled"].get<bool>() && !config.scene.eol)

@@ -186,6 +186,27 @@ TEST(SceneObstacles, TellOfAFileThatIsMostlyInOtherUnits)
     EXPECT_THAT(warnings_of("scale = 100\nunits = \"m\"\n"), IsEmpty());
 }
 
+TEST(SceneObstacles, TellOfASurfaceThatClosesButForAHole)
+{
+    const TemporaryDirectory dir;
+    const std::string cube =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    const auto warnings_of = [&](const std::string& obj) {
+        write_bytes(dir / "box.obj", obj);
+        write_bytes(dir / "s.toml",
+                    kBase + "[[obstacle]]\nfile = \"box.obj\"\ntranslate = [0, 0, 5]\n[gravity]\n");
+        return load_scene(dir / "s.toml", {}, with_program()).warnings;
+    };
+    EXPECT_THAT(warnings_of(cube),
+                ElementsAre(AllOf(HasSubstr("s.toml:6: obstacle.0.file = \"box.obj\": "),
+                                  HasSubstr("a surface closes but for a hole (4 border edges)"),
+                                  HasSubstr("no inside"))));
+    EXPECT_THAT(warnings_of(cube + "f 5 6 7 8\n"), IsEmpty()) << "with a lid";
+    EXPECT_THAT(warnings_of("v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"), IsEmpty())
+        << "an open sheet is meant as one";
+}
+
 TEST(SceneObstacles, BlamesTheKeyThatNamesABadFileAndTellsWhatWasRepaired)
 {
     const TemporaryDirectory dir;
