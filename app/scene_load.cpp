@@ -17,6 +17,7 @@
 #include "app/scene_rules.h"
 #include "app/scene_values.h"
 #include "app/scene_warnings.h"
+#include "app/start_strain.h"
 #include "app/timeline.h"
 #include "geometry/cloth_file.h"
 #include "geometry/cloth_grid.h"
@@ -294,11 +295,12 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
 }
 
 /// How the cloth stands to the obstacles at time 0.
-void check_start(const SceneDocument& document, const LoadOptions& options, RunConfig& config)
+void check_start(const SceneDocument& document, const LoadOptions& options, const StrainRange& placed,
+                 RunConfig& config)
 {
     config.intersections = find_intersections(document, config);
     if (config.intersections.empty())
-        keep_stand_off(config);
+        keep_stand_off(placed, config);
     else if (!options.tells_intersections)
         throw InputError(config.intersections.front());
 }
@@ -351,10 +353,11 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     load_obstacles(document, options, std::move(plans), config);
     if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))
         config.scene.eol = make_initial_target(config.cloth);
-    if (!options.cloth) check_start(document, options, config);
+    const StrainRange placed = measure_strain(config.cloth);
+    if (!options.cloth) check_start(document, options, placed, config);
     warn_of_first_keyframes(document, config);
 
-    const std::vector<std::string> ineffective = find_ineffective_keys(document, config);
+    const std::vector<std::string> ineffective = find_ineffective_keys(document, config, placed);
     config.warnings.insert(config.warnings.end(), ineffective.begin(), ineffective.end());
     return config;
 }

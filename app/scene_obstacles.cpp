@@ -11,6 +11,7 @@
 #include "app/scene_estimate.h"
 #include "app/scene_json.h"
 #include "geometry/input_error.h"
+#include "geometry/mesh_topology.h"
 #include "geometry/obstacle_file.h"
 #include "geometry/obstacle_shapes.h"
 #include "geometry/obstacle_topology.h"
@@ -220,14 +221,23 @@ std::vector<std::string> find_intersections(const SceneDocument& document, const
     return lines;
 }
 
-void keep_stand_off(RunConfig& config)
+void keep_stand_off(const StrainRange& placed, RunConfig& config)
 {
     const int moved = clear_stand_off(config.scene, config.cloth);
-    if (moved > 0)
-        config.warnings.push_back(
-            fmt::format("the cloth starts nearer to obstacles than its thickness, {:g} m: {} of its vertices "
-                        "moved out to it",
-                        config.scene.material.thickness, moved));
+    if (moved == 0) return;
+    const double thickness = config.scene.material.thickness;
+    std::string line = fmt::format(
+        "the cloth starts nearer to obstacles than its thickness, {:g} m: {} of its vertices moved out to it",
+        thickness, moved);
+    const StrainRange strain = measure_strain(config.cloth);
+    if (strain.is_surprising() && !placed.is_surprising())
+        line += fmt::format(
+            ", which strains it {}, its edges being {:.3g} m in the mean: make cloth.material.thickness "
+            "less, "
+            "or start the cloth farther away ('translate')",
+            in_words(strain),
+            measure_edges(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces)).mean);
+    config.warnings.push_back(line);
 }
 
 }  // namespace arris

@@ -7,6 +7,7 @@
 
 #include "app/run_config.h"
 #include "app/scene_document.h"
+#include "app/start_strain.h"
 
 namespace arris {
 
@@ -32,7 +33,7 @@ void load_obstacles(const SceneDocument& document, const LoadOptions& options,
 std::vector<std::string> find_intersections(const SceneDocument& document, const RunConfig& config);
 
 /// Moves cloth that is clear of the obstacles but nearer than its thickness out to it, with a warning that
-/// counts.
-void keep_stand_off(RunConfig& config);
+/// counts, and that says what it strains a cloth by which is not so strained where it is `placed`.
+void keep_stand_off(const StrainRange& placed, RunConfig& config);
 
 }  // namespace arris

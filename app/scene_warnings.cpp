@@ -14,8 +14,6 @@
 #include "app/still_scene.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/sheet_opening.h"
-#include "physics/cloth_elements.h"
-#include "physics/membrane.h"
 
 namespace arris {
 namespace {
@@ -299,23 +297,14 @@ void check_turns(const RunConfig& config, Warnings& warnings)
     }
 }
 
-/// A cloth that starts far from its material's size is mostly one whose UVs are not in metres.
-void check_strain(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
+/// A cloth that is placed far from its material's size is mostly one whose UVs are not in metres.
+void check_strain(const StrainRange& placed, Warnings& warnings)
 {
-    constexpr double kSurprising = 0.1;
-    const ClothElements elements = make_elements(config.cloth, topology);
-    double least = 1.0, greatest = 1.0;
-    for (const FaceElement& face : elements.faces) {
-        const Vec2 stretches = principal_stretches(FaceState(face, config.cloth.world).F);
-        greatest = std::max(greatest, stretches[0]);
-        least = std::min(least, stretches[1]);
-    }
-    if (greatest - 1.0 > kSurprising || 1.0 - least > kSurprising)
-        warnings.note(
-            "cloth",
-            fmt::format("starts strained, from {:.3g} % to {:+.3g} %: material coordinates are metres, and "
-                        "the cloth will pull itself to their size",
-                        100.0 * (least - 1.0), 100.0 * (greatest - 1.0)));
+    if (placed.is_surprising())
+        warnings.note("cloth",
+                      fmt::format("starts strained, {}: material coordinates are metres, and the cloth "
+                                  "will pull itself to their size",
+                                  in_words(placed)));
 }
 
 /// A stand-off as large as the cloth's cells is mostly one in other units.
@@ -327,7 +316,9 @@ void check_thickness(const RunConfig& config, const MeshTopology& topology, Warn
     if (thickness > cell)
         warnings.note(
             "cloth.material.thickness",
-            fmt::format("is more than an edge of the cloth's mesh ({:.3g} m): it is in metres", cell));
+            fmt::format("is more than an edge of the cloth's mesh ({:.3g} m in the mean): it is the distance "
+                        "kept from obstacles, in metres, and should be well below that edge",
+                        cell));
 }
 
 void check_stillness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
@@ -340,7 +331,8 @@ void check_stillness(const RunConfig& config, const MeshTopology& topology, Warn
 
 }  // namespace
 
-std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config)
+std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config,
+                                               const StrainRange& placed)
 {
     Warnings warnings(document);
     const MeshTopology topology = make_topology(config.cloth.vertex_count(), config.cloth.faces);
@@ -352,7 +344,7 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_pulls(config, warnings);
     check_obstacles(config, warnings);
     check_turns(config, warnings);
-    check_strain(config, topology, warnings);
+    check_strain(placed, warnings);
     check_thickness(config, topology, warnings);
     check_stillness(config, topology, warnings);
     return warnings.lines_;

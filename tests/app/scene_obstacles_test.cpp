@@ -308,5 +308,23 @@ TEST(SceneObstacles, MoveClothOutThatIsClearButNearerThanItsThickness)
     EXPECT_THAT(load(kBase + kCrate + "translate = [0.5, 0.5, -0.2012]\n[gravity]\n").warnings, IsEmpty());
 }
 
+TEST(SceneObstacles, BlameTheThicknessWhereItStrainsTheCloth)
+{
+    const std::string scene = kBase + "[gravity]\n" + kCrate + "translate = [0.5, 0.5, -0.25]\n";
+    const auto load_with = [&](const std::vector<std::string>& overrides) {
+        return load_scene(SceneSource{"s.toml", scene, overrides}, with_program()).warnings;
+    };
+    EXPECT_THAT(
+        load_with({"cloth.material.thickness=0.6"}),
+        ElementsAre(AllOf(HasSubstr("nearer to obstacles than its thickness, 0.6 m"),
+                          HasSubstr("which strains it from "),
+                          HasSubstr("make cloth.material.thickness less"), HasSubstr("0.416 m in the mean")),
+                    HasSubstr("0.6: is more than an edge of the cloth's mesh "
+                              "(0.416 m in the mean)")));
+    // What is strained where it is placed still is its UVs' doing.
+    EXPECT_THAT(load_with({"cloth.material.thickness=0.07", "cloth.scale=3"}),
+                ElementsAre(Not(HasSubstr("strains it")), HasSubstr("material coordinates are metres")));
+}
+
 }  // namespace
 }  // namespace arris
