@@ -372,6 +372,7 @@ std::string SceneDocument::describe(std::string_view key) const
     const std::string place = near.source == 0
                                   ? fmt::format("{}:{}", printable(path_), near.line)
                                   : fmt::format("--set {}", printable(assignment, kMaxShownOverride));
+    if (assignment.starts_with(fmt::format("{}=", key))) return place;  // both are there already
     const SceneValue* value = find(key);
     const std::string shown = printable(key, 2 * kMaxShownCharacters);
     if (!value || !value->is_shown) return fmt::format("{}: {}", place, shown);

@@ -55,7 +55,8 @@ class SceneDocument {
     /// `key` the line is that of the nearest table above it. `allowed` may be empty.
     [[noreturn]] void fail(std::string_view key, std::string_view wrong, std::string_view allowed = {}) const;
 
-    /// "FILE:LINE: key = value", the beginning of errors and warnings.
+    /// "FILE:LINE: key = value", the beginning of errors and warnings; of an override "--set KEY=VALUE", and
+    /// of what is below its key "--set KEY=VALUE: key = value".
     std::string describe(std::string_view key) const;
 
   private:

@@ -64,6 +64,15 @@ struct Check {
         return value.items;
     }
 
+    /// An array of arrays. `example`: one that is right.
+    const std::vector<SceneValue>& points(const SceneValue& value, std::string_view example) const
+    {
+        const auto is_array = [](const SceneValue& item) { return item.kind == Kind::Array; };
+        if (!is_array(value) || !std::all_of(value.items.begin(), value.items.end(), is_array))
+            fail(fmt::format("is not an array of points, such as {}", example));
+        return value.items;
+    }
+
     Json point(const SceneValue& value, int width) const
     {
         Json result = Json::array();
@@ -130,8 +139,21 @@ Json complete_axis(const Check& check, const SceneValue& value)
     return result;
 }
 
+/// A box or a line as it could be written; of a point that was meant as a box, the box.
+std::string example_corners(const Check& check, const SceneValue& value)
+{
+    if (check.key.type == KeyType::Line) return "[[0.5, 0], [0.5, 1]]";
+    const auto is_number = [](const SceneValue& item) {
+        return item.kind == Kind::Number || item.kind == Kind::Integer;
+    };
+    const std::vector<SceneValue>& items = value.items;
+    if (items.size() != 2 || !std::all_of(items.begin(), items.end(), is_number)) return "[[0, 0], [0, 1]]";
+    return fmt::format("[[{0}, {1}], [{0}, {1}]] for this point alone", items[0].number, items[1].number);
+}
+
 Json complete_corners(const Check& check, const SceneValue& value)
 {
+    check.points(value, example_corners(check, value));
     Json result = Json::array();
     for (const SceneValue& corner : check.items(value, 2)) result.push_back(check.point(corner, 2));
     if (check.key.type == KeyType::Line && result[0] == result[1]) check.fail("is a point, not a line");
@@ -143,7 +165,8 @@ Json complete_corners(const Check& check, const SceneValue& value)
 Json complete_points(const Check& check, const SceneValue& value)
 {
     Json result = Json::array();
-    for (const SceneValue& point : check.items(value)) result.push_back(check.point(point, 3));
+    for (const SceneValue& point : check.points(value, "[[0, 0, 0], [1, 0, 0]]"))
+        result.push_back(check.point(point, 3));
     if (static_cast<int>(result.size()) < check.key.count) check.fail("has too few points");
     return result;
 }

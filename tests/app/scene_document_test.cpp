@@ -133,8 +133,7 @@ TEST(SceneOverride, StandsForFileAndLineInWarnings)
 {
     const RunConfig config = load(kBase, {"cloth.units=cm", "gravity={}"});
     ASSERT_EQ(config.warnings.size(), 1u);
-    EXPECT_EQ(config.warnings[0],
-              "--set cloth.units=cm: cloth.units = cm: has no effect: the cloth is not from a file");
+    EXPECT_EQ(config.warnings[0], "--set cloth.units=cm: has no effect: the cloth is not from a file");
 }
 
 }  // namespace

@@ -167,7 +167,8 @@ const std::vector<WrongScene> kWrongScenes = {
     {"FlatBox",
      kBase + "[[pin]]\nmaterial = [0, 0, 0, 1]\n",
      {},
-     "s.toml:6: pin.0.material = [0, 0, 0, 1]: has the wrong number of entries; allowed: [[u, v], [u, v]], "
+     "s.toml:6: pin.0.material = [0, 0, 0, 1]: is not an array of points, such as [[0, 0], [0, 1]]; allowed: "
+     "[[u, v], [u, v]], "
      "least then greatest, numbers from -1000000 to 1000000 (m)"},
     {"BoxOfThree",
      kBase + "[[pin]]\nmaterial = [[0, 0, 0], [0, 1, 0]]\n",
@@ -759,11 +760,11 @@ const std::vector<WrongScene> kWrongScenes = {
     {"SetWrongType",
      kBase,
      {"duration=soon"},
-     "--set duration=soon: duration = soon: is not a number; allowed: a number > 0 and <= 1000000 (s)"},
+     "--set duration=soon: is not a number; allowed: a number > 0 and <= 1000000 (s)"},
     {"SetOutOfRange",
      kBase,
      {"cloth.material.density=-1"},
-     "--set cloth.material.density=-1: cloth.material.density = -1: is out of range; allowed: a number > 0 "
+     "--set cloth.material.density=-1: is out of range; allowed: a number > 0 "
      "and <= 10000 (kg/m^2)"},
     {"SetBrokenArray",
      kBase,
@@ -808,18 +809,39 @@ const std::vector<WrongScene> kWrongScenes = {
     {"SetObstacle",
      kBase,
      {"obstacle.0.box=[1,1]"},
-     "--set obstacle.0.box=[1,1]: obstacle.0.box = [1,1]: has the wrong number of entries; allowed: 3 "
+     "--set obstacle.0.box=[1,1]: has the wrong number of entries; allowed: 3 "
      "numbers "
      "from 1e-06 to 10000 (m)"},
+    {"SetPointForABox",
+     kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\n",
+     {"pin.0.material=[0,0.5]"},
+     "--set pin.0.material=[0,0.5]: is not an array of points, such as [[0, 0.5], [0, 0.5]] for this point "
+     "alone; allowed: [[u, v], [u, v]], least then greatest, numbers from -1000000 to 1000000 (m)"},
+    {"SetNumbersForALine",
+     kBase + "folds = [ { line = [[0.5, 0], [0.5, 1]], degrees = 90 } ]\n",
+     {"cloth.folds.0.line=[0, 1]"},
+     "--set cloth.folds.0.line=[0, 1]: is not an array of points, such as [[0.5, 0], [0.5, 1]]; allowed: two "
+     "different points, [[u, v], [u, v]], numbers from -1000000 to 1000000 (m)"},
+    {"SetNumbersForPoints",
+     kBase,
+     {"obstacle.0.points=[0,0,9]"},
+     "--set obstacle.0.points=[0,0,9]: is not an array of points, such as [[0, 0, 0], [1, 0, 0]]; allowed: 1 "
+     "or more points [x, y, z], numbers from -1000000 to 1000000 (m)"},
+    {"SetTableWithAWrongValue",
+     kBase,
+     {"wind={velocity=[1,0]}"},
+     "--set wind={velocity=[1,0]}: wind.velocity = [1,0]: has the wrong number of entries; allowed: 3 "
+     "numbers "
+     "from -1000000 to 1000000 (m/s)"},
     {"SetKernel",
      kBase,
      {"solver.kernel=fast"},
-     "--set solver.kernel=fast: solver.kernel = fast: \"fast\" is not built yet in this version; allowed: "
+     "--set solver.kernel=fast: \"fast\" is not built yet in this version; allowed: "
      "\"exact\""},
     {"SetControlCharacters",
      kBase,
      {"cloth.pattern=\"a\\u001b\""},
-     "--set cloth.pattern=\"a\\u001b\": cloth.pattern = \"a\\u001b\": is none of the choices; allowed: "
+     "--set cloth.pattern=\"a\\u001b\": is none of the choices; allowed: "
      "\"diagonal\", \"alternating\", \"cross\", \"unstructured\""},
     {"LongValue",
      "duration = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21]\n",
