@@ -143,9 +143,10 @@ std::string remedy(const RunConfig& config, std::size_t i)
 {
     const auto is_from_file = [](const nlohmann::ordered_json& json) { return json.contains("file"); };
     const bool has_units = is_from_file(config.as_run["obstacle"][i]) || is_from_file(config.as_run["cloth"]);
-    return fmt::format("move one of them ('translate'), at best {:g} m apart, the cloth's thickness{}",
-                       config.scene.material.thickness,
-                       has_units ? "; a file in other units than metres needs 'units', or 'up'" : "");
+    return fmt::format(
+        "move one of them ('translate') until they are at least {:g} m apart, the cloth's thickness{}",
+        config.scene.material.thickness,
+        has_units ? "; a file in other units than metres needs 'units', or 'up'" : "");
 }
 
 }  // namespace

@@ -69,14 +69,27 @@ class ShellOrienter {
   private:
     void find_crossings()
     {
+        std::pair<int, int> first;
         const auto take = [&](const std::pair<SurfaceMesh::Face_index, SurfaceMesh::Face_index>& pair) {
+            const int f = static_cast<int>(static_cast<std::size_t>(pair.first));
+            const int g = static_cast<int>(static_cast<std::size_t>(pair.second));
+            const std::pair<int, int> faces(std::min(f, g), std::max(f, g));
+            if (report_.crossing_pairs == 0 || faces < first) first = faces;
             ++report_.crossing_pairs;
-            const int a = topology_.component[static_cast<std::size_t>(pair.first)];
-            const int b = topology_.component[static_cast<std::size_t>(pair.second)];
+            const int a = topology_.component[f], b = topology_.component[g];
             if (a != b) crossing_.insert({std::min(a, b), std::max(a, b)});
         };
         CGAL::Polygon_mesh_processing::self_intersections(surface_,
                                                           boost::make_function_output_iterator(take));
+        if (report_.crossing_pairs > 0)
+            report_.crossing_place = bounds_of(first.first).intersection(bounds_of(first.second)).center();
+    }
+
+    Eigen::AlignedBox3d bounds_of(int face) const
+    {
+        Eigen::AlignedBox3d bounds;
+        for (const int p : mesh_.faces[face]) bounds.extend(mesh_.points[p]);
+        return bounds;
     }
 
     // How many shells `shell` lies in.

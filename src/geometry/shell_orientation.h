@@ -9,8 +9,9 @@ namespace arris {
 struct ShellReport {
     int border_edges = 0;    ///< of sheets
     int crossing_pairs = 0;  ///< pairs of faces that cross, overlap, or touch without sharing a vertex there
-    int cavities = 0;        ///< shells seen from within
-    int turned_shells = 0;   ///< closed components whose faces were all turned round
+    Vec3 crossing_place = Vec3::Zero();  ///< near where the first of these pairs does, of the mesh's faces
+    int cavities = 0;                    ///< shells seen from within
+    int turned_shells = 0;               ///< closed components whose faces were all turned round
 };
 
 /// Turns the faces of each closed component (shell) so that they are counter-clockwise seen from outside the

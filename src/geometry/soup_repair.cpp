@@ -250,8 +250,14 @@ class SoupRepairer {
                 fmt::format("turned {} of {} faces round, to agree with their neighbours and "
                             "to face outward (cavities: inward)",
                             turned, mesh_.faces.size()));
-        warn_of(shells.crossing_pairs,
-                "{} pairs of faces cross, overlap or touch: sharp edges where they do are not found");
+        if (shells.crossing_pairs > 0) {
+            const Vec3& p = shells.crossing_place;
+            warnings_.push_back(fmt::format(
+                "{} pairs of faces cross, overlap or touch, the first near [{:.6g}, {:.6g}, {:.6g}] (m, "
+                "before it is scaled and placed): sharp edges where they do are not found, and cloth "
+                "may snag there; unite its parts (a boolean union) where it was made",
+                shells.crossing_pairs, p.x(), p.y(), p.z()));
+        }
         if (shells.cavities > 0)
             notes_.push_back(
                 fmt::format("{} closed shells lie inside others and bound cavities", shells.cavities));

@@ -13,7 +13,8 @@ namespace arris {
 namespace {
 
 const std::string kCloth = "[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";
-const std::string kRemedy = "move one of them ('translate'), at best 0.001 m apart, the cloth's thickness";
+const std::string kRemedy =
+    "move one of them ('translate') until they are at least 0.001 m apart, the cloth's thickness";
 const std::string kBase = "duration = 1\n" + kCloth;
 const std::string kNail = "[[obstacle]]\npoints = [[0, 0, 9]]\n";
 

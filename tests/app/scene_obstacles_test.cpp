@@ -207,6 +207,22 @@ TEST(SceneObstacles, TellOfASurfaceThatClosesButForAHole)
         << "an open sheet is meant as one";
 }
 
+TEST(SceneObstacles, TellWhereFacesCrossAndWhatToDo)
+{
+    const TemporaryDirectory dir;
+    // A leaf through another, within 2 to 3 mm.
+    write_bytes(dir / "leaves.obj",
+                "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 2 2 -1\nv 2 2 1\nv 3 3 1\n"
+                "f 1 2 3\nf 4 5 6\n");
+    write_bytes(dir / "s.toml", kBase +
+                                    "[[obstacle]]\nfile = \"leaves.obj\"\nunits = \"mm\"\ntranslate = [0, 0, "
+                                    "5]\n[gravity]\n");
+    EXPECT_THAT(load_scene(dir / "s.toml", {}, with_program()).warnings,
+                ElementsAre(AllOf(HasSubstr("1 pairs of faces cross"),
+                                  HasSubstr("near [0.0025, 0.0025, 0] (m, before it is scaled and placed)"),
+                                  HasSubstr("unite its parts"))));
+}
+
 TEST(SceneObstacles, BlamesTheKeyThatNamesABadFileAndTellsWhatWasRepaired)
 {
     const TemporaryDirectory dir;
@@ -280,7 +296,7 @@ TEST(SceneObstacles, AskAfterUnitsWhereAFileIntersectsTheCloth)
     write_bytes(dir / "s.toml",
                 kBase + "[[obstacle]]\nfile = \"wedge.obj\"\ntranslate = [0.2, 0.2, -0.1]\n[gravity]\n");
     EXPECT_THAT(error_of([&] { load_scene(dir / "s.toml", {}, with_program()); }),
-                AllOf(HasSubstr("at best 0.001 m apart"), HasSubstr("'units'")));
+                AllOf(HasSubstr("at least 0.001 m apart"), HasSubstr("'units'")));
 }
 
 TEST(SceneObstacles, MeetTheClothWherePinsHaveItAtTime0)
