@@ -10,6 +10,7 @@
 
 #include "app/printable.h"
 #include "app/scene_estimate.h"
+#include "geometry/mesh_quality.h"
 
 namespace arris {
 namespace {
@@ -46,14 +47,6 @@ std::string extent(const std::vector<Point>& points)
     return words + " m";
 }
 
-double material_area(const ClothMesh& cloth)
-{
-    double twice = 0.0;
-    for (const Face& f : cloth.faces)
-        twice += twice_area(cloth.material[f[0]], cloth.material[f[1]], cloth.material[f[2]]);
-    return twice / 2.0;
-}
-
 void describe_cloth(const RunConfig& config, const EdgeLengths& edges, Lines& lines)
 {
     const ClothMesh& cloth = config.cloth;
@@ -62,8 +55,9 @@ void describe_cloth(const RunConfig& config, const EdgeLengths& edges, Lines& li
     lines.push_back(fmt::format("cloth: {} of material, {:.6g} m^2, {:.4g} kg; {} vertices, {} faces",
                                 extent(cloth.material), area, material.density * area, cloth.vertex_count(),
                                 cloth.face_count()));
-    lines.push_back(fmt::format("  edges of the mesh: {:.4g} m in the mean, {:.4g} to {:.4g} m", edges.mean,
-                                edges.least, edges.greatest));
+    lines.push_back(fmt::format(
+        "  edges of the mesh: {:.4g} m in the mean, {:.4g} to {:.4g} m; least angle {:.3g} degrees",
+        edges.mean, edges.least, edges.greatest, least_material_angle(cloth)));
     lines.push_back(fmt::format("  placed within {} of the world", extent(cloth.world)));
     lines.push_back(fmt::format(
         "  {}: density {:g} kg/m^2, membrane {:g} N/m, Poisson ratio {:g}, bending {:g} J, damping {:g} s, "
@@ -180,6 +174,14 @@ std::string motion_in_words(const RigidMotion& motion)
     return std::isfinite(motion.stop) ? words + fmt::format(" to {:g} s", motion.stop) : words + " on";
 }
 
+/// Whether EOL vertices may lie on a wire.
+bool has_eol_wires(const Scene& scene)
+{
+    return scene.eol &&
+           std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                       [](const Obstacle& obstacle) { return !obstacle.mesh().segments.empty(); });
+}
+
 void describe_obstacles(const RunConfig& config, const EdgeLengths& edges, Lines& lines)
 {
     for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
@@ -195,6 +197,10 @@ void describe_obstacles(const RunConfig& config, const EdgeLengths& edges, Lines
         lines.push_back("  " + features_in_words(obstacle, edges.mean));
         lines.push_back("  " + motion_in_words(obstacle.motion()));
     }
+    if (has_eol_wires(config.scene))
+        lines.push_back(
+            "known limit: the two sides of a cloth folded over a wire do not swing past the plane behind "
+            "it (docs/method.md, Wires)");
     for (const std::string& intersection : config.intersections)
         lines.push_back("intersection: " + intersection);
     if (!config.scene.obstacles.empty() && config.intersections.empty())
@@ -300,8 +306,8 @@ std::vector<SceneEffect> list_effects(const RunConfig& config)
         by_table(config, "pin", true),
         obstacle_effect(config),
         eol_effect(config),
-        {"remesh", false, "no [remesh]; the mesh changes near sharp features only, with eol"},
-        by_table(config, "friction", false),
+        {"remesh", false, "not in this version: the mesh changes near sharp features only, with eol"},
+        {"friction", false, "not in this version: the cloth slides freely over obstacles"},
         {"self_contact", false, "not in this version: the cloth may pass through itself"},
     };
 }

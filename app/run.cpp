@@ -306,7 +306,9 @@ void tell_is_over(const Run& run)
     const std::string dir = printable(run.files.path());
     fmt::print("nothing to do: the run has come to its end, t = {} s\n", run.at.state.time);
     fmt::print("go on   arris resume {} --until T, T a later time in s\n", dir);
-    fmt::print("        (more frames a second, --set output.frames_per_second, are a new run's)\n");
+    fmt::print(
+        "        (with the same frames a second; for others run the scene anew: arris run SCENE "
+        "--set output.frames_per_second=N)\n");
 }
 
 /// A checkpoint is untrusted input: what it names must be in its scene.

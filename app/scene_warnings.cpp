@@ -8,10 +8,12 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "app/printable.h"
 #include "app/scene_estimate.h"
 #include "app/still_scene.h"
+#include "geometry/mesh_quality.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/sheet_opening.h"
 
@@ -307,6 +309,33 @@ void check_strain(const StrainRange& placed, Warnings& warnings)
                                   in_words(placed)));
 }
 
+/// Faces that surgery hardly puts a feature's vertex into: it moves none where that would leave such.
+void check_angles(const RunConfig& config, Warnings& warnings)
+{
+    constexpr double kThin = 5.0;  // degrees
+    const ClothMesh& cloth = config.cloth;
+    int thin = 0, thinnest = 0;
+    double least = kThin;
+    for (int f = 0; f < cloth.face_count(); ++f) {
+        const double angle = least_material_angle(cloth, f);
+        if (!(angle < kThin)) continue;
+        ++thin;
+        if (angle < least) std::tie(least, thinnest) = std::pair(angle, f);
+    }
+    if (thin == 0) return;
+    const bool is_from_file = warnings.is_written("cloth.file");
+    const Vec2& X = cloth.material[cloth.faces[thinnest][0]];
+    warnings.note(
+        is_from_file ? "cloth.file" : "cloth.resolution",
+        fmt::format(
+            "{} of {} faces have an angle below {:g} degrees, the least {:.2g} at [{:.6g}, {:.6g}] of the "
+            "material: sharp features hardly find a place for vertices in faces so thin; {}",
+            thin, cloth.face_count(), kThin, least, X.x(), X.y(),
+            is_from_file ? "mesh the file anew with more even faces"
+                         : "cells with more even sides, or folds and a pattern_angle that cut off no "
+                           "slivers, have none"));
+}
+
 /// A stand-off as large as the cloth's cells is mostly one in other units.
 void check_thickness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
 {
@@ -339,6 +368,7 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_time(config, warnings);
     check_cloth(config, topology, warnings);
     check_cloth_size(config, warnings);
+    check_angles(config, warnings);
     check_pins(config, warnings);
     check_wind(config, warnings);
     check_pulls(config, warnings);

@@ -9,6 +9,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 RunConfig load(const std::string& extra)
 {
@@ -28,11 +29,13 @@ TEST(Check, DescribesTheScene)
                             "[output]\nframes_per_second = 0\n"));
     EXPECT_EQ(lines[0], "title: a\\u001b[31mb");
     EXPECT_EQ(lines[1], "cloth: 2 x 0.5 m of material, 1 m^2, 0.15 kg; 23 vertices, 32 faces");
-    EXPECT_EQ(lines[2], "  edges of the mesh: 0.323 m in the mean, 0.25 to 0.5 m");
+    EXPECT_EQ(lines[2], "  edges of the mesh: 0.323 m in the mean, 0.25 to 0.5 m; least angle 26.6 degrees");
     EXPECT_EQ(lines[3], "  placed within 0.5 x 2 x 0 m of the world");
     EXPECT_THAT(lines[4], HasSubstr("cotton: density 0.15 kg/m^2, membrane 500 N/m"));
     EXPECT_THAT(lines, Contains("  gravity: [gravity] is there"));
     EXPECT_THAT(lines, Contains("  wind: no [wind]"));
+    EXPECT_THAT(lines, Contains(HasSubstr("  friction: not in this version: ")));
+    EXPECT_THAT(lines, Contains(HasSubstr("  remesh: not in this version: ")));
     EXPECT_THAT(lines, Contains("  damping: cloth.material.damping is 0 s"));
     EXPECT_THAT(lines, Contains("pin.0: 3 vertices in [[0, 0], [0, 0.5]], at rest, until 0.5 s"));
     EXPECT_THAT(lines, Contains("pull.0: [0, 0, 1] N on 1 vertex of [[2, 0], [2, 0]]"));
@@ -85,6 +88,16 @@ TEST(Check, DescribesObstaclesWithTheirFeaturesAndMotion)
     EXPECT_THAT(lines, Contains("the cloth is clear of all obstacles at time 0"));
     EXPECT_THAT(lines, Contains("  obstacle: table, obstacle1, obstacle2"));
     EXPECT_THAT(lines, Contains(HasSubstr("  eol: eol.enabled, and an obstacle has sharp features")));
+}
+
+TEST(Check, SaysTheLimitOfFoldsOverAWire)
+{
+    const std::string nail = "[[obstacle]]\npoints = [[0, 0, 9]]\n";
+    const std::string wire = "[[obstacle]]\nwire = [[0, 0, 9], [3, 0, 9]]\n";
+    const auto limit = HasSubstr("known limit: the two sides of a cloth folded over a wire");
+    EXPECT_THAT(describe_scene(load(wire + nail + wire)), Contains(limit).Times(1));
+    EXPECT_THAT(describe_scene(load(nail)), Not(Contains(limit)));
+    EXPECT_THAT(describe_scene(load(wire + "[eol]\nenabled = false\n")), Not(Contains(limit)));
 }
 
 TEST(Check, SaysWhatAPinRidesOn)

@@ -215,6 +215,23 @@ TEST(ReportHtml, ShowsOnlyPlotsWithSomethingToSay)
         EXPECT_THAT(eventful, HasSubstr(title));
 }
 
+TEST(ReportHtml, HasOnlyLinesOfOneScaleInAPlotOfWork)
+{
+    const TemporaryDirectory dir;
+    write_steps(dir, 20, [](StepRow& row) {
+        row.factorisations = 2;
+        row.nlopt_evaluations = 900;
+    });
+    int found = 0;
+    for (const Plot& plot : plot_steps(dir / "steps.csv", std::nullopt))
+        for (const PlotLine& line : plot.lines)
+            if (line.name == "factorisations" || line.name == "NLopt evaluations") {
+                EXPECT_EQ(plot.lines.size(), 1U) << plot.title;
+                ++found;
+            }
+    EXPECT_EQ(found, 2);
+}
+
 TEST(ReportHtml, StaysSmallForALongRunAndKeepsItsPeaks)
 {
     const TemporaryDirectory dir;

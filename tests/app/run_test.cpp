@@ -157,6 +157,9 @@ TEST_F(Run, ResumedAtItsEndSaysThatNothingIsLeftAndHowToGoOn)
     EXPECT_EQ(resumed.out().rfind("nothing to do: the run has come to its end, t = 0.5 s\n", 0), 0U)
         << resumed.out();
     EXPECT_NE(resumed.out().find("arris resume " + dir + " --until T"), std::string::npos) << resumed.out();
+    EXPECT_NE(resumed.out().find("run the scene anew: arris run SCENE --set output.frames_per_second=N"),
+              std::string::npos)
+        << resumed.out();
     EXPECT_TRUE(read_bytes(dir + "/steps.csv") == steps);
     Program further(folder, {"resume", dir, "--until", "0.51"});
     EXPECT_EQ(further.wait(), 0) << further.err();
@@ -501,7 +504,8 @@ TEST_F(RunWithObstacles, CheckAnswersWhatIntersectsAndRefuses)
     EXPECT_NE(program.out().find("intersection: "), std::string::npos) << program.out();
     EXPECT_NE(program.out().find("m deep into table, at ["), std::string::npos) << program.out();
     EXPECT_NE(program.out().find("expected: about"), std::string::npos) << "all else is said too";
-    EXPECT_NE(program.err().find("intersects 2 obstacles, as said above"), std::string::npos) << program.err();
+    EXPECT_NE(program.err().find("intersects 2 obstacles, as said above"), std::string::npos)
+        << program.err();
     EXPECT_EQ(program.err().find("m deep into table"), std::string::npos) << "it is said once";
     Program refused(folder,
                     {"run", scene, "-o", folder / "none", "--set", "cloth.translate=[-0.5,-0.5,0.1]"});

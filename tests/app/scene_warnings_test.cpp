@@ -143,12 +143,37 @@ TEST(SceneWarnings, TellOfAClothWhoseSizeIsNoCloths)
     EXPECT_THAT(of_file(square_obj("500", "500"), ""), ElementsAre(HasSubstr("UVs, where it has them")));
     EXPECT_THAT(of_file(square_obj("500", "0.5"), "units = \"mm\"\n"), IsEmpty());
 
-    const auto of_size = [](const std::string& size) {
-        return load_scene(SceneSource{"s.toml", kBase, {"cloth.size=" + size, kMoving}}).warnings;
+    const auto of_size = [](const std::string& size, const std::string& resolution) {
+        return load_scene(SceneSource{"s.toml",
+                                      kBase,
+                                      {"cloth.size=" + size, "cloth.resolution=" + resolution, kMoving}})
+            .warnings;
     };
-    EXPECT_THAT(of_size("[300,400]"),
+    EXPECT_THAT(of_size("[300,400]", "[3,4]"),
                 ElementsAre(HasSubstr("the cloth is 300 x 400 m: sizes are in metres")));
-    EXPECT_THAT(of_size("[0.001,50]"), IsEmpty()) << "a ribbon";
+    EXPECT_THAT(of_size("[1,50]", "[1,50]"), IsEmpty()) << "a ribbon";
+}
+
+TEST(SceneWarnings, TellOfFacesThatAreThinAndWhatToDo)
+{
+    const auto of_cells = [](const std::string& resolution) {
+        return load_scene(SceneSource{"s.toml", kBase, {"cloth.resolution=" + resolution, kMoving}}).warnings;
+    };
+    // Of a cell's four faces those on its long sides have atan(width / height) at their ends.
+    EXPECT_THAT(of_cells("[12, 1]"),
+                ElementsAre(AllOf(HasSubstr("cloth.resolution=[12, 1]: 24 of 48 faces have an angle below 5 "
+                                            "degrees, the least 4.8 at "),
+                                  HasSubstr("cells with more even sides"))));
+    EXPECT_THAT(of_cells("[11, 1]"), IsEmpty());
+
+    const TemporaryDirectory dir;
+    write_bytes(dir / "c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.5 -0.01 0\nf 1 2 3\nf 1 4 2\n");
+    write_bytes(dir / "s.toml", "duration = 1\n[cloth]\nfile = \"c.obj\"\n");
+    EXPECT_THAT(
+        load_scene(dir / "s.toml", {kMoving}).warnings,
+        ElementsAre(AllOf(HasSubstr("cloth.file = \"c.obj\": 1 of 2 faces have an angle below 5 degrees, "
+                                    "the least 1.1 at "),
+                          HasSubstr("mesh the file anew"))));
 }
 
 TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
