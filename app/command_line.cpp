@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -115,11 +116,12 @@ int run_command_line(int argc, char** argv)
         options.tells_intersections = true;
         const RunConfig config = load_scene(check_scene, check_overrides, options);
         for (const std::string& line : describe_scene(config)) fmt::print("{}\n", line);
+        std::fflush(stdout);  // what follows on standard error speaks of it
         const std::size_t count = config.intersections.size();
         if (count > 0)
             throw InputError(
-                fmt::format("{}: at time 0 the cloth intersects {} obstacle{}, as said above; allowed: "
-                            "cloth that starts clear of every obstacle",
+                fmt::format("{}: at time 0 the cloth intersects {} obstacle{}, see 'intersection' above; "
+                            "allowed: cloth that starts clear of every obstacle",
                             printable(check_scene), count, count == 1 ? "" : "s"));
         return 0;
     }

@@ -504,7 +504,7 @@ TEST_F(RunWithObstacles, CheckAnswersWhatIntersectsAndRefuses)
     EXPECT_NE(program.out().find("intersection: "), std::string::npos) << program.out();
     EXPECT_NE(program.out().find("m deep into table, at ["), std::string::npos) << program.out();
     EXPECT_NE(program.out().find("expected: about"), std::string::npos) << "all else is said too";
-    EXPECT_NE(program.err().find("intersects 2 obstacles, as said above"), std::string::npos)
+    EXPECT_NE(program.err().find("intersects 2 obstacles, see 'intersection' above"), std::string::npos)
         << program.err();
     EXPECT_EQ(program.err().find("m deep into table"), std::string::npos) << "it is said once";
     Program refused(folder,
