@@ -2,6 +2,7 @@
 #include "solver/feature_sites.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -98,6 +99,10 @@ class SiteFinder {
     }
 
   private:
+    struct Reach {
+        double in_plane;  ///< thicknesses from the plane, within which an edge's end is the crossing
+        double height;    ///< m, above the feature, to which cloth lies on it
+    };
     using Crossing = std::array<int, 2>;  ///< a FeatureSite's edge
     struct TraceNode {
         std::optional<FeatureSite> site;  ///< none where an EOL vertex is
@@ -195,8 +200,10 @@ class SiteFinder {
         const int feature = feature_[contact.element];
         if (feature < 0) return std::nullopt;
         if (const std::optional<FeatureSite> turn = on_turn(a, b, feature, contact.normal)) return turn;
+        const double height = kOnFeature * thickness_ + find_rise(a, b, feature, contact.normal);
         for (const double in_plane : {kInPlane, kAsGood})
-            if (const auto crossing = cross(a, b, feature, contact.normal, in_plane)) return crossing;
+            if (const auto crossing = cross(a, b, feature, contact.normal, {in_plane, height}))
+                return crossing;
         return beyond_end(a, b, feature, contact.normal);
     }
 
@@ -244,12 +251,29 @@ class SiteFinder {
 
     bool is_eol(int v) const { return state_.eol_entry(state_.ids[v]) >= 0; }
 
-    /// `in_plane`, in thicknesses: an end that is no farther from the plane is the crossing.
-    std::optional<FeatureSite> cross(int a, int b, int feature, const Vec3& normal,
-                                     double in_plane = kInPlane) const
+    /// How much higher an edge of the cloth that pressed along `normal` may be over the feature by now. What
+    /// kept the gap is the point that touched; the edge has slid on from there, and turned.
+    double find_rise(int a, int b, int feature, const Vec3& normal) const
+    {
+        const auto [from, to] = feature_segment(obstacle_, feature);
+        const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, {from, to});
+        const Placement now = obstacle_.at(state_.time);
+        const Vec3 velocity = (1.0 - nearest.s) * state_.velocity[a] + nearest.s * state_.velocity[b] -
+                              obstacle_.velocity_after(state_.time, now(nearest.second));
+        const Vec3 along = (to - from).normalized();
+        const Vec3 sliding = now.rotation.transpose() * velocity;
+        const double slide = state_.previous_dt * (sliding - along.dot(sliding) * along).norm();
+        return slide * std::abs(normal.dot((positions_[b] - positions_[a]).normalized()));
+    }
+
+    std::optional<FeatureSite> cross(int a, int b, int feature, const Vec3& normal) const
+    {
+        return cross(a, b, feature, normal, {kInPlane, kOnFeature * thickness_});
+    }
+    std::optional<FeatureSite> cross(int a, int b, int feature, const Vec3& normal, const Reach& reach) const
     {
         if (a > b) std::swap(a, b);
-        const std::optional<double> s = find_crossing(a, b, feature, in_plane);
+        const std::optional<double> s = find_crossing(a, b, feature, reach);
         if (!s || (*s == 0.0 && is_eol(a)) || (*s == 1.0 && is_eol(b))) return std::nullopt;
         const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
         FeatureSite site = make_site(false, feature, X, *s < 0.5 ? a : b, normal);
@@ -260,7 +284,7 @@ class SiteFinder {
     }
 
     /// On a wire or border, whose plane turns with the cloth, the nearest point.
-    std::optional<double> find_crossing(int a, int b, int feature, double in_plane) const
+    std::optional<double> find_crossing(int a, int b, int feature, const Reach& reach) const
     {
         const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
         const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
@@ -278,15 +302,14 @@ class SiteFinder {
         const Vec3 across = frame->tangent.cross(frame->outward);
         const double of_a = across.dot(positions_[a] - frame->point);
         const double of_b = across.dot(positions_[b] - frame->point);
-        const bool is_at_a = std::abs(of_a) <= in_plane * thickness_;
-        const bool is_at_b = std::abs(of_b) <= in_plane * thickness_;
+        const bool is_at_a = std::abs(of_a) <= reach.in_plane * thickness_;
+        const bool is_at_b = std::abs(of_b) <= reach.in_plane * thickness_;
         if (!is_at_a && !is_at_b && (of_a > 0.0) == (of_b > 0.0)) return std::nullopt;
         const double s = is_at_a ? 0.0 : is_at_b ? 1.0 : of_a / (of_a - of_b);
         const Vec3 place = (1.0 - s) * positions_[a] + s * positions_[b];
         const double height = frame->outward.dot(place - frame->point);
         const double along = closest_on_segment(place, segment[0], segment[1]);
-        if (!(height >= 0.0 && height <= kOnFeature * thickness_ && along > 0.0 && along < 1.0))
-            return std::nullopt;
+        if (!(height >= 0.0 && height <= reach.height && along > 0.0 && along < 1.0)) return std::nullopt;
         return s;
     }
 

@@ -54,6 +54,18 @@ struct RidgeCloth {
              1e-6});
     }
 
+    std::size_t most_across() const
+    {
+        const auto across = [this](const auto& of) {
+            const std::vector<Vec3>& x = cloth.state.mesh.world;
+            return std::abs((x[of.second.a] - x[of.second.b]).normalized().x());
+        };
+        const auto most =
+            std::max_element(crossing.begin(), crossing.end(),
+                             [&](const auto& p, const auto& q) { return across(p) < across(q); });
+        return static_cast<std::size_t>(most - crossing.begin());
+    }
+
     int tip() const { return testing::tip_of(cloth.scene.obstacles[0]); }
 
     std::vector<FeatureSite> sites() const
@@ -110,6 +122,30 @@ TEST(FeatureSites, DoNotBridgeWhatIsOffTheFeature)
     for (const int v : {lifted.a, lifted.b}) ridge.cloth.state.mesh.world[v].z() += 3.0 * kThickness;
     const std::vector<char> is_site = ridge.is_site();
     for (std::size_t k = 0; k < is_site.size(); ++k) EXPECT_EQ(is_site[k], k == 3 || k == 8) << k;
+}
+
+// What touched has kept its gap, and is where it has slid to.
+TEST(FeatureSites, AreWhereWhatPressedHasTurnedAsItSlid)
+{
+    constexpr double kHeight = 6.0, kSlide = 20.0, kDt = 5e-3;  // thicknesses; s
+    const double turn = 20.0 * M_PI / 180.0;                    // of the cloth in the step
+    const auto count_sites = [&](double height, double turned, const Vec3& way) {
+        RidgeCloth ridge(kTurn);
+        State& state = ridge.cloth.state;
+        ridge.press(ridge.most_across());
+        state.active[0].normal = Vec3(std::sin(turned), 0.0, std::cos(turned));
+        for (Vec3& x : state.mesh.world) x.z() += (height - 1.0) * kThickness;
+        for (Vec3& v : state.velocity) v = kThickness / kDt * way;
+        state.previous_dt = kDt;
+        return ridge.sites().size();
+    };
+    const Vec3 across = kSlide * Vec3::UnitX(), along = kSlide * Vec3::UnitY();
+    EXPECT_EQ(count_sites(1.0, turn, Vec3::Zero()), 1u);
+    EXPECT_EQ(count_sites(kHeight, turn, across), 1u);
+    EXPECT_EQ(count_sites(2.0 * kHeight, turn, across), 0u);
+    EXPECT_EQ(count_sites(kHeight, 0.0, across), 0u) << "it has lifted off";
+    EXPECT_EQ(count_sites(kHeight, turn, along), 0u);
+    EXPECT_EQ(count_sites(kHeight, turn, Vec3::Zero()), 0u);
 }
 
 TEST(FeatureSites, GoOnFromTheEndOfATrace)
