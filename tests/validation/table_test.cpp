@@ -127,19 +127,21 @@ TEST(HalfTable, TheImpactMayFallAnywhereInItsStep)
     }
 }
 
-// Around corners the fold ends at the corner and the cloth beside it crumples, another way in every run. Rows
-// only leave .013 to .019 J of motion on 16 and 32 cells: there it catches.
+// Around corners the fold ends at the corner and the cloth beside it crumples, another way in every run:
+// drops that differ by .1 mm scatter by .011 J, a mean of eleven by .0033 J. Rows only leave .053 J on 64
+// cells with a quarter of the step, and with this one .013 to .019 J on 16 and 32 cells: there it catches.
 TEST(SmallTable, SoftClothSlidesAroundItsCorners)
 {
-    const std::vector<double> heights = {0.0490, 0.0495, 0.0500, 0.0505, 0.0510};
+    constexpr int kDrops = 11;
     double sum = 0.0, least = std::numeric_limits<double>::infinity();
-    for (const double height : heights) {
+    for (int k = 0; k < kDrops; ++k) {
+        const double height = 0.049 + 2e-4 * k;
         const Slid found = slide_off({16, 0.0, 50.0, height, kSmallTable});
         EXPECT_LT(found.rise, 1e-3) << height;
         sum += found.kinetic;
         least = std::min(least, found.kinetic);
     }
-    EXPECT_NEAR(sum / static_cast<double>(heights.size()), 0.049, 0.01);
+    EXPECT_NEAR(sum / kDrops, 0.053, 0.01);
     EXPECT_GT(least, 0.022);
 }
 
