@@ -37,20 +37,18 @@ Vec3 turned(const Vec3& from, const Vec3& to, double share)
     return ((1.0 - share) * from + share * to).normalized();
 }
 
-/// How a vertex lies to where the edge holds it: a fold is held from the edge itself, where it begins, up to
-/// the stand-off.
-Vec3 find_way_off(const FeatureFrame& frame, const Vec3& off, double stand_off)
+/// The nearest to `outward` that leads into neither face; `between` where there is none. What has come back
+/// over one face goes down on it: along the bisector its bound would hold it up above the face.
+Vec3 turned_between(const FeatureEdge& edge, const Vec3& outward, const Vec3& between)
 {
-    return off - std::clamp(frame.outward.dot(off), 0.0, stand_off) * frame.outward;
-}
-
-/// Away from the nearest of what the edge and its faces keep of a vertex that has come `way`: on the same
-/// line, or off the face over which it is back. There the bisector's bound would hold it up above the face.
-Vec3 find_away(const FeatureEdge& edge, const std::array<Vec3, 2>& onward, const Vec3& way)
-{
-    const bool is_before_edge = onward[0].dot(way) >= 0.0 && onward[1].dot(way) >= 0.0;
-    if (is_before_edge) return way.stableNormalized();
-    return edge.normals[0].dot(way) > edge.normals[1].dot(way) ? edge.normals[0] : edge.normals[1];
+    Vec3 nearest = outward;
+    for (const Vec3& normal : edge.normals)
+        if (const double into = normal.dot(nearest); into < 0.0) nearest -= into * normal;
+    nearest = nearest.stableNormalized();
+    constexpr double kRounding = 1e-9;
+    for (const Vec3& normal : edge.normals)
+        if (!(normal.dot(nearest) >= -kRounding)) return between;
+    return nearest.isZero(0.0) ? between : nearest;
 }
 
 }  // namespace
@@ -67,19 +65,15 @@ FeatureFrame turn_to_free_fold(const FeatureEdge& edge, const ArrivingCloth& arr
     constexpr double kOver = 0.5;  // stand-offs, over which outward turns: a vertex on the edge may chatter
     const double stand_off = frame.mitre * thickness;
     const Vec3 off = across(frame, place);
-    const Vec3 way = find_way_off(frame, off, stand_off);
-    const double share = std::min(way.norm() / (kOver * stand_off), 1.0);
+    const double share = std::clamp((frame.outward.dot(off) / stand_off - 1.0) / kOver, 0.0, 1.0);
     if (!(share > 0.0)) return frame;
 
+    // Away from where the edge holds it: so it also comes back there.
+    Vec3 outward = (off - stand_off * frame.outward).stableNormalized();
+    outward = turned_between(edge, outward, frame.outward);
     const std::array<Vec3, 2> onward = {find_onward(edge, 0, frame.tangent),
                                         find_onward(edge, 1, frame.tangent)};
-    Vec3 outward = find_away(edge, onward, way);
-    std::array<double, 2> shares;
-    for (const int k : {0, 1}) {
-        // Back over the face it is led along it no more: the bound would hold it where it is.
-        const double back = std::clamp(-onward[k].dot(way) / (kOver * stand_off), 0.0, 1.0);
-        shares[k] = (1.0 - back) * share_of(arriving, onward[k]);
-    }
+    const std::array<double, 2> shares = {share_of(arriving, onward[0]), share_of(arriving, onward[1])};
     const Vec3 along = shares[0] * onward[0] + shares[1] * onward[1];  // on a knife what arrives is on both
     outward = turned(outward, along.stableNormalized(), std::max(shares[0], shares[1]));
 

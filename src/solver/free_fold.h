@@ -12,9 +12,6 @@
 //        |      /                   soon as the vertex is off the edge; and on it, should tension grow again,
 //   =====|====o-----> e             the vertex comes back to where it has left.
 //  table |    |
-//
-// A fold that has come back over a face is of that face alone, however high above it and however far from the
-// edge: it goes down on it, along its normal.
 #pragma once
 
 #include "geometry/feature_frame.h"
@@ -39,10 +36,9 @@ struct ArrivingCloth {
 bool has_left_feature(const Vec3& nearest, const Vec3& place, double thickness);
 
 /// `frame` of convex edge `edge` (its outward the bisector), outward turned for a vertex at `place` that is
-/// off the way along which the edge holds it, from itself to its stand-off, all of it in the obstacle's
-/// frame: along the face on which what arrives lies; else away from the stand-off's place, over a face along
-/// the face's normal. Moving outward comes nearer to neither face, and the bound that `mitre` gives stays
-/// that place, or the face's stand-off. The same frame for one that is on its way.
+/// farther out than its stand-off, all of it in the obstacle's frame: along the face on which what arrives
+/// lies, else away from where the edge holds the vertex. Moving outward still closes the gap to neither face,
+/// and the bound that `mitre` gives stays that place. The same frame for one that is not farther.
 FeatureFrame turn_to_free_fold(const FeatureEdge& edge, const ArrivingCloth& arriving, const Vec3& place,
                                double thickness, const FeatureFrame& frame);
 
