@@ -201,8 +201,8 @@ void describe_obstacles(const RunConfig& config, const EdgeLengths& edges, Lines
         lines.push_back(
             "known limit: the two sides of a cloth folded over a wire do not swing past the plane behind "
             "it (docs/method.md, Wires)");
-    for (const std::string& intersection : config.intersections)
-        lines.push_back("intersection: " + intersection);
+    for (std::size_t i = 1; i < config.intersections.size(); ++i)  // the first is the error
+        lines.push_back("intersection: " + config.intersections[i]);
     if (!config.scene.obstacles.empty() && config.intersections.empty())
         lines.push_back("the cloth is clear of all obstacles at time 0");
 }

@@ -123,8 +123,8 @@ const std::vector<PlotSpec>& step_plots()
          Shown::IfChanging,
          1.0,
          "Of its faces, in the material. Thinner ones come and go beside features that cloth slides over; "
-         "where the "
-         "mesh begins with less than 5 degrees, give it more even cells or faces.",
+         "where "
+         "the mesh begins with less than 5 degrees, give it more even cells or faces.",
          {{"least angle", {"min_angle"}}}},
         {"Penetration",
          "m",

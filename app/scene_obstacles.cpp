@@ -233,9 +233,8 @@ void keep_stand_off(const StrainRange& placed, RunConfig& config)
     const StrainRange strain = measure_strain(config.cloth);
     if (strain.is_surprising() && !placed.is_surprising())
         line += fmt::format(
-            ", which strains it {}, its edges being {:.3g} m in the mean: make cloth.material.thickness "
-            "less, "
-            "or start the cloth farther away ('translate')",
+            ", which strains it {}, its edges being {:.3g} m in the mean: make "
+            "cloth.material.thickness less, or start the cloth farther away ('translate')",
             in_words(strain),
             measure_edges(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces)).mean);
     config.warnings.push_back(line);

@@ -144,7 +144,7 @@ std::string example_corners(const Check& check, const SceneValue& value)
 {
     if (check.key.type == KeyType::Line) return "[[0.5, 0], [0.5, 1]]";
     const auto is_number = [](const SceneValue& item) {
-        return item.kind == Kind::Number || item.kind == Kind::Integer;
+        return (item.kind == Kind::Number || item.kind == Kind::Integer) && std::isfinite(item.number);
     };
     const std::vector<SceneValue>& items = value.items;
     if (items.size() != 2 || !std::all_of(items.begin(), items.end(), is_number)) return "[[0, 0], [0, 1]]";

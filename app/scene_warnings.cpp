@@ -191,13 +191,12 @@ void check_units(const RunConfig& config, std::size_t i, Warnings& warnings)
 /// A surface that closes but for a hole looks solid, and is none.
 void check_inside(const RunConfig& config, std::size_t i, Warnings& warnings)
 {
-    constexpr double kMostlyClosed = 0.5;
     const auto& json = config.as_run["obstacle"][i];
     if (!json.contains("file")) return;
     const Obstacle& obstacle = config.scene.obstacles[i];
     int count = 0, border_edges = 0;
     for (const SheetOpening& opening : find_sheet_openings(obstacle.mesh(), obstacle.topology())) {
-        if (!(opening.share < kMostlyClosed)) continue;
+        if (!opening.looks_solid()) continue;
         ++count;
         border_edges += opening.border_edges;
     }
@@ -313,6 +312,7 @@ void check_strain(const StrainRange& placed, Warnings& warnings)
 void check_angles(const RunConfig& config, Warnings& warnings)
 {
     constexpr double kThin = 5.0;  // degrees
+    if (!config.scene.eol) return;
     const ClothMesh& cloth = config.cloth;
     int thin = 0, thinnest = 0;
     double least = kThin;

@@ -10,9 +10,13 @@ namespace arris {
 
 /// An open component of an obstacle: a sheet.
 struct SheetOpening {
-    int border_edges = 0;
-    double share =
-        0.0;  ///< what its border spans by its own area: 1 flat, .5 half a sphere, .2 a lidless cube
+    int border_edges = 0, loops = 0;  ///< that these make
+    double border_length = 0.0;       ///< m
+    double area = 0.0;                ///< m^2
+
+    /// Has one hole, and a border that is short for its area: length^2 / area is 4 pi of a disk, 2 pi of half
+    /// a sphere, 3.2 of a lidless cube.
+    bool looks_solid() const { return loops == 1 && border_length * border_length < 5.0 * area; }
 };
 
 /// All of them, in the order of the topology's components. Linear in the mesh.

@@ -254,7 +254,7 @@ class SoupRepairer {
             const Vec3& p = shells.crossing_place;
             warnings_.push_back(fmt::format(
                 "{} pairs of faces cross, overlap or touch, the first near [{:.6g}, {:.6g}, {:.6g}] (m, "
-                "before it is scaled and placed): sharp edges where they do are not found, and cloth "
+                "z up, before it is scaled and placed): sharp edges where they do are not found, and cloth "
                 "may snag there; unite its parts (a boolean union) where it was made",
                 shells.crossing_pairs, p.x(), p.y(), p.z()));
         }

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/block_ordering.h"
 #include "physics/deformation_gradient.h"
-#include "physics/vertex_ordering.h"
 
 namespace arris {
 
@@ -241,8 +241,7 @@ class NormalEquations {
     {
         Eigen::SparseMatrix<double> mass(rhs_.size(), rhs_.size());
         mass.setFromTriplets(lower_.begin(), lower_.end());
-        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, VertexAmdOrdering> factor(
-            mass);
+        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, BlockAmdOrdering> factor(mass);
         if (factor.info() != Eigen::Success) return std::nullopt;
         const Eigen::Matrix<double, Eigen::Dynamic, 3> of_unit = factor.solve(carried_.transpose());
         const Eigen::PartialPivLU<Mat3> schur(carried_ * of_unit);
@@ -289,7 +288,7 @@ class NormalEquations {
 
 }  // namespace
 
-double compute_energy(double density, const VelocityField& field)
+double compute_kinetic_energy(double density, const VelocityField& field)
 {
     double energy = 0.0;
     for (std::size_t t = 0; t < field.triangles.size(); ++t) {
@@ -317,7 +316,7 @@ std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old
         fit.velocity.push_back(patch.drift[v] + patch.basis[v] * (*u)[v]);
         fit.material_velocity.push_back(patch.material_drift[v] + patch.material_basis[v] * (*u)[v]);
     }
-    fit.energy_gain = -compute_energy(density, old);
+    fit.energy_gain = -compute_kinetic_energy(density, old);
     for (std::size_t f = 0; f < patch.faces.size(); ++f) {
         std::array<Vec3, 3> corner;
         for (int i = 0; i < 3; ++i) {

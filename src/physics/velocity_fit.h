@@ -18,7 +18,7 @@ struct VelocityField {
     std::vector<std::array<Vec3, 3>> velocity;   ///< m/s, of the corners
 };
 /// Kinetic, J; `density`: kg/m^2.
-double compute_energy(double density, const VelocityField& field);
+double compute_kinetic_energy(double density, const VelocityField& field);
 
 /// The patch after the change: as VelocityField's triangles it covers the same part of the cloth.
 struct FitPatch {

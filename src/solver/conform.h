@@ -59,7 +59,8 @@ struct ConformOutcome {
 
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
 /// they have not for long, the way of those that slide cleared, what they left restored. `stars` and
-/// `changes` are the state's. Unfinished, without a mesh, as soon as more than `most_lost` are lost.
+/// `changes` are the state's. Unfinished, without a mesh, where clearing what is there loses more than
+/// `most_lost`.
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
                             const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit,
                             int most_lost = std::numeric_limits<int>::max());

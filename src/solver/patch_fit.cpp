@@ -38,8 +38,9 @@ class PatchFitter {
             const double gain = relax_patch(patch);
             fields.push_back(old_field(patch));
             if (gain > 0.0)
-                report.strain = most_strain_of(
-                    patch, gain, compute_energy(scene_.material.density, fields.back()), report.strain);
+                report.strain = most_strain_of(patch, gain,
+                                               compute_kinetic_energy(scene_.material.density, fields.back()),
+                                               report.strain);
             if (report.strain > most_strain) return report;
         }
         for (std::size_t i = 0; i < patches.size(); ++i) {

@@ -13,10 +13,10 @@
 #include "geometry/mesh_topology.h"
 #include "geometry/sub_mesh.h"
 #include "geometry/sweep_check.h"
+#include "physics/block_ordering.h"
 #include "physics/energies.h"
 #include "physics/linear_system.h"
 #include "physics/term.h"
-#include "physics/vertex_ordering.h"
 #include "solver/contacts.h"
 #include "solver/strain_allowance.h"
 
@@ -240,7 +240,7 @@ class Relaxation {
     double energy_before_last_ = 0.0;  ///< J, there
     Linearization at_;
     LinearSystem system_;  ///< of what is free
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, VertexAmdOrdering>
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, BlockAmdOrdering>
         factor_;  ///< of one pattern
 };
 

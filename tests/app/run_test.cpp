@@ -502,11 +502,9 @@ TEST_F(RunWithObstacles, CheckAnswersWhatIntersectsAndRefuses)
     Program program(folder, {"check", scene, "--set", "cloth.translate=[-0.5,-0.5,0.1]"});
     EXPECT_EQ(program.wait(), 2);
     EXPECT_NE(program.out().find("intersection: "), std::string::npos) << program.out();
-    EXPECT_NE(program.out().find("m deep into table, at ["), std::string::npos) << program.out();
     EXPECT_NE(program.out().find("expected: about"), std::string::npos) << "all else is said too";
-    EXPECT_NE(program.err().find("intersects 2 obstacles, see 'intersection' above"), std::string::npos)
-        << program.err();
-    EXPECT_EQ(program.err().find("m deep into table"), std::string::npos) << "it is said once";
+    EXPECT_NE(program.err().find("m deep into table, at ["), std::string::npos) << program.err();
+    EXPECT_EQ(program.out().find("m deep into table"), std::string::npos) << "it is said once";
     Program refused(folder,
                     {"run", scene, "-o", folder / "none", "--set", "cloth.translate=[-0.5,-0.5,0.1]"});
     EXPECT_EQ(refused.wait(), 2);

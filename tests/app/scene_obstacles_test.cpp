@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/scene_obstacles.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "geometry/input_error.h"
@@ -205,6 +207,28 @@ TEST(SceneObstacles, TellOfASurfaceThatClosesButForAHole)
     EXPECT_THAT(warnings_of(cube + "f 5 6 7 8\n"), IsEmpty()) << "with a lid";
     EXPECT_THAT(warnings_of("v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"), IsEmpty())
         << "an open sheet is meant as one";
+    // Three sides of a long box, and four of them: a channel and a tube.
+    const std::string channel =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 9\nv 1 0 9\nv 1 1 9\nv 0 1 9\n"
+        "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n";
+    EXPECT_THAT(warnings_of(channel), IsEmpty());
+    EXPECT_THAT(warnings_of(channel + "f 4 1 5 8\n"), IsEmpty());
+    // A hemisphere of rings of eight.
+    std::string bowl = "v 0 0 0\n";
+    constexpr int kRings = 4, kAround = 8;
+    for (int ring = 1; ring <= kRings; ++ring)
+        for (int k = 0; k < kAround; ++k) {
+            const double down = 0.5 * M_PI * ring / kRings, around = 2.0 * M_PI * k / kAround;
+            bowl += fmt::format("v {} {} {}\n", std::sin(down) * std::cos(around),
+                                std::sin(down) * std::sin(around), 1.0 - std::cos(down));
+        }
+    for (int ring = 0; ring < kRings; ++ring)
+        for (int k = 0; k < kAround; ++k) {
+            const auto at = [&](int r, int j) { return r == 0 ? 1 : 2 + (r - 1) * kAround + j % kAround; };
+            if (ring > 0) bowl += fmt::format("f {} {} {}\n", at(ring, k), at(ring + 1, k), at(ring, k + 1));
+            bowl += fmt::format("f {} {} {}\n", at(ring, k + 1), at(ring + 1, k), at(ring + 1, k + 1));
+        }
+    EXPECT_THAT(warnings_of(bowl), IsEmpty());
 }
 
 TEST(SceneObstacles, TellWhereFacesCrossAndWhatToDo)
@@ -219,7 +243,7 @@ TEST(SceneObstacles, TellWhereFacesCrossAndWhatToDo)
                                     "5]\n[gravity]\n");
     EXPECT_THAT(load_scene(dir / "s.toml", {}, with_program()).warnings,
                 ElementsAre(AllOf(HasSubstr("1 pairs of faces cross"),
-                                  HasSubstr("near [0.0025, 0.0025, 0] (m, before it is scaled and placed)"),
+                                  HasSubstr("near [0.0025, 0.0025, 0] (m, z up, before it is scaled"),
                                   HasSubstr("unite its parts"))));
 }
 

@@ -156,8 +156,10 @@ TEST(SceneWarnings, TellOfAClothWhoseSizeIsNoCloths)
 
 TEST(SceneWarnings, TellOfFacesThatAreThinAndWhatToDo)
 {
-    const auto of_cells = [](const std::string& resolution) {
-        return load_scene(SceneSource{"s.toml", kBase, {"cloth.resolution=" + resolution, kMoving}}).warnings;
+    const std::string nail = "[[obstacle]]\npoints = [[0, 0, 9]]\n";
+    const auto of_cells = [&](const std::string& resolution) {
+        return load_scene(SceneSource{"s.toml", kBase + nail, {"cloth.resolution=" + resolution, kMoving}})
+            .warnings;
     };
     // Of a cell's four faces those on its long sides have atan(width / height) at their ends.
     EXPECT_THAT(of_cells("[12, 1]"),
@@ -165,10 +167,13 @@ TEST(SceneWarnings, TellOfFacesThatAreThinAndWhatToDo)
                                             "degrees, the least 4.8 at "),
                                   HasSubstr("cells with more even sides"))));
     EXPECT_THAT(of_cells("[11, 1]"), IsEmpty());
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.resolution=[12, 1]", kMoving}}).warnings,
+                IsEmpty())
+        << "no feature, no place for it";
 
     const TemporaryDirectory dir;
     write_bytes(dir / "c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.5 -0.01 0\nf 1 2 3\nf 1 4 2\n");
-    write_bytes(dir / "s.toml", "duration = 1\n[cloth]\nfile = \"c.obj\"\n");
+    write_bytes(dir / "s.toml", "duration = 1\n[cloth]\nfile = \"c.obj\"\n" + nail);
     EXPECT_THAT(
         load_scene(dir / "s.toml", {kMoving}).warnings,
         ElementsAre(AllOf(HasSubstr("cloth.file = \"c.obj\": 1 of 2 faces have an angle below 5 degrees, "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "physics/vertex_ordering.h"
+#include "physics/block_ordering.h"
 
 #include <gtest/gtest.h>
 
@@ -38,11 +38,11 @@ Matrix make_grid_matrix(int n)
 template <typename Ordering>
 using Factor = Eigen::SimplicialLDLT<Matrix, Eigen::Lower, Ordering>;
 
-TEST(VertexOrdering, FillsInNoMoreThanAmdOfTheRowsAndKeepsAVertexTogether)
+TEST(BlockOrdering, FillsInAsLittleAsAmdOfTheRowsAndKeepsAVertexTogether)
 {
     for (const int n : {1, 2, 7, 20}) {
         const Matrix matrix = make_grid_matrix(n), lower = matrix.triangularView<Eigen::Lower>();
-        const Factor<VertexAmdOrdering> factor(lower);
+        const Factor<BlockAmdOrdering> factor(lower);
         const Factor<Eigen::AMDOrdering<int>> of_rows(lower);
         ASSERT_EQ(factor.info(), Eigen::Success);
         const auto& order = factor.permutationP().indices();
@@ -52,7 +52,8 @@ TEST(VertexOrdering, FillsInNoMoreThanAmdOfTheRowsAndKeepsAVertexTogether)
             EXPECT_EQ(order[row], order[row - row % 3] + row % 3) << n;
         }
         const Matrix fill = factor.matrixL(), fill_of_rows = of_rows.matrixL();
-        EXPECT_LE(fill.nonZeros(), fill_of_rows.nonZeros() * 21 / 20) << n;
+        constexpr int kTies = 20;  // AMD breaks them by the order it meets them in: a twentieth
+        EXPECT_LE(fill.nonZeros(), fill_of_rows.nonZeros() + fill_of_rows.nonZeros() / kTies) << n;
         const Eigen::VectorXd rhs = Eigen::VectorXd::LinSpaced(matrix.rows(), -1.0, 1.0);
         EXPECT_LT((matrix * factor.solve(rhs) - rhs).norm(), 1e-12 * rhs.norm()) << n;
     }

@@ -6,9 +6,9 @@
 
 namespace arris {
 
-/// AMD of vertices, for Eigen's sparse Cholesky of small systems whose rows 3 v to 3 v + 2 are vertex v's: its
-/// three rows have the same neighbours, so it is enough to look at one of them.
-struct VertexAmdOrdering {
+/// AMD of vertices, for Eigen's sparse Cholesky of small systems whose rows 3 v to 3 v + 2 are vertex v's:
+/// its three rows have the same neighbours, so it is enough to look at one of them.
+struct BlockAmdOrdering {
     using PermutationType = Eigen::AMDOrdering<int>::PermutationType;
 
     /// `symmetric`: both triangles.
