@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "geometry/mesh_topology.h"
 #include "physics/cloth_elements.h"
 #include "physics/membrane.h"
 
@@ -19,10 +18,10 @@ bool StrainRange::is_surprising() const
 
 StrainRange measure_strain(const ClothMesh& cloth)
 {
-    const ClothElements elements = make_elements(cloth, make_topology(cloth.vertex_count(), cloth.faces));
     StrainRange strain;
-    for (const FaceElement& face : elements.faces) {
-        const Vec2 stretches = principal_stretches(FaceState(face, cloth.world).F);
+    for (const Face& face : cloth.faces) {
+        const FaceElement element = make_face_element(cloth.material, face);
+        const Vec2 stretches = principal_stretches(FaceState(element, cloth.world).F);
         strain.greatest = std::max(strain.greatest, stretches[0] - 1.0);
         strain.least = std::min(strain.least, stretches[1] - 1.0);
     }
