@@ -270,9 +270,10 @@ TEST(RopeOverWire, OfFineCellsWantsShortStepsOrSomethingThatStillsIt)
                     worst = std::max(worst, error);
                 }
             }
-        if (fine.is_held)
+        if (fine.is_held) {
             EXPECT_EQ(held, count) << fine.stiffness << " N/m, " << fine.bending << " J, " << fine.damping
                                    << " s, steps of " << fine.step << " s";
+        }
         table.add({fmt::format("{:g}", fine.stiffness), fmt::format("{:g}", fine.bending),
                    fmt::format("{:g}", fine.damping), fmt::format("{:g} ms", 1e3 * fine.step),
                    fmt::format("{} of {}", held, count), percent(worst)});
