@@ -10,12 +10,18 @@ constexpr double kStraight = 1e-4;  // sine of a turn that is none
 
 }  // namespace
 
+int corner_at(const ObstacleFeatures& features, int point)
+{
+    const auto found = std::lower_bound(features.corners.begin(), features.corners.end(), point,
+                                        [](const FeatureCorner& c, int p) { return c.point < p; });
+    return found != features.corners.end() && found->point == point
+               ? static_cast<int>(found - features.corners.begin())
+               : -1;
+}
+
 bool is_corner(const ObstacleFeatures& features, int point)
 {
-    const std::vector<FeatureCorner>& corners = features.corners;
-    const auto found = std::lower_bound(corners.begin(), corners.end(), point,
-                                        [](const FeatureCorner& c, int p) { return c.point < p; });
-    return found != corners.end() && found->point == point;
+    return corner_at(features, point) >= 0;
 }
 
 bool is_tip(const Obstacle& obstacle, int corner)

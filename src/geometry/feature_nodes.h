@@ -17,6 +17,8 @@ struct FeatureNode {
     std::array<Vec3, 2> away;       ///< the unit directions to them
 };
 
+/// Index of a point of the mesh in features().corners; -1 where it is none.
+int corner_at(const ObstacleFeatures& features, int point);
 bool is_corner(const ObstacleFeatures& features, int point);
 
 /// Whether a corner (index in features().corners) has no face: the tip of a nail, an end of a wire, or where

@@ -11,22 +11,16 @@
 namespace arris {
 namespace {
 
-std::array<Vec3, 2> segment_of(const Obstacle& obstacle, int feature)
-{
-    const auto& ends = obstacle.topology().edges[obstacle.features().edges[feature].edge].points;
-    return {obstacle.mesh().points[ends[0]], obstacle.mesh().points[ends[1]]};
-}
-
 double length_of(const Obstacle& obstacle, int feature)
 {
-    const auto [a, b] = segment_of(obstacle, feature);
+    const auto [a, b] = feature_segment(obstacle, feature);
     return (b - a).norm();
 }
 
 /// Unit.
 Vec3 direction_of(const Obstacle& obstacle, int feature)
 {
-    const auto [a, b] = segment_of(obstacle, feature);
+    const auto [a, b] = feature_segment(obstacle, feature);
     return (b - a).normalized();
 }
 
@@ -76,9 +70,15 @@ void walk(const Obstacle& obstacle, const FeaturePlace& place, int end, double r
 
 }  // namespace
 
+std::array<Vec3, 2> feature_segment(const Obstacle& obstacle, int feature)
+{
+    const auto& ends = obstacle.topology().edges[obstacle.features().edges[feature].edge].points;
+    return {obstacle.mesh().points[ends[0]], obstacle.mesh().points[ends[1]]};
+}
+
 PointOnFeature place_on_feature(const Obstacle& obstacle, int feature, const Vec3& place)
 {
-    const auto [a, b] = segment_of(obstacle, feature);
+    const auto [a, b] = feature_segment(obstacle, feature);
     const double s = closest_on_segment(place, a, b);
     return {s, a + s * (b - a)};
 }
@@ -146,7 +146,7 @@ int point_at(const Obstacle& obstacle, const FeatureTurn& turn)
 
 Vec3 turn_point(const Obstacle& obstacle, const FeatureTurn& turn)
 {
-    return segment_of(obstacle, turn.feature)[turn.end];
+    return feature_segment(obstacle, turn.feature)[turn.end];
 }
 
 Vec3 tangent_at(const Obstacle& obstacle, const FeatureTurn& turn)

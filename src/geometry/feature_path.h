@@ -2,6 +2,7 @@
 // Ways along a polyline of an obstacle's features, from segment to segment; they end at its corners.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct FeaturePlace {
     int feature;
     double s;  ///< in [0, 1], from the edge's first point
 };
+
+/// Ends of feature edge `feature` (index in features().edges).
+std::array<Vec3, 2> feature_segment(const Obstacle& obstacle, int feature);
 
 /// The point of a feature edge nearest to `place`.
 struct PointOnFeature {

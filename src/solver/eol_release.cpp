@@ -7,7 +7,6 @@
 #include "geometry/feature_path.h"
 #include "solver/border_room.h"
 #include "solver/eol_features.h"
-#include "solver/feature_sites.h"
 #include "solver/free_fold.h"
 
 namespace arris {

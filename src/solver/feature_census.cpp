@@ -11,7 +11,6 @@
 #include "geometry/feature_path.h"
 #include "solver/eol_coordinates.h"
 #include "solver/eol_features.h"
-#include "solver/feature_sites.h"
 
 namespace arris {
 

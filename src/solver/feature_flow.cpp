@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "geometry/feature_path.h"
 #include "physics/deformation_gradient.h"
 
 namespace arris {

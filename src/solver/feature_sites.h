@@ -32,7 +32,4 @@ struct FeatureSite {
 /// (turn_sites.h).
 std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& state, const ClothStars& stars);
 
-/// Ends of feature edge `feature` (index in features().edges).
-std::array<Vec3, 2> feature_segment(const Obstacle& obstacle, int feature);
-
 }  // namespace arris

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "geometry/feature_path.h"
-#include "solver/feature_sites.h"
 
 namespace arris {
 
