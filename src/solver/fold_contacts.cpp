@@ -17,8 +17,10 @@ namespace {
 constexpr double kFarRound = 1.0, kWrong = 0.5;
 
 // Of the vertex on the wire: its neighbours' mean distance, and the time after which it comes to what now is
-// as far away as it has gone then.
-constexpr double kCells = 4.0, kTime = 0.2;  // s
+// as far away as it has gone then. What has swung past the plane farther down comes to the wire on the wrong
+// side of it, where nothing can be merged across the wire, and holds all of the cloth: so the time in which a
+// metre of cloth slides off, not that in which it only swings.
+constexpr double kCells = 4.0, kTime = 1.0;  // s
 
 class FoldSearch {
   public:
@@ -46,9 +48,9 @@ class FoldSearch {
                 add(planes_, {w, wire}, {&at, angle < 0.0 ? -1 : 1, std::abs(angle), reach});
             });
         }
-        for (std::size_t size = 0; size < planes_.size();) {
-            size = planes_.size();
-            grow();
+        for (Planes layer = planes_; !layer.empty();) {
+            layer = find_beyond(layer);
+            planes_.insert(layer.begin(), layer.end());
         }
         return contacts();
     }
@@ -120,12 +122,12 @@ class FoldSearch {
         return arris::is_past_end(obstacle, edge, place);
     }
 
-    /// By the neighbours of those that are known, each on the side of its own. What is held elsewhere, as at
-    /// the wire's end, is on no side that it could hand on.
-    void grow()
+    /// Neighbours of the last that were found, each on the side of its own. What is held elsewhere, as at the
+    /// wire's end, is on no side that it could hand on.
+    Planes find_beyond(const Planes& last) const
     {
         Planes next;
-        for (const auto& [key, plane] : planes_) {
+        for (const auto& [key, plane] : last) {
             if (is_eol_[key.vertex]) continue;
             for_neighbours(key.vertex, key.wire, [&](int w) {
                 if (planes_.contains({w, key.wire}) || way(plane.at->vertex, w) > plane.reach ||
@@ -135,7 +137,7 @@ class FoldSearch {
                 add(next, {w, key.wire}, {plane.at, plane.side, angle, plane.reach});
             });
         }
-        planes_.merge(next);
+        return next;
     }
 
     static void add(Planes& planes, const Key& key, const Plane& plane)
