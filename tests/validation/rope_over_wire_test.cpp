@@ -31,9 +31,11 @@ constexpr double kShare = 0.9;                                // of it, over whi
 constexpr double kStep = 0.005;                               // s
 constexpr double kTimeError = 1.5e-3;  // BDF2's at 5 ms, over y: the rate is sqrt(2) times a table's
 constexpr double kClothError =
-    1.5e-4;  // over y, beyond BDF2's: the fold leans in its first cell, as kOnWire says
-constexpr double kMeshError = 1e-4;       // over y: the sides are held apart by an angle in their first cell
-constexpr double kRise = 1e-4;            // of energy over its start, over what is exchanged
+    2.5e-4;  // over y, beyond BDF2's: the fold leans in its first cell, as kOnWire says
+constexpr double kMeshError = 2.5e-4;  // over y: the sides rest on planes that hold them apart by an angle
+constexpr double kRise = 1e-4;         // of energy over its start, over what is exchanged
+constexpr double kDamping = 2e-3;      // s, of the scenes: of a rope that does not stretch it takes nothing
+constexpr double kClapRise = 0.05;     // the same, where sides clap on each other
 constexpr double kAreaTolerance = 1e-12;  // round-off of some 100 faces, over the area
 constexpr double kOnWire = 5e-5;          // m, of a stand-off of 1e-3: the fold leans by .05 rad at most
 
@@ -51,9 +53,9 @@ struct RopeCase {
 
 std::string describe(const RopeCase& rope)
 {
-    return fmt::format("{} x {} cells, pattern {}, turned by {}, {} segments, {} degrees open, {} N/m",
+    return fmt::format("{} x {} cells, pattern {}, turned by {}, {} segments, {} degrees open, {} N/m, {} s",
                        rope.cells[0], rope.cells[1], name_of(rope.pattern), rope.pattern_angle, rope.segments,
-                       rope.open_degrees, rope.stiffness);
+                       rope.open_degrees, rope.stiffness, rope.damping);
 }
 
 double displacement(double time)
@@ -213,8 +215,7 @@ TEST(RopeOverWire, IsARopeOnAnyMeshAndOverAnyWire)
                     rope.pattern_angle = angle;
                     rope.cells = cells;
                     rope.segments = segments;
-                    // As stiff as for the orders fine cells buckle: the last test.
-                    rope.stiffness = 2e4;
+                    rope.stiffness = 2e4;  // as stiff as for the orders fine cells buckle: see below
                     const Slide found = slide(rope, kStep);
                     ASSERT_FALSE(testing::Test::HasFailure()) << describe(rope);
                     EXPECT_LT(found.error, kTimeError) << describe(rope);
@@ -239,11 +240,13 @@ TEST(RopeOverWire, OfFineCellsWantsShortStepsOrSomethingThatStillsIt)
     };
     Table table("rope_fine", {"E, N/m", "K, J", "damping, s", "step", "meshes that hold", "worst of these"});
     for (const Case& fine : {Case{2e5, 1e-7, 0.0, kStep, false},
-                             {2e5, 1e-6, 0.0, kStep, false},
-                             {2e5, 1e-5, 0.0, kStep, true},
-                             {2e5, 1e-7, 1e-4, kStep, true},
-                             {2e4, 1e-7, 0.0, kStep, true},
-                             {2e5, 1e-7, 0.0, 0.5 * kStep, true}}) {
+                             {2e5, 1e-5, 0.0, kStep, false},
+                             {2e4, 1e-7, 0.0, kStep, false},
+                             {2e5, 1e-7, 0.0, 0.5 * kStep, false},
+                             {2e5, 1e-7, 1e-4, kStep, false},
+                             {2e5, 1e-7, 1e-3, kStep, true},
+                             {2e5, 1e-7, kDamping, kStep, true},
+                             {2e5, 1e-5, kDamping, kStep, true}}) {
         int count = 0, held = 0;
         double worst = 0.0;
         for (const GridPattern pattern : kPatterns)
@@ -278,6 +281,50 @@ TEST(RopeOverWire, OfFineCellsWantsShortStepsOrSomethingThatStillsIt)
                    fmt::format("{:g}", fine.damping), fmt::format("{:g} ms", 1e3 * fine.step),
                    fmt::format("{} of {}", held, count), percent(worst)});
     }
+}
+
+// A hard case: sides that stand open swing shut and clap on each other, faster than they slide. That takes
+// some of their energy. Without damping they get crumpled, and hold the cloth back more than that.
+TEST(RopeOverWire, SlidesOffThoughItsSidesClap)
+{
+    Table table("rope_clap", {"degrees open", "damping, s", "pattern", "turned by", "cells", "y over cosh",
+                              "energy gained / exchanged"});
+    const double rate = std::sqrt(2.0 * kG / kLength), duration = kShare * kLiftOff;
+    const double exchanged =
+        0.5 * kDensity * kLength * kWidth * std::pow(kStart * rate * std::sinh(rate * duration), 2);
+    for (const auto& [open, least] : {std::pair(2.0, 0.995), {10.0, 0.99}, {40.0, 0.95}})
+        for (const double damping : {0.0, kDamping})
+            for (const auto& [pattern, angle] : {std::pair(GridPattern::Diagonal, 0.0),
+                                                 {GridPattern::Diagonal, 17.0},
+                                                 {GridPattern::Cross, 17.0},
+                                                 {GridPattern::Unstructured, 0.0}})
+                for (const std::array<int, 2> cells : {std::array{8, 2}, {16, 4}, {32, 8}}) {
+                    const bool is_first = pattern == GridPattern::Diagonal && angle == 0.0;
+                    if (!is_deep() && (is_first ? cells[0] > 16 : cells[0] < 32)) continue;
+                    RopeCase rope;
+                    rope.cells = cells;
+                    rope.pattern = pattern;
+                    rope.pattern_angle = angle;
+                    rope.open_degrees = open;
+                    rope.damping = damping;
+                    ClothRun run = make_rope_run(rope);
+                    const EnergySpan energy =
+                        watch_energy(run, duration, kStep, [&](const StepReport& report) {
+                            EXPECT_EQ(report.crossings, 0) << describe(rope);
+                            EXPECT_EQ(validate(run.state.mesh), "") << describe(rope);
+                        });
+                    ASSERT_FALSE(testing::Test::HasFailure()) << describe(rope);
+                    const double gained = (energy.greatest - energy.first) / exchanged;
+                    const double share = measure_displacement(run) / displacement(duration);
+                    EXPECT_LT(gained, damping > 0.0 ? kRise : kClapRise) << describe(rope);
+                    EXPECT_LT(share, 1.002) << describe(rope);
+                    if (damping > 0.0) {
+                        EXPECT_GT(share, least) << describe(rope);
+                    }
+                    table.add({fmt::format("{:g}", open), fmt::format("{:g}", damping), name_of(pattern),
+                               fmt::format("{:g}", angle), fmt::format("{}", cells[0]),
+                               fmt::format("{:.3f}", share), fmt::format("{:.1e}", std::max(gained, 0.0))});
+                }
 }
 
 }  // namespace
