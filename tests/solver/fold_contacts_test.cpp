@@ -148,19 +148,26 @@ TEST(FoldContacts, DoNotLearnTheirSideFromWhatIsHeldAtTheWiresEnd)
     }
 }
 
-TEST(FoldContacts, ReachAsFarAsFlowBringsClothSoon)
+TEST(FoldContacts, ReachAsFarAsFlowBringsClothSoonOnAWireAtRest)
 {
-    EolCloth cloth = make_folded(20.0);
-    const auto farthest = [&] {
-        double most = 0.0;
-        for (const FoldContact& contact : find(cloth))
-            most = std::max(most, std::abs(along_x(cloth, contact)));
-        return most;
-    };
-    const double resting = farthest();
-    for (const EolVertex& eol : cloth.state.eol)
-        cloth.state.material_velocity[cloth.state.index_of(eol.vertex_id)] = Vec2(0.3, 0.0);
-    EXPECT_GT(farthest(), resting + 0.9 * 0.06 - kCell);
+    RigidMotion turning;
+    turning.angular_velocity = Vec3(0.0, 0.0, 1.0);
+    for (const auto& [motion, time] : {std::pair(RigidMotion(), 1.0), {turning, 0.2}}) {  // s
+        EolCloth cloth = make_folded(
+            20.0, 1.0, Obstacle("wire", make_wire({{0, -1, 0}, {0, 1, 0}}, false), {}, motion, 30.0));
+        const auto farthest = [&] {
+            double most = 0.0;
+            for (const FoldContact& contact : find(cloth))
+                most = std::max(most, std::abs(along_x(cloth, contact)));
+            return most;
+        };
+        const double resting = farthest();
+        const double flow = 0.06 / time;  // m/s
+        for (const EolVertex& eol : cloth.state.eol)
+            cloth.state.material_velocity[cloth.state.index_of(eol.vertex_id)] = Vec2(flow, 0.0);
+        EXPECT_GT(farthest(), resting + 0.9 * 0.06 - kCell);
+        EXPECT_LT(farthest(), resting + 1.1 * 0.06 + kCell);
+    }
 }
 
 /// Steps that halve where they have to; each is checked by what knows nothing of it. Returns into how many
