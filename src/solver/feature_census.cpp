@@ -106,7 +106,8 @@ class Census {
     }
 
     /// Whether a contact is of the trace's own edge: the cloth's edge is that, or its face has that and
-    /// touches a vertex of the obstacle's mesh there, in the middle of a convex edge.
+    /// touches a vertex of the obstacle's mesh there, in the middle of a convex edge: on a rim that bends
+    /// a chord of it passes by what is between its ends.
     bool is_on_trace(const Contact& contact) const
     {
         const ObstacleContact& local = contact.in_frame;
@@ -127,10 +128,21 @@ class Census {
             const int feature = feature_of_edge(features, topology.edge_at(local.element, k));
             if (feature < 0 || features.edges[feature].kind != FeatureKind::Convex) continue;
             for (int i = 0; i < 3; ++i)
-                if (local.weights[i] < 1.0 - kAtEnd && is_trace(feature, (i + 1) % 3, (i + 2) % 3))
+                if ((local.weights[i] < 1.0 - kAtEnd || is_near(contact, (i + 1) % 3, (i + 2) % 3)) &&
+                    is_trace(feature, (i + 1) % 3, (i + 2) % 3))
                     return true;
         }
         return false;
+    }
+
+    /// Whether what is touched is a stand-off or so from the edge between two corners of the cloth's face.
+    bool is_near(const Contact& contact, int i, int j) const
+    {
+        const ObstacleContact& local = contact.in_frame;
+        const std::vector<Vec3>& begin = work_.obstacles[contact.obstacle].motion.begin;
+        const Vec3 &a = begin[local.vertices[i]], &b = begin[local.vertices[j]];
+        const double s = closest_on_segment(local.point, a, b);
+        return (local.point - a - s * (b - a)).norm() <= kOnFeature * scene_.material.thickness;
     }
 
     /// Whether the cloth touches at that vertex, as far as can be told (row_cause.h).

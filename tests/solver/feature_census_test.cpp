@@ -182,7 +182,9 @@ Obstacle make_split_ridge()
 
 TEST(FeatureCensus, AFaceOnAPointInTheMiddleOfAnEdgeTouchesTheTraceThere)
 {
-    const auto cause_at = [](const Obstacle& ridge, int point, double off, bool has_trace) {
+    // `off`: of the face's third corner; `aside`: m, of the point from the trace.
+    const auto cause_at = [](const Obstacle& ridge, int point, double off, bool has_trace,
+                             double aside = 0.0) {
         Solved solved;
         solved.cloth.scene.obstacles[0] = ridge;
         const int tip = testing::tip_of(ridge);
@@ -195,6 +197,10 @@ TEST(FeatureCensus, AFaceOnAPointInTheMiddleOfAnEdgeTouchesTheTraceThere)
         Contact& contact = solved.add(ContactKind::Triangle, {v, w, beside}, point, true);
         contact.in_frame.weights = {0.6 - off, 0.4, off};
         contact.in_frame.point = ridge.mesh().points[point];
+        const Vec3 near = contact.in_frame.point + Vec3(aside, 0.0, 1e-3);
+        std::vector<Vec3>& begin = solved.work.obstacles[0].motion.begin;
+        begin[v] = near - 0.4 * testing::kLyingCell * Vec3::UnitY();
+        begin[w] = near + 0.6 * testing::kLyingCell * Vec3::UnitY();
         EXPECT_EQ(solved.take().rows, 1);
         return solved.count(RowCause::AtEol) == 1;
     };
@@ -202,7 +208,8 @@ TEST(FeatureCensus, AFaceOnAPointInTheMiddleOfAnEdgeTouchesTheTraceThere)
     const int middle = static_cast<int>(ridge.mesh().points.size()) - 1;
     ASSERT_EQ(ridge.features().corners.size(), testing::make_ridge(60.0).features().corners.size());
     EXPECT_TRUE(cause_at(ridge, middle, 0.04, true));
-    EXPECT_FALSE(cause_at(ridge, middle, 0.06, true)) << "6 % of the face away";
+    EXPECT_TRUE(cause_at(ridge, middle, 0.06, true, 1e-3)) << "a chord passes by it no farther than cloth is";
+    EXPECT_FALSE(cause_at(ridge, middle, 0.06, true, 4e-3)) << "6 % of the face away, and farther";
     EXPECT_FALSE(cause_at(ridge, middle, 0.04, false)) << "no trace";
     const int end = ridge.features().corners[testing::end_of(ridge)].point;
     EXPECT_FALSE(cause_at(ridge, end, 0.04, true)) << "a corner has a vertex of its own";
