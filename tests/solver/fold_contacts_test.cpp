@@ -26,9 +26,9 @@ constexpr int kCells = 16;
 constexpr double kCell = 0.4 / kCells;  // m
 constexpr double kSame = 1e-9;          // m, of material
 
-Obstacle make_line(const std::vector<Vec3>& points = {{0, -1, 0}, {0, 1, 0}})
+Obstacle make_line(const std::vector<Vec3>& points = {{0, -1, 0}, {0, 1, 0}}, const RigidMotion& motion = {})
 {
-    return Obstacle("wire", make_wire(points, false), {}, {}, 30.0);
+    return Obstacle("wire", make_wire(points, false), {}, motion, 30.0);
 }
 
 /// Cloth folded over a wire by `fold` (degrees, 180 is flat), a stand-off above it, with EOL vertices on it
@@ -153,8 +153,7 @@ TEST(FoldContacts, ReachAsFarAsFlowBringsClothSoonOnAWireAtRest)
     RigidMotion turning;
     turning.angular_velocity = Vec3(0.0, 0.0, 1.0);
     for (const auto& [motion, time] : {std::pair(RigidMotion(), 1.0), {turning, 0.2}}) {  // s
-        EolCloth cloth = make_folded(
-            20.0, 1.0, Obstacle("wire", make_wire({{0, -1, 0}, {0, 1, 0}}, false), {}, motion, 30.0));
+        EolCloth cloth = make_folded(20.0, 1.0, make_line({{0, -1, 0}, {0, 1, 0}}, motion));
         const auto farthest = [&] {
             double most = 0.0;
             for (const FoldContact& contact : find(cloth))

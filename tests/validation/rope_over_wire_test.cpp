@@ -34,8 +34,8 @@ constexpr double kClothError =
     2.5e-4;  // over y, beyond BDF2's: the fold leans in its first cell, as kOnWire says
 constexpr double kMeshError = 2.5e-4;  // over y: the sides rest on planes that hold them apart by an angle
 constexpr double kRise = 1e-4;         // of energy over its start, over what is exchanged
+constexpr double kClapRise = 0.05;     // the same, where sides clap on each other without damping
 constexpr double kDamping = 2e-3;      // s, of the scenes: of a rope that does not stretch it takes nothing
-constexpr double kClapRise = 0.05;     // the same, where sides clap on each other
 constexpr double kAreaTolerance = 1e-12;  // round-off of some 100 faces, over the area
 constexpr double kOnWire = 5e-5;          // m, of a stand-off of 1e-3: the fold leans by .05 rad at most
 
@@ -61,6 +61,13 @@ std::string describe(const RopeCase& rope)
 double displacement(double time)
 {
     return kStart * std::cosh(time * std::sqrt(2.0 * kG / kLength));
+}
+
+/// Kinetic, of the rope that moves so, J.
+double exchanged_energy(double time)
+{
+    const double rate = std::sqrt(2.0 * kG / kLength);
+    return 0.5 * kDensity * kLength * kWidth * std::pow(kStart * rate * std::sinh(rate * time), 2);
 }
 
 /// What the integrator makes of y" = 2 g y / L alone, in the steps of a run: the loads are linear in y, and
@@ -159,9 +166,7 @@ Slide slide(const RopeCase& rope, double dt)
         EXPECT_EQ(report.feature_rows, 0) << "at " << run.state.time << " s";
         expect_sound(run.state);
     });
-    const double rate = std::sqrt(2.0 * kG / kLength);
-    const double exchanged =
-        0.5 * kDensity * kLength * kWidth * std::pow(kStart * rate * std::sinh(rate * duration), 2);
+    const double exchanged = exchanged_energy(duration);
     Slide found;
     found.displacement = measure_displacement(run);
     found.error = std::abs(found.displacement / displacement(duration) - 1.0);
@@ -289,9 +294,7 @@ TEST(RopeOverWire, SlidesOffThoughItsSidesClap)
 {
     Table table("rope_clap", {"degrees open", "damping, s", "pattern", "turned by", "cells", "y over cosh",
                               "energy gained / exchanged"});
-    const double rate = std::sqrt(2.0 * kG / kLength), duration = kShare * kLiftOff;
-    const double exchanged =
-        0.5 * kDensity * kLength * kWidth * std::pow(kStart * rate * std::sinh(rate * duration), 2);
+    const double duration = kShare * kLiftOff, exchanged = exchanged_energy(duration);
     for (const auto& [open, least] : {std::pair(2.0, 0.995), {10.0, 0.99}, {40.0, 0.95}})
         for (const double damping : {0.0, kDamping})
             for (const auto& [pattern, angle] : {std::pair(GridPattern::Diagonal, 0.0),
