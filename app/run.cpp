@@ -370,6 +370,7 @@ RunConfig load_resumed(const std::string& directory, const std::optional<double>
     LoadOptions options;
     options.cloth = &first;
     options.obstacles = &obstacles;
+    options.obstacles_file = obstacles_file(directory);
     RunConfig config = load_scene(checkpoint.source, options);
     check_references(directory, checkpoint.state, config.scene);
     if (until) {

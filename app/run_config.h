@@ -53,10 +53,11 @@ SceneSource read_scene_source(const std::string& path, const std::vector<std::st
 
 /// What load_scene takes from elsewhere than the scene.
 struct LoadOptions {
-    /// Of a run that is resumed, whatever became of the files: its cloth at time 0, and its obstacles' meshes.
-    /// Nothing is then said of time 0, which is over.
+    /// Of a run that is resumed, whatever became of the files: its cloth at time 0, and its obstacles'
+    /// meshes. Nothing is then said of time 0, which is over.
     const ClothMesh* cloth = nullptr;
     const std::vector<ObstacleRecord>* obstacles = nullptr;
+    std::string obstacles_file;  ///< that these are from
 
     /// Intersections with obstacles at time 0 are put into the config, instead of being an InputError.
     bool tells_intersections = false;

@@ -23,6 +23,7 @@
 #include "geometry/cloth_grid.h"
 #include "geometry/initial_target.h"
 #include "geometry/input_error.h"
+#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -133,8 +134,7 @@ std::vector<double> all_jumps(const Scene& scene, const std::vector<ObstaclePlan
         const std::vector<double> jumps = plan.motion.jumps();
         times.insert(times.end(), jumps.begin(), jumps.end());
     }
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
+    sort_unique(times);
     return times;
 }
 

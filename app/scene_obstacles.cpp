@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/printable.h"
 #include "app/scene_estimate.h"
 #include "app/scene_json.h"
 #include "geometry/input_error.h"
@@ -117,7 +118,8 @@ ObstacleMesh stored_mesh(const SceneDocument& document, const LoadOptions& optio
     const std::vector<ObstacleRecord>& stored = *options.obstacles;
     if (index >= stored.size() || stored[index].name != plan.name)
         document.fail(fmt::format("obstacle.{}", index),
-                      fmt::format("{} is not among the obstacles that the run stored", plan.name));
+                      fmt::format("{} is not among the obstacles that the run stored in {}", plan.name,
+                                  printable(options.obstacles_file)));
     return stored[index].mesh;
 }
 

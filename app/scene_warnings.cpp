@@ -16,6 +16,7 @@
 #include "geometry/mesh_quality.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/sheet_opening.h"
+#include "solver/creases.h"
 
 namespace arris {
 namespace {
@@ -350,6 +351,25 @@ void check_thickness(const RunConfig& config, const MeshTopology& topology, Warn
                         cell));
 }
 
+/// Where rows alone slide as well, EOL vertices cost time, and the bend that passes through them energy.
+void check_bends(const RunConfig& config, Warnings& warnings)
+{
+    if (!resolves_bends(config.scene, config.cloth)) return;
+    const std::string stiffness = "cloth.material.bending_stiffness", preset = "cloth.material.preset";
+    const double bending_stiffness = config.scene.material.bending_stiffness;
+    const std::string what = fmt::format(
+        "edges of {:.3g} m in the mean resolve the bend that {:.3g} J make over a sharp feature: cloth "
+        "slides as well "
+        "without EOL vertices (eol.enabled = false), at less cost; see docs/accuracy.md, Stiff bends",
+        config.scene.eol->mean_length, bending_stiffness);
+    if (warnings.is_written(stiffness))
+        warnings.note(stiffness, what);
+    else if (warnings.is_written(preset))
+        warnings.note(preset, what);
+    else
+        warnings.note(what);
+}
+
 void check_stillness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
 {
     if (stays_still(config, topology))
@@ -376,6 +396,7 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_turns(config, warnings);
     check_strain(placed, warnings);
     check_thickness(config, topology, warnings);
+    check_bends(config, warnings);
     check_stillness(config, topology, warnings);
     return warnings.lines_;
 }

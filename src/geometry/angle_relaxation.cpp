@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "geometry/cloth_mesh.h"
+#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -81,8 +82,7 @@ class Relaxation {
             for (const int v : faces_[f])
                 if (!freedom_[v].is_fixed) bad.push_back(v);
         }
-        std::sort(bad.begin(), bad.end());
-        bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+        sort_unique(bad);
         return bad;
     }
 

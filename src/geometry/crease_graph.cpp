@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geometry/input_error.h"
+#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -94,8 +95,7 @@ class GraphBuilder {
             const int axis = k % 2 == 0 ? 1 : 0;  // sides 0 and 2 are horizontal: their v is fixed
             ends.push_back(add_node(on_side(p, unit, axis, graph_.nodes[k][axis])));
         }
-        std::sort(ends.begin(), ends.end());
-        ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+        sort_unique(ends);
         return ends;
     }
 

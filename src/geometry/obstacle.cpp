@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "geometry/cgal.h"
+#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -169,8 +170,7 @@ void Obstacle::find_faces_touching(const Vec3& a, const Vec3& b, const Vec3& c, 
         find_faces_touching(p, q, side);
         found.insert(found.end(), side.begin(), side.end());
     }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    sort_unique(found);
 }
 
 void Obstacle::find_faces_touching(const Vec3& a, const Vec3& b, std::vector<int>& found) const

@@ -30,6 +30,7 @@
 #include <tuple>
 
 #include "geometry/cgal.h"
+#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -60,8 +61,7 @@ class Cleanup {
             const VertexRing ring = surgery_.ring(v);
             patch_.insert(patch_.end(), ring.vertices.begin(), ring.vertices.end());
         }
-        std::sort(patch_.begin(), patch_.end());
-        patch_.erase(std::unique(patch_.begin(), patch_.end()), patch_.end());
+        sort_unique(patch_);
         report_.patch_vertices = static_cast<int>(patch_.size());
     }
 

@@ -16,6 +16,7 @@
 #include "geometry/contact_batches.h"
 #include "geometry/face_groups.h"
 #include "geometry/obstacle_touch.h"
+#include "geometry/sort_unique.h"
 #include "geometry/sweep_violation.h"
 #include "geometry/swept_face.h"
 
@@ -72,12 +73,6 @@ std::vector<Owned> assign_owners(const ClothMotion& motion)
         *std::find(edges.begin(), edges.end(), -1) = e;
     }
     return owned;
-}
-
-void sort_unique(std::vector<int>& list)
-{
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 Box3 box_of(std::span<const Vec3> points)

@@ -5,16 +5,11 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "geometry/sort_unique.h"
+
 namespace arris {
 
 namespace {
-
-template <typename Value>
-void sort_unique(std::vector<Value>& values)
-{
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-}
 
 /// Of each of `ids` its place in `others`, or -1; both ascend.
 std::vector<int> find_places(const std::vector<std::uint32_t>& ids, const std::vector<std::uint32_t>& others)

@@ -9,15 +9,20 @@
 
 namespace arris {
 
-double find_crease_width(const Scene& scene, const ClothMesh& cloth)
+bool resolves_bends(const Scene& scene, const ClothMesh& cloth)
 {
-    constexpr double kHeight = 0.87;  // of an equilateral face, in edge lengths
-    if (!scene.eol || !scene.gravity) return 0.0;
-    // The tension that the cloth's weight makes, T = rho g L, bends it within sqrt(K / T) of a feature.
+    if (!scene.eol || !scene.gravity) return false;
     const double tension =
         scene.material.density * scene.gravity->acceleration.norm() * std::sqrt(material_area(cloth));
     const double h = scene.eol->mean_length;
-    return scene.material.bending_stiffness < tension * h * h ? kHeight * h : 0.0;
+    return tension > 0.0 && scene.material.bending_stiffness >= tension * h * h;
+}
+
+double find_crease_width(const Scene& scene, const ClothMesh& cloth)
+{
+    constexpr double kHeight = 0.87;  // of an equilateral face, in edge lengths
+    if (!scene.eol || !scene.gravity || scene.gravity->acceleration.isZero(0.0)) return 0.0;
+    return resolves_bends(scene, cloth) ? 0.0 : kHeight * scene.eol->mean_length;
 }
 
 Creases find_creases(const Scene& scene, const State& state, const ClothStars& stars)

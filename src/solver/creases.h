@@ -17,6 +17,11 @@ struct Creases {
     std::vector<std::array<int, 2>> edges;  ///< of the cloth, that lie along features; ends and list ascend
 };
 
+/// Whether the mesh resolves the bend that the tension of this cloth's own weight makes at a feature: its
+/// cells are shorter than the length sqrt(K / T) over which cloth bends there. Then rows alone slide as well
+/// as EOL vertices do. False without gravity, and without a target for the mesh.
+bool resolves_bends(const Scene& scene, const ClothMesh& cloth);
+
 /// Width, m, of the creases of this cloth: none (0) without a target for the mesh, and where the mesh
 /// resolves the bend that the cloth has at a feature.
 double find_crease_width(const Scene& scene, const ClothMesh& cloth);

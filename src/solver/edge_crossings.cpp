@@ -10,6 +10,7 @@
 #include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
 #include "geometry/normal_cone.h"
+#include "geometry/sort_unique.h"
 #include "solver/eol_features.h"
 
 namespace arris {
@@ -51,8 +52,7 @@ std::vector<int> EdgeCrossings::neighbours(int vertex) const
     for (const int f : stars_.faces[vertex])
         for (const int w : state_.mesh.faces[f])
             if (w != vertex) found.push_back(w);
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    sort_unique(found);
     return found;
 }
 

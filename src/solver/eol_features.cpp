@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/eol_features.h"
 
-#include <algorithm>
 #include <optional>
+
+#include "geometry/sort_unique.h"
 
 namespace arris {
 
@@ -82,8 +83,7 @@ std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& ob
         for (const int f : stars.faces[v])
             for (const int w : state.mesh.faces[f])
                 if (w > v) later.push_back(w);
-        std::sort(later.begin(), later.end());
-        later.erase(std::unique(later.begin(), later.end()), later.end());
+        sort_unique(later);
         std::optional<Placement> now;
         for (const int w : later) {
             const int b = state.eol_entry(state.ids[w]);

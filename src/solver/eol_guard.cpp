@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/sort_unique.h"
 #include "solver/strain_allowance.h"
 #include "solver/surgery_energy.h"
 
@@ -15,12 +16,6 @@ IdFace from_least(IdFace face)
 {
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
     return face;
-}
-
-void sort_unique(std::vector<VertexId>& ids)
-{
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
 }
 
 std::size_t find_place(const std::vector<VertexId>& ascending, VertexId v)

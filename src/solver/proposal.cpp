@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/sort_unique.h"
 #include "geometry/sweep_check.h"
 
 namespace arris {
@@ -40,8 +41,7 @@ class Shares {
     {
         std::vector<int> vertices;
         for (const int f : faces) vertices.insert(vertices.end(), faces_[f].begin(), faces_[f].end());
-        std::sort(vertices.begin(), vertices.end());
-        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+        sort_unique(vertices);
         return vertices;
     }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/sort_unique.h"
+
 namespace arris {
 
 bool has_features(const Scene& scene)
@@ -40,8 +42,7 @@ std::vector<double> input_jumps(const Scene& scene)
     for (const Pull& pull : scene.pulls) times.insert(times.end(), {pull.start, pull.stop});
 
     std::erase_if(times, [](double t) { return !(t > 0.0) || !std::isfinite(t); });
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
+    sort_unique(times);
     return times;
 }
 

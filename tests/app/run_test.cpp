@@ -449,7 +449,9 @@ TEST_F(RunWithObstacles, WithoutItsStoredObstaclesARunIsNotResumed)
     fs::remove(dir + "/obstacles");
     Program resumed(folder, {"resume", dir, "--until", "0.5"});
     EXPECT_EQ(resumed.wait(), 2);
-    EXPECT_NE(resumed.err().find("table is not among the obstacles"), std::string::npos) << resumed.err();
+    const std::string message =
+        "table is not among the obstacles that the run stored in " + dir + "/obstacles";
+    EXPECT_NE(resumed.err().find(message), std::string::npos) << resumed.err();
 }
 
 TEST_F(RunWithObstacles, FramesPastTheCheckpointAreCutBack)

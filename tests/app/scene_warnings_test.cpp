@@ -154,6 +154,24 @@ TEST(SceneWarnings, TellOfAClothWhoseSizeIsNoCloths)
     EXPECT_THAT(of_size("[1,50]", "[1,50]"), IsEmpty()) << "a ribbon";
 }
 
+TEST(SceneWarnings, TellOfAMeshThatResolvesTheBendsOfItsCloth)
+{
+    const auto of = [](std::vector<std::string> set) {
+        set.insert(set.end(), {kMoving, "cloth.material.density=0.05"});
+        return load_scene(SceneSource{"s.toml", kBase + kBox, set}).warnings;
+    };
+    // T = .05 kg/m^2 * 9.81 m/s^2 * 1 m; 16 cells' mean edge is .0505 m: T h^2 = 1.25e-3 J.
+    const std::string stiff = "cloth.material.bending_stiffness=";
+    EXPECT_THAT(of({stiff + "1.2e-3", "cloth.resolution=[16,16]", "gravity={}"}), IsEmpty());
+    EXPECT_THAT(of({stiff + "1.3e-3", "cloth.resolution=[16,16]", "gravity={}"}),
+                ElementsAre(AllOf(HasSubstr("cloth.material.bending_stiffness=1.3e-3: edges of 0.0505 m"),
+                                  HasSubstr("eol.enabled = false"))));
+    EXPECT_THAT(of({stiff + "1.2e-3", "cloth.resolution=[32,32]", "gravity={}"}), ::testing::SizeIs(1));
+    EXPECT_THAT(of({stiff + "1.3e-3", "cloth.resolution=[16,16]", "gravity={}", "eol.enabled=false"}),
+                IsEmpty());
+    EXPECT_THAT(of({stiff + "1.3e-3", "cloth.resolution=[16,16]"}), IsEmpty()) << "nothing weighs";
+}
+
 TEST(SceneWarnings, TellOfFacesThatAreThinAndWhatToDo)
 {
     const std::string nail = "[[obstacle]]\npoints = [[0, 0, 9]]\n";
