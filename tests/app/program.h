@@ -11,9 +11,18 @@
 #include <thread>
 #include <vector>
 
+#include "app/run_config.h"
 #include "tests/app/temporary_directory.h"
 
 namespace arris {
+
+/// Scenes are loaded with their mesh files read by the program, not by the test.
+inline LoadOptions with_program()
+{
+    LoadOptions options;
+    options.importer = {ARRIS_PROGRAM, "import-obstacle"};
+    return options;
+}
 
 /// The arris program as a child process, its output in files.
 class Program {

@@ -11,6 +11,7 @@
 #include "geometry/input_error.h"
 #include "solver/step.h"
 #include "tests/app/error_of.h"
+#include "tests/app/program.h"
 #include "tests/app/temporary_directory.h"
 
 namespace arris {
@@ -25,14 +26,6 @@ using ::testing::SizeIs;
 
 constexpr double kRoundOff = 1e-14;  // of lengths of about 1 m
 const std::string kBase = "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";  // at z = 0
-
-/// Reads mesh files with the program, not with this test.
-LoadOptions with_program()
-{
-    LoadOptions options;
-    options.importer = {ARRIS_PROGRAM, "import-obstacle"};
-    return options;
-}
 
 RunConfig load(const std::string& text, const LoadOptions& options = with_program())
 {

@@ -2,6 +2,8 @@
 // Every scene of data/scenes, coarse.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -31,6 +33,37 @@ std::string halved_resolution(const std::string& file)
            std::to_string((std::stoi(found[2]) + 1) / 2) + "]";
 }
 
+/// Whether anything does work on the cloth but gravity.
+bool is_driven(const Scene& scene)
+{
+    const auto is_moving = [](const auto& of) { return of.is_moving(); };
+    return scene.wind || !scene.pulls.empty() ||
+           std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                       [&](const Obstacle& obstacle) { return is_moving(obstacle.motion()); }) ||
+           std::any_of(scene.pins.begin(), scene.pins.end(),
+                       [&](const Pin& pin) { return is_moving(pin.motion); });
+}
+
+/// By how much the cloth's energy comes above the least that it has had, as a share of all that it has
+/// exchanged: its greatest kinetic energy, and what it has lost in all.
+double greatest_rise(const CsvTable& steps)
+{
+    std::vector<double> total(steps.column("time").size(), 0.0);
+    for (const char* part : {"kinetic_energy", "gravity_energy", "stretch_energy", "bending_energy"}) {
+        const std::vector<double> energy = steps.column(part);
+        for (std::size_t k = 0; k < total.size(); ++k)
+            if (std::isfinite(energy[k])) total[k] += energy[k];  // absent effects have none
+    }
+    double least = total[0], rise = 0.0, most = total[0];
+    for (const double energy : total) {
+        least = std::min(least, energy);
+        most = std::max(most, energy);
+        rise = std::max(rise, energy - least);
+    }
+    const std::vector<double> kinetic = steps.column("kinetic_energy");
+    return rise / (*std::max_element(kinetic.begin(), kinetic.end()) + most - least);
+}
+
 class Scenes : public testing::TestWithParam<std::string> {};
 
 TEST_P(Scenes, FinishFreeOfTheirObstaclesAndKeepTheirMaterial)
@@ -57,6 +90,12 @@ TEST_P(Scenes, FinishFreeOfTheirObstaclesAndKeepTheirMaterial)
     const double area = size[0].get<double>() * size[1].get<double>();
     for (const double of_step : steps.column("material_area")) EXPECT_NEAR(of_step, area, 1e-12 * area);
     EXPECT_EQ(steps.column("time").back(), report["scene"]["duration"].get<double>());
+
+    // Mesh changes, too: where they may strain cloth as they like it is 8 to 77 % in 11 of these scenes.
+    constexpr double kMostRise = 0.01;
+    if (!is_driven(load_scene(GetParam(), {}, with_program()).scene)) {
+        EXPECT_LE(greatest_rise(steps), kMostRise);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(scene_files()), [](const auto& scene) {
