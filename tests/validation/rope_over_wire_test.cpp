@@ -29,7 +29,9 @@ constexpr double kLength = 1.0, kWidth = 0.2, kStart = 0.05;  // m
 constexpr double kLiftOff = 0.598076;                         // s, of this rope
 constexpr double kShare = 0.9;                                // of it, over which errors are measured
 constexpr double kStep = 0.005;                               // s
-constexpr double kTimeError = 1.5e-3;  // BDF2's at 5 ms, over y: the rate is sqrt(2) times a table's
+constexpr double kTimeError = 1.5e-3;   // BDF2's at 5 ms, over y: the rate is sqrt(2) times a table's
+constexpr double kHangingError = 5e-4;  // over the longer side
+constexpr double kLoss = 0.01;          // of energy, over what is exchanged
 constexpr double kClothError =
     2.5e-4;  // over y, beyond BDF2's: the fold leans in its first cell, as kOnWire says
 constexpr double kMeshError = 2.5e-4;  // over y: the sides rest on planes that hold them apart by an angle
@@ -224,8 +226,11 @@ TEST(RopeOverWire, IsARopeOnAnyMeshAndOverAnyWire)
                     const Slide found = slide(rope, kStep);
                     ASSERT_FALSE(testing::Test::HasFailure()) << describe(rope);
                     EXPECT_LT(found.error, kTimeError) << describe(rope);
+                    const double longer = 0.5 * kLength + found.displacement;
+                    EXPECT_LT(found.error * found.displacement / longer, kHangingError) << describe(rope);
                     EXPECT_LT(found.cloth_error, kClothError) << describe(rope);
                     EXPECT_LT(found.rise, kRise) << describe(rope);
+                    EXPECT_LT(found.loss, kLoss) << describe(rope);
                     least = std::min(least, found.displacement);
                     most = std::max(most, found.displacement);
                     table.add({name_of(pattern), fmt::format("{:g}", angle), fmt::format("{}", cells[0]),
