@@ -125,6 +125,18 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     ++run.at.rows;
 }
 
+/// A vertex by what a user can find it by; new ones of a step that was not taken by their number alone.
+std::string name_vertex(const State& state, std::int64_t id)
+{
+    const auto at = std::lower_bound(state.ids.begin(), state.ids.end(), id);
+    if (at == state.ids.end() || *at != id) return fmt::format("vertex {}", id);
+    const auto v = static_cast<std::size_t>(at - state.ids.begin());
+    const Vec3& x = state.mesh.world[v];
+    const Vec2& X = state.mesh.material[v];
+    return fmt::format("vertex {}, at [{:.6g}, {:.6g}, {:.6g}] (m, material [{:.6g}, {:.6g}]),", id, x.x(),
+                       x.y(), x.z(), X.x(), X.y());
+}
+
 Ending explain(const StepReport& report, double tolerance, const State& state)
 {
     const std::string place = fmt::format("in the step after t = {} s (step {})", state.time, state.step);
@@ -138,11 +150,11 @@ Ending explain(const StepReport& report, double tolerance, const State& state)
                                 "64 times smaller steps",
                                 place)};
         case StepStatus::Infeasible:
-            return {
-                RunStatus::Infeasible,
-                fmt::format("nothing keeps vertex {} out of the obstacles {}: a pin drives it into one, or "
-                            "two leave it no room",
-                            report.infeasible_vertex, place)};
+            return {RunStatus::Infeasible,
+                    fmt::format(
+                        "nothing keeps {} out of the obstacles {}: a pin drives it into one, or two leave "
+                        "it no room",
+                        name_vertex(state, report.infeasible_vertex), place)};
         case StepStatus::Penetration:
             return {RunStatus::Penetration,
                     fmt::format("the cloth cannot be kept out of an obstacle {}, also with 64 times smaller "

@@ -101,9 +101,11 @@ SceneValue parse_file(const std::string& path, std::string_view text)
     try {
         return to_scene_value(toml::parse(text), 0);
     } catch (const toml::parse_error& error) {
-        throw InputError(fmt::format("{}:{}: is not TOML: {}; allowed: TOML 1.0", printable(path),
-                                     std::max<toml::source_index>(1, error.source().begin.line),
-                                     printable(error.description(), 200)));
+        throw InputError(
+            fmt::format("{}:{}: is not TOML: {}; allowed: TOML 1.0, text in quotes, a digit before a "
+                        "number's point",
+                        printable(path), std::max<toml::source_index>(1, error.source().begin.line),
+                        printable(error.description(), 200)));
     }
 }
 

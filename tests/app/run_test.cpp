@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <regex>
 #include <sstream>
 
 #include "app/csv_table.h"
@@ -298,6 +299,25 @@ TEST_F(Run, AFolderWithARunIsRefusedWithoutOverwrite)
     EXPECT_EQ(over.wait(), 0) << over.err();
     EXPECT_FALSE(fs::exists(dir + "/frames/cloth_00005.ply")) << "frames of the earlier run";
     EXPECT_EQ(read_bytes(dir + "/notes.txt"), "mine");
+}
+
+TEST_F(Run, ThatObstaclesCrushNamesAVertexByItsPlace)
+{
+    write_bytes(
+        scene,
+        "duration = 1\n[cloth]\nsize = [0.5, 0.5]\nresolution = [4, 4]\ntranslate = [-0.25, -0.25, 0.11]\n"
+        "[gravity]\n[[obstacle]]\nbox = [0.3, 0.3, 0.2]\n[[obstacle]]\nbox = [0.3, 0.3, 0.1]\n"
+        "translate = [0, 0, 0.3]\nmotion = {velocity = [0, 0, -1]}\n");
+    Program program(folder, {"run", scene, "-o", folder / "crushed"});
+    EXPECT_NE(program.wait(), 0);
+    const nlohmann::json report = nlohmann::json::parse(read_bytes(folder / "crushed/report.json"));
+    EXPECT_EQ(report["status"], "infeasible");
+    const std::string message = report["message"];
+    EXPECT_TRUE(std::regex_search(
+        message,
+        std::regex("keeps vertex \\d+, at \\[.*\\] \\(m, material \\[.*\\]\\), out of the obstacles in "
+                   "the step after t = 0.1")))
+        << message;
 }
 
 TEST_F(Run, NumbersThatOverflowEndItWithItsStateKept)
