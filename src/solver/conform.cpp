@@ -73,7 +73,7 @@ class Conforming {
     ConformOutcome run(const FeatureChanges& changes, const FailedFlow& failed, int most_lost)
     {
         std::optional<ConformedMesh> mesh = find_mesh(changes, failed, most_lost);
-        return {std::move(mesh), std::move(refused_), lost_};
+        return {std::move(mesh), std::move(refused_), lost_, blocked_};
     }
 
   private:
@@ -149,6 +149,7 @@ class Conforming {
         // What stands in the way and cannot give way: there the feature is met by rows. Only there: the rest
         // of the trace carries the cloth on.
         for (const VertexId v : cleared.blocked) give_up(v, RowCause::Blocked);
+        blocked_ += static_cast<int>(cleared.blocked.size());
         for (const TraceAdvance& advance : advances) lost_ += trace_.is_on_trace(advance.vertex) ? 0 : 1;
     }
 
@@ -382,7 +383,7 @@ class Conforming {
     VertexId made_ = kNoVertex;            ///< which vertex that would be
     std::map<VertexId, int> contact_of_;   ///< index in State::active, of vertices made where one pressed
     std::vector<RefusedContact> refused_;
-    int lost_ = 0;  ///< ConformOutcome::lost
+    int lost_ = 0, blocked_ = 0;  ///< of ConformOutcome
     ConformReport report_;
 };
 

@@ -54,7 +54,8 @@ FeatureChanges find_feature_changes(const Scene& scene, const State& state, cons
 struct ConformOutcome {
     std::optional<ConformedMesh> mesh;    ///< nothing where it is right as it is
     std::vector<RefusedContact> refused;  ///< that pressed on a feature and stay or become rows
-    int lost = 0;  ///< EOL vertices that clearing has cost: blocked, or merged into others
+    int lost = 0;     ///< EOL vertices that clearing has cost: blocked, or merged into others
+    int blocked = 0;  ///< of these what could not be cleared
 };
 
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where

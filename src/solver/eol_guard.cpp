@@ -53,7 +53,7 @@ double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) con
 {
     constexpr double kShare = 0.01;  // of the patch's elastic energy
     // The alternative is to give the trace up: a row that holds all that slides.
-    const double clearing = limit_ == StrainLimit::Forced ? 100.0 : 10.0;
+    const double clearing = limit_ == StrainLimit::Forced ? 1000.0 : 10.0;
     double area = 0.0, squared_speed = 0.0;
     for (const PatchFace& face : event.before) {
         area += 0.5 * twice_area(face.material[0], face.material[1], face.material[2]);

@@ -67,10 +67,23 @@ class MeshTries {
     {
     }
 
-    /// The best of them. More carefully made where the cloth could not give way as it should have. Where
+    /// The best of them. What is blocked would be met by rows, which stop what slides and all the cloth that
+    /// hangs on it: its way is cleared by force where that strains the cloth by less than that.
+    TriedMesh find_best()
+    {
+        TriedMesh gentle = find_gentle();
+        if (gentle.outcome.blocked == 0) return gentle;
+        TriedMesh forced = make(StrainLimit::Forced);
+        if (forced.outcome.blocked >= gentle.outcome.blocked) return gentle;
+        carry_over(forced, kTraceStrain);
+        return forced.strain <= kTraceStrain ? forced : gentle;
+    }
+
+  private:
+    /// More carefully made where the cloth could not give way as it should have. Where
     /// that would cost a trace its vertices the first, if it strains but little more than it should, or one
     /// made by force, if that strains no more than it should.
-    TriedMesh find_best()
+    TriedMesh find_gentle()
     {
         TriedMesh giving = make(StrainLimit::GivesWay);
         carry_over(giving, kTraceStrain);
@@ -87,7 +100,6 @@ class MeshTries {
         return careful;
     }
 
-  private:
     TriedMesh make(StrainLimit limit, int most_lost = kAnyNumber)
     {
         TriedMesh made;

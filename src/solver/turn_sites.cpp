@@ -16,7 +16,9 @@ namespace arris {
 
 namespace {
 
-constexpr double kMissed = 1.0;   // thicknesses: nearer to its turn a chord is as good
+// Thicknesses: nearer to its turn a chord is as good. Less than one: beside a fold's top its faces pass the
+// wire nearer than that, and a turn that presses through them blocks what slides.
+constexpr double kMissed = 0.3;
 constexpr double kLongest = 2.0;  // target lengths between neighbours along a trace
 
 /// On a wire: an EOL vertex or a site.

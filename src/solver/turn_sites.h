@@ -16,7 +16,7 @@
 namespace arris {
 
 /// Whether a vertex at this turn is held there: where a chord over a cell of the cloth at `material` misses
-/// it by more than a thickness. A trace of vertices that slide follows a wire of shorter edges as well
+/// it by more than .3 of a thickness. A trace of vertices that slide follows a wire of shorter edges as well
 /// as its cells can, and vertices held nearer to each other than cells are would hold the cloth.
 bool is_held_at(const Scene& scene, const Obstacle& obstacle, const FeatureTurn& turn, const Vec2& material);
 
@@ -27,7 +27,7 @@ FeatureSite make_turn_site(const State& state, const ClothStars& stars, std::int
                            const std::array<double, 3>& weights, const Vec3& outward);
 
 /// Turns of wires between neighbours along a trace, these being EOL vertices or `sites`, that their chord
-/// misses by more than a thickness, where vertices are held and the cloth is near enough to be put on
+/// misses by more than .3 of a thickness, where vertices are held and the cloth is near enough to be put on
 /// them: of each pair the one that it misses most. `positions`: the cloth's in the frame of obstacle `o`.
 /// None that has a vertex or site already.
 std::vector<FeatureSite> find_turn_sites(const Scene& scene, const State& state, const ClothStars& stars,
