@@ -76,13 +76,14 @@ class MeshTries {
         TriedMesh forced = make(StrainLimit::Forced);
         if (forced.outcome.blocked >= gentle.outcome.blocked) return gentle;
         carry_over(forced, kTraceStrain);
-        return forced.strain <= kTraceStrain ? forced : gentle;
+        if (forced.strain > kTraceStrain) return gentle;
+        return forced;
     }
 
   private:
-    /// More carefully made where the cloth could not give way as it should have. Where
-    /// that would cost a trace its vertices the first, if it strains but little more than it should, or one
-    /// made by force, if that strains no more than it should.
+    /// More carefully made where the cloth could not give way as it should have. Where that would cost a
+    /// trace its vertices the first, if it strains but little more than it should, or one made by force, if
+    /// that strains no more than it should.
     TriedMesh find_gentle()
     {
         TriedMesh giving = make(StrainLimit::GivesWay);

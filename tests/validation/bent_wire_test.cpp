@@ -51,12 +51,15 @@ class BentWire : public ::testing::TestWithParam<std::array<int, 2>> {};
 
 TEST_P(BentWire, LetsClothGoAsAStraightOneDoes)
 {
+    // .78 and .72 to .84 are measured, by a tenth of a millimetre of where the cloth lies; 1.2 to 1.3 where a
+    // bend has a vertex only from a whole thickness on.
+    constexpr double kSoon = 1.0;  // s
     const double straight = slide_off({{0.024, -0.6, 0.0}, {0.024, 0.6, 0.0}}, GetParam());
     const double bent = slide_off({{0.0, -0.6, 0.0}, {0.03, 0.0, 0.01}, {0.0, 0.6, 0.0}}, GetParam());
     RecordProperty("straight", std::to_string(straight));
     RecordProperty("bent", std::to_string(bent));
-    EXPECT_LT(straight, 0.85);
-    EXPECT_LT(bent, 0.85);
+    EXPECT_LT(straight, kSoon);
+    EXPECT_LT(bent, kSoon);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, BentWire, ::testing::Values(std::array{24, 15}, std::array{32, 20}));
