@@ -55,7 +55,7 @@ struct ConformOutcome {
     std::optional<ConformedMesh> mesh;    ///< nothing where it is right as it is
     std::vector<RefusedContact> refused;  ///< that pressed on a feature and stay or become rows
     int lost = 0;     ///< EOL vertices that clearing has cost: blocked, or merged into others
-    int blocked = 0;  ///< of these what could not be cleared
+    int blocked = 0;  ///< of these what clearing met and could not move
 };
 
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where

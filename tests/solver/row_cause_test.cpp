@@ -244,8 +244,10 @@ TEST(RowCause, AWayThatCannotBeClearedIsCounted)
     ASSERT_TRUE(outcome.mesh);
     EXPECT_GT(outcome.mesh->report.released, 2);
     EXPECT_EQ(count(outcome, RowCause::Blocked), outcome.mesh->report.released);
-    EXPECT_EQ(outcome.blocked, outcome.mesh->report.released);
-    EXPECT_GE(outcome.lost, outcome.blocked) << "others may have been merged";
+    EXPECT_GT(outcome.blocked, 0);
+    EXPECT_LE(outcome.blocked, outcome.mesh->report.released)
+        << "some lead off the cloth: no force clears that";
+    EXPECT_GE(outcome.lost, outcome.mesh->report.released) << "others may have been merged";
     EXPECT_EQ(count(outcome, RowCause::GivenUp), 0);
 }
 
