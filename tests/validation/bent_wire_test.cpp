@@ -4,6 +4,7 @@
 // does: a bend that blocks a few vertices of the trace stops all of the cloth.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -11,7 +12,6 @@
 #include "geometry/initial_target.h"
 #include "geometry/obstacle_shapes.h"
 #include "solver/advance.h"
-#include "solver/audit.h"
 
 namespace arris {
 namespace {
