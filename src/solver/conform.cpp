@@ -70,22 +70,22 @@ class Conforming {
             [this](const SurgeryEvent& event) { return keeps_way(event) && guard_.allows(event); });
     }
 
-    ConformOutcome run(const FeatureChanges& changes, const FailedFlow& failed, int most_lost)
+    ConformOutcome run(const FeatureChanges& changes, const FailedFlow& failed, const MostLost& most)
     {
-        std::optional<ConformedMesh> mesh = find_mesh(changes, failed, most_lost);
+        std::optional<ConformedMesh> mesh = find_mesh(changes, failed, most);
         return {std::move(mesh), std::move(refused_), lost_, blocked_};
     }
 
   private:
     std::optional<ConformedMesh> find_mesh(const FeatureChanges& changes, const FailedFlow& failed,
-                                           int most_lost)
+                                           const MostLost& most)
     {
         for (const VertexId v : changes.released) give_up(v, cause_of_release(v));
         for (const VertexId v : failed.given_up)
             if (trace_.is_on_trace(v)) give_up(v, RowCause::GivenUp);
         for (const auto& [v, flow] : failed.flow) expect_flow(v, flow);
         clear_way();
-        if (lost_ > most_lost) return std::nullopt;
+        if (lost_ > most.lost || blocked_ > most.blocked) return std::nullopt;
         forget_released();
         insert(changes.sites, failed);
         join();
@@ -397,11 +397,11 @@ FeatureChanges find_feature_changes(const Scene& scene, const State& state, cons
 
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
                             const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit,
-                            int most_lost)
+                            const MostLost& most)
 {
     if (!scene.eol || (state.eol.empty() && state.active.empty())) return {};
     if (changes.empty() && failed.empty() && !is_flowing(state)) return {};
-    return Conforming(scene, dt, state, stars, limit).run(changes, failed, most_lost);
+    return Conforming(scene, dt, state, stars, limit).run(changes, failed, most);
 }
 
 }  // namespace arris

@@ -50,6 +50,12 @@ struct FeatureChanges {
 /// `stars` are the state's. Nothing without a target for the mesh.
 FeatureChanges find_feature_changes(const Scene& scene, const State& state, const ClothStars& stars);
 
+/// EOL vertices that clearing what is there may cost; of more that mesh is of no use.
+struct MostLost {
+    int lost = std::numeric_limits<int>::max();     ///< of ConformOutcome
+    int blocked = std::numeric_limits<int>::max();  ///< of ConformOutcome
+};
+
 /// What `conform_mesh` found.
 struct ConformOutcome {
     std::optional<ConformedMesh> mesh;    ///< nothing where it is right as it is
@@ -61,9 +67,9 @@ struct ConformOutcome {
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
 /// they have not for long, the way of those that slide cleared, what they left restored. `stars` and
 /// `changes` are the state's. Unfinished, without a mesh, where clearing what is there loses more than
-/// `most_lost`.
+/// `most`.
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
                             const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit,
-                            int most_lost = std::numeric_limits<int>::max());
+                            const MostLost& most = {});
 
 }  // namespace arris

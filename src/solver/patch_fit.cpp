@@ -33,18 +33,14 @@ class PatchFitter {
     TransferReport run(const std::vector<ChangedPatch>& patches, double most_strain)
     {
         TransferReport report;
-        std::vector<VelocityField> fields;
-        for (const ChangedPatch& patch : patches) {
-            const double gain = relax_patch(patch);
-            fields.push_back(old_field(patch));
-            if (gain > 0.0)
-                report.strain = most_strain_of(patch, gain,
-                                               compute_kinetic_energy(scene_.material.density, fields.back()),
-                                               report.strain);
+        for (const StrainedPatch& strained : find_strained(patches)) {
+            const ChangedPatch& patch = patches[strained.index];
+            const double gain = relax_patch(patch, strained.energy_before);
+            if (gain > 0.0) report.strain = most_strain_of(patch, gain, strained.kinetic, report.strain);
             if (report.strain > most_strain) return report;
         }
-        for (std::size_t i = 0; i < patches.size(); ++i) {
-            const std::optional<VelocityFit> fit = fit_patch(patches[i], fields[i]);
+        for (const ChangedPatch& patch : patches) {
+            const std::optional<VelocityFit> fit = fit_patch(patch);
             if (!fit) continue;
             ++report.patches;
             report.energy_gain += fit->energy_gain;
@@ -53,6 +49,31 @@ class PatchFitter {
     }
 
   private:
+    /// One with more energy than before, J.
+    struct StrainedPatch {
+        std::size_t index;
+        double energy_before, kinetic;
+        double strain;  ///< as it is
+    };
+
+    /// The most strained first: what cannot be, is seen there.
+    std::vector<StrainedPatch> find_strained(const std::vector<ChangedPatch>& patches) const
+    {
+        std::vector<StrainedPatch> strained;
+        for (std::size_t i = 0; i < patches.size(); ++i) {
+            const ChangedPatch& patch = patches[i];
+            const double before =
+                find_patch_energy(scene_, creases_before_, before_.mesh, patch.faces_before);
+            const double gain = find_patch_energy(scene_, creases_, after_.mesh, patch.faces) - before;
+            if (!(gain > 0.0)) continue;
+            const double kinetic = compute_kinetic_energy(scene_.material.density, old_field(patch));
+            strained.push_back({i, before, kinetic, most_strain_of(patch, gain, kinetic, 0.0)});
+        }
+        std::stable_sort(strained.begin(), strained.end(),
+                         [](const StrainedPatch& a, const StrainedPatch& b) { return a.strain > b.strain; });
+        return strained;
+    }
+
     VelocityField old_field(const ChangedPatch& patch) const
     {
         VelocityField field;
@@ -73,11 +94,10 @@ class PatchFitter {
         return field;
     }
 
-    /// A mesh that strains the cloth more than the one before gives way.
+    /// A mesh that strains the cloth more than the one before, which had that energy, gives way.
     /// Returns by how much its energy is above what it was, J.
-    double relax_patch(const ChangedPatch& patch)
+    double relax_patch(const ChangedPatch& patch, double before)
     {
-        const double before = find_patch_energy(scene_, creases_before_, before_.mesh, patch.faces_before);
         relaxed_.faces = patch.faces;
         relaxed_.is_free.resize(after_.ids.size());
         relaxed_.normals.resize(after_.ids.size());
@@ -113,7 +133,7 @@ class PatchFitter {
         return std::max(known, strain(cell));
     }
 
-    std::optional<VelocityFit> fit_patch(const ChangedPatch& changed, const VelocityField& old)
+    std::optional<VelocityFit> fit_patch(const ChangedPatch& changed)
     {
         FitPatch patch;
         std::unordered_map<int, int> local;
@@ -125,7 +145,8 @@ class PatchFitter {
             const Face& face = after_.mesh.faces[f];
             patch.faces.push_back({local[face[0]], local[face[1]], local[face[2]]});
         }
-        const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch);
+        const std::optional<VelocityFit> fit =
+            fit_velocity(scene_.material.density, old_field(changed), patch);
         if (!fit) return fit;
         for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
             after_.velocity[changed.vertices[i]] = fit->velocity[i];

@@ -2,6 +2,7 @@
 #include "solver/step_mesh.h"
 
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "solver/conform.h"
@@ -48,7 +49,7 @@ constexpr int kAnyNumber = std::numeric_limits<int>::max();
 /// A mesh, and the state on it where that has been carried over.
 struct TriedMesh {
     ConformOutcome outcome;
-    State state;
+    std::optional<State> state;
     double strain = 0.0;
 };
 
@@ -67,53 +68,53 @@ class MeshTries {
     {
     }
 
-    /// The best of them. What is blocked would be met by rows, which stop what slides and all the cloth that
-    /// hangs on it: its way is cleared by force where that strains the cloth by less than that.
+    /// The best of them: one that gives way, or one more carefully made where the cloth could not give way as
+    /// it should have; where that would cost a trace its vertices the first, if it strains but little more
+    /// than it should.
     TriedMesh find_best()
-    {
-        TriedMesh gentle = find_gentle();
-        if (gentle.outcome.blocked == 0) return gentle;
-        TriedMesh forced = make(StrainLimit::Forced);
-        if (forced.outcome.blocked >= gentle.outcome.blocked) return gentle;
-        carry_over(forced, kTraceStrain);
-        if (forced.strain > kTraceStrain) return gentle;
-        return forced;
-    }
-
-  private:
-    /// More carefully made where the cloth could not give way as it should have. Where that would cost a
-    /// trace its vertices the first, if it strains but little more than it should, or one made by force, if
-    /// that strains no more than it should.
-    TriedMesh find_gentle()
     {
         TriedMesh giving = make(StrainLimit::GivesWay);
         carry_over(giving, kTraceStrain);
-        if (giving.strain <= kPatchStrain) return giving;
+        if (giving.strain <= kPatchStrain) return or_forced(std::move(giving), false);
         const bool may_stay = giving.strain <= kTraceStrain;
-        TriedMesh careful = make(StrainLimit::AsMade, may_stay ? giving.outcome.lost : kAnyNumber);
-        if (careful.outcome.lost > giving.outcome.lost) {
-            if (may_stay) return giving;
-            TriedMesh forced = make(StrainLimit::Forced);
-            carry_over(forced, kPatchStrain);
-            if (forced.strain <= kPatchStrain) return forced;
-        }
-        carry_over(careful, kAny);
-        return careful;
+        const int most_lost = may_stay ? giving.outcome.lost : kAnyNumber;
+        TriedMesh careful = make(StrainLimit::AsMade, {.lost = most_lost});
+        if (careful.outcome.lost > most_lost) return or_forced(std::move(giving), false);
+        const bool is_costly = careful.outcome.lost > giving.outcome.lost;
+        return or_forced(std::move(careful), is_costly);
     }
 
-    TriedMesh make(StrainLimit limit, int most_lost = kAnyNumber)
+  private:
+    /// That, or one made by force where that leaves less blocked and strains the cloth but little more than
+    /// it should, or where the other is costly, no more than it should. What is blocked would be met by rows,
+    /// which stop what slides and all the cloth that hangs on it.
+    TriedMesh or_forced(TriedMesh gentle, bool is_costly)
+    {
+        if (is_costly || gentle.outcome.blocked > 0) {
+            const int most_blocked = is_costly ? kAnyNumber : gentle.outcome.blocked - 1;
+            TriedMesh forced = make(StrainLimit::Forced, {.blocked = most_blocked});
+            const bool is_freer = forced.outcome.blocked < gentle.outcome.blocked;
+            const double most_strain = is_freer ? kTraceStrain : kPatchStrain;
+            carry_over(forced, most_strain);
+            if (forced.outcome.blocked <= most_blocked && forced.strain <= most_strain) return forced;
+        }
+        carry_over(gentle, kAny);
+        return gentle;
+    }
+
+    TriedMesh make(StrainLimit limit, const MostLost& most = {})
     {
         TriedMesh made;
         made.outcome =
-            conform_mesh(scene_, dt_, state_, work_.stars, changes_, work_.failed.flow(), limit, most_lost);
+            conform_mesh(scene_, dt_, state_, work_.stars, changes_, work_.failed.flow(), limit, most);
         seconds_.conform += watch_.lap();
         return made;
     }
 
-    /// Not to the end where a patch would be strained by more than `most_strain`.
+    /// Once; not to the end where a patch would be strained by more than `most_strain`.
     void carry_over(TriedMesh& made, double most_strain)
     {
-        if (!made.outcome.mesh) return;
+        if (!made.outcome.mesh || made.state) return;
         TransferReport transferred;
         made.state = transfer(scene_, state_, work_.stars, *made.outcome.mesh, transferred, most_strain);
         made.strain = transferred.strain;
@@ -142,7 +143,7 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
     if (is_new) {
         report.inserted = best.outcome.mesh->report.inserted;
         report.released = best.outcome.mesh->report.released;
-        work.conformed = std::move(best.state);
+        work.conformed = std::move(*best.state);
     }
     State& start = is_new ? work.conformed : state;
     prepare(scene, start, work);

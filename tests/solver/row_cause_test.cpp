@@ -254,16 +254,19 @@ TEST(RowCause, AWayThatCannotBeClearedIsCounted)
 TEST(RowCause, AMeshThatLosesMoreVerticesThanItMayIsNotMade)
 {
     const EolCloth cloth = heading_for_held_row();
-    const int lost = conform(cloth).lost;
-    const auto conform_within = [&](int most_lost) {
+    const ConformOutcome whole = conform(cloth);
+    const auto conform_within = [&](const MostLost& most) {
         return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(),
                             find_feature_changes(cloth.scene, cloth.state, cloth.stars()), {},
-                            StrainLimit::GivesWay, most_lost);
+                            StrainLimit::GivesWay, most);
     };
-    EXPECT_TRUE(conform_within(lost).mesh);
-    const ConformOutcome unfinished = conform_within(lost - 1);
-    EXPECT_FALSE(unfinished.mesh);
-    EXPECT_EQ(unfinished.lost, lost);
+    EXPECT_TRUE(conform_within({.lost = whole.lost, .blocked = whole.blocked}).mesh);
+    for (const MostLost& most : {MostLost{.lost = whole.lost - 1}, MostLost{.blocked = whole.blocked - 1}}) {
+        const ConformOutcome unfinished = conform_within(most);
+        EXPECT_FALSE(unfinished.mesh);
+        EXPECT_EQ(unfinished.lost, whole.lost);
+        EXPECT_EQ(unfinished.blocked, whole.blocked);
+    }
 }
 
 TEST(RowCause, WhatIsMadeAndFindsNoWayIsCountedAsTheContactItWas)
