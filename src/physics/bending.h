@@ -18,9 +18,9 @@ namespace arris {
 /// (theta/2) = sigma_0, and as much beyond. Cloth that is folded so far within a cell is not resolved by it:
 /// truly its tension T bends it within sqrt(K / T) of the feature, and a cell away nothing is felt. The
 /// hinge's moment, which would be greatest there, pushes the rows beside the feature off and aside, by K / h
-/// T, and as rows come and go with the sliding material that shakes the cloth. So where the mesh
-/// resolves the bend, K > T h^2, there are no creases (solver/creases). Its width h is the mesh's own, not
-/// that of the faces beside it, which change with the sliding: a fold would do work on them.
+/// T, and as rows come and go with the sliding material that shakes the cloth. So where that bend
+/// is as wide as the hinge, 2 sqrt(K / T) > h, there are no creases (solver/creases). Its width h is the
+/// mesh's own, not that of the faces beside it, which change with the sliding: a fold would do work on them.
 class Bending : public HingeTerm {
   public:
     explicit Bending(double stiffness) : stiffness_(stiffness) {}

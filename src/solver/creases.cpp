@@ -3,26 +3,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/mesh_quality.h"
 #include "solver/eol_features.h"
 
 namespace arris {
 
+namespace {
+
+/// sqrt(K / T), m: over which this cloth bends on either side of a feature. Without gravity it is endless.
+double find_bend_length(const Scene& scene, const ClothMesh& cloth)
+{
+    const double weight = scene.gravity ? scene.gravity->acceleration.norm() : 0.0;
+    const double tension = scene.material.density * weight * std::sqrt(material_area(cloth));
+    return tension > 0.0 ? std::sqrt(scene.material.bending_stiffness / tension)
+                         : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
 bool resolves_bends(const Scene& scene, const ClothMesh& cloth)
 {
-    if (!scene.eol || !scene.gravity) return false;
-    const double tension =
-        scene.material.density * scene.gravity->acceleration.norm() * std::sqrt(material_area(cloth));
-    const double h = scene.eol->mean_length;
-    return tension > 0.0 && scene.material.bending_stiffness >= tension * h * h;
+    return scene.eol && std::isfinite(find_bend_length(scene, cloth)) &&
+           find_bend_length(scene, cloth) >= scene.eol->mean_length;
 }
 
 double find_crease_width(const Scene& scene, const ClothMesh& cloth)
 {
     constexpr double kHeight = 0.87;  // of an equilateral face, in edge lengths
-    if (!scene.eol || !scene.gravity || scene.gravity->acceleration.isZero(0.0)) return 0.0;
-    return resolves_bends(scene, cloth) ? 0.0 : kHeight * scene.eol->mean_length;
+    if (!scene.eol) return 0.0;
+    const double width = kHeight * scene.eol->mean_length;
+    return 2.0 * find_bend_length(scene, cloth) < width ? width : 0.0;
 }
 
 Creases find_creases(const Scene& scene, const State& state, const ClothStars& stars)

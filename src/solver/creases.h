@@ -22,8 +22,9 @@ struct Creases {
 /// as EOL vertices do. False without gravity, and without a target for the mesh.
 bool resolves_bends(const Scene& scene, const ClothMesh& cloth);
 
-/// Width, m, of the creases of this cloth: none (0) without a target for the mesh, and where the mesh
-/// resolves the bend that the cloth has at a feature.
+/// Width, m, of the creases of this cloth: none (0) without a target for the mesh, and where the bend that
+/// the cloth has at a feature, on both sides of it, is as wide. There a crease would be too soft, and what is
+/// released a jump in energy.
 double find_crease_width(const Scene& scene, const ClothMesh& cloth);
 
 /// Those between EOL vertices. `stars` are the state's.

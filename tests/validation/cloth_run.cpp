@@ -49,12 +49,13 @@ ClothRun::ClothRun(Scene a_scene, ClothMesh mesh, const Vec3& velocity)
     prepare(scene, state, work);
 }
 
-StepReport ClothRun::advance(double dt)
+StepReport ClothRun::advance(double dt, const Look& look)
 {
     StepReport last;
     const auto accept = [&](const StepReport& report, bool) {
         EXPECT_LE(report.kkt_residual, settings.tolerance);
         last = report;
+        if (look) look(report);
         return true;
     };
     const double begin = state.time;
@@ -64,12 +65,12 @@ StepReport ClothRun::advance(double dt)
     return last;
 }
 
-void ClothRun::advance(double duration, double dt)
+void ClothRun::advance(double duration, double dt, const Look& look)
 {
     const double begin = state.time;
     const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
     for (int k = 1; k <= steps && !testing::Test::HasFailure(); ++k)
-        advance(begin + duration * k / steps - state.time);
+        advance(begin + duration * k / steps - state.time, look);
 }
 
 ClothEnergy measure_energy(ClothRun& run)

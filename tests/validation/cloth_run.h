@@ -27,11 +27,14 @@ struct ClothRun {
 
     ClothRun(Scene a_scene, ClothMesh mesh, const Vec3& velocity = Vec3::Zero());
 
-    /// One step of `dt` (s). A step that does not end well fails the test.
-    StepReport advance(double dt);
+    using Look = std::function<void(const StepReport&)>;
+
+    /// One step of `dt` (s); `look` is called after it, or after each of its parts. A step that does not end
+    /// well fails the test.
+    StepReport advance(double dt, const Look& look = {});
 
     /// Equal steps of about `dt`, the last one ending `duration` from now.
-    void advance(double duration, double dt);
+    void advance(double duration, double dt, const Look& look = {});
 };
 
 /// Kinetic and potential, of the run's present state.
