@@ -36,6 +36,7 @@ TEST(CommandLine, BadArgumentsAreOneLineAndStatusTwo)
         {"resume", folder / "none"},
         {"export", folder.path(), "--formats", "obj"},
         {"export", folder.path(), "--formats", "stl"},
+        {"docs"},
         {"docs", "everything"},
     };
     for (const std::vector<std::string>& arguments : wrong) {
@@ -48,6 +49,21 @@ TEST(CommandLine, BadArgumentsAreOneLineAndStatusTwo)
         EXPECT_EQ(err.rfind("arris: ", 0), 0u) << call << ": " << err;
         EXPECT_EQ(program.out(), "") << call;
     }
+}
+
+TEST(CommandLine, WhatIsNoCommandIsToldWithWhatWouldBeOne)
+{
+    const TemporaryDirectory folder;
+    const auto line_of = [&](const std::vector<std::string>& arguments) {
+        Program program(folder, arguments);
+        program.wait();
+        return program.err();
+    };
+    const std::string kAllowed = "; allowed: run, resume, check, export, docs (arris --help tells more)\n";
+    EXPECT_EQ(line_of({}), "arris: a command is missing" + kAllowed);
+    EXPECT_EQ(line_of({"fly", "high"}), "arris: fly: is no command" + kAllowed);
+    EXPECT_EQ(line_of({"docs"}),
+              "arris: topic is required; allowed: scene, schema (arris --help tells more)\n");
 }
 
 TEST(CommandLine, WhatIsNoRunIsToldWithWhatWouldBeOne)
