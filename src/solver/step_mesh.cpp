@@ -95,8 +95,10 @@ class MeshTries {
             TriedMesh forced = make(StrainLimit::Forced, {.blocked = most_blocked});
             const bool is_freer = forced.outcome.blocked < gentle.outcome.blocked;
             const double most_strain = is_freer ? kTraceStrain : kPatchStrain;
-            carry_over(forced, most_strain);
-            if (forced.outcome.blocked <= most_blocked && forced.strain <= most_strain) return forced;
+            if (forced.outcome.blocked <= most_blocked) {
+                carry_over(forced, most_strain);
+                if (forced.strain <= most_strain) return forced;
+            }
         }
         carry_over(gentle, kAny);
         return gentle;
