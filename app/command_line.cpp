@@ -37,12 +37,13 @@ int tell_parse_error(const CLI::App& app, const CLI::ParseError& error)
 {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::string line = error.what();
-    if (error.get_name() == "RequiredError" && app.get_subcommands().empty()) {
+    const bool is_missing = error.get_name() == "RequiredError";
+    if (is_missing && app.get_subcommands().empty()) {
         const std::vector<std::string> words = app.remaining();
         line = words.empty() ? "a command is missing" : words.front() + ": is no command";
         line += "; allowed: run, resume, check, export, docs";
     }
-    if (error.get_name() == "RequiredError" && app.got_subcommand("docs")) line += "; allowed: scene, schema";
+    if (is_missing && app.got_subcommand("docs")) line += "; allowed: scene, schema";
     for (char& c : line)
         if (c == '\n') c = ' ';
     fmt::print(stderr, "arris: {} (arris --help tells more)\n", printable(line));

@@ -25,8 +25,8 @@ double find_bend_length(const Scene& scene, const ClothMesh& cloth)
 
 bool resolves_bends(const Scene& scene, const ClothMesh& cloth)
 {
-    return scene.eol && std::isfinite(find_bend_length(scene, cloth)) &&
-           find_bend_length(scene, cloth) >= scene.eol->mean_length;
+    const double bend = find_bend_length(scene, cloth);
+    return scene.eol && std::isfinite(bend) && bend >= scene.eol->mean_length;
 }
 
 double find_crease_width(const Scene& scene, const ClothMesh& cloth)

@@ -33,14 +33,16 @@ class PatchFitter {
     TransferReport run(const std::vector<ChangedPatch>& patches, double most_strain)
     {
         TransferReport report;
-        for (const StrainedPatch& strained : find_strained(patches)) {
+        std::vector<VelocityField> fields;
+        for (const ChangedPatch& patch : patches) fields.push_back(old_field(patch));
+        for (const StrainedPatch& strained : find_strained(patches, fields)) {
             const ChangedPatch& patch = patches[strained.index];
             const double gain = relax_patch(patch, strained.energy_before);
             if (gain > 0.0) report.strain = most_strain_of(patch, gain, strained.kinetic, report.strain);
             if (report.strain > most_strain) return report;
         }
-        for (const ChangedPatch& patch : patches) {
-            const std::optional<VelocityFit> fit = fit_patch(patch);
+        for (std::size_t i = 0; i < patches.size(); ++i) {
+            const std::optional<VelocityFit> fit = fit_patch(patches[i], fields[i]);
             if (!fit) continue;
             ++report.patches;
             report.energy_gain += fit->energy_gain;
@@ -57,7 +59,8 @@ class PatchFitter {
     };
 
     /// The most strained first: what cannot be, is seen there.
-    std::vector<StrainedPatch> find_strained(const std::vector<ChangedPatch>& patches) const
+    std::vector<StrainedPatch> find_strained(const std::vector<ChangedPatch>& patches,
+                                             const std::vector<VelocityField>& fields) const
     {
         std::vector<StrainedPatch> strained;
         for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -66,7 +69,7 @@ class PatchFitter {
                 find_patch_energy(scene_, creases_before_, before_.mesh, patch.faces_before);
             const double gain = find_patch_energy(scene_, creases_, after_.mesh, patch.faces) - before;
             if (!(gain > 0.0)) continue;
-            const double kinetic = compute_kinetic_energy(scene_.material.density, old_field(patch));
+            const double kinetic = compute_kinetic_energy(scene_.material.density, fields[i]);
             strained.push_back({i, before, kinetic, most_strain_of(patch, gain, kinetic, 0.0)});
         }
         std::stable_sort(strained.begin(), strained.end(),
@@ -133,7 +136,7 @@ class PatchFitter {
         return std::max(known, strain(cell));
     }
 
-    std::optional<VelocityFit> fit_patch(const ChangedPatch& changed)
+    std::optional<VelocityFit> fit_patch(const ChangedPatch& changed, const VelocityField& old)
     {
         FitPatch patch;
         std::unordered_map<int, int> local;
@@ -145,8 +148,7 @@ class PatchFitter {
             const Face& face = after_.mesh.faces[f];
             patch.faces.push_back({local[face[0]], local[face[1]], local[face[2]]});
         }
-        const std::optional<VelocityFit> fit =
-            fit_velocity(scene_.material.density, old_field(changed), patch);
+        const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch);
         if (!fit) return fit;
         for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
             after_.velocity[changed.vertices[i]] = fit->velocity[i];

@@ -23,13 +23,14 @@ namespace {
 using testing::edges_of;
 using testing::EolCloth;
 using testing::kLyingCell;
+using testing::kStep;
 using testing::kThickness;
 using testing::lying;
 using testing::make_draped;
 using testing::make_ridge;
 using testing::press_edges;
+using testing::take;
 
-constexpr double kStep = 0.005;
 constexpr double kOnFeature = 1e-9;  // m: crossings of straight lines at 1 m
 
 /// A point of the obstacle presses into the face around it.
@@ -59,20 +60,7 @@ void press_corner(EolCloth& cloth)
 
 std::optional<ConformedMesh> conform(const EolCloth& cloth, const FailedFlow& failed = {})
 {
-    return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(),
-                        find_feature_changes(cloth.scene, cloth.state, cloth.stars()), failed,
-                        StrainLimit::GivesWay)
-        .mesh;
-}
-
-/// Conforms and carries the state over.
-ConformedMesh take(EolCloth& cloth)
-{
-    std::optional<ConformedMesh> made = conform(cloth);
-    EXPECT_TRUE(made);
-    TransferReport report;
-    if (made) cloth.state = transfer(cloth.scene, cloth.state, cloth.stars(), *made, report);
-    return made ? *made : ConformedMesh{};
+    return testing::conform_cloth(cloth, failed).mesh;
 }
 
 /// EOL vertices in the order in which they are along the ridge.

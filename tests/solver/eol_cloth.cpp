@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/solver/eol_cloth.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "geometry/cloth_grid.h"
 #include "geometry/obstacle_shapes.h"
 #include "physics/energies.h"
 #include "physics/inertia.h"
 #include "solver/eol_coordinates.h"
+#include "solver/mesh_transfer.h"
 #include "solver/step.h"
 
 namespace arris::testing {
@@ -144,6 +148,22 @@ void press_edges(EolCloth& cloth)
 std::vector<MeshEdge> edges_of(const State& state)
 {
     return make_topology(state.mesh.vertex_count(), state.mesh.faces).edges;
+}
+
+ConformOutcome conform_cloth(const EolCloth& cloth, const FailedFlow& failed, StrainLimit limit)
+{
+    const ClothStars stars = cloth.stars();
+    return conform_mesh(cloth.scene, kStep, cloth.state, stars,
+                        find_feature_changes(cloth.scene, cloth.state, stars), failed, limit);
+}
+
+ConformedMesh take(EolCloth& cloth)
+{
+    std::optional<ConformedMesh> made = conform_cloth(cloth).mesh;
+    EXPECT_TRUE(made);
+    TransferReport report;
+    if (made) cloth.state = transfer(cloth.scene, cloth.state, cloth.stars(), *made, report);
+    return made ? *made : ConformedMesh{};
 }
 
 double kinetic_energy_of(const Scene& scene, const State& state)

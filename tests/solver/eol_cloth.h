@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "solver/conform.h"
 #include "solver/eol_coordinates.h"
 #include "solver/scene.h"
 #include "solver/state.h"
@@ -48,6 +49,15 @@ EolCloth lying(double turn, double shift = 0.0, double half_length = 0.5);
 
 /// Rows where the cloth's edges cross the ridge's tip, as a step leaves them.
 void press_edges(EolCloth& cloth);
+
+inline constexpr double kStep = 0.005;  // s, for which these conform
+
+/// What the cloth's features ask of its mesh.
+ConformOutcome conform_cloth(const EolCloth& cloth, const FailedFlow& failed = {},
+                             StrainLimit limit = StrainLimit::GivesWay);
+
+/// The same, and carries the state over. Fails the test where the mesh is right as it is.
+ConformedMesh take(EolCloth& cloth);
 
 std::vector<MeshEdge> edges_of(const State& state);
 

@@ -11,25 +11,17 @@
 #include "solver/conform.h"
 #include "solver/eol_coordinates.h"
 #include "solver/eol_release.h"
-#include "solver/mesh_transfer.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
 namespace {
 
+using testing::conform_cloth;
 using testing::EolCloth;
 using testing::kLyingCell;
+using testing::kStep;
 using testing::lying;
 using testing::press_edges;
-
-constexpr double kStep = 0.005;  // s
-
-ConformOutcome conform(const EolCloth& cloth, const FailedFlow& failed = {},
-                       StrainLimit limit = StrainLimit::GivesWay)
-{
-    return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(),
-                        find_feature_changes(cloth.scene, cloth.state, cloth.stars()), failed, limit);
-}
 
 int count(const ConformOutcome& outcome, RowCause cause)
 {
@@ -38,12 +30,9 @@ int count(const ConformOutcome& outcome, RowCause cause)
                       [cause](const RefusedContact& refused) { return refused.cause == cause; }));
 }
 
-void take(EolCloth& cloth)
+void take_without_rows(EolCloth& cloth)
 {
-    const ConformOutcome outcome = conform(cloth);
-    ASSERT_TRUE(outcome.mesh);
-    TransferReport report;
-    cloth.state = transfer(cloth.scene, cloth.state, cloth.stars(), *outcome.mesh, report);
+    testing::take(cloth);
     cloth.state.active.clear();
 }
 
@@ -67,7 +56,7 @@ TEST(RowCause, WhatBecomesEolIsRefusedByNothing)
 {
     EolCloth cloth = lying(17.0);
     press_edges(cloth);
-    const ConformOutcome outcome = conform(cloth);
+    const ConformOutcome outcome = conform_cloth(cloth);
     ASSERT_TRUE(outcome.mesh);
     EXPECT_GE(outcome.mesh->report.inserted + count(outcome, RowCause::BesideEol),
               static_cast<int>(cloth.state.active.size()));
@@ -79,7 +68,7 @@ TEST(RowCause, EveryRowNearABorderIsCounted)
 {
     EolCloth cloth = lying(0.0, 0.2 - 0.1 * kLyingCell);
     press_edges(cloth);
-    const ConformOutcome outcome = conform(cloth);
+    const ConformOutcome outcome = conform_cloth(cloth);
     EXPECT_FALSE(outcome.mesh);
     EXPECT_EQ(count(outcome, RowCause::NearBorder), static_cast<int>(cloth.state.active.size()));
     ASSERT_GT(cloth.state.active.size(), 6u);
@@ -96,7 +85,7 @@ TEST(RowCause, WhatComesFastToABorderIsNotNearItYet)
         EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
         for (Vec3& v : cloth.state.velocity) v = Vec3(speed, 0, 0);
         press_edges(cloth);
-        const ConformOutcome outcome = conform(cloth);
+        const ConformOutcome outcome = conform_cloth(cloth);
         EXPECT_EQ(count(outcome, RowCause::BorderAhead),
                   speed > 1.7 ? static_cast<int>(cloth.state.active.size()) : 0);
         EXPECT_EQ(count(outcome, RowCause::NearBorder), 0);
@@ -115,7 +104,7 @@ TEST(RowCause, WhereTheBorderRunsAlongTheFeatureItIsNotTried)
             return !is_on_border(row.vertex_ids[0]) || !is_on_border(row.vertex_ids[1]);
         });
         ASSERT_EQ(cloth.state.active.size(), 1u) << turn;
-        const ConformOutcome outcome = conform(cloth);
+        const ConformOutcome outcome = conform_cloth(cloth);
         EXPECT_EQ(count(outcome, RowCause::AlongBorder), turn < 20.0 ? 1 : 0) << turn;
         EXPECT_EQ(outcome.mesh.has_value(), turn > 20.0) << turn;
     }
@@ -125,11 +114,11 @@ TEST(RowCause, WhatHasComeToTheBorderIsCountedAsNearIt)
 {
     EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
     press_edges(cloth);
-    take(cloth);
+    take_without_rows(cloth);
     ASSERT_GT(cloth.state.eol.size(), 4u);
     for (const EolVertex& e : cloth.state.eol)
         cloth.state.mesh.material[cloth.state.index_of(e.vertex_id)].x() = 0.1 * kLyingCell;
-    const ConformOutcome outcome = conform(cloth);
+    const ConformOutcome outcome = conform_cloth(cloth);
     EXPECT_EQ(count(outcome, RowCause::NearBorder), static_cast<int>(cloth.state.eol.size()));
     EXPECT_EQ(count(outcome, RowCause::Released), 0);
 }
@@ -139,9 +128,9 @@ TEST(RowCause, AVertexThatIsGivenUpIsCountedAndWhatIsNotTriedAgain)
     EolCloth cloth = lying(17.0);
     press_edges(cloth);
     const std::vector<ActiveContact> rows = cloth.state.active;
-    take(cloth);
+    take_without_rows(cloth);
     const VertexId given_up = cloth.state.eol[2].vertex_id;
-    const ConformOutcome alone = conform(cloth, {{}, {given_up}});
+    const ConformOutcome alone = conform_cloth(cloth, {{}, {given_up}});
     ASSERT_TRUE(alone.mesh);
     ASSERT_EQ(alone.refused.size(), 1u);
     EXPECT_EQ(alone.refused[0].cause, RowCause::GivenUp);
@@ -149,7 +138,7 @@ TEST(RowCause, AVertexThatIsGivenUpIsCountedAndWhatIsNotTriedAgain)
 
     EolCloth fresh = lying(17.0);
     fresh.state.active = rows;
-    const ConformOutcome none = conform(fresh, {{}, {given_up}});
+    const ConformOutcome none = conform_cloth(fresh, {{}, {given_up}});
     EXPECT_EQ(count(none, RowCause::GivenUp), static_cast<int>(rows.size()));
 }
 
@@ -157,7 +146,7 @@ TEST(RowCause, WhatIsReleasedIsCountedWithItsReason)
 {
     EolCloth cloth = lying(17.0);
     press_edges(cloth);
-    take(cloth);
+    take_without_rows(cloth);
     const auto last = std::max_element(
         cloth.state.eol.begin(), cloth.state.eol.end(), [&](const EolVertex& a, const EolVertex& b) {
             const auto y = [&](const EolVertex& e) {
@@ -166,7 +155,7 @@ TEST(RowCause, WhatIsReleasedIsCountedWithItsReason)
             return y(a) < y(b);
         });
     last->idle = kIdleSteps;  // an end of the trace: nothing holds it between
-    const ConformOutcome idle = conform(cloth);
+    const ConformOutcome idle = conform_cloth(cloth);
     ASSERT_EQ(idle.refused.size(), 1u);
     EXPECT_EQ(idle.refused[0].cause, RowCause::Released);
     EXPECT_EQ(idle.refused[0].vertex_ids[0], last->vertex_id);
@@ -181,7 +170,7 @@ TEST(RowCause, WhatLiesBetweenPressingContactsIsNoContact)
     press_edges(cloth);
     ASSERT_GT(cloth.state.active.size(), 6u);
     cloth.state.active = {cloth.state.active.front(), cloth.state.active.back()};
-    EXPECT_EQ(conform(cloth).refused.size(), 2u);
+    EXPECT_EQ(conform_cloth(cloth).refused.size(), 2u);
 }
 
 TEST(RowCause, WhatHasNoCoordinatesSaysWhy)
@@ -190,15 +179,15 @@ TEST(RowCause, WhatHasNoCoordinatesSaysWhy)
     EolCloth upright = lying(0.0);
     for (Vec3& x : upright.state.mesh.world) x = Vec3(0.0, x.y(), x.x() + 0.3);
     upright.add_eol(upright.vertex_at(0.2, 0.2), false, testing::tip_of(upright.scene.obstacles[0]));
-    EXPECT_EQ(count(conform(upright), RowCause::EdgeOn), 1);
+    EXPECT_EQ(count(conform_cloth(upright), RowCause::EdgeOn), 1);
 
     // A border along the ridge, and the cloth's corner.
     EolCloth along = lying(0.0, 0.2);
     along.add_eol(along.vertex_at(0.0, 0.2), false, testing::tip_of(along.scene.obstacles[0]));
-    EXPECT_EQ(count(conform(along), RowCause::AlongBorder), 1);
+    EXPECT_EQ(count(conform_cloth(along), RowCause::AlongBorder), 1);
     EolCloth corner = lying(0.0, 0.2);
     corner.add_eol(corner.vertex_at(0.0, 0.0), false, testing::tip_of(corner.scene.obstacles[0]));
-    EXPECT_EQ(count(conform(corner), RowCause::ClothCorner), 1);
+    EXPECT_EQ(count(conform_cloth(corner), RowCause::ClothCorner), 1);
 
     EXPECT_EQ(cause_of(EolRefusal::NoDirection), RowCause::NoDirection);
     for (const RowCause cause :
@@ -218,7 +207,7 @@ TEST(RowCause, WhereHeldVerticesLeaveNoPlaceTheMeshIsTheReason)
     EolCloth cloth = lying(0.0, 0.2 - 3.02 * kLyingCell);
     hold(cloth, 3.0 * kLyingCell - 1e-6, 3.0 * kLyingCell + 1e-6);
     press_edges(cloth);
-    const ConformOutcome outcome = conform(cloth);
+    const ConformOutcome outcome = conform_cloth(cloth);
     EXPECT_GT(count(outcome, RowCause::Quality), 4);
     EXPECT_EQ(count(outcome, RowCause::Guard), 0);
 }
@@ -229,7 +218,7 @@ EolCloth heading_for_held_row()
 {
     EolCloth cloth = lying(0.0);
     press_edges(cloth);
-    take(cloth);
+    take_without_rows(cloth);
     hold(cloth, 4.0 * kLyingCell - 1e-6, 4.0 * kLyingCell + 1e-6);
     for (const EolVertex& e : cloth.state.eol)
         cloth.state.material_velocity[cloth.state.index_of(e.vertex_id)] =
@@ -240,7 +229,7 @@ EolCloth heading_for_held_row()
 
 TEST(RowCause, AWayThatCannotBeClearedIsCounted)
 {
-    const ConformOutcome outcome = conform(heading_for_held_row());
+    const ConformOutcome outcome = conform_cloth(heading_for_held_row());
     ASSERT_TRUE(outcome.mesh);
     EXPECT_GT(outcome.mesh->report.released, 2);
     EXPECT_EQ(count(outcome, RowCause::Blocked), outcome.mesh->report.released);
@@ -254,7 +243,7 @@ TEST(RowCause, AWayThatCannotBeClearedIsCounted)
 TEST(RowCause, AMeshThatLosesMoreVerticesThanItMayIsNotMade)
 {
     const EolCloth cloth = heading_for_held_row();
-    const ConformOutcome whole = conform(cloth);
+    const ConformOutcome whole = conform_cloth(cloth);
     const auto conform_within = [&](const MostLost& most) {
         return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(),
                             find_feature_changes(cloth.scene, cloth.state, cloth.stars()), {},
@@ -277,7 +266,7 @@ TEST(RowCause, WhatIsMadeAndFindsNoWayIsCountedAsTheContactItWas)
         hold(cloth, row * kLyingCell - 1e-6, row * kLyingCell + 1e-6);
         for (Vec3& v : cloth.state.velocity) v = Vec3(-side * 0.25 * kLyingCell / kStep, 0.0, 0.0);
         press_edges(cloth);
-        const ConformOutcome outcome = conform(cloth);
+        const ConformOutcome outcome = conform_cloth(cloth);
         ASSERT_TRUE(outcome.mesh);
         EXPECT_GT(outcome.mesh->report.released, 1);
         EXPECT_EQ(count(outcome, RowCause::Blocked), outcome.mesh->report.released);
@@ -299,7 +288,7 @@ TEST(RowCause, StiffClothThatWouldBeStrainedIsGuarded)
             x = Vec3(beside + 0.8 * away, x.y(), x.z() + 0.6 * (beside / 0.8 - std::abs(away)));
         }
         press_edges(cloth);
-        const ConformOutcome outcome = conform(cloth, {}, StrainLimit::AsMade);
+        const ConformOutcome outcome = conform_cloth(cloth, {}, StrainLimit::AsMade);
         const int guarded = count(outcome, RowCause::Guard);
         if (cells < 0.1) {
             EXPECT_GT(guarded, 4);
@@ -319,7 +308,7 @@ TEST(RowCause, WhatSurgeryBesideItMovesOffThePlaneIsCounted)
     cloth.scene.gravity = Gravity{};
     for (Vec3& x : cloth.state.mesh.world) x.x() += 0.012 * std::sin(90.0 * x.y() + 40.0 * x.x());
     press_edges(cloth);
-    const ConformOutcome outcome = conform(cloth);
+    const ConformOutcome outcome = conform_cloth(cloth);
     EXPECT_GT(count(outcome, RowCause::OffPlane), 0);
 }
 

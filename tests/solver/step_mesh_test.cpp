@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/conform.h"
-#include "solver/mesh_transfer.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
@@ -15,10 +13,9 @@ namespace {
 
 using testing::EolCloth;
 using testing::kLyingCell;
+using testing::kStep;
 using testing::lying;
 using testing::press_edges;
-
-constexpr double kStep = 0.005;  // s
 
 /// A trace half a cell beside a row of vertices that stands up, as a pleat does, and behind which a pin holds
 /// the cloth: merged into the trace it would leave the cloth too short, by 5 %. The trace flows towards it, a
@@ -29,11 +26,7 @@ EolCloth heading_for_pleat(double youngs_modulus)
     cloth.scene.gravity = Gravity{};
     cloth.scene.material.youngs_modulus = youngs_modulus;
     press_edges(cloth);
-    const FeatureChanges changes = find_feature_changes(cloth.scene, cloth.state, cloth.stars());
-    const ConformOutcome made =
-        conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(), changes, {}, StrainLimit::GivesWay);
-    TransferReport report;
-    cloth.state = transfer(cloth.scene, cloth.state, cloth.stars(), made.mesh.value(), report);
+    testing::take(cloth);
 
     Pin pin;
     pin.material = {Vec2(4.9 * kLyingCell, 0.0), Vec2(0.4, 0.4)};
@@ -60,11 +53,8 @@ TEST(StepMesh, ClearsATracesWayByForceWhereThatStrainsLittle)
     // By .047 and .2 of what moves the cloth around; kTraceStrain is .06.
     for (const double youngs_modulus : {200.0, 800.0}) {
         EolCloth cloth = heading_for_pleat(youngs_modulus);
-        const FeatureChanges changes = find_feature_changes(cloth.scene, cloth.state, cloth.stars());
         for (const StrainLimit limit : {StrainLimit::GivesWay, StrainLimit::AsMade})
-            EXPECT_GT(
-                conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(), changes, {}, limit).blocked, 0)
-                << "nothing gentler does";
+            EXPECT_GT(testing::conform_cloth(cloth, {}, limit).blocked, 0) << "nothing gentler does";
         Workspace work;
         prepare(cloth.scene, cloth.state, work);
         StepReport report;
