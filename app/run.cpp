@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "app/check.h"
@@ -52,6 +53,7 @@ struct Run {
     Workspace work;
     Audit audited;  ///< of the cloth as it is, where it is a frame
     double cpu_told = process_cpu_seconds();
+    std::optional<StepReport> opening;  ///< of the step that is being made, not told yet
 
     Run(const RunConfig& config_, RunDirectory files_, Checkpoint at_)
         : config(config_), timeline(config_), files(std::move(files_)), at(std::move(at_))
@@ -100,6 +102,20 @@ StepRow make_row(const Run& run, const StepReport& report)
     row.solves = report.solves;
     row.seconds = report.seconds;
     return row;
+}
+
+/// What is told of a step in two parts: where the second has led, and what both have cost and lost.
+StepReport join(const StepReport& opening, StepReport rest)
+{
+    rest.dt += opening.dt;
+    rest.energy_rise += opening.energy_rise;
+    rest.yielded += opening.yielded;
+    rest.rewound += opening.rewound;
+    rest.solves += opening.solves;
+    rest.factorisations += opening.factorisations;
+    rest.nlopt_evaluations += opening.nlopt_evaluations;
+    rest.seconds += opening.seconds;
+    return rest;
 }
 
 /// Frame, probes and row of the state as it is. The row comes last: where it is there, all of its step is.
@@ -186,14 +202,20 @@ Ending explain(const Audit& audited, const Scene& scene, const State& state)
                     place.x(), place.y(), place.z(), state.time)};
 }
 
-/// One planned step, to its end, with a row for each of its parts.
+/// One planned step, to its end, with a row for each of its parts but an opening's.
 std::optional<Ending> advance(Run& run)
 {
     State& state = run.at.state;
     if (run.timeline.jumps_at(state.time)) restart(state);
     const auto accept = [&run](const StepReport& report, bool is_halved) {
+        if (report.is_opening) {
+            run.opening = report;
+            return true;
+        }
         Stopwatch watch;
-        write_outputs(run, report, watch, is_halved);
+        if (run.opening) --run.at.state.step;
+        write_outputs(run, run.opening ? join(*run.opening, report) : report, watch, is_halved);
+        run.opening.reset();
         return run.audited.obstacle < 0;
     };
     const double end = run.timeline.next_end(run.at.position);

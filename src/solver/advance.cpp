@@ -37,10 +37,12 @@ struct Cost {
 std::optional<StepReport> advance(const Scene& scene, const Settings& settings, double end, State& state,
                                   Workspace& work, const AcceptPart& accept)
 {
-    constexpr int kMostParts = 64;
-    int shrink = 1;                                               // how much shorter parts have become
-    int parts = find_flow_parts(scene, state, end - state.time);  // how many are left
+    constexpr int kMostParts = 64, kStartParts = 3;
     const double planned = end - state.time;
+    int shrink = 1;                                      // how much shorter parts have become
+    int parts = find_flow_parts(scene, state, planned);  // how many are left
+    const bool is_start = settings.integrator == Integrator::Bdf2 && state.previous_dt == 0.0 && parts == 1;
+    if (is_start) parts = kStartParts;
     Cost cost;
     work.failed.forget();
     while (state.time < end) {
@@ -50,8 +52,10 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
         cost.add(report);
         if (report.status == StepStatus::Done) {
             cost.put_into(report);
-            parts = std::max(parts - 1, 1);
-            if (!accept(report, report.dt < planned)) return std::nullopt;
+            report.is_opening = is_start && shrink == 1 && parts == kStartParts;
+            parts = report.is_opening ? 1 : std::max(parts - 1, 1);
+            const bool is_rest = is_start && shrink == 1;
+            if (!accept(report, report.dt < planned && !is_rest)) return std::nullopt;
         } else if (attempt == Attempt::Last && work.failed.may_mesh_help() &&
                    work.failed.has_given_up_all()) {
             // What was no step for the one mesh may be one for the other.

@@ -28,6 +28,7 @@ struct PhaseSeconds {
 struct StepReport {
     StepStatus status = StepStatus::Done;
     double dt = 0.0;                      ///< s
+    bool is_opening = false;              ///< first part of a step that is told as one with the rest
     std::int64_t infeasible_vertex = -1;  ///< id of one whose pins and contacts no velocity meets
     int contacts = 0;                     ///< that press, without planes behind wires
     int feature_rows = 0;                 ///< those at a sharp edge, corner, wire or point but EOL vertices

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/step.h"
+#include "solver/advance.h"
 
 #include <gtest/gtest.h>
 
@@ -263,6 +264,34 @@ TEST(Step, AStepMuchLongerThanTheLastOneIsImplicitEuler)
     EXPECT_FALSE(predict(state, Integrator::ImplicitEuler, 1e-3).has_history);
     restart(state);
     EXPECT_FALSE(predict(state, Integrator::Bdf2, 1e-3).has_history);
+}
+
+TEST(Advance, StartsWithAThirdOfAStepWhereBdf2HasNoPast)
+{
+    const Scene scene = make_draped_scene();
+    for (const Integrator integrator : {Integrator::ImplicitEuler, Integrator::Bdf2}) {
+        Settings settings;
+        settings.integrator = integrator;
+        State state = make_state(scene, make_raised_sheet(), Vec3::Zero());
+        Workspace work;
+        std::vector<double> parts;  // of a step
+        const auto accept = [&](const StepReport& report, bool is_halved) {
+            EXPECT_FALSE(is_halved);
+            EXPECT_EQ(report.is_opening, report.dt < 0.5 * 0.005);
+            parts.push_back(report.dt / 0.005);
+            return true;
+        };
+        for (int k = 1; k <= 4; ++k) {
+            if (k == 3) restart(state);
+            ASSERT_FALSE(advance(scene, settings, 0.005 * k, state, work, accept));
+            EXPECT_EQ(state.time, 0.005 * k);
+        }
+        const std::vector<double> expected = integrator == Integrator::Bdf2
+                                                 ? std::vector{1.0 / 3, 2.0 / 3, 1.0, 1.0 / 3, 2.0 / 3, 1.0}
+                                                 : std::vector(4, 1.0);
+        ASSERT_EQ(parts.size(), expected.size());
+        for (std::size_t k = 0; k < parts.size(); ++k) EXPECT_NEAR(parts[k], expected[k], 1e-9) << k;
+    }
 }
 
 TEST(InputJumps, AreTheTimesAtWhichTheSceneChanges)

@@ -19,7 +19,8 @@ constexpr double kG = 9.81;
 TEST(FreeFall, LagsTheParabolaByExactlyWhatTheIntegratorDoes)
 {
     // Implicit Euler: y_n = -g h^2 n (n + 1) / 2 = -g t^2 / 2 - g h t / 2. BDF2: exact but for the first
-    // step, which is implicit Euler's and leaves -g h^2 / 2, of which (4 e_n - e_(n-1)) / 3 makes 3/2 of it.
+    // third of a step, which is implicit Euler's and leaves e = -g h^2 / 18. Steps twice and 1.5 times as
+    // long as the one before make 9/5 and 9/4 of it, and (4 e_n - e_(n-1)) / 3 from there 99/40.
     Scene scene;
     scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
@@ -30,7 +31,7 @@ TEST(FreeFall, LagsTheParabolaByExactlyWhatTheIntegratorDoes)
         run.settings.integrator = integrator;
         const std::vector<Vec3> start = run.state.mesh.world;
         run.advance(t, h);
-        const double lag = integrator == Integrator::Bdf2 ? 0.75 * kG * h * h : 0.5 * kG * h * t;
+        const double lag = integrator == Integrator::Bdf2 ? 99.0 / 720.0 * kG * h * h : 0.5 * kG * h * t;
         const Vec3 fall = velocity * t - Vec3(0.0, 0.0, 0.5 * kG * t * t + lag);
         for (std::size_t v = 0; v < start.size(); ++v)
             EXPECT_LT((run.state.mesh.world[v] - start[v] - fall).norm(), 1e-11) << "vertex " << v;
@@ -80,7 +81,7 @@ TEST(AngularMomentum, OfASpinningSheetConvergesAtTheIntegratorsOrder)
     // The sheet's fastest modes are what both must resolve; implicit Euler needs more steps for its order to
     // show.
     const std::array<std::vector<double>, 2> steps = {std::vector{5e-4, 2.5e-4, 1.25e-4, 6.25e-5},
-                                                      std::vector{2e-3, 1e-3, 5e-4, 2.5e-4}};
+                                                      std::vector{1e-3, 5e-4, 2.5e-4, 1.25e-4}};
     std::array<std::vector<double>, 2> losses;
     for (int k = 0; k < 2; ++k)
         for (const double h : steps[k]) {
@@ -97,9 +98,12 @@ TEST(AngularMomentum, OfASpinningSheetConvergesAtTheIntegratorsOrder)
                 return angular_momentum(0.05, run.work.elements, run.state.mesh.world, run.state.velocity);
             };
             const Vec3 before = momentum();
-            run.advance(0.4, h);
+            double loss = 0.0;  // the greatest: it oscillates
+            run.advance(0.4, h, [&](const StepReport&) {
+                loss = std::max(loss, (momentum() - before).norm() / before.norm());
+            });
             ASSERT_FALSE(HasFailure());
-            losses[k].push_back((momentum() - before).norm() / before.norm());
+            losses[k].push_back(loss);
         }
     for (std::size_t i = 0; i < steps[0].size(); ++i)
         table.add({fmt::format("{:g} ms", 1e3 * steps[0][i]), fmt::format("{:.3e}", losses[0][i]),

@@ -170,7 +170,9 @@ TEST(SlidingStrip, TakesHalfACellInOneStepAndIsTheSame)
         ClothRun run = make_strip_run(strip);
         const double duration = most_of_the_way(strip), steps = std::ceil(duration / kLong);
         const EnergySpan energy = watch_energy(run, duration, kLong, [&](const StepReport& report) {
-            EXPECT_NEAR(report.dt, duration / steps, 1e-12) << "at " << run.state.time << " s";
+            const bool is_first = run.state.time < 1.5 * duration / steps;  // whose last part is two thirds
+            EXPECT_NEAR(report.dt, (is_first ? 2.0 / 3.0 : 1.0) * duration / steps, 1e-12)
+                << "at " << run.state.time << " s";
             expect_sound(strip, run.state);
         });
         const SlidingChain chain = chain_of(strip);
