@@ -178,6 +178,15 @@ void turn_with_cloth(const Obstacle& obstacle, double thickness, const State& st
     place = frame.point + along + (from - along).norm() * frame.outward;
 }
 
+/// The vertex has the border's direction alone to flow in. Also where it has left its feature and the border
+/// has come to run along that in the world: it would flow and go along the feature as one, however fast.
+bool is_along_border(const Star& star, const Vec2& border, const Vec2& trace, const Vec3& tangent)
+{
+    const Vec3 way = (star.F_transposed.transpose() * border).normalized();
+    return std::abs(border.x() * trace.y() - border.y() * trace.x()) < kSin20 ||
+           way.cross(tangent).norm() < kSin20;
+}
+
 EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)
 {
     at.opening = find_opening(star, at.basis, at.material_basis);
@@ -236,7 +245,7 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
         at.material_basis.col(2) = Vec2::UnitY();
         return finish(star, end, at);
     }
-    if (border && std::abs(border->x() * trace.y() - border->y() * trace.x()) < kSin20)
+    if (border && is_along_border(star, *border, trace, tangent))
         return {std::nullopt, EolRefusal::AlongBorder};
     if (eol.turn >= 0) at.material_basis.col(1) = trace;
     at.material_basis.col(2) = border ? *border : perpendicular(trace);

@@ -445,6 +445,27 @@ TEST(EolRefusal, WhereTheTraceMeetsTheBorderAtLessThan20Degrees)
     }
 }
 
+// Cloth that has left the ridge and turned over it: in the material its trace is across the border, in the
+// world the border runs along the ridge, and the vertex could flow along it at any speed without moving
+// cloth.
+TEST(EolRefusal, WhereTheBorderHasTurnedAlongTheFeature)
+{
+    for (const double turned : {0.0, 69.0, 71.0, 90.0, -90.0}) {
+        EolCloth cloth = on_ridge({8, 90.0, 180.0});
+        const int v = cloth.vertex_at(0.0, 0.2), beside = cloth.vertex_at(0.05, 0.2);
+        for (const int on_tip : {v, beside})
+            cloth.add_eol(on_tip, false, testing::tip_of(cloth.scene.obstacles[0]));
+        const Vec3 about = cloth.state.mesh.world[v];
+        const Mat3 rotation = Eigen::AngleAxisd(radians(turned), Vec3::UnitZ()).toRotationMatrix();
+        for (Vec3& x : cloth.state.mesh.world) x = about + rotation * (x - about);
+        const EolPlacing placing = cloth.place(v);
+        ASSERT_EQ(placing.coordinates.has_value(), std::abs(turned) < 70.0) << turned;
+        if (!placing.coordinates) {
+            EXPECT_EQ(placing.refusal, EolRefusal::AlongBorder);
+        }
+    }
+}
+
 TEST(EolRefusal, OfACornerOnTheBorder)
 {
     EolCloth cloth = on_ridge({8, 0.0, 60.0});
