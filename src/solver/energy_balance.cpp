@@ -178,16 +178,20 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
     // moves across itself is, and 2/9 of what is of third.
     constexpr double kFourthOrder = 9.0 / 4.0;
     const double least = kRise * energy_at_stake(work);
+    const auto elastic = [](const Energies& energies) { return energies.stretch + energies.bending; };
     const Energies &before = work.energy.potential, &after = work.solved_energy.potential;
-    if (!(after.stretch + after.bending - before.stretch - before.bending > least)) return 0.0;
+    const double gained = elastic(after) - elastic(before);
+    if (!(gained > least)) return 0.0;
     const ClothVelocity& from = work.expansion;
     const ClothVelocity to = velocity_of(work.proposal);
     const auto potential_at = [&](const ClothVelocity& velocity) {
-        return compute_cloth_energy(scene, work, find_end(work.prediction, velocity)).potential.sum();
+        return compute_cloth_energy(scene, work, find_end(work.prediction, velocity)).potential;
     };
-    const double third =
-        after.sum() - potential_at(from) +
-        3.0 * (potential_at(blend(from, to, 1.0 / 3.0)) - potential_at(blend(from, to, 2.0 / 3.0)));
+    const Energies at_expansion = potential_at(from);
+    if (elastic(at_expansion) > 5.0 * (elastic(after) + elastic(before)) + least) return gained;
+    const double third = after.sum() - at_expansion.sum() +
+                         3.0 * (potential_at(blend(from, to, 1.0 / 3.0)).sum() -
+                                potential_at(blend(from, to, 2.0 / 3.0)).sum());
     const double unforeseen = kFourthOrder * std::abs(third);
     return unforeseen > least ? unforeseen : 0.0;
 }
