@@ -68,10 +68,28 @@ class MeshTries {
     {
     }
 
-    /// The best of them: one that gives way, or one more carefully made where the cloth could not give way as
-    /// it should have; where that would cost a trace its vertices the first, if it strains but little more
-    /// than it should.
+    /// The best of them; none, and the step is made on the mesh there is, where that strains the cloth by
+    /// more than can be borne, as long as attempts at the step have not come to give vertices up.
     TriedMesh find_best()
+    {
+        TriedMesh best = choose();
+        const FailedFlow& failed = work_.failed.flow();
+        if (best.strain <= kMostStrain || !failed.given_up.empty() || !failed.made_at.empty()) return best;
+        TriedMesh none;
+        none.outcome.refused = std::move(best.outcome.refused);
+        for (const FeatureSite& site : changes_.sites) {
+            if (site.contact < 0) continue;
+            const ActiveContact& contact = state_.active[site.contact];
+            none.outcome.refused.push_back(
+                {contact.vertex_ids, contact.kind, contact.obstacle, contact.element, RowCause::Guard});
+        }
+        return none;
+    }
+
+  private:
+    /// One that gives way, or one more carefully made where the cloth could not give way as it should have;
+    /// where that would cost a trace its vertices the first, if it strains but little more than it should.
+    TriedMesh choose()
     {
         TriedMesh giving = make(StrainLimit::GivesWay);
         carry_over(giving, kTraceStrain);
@@ -84,7 +102,6 @@ class MeshTries {
         return or_forced(std::move(careful), is_costly);
     }
 
-  private:
     /// That, or one made by force where that leaves less blocked and strains the cloth but little more than
     /// it should, or where the other is costly, no more than it should. What is blocked would be met by rows,
     /// which stop what slides and all the cloth that hangs on it.
