@@ -231,7 +231,8 @@ void begin_history(const State& before, const std::vector<char>& is_flowing, Sta
 }  // namespace
 
 State transfer(const Scene& scene, const State& before, const ClothStars& stars,
-               const ConformedMesh& conformed, TransferReport& report, double most_strain)
+               const ConformedMesh& conformed, const ClothStars& stars_after, TransferReport& report,
+               double most_strain)
 {
     CarriedById all(before);
     for (const SurgeryEvent& event : conformed.events)
@@ -239,7 +240,6 @@ State transfer(const Scene& scene, const State& before, const ClothStars& stars,
             if (event.operation != SurgeryOperation::Collapse)
                 interpolate(event, change, before.previous_dt, all);
     State after = on_new_mesh(before, conformed, all);
-    const ClothStars stars_after = make_stars(after.mesh.vertex_count(), after.mesh.faces);
     drop_contacts_without_element(stars_after, after);
     const std::vector<ChangedPatch> patches =
         find_changed_patches({before, after, conformed.events, stars.faces, stars_after.faces});

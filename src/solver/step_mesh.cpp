@@ -50,6 +50,7 @@ constexpr int kAnyNumber = std::numeric_limits<int>::max();
 struct TriedMesh {
     ConformOutcome outcome;
     std::optional<State> state;
+    ClothStars stars;
     double strain = 0.0;
 };
 
@@ -134,8 +135,12 @@ class MeshTries {
     void carry_over(TriedMesh& made, double most_strain)
     {
         if (!made.outcome.mesh || made.state) return;
+        const ClothMesh& mesh = made.outcome.mesh->surgery.mesh;
+        made.stars = make_stars(mesh.vertex_count(), mesh.faces);
+        seconds_.move += watch_.lap();
         TransferReport transferred;
-        made.state = transfer(scene_, state_, work_.stars, *made.outcome.mesh, transferred, most_strain);
+        made.state =
+            transfer(scene_, state_, work_.stars, *made.outcome.mesh, made.stars, transferred, most_strain);
         made.strain = transferred.strain;
         seconds_.transfer += watch_.lap();
     }
@@ -163,6 +168,8 @@ State& conform(const Scene& scene, double end, State& state, Workspace& work, St
         report.inserted = best.outcome.mesh->report.inserted;
         report.released = best.outcome.mesh->report.released;
         work.conformed = std::move(*best.state);
+        work.stars = std::move(best.stars);
+        work.faces_of_stars = work.conformed.mesh.faces;
     }
     State& start = is_new ? work.conformed : state;
     prepare(scene, start, work);

@@ -384,7 +384,8 @@ TEST(Conform, WhereNothingHasChangedTheSecondTimeChangesNothing)
             EXPECT_EQ(flowing->report.released + flowing->report.inserted, 0);
             ++passes;
             TransferReport report;
-            cloth.state = transfer(cloth.scene, cloth.state, cloth.stars(), *flowing, report);
+            cloth.state = transfer(cloth.scene, cloth.state, cloth.stars(), *flowing,
+                                   testing::stars_of(flowing->surgery.mesh), report);
         }
         EXPECT_LE(passes, 2) << turn;
     }

@@ -109,9 +109,14 @@ int EolCloth::add_eol(int vertex, bool is_corner, int feature)
     return state.eol_entry(state.ids[vertex]);
 }
 
+ClothStars stars_of(const ClothMesh& mesh)
+{
+    return make_stars(mesh.vertex_count(), mesh.faces);
+}
+
 ClothStars EolCloth::stars() const
 {
-    return make_stars(state.mesh.vertex_count(), state.mesh.faces);
+    return stars_of(state.mesh);
 }
 
 EolPlacing EolCloth::place(int vertex, const Placement& end) const
@@ -162,7 +167,9 @@ ConformedMesh take(EolCloth& cloth)
     std::optional<ConformedMesh> made = conform_cloth(cloth).mesh;
     EXPECT_TRUE(made);
     TransferReport report;
-    if (made) cloth.state = transfer(cloth.scene, cloth.state, cloth.stars(), *made, report);
+    if (made)
+        cloth.state =
+            transfer(cloth.scene, cloth.state, cloth.stars(), *made, stars_of(made->surgery.mesh), report);
     return made ? *made : ConformedMesh{};
 }
 

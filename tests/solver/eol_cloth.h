@@ -8,6 +8,8 @@
 
 namespace arris::testing {
 
+ClothStars stars_of(const ClothMesh& mesh);
+
 /// A ridge along y whose tip is the segment x = z = 0, `half_length` to either side of y = 0, with
 /// `tip_degrees` between its flanks.
 Obstacle make_ridge(double tip_degrees, double half_length = 0.5);
