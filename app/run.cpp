@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "app/check.h"
 #include "app/error_line.h"
@@ -109,6 +110,11 @@ StepReport join(const StepReport& opening, StepReport rest)
 {
     rest.dt += opening.dt;
     rest.energy_rise += opening.energy_rise;
+    rest.crossings += opening.crossings;
+    rest.inserted += opening.inserted;
+    rest.released += opening.released;
+    rest.relinearisations += opening.relinearisations;
+    rest.kkt_residual = std::max(rest.kkt_residual, opening.kkt_residual);
     rest.yielded += opening.yielded;
     rest.rewound += opening.rewound;
     rest.solves += opening.solves;
@@ -220,8 +226,13 @@ std::optional<Ending> advance(Run& run)
     };
     const double end = run.timeline.next_end(run.at.position);
     if (const std::optional<StepReport> failed =
-            advance(run.config.scene, run.config.settings, end, state, run.work, accept))
+            advance(run.config.scene, run.config.settings, end, state, run.work, accept)) {
+        if (run.opening) {  // is all there is of its step
+            Stopwatch watch;
+            write_outputs(run, *std::exchange(run.opening, std::nullopt), watch, true);
+        }
         return explain(*failed, run.config.settings.tolerance, state);
+    }
     if (run.audited.obstacle >= 0) return explain(run.audited, run.config.scene, state);
     run.at.position = run.timeline.advance(run.at.position);
     return std::nullopt;

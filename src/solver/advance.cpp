@@ -2,9 +2,11 @@
 #include "solver/advance.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "solver/material_flow.h"
 #include "solver/step.h"
+#include "solver/time_integration.h"
 
 namespace arris {
 
@@ -41,7 +43,8 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
     const double planned = end - state.time;
     int shrink = 1;                                      // how much shorter parts have become
     int parts = find_flow_parts(scene, state, planned);  // how many are left
-    const bool is_start = settings.integrator == Integrator::Bdf2 && state.previous_dt == 0.0 && parts == 1;
+    bool is_start = settings.integrator == Integrator::Bdf2 && !has_past(state, planned) && parts == 1;
+    bool is_rest = false;  // what follows an opening, as long as it is made in one
     if (is_start) parts = kStartParts;
     Cost cost;
     work.failed.forget();
@@ -52,10 +55,10 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
         cost.add(report);
         if (report.status == StepStatus::Done) {
             cost.put_into(report);
-            report.is_opening = is_start && shrink == 1 && parts == kStartParts;
+            report.is_opening = std::exchange(is_start, false);
             parts = report.is_opening ? 1 : std::max(parts - 1, 1);
-            const bool is_rest = is_start && shrink == 1;
-            if (!accept(report, report.dt < planned && !is_rest)) return std::nullopt;
+            if (!accept(report, report.dt < planned && !report.is_opening && !is_rest)) return std::nullopt;
+            is_rest = report.is_opening;
         } else if (attempt == Attempt::Last && work.failed.may_mesh_help() &&
                    work.failed.has_given_up_all()) {
             // What was no step for the one mesh may be one for the other.
@@ -72,6 +75,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
         } else {
             shrink *= 2;
             parts *= 2;
+            is_start = is_rest = false;
         }
     }
     return std::nullopt;

@@ -17,11 +17,11 @@ namespace arris {
 using AcceptPart = std::function<bool(const StepReport& report, bool is_halved)>;
 
 /// Advances `state` to `end` (s) in one step, or, where material flows too fast for one, in as many parts as
-/// `find_flow_parts` says. BDF2 that has no past makes a third of it first and then the rest: half of its error
-/// in a second of sliding would else be that of one implicit Euler step. Where that fails because energy would rise, it is tried without history; where it
-/// fails otherwise, the rest of it is made in twice as many equal parts, at most six times, the last of them
-/// with the last resort. Returns the report of what failed even so; `state` is then where the last accepted
-/// part left it.
+/// `find_flow_parts` says. BDF2 that has no past makes a third of a step first and then the rest: half of its
+/// error in a second of sliding would else be that of one implicit Euler step. Where that fails because
+/// energy would rise, it is tried without history; where it fails otherwise, the rest of it is made in twice
+/// as many equal parts, at most six times, the last of them with the last resort. Returns the report of what
+/// failed even so; `state` is then where the last accepted part left it.
 std::optional<StepReport> advance(const Scene& scene, const Settings& settings, double end, State& state,
                                   Workspace& work, const AcceptPart& accept);
 

@@ -50,7 +50,8 @@ double find_energy_rise(const Scene& scene, const State& state, const Workspace&
 
 /// Elastic energy, J, that the proposal has gained and that equations linear around `work.expansion` do not
 /// see, as it is of higher than second order in the way from there: about as much, where that is more than a
-/// share of what was in motion or changed kind; else 0. Weigh it first.
+/// share of what was in motion or changed kind; else 0. All of the gain where the cloth is strained far more
+/// there: flattened history beside what goes on strains it. Weigh it first.
 double find_unforeseen_energy(const Scene& scene, const Workspace& work);
 
 /// Whether moving the proposal's positions out to their stand-off in `dt` (s) has cost more elastic energy

@@ -179,12 +179,19 @@ void turn_with_cloth(const Obstacle& obstacle, double thickness, const State& st
 }
 
 /// The vertex has the border's direction alone to flow in. Also where it has left its feature and the border
-/// has come to run along that in the world: it would flow and go along the feature as one, however fast.
-bool is_along_border(const Star& star, const Vec2& border, const Vec2& trace, const Vec3& tangent)
+/// has come to run along that in the world: it would flow and go along the feature as one, however fast. Each
+/// face is asked: those of a fold have the border lead away from the feature to opposite sides.
+bool leads_along(const Star& star, const Vec2& border, const Vec2& trace, const Vec3& tangent)
 {
-    const Vec3 way = (star.F_transposed.transpose() * border).normalized();
-    return std::abs(border.x() * trace.y() - border.y() * trace.x()) < kSin20 ||
-           way.cross(tangent).norm() < kSin20;
+    double along = 0.0, across = 0.0;
+    for (const StarFace& face : star.faces) {
+        const Vec3 way = face.F * border;
+        const double part = tangent.dot(way);
+        along += face.area * part;
+        across += face.area * (way - part * tangent).norm();
+    }
+    const double sine_in_material = std::abs(border.x() * trace.y() - border.y() * trace.x());
+    return sine_in_material < kSin20 || across < kSin20 * std::hypot(along, across);
 }
 
 EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)
@@ -245,8 +252,7 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
         at.material_basis.col(2) = Vec2::UnitY();
         return finish(star, end, at);
     }
-    if (border && is_along_border(star, *border, trace, tangent))
-        return {std::nullopt, EolRefusal::AlongBorder};
+    if (border && leads_along(star, *border, trace, tangent)) return {std::nullopt, EolRefusal::AlongBorder};
     if (eol.turn >= 0) at.material_basis.col(1) = trace;
     at.material_basis.col(2) = border ? *border : perpendicular(trace);
     return finish(star, end, at);

@@ -31,7 +31,7 @@ struct EolCoordinates {
 /// Why a vertex cannot be EOL though a feature presses on it.
 enum class EolRefusal {
     NoDirection,  ///< a saddle corner, or wire or point whose cloth tells no side
-    AlongBorder,  ///< the trace meets the cloth's border at less than 20 degrees
+    AlongBorder,  ///< the cloth's border leads along the trace, or the feature, within 20 degrees
     EdgeOn,       ///< flat cloth that all but contains the outward direction: material and world coincide
     ClothCorner   ///< only rows at the cloth's own corners
 };

@@ -15,8 +15,8 @@
 namespace arris {
 
 /// The state on the new mesh: positions, velocities, history, and of contacts and anchors those whose
-/// vertices are still there. `stars` are those of `before`, `stars_after` of the new mesh. Unfinished where a patch stays strained by more
-/// than `most_strain`, as a share of what moves it.
+/// vertices are still there. `stars` are those of `before`, `stars_after` of the new mesh. Unfinished where a
+/// patch stays strained by more than `most_strain`, as a share of what moves it.
 State transfer(const Scene& scene, const State& before, const ClothStars& stars,
                const ConformedMesh& conformed, const ClothStars& stars_after, TransferReport& report,
                double most_strain = std::numeric_limits<double>::infinity());

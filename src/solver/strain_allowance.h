@@ -16,9 +16,9 @@ inline constexpr double kPatchStrain = 0.03;
 /// The same, where less would cost a trace vertices: those come back a step later, at more cost.
 inline constexpr double kTraceStrain = 0.06;
 
-/// The same, beyond which the mesh rather stays as it is for a step. Less would cost thin blades their
-/// vertices, whose mesh changes all the time.
-inline constexpr double kMostStrain = 0.25;
+/// The same, beyond which the mesh rather stays as it is, step after step, as long as these can be made. With
+/// less cloth on thin blades, whose mesh changes all the time, comes to be held by the mesh it has.
+inline constexpr double kMostStrain = 0.5;
 
 /// What gravity gives cloth of `area` (material, m^2) that falls by `length` (m), J.
 inline double weight_over(const Scene& scene, double area, double length)

@@ -3,12 +3,16 @@
 
 namespace arris {
 
+bool has_past(const State& state, double dt)
+{
+    constexpr double kGreatestRatio = 2.4142135623730951;  // 1 + sqrt 2: beyond, BDF2 is not zero-stable
+    return dt <= kGreatestRatio * state.previous_dt;
+}
+
 Prediction predict(const State& state, Integrator integrator, double dt)
 {
     Prediction prediction;
-    constexpr double kGreatestRatio =
-        2.4142135623730951;  // 1 + sqrt 2: beyond, variable-step BDF2 is not zero-stable
-    prediction.has_history = integrator == Integrator::Bdf2 && dt <= kGreatestRatio * state.previous_dt;
+    prediction.has_history = integrator == Integrator::Bdf2 && has_past(state, dt);
     prediction.position = state.mesh.world;
     prediction.velocity = state.velocity;
     prediction.material = state.mesh.material;

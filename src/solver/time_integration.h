@@ -48,8 +48,11 @@ MovingCloth find_end(const Prediction& prediction, const ClothVelocity& velocity
 /// Where the cloth would be at the step's end by its past alone; implicit Euler: as it is.
 MovingCloth extrapolate(const State& state, const Prediction& prediction);
 
-/// BDF2 is implicit Euler where there is no step behind it, or one so short that variable-step BDF2 were not
-/// stable.
+/// Whether a step of `dt` (s) has one behind it that BDF2 can use: there is none after a jump, and after one
+/// so short variable-step BDF2 were not stable.
+bool has_past(const State& state, double dt);
+
+/// BDF2 is implicit Euler where it has no past.
 Prediction predict(const State& state, Integrator integrator, double dt);
 
 }  // namespace arris

@@ -466,6 +466,19 @@ TEST(EolRefusal, WhereTheBorderHasTurnedAlongTheFeature)
     }
 }
 
+// Both sides of a fold that is all but shut have the border lead along the wire, and up from it on one side,
+// down on the other: across it goes as far, if nowhere in the sum.
+TEST(EolRefusal, IsNoneWhereTheBorderOfAFoldCrossesAWireObliquely)
+{
+    for (const double shift : {0.05, 0.1, 0.15})  // along the border, of where the fold crosses it
+        for (const double fold : {2.0, 30.0, 90.0}) {
+            EolCloth cloth = on_wire({8, std::atan2(shift, 0.2) * 180.0 / std::numbers::pi, fold});
+            const int v = cloth.vertex_at(0.2 + shift, 0.4);
+            cloth.add_eol(v, false, 0);
+            EXPECT_TRUE(cloth.place(v).coordinates) << shift << ", folded by " << fold;
+        }
+}
+
 TEST(EolRefusal, OfACornerOnTheBorder)
 {
     EolCloth cloth = on_ridge({8, 0.0, 60.0});

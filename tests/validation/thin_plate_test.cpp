@@ -6,10 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <ostream>
 
 #include "cloth_run.h"
-#include "grid_patterns.h"
 #include "refinement.h"
 
 namespace arris {
@@ -17,33 +15,22 @@ namespace {
 
 constexpr double kSpeed = 2.0;  // m/s
 
-struct Thrown {
-    double width;  ///< of the plate, m
-    int cells;
-    GridPattern pattern;
-};
-
-void PrintTo(const Thrown& thrown, std::ostream* out)
+ClothRun make_run(double stiffness, double width)
 {
-    *out << fmt::format("{} mm, {} cells, {}", 1e3 * thrown.width, thrown.cells, name_of(thrown.pattern));
-}
-
-ClothRun make_run(double stiffness, const Thrown& thrown)
-{
-    ClothMesh mesh = make_sheet(Vec2(1.0, 1.0), {thrown.cells, thrown.cells}, thrown.pattern);
+    ClothMesh mesh = make_sheet(Vec2(1.0, 1.0), {16, 16}, GridPattern::Cross);
     lay(mesh, Vec3(-0.45, -0.52, 0.24));
-    Scene scene = make_table_scene(mesh, {0.05, 50.0, 0.01, stiffness, 0.0, 1e-3},
-                                   Vec3(thrown.width, 0.7, 0.4), Vec3::Zero());
+    Scene scene =
+        make_table_scene(mesh, {0.05, 50.0, 0.01, stiffness, 0.0, 1e-3}, Vec3(width, 0.7, 0.4), Vec3::Zero());
     return ClothRun(std::move(scene), std::move(mesh), Vec3(0.0, 0.0, -kSpeed));
 }
 
-class ThinPlate : public ::testing::TestWithParam<Thrown> {};
+class ThinPlate : public ::testing::TestWithParam<double> {};
 
 TEST_P(ThinPlate, DoesNotThrowStiffCloth)
 {
     constexpr double kFall = 0.8, kStep = 0.005;  // s
-    // Of what it is thrown with; .042 and less are measured, .08 where the mesh is changed whatever it
-    // strains, .11 with creases where the bend is as wide as they are.
+    // Of what it is thrown with; .034 and less are measured, .08 where the mesh is changed whatever it strains,
+    // .11 with creases where the bend is as wide as they are.
     constexpr double kRise = 0.05;
     const double thrown = 0.5 * 0.05 * kSpeed * kSpeed;  // J
     for (const double stiffness : {2e-4, 3e-4, 1e-3}) {
@@ -56,14 +43,11 @@ TEST_P(ThinPlate, DoesNotThrowStiffCloth)
             least = std::min(least, energy);
         });
         RecordProperty(fmt::format("rise_{}", stiffness), fmt::format("{:.2e}", rise));
-        EXPECT_LT(rise, kRise * thrown) << stiffness << " J";
+        EXPECT_LT(rise, kRise * thrown) << stiffness << " J, " << GetParam() << " m";
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Plates, ThinPlate,
-                         ::testing::Values(Thrown{2e-3, 16, GridPattern::Cross},
-                                           Thrown{1e-2, 16, GridPattern::Cross},
-                                           Thrown{2e-3, 16, GridPattern::Diagonal}));
+INSTANTIATE_TEST_SUITE_P(Widths, ThinPlate, ::testing::Values(2e-3, 1e-2));
 
 }  // namespace
 }  // namespace arris
