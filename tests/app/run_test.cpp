@@ -124,6 +124,13 @@ TEST_F(Run, LeavesEveryFileOfTheContract)
     const CsvTable steps = read_csv(dir + "/steps.csv");
     EXPECT_EQ(report["steps"].get<std::size_t>() + 1, steps.row_count());
     EXPECT_EQ(steps.column("time").back(), 0.5);
+    // A row for each planned step, also where it starts with a third of itself: at first, and after jumps.
+    EXPECT_EQ(report["halved_steps"], 0);
+    for (std::size_t k = 1; k < steps.row_count(); ++k) {
+        EXPECT_EQ(steps.column("step")[k], static_cast<double>(k));
+        EXPECT_NEAR(steps.column("time")[k] - steps.column("time")[k - 1], steps.column("dt")[k], 1e-12);
+        EXPECT_GT(steps.column("dt")[k], 0.0016);  // the shortest interval; a third of a step is less
+    }
     EXPECT_LE(report["max_kkt_residual"].get<double>(), 1e-9);
     for (const double area : steps.column("material_area")) EXPECT_NEAR(area, 0.6, 0.6e-12);
 
@@ -318,6 +325,26 @@ TEST_F(Run, ThatObstaclesCrushNamesAVertexByItsPlace)
         std::regex("keeps vertex \\d+, at \\[.*\\] \\(m, material \\[.*\\]\\), out of the obstacles in "
                    "the step after t = 0.1")))
         << message;
+}
+
+TEST_F(Run, ThatFailsAfterTheOpeningOfItsFirstStepTellsThat)
+{
+    // The pin is driven into the floor after a third of the step and before its end.
+    write_bytes(
+        scene,
+        "duration = 0.1\n[cloth]\nsize = [0.2, 0.2]\nresolution = [2, 2]\ntranslate = [-0.1, -0.1, 0.05]\n"
+        "[gravity]\n[[pin]]\nmaterial = [[0.1, 0.1], [0.1, 0.1]]\nvelocity = [0, 0, -1]\n"
+        "[[obstacle]]\nbox = [2, 2, 0.1]\ntranslate = [0, 0, -0.00157]\n");
+    const std::string dir = folder / "fails";
+    Program program(folder, {"run", scene, "-o", dir});
+    EXPECT_NE(program.wait(), 0);
+    const nlohmann::json report = nlohmann::json::parse(read_bytes(dir + "/report.json"));
+    EXPECT_EQ(report["status"], "infeasible");
+    EXPECT_EQ(report["steps"], 1);
+    const CsvTable steps = read_csv(dir + "/steps.csv");
+    ASSERT_EQ(steps.row_count(), 2u);
+    EXPECT_NEAR(steps.column("time")[1], 0.0046296 / 3.0, 1e-6);
+    EXPECT_EQ(steps.column("halved")[1], 1.0);
 }
 
 TEST_F(Run, NumbersThatOverflowEndItWithItsStateKept)
