@@ -2,14 +2,11 @@
 #include "geometry/box_tree.h"
 
 #include <algorithm>
-#include <array>
-#include <cassert>
 
 namespace arris {
 namespace {
 
 constexpr int kLeafSize = 4;
-constexpr int kMostPending = 64;  // halves of 2^31 items at most, one pending a level
 
 }  // namespace
 
@@ -52,25 +49,7 @@ void BoxTree::build(int first, int last)
 void BoxTree::find(const Box& box, std::vector<int>& found) const
 {
     found.clear();
-    if (nodes_.empty()) return;
-    std::array<int, kMostPending> pending;
-    int pending_count = 0;
-    int at = 0;
-    while (true) {
-        const Node& node = nodes_[at];
-        const bool is_met = node.box.intersects(box);
-        if (is_met && node.count == 0) {
-            assert(pending_count < kMostPending);
-            pending[pending_count++] = node.right;
-            ++at;
-            continue;
-        }
-        if (is_met)
-            for (int i = node.right; i < node.right + node.count; ++i)
-                if (items_[i].box.intersects(box)) found.push_back(items_[i].index);
-        if (pending_count == 0) break;
-        at = pending[--pending_count];
-    }
+    visit(box, [&](int index) { found.push_back(index); });
     std::sort(found.begin(), found.end());
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
+#include <cassert>
 #include <vector>
 
 namespace arris {
@@ -18,7 +20,13 @@ class BoxTree {
     /// Indices of the boxes that touch `box` (closed), ascending; `found` is overwritten.
     void find(const Box& box, std::vector<int>& found) const;
 
+    /// The same, one by one in no order that means anything: `take(index)`.
+    template <typename Take>
+    void visit(const Box& box, const Take& take) const;
+
   private:
+    static constexpr int kMostPending = 64;  // halves of 2^31 items at most, one pending a level
+
     // In depth-first order: the left child follows its parent.
     struct Node {
         Box box;
@@ -35,5 +43,29 @@ class BoxTree {
     std::vector<Node> nodes_;
     std::vector<Item> items_;
 };
+
+template <typename Take>
+void BoxTree::visit(const Box& box, const Take& take) const
+{
+    if (nodes_.empty()) return;
+    std::array<int, kMostPending> pending;
+    int pending_count = 0;
+    int at = 0;
+    while (true) {
+        const Node& node = nodes_[at];
+        const bool is_met = node.box.intersects(box);
+        if (is_met && node.count == 0) {
+            assert(pending_count < kMostPending);
+            pending[pending_count++] = node.right;
+            ++at;
+            continue;
+        }
+        if (is_met)
+            for (int i = node.right; i < node.right + node.count; ++i)
+                if (items_[i].box.intersects(box)) take(items_[i].index);
+        if (pending_count == 0) break;
+        at = pending[--pending_count];
+    }
+}
 
 }  // namespace arris

@@ -89,29 +89,28 @@ class InitialMesh {
         mean_ *= 2.0 / ends;
     }
 
-    // The face that comes nearest to holding the point, among those within a reach that grows until there is
-    // one: it passes any distance in as many rounds as a double has powers of two.
+    // The face that comes nearest to holding the point, the first of these, among those within a reach that
+    // grows until there is one: it passes any distance in as many rounds as a double has powers of two.
     Place find(const Vec2& X) const
     {
-        std::vector<int> near;
-        for (double reach = 0.0;
-             near.empty() && reach<std::numeric_limits<double>::infinity(); reach = reach> 0.0
-                 ? 2.0 * reach
-                 : 1e-9 * mean_) {
-            const Vec3 slack(reach, reach, reach);
-            tree_.find(BoxTree::Box(flat(X) - slack, flat(X) + slack), near);
-        }
-        Place best{0, Vec3::Constant(1.0 / 3.0)};
+        Place best{-1, Vec3::Constant(1.0 / 3.0)};
         double least = std::numeric_limits<double>::infinity();
-        for (const int f : near) {
+        const auto judge = [&](int f) {
             const std::array<Vec2, 3> at = corners(faces_[f]);
             const Vec3 weights = clamped_weights(at, X);
             const double off = (weights[0] * at[0] + weights[1] * at[1] + weights[2] * at[2] - X).norm();
-            if (!(off < least)) continue;
+            if (!(off < least) && !(off == least && f < best.face)) return;
             least = off;
             best = {f, weights};
+        };
+        for (double reach = 0.0;
+             best.face < 0 && reach<std::numeric_limits<double>::infinity(); reach = reach> 0.0
+                 ? 2.0 * reach
+                 : 1e-9 * mean_) {
+            const Vec3 slack(reach, reach, reach);
+            tree_.visit(BoxTree::Box(flat(X) - slack, flat(X) + slack), judge);
         }
-        return best;
+        return best.face >= 0 ? best : Place{0, best.weights};
     }
 
     std::vector<Vec2> material_;

@@ -102,7 +102,7 @@ std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& mate
     return gradients;
 }
 
-ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology)
+ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology)
 {
     ClothElements elements;
     elements.vertex_count = mesh.vertex_count();
@@ -115,6 +115,12 @@ ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology)
                                            elements.faces[hinge.face_d].area);
         elements.hinges.push_back(made);
     }
+    return elements;
+}
+
+ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology)
+{
+    ClothElements elements = list_elements(mesh, topology);
     elements.face_colors = color_elements(elements.vertex_count, elements.faces);
     elements.hinge_colors = color_elements(elements.vertex_count, elements.hinges);
     return elements;

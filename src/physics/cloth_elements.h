@@ -45,7 +45,11 @@ struct ClothElements {
     ElementColors face_colors, hinge_colors;
 };
 
-/// Linear in face count. Material orientations must be positive (`validate` checks it).
+/// Without colours, which energies do not need. Linear in face count. Material orientations must be positive
+/// (`validate` checks it).
+ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology);
+
+/// The same with colours.
 ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology);
 
 /// Brings the elements at the vertices with `is_moved` (one a vertex) to the mesh's present material

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <utility>
 
 #include "physics/eulerian_element.h"
 #include "physics/momentum_flux.h"
@@ -72,10 +73,12 @@ void LinearSystem::make_pattern(const ClothElements& elements, std::vector<int> 
     const int n =
         places_.empty() ? elements.vertex_count : 1 + *std::max_element(places_.begin(), places_.end());
     const auto for_each_pair = [&](const auto& visit) {
-        const auto visit_pairs = [&](const auto& vertices) {
-            for (const int v : vertices)
-                for (const int w : vertices)
-                    if (const int i = place_of(v), j = place_of(w); i > j && j >= 0) visit(i, j);
+        const auto visit_pairs = [&](auto vertices) {
+            for (int& v : vertices) v = place_of(v);
+            if (*std::max_element(vertices.begin(), vertices.end()) < 0) return;  // in a patch most are held
+            for (const int i : vertices)
+                for (const int j : vertices)
+                    if (i > j && j >= 0) visit(i, j);
         };
         for (const FaceElement& face : elements.faces) visit_pairs(face.vertices);
         for (const HingeElement& hinge : elements.hinges) visit_pairs(hinge.vertices);
@@ -87,11 +90,14 @@ void LinearSystem::make_pattern(const ClothElements& elements, std::vector<int> 
     for_each_pair([&](int i, int j) { below[last[j]++] = i; });
 
     column_height_.assign(n, 0);
+    std::vector<int> known_in(n, -1);
     Eigen::VectorXi heights(3 * n);
     for (int j = 0; j < n; ++j) {
-        const auto begin = below.begin() + first[j];
+        // A pair shares seven elements or so: each is kept once before they are sorted.
+        const auto begin = below.begin() + first[j], end = below.begin() + last[j];
+        const auto is_known = [&](int i) { return std::exchange(known_in[i], j) == j; };
+        last[j] = static_cast<int>(std::remove_if(begin, end, is_known) - below.begin());
         std::sort(begin, below.begin() + last[j]);
-        last[j] = static_cast<int>(std::unique(begin, below.begin() + last[j]) - below.begin());
         column_height_[j] = 3 * (1 + last[j] - first[j]);
         heights.segment<3>(3 * j).setConstant(column_height_[j]);
     }
@@ -111,11 +117,12 @@ void LinearSystem::make_pattern(const ClothElements& elements, std::vector<int> 
         }
     rhs_.resize(3 * n);
 
-    const auto find_blocks = [&](const auto& vertices, auto& blocks) {
+    const auto find_blocks = [&](auto vertices, auto& blocks) {
+        for (int& v : vertices) v = place_of(v);
         int k = 0;
         for (std::size_t i = 1; i < vertices.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) {
-                const auto [low, high] = std::minmax({place_of(vertices[i]), place_of(vertices[j])});
+                const auto [low, high] = std::minmax({vertices[i], vertices[j]});
                 blocks[k++] = low < 0 ? -1 : find_block(high, low);
             }
     };

@@ -63,6 +63,7 @@ class Conforming {
           trace_(scene, state, stars, find_pinned(scene, state, state.time + dt)),
           surgery_(trace_.surgery()),
           admission_(scene, state, stars, trace_, soon_),
+          placer_(scene.obstacles, scene.material.thickness, state, stars),
           guard_(scene, state, limit)
     {
         guard_.watch(surgery_);
@@ -291,16 +292,13 @@ class Conforming {
         return true;
     }
 
-    RowCause cause_of_release(VertexId v) const
+    RowCause cause_of_release(VertexId v)
     {
         const int entry = state_.eol_entry(v);
-        const EolVertex& eol = state_.eol[entry];
-        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
-        const Placement now = obstacle.at(state_.time);
-        const EolPlacing placing =
-            place_eol_vertex(obstacle, scene_.material.thickness, state_, entry, stars_, now);
+        const EolPlacing placing = placer_.place(entry);
         if (!placing.coordinates) return cause_of(placing.refusal);
-        return is_at_border(scene_, state_, stars_, eol) ? RowCause::NearBorder : RowCause::Released;
+        return is_at_border(scene_, state_, stars_, state_.eol[entry]) ? RowCause::NearBorder
+                                                                       : RowCause::Released;
     }
 
     /// A vertex that is EOL, or has just been made, is none from now on: what presses there is a row.
@@ -374,6 +372,7 @@ class Conforming {
     TraceMesh trace_;
     ClothSurgery& surgery_;  ///< its own
     SiteAdmission admission_;
+    EolPlacer placer_;
     EolGuard guard_;
     TraceWays ways_;                       ///< of the vertices that flow, as far as is well
     TraceWays needed_;                     ///< as far as they may soon go: new vertices leave that much

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/cloth_cone.h"
 #include "geometry/feature_nodes.h"
@@ -258,32 +259,15 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     return finish(star, end, at);
 }
 
-EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const State& state, int entry,
-                            const ClothStars& stars, const Placement& now)
+EolPlacing EolPlacer::place(int entry)
 {
-    std::vector<Vec3> positions(state.mesh.world.size(), Vec3::Zero());
-    for (const int f : stars.faces[state.index_of(state.eol[entry].vertex_id)])
-        for (const int v : state.mesh.faces[f]) positions[v] = now.inverse(state.mesh.world[v]);
-    return place_eol_vertex(obstacle, thickness, state, entry, stars, positions, now);
-}
-
-std::vector<EolPlacing> place_eol_vertices(const std::vector<Obstacle>& obstacles, double thickness,
-                                           const State& state, const ClothStars& stars)
-{
-    std::vector<EolPlacing> placings;
-    Placement now;
-    std::vector<Vec3> positions;  // in the frame of obstacle `of`
-    int of = -1;
-    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
-        const Obstacle& obstacle = obstacles[state.eol[entry].obstacle];
-        if (state.eol[entry].obstacle != of) {
-            of = state.eol[entry].obstacle;
-            now = obstacle.at(state.time);
-            positions = to_frame(now, state.mesh.world);
-        }
-        placings.push_back(place_eol_vertex(obstacle, thickness, state, entry, stars, positions, now));
-    }
-    return placings;
+    const EolVertex& eol = state_.eol[entry];
+    const Obstacle& obstacle = obstacles_[eol.obstacle];
+    if (std::exchange(of_, eol.obstacle) != eol.obstacle) now_ = obstacle.at(state_.time);
+    positions_.resize(state_.mesh.world.size(), Vec3::Zero());
+    for (const int f : stars_.faces[state_.index_of(eol.vertex_id)])
+        for (const int v : state_.mesh.faces[f]) positions_[v] = now_.inverse(state_.mesh.world[v]);
+    return place_eol_vertex(obstacle, thickness_, state_, entry, stars_, positions_, now_);
 }
 
 }  // namespace arris

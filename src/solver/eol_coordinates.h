@@ -46,12 +46,26 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
                             const ClothStars& stars, const std::vector<Vec3>& positions, const Placement& end,
                             double dt = 0.0);
 
-/// The same of an obstacle that stays where it is, at `now`; looks at the cloth around the vertex only.
-EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const State& state, int entry,
-                            const ClothStars& stars, const Placement& now);
+/// The same of obstacles that stay where they are at the state's time; looks at the cloth around a vertex
+/// only. References are kept: the state may change in between, its time, faces and EOL entries may not.
+class EolPlacer {
+  public:
+    EolPlacer(const std::vector<Obstacle>& obstacles, double thickness, const State& state,
+              const ClothStars& stars)
+        : obstacles_(obstacles), thickness_(thickness), state_(state), stars_(stars)
+    {
+    }
 
-/// Of all entries of the state, obstacles being where they are at its time.
-std::vector<EolPlacing> place_eol_vertices(const std::vector<Obstacle>& obstacles, double thickness,
-                                           const State& state, const ClothStars& stars);
+    EolPlacing place(int entry);
+
+  private:
+    const std::vector<Obstacle>& obstacles_;
+    double thickness_;  ///< m
+    const State& state_;
+    const ClothStars& stars_;
+    int of_ = -1;                  ///< obstacle
+    Placement now_;                ///< its
+    std::vector<Vec3> positions_;  ///< in its frame; of vertices looked at last, else nothing that counts
+};
 
 }  // namespace arris

@@ -58,7 +58,8 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
     const bool is_free = is_on_convex_edge(scene.obstacles[eol.obstacle], eol) &&
                          state.material_velocity[at.vertex].norm() > 0.5 * kFreeFlow;
     const double cells = is_free ? kFreeCells : 1.0;
-    if (gap > cells * scene.eol->length(state.mesh.material[at.vertex])) return EolHold::None;
+    if (gap > cells * scene.eol->shortest && gap > cells * scene.eol->length(state.mesh.material[at.vertex]))
+        return EolHold::None;
     const bool has_left = gap > kOnFeature * scene.material.thickness;
     if (has_left && is_corner_under_face(scene, state, eol)) return EolHold::None;
     if (is_folded(state, stars.faces[at.vertex])) return EolHold::Firm;
@@ -104,18 +105,18 @@ bool is_at_border(const Scene& scene, const State& state, const ClothStars& star
 
 std::vector<std::uint32_t> find_releases(const Scene& scene, const State& state, const ClothStars& stars)
 {
-    const std::vector<EolPlacing> placings =
-        place_eol_vertices(scene.obstacles, scene.material.thickness, state, stars);
+    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
     std::vector<EolHold> holds;
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
         const EolVertex& eol = state.eol[entry];
         const Obstacle& obstacle = scene.obstacles[eol.obstacle];
         holds.push_back(EolHold::None);
         const Vec3 place = obstacle.at(state.time).inverse(state.mesh.world[state.index_of(eol.vertex_id)]);
-        if (!placings[entry].coordinates || is_at_border(scene, state, stars, eol) ||
+        const EolPlacing placing = placer.place(entry);
+        if (!placing.coordinates || is_at_border(scene, state, stars, eol) ||
             !is_on_feature(obstacle, eol, place))
             continue;
-        holds.back() = find_hold(scene, state, stars, entry, *placings[entry].coordinates, place);
+        holds.back() = find_hold(scene, state, stars, entry, *placing.coordinates, place);
     }
     hold_between(scene, state, stars, holds);
     std::vector<std::uint32_t> released;

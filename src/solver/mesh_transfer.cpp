@@ -145,11 +145,17 @@ void drop_contacts_without_element(const ClothStars& stars, State& state)
 
 State on_new_mesh(const State& before, const ConformedMesh& conformed, const CarriedById& all)
 {
-    State after = before;
+    State after;
+    after.time = before.time;
+    after.step = before.step;
     after.mesh = conformed.surgery.mesh;
     after.ids = conformed.surgery.ids;
     after.next_id = conformed.surgery.next_id;
+    after.previous_dt = before.previous_dt;
     after.eol = conformed.eol;
+    after.anchors = before.anchors;
+    after.active = before.active;
+    after.crossings = before.crossings;
     const std::size_t n = after.ids.size();
     after.velocity.resize(n);
     after.material_velocity.resize(n);
@@ -177,9 +183,10 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
 std::vector<char> find_flowing(const Scene& scene, const State& state, const ClothStars& stars)
 {
     std::vector<char> is_flowing(state.ids.size(), 0);
-    for (const EolPlacing& placing :
-         place_eol_vertices(scene.obstacles, scene.material.thickness, state, stars))
-        if (placing.coordinates) is_flowing[placing.coordinates->vertex] = 1;
+    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry)
+        if (const EolPlacing placing = placer.place(entry); placing.coordinates)
+            is_flowing[placing.coordinates->vertex] = 1;
     return is_flowing;
 }
 

@@ -22,8 +22,8 @@ class PatchFitter {
                 const ClothStars& stars, State& after)
         : scene_(scene),
           before_(before),
-          stars_(stars),
           after_(after),
+          placer_(scene.obstacles, scene.material.thickness, after, stars),
           held_(find_held_vertices(scene, after, after.time)),
           creases_before_(find_creases(scene, before, stars_before)),
           creases_(find_creases(scene, after, stars))
@@ -55,7 +55,7 @@ class PatchFitter {
     struct StrainedPatch {
         std::size_t index;
         double energy_before, kinetic;
-        double strain;  ///< as it is
+        double most_strain;  ///< as it is, at most
     };
 
     /// The most strained first: what cannot be, is seen there.
@@ -70,10 +70,12 @@ class PatchFitter {
             const double gain = find_patch_energy(scene_, creases_, after_.mesh, patch.faces) - before;
             if (!(gain > 0.0)) continue;
             const double kinetic = compute_kinetic_energy(scene_.material.density, fields[i]);
-            strained.push_back({i, before, kinetic, most_strain_of(patch, gain, kinetic, 0.0)});
+            const double most = gain / find_motion(kinetic, area_of(patch), scene_.eol->shortest);
+            strained.push_back({i, before, kinetic, most});
         }
-        std::stable_sort(strained.begin(), strained.end(),
-                         [](const StrainedPatch& a, const StrainedPatch& b) { return a.strain > b.strain; });
+        std::stable_sort(
+            strained.begin(), strained.end(),
+            [](const StrainedPatch& a, const StrainedPatch& b) { return a.most_strain > b.most_strain; });
         return strained;
     }
 
@@ -116,9 +118,7 @@ class PatchFitter {
         return relax(scene_, creases_, relaxed_, after_) - before;
     }
 
-    /// The greater of `known` and what `gain` is beside all that moves a patch: its kinetic energy, and its
-    /// weight over a cell.
-    double most_strain_of(const ChangedPatch& patch, double gain, double kinetic, double known) const
+    double area_of(const ChangedPatch& patch) const
     {
         const std::vector<Vec2>& X = after_.mesh.material;
         double area = 0.0;
@@ -126,13 +126,27 @@ class PatchFitter {
             const auto& [a, b, c] = after_.mesh.faces[f];
             area += 0.5 * twice_area(X[a], X[b], X[c]);
         }
-        const auto strain = [&](double cell) { return gain / (kinetic + weight_over(scene_, area, cell)); };
+        return area;
+    }
+
+    /// All that moves a patch, J: its kinetic energy, and its weight over a cell.
+    double find_motion(double kinetic, double area, double cell) const
+    {
+        return kinetic + weight_over(scene_, area, cell);
+    }
+
+    /// The greater of `known` and what `gain` is beside all that moves a patch, over the longest of its
+    /// cells.
+    double most_strain_of(const ChangedPatch& patch, double gain, double kinetic, double known) const
+    {
+        const double area = area_of(patch);
+        const auto strain = [&](double cell) { return gain / find_motion(kinetic, area, cell); };
         if (!(strain(scene_.eol->shortest) > known)) return known;
         double cell = 0.0;
         int last = -1;
         for (const int f : patch.faces)
             if (const int v = after_.mesh.faces[f][0]; v != last)
-                cell = std::max(cell, scene_.eol->length(X[last = v]));
+                cell = std::max(cell, scene_.eol->length(after_.mesh.material[last = v]));
         return std::max(known, strain(cell));
     }
 
@@ -170,12 +184,8 @@ class PatchFitter {
             drift = after_.velocity[v];
             material_drift = after_.material_velocity[v];
         } else if (const int entry = after_.eol_entry(after_.ids[v]); entry >= 0) {
-            const std::int32_t o = after_.eol[entry].obstacle;
-            const Obstacle& obstacle = scene_.obstacles[o];
-            const Placement now = obstacle.at(after_.time);
-            const EolPlacing placing = place_eol_vertex(obstacle, scene_.material.thickness, after_, entry,
-                                                        stars_, positions_around(v, now), now);
-            if (placing.coordinates) {
+            if (const EolPlacing placing = placer_.place(entry); placing.coordinates) {
+                const Obstacle& obstacle = scene_.obstacles[after_.eol[entry].obstacle];
                 basis = placing.coordinates->basis;
                 material_basis = placing.coordinates->material_basis;
                 drift = obstacle.velocity_after(after_.time, after_.mesh.world[v]);
@@ -187,23 +197,13 @@ class PatchFitter {
         patch.material_basis.push_back(material_basis);
     }
 
-    /// Of the star of v, in an obstacle's frame; of other vertices nothing that means anything.
-    const std::vector<Vec3>& positions_around(int v, const Placement& frame)
-    {
-        positions_.resize(after_.ids.size(), Vec3::Zero());
-        for (const int f : stars_.faces[v])
-            for (const int w : after_.mesh.faces[f]) positions_[w] = frame.inverse(after_.mesh.world[w]);
-        return positions_;
-    }
-
     const Scene& scene_;
     const State& before_;
-    const ClothStars& stars_;
     State& after_;
+    EolPlacer placer_;
     std::vector<HeldVertex> held_;
     Creases creases_before_, creases_;
     RelaxedPatch relaxed_;  ///< of vertices of other patches nothing that means anything
-    std::vector<Vec3> positions_;
 };
 
 }  // namespace

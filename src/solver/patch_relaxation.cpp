@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/patch_relaxation.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 
@@ -207,14 +209,26 @@ class Relaxation {
         at_.position = patch_.mesh.world;
         system_.assemble(patch_.mesh, elements_, terms_, at_);
         keep_heights();
-        if (is_first) factor_.analyzePattern(system_.matrix());
-        factor_.factorize(system_.matrix());
-        if (factor_.info() != Eigen::Success) return way;
-        const Eigen::VectorXd solution = step_time_ * factor_.solve(system_.rhs());
+        const Eigen::VectorXd solution = step_time_ * solve(is_first);
         if (!solution.allFinite()) return way;
         for (std::size_t k = 0; k < free_.size(); ++k)
             way[free_[k]] = solution.segment<3>(static_cast<Eigen::Index>(3 * k));
         return way;
+    }
+
+    /// Of the system as it is; not finite where it has no factors.
+    Eigen::VectorXd solve(bool is_first)
+    {
+        constexpr Eigen::Index kSmall = 90;  // unknowns: up to here dense factors take less time
+        if (system_.matrix().rows() <= kSmall) {
+            dense_factor_.compute(system_.matrix().toDense());
+            if (dense_factor_.info() == Eigen::Success) return dense_factor_.solve(system_.rhs());
+        } else {
+            if (is_first) factor_.analyzePattern(system_.matrix());
+            factor_.factorize(system_.matrix());
+            if (factor_.info() == Eigen::Success) return factor_.solve(system_.rhs());
+        }
+        return Eigen::VectorXd::Constant(system_.rhs().size(), std::numeric_limits<double>::quiet_NaN());
     }
 
     /// Of free vertices that have a normal.
@@ -241,7 +255,8 @@ class Relaxation {
     Linearization at_;
     LinearSystem system_;  ///< of what is free
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, BlockAmdOrdering>
-        factor_;  ///< of one pattern
+        factor_;                                              ///< of one pattern
+    Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> dense_factor_;  ///< of few unknowns
 };
 
 }  // namespace
@@ -295,7 +310,7 @@ bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop)
 
 double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& mesh)
 {
-    ClothElements elements = make_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
+    ClothElements elements = list_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
     mark_creases(creases, mesh, elements);
     return compute_energies(elements, make_energy_terms(scene), mesh.world).sum();
 }
