@@ -110,17 +110,10 @@ StepReport join(const StepReport& opening, StepReport rest)
 {
     rest.dt += opening.dt;
     rest.energy_rise += opening.energy_rise;
-    rest.crossings += opening.crossings;
-    rest.inserted += opening.inserted;
-    rest.released += opening.released;
-    rest.relinearisations += opening.relinearisations;
     rest.kkt_residual = std::max(rest.kkt_residual, opening.kkt_residual);
     rest.yielded += opening.yielded;
     rest.rewound += opening.rewound;
-    rest.solves += opening.solves;
-    rest.factorisations += opening.factorisations;
-    rest.nlopt_evaluations += opening.nlopt_evaluations;
-    rest.seconds += opening.seconds;
+    rest.add_cost(opening);
     return rest;
 }
 
@@ -214,7 +207,7 @@ std::optional<Ending> advance(Run& run)
     State& state = run.at.state;
     if (run.timeline.jumps_at(state.time)) restart(state);
     const auto accept = [&run](const StepReport& report, bool is_halved) {
-        if (report.is_opening) {
+        if (report.part == StepPart::Opening) {
             run.opening = report;
             return true;
         }

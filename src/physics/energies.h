@@ -11,6 +11,7 @@ namespace arris {
 struct Energies {
     double gravity = 0.0, stretch = 0.0, bending = 0.0;
 
+    double elastic() const { return stretch + bending; }
     double sum() const { return gravity + stretch + bending; }
 };
 

@@ -178,9 +178,8 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
     // moves across itself is, and 2/9 of what is of third.
     constexpr double kFourthOrder = 9.0 / 4.0;
     const double least = kRise * energy_at_stake(work);
-    const auto elastic = [](const Energies& energies) { return energies.stretch + energies.bending; };
     const Energies &before = work.energy.potential, &after = work.solved_energy.potential;
-    const double gained = elastic(after) - elastic(before);
+    const double gained = after.elastic() - before.elastic();
     if (!(gained > least)) return 0.0;
     const ClothVelocity& from = work.expansion;
     const ClothVelocity to = velocity_of(work.proposal);
@@ -190,7 +189,7 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
     const Energies at_expansion = potential_at(from);
     // Ringing cloth, which goes farther at v^ than it does, has up to three times as much there.
     constexpr double kFarMore = 5.0;
-    if (elastic(at_expansion) > kFarMore * (elastic(after) + elastic(before)) + least) return gained;
+    if (at_expansion.elastic() > kFarMore * (after.elastic() + before.elastic()) + least) return gained;
     const double third = after.sum() - at_expansion.sum() +
                          3.0 * (potential_at(blend(from, to, 1.0 / 3.0)).sum() -
                                 potential_at(blend(from, to, 2.0 / 3.0)).sum());
@@ -228,11 +227,11 @@ bool is_push_costly(const Scene& scene, double dt, const Workspace& work)
 {
     const Energies& before = work.solved_energy.potential;
     const Energies& after = work.proposed_energy.potential;
-    const double elastic = before.stretch + before.bending;
-    const double cost = after.stretch + after.bending - elastic;
-    if (!(cost > kRise * (work.solved_energy.kinetic + elastic))) return false;
+    const double cost = after.elastic() - before.elastic();
+    const double unseen = kRise * (work.solved_energy.kinetic + before.elastic());
+    if (!(cost > unseen)) return false;
     const double push = kinetic_energy(scene.material.density, work.elements, push_velocity(work, dt));
-    return cost > push + kRise * (work.solved_energy.kinetic + elastic);
+    return cost > push + unseen;
 }
 
 double compute_step_objective(const Scene& scene, const Workspace& work, const ClothVelocity& velocity)

@@ -77,7 +77,7 @@ bool EolGuard::strains(const SurgeryEvent& event)
     const Energies after = find_energies(*surgery_, event, event.after, terms_, crease_width_);
     double rise = after.sum() - before.sum();
     if (!(rise > 0.0)) return false;  // it need not be known what is allowed
-    rise -= allowance(event, before.stretch + before.bending);
+    rise -= allowance(event, before.elastic());
     if (!(rise > 0.0)) return false;
     return limit_ != StrainLimit::GivesWay || !relaxations_.can_relax_by(scene_, make_patch(event), rise);
 }

@@ -25,10 +25,13 @@ struct PhaseSeconds {
     }
 };
 
+/// A step that has no past to go on is made in two parts, told as one.
+enum class StepPart { Whole, Opening, Rest };
+
 struct StepReport {
     StepStatus status = StepStatus::Done;
-    double dt = 0.0;                      ///< s
-    bool is_opening = false;              ///< first part of a step that is told as one with the rest
+    double dt = 0.0;  ///< s
+    StepPart part = StepPart::Whole;
     std::int64_t infeasible_vertex = -1;  ///< id of one whose pins and contacts no velocity meets
     int contacts = 0;                     ///< that press, without planes behind wires
     int feature_rows = 0;                 ///< those at a sharp edge, corner, wire or point but EOL vertices
@@ -46,6 +49,14 @@ struct StepReport {
     int eol_vertices = 0;
     int inserted = 0, released = 0;  ///< EOL vertices
     PhaseSeconds seconds;
+
+    void add_cost(const StepReport& other)
+    {
+        solves += other.solves;
+        factorisations += other.factorisations;
+        nlopt_evaluations += other.nlopt_evaluations;
+        seconds += other.seconds;
+    }
 };
 
 }  // namespace arris

@@ -277,7 +277,7 @@ TEST(Advance, StartsWithAThirdOfAStepWhereBdf2HasNoPast)
         std::vector<double> parts;  // of a step
         const auto accept = [&](const StepReport& report, bool is_halved) {
             EXPECT_FALSE(is_halved);
-            EXPECT_EQ(report.is_opening, report.dt < 0.5 * 0.005);
+            EXPECT_EQ(report.part == StepPart::Opening, report.dt < 0.5 * 0.005);
             parts.push_back(report.dt / 0.005);
             return true;
         };

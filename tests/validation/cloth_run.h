@@ -18,6 +18,10 @@ void lay(ClothMesh& mesh, const Vec3& corner);
 /// Cloth with EOL vertices under gravity, and a table: a box of `size` (m) about `middle`.
 Scene make_table_scene(const ClothMesh& mesh, const Material& material, const Vec3& size, const Vec3& middle);
 
+/// What is at rest and then accelerated evenly BDF2 takes too far by this times h^2 times the acceleration,
+/// all of it in its first step: that is made in a third and the rest, the third with implicit Euler.
+inline constexpr double kBdf2StartLag = 99.0 / 720.0;
+
 /// Everything a run needs. Cloth at rest unless `velocity` (m/s) says otherwise.
 struct ClothRun {
     Scene scene;

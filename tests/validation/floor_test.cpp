@@ -92,7 +92,7 @@ TEST(Incline, AcceleratesByGTimesTheSine)
                 const double error = speed / (kG * std::sin(angle) * t) - 1.0;
                 EXPECT_LT(std::abs(error), 1e-3);
                 if (!is_crumpled) {  // the path too, up to the integrator's own lag on a parabola
-                    const double lag = integrator == Integrator::Bdf2 ? 99.0 / 720.0 * h * h : 0.5 * h * t;
+                    const double lag = integrator == Integrator::Bdf2 ? kBdf2StartLag * h * h : 0.5 * h * t;
                     const double path = kG * std::sin(angle) * (0.5 * t * t + lag);
                     for (std::size_t v = 0; v < mesh.world.size(); ++v)
                         EXPECT_NEAR((run.state.mesh.world[v] - mesh.world[v]).dot(down) / path, 1.0, 1e-9);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cloth_run.h"
 #include "geometry/mesh_quality.h"
 #include "grid_patterns.h"
 #include "physics/feature_impulse.h"
@@ -204,11 +205,10 @@ TEST(SlidingStrip, FollowsAnyTwoSlopes)
             const double end = most_of_the_way(strip);
             const Slide found = slide(strip, end, kStep);
             ASSERT_FALSE(testing::Test::HasFailure()) << describe(strip);
-            // A short run feels its start, a third of a step of implicit Euler's: x is ahead by 99/40 (h/3)^2
-            // x" / 2.
+            // A short run feels its start.
             const SlidingChain chain = chain_of(strip);
             const double ahead =
-                99.0 / 720.0 * kStep * kStep * chain.acceleration(0.0) / chain.length_after(end);
+                kBdf2StartLag * kStep * kStep * chain.acceleration(0.0) / chain.length_after(end);
             EXPECT_LT(found.error, kTimeError + ahead) << describe(strip);
             EXPECT_LT(found.rise, kRise) << describe(strip);
             EXPECT_LT(found.loss, kLoss) << describe(strip);
