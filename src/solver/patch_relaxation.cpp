@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <limits>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -38,9 +38,9 @@ Terms make_energy_terms(const Scene& scene)
 /// that. Without gravity nothing falls: mass only keeps what has no stiffness where it is.
 double find_step_time(const Scene& scene)
 {
-    if (!scene.gravity || !scene.eol) return 1.0;
-    return std::sqrt(kAllowedStrain * scene.eol->mean_length /
-                     (kMostSteps * scene.gravity->acceleration.norm()));
+    const double weight = scene.gravity ? scene.gravity->acceleration.norm() : 0.0;
+    if (!(weight > 0.0) || !scene.eol) return 1.0;
+    return std::sqrt(kAllowedStrain * scene.eol->mean_length / (kMostSteps * weight));
 }
 
 /// Those of a part of the cloth, whose vertex i is `vertices[i]` of the whole.
@@ -209,26 +209,28 @@ class Relaxation {
         at_.position = patch_.mesh.world;
         system_.assemble(patch_.mesh, elements_, terms_, at_);
         keep_heights();
-        const Eigen::VectorXd solution = step_time_ * solve(is_first);
-        if (!solution.allFinite()) return way;
+        const std::optional<Eigen::VectorXd> velocity = solve(is_first);
+        if (!velocity || !velocity->allFinite()) return way;
         for (std::size_t k = 0; k < free_.size(); ++k)
-            way[free_[k]] = solution.segment<3>(static_cast<Eigen::Index>(3 * k));
+            way[free_[k]] = step_time_ * velocity->segment<3>(static_cast<Eigen::Index>(3 * k));
         return way;
     }
 
-    /// Of the system as it is; not finite where it has no factors.
-    Eigen::VectorXd solve(bool is_first)
+    /// Of the system as it is; nothing where it has no factors.
+    std::optional<Eigen::VectorXd> solve(bool is_first)
     {
-        constexpr Eigen::Index kSmall = 90;  // unknowns: up to here dense factors take less time
+        // Unknowns, up to which dense factors take less time: most patches of the guard have 45.
+        constexpr Eigen::Index kSmall = 90;
         if (system_.matrix().rows() <= kSmall) {
             dense_factor_.compute(system_.matrix().toDense());
-            if (dense_factor_.info() == Eigen::Success) return dense_factor_.solve(system_.rhs());
+            if (dense_factor_.info() == Eigen::Success)
+                return Eigen::VectorXd(dense_factor_.solve(system_.rhs()));
         } else {
             if (is_first) factor_.analyzePattern(system_.matrix());
             factor_.factorize(system_.matrix());
-            if (factor_.info() == Eigen::Success) return factor_.solve(system_.rhs());
+            if (factor_.info() == Eigen::Success) return Eigen::VectorXd(factor_.solve(system_.rhs()));
         }
-        return Eigen::VectorXd::Constant(system_.rhs().size(), std::numeric_limits<double>::quiet_NaN());
+        return std::nullopt;
     }
 
     /// Of free vertices that have a normal.

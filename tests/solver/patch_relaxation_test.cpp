@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include "geometry/obstacle_shapes.h"
 #include "solver/audit.h"
@@ -63,6 +66,63 @@ TEST(PatchRelaxation, LowersTheEnergyAndReturnsWhatThereIs)
                 EXPECT_NEAR(after, setting.energy(), 1e-12 * before);
                 EXPECT_LT(after, rough < 1e-2 ? 0.1 * before : before) << stiffness << ", " << rough;
             }
+}
+
+TEST(PatchRelaxation, RelaxesUnderAGravityOfNothingAsWithout)
+{
+    Setting without(5e-3), nothing(5e-3);
+    nothing.cloth.scene.gravity = Gravity{Vec3::Zero()};
+    EXPECT_EQ(nothing.relax(), without.relax());
+    EXPECT_EQ(nothing.cloth.state.mesh.world, without.cloth.state.mesh.world);
+}
+
+/// A square of 3 x 3 free vertices, or with `count` 4 of them alike and apart, so that none feels another.
+/// They are out of place, and every second one keeps its height where they touch.
+Setting make_squares(int count, bool is_touching)
+{
+    Setting setting(0.0);
+    setting.cloth.scene.gravity = Gravity{};
+    setting.cloth.scene.material.youngs_modulus = 5.0;     // so soft that it takes some steps
+    setting.cloth.scene.material.bending_stiffness = 0.0;  // hinges reach from one to the next
+    std::mt19937 random(4);
+    std::normal_distribution<double> shift(0.0, 5e-3);
+    std::array<Vec3, 16> shifts;
+    for (Vec3& s : shifts) s = Vec3(shift(random), shift(random), shift(random));
+    State& state = setting.cloth.state;
+    for (std::size_t v = 0; v < state.ids.size(); ++v) {
+        const Vec2 cell = state.mesh.material[v] / 0.05;
+        const int i = static_cast<int>(std::lround(cell.x())), j = static_cast<int>(std::lround(cell.y()));
+        const bool is_free = i % 4 != 0 && j % 4 != 0 && (count == 4 || (i < 4 && j < 4));
+        setting.patch.is_free[v] = is_free;
+        if (!is_free) continue;
+        state.mesh.world[v] += shifts[4 * (i % 4) + j % 4];
+        if (is_touching && (i + j) % 2 == 0) setting.patch.normals[v] = Vec3(1, 2, 2) / 3.0;
+    }
+    return setting;
+}
+
+TEST(PatchRelaxation, APartMovesAsWithOthersLikeIt)
+{
+    // One has 27 unknowns and four have 108, which are solved in another way.
+    for (const bool is_touching : {false, true}) {
+        Setting one = make_squares(1, is_touching), four = make_squares(4, is_touching);
+        const double drop = 0.9 * one.energy();
+        for (auto [setting, count] : {std::pair{&one, 1.0}, std::pair{&four, 4.0}}) {
+            const Scene& scene = setting->cloth.scene;
+            setting->patch.wanted = find_patch_energy(scene, {}, setting->cloth.state.mesh) - count * drop;
+        }
+        const std::vector<Vec3> begin = one.cloth.state.mesh.world;
+        one.relax();
+        four.relax();
+        double farthest = 0.0;
+        for (std::size_t v = 0; v < begin.size(); ++v) {
+            if (one.patch.is_free[v] == 0) continue;
+            const Vec3& there = one.cloth.state.mesh.world[v];
+            EXPECT_LT((there - four.cloth.state.mesh.world[v]).norm(), 1e-8) << is_touching << ", " << v;
+            farthest = std::max(farthest, (there - begin[v]).norm());
+        }
+        EXPECT_GT(farthest, 2e-3);
+    }
 }
 
 TEST(PatchRelaxation, WhatIsHeldStaysAndHistoryMovesAlong)
