@@ -105,7 +105,7 @@ StepRow make_row(const Run& run, const StepReport& report)
     return row;
 }
 
-/// What is told of a step in two parts: where the second has led, and what both have cost and lost.
+/// What a row tells of a step in two parts: where the second has led, and what both have cost and lost.
 StepReport join(const StepReport& opening, StepReport rest)
 {
     rest.dt += opening.dt;

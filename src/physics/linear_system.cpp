@@ -90,13 +90,13 @@ void LinearSystem::make_pattern(const ClothElements& elements, std::vector<int> 
     for_each_pair([&](int i, int j) { below[last[j]++] = i; });
 
     column_height_.assign(n, 0);
-    std::vector<int> known_in(n, -1);
+    std::vector<int> last_in(n, -1);  // of each row, the column that had it last
     Eigen::VectorXi heights(3 * n);
     for (int j = 0; j < n; ++j) {
-        // A pair shares seven elements or so: each is kept once before they are sorted.
+        // A mesh edge is in up to seven elements: each pair is kept once before they are sorted.
         const auto begin = below.begin() + first[j], end = below.begin() + last[j];
-        const auto is_known = [&](int i) { return std::exchange(known_in[i], j) == j; };
-        last[j] = static_cast<int>(std::remove_if(begin, end, is_known) - below.begin());
+        const auto comes_again = [&](int i) { return std::exchange(last_in[i], j) == j; };
+        last[j] = static_cast<int>(std::remove_if(begin, end, comes_again) - below.begin());
         std::sort(begin, below.begin() + last[j]);
         column_height_[j] = 3 * (1 + last[j] - first[j]);
         heights.segment<3>(3 * j).setConstant(column_height_[j]);

@@ -17,7 +17,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
     const double planned = end - state.time;
     int shrink = 1;                                      // how much shorter parts have become
     int parts = find_flow_parts(scene, state, planned);  // how many are left
-    StepPart part = StepPart::Whole;
+    StepPart part = StepPart::Ordinary;
     if (settings.integrator == Integrator::Bdf2 && !has_past(state, planned) && parts == 1) {
         part = StepPart::Opening;
         parts = kStartParts;
@@ -32,8 +32,9 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
             report.add_cost(std::exchange(failed, {}));
             report.part = part;
             parts = part == StepPart::Opening ? 1 : std::max(parts - 1, 1);
-            part = part == StepPart::Opening ? StepPart::Rest : StepPart::Whole;
-            if (!accept(report, report.part == StepPart::Whole && report.dt < planned)) return std::nullopt;
+            part = part == StepPart::Opening ? StepPart::Rest : StepPart::Ordinary;
+            if (!accept(report, report.part == StepPart::Ordinary && report.dt < planned))
+                return std::nullopt;
             continue;
         }
         failed.add_cost(report);
@@ -52,7 +53,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
         } else {
             shrink *= 2;
             parts *= 2;
-            part = StepPart::Whole;
+            part = StepPart::Ordinary;
         }
     }
     return std::nullopt;

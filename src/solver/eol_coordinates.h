@@ -47,7 +47,7 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
                             double dt = 0.0);
 
 /// The same of obstacles that stay where they are at the state's time; looks at the cloth around a vertex
-/// only. References are kept: the state may change in between, its time, faces and EOL entries may not.
+/// only. References are kept: between calls the state's time and faces, and the stars, may not change.
 class EolPlacer {
   public:
     EolPlacer(const std::vector<Obstacle>& obstacles, double thickness, const State& state,
@@ -65,7 +65,7 @@ class EolPlacer {
     const ClothStars& stars_;
     int of_ = -1;                  ///< obstacle
     Placement now_;                ///< its
-    std::vector<Vec3> positions_;  ///< in its frame; of vertices looked at last, else nothing that counts
+    std::vector<Vec3> positions_;  ///< in its frame, of the star that is looked at; the rest is old
 };
 
 }  // namespace arris

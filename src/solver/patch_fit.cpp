@@ -55,7 +55,7 @@ class PatchFitter {
     struct StrainedPatch {
         std::size_t index;
         double energy_before, kinetic;
-        double most_strain;  ///< as it is, at most
+        double strain_bound;  ///< as it is, at most: that costs no lookups of targets
     };
 
     /// The most strained first: what cannot be, is seen there.
@@ -70,12 +70,12 @@ class PatchFitter {
             const double gain = find_patch_energy(scene_, creases_, after_.mesh, patch.faces) - before;
             if (!(gain > 0.0)) continue;
             const double kinetic = compute_kinetic_energy(scene_.material.density, fields[i]);
-            const double most = gain / find_motion(kinetic, area_of(patch), scene_.eol->shortest);
-            strained.push_back({i, before, kinetic, most});
+            const double bound = gain / moving_energy(kinetic, area_of(patch), scene_.eol->shortest);
+            strained.push_back({i, before, kinetic, bound});
         }
         std::stable_sort(
             strained.begin(), strained.end(),
-            [](const StrainedPatch& a, const StrainedPatch& b) { return a.most_strain > b.most_strain; });
+            [](const StrainedPatch& a, const StrainedPatch& b) { return a.strain_bound > b.strain_bound; });
         return strained;
     }
 
@@ -130,7 +130,7 @@ class PatchFitter {
     }
 
     /// All that moves a patch, J: its kinetic energy, and its weight over a cell.
-    double find_motion(double kinetic, double area, double cell) const
+    double moving_energy(double kinetic, double area, double cell) const
     {
         return kinetic + weight_over(scene_, area, cell);
     }
@@ -140,7 +140,7 @@ class PatchFitter {
     double most_strain_of(const ChangedPatch& patch, double gain, double kinetic, double known) const
     {
         const double area = area_of(patch);
-        const auto strain = [&](double cell) { return gain / find_motion(kinetic, area, cell); };
+        const auto strain = [&](double cell) { return gain / moving_energy(kinetic, area, cell); };
         if (!(strain(scene_.eol->shortest) > known)) return known;
         double cell = 0.0;
         int last = -1;

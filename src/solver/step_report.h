@@ -25,13 +25,14 @@ struct PhaseSeconds {
     }
 };
 
-/// A step that has no past to go on is made in two parts, told as one.
-enum class StepPart { Whole, Opening, Rest };
+/// A step that has no past to go on is made in two parts, told as one; any other part of a step, or all of
+/// it, is told as it is.
+enum class StepPart { Ordinary, Opening, Rest };
 
 struct StepReport {
     StepStatus status = StepStatus::Done;
     double dt = 0.0;  ///< s
-    StepPart part = StepPart::Whole;
+    StepPart part = StepPart::Ordinary;
     std::int64_t infeasible_vertex = -1;  ///< id of one whose pins and contacts no velocity meets
     int contacts = 0;                     ///< that press, without planes behind wires
     int feature_rows = 0;                 ///< those at a sharp edge, corner, wire or point but EOL vertices
