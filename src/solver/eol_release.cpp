@@ -7,7 +7,6 @@
 #include "geometry/feature_path.h"
 #include "solver/border_room.h"
 #include "solver/eol_features.h"
-#include "solver/free_fold.h"
 
 namespace arris {
 
@@ -55,10 +54,7 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
     const EolVertex& eol = state.eol[entry];
     if (eol.idle < kIdleSteps) return EolHold::Firm;
     const double gap = (place - at.frame.point).norm();
-    const bool is_free = is_on_convex_edge(scene.obstacles[eol.obstacle], eol) &&
-                         state.material_velocity[at.vertex].norm() > 0.5 * kFreeFlow;
-    const double cells = is_free ? kFreeCells : 1.0;
-    if (gap > cells * scene.eol->shortest && gap > cells * scene.eol->length(state.mesh.material[at.vertex]))
+    if (gap > scene.eol->shortest && gap > scene.eol->length(state.mesh.material[at.vertex]))
         return EolHold::None;
     const bool has_left = gap > kOnFeature * scene.material.thickness;
     if (has_left && is_corner_under_face(scene, state, eol)) return EolHold::None;

@@ -31,8 +31,9 @@ enum class EolHold {
 };
 
 /// Of EOL vertex `entry`, at `place` in its obstacle's frame. Firm where it presses; none more than a cell
-/// from its feature, more than kFreeCells where a fold flies off an edge (free_fold.h), nor off a corner
-/// that presses on a face now; firm where the cloth is folded, by more than 6 degrees.
+/// from its feature, nor off a corner that presses on a face now; firm where the cloth is folded, by more
+/// than 6 degrees. (A fold that flies, free_fold.h, is led in a plane that nothing is in: farther out, and
+/// where a part of it has been let go, that takes energy.)
 EolHold find_hold(const Scene& scene, const State& state, const ClothStars& stars, int entry,
                   const EolCoordinates& at, const Vec3& place);
 

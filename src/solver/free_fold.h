@@ -18,10 +18,6 @@
 
 namespace arris {
 
-/// Target lengths from a convex edge, beyond which a fold is of the edge no more: by then it is as round as
-/// tension and inertia make it.
-inline constexpr double kFreeCells = 4.0;
-
 /// m/s, of material over an edge: what flows as fast flies over it. What is slower and off it, as stiff cloth
 /// that shakes or hangs between corners, comes back.
 inline constexpr double kFreeFlow = 1.0;

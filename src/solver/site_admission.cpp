@@ -129,12 +129,13 @@ std::optional<double> SiteAdmission::find_free_fold(const FeatureSite& site) con
             continue;
         constexpr double kShare = 0.5;  // of the fold's way from the edge
         constexpr double kSoon = 0.05;  // s, in which it flows through the fold
+        constexpr double kNear = 2.0;   // target lengths: no fold is held farther from its edge than one
         const Vec3 off = trace_.placed(e).place - here;
         const double along = std::abs((to - from).normalized().dot(off));
         const double way = (trace_.surgery().material(e.vertex_id) - site.material).norm();
         const double across = std::sqrt(std::max(way * way - along * along, 0.0));
         const double left = std::sqrt(std::max(off.squaredNorm() - along * along, 0.0));
-        const double reach = std::min(kFreeCells * h, kSoon * trace_.flow(e.vertex_id).norm());
+        const double reach = std::min(kNear * h, kSoon * trace_.flow(e.vertex_id).norm());
         if (way < reach && along < h && across > kShare * left) least = std::min(least.value_or(left), left);
     }
     return least;

@@ -107,6 +107,23 @@ TEST(EdgeContact, TouchOnTheWayPointsToWhereTheClothWas)
     EXPECT_GT(contacts[0].normal.z(), 0.7);
 }
 
+// What slides over the box's top and sinks into it on its way meets the edge from inside. A direction from
+// there would hold the cloth under the edge, with the full weight of what slides.
+TEST(EdgeContact, WhatRunsThroughAFaceOnItsWayStaysOutside)
+{
+    const Segment begin = {Vec3(0.935, 0.53, 1.012), Vec3(0.9945, 0.51, 1.0002)};
+    const Segment end = {Vec3(0.954, 0.532, 1.011), Vec3(1.0135, 0.512, 0.999)};
+    for (const bool is_swapped : {false, true}) {
+        const auto contacts = is_swapped ? contacts_of(unit_box(), {begin[1], begin[0]}, {end[1], end[0]})
+                                         : contacts_of(unit_box(), begin, end);
+        ASSERT_EQ(contacts.size(), 1U);
+        EXPECT_GT(contacts[0].normal.z(), 0.9);
+        EXPECT_GE(samples::gap_of(contacts[0], is_swapped ? std::vector<Vec3>{begin[1], begin[0]}
+                                                          : std::vector<Vec3>{begin[0], begin[1]}),
+                  0.0);
+    }
+}
+
 TEST(EdgeContact, WireTunnelledFromAnySideIsHeldOnThatSide)
 {
     const Obstacle wire = samples::make_obstacle(samples::wire({{0, -1, 0}, {0, 1, 0}}, false));

@@ -82,13 +82,13 @@ TEST(EolRelease, WhileItPressesNeverIs)
     EXPECT_FALSE(flat.can_be_let_go());
 }
 
-TEST(EolRelease, ComesAtTheLatestACellFromTheFeatureOrFourWhereTheFoldFlies)
+TEST(EolRelease, ComesAtTheLatestACellFromTheFeatureHoweverFastItFlows)
 {
-    for (const auto& [speed, cells] : {std::pair{kSpeed, 4.0}, {0.1, 1.0}, {0.0, 1.0}})
+    for (const double speed : {kSpeed, 0.1, 0.0})
         for (const auto& [share, is_far] : {std::pair{0.95, false}, {1.05, true}}) {
             FlowingCloth lifted(90.0, speed);
             const double cell = lifted.cloth.scene.eol->length(Vec2(0.2, 0.2));
-            for (Vec3& x : lifted.cloth.state.mesh.world) x.z() += share * cells * cell;
+            for (Vec3& x : lifted.cloth.state.mesh.world) x.z() += share * cell;
             EXPECT_EQ(lifted.can_be_let_go(), is_far) << speed;
         }
 }
