@@ -413,7 +413,7 @@ RunConfig load_resumed(const std::string& directory, const std::optional<double>
     check_references(directory, checkpoint.state, config.scene);
     if (until) {
         if (!(*until > checkpoint.state.time) || !std::isfinite(*until))
-            throw InputError(fmt::format("--until {}: the run has come to t = {} s; allowed: later times",
+            throw InputError(fmt::format("--until {}: not a time after t = {} s, where the run has come to",
                                          *until, checkpoint.state.time));
         const double begin = checkpoint.position.begin;
         const double planned_end = Timeline(config).interval_end(begin);
