@@ -116,15 +116,15 @@ Vec3 normal_of_touch(const Obstacle& obstacle, const EdgePair& pair, double time
         normal.normalize();
         if (is_crossing) return normal;  // a node's, which no edge's cone bounds
     }
-    // Clamped it must still have the cloth's begin on its free side, or it would hold nothing back. What runs
-    // down through a face before it comes to the edge comes to it from inside: up to where it began it goes.
+    // Clamped it must still have the cloth's begin on its free side, or it would hold nothing back. Where
+    // another part of the cloth has sunk into a face the cross product may point inside; the way from the
+    // begin does not.
     const Vec3 from = at(pair.begin, s) - point;
-    for (const Vec3& direction : {normal, from}) {
-        if (!(direction.norm() > touch_distance(obstacle, pair.thickness))) continue;
-        const Vec3 clamped = clamp_to_edge_cone(obstacle, pair.element, direction.normalized());
-        if (clamped.dot(from) >= 0.0) return clamped;
-    }
-    return normal;
+    const Vec3 clamped = clamp_to_edge_cone(obstacle, pair.element, normal);
+    if (clamped.dot(from) >= 0.0) return clamped;
+    if (!(from.norm() > touch_distance(obstacle, pair.thickness))) return normal;
+    const Vec3 outside = clamp_to_edge_cone(obstacle, pair.element, from.normalized());
+    return outside.dot(from) >= 0.0 ? outside : normal;
 }
 
 bool is_feature(const Obstacle& obstacle, int edge)

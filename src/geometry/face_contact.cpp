@@ -165,9 +165,15 @@ std::optional<ObstacleContact> contact_of_touch(const Obstacle& obstacle, const 
     const int edge = weights[least] < kEndWeight ? (least + 1) % 3 : -1;
     const ClothPoint cloth_point = cloth_point_on(pair, weights, edge);
     const Vec3 face_normal = normal_of(triangle_at(motion, reference, pair.face, time));
-    const Vec3 normal =
+    Vec3 normal =
         edge < 0 ? towards_begin(pair, motion, cloth_point, face_normal)
                  : normal_on_edge(pair, motion, reference, cloth_edge(pair, motion, edge), cloth_point, time);
+    // Where a part of the cloth has sunk into the solid the cloth's plane may lead the rest in.
+    if (!normal.isZero(0.0) && !is_in_point_cone(obstacle, pair.element, normal)) {
+        const Vec3 outside =
+            face_normal_towards(obstacle, pair.element, cloth_point.at(motion.begin) - pair.point);
+        if (!outside.isZero(0.0)) normal = outside;
+    }
     return contact_of(obstacle, motion, pair, cloth_point, normal);
 }
 

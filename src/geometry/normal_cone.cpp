@@ -88,6 +88,20 @@ Vec3 clamp_to_edge_cone(const Obstacle& obstacle, int edge, const Vec3& directio
     return first.dot(across) >= second.dot(across) ? first : second;
 }
 
+Vec3 face_normal_towards(const Obstacle& obstacle, int point, const Vec3& from)
+{
+    const ObstacleTopology& topology = obstacle.topology();
+    Vec3 highest = Vec3::Zero();
+    double height = 0.0;
+    for (int k = 0; k < topology.edge_count_at(point); ++k)
+        for (const int f : topology.edges[topology.edge_at(point, k)].faces) {
+            if (f < 0 || !is_solid(obstacle, f) || !(topology.face_normals[f].dot(from) > height)) continue;
+            highest = topology.face_normals[f];
+            height = highest.dot(from);
+        }
+    return highest;
+}
+
 Vec3 outward_of_edge(const Obstacle& obstacle, int edge)
 {
     const std::array<int, 2>& faces = obstacle.topology().edges[edge].faces;

@@ -24,6 +24,10 @@ bool is_in_point_cone(const Obstacle& obstacle, int point, const Vec3& direction
 /// the edge.
 Vec3 clamp_to_edge_cone(const Obstacle& obstacle, int edge, const Vec3& direction);
 
+/// The outward normal of that of the solid faces at `point` over which a place off by `from` is highest; zero
+/// where it is over none of them.
+Vec3 face_normal_towards(const Obstacle& obstacle, int point, const Vec3& from);
+
 /// Unit, in `face` and perpendicular to its edge `edge` (topology), towards the face's inside.
 Vec3 into_face(const Obstacle& obstacle, int face, int edge);
 

@@ -78,7 +78,8 @@ std::optional<ObstacleContact> make_edge_violation(const Obstacle& obstacle, con
     const Meeting meeting{motion, ContactKind::Edge, {{cloth.a, cloth.b, -1}, hit.weights},
                           edge,   hit.point,         thickness};
     const auto found = make_edge_contact(obstacle, motion, motion.end, {cloth.a, cloth.b}, edge, thickness);
-    const auto contact = found ? as_violation(meeting, *found, kAlongPlane) : std::nullopt;
+    // However nearly along it the cloth came, its begin told the side: the hit's own direction may point in.
+    const auto contact = found ? as_violation(meeting, *found, 0.0) : std::nullopt;
     return contact ? contact : by_hit(meeting, hit);
 }
 

@@ -7,6 +7,7 @@
 #include "geometry/feature_path.h"
 #include "solver/border_room.h"
 #include "solver/eol_features.h"
+#include "solver/free_fold.h"
 
 namespace arris {
 
@@ -40,6 +41,23 @@ bool is_corner_under_face(const Scene& scene, const State& state, const EolVerte
     });
 }
 
+/// Whether an EOL vertex that has left its edge or wire, through which material flows fast, is led otherwise
+/// than what comes to it: it then bends that, with every step. Along a face it is not (free_fold.h).
+bool is_led_astray(const Scene& scene, const State& state, const EolVertex& eol, const EolCoordinates& at,
+                   const Vec3& place)
+{
+    constexpr double kAlongFace = 0.15;  // sine
+    if (eol.is_corner || !has_left_feature(at.frame.point, place, scene.material.thickness) ||
+        !(state.material_velocity[at.vertex].norm() > 0.5 * kFreeFlow))
+        return false;
+    const Obstacle& obstacle = scene.obstacles[eol.obstacle];
+    if (!is_on_convex_edge(obstacle, eol)) return true;
+    const std::array<Vec3, 2>& normals = obstacle.features().edges[eol.feature].normals;
+    return std::none_of(normals.begin(), normals.end(), [&](const Vec3& normal) {
+        return std::abs(normal.dot(at.frame.outward)) < kAlongFace;
+    });
+}
+
 /// Whether an EOL vertex is still on the polyline that it is on: not at its end.
 bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3& place)
 {
@@ -54,12 +72,13 @@ EolHold find_hold(const Scene& scene, const State& state, const ClothStars& star
     const EolVertex& eol = state.eol[entry];
     if (eol.idle < kIdleSteps) return EolHold::Firm;
     const double gap = (place - at.frame.point).norm();
-    if (gap > scene.eol->shortest && gap > scene.eol->length(state.mesh.material[at.vertex]))
+    const double cells = is_led_astray(scene, state, eol, at, place) ? kAstrayCells : 1.0;
+    if (gap > cells * scene.eol->shortest && gap > cells * scene.eol->length(state.mesh.material[at.vertex]))
         return EolHold::None;
     const bool has_left = gap > kOnFeature * scene.material.thickness;
     if (has_left && is_corner_under_face(scene, state, eol)) return EolHold::None;
     if (is_folded(state, stars.faces[at.vertex])) return EolHold::Firm;
-    return gap <= kOnFeature * scene.material.thickness ? EolHold::Loose : EolHold::None;
+    return has_left ? EolHold::None : EolHold::Loose;
 }
 
 void hold_between(const Scene& scene, const State& state, const ClothStars& stars,

@@ -3,7 +3,8 @@
 // an ordinary vertex has their mean, and the cloth loses energy. And where a fold has been let go, the cloth
 // bends beside the feature, so that to put a vertex there again strains it. So an EOL vertex that no longer
 // presses is not let go for that alone: cloth that lifts off an edge keeps its fold, through which it flows,
-// until it is flat there or far from the edge.
+// until it is flat there or a cell from the edge. But a fold off its feature is led in a plane that nothing
+// is in: where what comes to it fast comes another way it is let go before.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +24,10 @@ inline constexpr int kIdleSteps = 3;
 /// of what moves there.
 inline constexpr double kFlat = 0.9986;
 
+/// Target lengths from its feature, beyond which a fold is let go that is led otherwise than what flows over
+/// it.
+inline constexpr double kAstrayCells = 0.3;
+
 /// Whether an EOL vertex stays.
 enum class EolHold {
     None,   ///< it goes
@@ -31,9 +36,8 @@ enum class EolHold {
 };
 
 /// Of EOL vertex `entry`, at `place` in its obstacle's frame. Firm where it presses; none more than a cell
-/// from its feature, nor off a corner that presses on a face now; firm where the cloth is folded, by more
-/// than 6 degrees. (A fold that flies, free_fold.h, is led in a plane that nothing is in: farther out, and
-/// where a part of it has been let go, that takes energy.)
+/// from its feature, or kAstrayCells where it is led astray, nor off a corner that presses on a face now;
+/// firm where the cloth is folded, by more than 6 degrees.
 EolHold find_hold(const Scene& scene, const State& state, const ClothStars& stars, int entry,
                   const EolCoordinates& at, const Vec3& place);
 

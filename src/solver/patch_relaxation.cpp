@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "geometry/mesh_topology.h"
+#include "geometry/obstacle_distance.h"
 #include "geometry/sub_mesh.h"
 #include "geometry/sweep_check.h"
 #include "physics/block_ordering.h"
@@ -40,7 +41,7 @@ double find_step_time(const Scene& scene)
 {
     const double weight = scene.gravity ? scene.gravity->acceleration.norm() : 0.0;
     if (!(weight > 0.0) || !scene.eol) return 1.0;
-    return std::sqrt(kAllowedStrain * scene.eol->mean_length / (kMostSteps * weight));
+    return std::min(1.0, std::sqrt(kAllowedStrain * scene.eol->mean_length / (kMostSteps * weight)));
 }
 
 /// Those of a part of the cloth, whose vertex i is `vertices[i]` of the whole.
@@ -146,6 +147,20 @@ class Relaxation {
         return true;
     }
 
+    /// What has come into the stand-off goes back towards `begin` by halves, at last all of its way, until it
+    /// is as far from the obstacles as it was: what sinks there would be pushed out again.
+    void keep_off(const std::vector<Vec3>& begin, double time)
+    {
+        for (const Obstacle& obstacle : scene_.obstacles) {
+            const Placement now = obstacle.at(time);
+            const auto gap_at = [&](const Vec3& place) {
+                return distance_to(obstacle, now.inverse(place), scene_.material.thickness);
+            };
+            for (const int v : free_) keep_off(gap_at, begin[v], patch_.mesh.world[v]);
+        }
+        energy_ = energy_at(patch_.mesh.world);
+    }
+
     void go_back_half(const std::vector<Vec3>& begin)
     {
         for (std::size_t v = 0; v < begin.size(); ++v)
@@ -170,6 +185,17 @@ class Relaxation {
         }
         kept.start.push_back(static_cast<int>(kept.order.size()));
         colors = std::move(kept);
+    }
+
+    template <typename Gap>
+    void keep_off(const Gap& gap_at, const Vec3& begin, Vec3& place) const
+    {
+        constexpr int kMostHalvings = 5;
+        constexpr double kRounding = 1e-3;
+        if (place == begin || !(gap_at(place) < scene_.material.thickness)) return;
+        const double least = (1.0 - kRounding) * gap_at(begin);
+        for (int k = 0; k < kMostHalvings && gap_at(place) < least; ++k) place = 0.5 * (place + begin);
+        if (gap_at(place) < least) place = begin;
     }
 
     /// One step from rest that lowers the energy; false where there is none.
@@ -291,6 +317,8 @@ double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& pat
     if (before - patch.wanted <= kRounding * std::abs(patch.wanted)) return before;
     relaxation.run(patch.wanted);
     relaxation.rise_to(patch.wanted);
+    relaxation.keep_off(begin, state.time);
+    if (!(relaxation.energy() < before)) return before;
     for (int k = 0; !relaxation.is_way_free(begin, state.time); ++k) {
         if (k == kMostHalvings) return before;
         relaxation.go_back_half(begin);

@@ -129,7 +129,7 @@ std::optional<double> SiteAdmission::find_free_fold(const FeatureSite& site) con
             continue;
         constexpr double kShare = 0.5;  // of the fold's way from the edge
         constexpr double kSoon = 0.05;  // s, in which it flows through the fold
-        constexpr double kNear = 2.0;   // target lengths: no fold is held farther from its edge than one
+        constexpr double kNear = 2.0;   // target lengths: a fold is held for one, and its first steps
         const Vec3 off = trace_.placed(e).place - here;
         const double along = std::abs((to - from).normalized().dot(off));
         const double way = (trace_.surgery().material(e.vertex_id) - site.material).norm();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "geometry/normal_cone.h"
 #include "geometry/obstacle_contact.h"
 #include "tests/geometry/contact_scene.h"
 #include "tests/geometry/sample_obstacles.h"
@@ -302,6 +303,20 @@ TEST(FaceContact, SortedAndTheSameForAnyNumberOfThreads)
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         const auto contacts = find_face_contacts(nails, cloth.motion, cloth.motion.end, kThickness);
         EXPECT_TRUE(std::equal(contacts.begin(), contacts.end(), expected.begin(), expected.end(), same));
+    }
+}
+
+// A face slides over a box's corner, and a part of it sinks into the box on the way: its plane leads in.
+TEST(FaceContact, WhatRunsThroughAFaceOnItsWayStaysOutside)
+{
+    const Obstacle box = samples::make_obstacle(samples::box({0, 0, 0}, {1, 1, 1}));
+    const auto contacts = contacts_of(
+        box, {{-.00018, .98709, .00117}, {-.00763, .99944, .02346}, {-.00126, 1.06597, .03586}},
+        {{.00162, 1.00432, -.01711}, {-.00059, 1.02205, -.00009}, {.00195, 1.08358, .01322}}, {{0, 1, 2}});
+    ASSERT_FALSE(contacts.empty());
+    for (const ObstacleContact& c : contacts) {
+        EXPECT_TRUE(is_in_point_cone(box, c.element, c.normal)) << c.normal.transpose();
+        EXPECT_GE(c.least_gap, 0.0);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "geometry/obstacle_shapes.h"
 #include "solver/eol_coordinates.h"
@@ -90,6 +91,19 @@ TEST(EolRelease, ComesAtTheLatestACellFromTheFeatureHoweverFastItFlows)
             const double cell = lifted.cloth.scene.eol->length(Vec2(0.2, 0.2));
             for (Vec3& x : lifted.cloth.state.mesh.world) x.z() += share * cell;
             EXPECT_EQ(lifted.can_be_let_go(), is_far) << speed;
+        }
+}
+
+// What flows fast over a flat fold comes to it along neither face of the ridge.
+TEST(EolRelease, ComesBeforeThatWhereAFastFoldIsLedOtherwiseThanItsClothComes)
+{
+    for (const auto& [fold, speed, is_astray] :
+         {std::tuple{150.0, kSpeed, true}, {150.0, 0.1, false}, {90.0, kSpeed, false}})
+        for (const double share : {0.9, 1.1}) {
+            FlowingCloth lifted(fold, speed);
+            const double cell = lifted.cloth.scene.eol->length(Vec2(0.2, 0.2));
+            for (Vec3& x : lifted.cloth.state.mesh.world) x.z() += share * kAstrayCells * cell;
+            EXPECT_EQ(lifted.can_be_let_go(), is_astray && share > 1.0) << fold << ", " << speed;
         }
 }
 

@@ -262,6 +262,27 @@ TEST(PatchRelaxation, NeverPassesAnObstacle)
     EXPECT_EQ(stopped, 4);
 }
 
+// Cloth whose border lies too low over a table, and whose middle would come down to the same height.
+TEST(PatchRelaxation, ComesNoNearerToAnObstacleThanItsStandOff)
+{
+    ObstacleMesh table = make_box({2.0, 2.0, 0.1});
+    const double top = kHeight - 0.4 * testing::kThickness;
+    for (Vec3& p : table.points) p.z() += top - 0.05;
+    Setting setting(0.0, table);
+    State& state = setting.cloth.state;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> up(0.0, 5e-3);
+    for (std::size_t v = 0; v < state.ids.size(); ++v)
+        if (setting.patch.is_free[v]) state.mesh.world[v].z() += up(random);
+    const std::vector<Vec3> begin = state.mesh.world;
+    const double before = setting.energy();
+    EXPECT_LT(setting.relax(), 0.9 * before);
+    for (std::size_t v = 0; v < begin.size(); ++v) {
+        const double least = std::min(begin[v].z() - top, testing::kThickness);
+        EXPECT_GE(state.mesh.world[v].z() - top, (1.0 - 2e-3) * least) << v;
+    }
+}
+
 /// Cloth that hangs from y = 0.4 at rest, stretched by its own weight, nu = 0: u(s) = rho g (L s - s^2 / 2) /
 /// E at s below. Its border is held. Returns how far it hangs down at most.
 double hang(Setting& setting)

@@ -97,21 +97,20 @@ ClothRun make_slope_run(const Slope& slope)
 }
 
 // All of it has left at .7 s. A fold that is led farther than a cell from its edge has no edge any more, but
-// is held in a plane: held for four cells it brings these to .05 to .17 J, others to -.33 J, up to .1 J in a
-// step. One row on what sank into the top before it came to the edge, and was held down by it, took .23 J.
-// How the last corner leaves is another way in every run: the mean of twelve slopes from 18 to 24 degrees is
-// .27 J, the least .22 J. Rows only: .27 to .37 J on this mesh, .37 J on 68 x 44 cells with a quarter of the
-// step.
+// is held in a plane, and so is one, nearer, that is led otherwise than its cloth comes: with four cells
+// these had .05 to .2 J at .8 s, others -.33 J. How the last corner leaves is another way in every run. Rows
+// only: .27 to .37 J on this mesh, .37 J on 68 x 44 cells with a quarter of the step.
 TEST(SheetOnASlope, KeepsItsEnergyWhereItsFoldFliesOff)
 {
     Table results("sheet_on_a_slope",
                   {"tilt", "turned by", "mesh", "energy at .3 s", "at .8 s", "greatest loss of a step"});
+    std::vector<Slope> slopes;
+    for (const double tilt : {18.5, 19.5, 20.0, 20.1, 20.2, 21.0, 22.0, 23.0})
+        slopes.push_back({tilt, 13.0, GridPattern::Unstructured});
+    slopes.push_back({20.0, 0.0, GridPattern::Unstructured});
+    slopes.push_back({25.0, 13.0, GridPattern::Diagonal});
     double sum = 0.0;
-    int runs = 0;
-    for (const Slope& slope : {Slope{20.0, 13.0, GridPattern::Unstructured},
-                               {22.0, 13.0, GridPattern::Unstructured},
-                               {20.0, 0.0, GridPattern::Unstructured},
-                               {25.0, 13.0, GridPattern::Diagonal}}) {
+    for (const Slope& slope : slopes) {
         ClothRun run = make_slope_run(slope);
         const std::string name =
             fmt::format("{} degrees, turned by {}, {}", slope.tilt, slope.turn, name_of(slope.pattern));
@@ -125,15 +124,14 @@ TEST(SheetOnASlope, KeepsItsEnergyWhereItsFoldFliesOff)
             last = energy;
         });
         ASSERT_FALSE(HasFailure()) << name;
+        EXPECT_GT(last, 0.1) << name;
         EXPECT_LT(loss, 0.05) << name;
-        EXPECT_GT(last, 0.12) << name;
         sum += last;
-        ++runs;
         results.add({fmt::format("{:g}", slope.tilt), fmt::format("{:g}", slope.turn),
                      fmt::format("{}", name_of(slope.pattern)), fmt::format("{:.3f} J", landed),
                      fmt::format("{:.3f} J", last), fmt::format("{:.3f} J", loss)});
     }
-    EXPECT_GT(sum / runs, 0.2);
+    EXPECT_GT(sum / static_cast<double>(slopes.size()), 0.2);
 }
 
 /// Cotton on a box, a tenth of it over the edge, pulled there by its front border.
