@@ -49,6 +49,9 @@ struct ClothElements {
 /// (`validate` checks it).
 ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology);
 
+/// Gives elements that have none their colours.
+void color_elements(ClothElements& elements);
+
 /// The same with colours.
 ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology);
 

@@ -9,13 +9,20 @@ namespace arris {
 
 namespace {
 
-/// What energy, force and stiffness share: see the class comment for the symbols.
-struct Stretch {
-    Vec3 n;    ///< unit normal
-    Mat32 R;   ///< rotation part of F
-    double S;  ///< s1 + s2
+/// What the energy depends on: see the class comment for the symbols.
+struct Invariants {
+    Vec3 cross;      ///< f1 x f2
+    double J;        ///< its length
+    double squared;  ///< |F|^2
+    double S;        ///< s1 + s2
     double S_minus_2;
     double squared_difference;  ///< (s1 - s2)^2
+};
+
+/// What force and stiffness need besides.
+struct Stretch : Invariants {
+    Vec3 n;   ///< unit normal
+    Mat32 R;  ///< rotation part of F
 };
 
 /// A unit vector perpendicular to `v`; any where v is zero.
@@ -28,28 +35,33 @@ Vec3 any_perpendicular(const Vec3& v)
     return length > 0.0 ? Vec3(perpendicular / length) : Vec3::UnitZ();
 }
 
-Stretch decompose(const Mat32& F)
+Invariants find_invariants(const Mat32& F)
 {
     const Vec3 f1 = F.col(0), f2 = F.col(1);
-    const Vec3 cross = f1.cross(f2);
-    const double J = cross.norm();
-    const double squared = F.squaredNorm();
-
-    // A face collapsed to a line or a point has no normal: any one across it serves, as every choice gives
-    // the same energy and a limit of the force.
-    constexpr double kCollapsed = 1e-14;  // of |F|^2: the direction of f1 x f2 is round-off below
-    Stretch s;
-    s.n = J > kCollapsed * squared ? Vec3(cross / J)
-                                   : any_perpendicular(f1.squaredNorm() > f2.squaredNorm() ? f1 : f2);
-    s.S = std::sqrt(squared + 2.0 * J);
-    s.S_minus_2 = (squared + 2.0 * J - 4.0) / (s.S + 2.0);  // S - 2 = (S^2 - 4) / (S + 2)
+    Invariants s;
+    s.cross = f1.cross(f2);
+    s.J = s.cross.norm();
+    s.squared = F.squaredNorm();
+    s.S = std::sqrt(s.squared + 2.0 * s.J);
+    s.S_minus_2 = (s.squared + 2.0 * s.J - 4.0) / (s.S + 2.0);  // S - 2 = (S^2 - 4) / (S + 2)
 
     // s1^2 - s2^2 is the difference of the eigenvalues of F^T F, so (s1 - s2)^2 is that over S, squared.
     const double half_difference = 0.5 * (f1.squaredNorm() - f2.squaredNorm());
     const double off = f1.dot(f2);
     s.squared_difference =
         s.S > 0.0 ? 4.0 * (half_difference * half_difference + off * off) / (s.S * s.S) : 0.0;
+    return s;
+}
 
+Stretch decompose(const Mat32& F)
+{
+    const Vec3 f1 = F.col(0), f2 = F.col(1);
+    Stretch s{find_invariants(F), {}, {}};
+    // A face collapsed to a line or a point has no normal: any one across it serves, as every choice gives
+    // the same energy and a limit of the force.
+    constexpr double kCollapsed = 1e-14;  // of |F|^2: the direction of f1 x f2 is round-off below
+    s.n = s.J > kCollapsed * s.squared ? Vec3(s.cross / s.J)
+                                       : any_perpendicular(f1.squaredNorm() > f2.squaredNorm() ? f1 : f2);
     s.R.col(0) = f1 + f2.cross(s.n);
     s.R.col(1) = f2 + s.n.cross(f1);
     if (s.S > 0.0)
@@ -95,7 +107,7 @@ Membrane::Membrane(double youngs_modulus, double poisson_ratio)
 
 double Membrane::energy(const FaceState& face) const
 {
-    const Stretch s = decompose(face.F);
+    const Invariants s = find_invariants(face.F);
     // sum (s_i - 1)^2 = ((S - 2)^2 + (s1 - s2)^2) / 2   no cancellation near rest
     const double shear = 0.5 * (s.S_minus_2 * s.S_minus_2 + s.squared_difference);
     return face.element.area * (mu_ * shear + 0.5 * lambda_ * s.S_minus_2 * s.S_minus_2);
@@ -137,7 +149,7 @@ void Membrane::add(const FaceState& face, FaceSystem& system) const
 
 Vec2 principal_stretches(const Mat32& F)
 {
-    const Stretch s = decompose(F);
+    const Invariants s = find_invariants(F);
     const double difference = std::sqrt(s.squared_difference);
     return {0.5 * (s.S + difference), 0.5 * (s.S - difference)};
 }

@@ -6,6 +6,8 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "physics/block_ordering.h"
 #include "physics/deformation_gradient.h"
@@ -105,15 +107,28 @@ class OldField {
         std::sort(order_.begin(), order_.end(), [this](int a, int b) { return low(a) < low(b); });
     }
 
+    /// The one that the triangle is, and which of its corners is the triangle's first.
+    std::optional<std::pair<int, int>> find_same(const std::array<Vec2, 3>& triangle) const
+    {
+        const double at = Box2(triangle).low[axis_];
+        for (auto t = first_from(at); t != order_.end() && low(*t) == at; ++t)
+            for (int k = 0; k < 3; ++k) {
+                const std::array<Vec2, 3>& old = field_.triangles[*t];
+                if (triangle[0] == old[k] && triangle[1] == old[(k + 1) % 3] &&
+                    triangle[2] == old[(k + 2) % 3])
+                    return std::pair(*t, k);
+            }
+        return {};
+    }
+
     /// Those whose boxes touch the triangle's, ascending.
     std::vector<int> find_near(const std::array<Vec2, 3>& triangle) const
     {
         const Box2 box(triangle);
         std::vector<int> found;
         // Twice the widest: never too few by rounding.
-        const auto first = std::lower_bound(order_.begin(), order_.end(), box.low[axis_] - 2.0 * widest_,
-                                            [this](int t, double bound) { return low(t) < bound; });
-        for (auto t = first; t != order_.end() && low(*t) <= box.high[axis_]; ++t)
+        for (auto t = first_from(box.low[axis_] - 2.0 * widest_);
+             t != order_.end() && low(*t) <= box.high[axis_]; ++t)
             if (box.touches(boxes_[*t])) found.push_back(*t);
         std::sort(found.begin(), found.end());
         return found;
@@ -124,6 +139,11 @@ class OldField {
 
   private:
     double low(int t) const { return boxes_[t].low[axis_]; }
+    std::vector<int>::const_iterator first_from(double bound) const
+    {
+        return std::lower_bound(order_.begin(), order_.end(), bound,
+                                [this](int t, double least) { return low(t) < least; });
+    }
 
     const VelocityField& field_;
     std::vector<Box2> boxes_;
@@ -150,27 +170,28 @@ void add_integrals(double density, const std::array<Vec2, 3>& triangle, const Po
     }
 }
 
-bool is_same(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b)
+double area_of(const std::array<Vec2, 3>& triangle)
 {
-    return std::any_of(b.begin(), b.end(), [&](const Vec2& first) {
-        const auto k = &first - b.data();
-        return a[0] == first && a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3];
-    });
+    return 0.5 * cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+}
+
+/// Of a triangle whose corners have these velocities: sum_j m_ij v_j,  m_ij = mass / 12 (1 + delta_ij).
+std::array<Vec3, 3> times_mass(double mass, const std::array<Vec3, 3>& v)
+{
+    const Vec3 sum = v[0] + v[1] + v[2];
+    return {mass / 12.0 * (sum + v[0]), mass / 12.0 * (sum + v[1]), mass / 12.0 * (sum + v[2])};
 }
 
 /// The integrals over all of a new triangle.
 std::array<Vec3, 3> integrate_old(double density, const OldField& old, const std::array<Vec2, 3>& triangle)
 {
-    std::array<Vec3, 3> sums = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-    const std::vector<int> near = old.find_near(triangle);
-    // Most are there as they were; what lies beside has no part in these.
-    const auto same =
-        std::find_if(near.begin(), near.end(), [&](int t) { return is_same(triangle, old.triangle(t)); });
-    if (same != near.end()) {
-        add_integrals(density, triangle, Polygon(triangle), old.triangle(*same), old.velocity(*same), sums);
-        return sums;
+    if (const auto same = old.find_same(triangle)) {  // most are there as they were
+        const auto [t, k] = *same;
+        const std::array<Vec3, 3>& v = old.velocity(t);
+        return times_mass(density * area_of(triangle), {v[k], v[(k + 1) % 3], v[(k + 2) % 3]});
     }
-    for (const int t : near)
+    std::array<Vec3, 3> sums = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    for (const int t : old.find_near(triangle))
         add_integrals(density, triangle, overlap(triangle, old.triangle(t)), old.triangle(t), old.velocity(t),
                       sums);
     return sums;
@@ -195,7 +216,7 @@ NewFace make_face(double density, const FitPatch& patch, const Face& face)
     NewFace made;
     for (int i = 0; i < 3; ++i) made.X[i] = patch.material[face[i]];
     made.F = deformation_gradient(made.X, {patch.world[face[0]], patch.world[face[1]], patch.world[face[2]]});
-    made.mass = density * 0.5 * cross(made.X[1] - made.X[0], made.X[2] - made.X[0]);
+    made.mass = density * area_of(made.X);
     return made;
 }
 
@@ -293,7 +314,7 @@ double compute_kinetic_energy(double density, const VelocityField& field)
     double energy = 0.0;
     for (std::size_t t = 0; t < field.triangles.size(); ++t) {
         const std::array<Vec2, 3>& X = field.triangles[t];
-        energy += energy_of(density * 0.5 * cross(X[1] - X[0], X[2] - X[0]), field.velocity[t]);
+        energy += energy_of(density * area_of(X), field.velocity[t]);
     }
     return energy;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "geometry/sort_unique.h"
 
@@ -59,26 +60,23 @@ class PatchFinder {
     /// Vertices at which a face may have changed.
     std::vector<int> touched()
     {
-        std::vector<VertexId> ids;
-        const auto add = [&](const std::vector<PatchFace>& faces) {
-            for (const PatchFace& face : faces)
-                ids.insert(ids.end(), face.vertices.begin(), face.vertices.end());
+        std::vector<int> vertices;
+        std::vector<char> is_seen(after_.next_id, 0);  // of ids: events name most again and again
+        const auto add = [&](VertexId id) {
+            if (std::exchange(is_seen[id], 1) != 0) return;
+            if (const int v = after_.index_of(id); v >= 0) vertices.push_back(v);
         };
-        for (const SurgeryEvent& event : change_.events) {
-            add(event.before);
-            add(event.after);
-        }
+        for (const SurgeryEvent& event : change_.events)
+            for (const auto* faces : {&event.before, &event.after})
+                for (const PatchFace& face : *faces)
+                    std::for_each(face.vertices.begin(), face.vertices.end(), add);
         for (const State* state : {&before_, &after_})
             for (const EolVertex& eol : state->eol) {
-                ids.push_back(eol.vertex_id);
+                add(eol.vertex_id);
                 if (const int v = after_.index_of(eol.vertex_id); v >= 0)
                     is_eol_changed_[v] =
                         is_eol_changed(after_.eol_entry(eol.vertex_id), before_.eol_entry(eol.vertex_id));
             }
-        sort_unique(ids);
-        std::vector<int> vertices;
-        for (const VertexId id : ids)
-            if (const int v = after_.index_of(id); v >= 0) vertices.push_back(v);
         return vertices;
     }
 
@@ -113,12 +111,10 @@ class PatchFinder {
 
     void mark_changed()
     {
-        std::vector<int> faces;
+        std::vector<char> is_seen(patch_.size(), 0);
         for (const int v : touched())
-            faces.insert(faces.end(), change_.faces_at_after[v].begin(), change_.faces_at_after[v].end());
-        sort_unique(faces);
-        for (const int f : faces)
-            if (!is_kept(f)) add_vertices(f);
+            for (const int f : change_.faces_at_after[v])
+                if (std::exchange(is_seen[f], 1) == 0 && !is_kept(f)) add_vertices(f);
     }
 
     void add_vertices(int f)
@@ -147,10 +143,11 @@ class PatchFinder {
     void join()
     {
         std::vector<int> faces;
+        std::vector<char> is_found(patch_.size(), 0);
         for (const int v : near_)
             for (const int f : change_.faces_at_after[v])
-                if (is_in(f)) faces.push_back(f);
-        sort_unique(faces);
+                if (is_in(f) && std::exchange(is_found[f], 1) == 0) faces.push_back(f);
+        std::sort(faces.begin(), faces.end());
         for (const int first : faces) {
             if (patch_[first] >= 0) continue;
             const int p = static_cast<int>(patches_.size());

@@ -54,7 +54,8 @@ bool is_flowing(const State& state)
 
 class Conforming {
   public:
-    Conforming(const Scene& scene, double dt, const State& state, const ClothStars& stars, StrainLimit limit)
+    Conforming(const Scene& scene, double dt, const State& state, const ClothStars& stars,
+               const ConformLimits& limits, RelaxationMemo& relaxations)
         : scene_(scene),
           state_(state),
           stars_(stars),
@@ -64,29 +65,29 @@ class Conforming {
           surgery_(trace_.surgery()),
           admission_(scene, state, stars, trace_, soon_),
           placer_(scene.obstacles, scene.material.thickness, state, stars),
-          guard_(scene, state, limit)
+          limits_(limits),
+          guard_(scene, state, limits.strain, limits.careful_at, relaxations)
     {
         guard_.watch(surgery_);
         surgery_.set_guard(
             [this](const SurgeryEvent& event) { return keeps_way(event) && guard_.allows(event); });
     }
 
-    ConformOutcome run(const FeatureChanges& changes, const FailedFlow& failed, const MostLost& most)
+    ConformOutcome run(const FeatureChanges& changes, const FailedFlow& failed)
     {
-        std::optional<ConformedMesh> mesh = find_mesh(changes, failed, most);
-        return {std::move(mesh), std::move(refused_), lost_, blocked_};
+        std::optional<ConformedMesh> mesh = find_mesh(changes, failed);
+        return {std::move(mesh), std::move(refused_), lost_, blocked_, guard_.gave_way()};
     }
 
   private:
-    std::optional<ConformedMesh> find_mesh(const FeatureChanges& changes, const FailedFlow& failed,
-                                           const MostLost& most)
+    std::optional<ConformedMesh> find_mesh(const FeatureChanges& changes, const FailedFlow& failed)
     {
         for (const VertexId v : changes.released) give_up(v, cause_of_release(v));
         for (const VertexId v : failed.given_up)
             if (trace_.is_on_trace(v)) give_up(v, RowCause::GivenUp);
         for (const auto& [v, flow] : failed.flow) expect_flow(v, flow);
         clear_way();
-        if (lost_ > most.lost || blocked_ > most.blocked) return std::nullopt;
+        if (lost_ > limits_.lost || blocked_ > limits_.blocked) return std::nullopt;
         forget_released();
         insert(changes.sites, failed);
         join();
@@ -373,6 +374,7 @@ class Conforming {
     ClothSurgery& surgery_;  ///< its own
     SiteAdmission admission_;
     EolPlacer placer_;
+    const ConformLimits& limits_;
     EolGuard guard_;
     TraceWays ways_;                       ///< of the vertices that flow, as far as is well
     TraceWays needed_;                     ///< as far as they may soon go: new vertices leave that much
@@ -395,12 +397,12 @@ FeatureChanges find_feature_changes(const Scene& scene, const State& state, cons
 }
 
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
-                            const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit,
-                            const MostLost& most)
+                            const FeatureChanges& changes, const FailedFlow& failed,
+                            const ConformLimits& limits, RelaxationMemo& relaxations)
 {
     if (!scene.eol || (state.eol.empty() && state.active.empty())) return {};
     if (changes.empty() && failed.empty() && !is_flowing(state)) return {};
-    return Conforming(scene, dt, state, stars, limit).run(changes, failed, most);
+    return Conforming(scene, dt, state, stars, limits, relaxations).run(changes, failed);
 }
 
 }  // namespace arris

@@ -50,8 +50,12 @@ struct FeatureChanges {
 /// `stars` are the state's. Nothing without a target for the mesh.
 FeatureChanges find_feature_changes(const Scene& scene, const State& state, const ClothStars& stars);
 
-/// EOL vertices that clearing what is there may cost; of more that mesh is of no use.
-struct MostLost {
+/// What a mesh may cost.
+struct ConformLimits {
+    StrainLimit strain = StrainLimit::GivesWay;
+    /// Where it is StrainLimit::AsMade: what operations at these vertices, ascending, replace.
+    std::vector<VertexId> careful_at = {};
+    /// EOL vertices that clearing what is there may cost; of more that mesh is of no use.
     int lost = std::numeric_limits<int>::max();     ///< of ConformOutcome
     int blocked = std::numeric_limits<int>::max();  ///< of ConformOutcome
 };
@@ -62,14 +66,16 @@ struct ConformOutcome {
     std::vector<RefusedContact> refused;  ///< that pressed on a feature and stay or become rows
     int lost = 0;     ///< EOL vertices that clearing has cost: blocked, or merged into others
     int blocked = 0;  ///< of these what clearing met and could not move
+    /// At which something may have been done that counts on cloth around it to give way; ascending.
+    std::vector<VertexId> gave_way;
 };
 
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
 /// they have not for long, the way of those that slide cleared, what they left restored. `stars` and
-/// `changes` are the state's. Unfinished, without a mesh, where clearing what is there loses more than
-/// `most`.
+/// `changes` are the state's, `relaxations` the scene's. Unfinished, without a mesh, where clearing what is
+/// there loses more than it may.
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
-                            const FeatureChanges& changes, const FailedFlow& failed, StrainLimit limit,
-                            const MostLost& most = {});
+                            const FeatureChanges& changes, const FailedFlow& failed,
+                            const ConformLimits& limits, RelaxationMemo& relaxations);
 
 }  // namespace arris

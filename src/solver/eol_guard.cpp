@@ -31,12 +31,15 @@ bool contains(const std::vector<VertexId>& ascending, VertexId v)
 
 }  // namespace
 
-EolGuard::EolGuard(const Scene& scene, const State& state, StrainLimit limit)
+EolGuard::EolGuard(const Scene& scene, const State& state, StrainLimit limit,
+                   std::vector<VertexId> careful_at, RelaxationMemo& relaxations)
     : scene_(scene),
       state_(state),
       terms_(make_terms(scene.material, scene.gravity, {}, {})),
       crease_width_(find_crease_width(scene, state.mesh)),
-      limit_(limit)
+      limit_(limit),
+      careful_at_(std::move(careful_at)),
+      relaxations_(relaxations)
 {
 }
 
@@ -79,7 +82,29 @@ bool EolGuard::strains(const SurgeryEvent& event)
     if (!(rise > 0.0)) return false;  // it need not be known what is allowed
     rise -= allowance(event, before.elastic());
     if (!(rise > 0.0)) return false;
-    return limit_ != StrainLimit::GivesWay || !relaxations_.can_relax_by(scene_, make_patch(event), rise);
+    return !can_give_way(event, rise);
+}
+
+bool EolGuard::can_give_way(const SurgeryEvent& event, double rise)
+{
+    const auto is_careful = [this](const PatchFace& face) {
+        return std::any_of(face.vertices.begin(), face.vertices.end(),
+                           [this](VertexId v) { return contains(careful_at_, v); });
+    };
+    if (limit_ != StrainLimit::GivesWay ||
+        std::any_of(event.before.begin(), event.before.end(), is_careful) ||
+        !relaxations_.can_relax_by(scene_, make_patch(event), rise))
+        return false;
+    for (const PatchFace& face : event.before)
+        gave_way_.insert(gave_way_.end(), face.vertices.begin(), face.vertices.end());
+    return true;
+}
+
+std::vector<VertexId> EolGuard::gave_way() const
+{
+    std::vector<VertexId> vertices = gave_way_;
+    sort_unique(vertices);
+    return vertices;
 }
 
 EolGuard::Neighbourhood EolGuard::look_around(const SurgeryEvent& event) const

@@ -25,11 +25,18 @@ enum class StrainLimit {
 /// step.
 class EolGuard {
   public:
-    EolGuard(const Scene& scene, const State& state, StrainLimit limit);
+    /// At the vertices `careful_at` (ascending) nothing counts on cloth that gives way. `relaxations` is of
+    /// the scene.
+    EolGuard(const Scene& scene, const State& state, StrainLimit limit, std::vector<VertexId> careful_at,
+             RelaxationMemo& relaxations);
 
     /// The mesh under surgery, whose patches may give way.
     void watch(const ClothSurgery& surgery) { surgery_ = &surgery; }
     bool allows(const SurgeryEvent& event);
+
+    /// Vertices of the faces that operations replaced for which the cloth around has to give way: those that
+    /// were allowed, whether or not they were made. Ascending.
+    std::vector<VertexId> gave_way() const;
 
     /// What clears the way of a sliding feature may strain more: the alternative is to give the trace up.
     void set_clearing(bool is_clearing) { is_clearing_ = is_clearing; }
@@ -38,6 +45,7 @@ class EolGuard {
     /// Whether an operation raises the cloth's energy beyond what is allowed, and the cloth around could not
     /// take up what strain it makes, where it may.
     bool strains(const SurgeryEvent& event);
+    bool can_give_way(const SurgeryEvent& event, double rise);
     /// Around an operation: vertices, and the faces between them that it does not replace.
     struct Neighbourhood {
         std::vector<VertexId> near;     ///< ascending
@@ -58,9 +66,11 @@ class EolGuard {
     Terms terms_;          ///< that have an energy
     double crease_width_;  ///< m
     StrainLimit limit_;
+    std::vector<VertexId> careful_at_;
     bool is_clearing_ = false;
     const ClothSurgery* surgery_ = nullptr;
-    RelaxationMemo relaxations_;
+    RelaxationMemo& relaxations_;
+    std::vector<VertexId> gave_way_;  ///< as they come
 };
 
 }  // namespace arris

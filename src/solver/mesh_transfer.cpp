@@ -129,15 +129,16 @@ void drop_contacts_without_element(const ClothStars& stars, State& state)
 {
     const auto has_element = [&](const ActiveContact& contact) {
         if (contact.kind == ContactKind::Vertex) return state.index_of(contact.vertex_ids[0]) >= 0;
-        std::vector<int> vertices;
-        for (const std::uint32_t id : contact.vertex_ids)
-            if (id != ActiveContact::kNoVertex) vertices.push_back(state.index_of(id));
-        if (*std::min_element(vertices.begin(), vertices.end()) < 0) return false;
-        const std::span<const int> around = stars.faces[vertices[0]];
+        const auto has_corner = [&](const Face& face, std::uint32_t id) {
+            return std::any_of(face.begin(), face.end(), [&](int v) { return state.ids[v] == id; });
+        };
+        const int first = state.index_of(contact.vertex_ids[0]);
+        if (first < 0) return false;
+        const std::span<const int> around = stars.faces[first];
         return std::any_of(around.begin(), around.end(), [&](int f) {
-            const Face& face = state.mesh.faces[f];
-            return std::all_of(vertices.begin(), vertices.end(),
-                               [&](int v) { return std::find(face.begin(), face.end(), v) != face.end(); });
+            return std::all_of(contact.vertex_ids.begin(), contact.vertex_ids.end(), [&](std::uint32_t id) {
+                return id == ActiveContact::kNoVertex || has_corner(state.mesh.faces[f], id);
+            });
         });
     };
     std::erase_if(state.active, [&](const ActiveContact& contact) { return !has_element(contact); });

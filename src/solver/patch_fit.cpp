@@ -5,6 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "geometry/sort_unique.h"
 #include "physics/deformation_gradient.h"
 #include "physics/velocity_fit.h"
 #include "solver/eol_coordinates.h"
@@ -38,7 +39,11 @@ class PatchFitter {
         for (const StrainedPatch& strained : find_strained(patches, fields)) {
             const ChangedPatch& patch = patches[strained.index];
             const double gain = relax_patch(patch, strained.energy_before);
-            if (gain > 0.0) report.strain = most_strain_of(patch, gain, strained.kinetic, report.strain);
+            if (!(gain > 0.0)) continue;
+            const double small = std::min(report.strain, kPatchStrain);
+            const double strain = strain_of(patch, gain, strained.kinetic, small);
+            if (strain > kPatchStrain) report.strained.push_back(vertices_before(patch));
+            report.strain = std::max(report.strain, strain);
             if (report.strain > most_strain) return report;
         }
         for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -135,19 +140,29 @@ class PatchFitter {
         return kinetic + weight_over(scene_, area, cell);
     }
 
-    /// The greater of `known` and what `gain` is beside all that moves a patch, over the longest of its
-    /// cells.
-    double most_strain_of(const ChangedPatch& patch, double gain, double kinetic, double known) const
+    std::vector<VertexId> vertices_before(const ChangedPatch& patch) const
+    {
+        std::vector<VertexId> ids;
+        for (const int f : patch.faces_before)
+            for (const int v : before_.mesh.faces[f]) ids.push_back(before_.ids[v]);
+        sort_unique(ids);
+        return ids;
+    }
+
+    /// What `gain` is beside all that moves a patch, over the longest of its cells; where that is no more
+    /// than `small`, something between both.
+    double strain_of(const ChangedPatch& patch, double gain, double kinetic, double small) const
     {
         const double area = area_of(patch);
         const auto strain = [&](double cell) { return gain / moving_energy(kinetic, area, cell); };
-        if (!(strain(scene_.eol->shortest) > known)) return known;
+        const double bound = strain(scene_.eol->shortest);
+        if (!(bound > small)) return bound;
         double cell = 0.0;
         int last = -1;
         for (const int f : patch.faces)
             if (const int v = after_.mesh.faces[f][0]; v != last)
                 cell = std::max(cell, scene_.eol->length(after_.mesh.material[last = v]));
-        return std::max(known, strain(cell));
+        return strain(cell);
     }
 
     std::optional<VelocityFit> fit_patch(const ChangedPatch& changed, const VelocityField& old)

@@ -16,6 +16,9 @@ struct TransferReport {
     /// Of patches that could not give way to what strains them now: the most that elastic energy is above
     /// what it was, as a share of what moves the patch.
     double strain = 0.0;
+    /// Of each of those that stay strained by more than kPatchStrain, as far as they were looked at, its
+    /// vertices before, ascending.
+    std::vector<std::vector<VertexId>> strained;
 };
 
 /// Brings `after`, whose new vertices have what the surface had there, to where each patch may stay: one that

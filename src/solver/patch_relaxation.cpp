@@ -81,19 +81,20 @@ class Relaxation {
           terms_(make_energy_terms(scene)),
           step_time_(find_step_time(scene))
     {
-        MeshTopology topology = make_topology(patch_.mesh.vertex_count(), patch_.mesh.faces);
-        elements_ = make_elements(patch_.mesh, topology);
-        mark_creases(patch_.creases, patch_.mesh, elements_);
-        edges_ = std::move(topology.edges);
-        energy_ = energy_at(patch_.mesh.world);
         place_.assign(patch_.is_free.size(), -1);
         for (std::size_t v = 0; v < patch_.is_free.size(); ++v) {
             if (!patch_.is_free[v]) continue;
             place_[v] = static_cast<int>(free_.size());
             free_.push_back(static_cast<int>(v));
         }
-        drop_held(elements_.faces, elements_.face_colors);
-        drop_held(elements_.hinges, elements_.hinge_colors);
+        MeshTopology topology = make_topology(patch_.mesh.vertex_count(), patch_.mesh.faces);
+        elements_ = list_elements(patch_.mesh, topology);
+        mark_creases(patch_.creases, patch_.mesh, elements_);
+        const ClothElements held = take_held();
+        color_elements(elements_);
+        edges_ = std::move(topology.edges);
+        held_energy_ = compute_energies(held, terms_, patch_.mesh.world).sum();
+        energy_ = energy_at(patch_.mesh.world);
     }
 
     /// Lowers the energy to `wanted`, or until it is seen that a few steps do not bring it there, which it
@@ -169,22 +170,24 @@ class Relaxation {
     }
 
   private:
-    /// What concerns no free vertex need not be assembled.
-    template <typename Element>
-    void drop_held(const std::vector<Element>& elements, ElementColors& colors) const
+    /// The elements that concern no free vertex, out of the others.
+    ClothElements take_held()
     {
-        const auto is_held = [&](int e) {
-            const auto& vertices = elements[e].vertices;
-            return std::all_of(vertices.begin(), vertices.end(), [&](int v) { return place_[v] < 0; });
+        ClothElements held;
+        take_held(elements_.faces, held.faces);
+        take_held(elements_.hinges, held.hinges);
+        return held;
+    }
+
+    template <typename Element>
+    void take_held(std::vector<Element>& elements, std::vector<Element>& held) const
+    {
+        const auto is_held = [this](const Element& element) {
+            return std::all_of(element.vertices.begin(), element.vertices.end(),
+                               [this](int v) { return place_[v] < 0; });
         };
-        ElementColors kept;
-        for (std::size_t k = 0; k + 1 < colors.start.size(); ++k) {
-            kept.start.push_back(static_cast<int>(kept.order.size()));
-            std::copy_if(colors.order.begin() + colors.start[k], colors.order.begin() + colors.start[k + 1],
-                         std::back_inserter(kept.order), [&](int e) { return !is_held(e); });
-        }
-        kept.start.push_back(static_cast<int>(kept.order.size()));
-        colors = std::move(kept);
+        std::copy_if(elements.begin(), elements.end(), std::back_inserter(held), is_held);
+        std::erase_if(elements, is_held);
     }
 
     template <typename Gap>
@@ -219,7 +222,7 @@ class Relaxation {
 
     double energy_at(const std::vector<Vec3>& world) const
     {
-        return compute_energies(elements_, terms_, world).sum();
+        return held_energy_ + compute_energies(elements_, terms_, world).sum();
     }
 
     /// (M + t^2 H) way = t^2 f: implicit Euler's, of what is free.
@@ -274,9 +277,10 @@ class Relaxation {
     std::vector<int> free_;   ///< vertices, ascending
     std::vector<int> place_;  ///< of each vertex in `free_`; -1 where it is held
     std::vector<MeshEdge> edges_;
-    ClothElements elements_;
+    ClothElements elements_;  ///< of what is free; their hinges' faces mean nothing
     Terms terms_;
     double step_time_;                 ///< s
+    double held_energy_ = 0.0;         ///< J, of what does not move
     double energy_ = 0.0;              ///< J, where it is
     std::vector<Vec3> before_last_;    ///< where it was before the last step
     double energy_before_last_ = 0.0;  ///< J, there

@@ -25,9 +25,9 @@ Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vert
 /// `wanted`, or so far that it is seen not to fall there, as in the pop filter of Narain, Pfaff and O'Brien
 /// 2013: a change of mesh that strains the cloth would be seen as a push. The way is that of a few steps from
 /// rest, so short that nothing falls by more than nobody sees: cloth that nothing holds up is not paid for
-/// its strain by falling. No vertex comes nearer to an obstacle than the stand-off, or than it is; and the way
-/// is kept free of obstacles: where it is not it is halved, at most a few times, then not gone. History moves along, so that no velocity comes of it. `creases` are the state's. Returns
-/// the energy, J.
+/// its strain by falling. No vertex comes nearer to an obstacle than the stand-off, or than it is; and the
+/// way is kept free of obstacles: where it is not it is halved, at most a few times, then not gone. History
+/// moves along, so that no velocity comes of it. `creases` are the state's. Returns the energy, J.
 double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state);
 
 /// A patch by itself; one entry a vertex.

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/step_mesh.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "geometry/sort_unique.h"
 #include "solver/conform.h"
 #include "solver/creases.h"
 #include "solver/mesh_transfer.h"
+#include "solver/relaxation_memo.h"
 #include "solver/stopwatch.h"
 #include "solver/strain_allowance.h"
 
@@ -51,7 +54,11 @@ struct TriedMesh {
     ConformOutcome outcome;
     std::optional<State> state;
     ClothStars stars;
-    double strain = 0.0;
+    TransferReport transferred;
+    double most_strain = 0.0;  ///< with which it was carried over
+
+    double strain() const { return transferred.strain; }
+    bool is_carried_over() const { return state && strain() <= most_strain; }
 };
 
 /// The meshes that a step may have.
@@ -75,7 +82,7 @@ class MeshTries {
     {
         TriedMesh best = choose();
         const FailedFlow& failed = work_.failed.flow();
-        if (best.strain <= kMostStrain || !failed.given_up.empty() || !failed.made_at.empty()) return best;
+        if (best.strain() <= kMostStrain || !failed.given_up.empty() || !failed.made_at.empty()) return best;
         TriedMesh none;
         none.outcome.refused = std::move(best.outcome.refused);
         for (const FeatureSite& site : changes_.sites) {
@@ -88,19 +95,49 @@ class MeshTries {
     }
 
   private:
-    /// One that gives way, or one more carefully made where the cloth could not give way as it should have;
-    /// where that would cost a trace its vertices the first, if it strains but little more than it should.
+    /// One that gives way, or one more carefully made where the cloth could not give way as it should have.
     TriedMesh choose()
     {
-        TriedMesh giving = make(StrainLimit::GivesWay);
+        TriedMesh giving = make({});
         carry_over(giving, kTraceStrain);
-        if (giving.strain <= kPatchStrain) return or_forced(std::move(giving), false);
-        const bool may_stay = giving.strain <= kTraceStrain;
-        const int most_lost = may_stay ? giving.outcome.lost : kAnyNumber;
-        TriedMesh careful = make(StrainLimit::AsMade, {.lost = most_lost});
-        if (careful.outcome.lost > most_lost) return or_forced(std::move(giving), false);
-        const bool is_costly = careful.outcome.lost > giving.outcome.lost;
+        const int lost = giving.outcome.lost;
+        TriedMesh careful = more_careful(std::move(giving));
+        const bool is_costly = careful.outcome.lost > lost;
         return or_forced(std::move(careful), is_costly);
+    }
+
+    /// That, made again with care where it is strained; where that does not help, with care everywhere. As it
+    /// is where nothing in it counts on cloth that gives way, or where care would cost a trace vertices and
+    /// it strains but little more than it should.
+    TriedMesh more_careful(TriedMesh mesh)
+    {
+        constexpr int kMostTries = 2;  // what is strained then is elsewhere than before
+        ConformLimits limits;
+        for (int k = 0; k <= kMostTries && mesh.strain() > kPatchStrain; ++k) {
+            if (!add_strained(mesh, limits.careful_at)) break;
+            if (k == kMostTries) limits = {.strain = StrainLimit::AsMade};
+            if (mesh.strain() <= kTraceStrain) limits.lost = mesh.outcome.lost;
+            TriedMesh next = make(limits);
+            if (next.outcome.lost > limits.lost) break;
+            if (k < kMostTries) carry_over(next, kTraceStrain);
+            mesh = std::move(next);
+        }
+        return mesh;
+    }
+
+    /// The vertices of strained patches in which something counts on cloth that gives way; whether there are
+    /// any more of them.
+    static bool add_strained(const TriedMesh& mesh, std::vector<VertexId>& careful_at)
+    {
+        const std::vector<VertexId>& gave_way = mesh.outcome.gave_way;
+        const std::size_t known = careful_at.size();
+        for (const std::vector<VertexId>& patch : mesh.transferred.strained)
+            if (std::any_of(patch.begin(), patch.end(), [&](VertexId v) {
+                    return std::binary_search(gave_way.begin(), gave_way.end(), v);
+                }))
+                careful_at.insert(careful_at.end(), patch.begin(), patch.end());
+        sort_unique(careful_at);
+        return careful_at.size() > known;
     }
 
     /// That, or one made by force where that leaves less blocked and strains the cloth but little more than
@@ -110,23 +147,23 @@ class MeshTries {
     {
         if (is_costly || gentle.outcome.blocked > 0) {
             const int most_blocked = is_costly ? kAnyNumber : gentle.outcome.blocked - 1;
-            TriedMesh forced = make(StrainLimit::Forced, {.blocked = most_blocked});
+            TriedMesh forced = make({.strain = StrainLimit::Forced, .blocked = most_blocked});
             const bool is_freer = forced.outcome.blocked < gentle.outcome.blocked;
             const double most_strain = is_freer ? kTraceStrain : kPatchStrain;
             if (forced.outcome.blocked <= most_blocked) {
                 carry_over(forced, most_strain);
-                if (forced.strain <= most_strain) return forced;
+                if (forced.strain() <= most_strain) return forced;
             }
         }
         carry_over(gentle, kAny);
         return gentle;
     }
 
-    TriedMesh make(StrainLimit limit, const MostLost& most = {})
+    TriedMesh make(const ConformLimits& limits)
     {
         TriedMesh made;
-        made.outcome =
-            conform_mesh(scene_, dt_, state_, work_.stars, changes_, work_.failed.flow(), limit, most);
+        made.outcome = conform_mesh(scene_, dt_, state_, work_.stars, changes_, work_.failed.flow(), limits,
+                                    relaxations_);
         seconds_.conform += watch_.lap();
         return made;
     }
@@ -134,14 +171,13 @@ class MeshTries {
     /// Once; not to the end where a patch would be strained by more than `most_strain`.
     void carry_over(TriedMesh& made, double most_strain)
     {
-        if (!made.outcome.mesh || made.state) return;
+        if (!made.outcome.mesh || made.is_carried_over()) return;
         const ClothMesh& mesh = made.outcome.mesh->surgery.mesh;
         made.stars = make_stars(mesh.vertex_count(), mesh.faces);
         seconds_.move += watch_.lap();
-        TransferReport transferred;
-        made.state =
-            transfer(scene_, state_, work_.stars, *made.outcome.mesh, made.stars, transferred, most_strain);
-        made.strain = transferred.strain;
+        made.state = transfer(scene_, state_, work_.stars, *made.outcome.mesh, made.stars, made.transferred,
+                              most_strain);
+        made.most_strain = most_strain;
         seconds_.transfer += watch_.lap();
     }
 
@@ -150,6 +186,7 @@ class MeshTries {
     const State& state_;
     const Workspace& work_;
     FeatureChanges changes_;
+    RelaxationMemo relaxations_;
     Stopwatch& watch_;
     PhaseSeconds& seconds_;
 };

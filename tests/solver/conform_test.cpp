@@ -322,10 +322,7 @@ TEST(Conform, WhatIsNotOnTheSideToWhichAWirePressesIsNoVertexOfIt)
                                     1e-6});
         }
         ASSERT_FALSE(state.active.empty());
-        const ClothStars stars = cloth.stars();
-        const ConformOutcome made =
-            conform_mesh(cloth.scene, kStep, state, stars, find_feature_changes(cloth.scene, state, stars),
-                         {}, StrainLimit::GivesWay);
+        const ConformOutcome made = conform_cloth(cloth);
         EXPECT_EQ(made.mesh ? made.mesh->eol.empty() : true, below > 1.0) << below;
         for (const RefusedContact& refused : made.refused) {
             EXPECT_TRUE(below < 1.0 || refused.cause == RowCause::OffPlane) << below;
@@ -508,9 +505,7 @@ TEST(Conform, BehindAFoldThatHasFlownOffWhatLiesFlatOnAFaceGetsNoTrace)
         const Vec3 along = ridge.features().edges[testing::tip_of(ridge)].normals[0];
         const EolCloth cloth = flown_off(cells, along);
         ASSERT_GT(cloth.state.active.size(), 5u) << cells;
-        const ConformOutcome outcome = conform_mesh(
-            cloth.scene, kStep, cloth.state, cloth.stars(),
-            find_feature_changes(cloth.scene, cloth.state, cloth.stars()), {}, StrainLimit::GivesWay);
+        const ConformOutcome outcome = conform_cloth(cloth);
         EXPECT_TRUE(!outcome.mesh || outcome.mesh->eol.size() == cloth.state.eol.size()) << cells;
         EXPECT_GT(std::count_if(outcome.refused.begin(), outcome.refused.end(),
                                 [](const RefusedContact& r) { return r.cause == RowCause::FlatBehind; }),

@@ -155,11 +155,12 @@ std::vector<MeshEdge> edges_of(const State& state)
     return make_topology(state.mesh.vertex_count(), state.mesh.faces).edges;
 }
 
-ConformOutcome conform_cloth(const EolCloth& cloth, const FailedFlow& failed, StrainLimit limit)
+ConformOutcome conform_cloth(const EolCloth& cloth, const FailedFlow& failed, const ConformLimits& limits)
 {
+    RelaxationMemo relaxations;
     const ClothStars stars = cloth.stars();
     return conform_mesh(cloth.scene, kStep, cloth.state, stars,
-                        find_feature_changes(cloth.scene, cloth.state, stars), failed, limit);
+                        find_feature_changes(cloth.scene, cloth.state, stars), failed, limits, relaxations);
 }
 
 ConformedMesh take(EolCloth& cloth)

@@ -56,7 +56,7 @@ inline constexpr double kStep = 0.005;  // s, for which these conform
 
 /// What the cloth's features ask of its mesh.
 ConformOutcome conform_cloth(const EolCloth& cloth, const FailedFlow& failed = {},
-                             StrainLimit limit = StrainLimit::GivesWay);
+                             const ConformLimits& limits = {});
 
 /// The same, and carries the state over. Fails the test where the mesh is right as it is.
 ConformedMesh take(EolCloth& cloth);

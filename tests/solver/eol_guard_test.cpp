@@ -105,7 +105,8 @@ TEST(EolGuard, DoesNotLetStiffClothBeBent)
             cloth.cloth.scene.material.bending_stiffness = stiffness;
             cloth.cloth.scene.gravity.reset();
             for (Vec3& v : cloth.cloth.state.velocity) v = Vec3(0.3, 0.0, 0.0);
-            EolGuard guard(cloth.cloth.scene, cloth.cloth.state, limit);
+            RelaxationMemo relaxations;
+            EolGuard guard(cloth.cloth.scene, cloth.cloth.state, limit, {}, relaxations);
             guard.watch(cloth.surgery);
             const SurgeryProposal flip = cloth.surgery.propose_flip(cloth.at(0.2, 0.3), cloth.at(0.2, 0.35));
             ASSERT_TRUE(flip.is_legal());
@@ -125,7 +126,8 @@ TEST(EolGuard, DoesNotLetClothBeLifted)
         for (std::size_t v = 0; v < state.ids.size(); ++v)
             state.mesh.world[v].z() += 5.0 * std::pow(state.mesh.material[v].x() - 0.2, 2);
         const ClothSurgery sagging(state.mesh, state.ids, state.next_id);
-        EolGuard guard(cloth.cloth.scene, state, StrainLimit::AsMade);
+        RelaxationMemo relaxations;
+        EolGuard guard(cloth.cloth.scene, state, StrainLimit::AsMade, {}, relaxations);
         guard.watch(sagging);
         const SurgeryProposal gone = sagging.propose_collapse(cloth.at(0.2, 0.2), cloth.at(0.25, 0.2));
         ASSERT_TRUE(gone.is_legal());
@@ -137,7 +139,8 @@ TEST(EolGuard, SplitsAreFree)
 {
     Folded cloth;
     cloth.cloth.scene.material.bending_stiffness = 1e-1;
-    EolGuard guard(cloth.cloth.scene, cloth.cloth.state, StrainLimit::AsMade);
+    RelaxationMemo relaxations;
+    EolGuard guard(cloth.cloth.scene, cloth.cloth.state, StrainLimit::AsMade, {}, relaxations);
     guard.watch(cloth.surgery);
     const SurgeryProposal split =
         cloth.surgery.propose_edge_split(cloth.at(0.2, 0.2), cloth.at(0.15, 0.2), 0.1);

@@ -244,14 +244,10 @@ TEST(RowCause, AMeshThatLosesMoreVerticesThanItMayIsNotMade)
 {
     const EolCloth cloth = heading_for_held_row();
     const ConformOutcome whole = conform_cloth(cloth);
-    const auto conform_within = [&](const MostLost& most) {
-        return conform_mesh(cloth.scene, kStep, cloth.state, cloth.stars(),
-                            find_feature_changes(cloth.scene, cloth.state, cloth.stars()), {},
-                            StrainLimit::GivesWay, most);
-    };
-    EXPECT_TRUE(conform_within({.lost = whole.lost, .blocked = whole.blocked}).mesh);
-    for (const MostLost& most : {MostLost{.lost = whole.lost - 1}, MostLost{.blocked = whole.blocked - 1}}) {
-        const ConformOutcome unfinished = conform_within(most);
+    EXPECT_TRUE(conform_cloth(cloth, {}, {.lost = whole.lost, .blocked = whole.blocked}).mesh);
+    for (const ConformLimits& limits :
+         {ConformLimits{.lost = whole.lost - 1}, ConformLimits{.blocked = whole.blocked - 1}}) {
+        const ConformOutcome unfinished = conform_cloth(cloth, {}, limits);
         EXPECT_FALSE(unfinished.mesh);
         EXPECT_EQ(unfinished.lost, whole.lost);
         EXPECT_EQ(unfinished.blocked, whole.blocked);
@@ -288,7 +284,7 @@ TEST(RowCause, StiffClothThatWouldBeStrainedIsGuarded)
             x = Vec3(beside + 0.8 * away, x.y(), x.z() + 0.6 * (beside / 0.8 - std::abs(away)));
         }
         press_edges(cloth);
-        const ConformOutcome outcome = conform_cloth(cloth, {}, StrainLimit::AsMade);
+        const ConformOutcome outcome = conform_cloth(cloth, {}, {.strain = StrainLimit::AsMade});
         const int guarded = count(outcome, RowCause::Guard);
         if (cells < 0.1) {
             EXPECT_GT(guarded, 4);
