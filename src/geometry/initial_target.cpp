@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/initial_target.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
-#include "geometry/box_tree.h"
 #include "geometry/material_location.h"
 #include "geometry/mesh_topology.h"
 
@@ -12,11 +14,6 @@ namespace arris {
 namespace {
 
 constexpr double kRounding = 1e-12;  // relative, of a weighted mean of three: far more than it has
-
-Vec3 flat(const Vec2& X)
-{
-    return {X.x(), X.y(), 0.0};
-}
 
 class InitialMesh {
   public:
@@ -31,13 +28,7 @@ class InitialMesh {
             const double angle = least_angle({{}, corners(f), {}});
             for (const int v : f) angle_[v] = std::min(angle_[v], angle);
         }
-        std::vector<BoxTree::Box> boxes;
-        for (const Face& f : faces_) {
-            BoxTree::Box box;
-            for (const int v : f) box.extend(flat(material_[v]));
-            boxes.push_back(box);
-        }
-        tree_ = BoxTree(boxes);
+        sort_into_cells();
     }
 
     double length(const Vec2& X) const
@@ -60,6 +51,60 @@ class InitialMesh {
     }
 
   private:
+    using Box = Eigen::AlignedBox2d;
+
+    Box box_of(const Face& f) const
+    {
+        Box box;
+        for (const int v : f) box.extend(material_[v]);
+        return box;
+    }
+
+    // About as many cells as faces, so that a few are in each.
+    void sort_into_cells()
+    {
+        Box whole;
+        for (const Vec2& X : material_) whole.extend(X);
+        const Vec2 size = whole.sizes();
+        const double cell = std::sqrt(size.x() * size.y() / double(faces_.size()));
+        low_ = whole.min();
+        for (int k = 0; k < 2; ++k) {
+            count_[k] = static_cast<int>(std::clamp(std::ceil(size[k] / cell), 1.0, double(faces_.size())));
+            per_length_[k] = count_[k] / size[k];
+        }
+        std::vector<std::vector<int>> cells(static_cast<std::size_t>(count_[0]) * count_[1]);
+        for (std::size_t f = 0; f < faces_.size(); ++f)
+            for_each_cell(box_of(faces_[f]), [&](std::size_t c) { cells[c].push_back(static_cast<int>(f)); });
+        cells_ = std::move(cells);
+    }
+
+    // What is outside counts to the cells at the border.
+    template <typename Take>
+    void for_each_cell(const Box& box, const Take& take) const
+    {
+        std::array<int, 2> first, last;
+        for (int k = 0; k < 2; ++k) {
+            const auto cell = [&](double x) {
+                return static_cast<int>(
+                    std::min(count_[k] - 1.0, std::max(0.0, (x - low_[k]) * per_length_[k])));
+            };
+            first[k] = cell(box.min()[k]);
+            last[k] = cell(box.max()[k]);
+        }
+        for (int i = first[0]; i <= last[0]; ++i)
+            for (int j = first[1]; j <= last[1]; ++j) take(static_cast<std::size_t>(i) * count_[1] + j);
+    }
+
+    // Faces whose boxes touch it, some of them more than once.
+    template <typename Take>
+    void visit(const Box& box, const Take& take) const
+    {
+        for_each_cell(box, [&](std::size_t c) {
+            for (const int f : cells_[c])
+                if (box.intersects(box_of(faces_[f]))) take(f);
+        });
+    }
+
     struct Place {
         int face;
         Vec3 weights;
@@ -107,18 +152,21 @@ class InitialMesh {
              best.face < 0 && reach<std::numeric_limits<double>::infinity(); reach = reach> 0.0
                  ? 2.0 * reach
                  : 1e-9 * mean_) {
-            const Vec3 slack(reach, reach, reach);
-            tree_.visit(BoxTree::Box(flat(X) - slack, flat(X) + slack), judge);
+            const Vec2 slack(reach, reach);
+            visit(Box(X - slack, X + slack), judge);
         }
         return best.face >= 0 ? best : Place{0, best.weights};
     }
 
     std::vector<Vec2> material_;
     std::vector<Face> faces_;
-    std::vector<double> length_;  // m, one a vertex
-    std::vector<double> angle_;   // degrees, one a vertex
-    double mean_ = 0.0;           // edge length, m
-    BoxTree tree_;
+    std::vector<double> length_;           // m, one a vertex
+    std::vector<double> angle_;            // degrees, one a vertex
+    double mean_ = 0.0;                    // edge length, m
+    Vec2 low_;                             // m, of a grid of cells
+    Vec2 per_length_;                      // cells, 1/m
+    std::array<int, 2> count_;             // of cells
+    std::vector<std::vector<int>> cells_;  // faces whose boxes touch them, ascending
 };
 
 }  // namespace

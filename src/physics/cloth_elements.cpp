@@ -17,7 +17,7 @@ bool has_moved(const std::vector<char>& is_moved, std::span<const int> vertices)
 
 /// Greedy: each element, in order, takes the least colour none of its vertices has.
 template <typename Element>
-ElementColors find_colors(int vertex_count, const std::vector<Element>& elements)
+ElementColors color_elements(int vertex_count, const std::vector<Element>& elements)
 {
     // Colours at each vertex, as many as it has elements so far: used[begin[v]] .. used[end[v] - 1].
     std::vector<int> begin(vertex_count + 1, 0);
@@ -121,14 +121,9 @@ ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology)
 ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology)
 {
     ClothElements elements = list_elements(mesh, topology);
-    color_elements(elements);
+    elements.face_colors = color_elements(elements.vertex_count, elements.faces);
+    elements.hinge_colors = color_elements(elements.vertex_count, elements.hinges);
     return elements;
-}
-
-void color_elements(ClothElements& elements)
-{
-    elements.face_colors = find_colors(elements.vertex_count, elements.faces);
-    elements.hinge_colors = find_colors(elements.vertex_count, elements.hinges);
 }
 
 void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, ClothElements& elements)

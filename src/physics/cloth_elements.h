@@ -45,12 +45,10 @@ struct ClothElements {
     ElementColors face_colors, hinge_colors;
 };
 
-/// Without colours, which energies do not need. Linear in face count. Material orientations must be positive
+/// Without colours: energies do not need them, and a few elements are added to a system one after the other.
+/// Linear in face count. Material orientations must be positive
 /// (`validate` checks it).
 ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology);
-
-/// Gives elements that have none their colours.
-void color_elements(ClothElements& elements);
 
 /// The same with colours.
 ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology);

@@ -15,10 +15,13 @@ namespace arris {
 
 namespace {
 
-/// Applies `visit` to each element, colour by colour, elements of one colour in parallel.
+/// Applies `visit` to each of `count` elements, colour by colour, those of one colour in parallel; where they
+/// have none one after the other.
 template <typename Visit>
-void for_each_by_color(const ElementColors& colors, const Visit& visit)
+void for_each_by_color(const ElementColors& colors, std::size_t count, const Visit& visit)
 {
+    if (colors.start.empty())
+        for (std::size_t e = 0; e < count; ++e) visit(static_cast<int>(e));
     constexpr int kGrain = 128;  // a few tens of microseconds: far above the cost of a task
     const auto visit_part = [&](const tbb::blocked_range<int>& part) {
         for (int i = part.begin(); i < part.end(); ++i) visit(colors.order[i]);
@@ -188,7 +191,7 @@ void LinearSystem::add_elements(const ElementColors& colors, const std::vector<E
                                 const Blocks& blocks, const ElementTerms& terms, const Linearization& at,
                                 const AddEulerian& add_eulerian)
 {
-    for_each_by_color(colors, [&](int e) {
+    for_each_by_color(colors, elements.size(), [&](int e) {
         const Element& element = elements[e];
         if (at.flow && has_eulerian_vertex(*at.flow, element.vertices)) {
             add_eulerian(e);

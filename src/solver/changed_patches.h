@@ -18,7 +18,7 @@ struct ChangedPatch {
     std::vector<char> is_inside;    ///< of each of these: not at the rim
 };
 
-/// Two meshes of one cloth; `faces_at`: faces at each vertex.
+/// Two meshes of one cloth; `faces_at`: faces at each vertex. `after.next_id` is above all ids of `events`.
 struct MeshChange {
     const State& before;
     const State& after;

@@ -76,7 +76,7 @@ class Conforming {
     ConformOutcome run(const FeatureChanges& changes, const FailedFlow& failed)
     {
         std::optional<ConformedMesh> mesh = find_mesh(changes, failed);
-        return {std::move(mesh), std::move(refused_), lost_, blocked_, guard_.gave_way()};
+        return {std::move(mesh), std::move(refused_), lost_, blocked_, guard_.relies_at()};
     }
 
   private:

@@ -50,14 +50,15 @@ struct FeatureChanges {
 /// `stars` are the state's. Nothing without a target for the mesh.
 FeatureChanges find_feature_changes(const Scene& scene, const State& state, const ClothStars& stars);
 
-/// What a mesh may cost.
+/// How carefully a mesh is made, and what it may cost.
 struct ConformLimits {
     StrainLimit strain = StrainLimit::GivesWay;
-    /// Where it is StrainLimit::AsMade: what operations at these vertices, ascending, replace.
+    /// Vertices, ascending: operations that replace a face at one of them are judged as with
+    /// StrainLimit::AsMade.
     std::vector<VertexId> careful_at = {};
-    /// EOL vertices that clearing what is there may cost; of more that mesh is of no use.
-    int lost = std::numeric_limits<int>::max();     ///< of ConformOutcome
-    int blocked = std::numeric_limits<int>::max();  ///< of ConformOutcome
+    // Of more the mesh is of no use.
+    int lost = std::numeric_limits<int>::max();     ///< the most that ConformOutcome::lost may come to
+    int blocked = std::numeric_limits<int>::max();  ///< the same of ConformOutcome::blocked
 };
 
 /// What `conform_mesh` found.
@@ -66,8 +67,8 @@ struct ConformOutcome {
     std::vector<RefusedContact> refused;  ///< that pressed on a feature and stay or become rows
     int lost = 0;     ///< EOL vertices that clearing has cost: blocked, or merged into others
     int blocked = 0;  ///< of these what clearing met and could not move
-    /// At which something may have been done that counts on cloth around it to give way; ascending.
-    std::vector<VertexId> gave_way;
+    /// Vertices, ascending, at which something may have been done that relies on cloth that gives way.
+    std::vector<VertexId> relies_at;
 };
 
 /// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where

@@ -96,13 +96,13 @@ bool EolGuard::can_give_way(const SurgeryEvent& event, double rise)
         !relaxations_.can_relax_by(scene_, make_patch(event), rise))
         return false;
     for (const PatchFace& face : event.before)
-        gave_way_.insert(gave_way_.end(), face.vertices.begin(), face.vertices.end());
+        relies_at_.insert(relies_at_.end(), face.vertices.begin(), face.vertices.end());
     return true;
 }
 
-std::vector<VertexId> EolGuard::gave_way() const
+std::vector<VertexId> EolGuard::relies_at() const
 {
-    std::vector<VertexId> vertices = gave_way_;
+    std::vector<VertexId> vertices = relies_at_;
     sort_unique(vertices);
     return vertices;
 }

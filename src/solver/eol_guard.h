@@ -34,9 +34,9 @@ class EolGuard {
     void watch(const ClothSurgery& surgery) { surgery_ = &surgery; }
     bool allows(const SurgeryEvent& event);
 
-    /// Vertices of the faces that operations replaced for which the cloth around has to give way: those that
-    /// were allowed, whether or not they were made. Ascending.
-    std::vector<VertexId> gave_way() const;
+    /// Vertices, ascending, of the faces that operations replace for which the cloth around has to give way:
+    /// those that were allowed, whether or not they were made.
+    std::vector<VertexId> relies_at() const;
 
     /// What clears the way of a sliding feature may strain more: the alternative is to give the trace up.
     void set_clearing(bool is_clearing) { is_clearing_ = is_clearing; }
@@ -70,7 +70,7 @@ class EolGuard {
     bool is_clearing_ = false;
     const ClothSurgery* surgery_ = nullptr;
     RelaxationMemo& relaxations_;
-    std::vector<VertexId> gave_way_;  ///< as they come
+    std::vector<VertexId> relies_at_;  ///< as they come
 };
 
 }  // namespace arris

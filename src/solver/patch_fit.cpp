@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "geometry/sort_unique.h"
 #include "physics/deformation_gradient.h"
@@ -149,8 +148,8 @@ class PatchFitter {
         return ids;
     }
 
-    /// What `gain` is beside all that moves a patch, over the longest of its cells; where that is no more
-    /// than `small`, something between both.
+    /// What `gain` is beside all that moves a patch, over the longest of its cells; where an
+    /// upper bound of it is no more than `small`, that.
     double strain_of(const ChangedPatch& patch, double gain, double kinetic, double small) const
     {
         const double area = area_of(patch);
@@ -168,14 +167,14 @@ class PatchFitter {
     std::optional<VelocityFit> fit_patch(const ChangedPatch& changed, const VelocityField& old)
     {
         FitPatch patch;
-        std::unordered_map<int, int> local;
+        local_.resize(after_.ids.size());
         for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
-            local[changed.vertices[i]] = static_cast<int>(i);
+            local_[changed.vertices[i]] = static_cast<int>(i);
             add_vertex(changed.vertices[i], changed.is_inside[i], patch);
         }
         for (const int f : changed.faces) {
             const Face& face = after_.mesh.faces[f];
-            patch.faces.push_back({local[face[0]], local[face[1]], local[face[2]]});
+            patch.faces.push_back({local_[face[0]], local_[face[1]], local_[face[2]]});
         }
         const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch);
         if (!fit) return fit;
@@ -218,7 +217,9 @@ class PatchFitter {
     EolPlacer placer_;
     std::vector<HeldVertex> held_;
     Creases creases_before_, creases_;
-    RelaxedPatch relaxed_;  ///< of vertices of other patches nothing that means anything
+    // Of vertices of other patches nothing that means anything.
+    RelaxedPatch relaxed_;
+    std::vector<int> local_;  ///< of each vertex its place in the patch
 };
 
 }  // namespace

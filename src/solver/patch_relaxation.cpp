@@ -91,7 +91,6 @@ class Relaxation {
         elements_ = list_elements(patch_.mesh, topology);
         mark_creases(patch_.creases, patch_.mesh, elements_);
         const ClothElements held = take_held();
-        color_elements(elements_);
         edges_ = std::move(topology.edges);
         held_energy_ = compute_energies(held, terms_, patch_.mesh.world).sum();
         energy_ = energy_at(patch_.mesh.world);
@@ -277,7 +276,7 @@ class Relaxation {
     std::vector<int> free_;   ///< vertices, ascending
     std::vector<int> place_;  ///< of each vertex in `free_`; -1 where it is held
     std::vector<MeshEdge> edges_;
-    ClothElements elements_;  ///< of what is free; their hinges' faces mean nothing
+    ClothElements elements_;  ///< that concern a free vertex; their hinges' faces mean nothing
     Terms terms_;
     double step_time_;                 ///< s
     double held_energy_ = 0.0;         ///< J, of what does not move

@@ -106,17 +106,17 @@ class MeshTries {
         return or_forced(std::move(careful), is_costly);
     }
 
-    /// That, made again with care where it is strained; where that does not help, with care everywhere. As it
-    /// is where nothing in it counts on cloth that gives way, or where care would cost a trace vertices and
-    /// it strains but little more than it should.
+    /// That, made again with care where it is strained, as far as that has been looked at; where that does
+    /// not help, with care everywhere. As it is where nothing in what is strained relies on cloth that gives
+    /// way, or where care would cost a trace vertices and it strains but little more than it should.
     TriedMesh more_careful(TriedMesh mesh)
     {
-        constexpr int kMostTries = 2;  // what is strained then is elsewhere than before
+        constexpr int kMostTries = 2;  // what is strained after the first is most often elsewhere
         ConformLimits limits;
         for (int k = 0; k <= kMostTries && mesh.strain() > kPatchStrain; ++k) {
             if (!add_strained(mesh, limits.careful_at)) break;
             if (k == kMostTries) limits = {.strain = StrainLimit::AsMade};
-            if (mesh.strain() <= kTraceStrain) limits.lost = mesh.outcome.lost;
+            limits.lost = mesh.strain() <= kTraceStrain ? mesh.outcome.lost : kAnyNumber;
             TriedMesh next = make(limits);
             if (next.outcome.lost > limits.lost) break;
             if (k < kMostTries) carry_over(next, kTraceStrain);
@@ -125,15 +125,15 @@ class MeshTries {
         return mesh;
     }
 
-    /// The vertices of strained patches in which something counts on cloth that gives way; whether there are
+    /// The vertices of strained patches in which something relies on cloth that gives way; whether there are
     /// any more of them.
     static bool add_strained(const TriedMesh& mesh, std::vector<VertexId>& careful_at)
     {
-        const std::vector<VertexId>& gave_way = mesh.outcome.gave_way;
+        const std::vector<VertexId>& relies_at = mesh.outcome.relies_at;
         const std::size_t known = careful_at.size();
         for (const std::vector<VertexId>& patch : mesh.transferred.strained)
             if (std::any_of(patch.begin(), patch.end(), [&](VertexId v) {
-                    return std::binary_search(gave_way.begin(), gave_way.end(), v);
+                    return std::binary_search(relies_at.begin(), relies_at.end(), v);
                 }))
                 careful_at.insert(careful_at.end(), patch.begin(), patch.end());
         sort_unique(careful_at);

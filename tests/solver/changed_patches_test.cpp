@@ -126,6 +126,7 @@ State after_surgery(const State& before, const ClothSurgery& surgery)
     const SurgeryResult result = surgery.result();
     after.mesh = result.mesh;
     after.ids = result.ids;
+    after.next_id = result.next_id;
     std::erase_if(after.eol, [&](const EolVertex& e) { return after.index_of(e.vertex_id) < 0; });
     return after;
 }

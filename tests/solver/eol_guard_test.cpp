@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "geometry/sort_unique.h"
 #include "physics/energies.h"
 #include "solver/creases.h"
 #include "solver/surgery_energy.h"
@@ -133,6 +135,42 @@ TEST(EolGuard, DoesNotLetClothBeLifted)
         ASSERT_TRUE(gone.is_legal());
         EXPECT_EQ(guard.allows(gone.event), !is_heavy);
     }
+}
+
+TEST(EolGuard, WithCareNothingCountsOnClothThatGivesWay)
+{
+    // Rough cloth: of the edges that strain it where they are flipped those for which it gives way.
+    Folded cloth(180.0, 1e-3);
+    cloth.cloth.scene.gravity.reset();
+    RelaxationMemo relaxations;
+    const auto ask = [&](const SurgeryEvent& event, StrainLimit limit,
+                         const std::vector<VertexId>& careful_at, std::vector<VertexId>& relies_at) {
+        EolGuard guard(cloth.cloth.scene, cloth.cloth.state, limit, careful_at, relaxations);
+        guard.watch(cloth.surgery);
+        const bool is_allowed = guard.allows(event);
+        relies_at = guard.relies_at();
+        return is_allowed;
+    };
+    int counted = 0;
+    for (const MeshEdge& edge : testing::edges_of(cloth.cloth.state)) {
+        const std::vector<VertexId>& ids = cloth.cloth.state.ids;
+        const SurgeryProposal flip = cloth.surgery.propose_flip(ids[edge.a], ids[edge.b]);
+        std::vector<VertexId> relies_at, none, replaced;
+        if (!flip.is_legal() || ask(flip.event, StrainLimit::AsMade, {}, none)) continue;
+        EXPECT_TRUE(none.empty());
+        if (!ask(flip.event, StrainLimit::GivesWay, {}, relies_at)) continue;
+        ++counted;
+        for (const PatchFace& face : flip.event.before)
+            replaced.insert(replaced.end(), face.vertices.begin(), face.vertices.end());
+        sort_unique(replaced);
+        EXPECT_EQ(relies_at, replaced);
+        for (const VertexId v : ids) {
+            const bool is_there = std::binary_search(replaced.begin(), replaced.end(), v);
+            EXPECT_EQ(ask(flip.event, StrainLimit::GivesWay, {v}, relies_at), !is_there) << v;
+            EXPECT_EQ(relies_at.empty(), is_there);
+        }
+    }
+    EXPECT_GT(counted, 0);
 }
 
 TEST(EolGuard, SplitsAreFree)

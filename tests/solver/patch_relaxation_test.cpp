@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -368,6 +369,34 @@ TEST(PatchRelaxation, APatchHasTheEnergyThatTheStepFinds)
     std::reverse(faces.begin(), faces.end());
     EXPECT_NEAR(find_patch_energy(cloth.scene, creases, state.mesh, faces), truth, kRoundOff);
     EXPECT_GT(std::abs(find_patch_energy(cloth.scene, {}, state.mesh) - truth), 1e-6) << "they matter";
+}
+
+TEST(PatchRelaxation, FoldsItsCreasesAsTheStepDoes)
+{
+    // Half of the cloth is held, and faces are of many sizes.
+    Setting setting(5e-3);
+    Scene& scene = setting.cloth.scene;
+    scene.material.youngs_modulus = 5.0;
+    scene.material.bending_stiffness = 1e-2;
+    State& state = setting.cloth.state;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> shift(-0.01, 0.01);
+    for (std::size_t v = 0; v < state.ids.size(); ++v) {
+        if (setting.patch.is_free[v] != 0) state.mesh.material[v] += Vec2(shift(random), shift(random));
+        if (state.mesh.material[v].x() < 0.2) setting.patch.is_free[v] = 0;
+    }
+    Creases creases{0.03, {}};
+    for (int k = 1; k < 7; ++k) {
+        const int a = setting.cloth.vertex_at(0.25, 0.05 * k),
+                  b = setting.cloth.vertex_at(0.25, 0.05 * (k + 1));
+        creases.edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+    std::sort(creases.edges.begin(), creases.edges.end());
+    const double before = find_patch_energy(scene, creases, state.mesh);
+    ASSERT_GT(std::abs(find_patch_energy(scene, {}, state.mesh) - before), 1e-2 * before) << "they matter";
+    const double after = arris::relax(scene, creases, setting.patch, state);
+    EXPECT_LT(after, 0.9 * before);
+    EXPECT_NEAR(after, find_patch_energy(scene, creases, state.mesh), 1e-12 * before);
 }
 
 TEST(PatchRelaxation, OfNothingFreeOrOfNothingAtAllDoesNothing)

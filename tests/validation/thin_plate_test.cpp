@@ -32,7 +32,7 @@ TEST_P(ThinPlate, DoesNotThrowStiffCloth)
     // Of what it is thrown with, the mean of falls that differ by less than anybody could place cloth: each
     // takes a way of its own. On 2 mm .022 to .040 are measured, .41 where the mesh is changed whatever it
     // strains; most at the least stiffness, .06.
-    constexpr double kMeanRise = 0.06;
+    constexpr double kMeanRise = 0.06, kMostRise = 0.2;
     const double thrown = 0.5 * 0.05 * kSpeed * kSpeed;  // J
     double sum = 0.0;
     int falls = 0;
@@ -47,6 +47,7 @@ TEST_P(ThinPlate, DoesNotThrowStiffCloth)
                 least = std::min(least, energy);
             });
             RecordProperty(fmt::format("rise_{}_{}", stiffness, aside), fmt::format("{:.2e}", rise));
+            EXPECT_LT(rise, kMostRise * thrown) << stiffness << " J, " << GetParam() << " m";
             sum += rise;
             ++falls;
         }
