@@ -197,9 +197,7 @@ void LinearSystem::add_elements(const ElementColors& colors, const std::vector<E
             add_eulerian(e);
             return;
         }
-        LocalSystem<N> local(at, element.vertices);
-        const State state(element, at.position);
-        for (const auto& term : terms) term->add(state, local);
+        LocalSystem<N> local = sum_terms<N>(State(element, at.position), terms, at);
         reduce<N>(element.vertices, at, local);
         scatter<N>(element.vertices, blocks[e].data(), local);
     });

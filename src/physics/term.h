@@ -113,6 +113,15 @@ class HingeTerm {
     virtual void add(const HingeState& hinge, HingeSystem& system) const = 0;
 };
 
+/// Of one element, FaceState or HingeState, through whose vertices no material flows.
+template <int N, typename State, typename ElementTerms>
+LocalSystem<N> sum_terms(const State& state, const ElementTerms& terms, const Linearization& at)
+{
+    LocalSystem<N> local(at, state.element.vertices);
+    for (const auto& term : terms) term->add(state, local);
+    return local;
+}
+
 /// A load on one corner of a face, N.
 struct CornerLoad {
     int face, corner;

@@ -291,11 +291,14 @@ class NormalEquations {
   private:
     static double weight(const NewFace& face, int i, int j) { return face.mass / (i == j ? 6.0 : 12.0); }
 
+    /// Of what is not zero: coordinates of vertices that are of the material have nothing to do with each
+    /// other, and factors keep them apart.
     void add_block(int row, int column, const Mat3& block)
     {
         for (int c = 0; c < 3; ++c)
             for (int r = 0; r < 3; ++r)
-                if (row + r >= column + c) lower_.emplace_back(row + r, column + c, block(r, c));
+                if (row + r >= column + c && block(r, c) != 0.0)
+                    lower_.emplace_back(row + r, column + c, block(r, c));
     }
 
     const FitPatch& patch_;

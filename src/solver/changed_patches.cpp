@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 
 #include "geometry/sort_unique.h"
@@ -187,7 +186,7 @@ class PatchFinder {
     void add_faces_before()
     {
         std::vector<int> open;
-        std::unordered_map<int, int> patch_of;  // of a vertex before; looked up only
+        std::vector<int> patch_of(before_.ids.size(), -1);  // of each vertex before
         for (std::size_t p = 0; p < patches_.size(); ++p)
             for (const int v : patches_[p].vertices)
                 if (const int then = then_[v]; then >= 0) {
@@ -204,9 +203,12 @@ class PatchFinder {
                 const int now = find_face(after_.mesh, change_.faces_at_after, map(face, now_));
                 is_seen[f] = 1;
                 if (now >= 0 && patch_[now] < 0) continue;
-                patches_[now >= 0 ? patch_[now] : patch_of.at(v)].faces_before.push_back(f);
-                for (const int w : face)
-                    if (now_[w] < 0 && patch_of.try_emplace(w, patch_of.at(v)).second) open.push_back(w);
+                patches_[now >= 0 ? patch_[now] : patch_of[v]].faces_before.push_back(f);
+                for (const int w : face) {
+                    if (now_[w] >= 0 || patch_of[w] >= 0) continue;
+                    patch_of[w] = patch_of[v];
+                    open.push_back(w);
+                }
             }
         }
         for (ChangedPatch& patch : patches_) std::sort(patch.faces_before.begin(), patch.faces_before.end());

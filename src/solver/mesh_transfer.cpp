@@ -34,19 +34,16 @@ class CarriedById {
 
     Carried at(VertexId id) const
     {
-        const Carried* changed = find_changed(id);
-        return changed ? *changed : read(before_, static_cast<std::size_t>(before_.index_of(id)));
-    }
-    const Carried* find_changed(VertexId id) const
-    {
         const auto found = changed_.find(id);
-        return found != changed_.end() ? &found->second : nullptr;
+        return found != changed_.end() ? found->second
+                                       : read(before_, static_cast<std::size_t>(before_.index_of(id)));
     }
+    const std::unordered_map<VertexId, Carried>& changed() const { return changed_; }
     void set(VertexId id, const Carried& carried) { changed_.insert_or_assign(id, carried); }
 
   private:
     const State& before_;
-    std::unordered_map<VertexId, Carried> changed_;  // looked up only
+    std::unordered_map<VertexId, Carried> changed_;
 };
 
 Vec3 weights_of(const std::array<Vec2, 3>& X, const Vec2& place)
@@ -164,17 +161,20 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     after.previous_velocity.resize(n);
     after.previous_material.resize(n);
     after.previous_material_velocity.resize(n);
-    for (std::size_t v = 0, then = 0; v < n; ++v) {
-        while (then < before.ids.size() && before.ids[then] < after.ids[v]) ++then;
-        const Carried* changed = all.find_changed(after.ids[v]);
-        const Carried carried = changed ? *changed : read(before, then);
+    const auto write = [&](std::size_t v, const Carried& carried) {
         after.velocity[v] = carried.v;
         after.material_velocity[v] = carried.V;
         after.previous_world[v] = carried.previous_x;
         after.previous_velocity[v] = carried.previous_v;
         after.previous_material[v] = carried.previous_X;
         after.previous_material_velocity[v] = carried.previous_V;
+    };
+    for (std::size_t v = 0, then = 0; v < n; ++v) {
+        while (then < before.ids.size() && before.ids[then] < after.ids[v]) ++then;
+        if (then < before.ids.size() && before.ids[then] == after.ids[v]) write(v, read(before, then));
     }
+    for (const auto& [id, carried] : all.changed())  // in any order: each has its own place
+        if (const int v = after.index_of(id); v >= 0) write(static_cast<std::size_t>(v), carried);
     std::erase_if(after.anchors, [&](const PinAnchor& a) { return after.index_of(a.vertex_id) < 0; });
     return after;
 }

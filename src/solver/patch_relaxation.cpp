@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/patch_relaxation.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
@@ -16,11 +14,10 @@
 #include "geometry/obstacle_distance.h"
 #include "geometry/sub_mesh.h"
 #include "geometry/sweep_check.h"
-#include "physics/block_ordering.h"
 #include "physics/energies.h"
-#include "physics/linear_system.h"
 #include "physics/term.h"
 #include "solver/contacts.h"
+#include "solver/patch_equations.h"
 #include "solver/strain_allowance.h"
 
 namespace arris {
@@ -59,17 +56,6 @@ Creases find_part(const Creases& creases, const std::vector<int>& vertices)
     }
     std::sort(part.edges.begin(), part.edges.end());
     return part;
-}
-
-/// Of `count` vertices that do not move and have no coordinates of their own; where they are is left open.
-Linearization at_rest(std::size_t count, double step_time)
-{
-    Linearization at;
-    at.gamma = step_time;
-    at.v_predicted = at.v_expansion = at.v_last = at.drift = std::vector<Vec3>(count, Vec3::Zero());
-    at.basis.assign(count, Mat3::Identity());
-    at.has_basis.assign(count, 0);
-    return at;
 }
 
 /// The patch as a small cloth of its own, at rest.
@@ -224,51 +210,16 @@ class Relaxation {
         return held_energy_ + compute_energies(elements_, terms_, world).sum();
     }
 
-    /// (M + t^2 H) way = t^2 f: implicit Euler's, of what is free.
     std::vector<Vec3> find_way()
     {
         std::vector<Vec3> way(patch_.mesh.world.size(), Vec3::Zero());
         if (free_.empty()) return way;
-        const bool is_first = system_.matrix().rows() == 0;  // many a patch never moves
-        if (is_first) {
-            system_.make_pattern(elements_, place_);
-            at_ = at_rest(patch_.mesh.world.size(), step_time_);
-        }
-        at_.position = patch_.mesh.world;
-        system_.assemble(patch_.mesh, elements_, terms_, at_);
-        keep_heights();
-        const std::optional<Eigen::VectorXd> velocity = solve(is_first);
-        if (!velocity || !velocity->allFinite()) return way;
+        if (!equations_) equations_.emplace(place_, free_, step_time_);  // many a patch never moves
+        const auto found = equations_->find_way(patch_.mesh, elements_, terms_, patch_.normals);
+        if (!found) return way;
         for (std::size_t k = 0; k < free_.size(); ++k)
-            way[free_[k]] = step_time_ * velocity->segment<3>(static_cast<Eigen::Index>(3 * k));
+            way[free_[k]] = found->segment<3>(static_cast<Eigen::Index>(3 * k));
         return way;
-    }
-
-    /// Of the system as it is; nothing where it has no factors.
-    std::optional<Eigen::VectorXd> solve(bool is_first)
-    {
-        // Unknowns, up to which dense factors take less time: most patches of the guard have 45.
-        constexpr Eigen::Index kSmall = 90;
-        if (system_.matrix().rows() <= kSmall) {
-            dense_factor_.compute(system_.matrix().toDense());
-            if (dense_factor_.info() == Eigen::Success)
-                return Eigen::VectorXd(dense_factor_.solve(system_.rhs()));
-        } else {
-            if (is_first) factor_.analyzePattern(system_.matrix());
-            factor_.factorize(system_.matrix());
-            if (factor_.info() == Eigen::Success) return Eigen::VectorXd(factor_.solve(system_.rhs()));
-        }
-        return std::nullopt;
-    }
-
-    /// Of free vertices that have a normal.
-    void keep_heights()
-    {
-        constexpr double kStiff = 1e6;  // beside the greatest stiffness: held
-        const double stiff = kStiff * system_.matrix().diagonal().maxCoeff();
-        for (std::size_t k = 0; k < free_.size(); ++k)
-            if (const Vec3& normal = patch_.normals[free_[k]]; !normal.isZero(0.0))
-                system_.add_to_vertex(static_cast<int>(k), stiff * normal * normal.transpose());
     }
 
     const Scene& scene_;
@@ -283,11 +234,7 @@ class Relaxation {
     double energy_ = 0.0;              ///< J, where it is
     std::vector<Vec3> before_last_;    ///< where it was before the last step
     double energy_before_last_ = 0.0;  ///< J, there
-    Linearization at_;
-    LinearSystem system_;  ///< of what is free
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, BlockAmdOrdering>
-        factor_;                                              ///< of one pattern
-    Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> dense_factor_;  ///< of few unknowns
+    std::optional<PatchEquations> equations_;
 };
 
 }  // namespace

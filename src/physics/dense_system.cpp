@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/dense_system.h"
+
+#include <cassert>
+#include <utility>
+
+namespace arris {
+
+DenseSystem::DenseSystem(std::vector<int> places, int count)
+    : places_(std::move(places)), matrix_(3 * count, 3 * count), rhs_(3 * count)
+{
+}
+
+template <int N>
+void DenseSystem::scatter(const std::array<int, N>& vertices, const LocalSystem<N>& local)
+{
+    for (int i = 0; i < N; ++i) {
+        const int v = places_[vertices[i]];
+        if (v < 0) continue;
+        rhs_.segment<3>(3 * v) += local.rhs(i);
+        matrix_.block<3, 3>(3 * v, 3 * v) += local.matrix(i, i);
+        for (int j = 0; j < i; ++j) {
+            const int w = places_[vertices[j]];
+            if (w < 0) continue;
+            if (v > w)
+                matrix_.block<3, 3>(3 * v, 3 * w) += local.matrix(i, j);
+            else
+                matrix_.block<3, 3>(3 * w, 3 * v) += local.matrix(i, j).transpose();
+        }
+    }
+}
+
+void DenseSystem::assemble(const ClothElements& elements, const Terms& terms, const Linearization& at)
+{
+    assert(!at.flow && terms.loads.empty() && "held cloth at rest");
+    matrix_.setZero();
+    rhs_.setZero();
+    for (const FaceElement& face : elements.faces)
+        scatter<3>(face.vertices, sum_terms<3>(FaceState(face, at.position), terms.faces, at));
+    if (terms.hinges.empty()) return;
+    for (const HingeElement& hinge : elements.hinges)
+        scatter<4>(hinge.vertices, sum_terms<4>(HingeState(hinge, at.position), terms.hinges, at));
+}
+
+}  // namespace arris
