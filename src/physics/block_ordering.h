@@ -3,11 +3,13 @@
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
+#include <algorithm>
+#include <vector>
 
 namespace arris {
 
-/// AMD of vertices, for Eigen's sparse Cholesky of small systems whose rows 3 v to 3 v + 2 are vertex v's:
-/// its three rows have the same neighbours, so it is enough to look at one of them.
+/// AMD of vertices, for Eigen's sparse Cholesky of small systems whose rows 3 v to 3 v + 2 are vertex v's.
+/// Two vertices are neighbours where any of their rows are.
 struct BlockAmdOrdering {
     using PermutationType = Eigen::AMDOrdering<int>::PermutationType;
 
@@ -18,10 +20,16 @@ struct BlockAmdOrdering {
         const Eigen::Index n = symmetric.cols() / 3;
         Eigen::SparseMatrix<double> graph(n, n);
         graph.reserve(symmetric.nonZeros() / 9);
+        std::vector<Eigen::Index> below;
         for (Eigen::Index v = 0; v < n; ++v) {
+            below.clear();
+            for (int k = 0; k < 3; ++k)
+                for (typename Matrix::InnerIterator at(symmetric, 3 * v + k); at; ++at)
+                    if (at.row() >= 3 * v) below.push_back(at.row() / 3);
+            std::sort(below.begin(), below.end());
+            below.erase(std::unique(below.begin(), below.end()), below.end());
             graph.startVec(v);
-            for (typename Matrix::InnerIterator at(symmetric, 3 * v); at; ++at)
-                if (at.row() % 3 == 0 && at.row() >= 3 * v) graph.insertBack(at.row() / 3, v) = 1.0;
+            for (const Eigen::Index w : below) graph.insertBack(w, v) = 1.0;
         }
         graph.finalize();
         PermutationType vertices;

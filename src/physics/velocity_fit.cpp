@@ -292,7 +292,7 @@ class NormalEquations {
     static double weight(const NewFace& face, int i, int j) { return face.mass / (i == j ? 6.0 : 12.0); }
 
     /// Of what is not zero: coordinates of vertices that are of the material have nothing to do with each
-    /// other, and factors keep them apart.
+    /// other (their blocks are multiples of the identity, to the bit), and factors keep them apart.
     void add_block(int row, int column, const Mat3& block)
     {
         for (int c = 0; c < 3; ++c)

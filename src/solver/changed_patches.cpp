@@ -2,6 +2,7 @@
 #include "solver/changed_patches.h"
 
 #include <algorithm>
+#include <cassert>
 #include <tuple>
 #include <utility>
 
@@ -197,6 +198,7 @@ class PatchFinder {
         while (!open.empty()) {
             const int v = open.back();
             open.pop_back();
+            assert(patch_of[v] >= 0 && "what is open is of a patch");
             for (const int f : change_.faces_at_before[v]) {
                 if (is_seen[f]) continue;
                 const Face& face = before_.mesh.faces[f];

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "geometry/closest_point.h"
+#include "geometry/feature_frame.h"
 #include "geometry/feature_nodes.h"
 #include "geometry/feature_path.h"
 #include "geometry/normal_cone.h"
@@ -66,7 +67,8 @@ class SiteFinder {
     {
         if (const auto turn = find_held_turn(contact.element, v[0])) return at_turn(*turn, v, contact.normal);
         const int corner = corner_at(obstacle_.features(), contact.element);
-        if (corner < 0 || v[2] < 0) return std::nullopt;
+        if (v[2] < 0) return std::nullopt;
+        if (corner < 0) return at_bend(contact.element, v, contact.normal);
         const Vec3 &a = crossings_.positions()[v[0]], &b = crossings_.positions()[v[1]],
                    &c = crossings_.positions()[v[2]];
         const PointOnTriangle closest = closest_on_triangle(obstacle_.mesh().points[contact.element],
@@ -76,6 +78,35 @@ class SiteFinder {
         for (int i = 0; i < 3; ++i) X += closest.weights[i] * state_.mesh.material[v[i]];
         const auto heaviest = std::max_element(closest.weights.begin(), closest.weights.end());
         return make_corner(corner, X, v[heaviest - closest.weights.begin()], contact.normal);
+    }
+
+    /// Where a rim bends at a vertex of the obstacle's mesh in the middle of a convex edge: what of the face
+    /// is straight outward of it. A trace without a vertex there passes by it.
+    std::optional<FeatureSite> at_bend(int point, const std::array<int, 3>& v, const Vec3& normal) const
+    {
+        constexpr double kInside = 1e-6;  // thicknesses
+        const Vec3& p = obstacle_.mesh().points[point];
+        const std::array<Vec3, 3> face = {crossings_.positions()[v[0]], crossings_.positions()[v[1]],
+                                          crossings_.positions()[v[2]]};
+        const Vec3 up = (face[1] - face[0]).cross(face[2] - face[0]).stableNormalized();
+        const ObstacleTopology& topology = obstacle_.topology();
+        for (int k = 0; k < topology.edge_count_at(point); ++k) {
+            const int feature = feature_of_edge(obstacle_.features(), topology.edge_at(point, k));
+            if (feature < 0 || obstacle_.features().edges[feature].kind != FeatureKind::Convex) continue;
+            const auto frame =
+                find_edge_frame(obstacle_, feature, p, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+            const double height = up.dot(face[0] - p) / up.dot(frame->outward);
+            if (!(height >= 0.0 && height <= kOnFeature * thickness_)) continue;
+            const Vec3 there = p + height * frame->outward;
+            const PointOnTriangle closest = closest_on_triangle(there, face, up);
+            if (!((closest.point - there).norm() <= kInside * thickness_)) continue;
+            Vec2 X = Vec2::Zero();
+            for (int i = 0; i < 3; ++i) X += closest.weights[i] * state_.mesh.material[v[i]];
+            const auto heaviest = std::max_element(closest.weights.begin(), closest.weights.end());
+            return FeatureSite{o_,    false, feature, X, state_.ids[v[heaviest - closest.weights.begin()]],
+                               normal};
+        }
+        return std::nullopt;
     }
 
     /// A vertex of the face that is on a tip as it is. Cloth around one that was let go has the tip
@@ -191,7 +222,7 @@ std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& sta
         std::optional<FeatureSite> site = is_eol ? std::nullopt : finder_of(contact.obstacle).find(contact);
         if (!site) continue;
         site->contact = static_cast<int>(c);
-        if (site->is_corner)
+        if (site->is_corner || site->edge[0] < 0)
             sites.push_back(*site);
         else
             by_feature[{site->obstacle, site->feature}].push_back(*site);

@@ -2,6 +2,7 @@
 #include "solver/mesh_transfer.h"
 
 #include <algorithm>
+#include <cassert>
 #include <unordered_map>
 
 #include "geometry/mesh_topology.h"
@@ -39,6 +40,7 @@ class CarriedById {
                                        : read(before_, static_cast<std::size_t>(before_.index_of(id)));
     }
     const std::unordered_map<VertexId, Carried>& changed() const { return changed_; }
+    bool has_changed(VertexId id) const { return changed_.contains(id); }
     void set(VertexId id, const Carried& carried) { changed_.insert_or_assign(id, carried); }
 
   private:
@@ -171,7 +173,10 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     };
     for (std::size_t v = 0, then = 0; v < n; ++v) {
         while (then < before.ids.size() && before.ids[then] < after.ids[v]) ++then;
-        if (then < before.ids.size() && before.ids[then] == after.ids[v]) write(v, read(before, then));
+        if (then < before.ids.size() && before.ids[then] == after.ids[v])
+            write(v, read(before, then));
+        else
+            assert(all.has_changed(after.ids[v]) && "what is new has been carried over");
     }
     for (const auto& [id, carried] : all.changed())  // in any order: each has its own place
         if (const int v = after.index_of(id); v >= 0) write(static_cast<std::size_t>(v), carried);

@@ -59,5 +59,21 @@ TEST(BlockOrdering, FillsInAsLittleAsAmdOfTheRowsAndKeepsAVertexTogether)
     }
 }
 
+TEST(BlockOrdering, SeesWhatAnyOfAVertexsRowsHasInCommonWithAnothers)
+{
+    // First rows that have nothing in common, as of vertices that leave a feature straight up.
+    const auto is_apart = [](Eigen::Index row, Eigen::Index column, double) {
+        return row / 3 == column / 3 || (row % 3 != 0 && column % 3 != 0);
+    };
+    Matrix matrix = make_grid_matrix(20);
+    matrix.prune(is_apart);
+    const Matrix lower = matrix.triangularView<Eigen::Lower>();
+    const Factor<BlockAmdOrdering> factor(lower);
+    const Factor<Eigen::AMDOrdering<int>> of_rows(lower);
+    ASSERT_EQ(factor.info(), Eigen::Success);
+    const Matrix fill = factor.matrixL(), fill_of_rows = of_rows.matrixL();
+    EXPECT_LE(fill.nonZeros(), fill_of_rows.nonZeros() + fill_of_rows.nonZeros() / 10);
+}
+
 }  // namespace
 }  // namespace arris

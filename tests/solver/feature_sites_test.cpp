@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/feature_nodes.h"
+#include "geometry/feature_path.h"
 #include "geometry/obstacle_shapes.h"
+#include "physics/deformation_gradient.h"
 #include "solver/eol_features.h"
+#include "tests/geometry/sample_obstacles.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
@@ -269,6 +273,70 @@ TEST(FeatureSites, AreOnTheNextEdgeWhereOneEndsBetweenItsNearestPointAndThePlane
         const double crossing = 0.2 - (end + std::tan(slope)) * kThickness;
         EXPECT_NEAR(site->material.x(), crossing, 1e-9) << end;
         EXPECT_EQ(site->edge == (std::array{std::min(from, to), std::max(from, to)}), end < -0.84) << end;
+    }
+}
+
+/// Flat cloth `height` (thicknesses) above a disk of 16 sides and radius .1 m.
+EolCloth make_disk_cloth(double height)
+{
+    const auto shrink = [](const Vec3& p) { return Vec3(0.1 * p - 0.1 * Vec3::UnitZ()); };
+    EolCloth cloth(Obstacle("disk", samples::moved(samples::cylinder(16), shrink), {}, {}, 30.0),
+                   testing::make_draped({7, kTurn, 180.0}));
+    for (Vec3& x : cloth.state.mesh.world) x.z() = height * kThickness;
+    return cloth;
+}
+
+/// Every face of the cloth presses on a point of the obstacle's mesh.
+void press_faces_on(int point, State& state)
+{
+    state.active.clear();
+    for (const Face& face : state.mesh.faces) {
+        std::array<std::uint32_t, 3> ids;
+        for (int k = 0; k < 3; ++k) ids[k] = state.ids[face[k]];
+        std::sort(ids.begin(), ids.end());
+        state.active.push_back({ids, ContactKind::Triangle, 0, point, Vec3::UnitZ(), 1e-6});
+    }
+    std::sort(state.active.begin(), state.active.end(),
+              [](const auto& a, const auto& b) { return a.vertex_ids < b.vertex_ids; });
+}
+
+TEST(FeatureSites, AreStraightOutwardOfWhereARimBendsUnderAFace)
+{
+    for (const double height : {0.2, 1.0, 1.7, 3.0}) {
+        EolCloth cloth = make_disk_cloth(height);
+        const Obstacle& disk = cloth.scene.obstacles[0];
+        ASSERT_TRUE(disk.features().corners.empty()) << "it bends by 22.5 degrees";
+        State& state = cloth.state;
+        const ClothMesh& mesh = state.mesh;
+        const auto& [a, b, c] = mesh.faces[0];
+        const Mat32 F = deformation_gradient({mesh.material[a], mesh.material[b], mesh.material[c]},
+                                             {mesh.world[a], mesh.world[b], mesh.world[c]});
+        for (int point = 0; point < static_cast<int>(disk.mesh().points.size()); ++point) {
+            const Vec3& p = disk.mesh().points[point];
+            if (p.z() < -0.05) continue;
+            press_faces_on(point, state);
+            const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, state, cloth.stars());
+            // A bisector rises at 45 degrees: it meets the cloth sqrt(2) times as far away as that is high.
+            if (std::sqrt(2.0) * height > kOnFeature) {
+                EXPECT_TRUE(sites.empty()) << height;
+                continue;
+            }
+            ASSERT_GE(sites.size(), 1u) << point;
+            for (const FeatureSite& site : sites) {
+                EXPECT_FALSE(site.is_corner);
+                const auto [from, to] = feature_segment(disk, site.feature);
+                EXPECT_LT(std::min((from - p).norm(), (to - p).norm()), 1e-12) << "one of its two edges";
+                const Vec3 place = mesh.world[a] + F * (site.material - mesh.material[a]);
+                const Vec3 side = Vec3(from.x() + to.x(), from.y() + to.y(), 0.0).normalized();
+                EXPECT_LT((place - p).cross(side + Vec3::UnitZ()).norm(), 1e-9) << height;
+                EXPECT_GT((place - p).dot(side + Vec3::UnitZ()), 0.0);
+            }
+            // A vertex comes of it, on that edge.
+            const ConformOutcome outcome = testing::conform_cloth(cloth);
+            ASSERT_TRUE(outcome.mesh) << point;
+            ASSERT_GE(outcome.mesh->eol.size(), 1u) << point;
+            EXPECT_EQ(outcome.mesh->eol[0].feature, sites[0].feature);
+        }
     }
 }
 
