@@ -2,6 +2,7 @@
 #include "solver/pinched_vertices.h"
 
 #include <algorithm>
+#include <array>
 
 #include "solver/constraints.h"
 #include "solver/energy_balance.h"
@@ -66,6 +67,30 @@ std::vector<int> find_squeezed_vertices(const Workspace& work)
             squeezed.push_back(eol.vertex);
     }
     return squeezed;
+}
+
+std::vector<int> find_squeezing_folds(const Workspace& work)
+{
+    constexpr double kAgainst = -0.5;  // cosine of the normals
+    std::vector<int> squeezing;
+    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
+    const auto is_pressing = [&](std::size_t c) { return multiplier[c] > 0.0; };
+    for (std::size_t f = 0; f < work.contacts.size(); ++f) {
+        const Contact& fold = work.contacts[f];
+        if (!fold.is_fold() || !is_pressing(f)) continue;
+        const int vertex = fold.in_frame.vertices[0];
+        for (std::size_t c = 0; c < work.contacts.size(); ++c) {
+            const Contact& other = work.contacts[c];
+            const std::array<int, 3>& vertices = other.in_frame.vertices;
+            if (other.is_fold() || other.obstacle == fold.obstacle || !is_pressing(c) ||
+                !(other.normal.dot(fold.normal) < kAgainst) ||
+                std::find(vertices.begin(), vertices.end(), vertex) == vertices.end())
+                continue;
+            squeezing.push_back(static_cast<int>(f));
+            break;
+        }
+    }
+    return squeezing;
 }
 
 std::vector<int> find_pinched_vertices(const State& state, const Workspace& work, const StepReport& report)

@@ -17,6 +17,10 @@ namespace arris {
 /// in a step in which the cloth gains as much. The proposal in `work` is weighed.
 std::vector<int> find_squeezed_vertices(const Workspace& work);
 
+/// Contacts (indices) of folds' planes that press cloth against another obstacle: nothing is there that would
+/// crush it.
+std::vector<int> find_squeezing_folds(const Workspace& work);
+
 /// Those of an infeasible step: in contacts that no velocity meets, or squeezed.
 std::vector<int> find_pinched_vertices(const State& state, const Workspace& work, const StepReport& report);
 

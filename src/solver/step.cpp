@@ -160,6 +160,18 @@ bool yield_infeasible(const Scene& scene, Workspace& work)
     return is_changed;
 }
 
+/// Planes behind folds that press cloth against an obstacle keep nothing, in a new system; false where none
+/// do.
+bool yield_folds(const Scene& scene, Workspace& work)
+{
+    bool is_changed = false;
+    for (const int fold : find_squeezing_folds(work))
+        is_changed |=
+            yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, work.contacts[fold]);
+    work.has_system = work.has_system && !is_changed;
+    return is_changed;
+}
+
 /// Whether an EOL vertex goes round its wire or tip.
 bool has_turned(const Workspace& work, const State& state)
 {
@@ -231,11 +243,14 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     }
     report.seconds.assemble += watch.lap();
 
-    // 5. The constrained velocity, with its certificate. What cannot be met together yields.
+    // 5. The constrained velocity, with its certificate. What cannot be met together yields, and folds to
+    // what is there.
     solve_velocity(settings, work, report);
     watch.lap();
     if (report.status == StepStatus::Infeasible && report.solves < kMostSolves &&
         yield_infeasible(scene, work))
+        return true;
+    if (report.status == StepStatus::Done && report.solves < kMostSolves && yield_folds(scene, work))
         return true;
     if (report.status != StepStatus::Done && report.status != StepStatus::Infeasible) return false;
 

@@ -66,6 +66,36 @@ TEST(SqueezedVertices, AreThoseWhoseContactIsAcrossTheirWay)
     }
 }
 
+TEST(SqueezingFolds, ArePlanesThatPressClothAgainstAnotherObstacle)
+{
+    const auto make_fold = [](double angle) {
+        Workspace work = make_vise(angle, false);
+        work.contacts[0].in_frame.element = kFoldElement;
+        return work;
+    };
+    EXPECT_EQ(find_squeezing_folds(make_fold(170.0)), std::vector{0});
+    EXPECT_TRUE(find_squeezing_folds(make_fold(90.0)).empty()) << "it may slip out";
+    EXPECT_TRUE(find_squeezing_folds(make_vise(170.0, false)).empty()) << "no fold";
+
+    Workspace own = make_fold(170.0);
+    own.contacts[1].obstacle = 0;
+    EXPECT_TRUE(find_squeezing_folds(own).empty()) << "the wire that it is folded over";
+    Workspace elsewhere = make_fold(170.0);
+    elsewhere.contacts[1].in_frame.vertices = {6, -1, -1};
+    EXPECT_TRUE(find_squeezing_folds(elsewhere).empty()) << "another vertex";
+    Workspace edge = make_fold(170.0);
+    edge.contacts[1].in_frame.vertices = {6, 7, -1};
+    EXPECT_EQ(find_squeezing_folds(edge), std::vector{0}) << "an edge of the cloth that ends there";
+    for (const int c : {0, 1}) {
+        Workspace open = make_fold(170.0);
+        open.solution.row_multipliers[c] = 0.0;
+        EXPECT_TRUE(find_squeezing_folds(open).empty()) << "one does not press: " << c;
+    }
+    Workspace both = make_fold(170.0);
+    both.contacts[1].in_frame.element = kFoldElement;
+    EXPECT_TRUE(find_squeezing_folds(both).empty()) << "two planes";
+}
+
 TEST(PinchedVertices, AreOfAnInfeasibleStepOnly)
 {
     const Workspace work = make_vise(170.0, false);
