@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/dense_system.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -33,6 +34,7 @@ void DenseSystem::scatter(const std::array<int, N>& vertices, const LocalSystem<
 void DenseSystem::assemble(const ClothElements& elements, const Terms& terms, const Linearization& at)
 {
     assert(!at.flow && terms.loads.empty() && "held cloth at rest");
+    assert(std::none_of(at.has_basis.begin(), at.has_basis.end(), [](char has) { return has != 0; }));
     matrix_.setZero();
     rhs_.setZero();
     for (const FaceElement& face : elements.faces)
