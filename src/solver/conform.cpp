@@ -230,7 +230,9 @@ class Conforming {
         const TraceInsertion made = make_vertex(site.material, near, wanted);
         if (made.verdict != Verdict::Done)
             return made.verdict == Verdict::Guard ? RowCause::Guard : RowCause::Quality;
-        if (trace_.find(made.vertex)) return RowCause::BesideEol;
+        if (trace_.find(made.vertex))
+            return site.is_bend() && slide_to(made.vertex, site) ? std::nullopt
+                                                                 : std::optional(RowCause::BesideEol);
         EolVertex vertex{made.vertex, site.obstacle, site.is_corner, site.feature, site.outward, 0};
         vertex.turn = site.turn;
         vertex.side = trace_.side_beside(wanted.tag, site.material);
@@ -283,6 +285,16 @@ class Conforming {
             least = distance;
         }
         return nearest;
+    }
+
+    /// One that slides beside a bend that presses goes there.
+    bool slide_to(VertexId v, const FeatureSite& bend)
+    {
+        if (is_fixed(*trace_.find(v)) ||
+            surgery_.commit(surgery_.propose_moves({{v, bend.material}})) != Verdict::Done)
+            return false;
+        trace_.slide(v, bend.feature);
+        return true;
     }
 
     bool hold_at(VertexId v, const FeatureSite& turn)

@@ -222,7 +222,7 @@ std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& sta
         std::optional<FeatureSite> site = is_eol ? std::nullopt : finder_of(contact.obstacle).find(contact);
         if (!site) continue;
         site->contact = static_cast<int>(c);
-        if (site->is_corner || site->edge[0] < 0)
+        if (site->is_corner || site->is_bend())
             sites.push_back(*site);
         else
             by_feature[{site->obstacle, site->feature}].push_back(*site);

@@ -23,6 +23,9 @@ struct FeatureSite {
     std::array<int, 2> edge = {-1, -1};  ///< of the cloth that passes through there; twice the same: a vertex
     int turn = -1;                       ///< end of the edge where a wire turns there, by EolVertex::turn
     int contact = -1;                    ///< index in State::active; -1 where it only lies between such
+
+    /// Whether it is in a face, where a rim bends.
+    bool is_bend() const { return !is_corner && turn < 0 && edge[0] < 0; }
 };
 
 /// Where features pressed at the end of the last step and no EOL vertex is yet; corners first, then

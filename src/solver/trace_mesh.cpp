@@ -66,10 +66,20 @@ void TraceMesh::add(const EolVertex& made, const Vec2& flow)
     flow_.try_emplace(made.vertex_id, flow);
 }
 
+EolVertex& TraceMesh::entry_of(VertexId v)
+{
+    return eol_[static_cast<std::size_t>(place_of(v) - eol_.begin())];
+}
+
+void TraceMesh::slide(VertexId v, int feature)
+{
+    entry_of(v).feature = feature;
+}
+
 void TraceMesh::hold(VertexId v, int feature, int turn)
 {
     surgery_.set_role(v, TraceRole::Node, surgery_.tag(v));
-    EolVertex& held = eol_[static_cast<std::size_t>(place_of(v) - eol_.begin())];
+    EolVertex& held = entry_of(v);
     held.feature = feature;
     held.turn = turn;
     held.idle = 0;

@@ -51,6 +51,9 @@ class TraceMesh {
     /// One that slides along its wire is held where that turns, from now on (EolVertex::turn).
     void hold(VertexId v, int feature, int turn);
 
+    /// One that slides along its polyline is on that edge of it now.
+    void slide(VertexId v, int feature);
+
     /// In the obstacle's frame, where the surgery has it.
     PlacedEol placed(const EolVertex& eol) const;
     /// Of those on the trace.
@@ -66,6 +69,7 @@ class TraceMesh {
 
   private:
     std::vector<EolVertex>::const_iterator place_of(VertexId v) const;
+    EolVertex& entry_of(VertexId v);
 
     const std::vector<Obstacle>& obstacles_;
     const MeshTarget& target_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/feature_path.h"
 #include "geometry/mesh_quality.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/obstacle_shapes.h"
@@ -13,6 +14,7 @@
 #include "solver/audit.h"
 #include "solver/contacts.h"
 #include "solver/eol_features.h"
+#include "solver/feature_sites.h"
 #include "solver/mesh_transfer.h"
 #include "solver/step.h"
 #include "tests/solver/eol_cloth.h"
@@ -805,6 +807,42 @@ TEST(ConformedSteps, ClothThatFallsOnARidgeBendsOnVerticesOfIt)
         EXPECT_GT(steps_with_eol, 15) << turn;
         EXPECT_GT(most, 5) << turn;
     }
+}
+
+TEST(Conform, OnARimWhatSlidesBesideABendThatPressesGoesThere)
+{
+    int tried = 0;
+    for (int point = 0; point < 32; ++point) {
+        EolCloth cloth = testing::make_disk_cloth(1.0);
+        const Obstacle& disk = cloth.scene.obstacles[0];
+        if (disk.mesh().points[point].z() < -0.05) continue;
+        testing::press_faces_on(point, cloth.state);
+        take(cloth);
+        ASSERT_GE(cloth.state.eol.size(), 1u) << point;
+        const EolVertex made = cloth.state.eol[0];
+        const std::size_t count = cloth.state.eol.size();
+        // The cloth goes along the edge that the vertex is on, away from the bend.
+        const auto [a, b] = feature_segment(disk, made.feature);
+        const bool is_from = (a - disk.mesh().points[point]).norm() < 1e-9;
+        const Vec3 way = (is_from ? b - a : a - b).normalized();
+        for (Vec3& x : cloth.state.mesh.world) x += 0.2 * testing::kLyingCell * way;
+        testing::press_faces_on(point, cloth.state);
+        const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, cloth.state, cloth.stars());
+        ASSERT_GE(sites.size(), 1u) << point;
+        take(cloth);
+        EXPECT_EQ(cloth.state.eol.size(), count) << point;
+        const int v = cloth.state.index_of(made.vertex_id);
+        ASSERT_GE(cloth.state.eol_entry(made.vertex_id), 0) << point;
+        const auto distance_to = [&](const FeatureSite& site) {
+            return (cloth.state.mesh.material[v] - site.material).norm();
+        };
+        double least = distance_to(sites[0]);
+        for (const FeatureSite& site : sites) least = std::min(least, distance_to(site));
+        EXPECT_LT(least, 1e-12) << point;
+        expect_sound(cloth.state, 0.16);
+        ++tried;
+    }
+    EXPECT_EQ(tried, 16);
 }
 
 TEST(ConformedSteps, WhatOverrunsInEveryAttemptBecomesRowsInAFew)

@@ -15,6 +15,7 @@
 #include "solver/eol_coordinates.h"
 #include "solver/mesh_transfer.h"
 #include "solver/step.h"
+#include "tests/geometry/sample_obstacles.h"
 
 namespace arris::testing {
 namespace {
@@ -153,6 +154,28 @@ void press_edges(EolCloth& cloth)
 std::vector<MeshEdge> edges_of(const State& state)
 {
     return make_topology(state.mesh.vertex_count(), state.mesh.faces).edges;
+}
+
+EolCloth make_disk_cloth(double height)
+{
+    const auto shrink = [](const Vec3& p) { return Vec3(0.1 * p - 0.1 * Vec3::UnitZ()); };
+    EolCloth cloth(Obstacle("disk", samples::moved(samples::cylinder(16), shrink), {}, {}, 30.0),
+                   make_draped({7, 17.0, 180.0}));
+    for (Vec3& x : cloth.state.mesh.world) x.z() = height * kThickness;
+    return cloth;
+}
+
+void press_faces_on(int point, State& state)
+{
+    state.active.clear();
+    for (const Face& face : state.mesh.faces) {
+        std::array<std::uint32_t, 3> ids;
+        for (int k = 0; k < 3; ++k) ids[k] = state.ids[face[k]];
+        std::sort(ids.begin(), ids.end());
+        state.active.push_back({ids, ContactKind::Triangle, 0, point, Vec3::UnitZ(), 1e-6});
+    }
+    std::sort(state.active.begin(), state.active.end(),
+              [](const auto& a, const auto& b) { return a.vertex_ids < b.vertex_ids; });
 }
 
 ConformOutcome conform_cloth(const EolCloth& cloth, const FailedFlow& failed, const ConformLimits& limits)

@@ -52,6 +52,12 @@ EolCloth lying(double turn, double shift = 0.0, double half_length = 0.5);
 /// Rows where the cloth's edges cross the ridge's tip, as a step leaves them.
 void press_edges(EolCloth& cloth);
 
+/// Flat cloth `height` (thicknesses) above a disk of 16 sides and radius .1 m; no vertex is above its rim.
+EolCloth make_disk_cloth(double height);
+
+/// Every face of the cloth presses on a point of the obstacle's mesh.
+void press_faces_on(int point, State& state);
+
 inline constexpr double kStep = 0.005;  // s, for which these conform
 
 /// What the cloth's features ask of its mesh.

@@ -11,7 +11,6 @@
 #include "geometry/obstacle_shapes.h"
 #include "physics/deformation_gradient.h"
 #include "solver/eol_features.h"
-#include "tests/geometry/sample_obstacles.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
@@ -276,34 +275,10 @@ TEST(FeatureSites, AreOnTheNextEdgeWhereOneEndsBetweenItsNearestPointAndThePlane
     }
 }
 
-/// Flat cloth `height` (thicknesses) above a disk of 16 sides and radius .1 m.
-EolCloth make_disk_cloth(double height)
-{
-    const auto shrink = [](const Vec3& p) { return Vec3(0.1 * p - 0.1 * Vec3::UnitZ()); };
-    EolCloth cloth(Obstacle("disk", samples::moved(samples::cylinder(16), shrink), {}, {}, 30.0),
-                   testing::make_draped({7, kTurn, 180.0}));
-    for (Vec3& x : cloth.state.mesh.world) x.z() = height * kThickness;
-    return cloth;
-}
-
-/// Every face of the cloth presses on a point of the obstacle's mesh.
-void press_faces_on(int point, State& state)
-{
-    state.active.clear();
-    for (const Face& face : state.mesh.faces) {
-        std::array<std::uint32_t, 3> ids;
-        for (int k = 0; k < 3; ++k) ids[k] = state.ids[face[k]];
-        std::sort(ids.begin(), ids.end());
-        state.active.push_back({ids, ContactKind::Triangle, 0, point, Vec3::UnitZ(), 1e-6});
-    }
-    std::sort(state.active.begin(), state.active.end(),
-              [](const auto& a, const auto& b) { return a.vertex_ids < b.vertex_ids; });
-}
-
 TEST(FeatureSites, AreStraightOutwardOfWhereARimBendsUnderAFace)
 {
     for (const double height : {0.2, 1.0, 1.7, 3.0}) {
-        EolCloth cloth = make_disk_cloth(height);
+        EolCloth cloth = testing::make_disk_cloth(height);
         const Obstacle& disk = cloth.scene.obstacles[0];
         ASSERT_TRUE(disk.features().corners.empty()) << "it bends by 22.5 degrees";
         State& state = cloth.state;
@@ -314,7 +289,7 @@ TEST(FeatureSites, AreStraightOutwardOfWhereARimBendsUnderAFace)
         for (int point = 0; point < static_cast<int>(disk.mesh().points.size()); ++point) {
             const Vec3& p = disk.mesh().points[point];
             if (p.z() < -0.05) continue;
-            press_faces_on(point, state);
+            testing::press_faces_on(point, state);
             const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, state, cloth.stars());
             // A bisector rises at 45 degrees: it meets the cloth sqrt(2) times as far away as that is high.
             if (std::sqrt(2.0) * height > kOnFeature) {
