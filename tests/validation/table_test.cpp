@@ -166,7 +166,7 @@ Slid slide_around_corners(Drop drop)
 }
 
 // Bending against weight makes pleats of (K / (rho g))^(1/3) at the corners. Of cells that can form them, two
-// or more a pleat, EOL vertices and rows leave the same; K = 1e-5 (above) would take 80 cells.
+// or more a pleat, EOL vertices and rows leave the same; K = 1e-5 (above) would take 74 cells.
 TEST(SmallTable, WhereCellsResolveItsPleatsClothSlidesAsFineClothOfRows)
 {
     struct Case {
