@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "app/check.h"
-#include "app/export_frames.h"
-#include "app/printable.h"
-#include "app/run.h"
-#include "app/scene_docs.h"
-#include "app/version.h"
+#include "app/export/export_frames.h"
+#include "app/run/run.h"
+#include "app/run/run_export_options.h"
+#include "app/scene/scene_docs.h"
+#include "app/text/printable.h"
+#include "app/text/version.h"
 #include "geometry/input_error.h"
 
 namespace arris {

@@ -9,10 +9,10 @@
 #include <exception>
 
 #include "app/command_line.h"
-#include "app/error_line.h"
-#include "app/printable.h"
+#include "app/text/error_line.h"
+#include "app/text/printable.h"
 #include "geometry/input_error.h"
-#include "geometry/obstacle_import.h"
+#include "geometry/obstacle_input/obstacle_import.h"
 
 int main(int argc, char** argv)
 {

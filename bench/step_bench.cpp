@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a step costs, and what of it assembly and velocity solve are, in units of one numeric factorisation of
-// its matrix by the best ordering (`ratio`; the least of their runs). All times are CPU seconds of one
-// thread. A cloth over a floor; arguments: the number of vertices along one side, and whether it is falling
-// (a shock) or lies draped (quiet).
+// Cost of a step, of its assembly and of its velocity solve, for a cloth over a floor. `ratio` is the least
+// time of the runs over the least time of one numeric factorisation of the step's matrix by the best
+// ordering. All times are CPU seconds of one thread. Arguments: the number of vertices along one side, and
+// whether the cloth is falling (hundreds of new contacts a step) or draped (few).
 #include <benchmark/benchmark.h>
 #include <oneapi/tbb/global_control.h>
 
@@ -11,10 +11,9 @@
 #include <map>
 
 #include "bench/thread_clock.h"
-#include "geometry/cloth_grid.h"
-#include "solver/factorization.h"
+#include "geometry/cloth_input/cloth_grid.h"
 #include "solver/step.h"
-#include "solver/step_mesh.h"
+#include "solver/velocity_solve/factorization.h"
 #include "tests/solver/floor.h"
 
 namespace arris {
@@ -58,7 +57,8 @@ ClothMesh make_sheet(int side)
     return make_cloth_grid(grid);
 }
 
-/// Quiet: held along one edge 0.3 m above the floor, most of it lies there. A few contacts change each step.
+/// Draped: held along one edge 0.3 m above the floor, while most of the cloth lies on the floor. A few
+/// contacts change each step.
 void drape(int side, Drop& drop)
 {
     drop.scene.pins = {Pin{{Vec2(0, 0), Vec2(0, 1)}, {}, {true, true, true}, 1e9}};
@@ -73,7 +73,7 @@ void drape(int side, Drop& drop)
     for (int k = 0; k < 5; ++k) drop.advance();
 }
 
-/// A shock: a rippled sheet while it falls flat; each step closes hundreds of contacts.
+/// Falling: a rippled sheet falls flat, and each step closes hundreds of contacts.
 void let_fall(int side, Drop& drop)
 {
     ClothMesh mesh = make_sheet(side);
@@ -96,11 +96,11 @@ Drop& dropped(const benchmark::State& bench)
         drape(static_cast<int>(bench.range(0)), drop);
     else
         let_fall(static_cast<int>(bench.range(0)), drop);
-    drop.factorisation = time_factorisation(drop.work.system, drop.work.problem.is_fixed);
+    drop.factorisation = time_factorisation(drop.work.mesh.system, drop.work.problem.is_fixed);
     return drop;
 }
 
-/// Times `work` once an iteration, `prepare` untimed before it; reports the least as a ratio to one
+/// Times `work` once an iteration, after an untimed `prepare`. Reports the least time as a ratio to one
 /// factorisation.
 template <typename Prepare, typename Work>
 void measure(benchmark::State& bench, Drop& drop, const Prepare& prepare, const Work& work)
@@ -127,7 +127,8 @@ void assembly(benchmark::State& bench)
     measure(
         bench, drop, [] {},
         [&] {
-            drop.work.system.assemble(drop.state.mesh, drop.work.elements, drop.work.terms, drop.work.at);
+            drop.work.mesh.system.assemble(drop.state.mesh, drop.work.mesh.elements, drop.work.mesh.terms,
+                                           drop.work.at);
         });
 }
 

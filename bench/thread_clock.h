@@ -5,7 +5,7 @@
 
 namespace arris {
 
-/// CPU seconds of this thread: machines are shared, and wall time measures who else is there.
+/// CPU seconds of this thread. Wall time would include other processes of a shared machine.
 inline double thread_seconds()
 {
     timespec now = {};

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the constrained velocity solve costs in units of one numeric factorisation of its matrix (`ratio`,
-// both the least of their runs), on a cloth resting on a wavy floor with 20-30 % of its vertices in contact.
-// All times are CPU seconds of this thread. The first argument is the number of vertices along one side.
-//   warm    guess of a slightly different step (second argument: difference of speeds, mm/s); `wrong` counts
-//   its errors spoilt  guess with so many per mille (second argument) replaced at random: false pins anywhere
-//   cold    no guess
-//   rows_*  the same cloth, its bounds guessed, with so many rows (second argument) spread over it, in a
-//   patch, or as 40 faces of many points, which may be nearly equal; warm: the rows that press are guessed
-//   from a solve with a slightly different b; resume: what it costs to append them to a problem just solved
-// factorise/*: one numeric factorisation and one analysis by each ordering, against the ordering in use.
+// Cost of the constrained velocity solve, on a cloth resting on a wavy floor with 20-30 % of its vertices in
+// contact. `ratio` is the least time of a solve over the least time of one numeric factorisation of its
+// matrix. All times are CPU seconds of this thread. The first argument is the number of vertices along one
+// side.
+//   warm         guess from a slightly different step (second argument: difference of speeds, mm/s); `wrong`
+//                counts the guess's errors
+//   spoilt       guess of which so many per mille (second argument) are replaced at random by false pins
+//   cold         no guess
+//   rows         so many rows (second argument) on top of guessed bounds: spread over the cloth, in a patch,
+//                in clusters (40 faces of many points), or nearly equal
+//     *_cold     without a guess of the rows
+//     *_warm     the pressing rows are guessed from a solve with a slightly different b
+//     *_resume   the rows are appended to a problem that has just been solved
+//   factorise    one numeric factorisation and one analysis by each ordering, against the ordering in use
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -20,7 +24,7 @@
 #include <random>
 
 #include "bench/thread_clock.h"
-#include "solver/factorization.h"
+#include "solver/velocity_solve/factorization.h"
 #include "tests/solver/cloth_system.h"
 #include "tests/solver/row_problems.h"
 
@@ -94,7 +98,7 @@ void solve(benchmark::State& state, const RestingCloth& cloth, const std::vector
     state.counters["kkt_residual"] = solution.kkt_residual;
 }
 
-/// The active set of the same cloth with smooth ripples of `speed` (m/s) on top.
+/// Active set of the cloth with smooth ripples of `speed` (m/s) added to its motion.
 std::vector<int> guess_of_another_step(const RestingCloth& cloth, int side, double speed)
 {
     testing::OwnedProblem other = cloth.owned;
@@ -137,7 +141,7 @@ std::vector<int> positions_of_positive(const Eigen::VectorXd& multipliers)
     return positions;
 }
 
-/// Both guesses from a step that differs by smooth ripples of 1 mm/s.
+/// Guesses bounds and rows from a step that differs by smooth ripples of 1 mm/s.
 void guess_rows(testing::OwnedProblem& owned, int side)
 {
     const Eigen::VectorXd rhs = owned.rhs;

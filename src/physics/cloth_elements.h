@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "geometry/cloth_mesh.h"
-#include "geometry/mesh_topology.h"
+#include "geometry/cloth/cloth_mesh.h"
+#include "geometry/cloth/mesh_topology.h"
 
 namespace arris {
 

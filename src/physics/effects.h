@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "geometry/material_box.h"
+#include "geometry/cloth/material_box.h"
 #include "geometry/vectors.h"
 
 namespace arris {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "solver/material_flow.h"
+#include "solver/model/time_integration.h"
 #include "solver/step.h"
-#include "solver/time_integration.h"
 
 namespace arris {
 

@@ -4,10 +4,10 @@
 #include <functional>
 #include <optional>
 
-#include "solver/scene.h"
-#include "solver/settings.h"
-#include "solver/state.h"
-#include "solver/step_report.h"
+#include "solver/model/scene.h"
+#include "solver/model/settings.h"
+#include "solver/model/state.h"
+#include "solver/model/step_report.h"
 #include "solver/workspace.h"
 
 namespace arris {

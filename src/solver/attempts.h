@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "solver/conform.h"
-#include "solver/state.h"
-#include "solver/step_report.h"
+#include "solver/model/failed_flow.h"
+#include "solver/model/state.h"
+#include "solver/model/step_report.h"
 
 namespace arris {
 

@@ -7,9 +7,9 @@
 #include "physics/energies.h"
 #include "physics/feature_impulse.h"
 #include "physics/inertia.h"
-#include "solver/constraints.h"
-#include "solver/eol_coordinates.h"
-#include "solver/symmetric_product.h"
+#include "solver/contact/constraints.h"
+#include "solver/eol/eol_coordinates.h"
+#include "solver/velocity_solve/symmetric_product.h"
 
 namespace arris {
 
@@ -28,7 +28,7 @@ double work_of_pins(const State& state, const Workspace& work)
 {
     if (work.held.empty()) return 0.0;
     Eigen::VectorXd impulse =
-        symmetric_product(work.system.matrix(), work.solution.velocity) - work.system.rhs();
+        symmetric_product(work.mesh.system.matrix(), work.solution.velocity) - work.mesh.system.rhs();
     for (std::size_t k = 0; k < work.problem.rows.size(); ++k) {
         const ConstraintRow& row = work.problem.rows[k];
         const double multiplier = work.solution.row_multipliers[static_cast<Eigen::Index>(k)];
@@ -62,8 +62,8 @@ double work_of_rows(const std::vector<double>& multiplier, const Workspace& work
 /// cloth is driven by nothing.
 double work_of_features(const State& state, const std::vector<double>& multiplier, const Workspace& work)
 {
-    std::vector<Vec3> impulse =
-        compute_feature_impulses(state.mesh, work.elements, work.terms, work.at, work.solution.velocity);
+    std::vector<Vec3> impulse = compute_feature_impulses(state.mesh, work.mesh.elements, work.mesh.terms,
+                                                         work.at, work.solution.velocity);
     for (std::size_t c = 0; c < work.contacts.size(); ++c) {
         const Contact& contact = work.contacts[c];
         if (contact.eol >= 0) continue;
@@ -94,10 +94,10 @@ ClothVelocity velocity_of(const Proposal& proposal)
 /// The workspace's elements where material has flowed to `material`.
 ClothElements elements_at(const Workspace& work, const std::vector<Vec2>& material)
 {
-    ClothElements elements = work.elements;
+    ClothElements elements = work.mesh.elements;
     std::vector<char> is_moved(material.size(), 0);
     for (const EolCoordinates& vertex : work.eol) is_moved[vertex.vertex] = 1;
-    update_elements({material, {}, work.faces_of_elements}, is_moved, elements);
+    update_elements({material, {}, work.mesh.faces_of_elements}, is_moved, elements);
     return elements;
 }
 
@@ -127,12 +127,13 @@ ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, cons
 {
     const double density = scene.material.density;
     if (work.eol.empty())
-        return {kinetic_energy(density, work.elements, cloth.velocity.world),
-                compute_energies(work.elements, work.terms, cloth.world)};
+        return {kinetic_energy(density, work.mesh.elements, cloth.velocity.world),
+                compute_energies(work.mesh.elements, work.mesh.terms, cloth.world)};
     const ClothElements elements = elements_at(work, cloth.material);
     const CornerVelocities corners =
         compute_corner_velocities(elements, cloth.world, cloth.velocity.world, cloth.velocity.material);
-    return {kinetic_energy(density, elements, corners), compute_energies(elements, work.terms, cloth.world)};
+    return {kinetic_energy(density, elements, corners),
+            compute_energies(elements, work.mesh.terms, cloth.world)};
 }
 
 double compute_driven_work(const State& state, const Workspace& work)
@@ -140,7 +141,7 @@ double compute_driven_work(const State& state, const Workspace& work)
     std::vector<Vec3> displacement = find_end(work.prediction, velocity_of(work.proposal)).world;
     for (std::size_t v = 0; v < displacement.size(); ++v) displacement[v] -= state.mesh.world[v];
     return work_of_pins(state, work) + work_of_obstacles(state, work) +
-           compute_load_work(state.mesh, work.elements, work.terms, work.at, work.proposal.velocity,
+           compute_load_work(state.mesh, work.mesh.elements, work.mesh.terms, work.at, work.proposal.velocity,
                              displacement);
 }
 
@@ -165,7 +166,7 @@ double find_energy_rise(const Scene& scene, const State& state, const Workspace&
     double allowed = kRise * energy_at_stake(work);
     double rise = work.solved_energy.sum() - work.energy.sum();
     if (!(rise > allowed)) return 0.0;
-    allowed += round_off_energy(scene, state, work.elements);
+    allowed += round_off_energy(scene, state, work.mesh.elements);
     const double driven = compute_driven_work(state, work);
     rise -= std::max(driven, 0.0);
     allowed += kDriven * std::abs(driven);
@@ -230,7 +231,7 @@ bool is_push_costly(const Scene& scene, double dt, const Workspace& work)
     const double cost = after.elastic() - before.elastic();
     const double unseen = kRise * (work.solved_energy.kinetic + before.elastic());
     if (!(cost > unseen)) return false;
-    const double push = kinetic_energy(scene.material.density, work.elements, push_velocity(work, dt));
+    const double push = kinetic_energy(scene.material.density, work.mesh.elements, push_velocity(work, dt));
     return cost > push + unseen;
 }
 

@@ -22,8 +22,8 @@
 
 #include <vector>
 
-#include "solver/scene.h"
-#include "solver/state.h"
+#include "solver/model/scene.h"
+#include "solver/model/state.h"
 #include "solver/workspace.h"
 
 namespace arris {

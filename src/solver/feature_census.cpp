@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "geometry/closest_point.h"
-#include "geometry/feature_nodes.h"
-#include "geometry/feature_path.h"
-#include "solver/eol_coordinates.h"
-#include "solver/eol_features.h"
+#include "geometry/obstacle/feature_nodes.h"
+#include "geometry/obstacle/feature_path.h"
+#include "solver/eol/eol_coordinates.h"
+#include "solver/eol/eol_features.h"
 
 namespace arris {
 
@@ -41,10 +41,10 @@ class Census {
         if (entry >= 0) return of_eol_vertex(entry, contact);
         if (!contact.was_active) return RowCause::New;
         const Beside beside = find_beside(contact);
-        if (beside.is_at) return beside.refusal ? cause_of(*beside.refusal) : RowCause::AtEol;
-        const auto refused = std::find_if(work_.refused.begin(), work_.refused.end(),
+        if (beside.is_at) return beside.refusal ? *beside.refusal : RowCause::AtEol;
+        const auto refused = std::find_if(work_.mesh.refused.begin(), work_.mesh.refused.end(),
                                           [&](const RefusedContact& r) { return is_same(r, contact); });
-        if (refused != work_.refused.end()) return refused->cause;
+        if (refused != work_.mesh.refused.end()) return refused->cause;
         return beside.is_any ? RowCause::BesideEol : RowCause::NotCrossing;
     }
 
@@ -52,7 +52,7 @@ class Census {
     /// One that has no coordinates in this step, or that touches something else besides.
     RowCause of_eol_vertex(int entry, const Contact& contact) const
     {
-        if (const std::optional<EolRefusal> refusal = find_refusal(entry)) return cause_of(*refusal);
+        if (const std::optional<RowCause> refusal = find_refusal(entry)) return *refusal;
         if (!contact.was_active) return RowCause::New;
         return contact.obstacle == state_.eol[entry].obstacle ? RowCause::OtherFeature
                                                               : RowCause::OtherObstacle;
@@ -61,8 +61,8 @@ class Census {
     /// What EOL vertices a contact has beside it, on the feature that it touches.
     struct Beside {
         bool is_any = false;
-        bool is_at = false;                 ///< its place is that of one of them, or between two
-        std::optional<EolRefusal> refusal;  ///< of that one, where it has no coordinates in this step
+        bool is_at = false;               ///< its place is that of one of them, or between two
+        std::optional<RowCause> refusal;  ///< of that one, where it has no coordinates in this step
     };
 
     Beside find_beside(const Contact& contact) const
@@ -158,12 +158,13 @@ class Census {
         return (material - state_.mesh.material[vertex]).norm() <= kOnFeature * scene_.material.thickness;
     }
 
-    std::optional<EolRefusal> find_refusal(int entry) const
+    std::optional<RowCause> find_refusal(int entry) const
     {
         const EolVertex& eol = state_.eol[entry];
         const ObstacleStep& way = work_.obstacles[eol.obstacle];
-        const EolPlacing placing = place_eol_vertex(scene_.obstacles[eol.obstacle], scene_.material.thickness,
-                                                    state_, entry, work_.stars, way.motion.begin, way.end);
+        const EolPlacing placing =
+            place_eol_vertex(scene_.obstacles[eol.obstacle], scene_.material.thickness, state_, entry,
+                             work_.mesh.stars, way.motion.begin, way.end);
         return placing.coordinates ? std::nullopt : std::optional(placing.refusal);
     }
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "solver/row_cause.h"
-#include "solver/scene.h"
-#include "solver/state.h"
+#include "solver/model/row_cause.h"
+#include "solver/model/scene.h"
+#include "solver/model/state.h"
 #include "solver/workspace.h"
 
 namespace arris {

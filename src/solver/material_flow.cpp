@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "solver/eol_coordinates.h"
+#include "solver/eol/eol_coordinates.h"
 
 namespace arris {
 
@@ -14,11 +14,11 @@ bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
     constexpr double kLeast = 0.4;
     work.overrun.clear();
     for (const EolCoordinates& eol : work.eol)
-        for (const int f : work.stars.faces[eol.vertex]) {
-            const auto& [a, b, c] = work.faces_of_elements[f];
+        for (const int f : work.mesh.stars.faces[eol.vertex]) {
+            const auto& [a, b, c] = work.mesh.faces_of_elements[f];
             const double left = 0.5 * twice_area(material[a], material[b], material[c]);
-            if (left >= kLeast * work.elements.faces[f].area) continue;
-            const Vec2 way = material[eol.vertex] - work.material_of_elements[eol.vertex];
+            if (left >= kLeast * work.mesh.elements.faces[f].area) continue;
+            const Vec2 way = material[eol.vertex] - work.mesh.material_of_elements[eol.vertex];
             work.overrun.push_back({eol.vertex, way / (work.at.time - work.at.begin)});
         }
     return work.overrun.empty();

@@ -5,8 +5,8 @@
 // step.
 #pragma once
 
-#include "solver/state.h"
-#include "solver/time_integration.h"
+#include "solver/model/state.h"
+#include "solver/model/time_integration.h"
 #include "solver/workspace.h"
 
 namespace arris {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 
-#include "solver/constraints.h"
+#include "solver/contact/constraints.h"
 #include "solver/energy_balance.h"
-#include "solver/eol_coordinates.h"
+#include "solver/eol/eol_coordinates.h"
 
 namespace arris {
 

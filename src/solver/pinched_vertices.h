@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "solver/state.h"
-#include "solver/step_report.h"
+#include "solver/model/state.h"
+#include "solver/model/step_report.h"
 #include "solver/workspace.h"
 
 namespace arris {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "solver/constraints.h"
+#include "solver/contact/constraints.h"
 #include "solver/energy_balance.h"
 #include "solver/material_flow.h"
 

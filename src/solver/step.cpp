@@ -5,17 +5,17 @@
 #include <cassert>
 #include <optional>
 
-#include "solver/constraints.h"
+#include "solver/contact/constraints.h"
+#include "solver/contact/eol_contacts.h"
 #include "solver/energy_balance.h"
-#include "solver/eol_contacts.h"
-#include "solver/eol_coordinates.h"
-#include "solver/eol_features.h"
+#include "solver/eol/eol_coordinates.h"
+#include "solver/eol/eol_features.h"
 #include "solver/feature_census.h"
 #include "solver/material_flow.h"
+#include "solver/mesh_change/step_mesh.h"
+#include "solver/model/stopwatch.h"
 #include "solver/pinched_vertices.h"
 #include "solver/relinearization.h"
-#include "solver/step_mesh.h"
-#include "solver/stopwatch.h"
 
 namespace arris {
 
@@ -35,7 +35,8 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
     work.is_least_taken = false;
     work.least_at = {};
     work.held = find_held_vertices(scene, state, end);
-    work.obstacles = move_obstacles(scene, state, work.stars.topology.edges, work.prediction, work.held, end);
+    work.obstacles =
+        move_obstacles(scene, state, work.mesh.stars.topology.edges, work.prediction, work.held, end);
 }
 
 /// What the cloth may touch; history that runs into it is flattened. False where it would be crushed.
@@ -45,7 +46,7 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
     work.eol.clear();
     if (!state.eol.empty()) {
         const double turning = work.failed.may_turn() ? work.prediction.gamma : 0.0;
-        work.eol = add_eol_contacts(scene, state, work.stars, work.prediction, turning, work.obstacles,
+        work.eol = add_eol_contacts(scene, state, work.mesh.stars, work.prediction, turning, work.obstacles,
                                     work.contacts);
     }
     weigh_start(scene, state, work);
@@ -76,15 +77,15 @@ bool assemble(const Scene& scene, double end, const State& state, Workspace& wor
     if (at.flow && !linearise_flow(state, work)) return false;
     at.v_expansion = work.expansion.world;
     at.position = find_end(prediction, work.expansion).world;
-    work.system.assemble(state.mesh, work.elements, work.terms, at);
+    work.mesh.system.assemble(state.mesh, work.mesh.elements, work.mesh.terms, at);
     return true;
 }
 
 /// Minimises 1/2 u^T A u - b^T u over bounds and rows.
 void solve_velocity(const Settings& settings, Workspace& work, StepReport& report)
 {
-    work.problem.matrix = &work.system.matrix();
-    work.problem.rhs = &work.system.rhs();
+    work.problem.matrix = &work.mesh.system.matrix();
+    work.problem.rhs = &work.mesh.system.rhs();
     work.solution = work.has_system ? work.solver.resume(work.problem, settings)
                                     : work.solver.solve(work.problem, settings);
     work.has_system = true;
@@ -360,6 +361,11 @@ State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity)
     return state;
 }
 
+void prepare(const Scene& scene, const State& state, Workspace& work)
+{
+    if (update_mesh_cache(scene, state, work.mesh)) work.known.world.clear();
+}
+
 void restart(State& state)
 {
     state.previous_dt = 0.0;
@@ -375,7 +381,9 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
         state.active = find_pressing(scene, settings, end, state, work, attempt);
 
     // 1. EOL vertices on the features that press; elements of a mesh that changed.
-    State& start = conform(scene, end, state, work, report);
+    const StepMesh mesh = choose_step_mesh(scene, end, work.failed.flow(), state, work.mesh, report);
+    if (mesh.is_changed) work.known.world.clear();
+    State& start = mesh.start;
     watch.lap();
 
     // 2. q~ and v~ of the integrator; where pins and obstacles will be.

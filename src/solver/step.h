@@ -2,10 +2,10 @@
 #pragma once
 
 #include "physics/energies.h"
-#include "solver/scene.h"
-#include "solver/settings.h"
-#include "solver/state.h"
-#include "solver/step_report.h"
+#include "solver/model/scene.h"
+#include "solver/model/settings.h"
+#include "solver/model/state.h"
+#include "solver/model/step_report.h"
 #include "solver/workspace.h"
 
 namespace arris {
@@ -18,6 +18,9 @@ State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity);
 /// was. Call `restart` first where the input jumps at the step's start.
 StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
                 Attempt attempt = Attempt::Ordinary);
+
+/// Rebuilds terms and elements in `work` where they are not those of the state's mesh.
+void prepare(const Scene& scene, const State& state, Workspace& work);
 
 /// Drops the integrator's history, so that the next step is implicit Euler: for a jump of the input.
 void restart(State& state);

@@ -3,16 +3,13 @@
 
 #include <vector>
 
-#include "physics/cloth_elements.h"
 #include "physics/energies.h"
-#include "physics/linear_system.h"
-#include "physics/term.h"
 #include "solver/attempts.h"
-#include "solver/contacts.h"
-#include "solver/eol_coordinates.h"
-#include "solver/proposal.h"
-#include "solver/row_cause.h"
-#include "solver/velocity_solve.h"
+#include "solver/contact/contacts.h"
+#include "solver/contact/proposal.h"
+#include "solver/eol/eol_coordinates.h"
+#include "solver/mesh_change/mesh_cache.h"
+#include "solver/velocity_solve/velocity_solve.h"
 
 namespace arris {
 
@@ -26,20 +23,11 @@ struct ClothEnergy {
 
 /// Caches and scratch of the step, grouped by the phase that writes them. Clearing it changes no result.
 struct Workspace {
-    // The mesh: made where it changed.
-    ClothStars stars;
-    std::vector<Face> faces_of_stars;  ///< of the mesh `stars` was made for
-    Terms terms;
-    ClothElements elements;
-    LinearSystem system;
-    std::vector<Face> faces_of_elements;  ///< of the mesh `elements` was made for
-    std::vector<Vec2> material_of_elements;
+    MeshCache mesh;
 
-    // conform
+    // retries of the step
     std::vector<Overrun> overrun;
-    FailedAttempts failed;                ///< at this step
-    std::vector<RefusedContact> refused;  ///< that pressed on a feature and are rows
-    State conformed;                      ///< on the mesh that the step wants, where it is not the state's
+    FailedAttempts failed;  ///< at this step
 
     // move
     Prediction prediction;

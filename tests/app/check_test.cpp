@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/scene/scene_effects.h"
+
 namespace arris {
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "app/frame.h"
+#include "app/files/frame.h"
 
 namespace arris {
 

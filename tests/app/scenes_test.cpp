@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "app/csv_table.h"
+#include "app/files/csv_table.h"
 #include "tests/app/program.h"
 
 namespace arris {

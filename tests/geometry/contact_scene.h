@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geometry/obstacle_contact.h"
+#include "geometry/contact/obstacle_contact.h"
 
 // Cloths and obstacles to make contacts of, and what is true of distances by brute force.
 namespace arris::samples {

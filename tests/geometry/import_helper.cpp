@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/child_process.h"
-#include "geometry/obstacle_import.h"
-#include "geometry/obstacle_reply.h"
+#include "geometry/obstacle_input/child_process.h"
+#include "geometry/obstacle_input/obstacle_import.h"
+#include "geometry/obstacle_input/obstacle_reply.h"
 #include "tests/geometry/sample_obstacles.h"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/obstacle_mesh.h"
+#include "geometry/obstacle/obstacle_mesh.h"
 
 // Mesh files as bytes, of triangles, written from the formats' descriptions.
 namespace arris::mesh_files {

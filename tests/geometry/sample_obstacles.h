@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "geometry/obstacle_mesh.h"
+#include "geometry/obstacle/obstacle_mesh.h"
 
 // Shapes of which features, insides and distances are known.
 namespace arris::samples {

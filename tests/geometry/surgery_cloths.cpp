@@ -8,9 +8,9 @@
 #include <numeric>
 
 #include "geometry/cgal.h"
-#include "geometry/cloth_grid.h"
-#include "geometry/mesh_quality.h"
-#include "geometry/mesh_topology.h"
+#include "geometry/cloth/mesh_quality.h"
+#include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth_input/cloth_grid.h"
 
 namespace arris {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/cloth_surgery.h"
+#include "geometry/surgery/cloth_surgery.h"
 
 namespace arris {
 

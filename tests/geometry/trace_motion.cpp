@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "geometry/surgery_cleanup.h"
-#include "geometry/trace_clearing.h"
+#include "geometry/surgery/surgery_cleanup.h"
+#include "geometry/surgery/trace_clearing.h"
 
 namespace arris {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geometry/patch_quality.h"
+#include "geometry/surgery/patch_quality.h"
 
 namespace arris {
 

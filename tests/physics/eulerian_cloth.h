@@ -7,7 +7,7 @@
 #include <memory>
 #include <random>
 
-#include "geometry/cloth_grid.h"
+#include "geometry/cloth_input/cloth_grid.h"
 #include "physics/linear_system.h"
 
 namespace arris {

@@ -7,7 +7,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "geometry/cloth_grid.h"
+#include "geometry/cloth_input/cloth_grid.h"
 #include "physics/inertia.h"
 
 namespace arris {

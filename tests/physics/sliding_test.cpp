@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/cloth_grid.h"
+#include "geometry/cloth_input/cloth_grid.h"
 #include "physics/energies.h"
 #include "physics/inertia.h"
 #include "sliding_cloth.h"

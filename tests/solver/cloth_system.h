@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "solver/velocity_solve.h"
+#include "solver/velocity_solve/velocity_solve.h"
 
 namespace arris::testing {
 

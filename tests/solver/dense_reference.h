@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "solver/velocity_solve.h"
+#include "solver/velocity_solve/velocity_solve.h"
 
 namespace arris::testing {
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/cloth_grid.h"
-#include "geometry/mesh_quality.h"
+#include "geometry/cloth/mesh_quality.h"
+#include "geometry/cloth_input/cloth_grid.h"
 #include "solver/step.h"
 #include "tests/solver/eol_cloth.h"
 #include "tests/solver/floor.h"

@@ -8,12 +8,12 @@
 #include <numbers>
 #include <optional>
 
-#include "geometry/cloth_grid.h"
-#include "geometry/obstacle_shapes.h"
+#include "geometry/cloth_input/cloth_grid.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
 #include "physics/energies.h"
 #include "physics/inertia.h"
-#include "solver/eol_coordinates.h"
-#include "solver/mesh_transfer.h"
+#include "solver/eol/eol_coordinates.h"
+#include "solver/mesh_change/mesh_transfer.h"
 #include "solver/step.h"
 #include "tests/geometry/sample_obstacles.h"
 

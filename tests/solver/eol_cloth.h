@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "solver/conform.h"
-#include "solver/eol_coordinates.h"
-#include "solver/scene.h"
-#include "solver/state.h"
+#include "solver/eol/eol_coordinates.h"
+#include "solver/mesh_change/conform.h"
+#include "solver/model/scene.h"
+#include "solver/model/state.h"
 
 namespace arris::testing {
 

@@ -5,9 +5,8 @@
 
 #include <algorithm>
 
-#include "geometry/obstacle_shapes.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
 #include "solver/step.h"
-#include "solver/step_mesh.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
@@ -81,11 +80,11 @@ TEST(FeatureCensus, ARowHasTheCauseForWhichItWasRefused)
 {
     Solved solved;
     constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
-    solved.work.refused = {{{3, 4, kNone}, ContactKind::Edge, 0, solved.tip(), RowCause::Guard},
-                           {{4, 5, kNone}, ContactKind::Edge, 0, solved.tip() + 1, RowCause::Guard},
-                           {{5, 6, kNone}, ContactKind::Edge, 1, solved.tip(), RowCause::Guard},
-                           {{6, 7, 8}, ContactKind::Triangle, 0, 2, RowCause::Quality},
-                           {{9, kNone, kNone}, ContactKind::Vertex, 0, -1, RowCause::Released}};
+    solved.work.mesh.refused = {{{3, 4, kNone}, ContactKind::Edge, 0, solved.tip(), RowCause::Guard},
+                                {{4, 5, kNone}, ContactKind::Edge, 0, solved.tip() + 1, RowCause::Guard},
+                                {{5, 6, kNone}, ContactKind::Edge, 1, solved.tip(), RowCause::Guard},
+                                {{6, 7, 8}, ContactKind::Triangle, 0, 2, RowCause::Quality},
+                                {{9, kNone, kNone}, ContactKind::Vertex, 0, -1, RowCause::Released}};
     solved.add(ContactKind::Edge, {3, 4, -1}, solved.tip(), true);
     solved.add(ContactKind::Edge, {4, 5, -1}, solved.tip(), true);  // refused at another edge of the obstacle
     solved.add(ContactKind::Edge, {5, 6, -1}, solved.tip(), true);  // and of another obstacle

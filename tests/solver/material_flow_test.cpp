@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "solver/step_mesh.h"
+#include "solver/step.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
@@ -101,10 +101,10 @@ struct FlowingCloth {
     double least_left(const std::vector<Vec2>& material) const
     {
         double least = 1.0;
-        for (const int f : work.stars.faces[v]) {
+        for (const int f : work.mesh.stars.faces[v]) {
             const auto& [a, b, c] = cloth.state.mesh.faces[f];
             const double left = 0.5 * twice_area(material[a], material[b], material[c]);
-            least = std::min(least, left / work.elements.faces[f].area);
+            least = std::min(least, left / work.mesh.elements.faces[f].area);
         }
         return least;
     }

@@ -5,16 +5,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/cloth_grid.h"
-#include "geometry/initial_target.h"
-#include "geometry/mesh_quality.h"
-#include "geometry/obstacle_shapes.h"
-#include "geometry/penetration.h"
+#include "geometry/check/penetration.h"
+#include "geometry/cloth/mesh_quality.h"
+#include "geometry/cloth_input/cloth_grid.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "geometry/surgery/initial_target.h"
 #include "physics/inertia.h"
 #include "solver/advance.h"
 #include "solver/energy_balance.h"
 #include "solver/step.h"
-#include "solver/step_mesh.h"
 #include "tests/solver/floor.h"
 
 namespace arris {
@@ -116,7 +115,10 @@ struct ObstacleRun {
                                      << " at t = " << state.time;
     }
 
-    double kinetic() const { return kinetic_energy(scene.material.density, work.elements, state.velocity); }
+    double kinetic() const
+    {
+        return kinetic_energy(scene.material.density, work.mesh.elements, state.velocity);
+    }
     ClothEnergy energy() const
     {
         return compute_cloth_energy(

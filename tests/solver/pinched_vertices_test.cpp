@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "geometry/contact_plane.h"
+#include "geometry/contact/contact_plane.h"
 #include "geometry/rigid_motion.h"
-#include "solver/constraints.h"
+#include "solver/contact/constraints.h"
 
 namespace arris {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/cloth_grid.h"
+#include "geometry/cloth_input/cloth_grid.h"
 #include "solver/energy_balance.h"
 #include "solver/step.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/cloth_grid.h"
+#include "geometry/cloth_input/cloth_grid.h"
 #include "physics/inertia.h"
 #include "tests/solver/floor.h"
 
@@ -59,7 +59,7 @@ TEST(Step, FreeFallIsTheParabola)
         const double h = settings.step;
         const double lag = integrator == Integrator::Bdf2 ? 9.81 * h * h : 0.5 * 9.81 * h * 0.5;
         EXPECT_LT((state.mesh.world[7] - exact).norm(), 1.01 * lag);
-        const Vec3 momentum = linear_momentum(0.05, work.elements, state.velocity);
+        const Vec3 momentum = linear_momentum(0.05, work.mesh.elements, state.velocity);
         EXPECT_LT((momentum - 0.05 * Vec3(1.0, 0.0, 2.0 - 9.81 * 0.5)).norm(), 1e-13);
     }
 }

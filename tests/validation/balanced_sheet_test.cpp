@@ -8,11 +8,11 @@
 #include <cmath>
 
 #include "cloth_run.h"
-#include "geometry/initial_target.h"
-#include "geometry/obstacle_shapes.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "geometry/surgery/initial_target.h"
 #include "grid_patterns.h"
 #include "refinement.h"
-#include "solver/audit.h"
+#include "solver/contact/audit.h"
 
 namespace arris {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cloth_run.h"
-#include "geometry/initial_target.h"
-#include "geometry/obstacle_shapes.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "geometry/surgery/initial_target.h"
 
 namespace arris {
 namespace {

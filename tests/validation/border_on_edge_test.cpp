@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "cloth_run.h"
-#include "geometry/mesh_quality.h"
+#include "geometry/cloth/mesh_quality.h"
 #include "grid_patterns.h"
 #include "refinement.h"
-#include "solver/audit.h"
+#include "solver/contact/audit.h"
 
 namespace arris {
 namespace {

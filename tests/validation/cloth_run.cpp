@@ -7,11 +7,11 @@
 #include <cmath>
 #include <optional>
 
-#include "geometry/initial_target.h"
-#include "geometry/obstacle_shapes.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "geometry/surgery/initial_target.h"
 #include "solver/advance.h"
 #include "solver/energy_balance.h"
-#include "solver/step_mesh.h"
+#include "solver/step.h"
 
 namespace arris {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <functional>
 
-#include "geometry/cloth_grid.h"
+#include "geometry/cloth_input/cloth_grid.h"
 #include "solver/step.h"
 
 namespace arris {

@@ -9,8 +9,8 @@
 #include <random>
 
 #include "cloth_run.h"
-#include "geometry/obstacle_import.h"
-#include "geometry/obstacle_shapes.h"
+#include "geometry/obstacle_input/obstacle_import.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
 #include "physics/inertia.h"
 #include "refinement.h"
 #include "solver/advance.h"
@@ -88,7 +88,7 @@ TEST(Incline, AcceleratesByGTimesTheSine)
                 EXPECT_GT(most_contacts, 0.0);
                 const double mass = 0.05 * 0.25;
                 const double speed =
-                    linear_momentum(0.05, run.work.elements, run.state.velocity).dot(down) / mass;
+                    linear_momentum(0.05, run.work.mesh.elements, run.state.velocity).dot(down) / mass;
                 const double error = speed / (kG * std::sin(angle) * t) - 1.0;
                 EXPECT_LT(std::abs(error), 1e-3);
                 if (!is_crumpled) {  // the path too, up to the integrator's own lag on a parabola
@@ -117,7 +117,7 @@ Impact drop(Integrator integrator, double speed, double phase, bool has_gravity,
     const Vec3 n = normal_of(0.3);
     ClothRun run(scene, place_above(n, (3.0 + phase) * h * speed), -speed * n);
     run.settings.integrator = integrator;
-    const auto energy = [&] { return kinetic_energy(0.05, run.work.elements, run.state.velocity); };
+    const auto energy = [&] { return kinetic_energy(0.05, run.work.mesh.elements, run.state.velocity); };
     const double first = energy();
     Impact impact;
     bool has_met = false;

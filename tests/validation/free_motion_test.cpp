@@ -57,9 +57,9 @@ TEST(LinearMomentum, IsKeptToRoundOff)
 {
     for (const Integrator integrator : kIntegrators) {
         ClothRun run = make_crumpled(integrator, {});
-        const Vec3 before = linear_momentum(0.05, run.work.elements, run.state.velocity);
+        const Vec3 before = linear_momentum(0.05, run.work.mesh.elements, run.state.velocity);
         run.advance(1.0, 0.005);
-        const Vec3 after = linear_momentum(0.05, run.work.elements, run.state.velocity);
+        const Vec3 after = linear_momentum(0.05, run.work.mesh.elements, run.state.velocity);
         EXPECT_LT((after - before).norm(), 1e-12 * before.norm());
     }
 }
@@ -68,9 +68,9 @@ TEST(LinearMomentum, GrowsByTheWeight)
 {
     for (const Integrator integrator : kIntegrators) {
         ClothRun run = make_crumpled(integrator, Gravity{Vec3(1.0, 2.0, -kG)});
-        const Vec3 before = linear_momentum(0.05, run.work.elements, run.state.velocity);
+        const Vec3 before = linear_momentum(0.05, run.work.mesh.elements, run.state.velocity);
         run.advance(1.0, 0.005);
-        const Vec3 after = linear_momentum(0.05, run.work.elements, run.state.velocity);
+        const Vec3 after = linear_momentum(0.05, run.work.mesh.elements, run.state.velocity);
         EXPECT_LT((after - before - 0.05 * Vec3(1.0, 2.0, -kG)).norm(), 1e-12);
     }
 }
@@ -95,7 +95,8 @@ TEST(AngularMomentum, OfASpinningSheetConvergesAtTheIntegratorsOrder)
             for (std::size_t v = 0; v < mesh.world.size(); ++v)
                 run.state.velocity[v] = spin.cross(mesh.world[v]);
             const auto momentum = [&] {
-                return angular_momentum(0.05, run.work.elements, run.state.mesh.world, run.state.velocity);
+                return angular_momentum(0.05, run.work.mesh.elements, run.state.mesh.world,
+                                        run.state.velocity);
             };
             const Vec3 before = momentum();
             double loss = 0.0;  // the greatest: it oscillates

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "geometry/cloth_grid.h"
+#include "geometry/cloth_input/cloth_grid.h"
 
 namespace arris {
 

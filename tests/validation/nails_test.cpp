@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "cloth_run.h"
-#include "geometry/initial_target.h"
-#include "geometry/obstacle_shapes.h"
-#include "solver/audit.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "geometry/surgery/initial_target.h"
+#include "solver/contact/audit.h"
 
 namespace arris {
 namespace {

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "cloth_run.h"
-#include "geometry/mesh_quality.h"
-#include "geometry/obstacle_shapes.h"
+#include "geometry/cloth/mesh_quality.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
 #include "grid_patterns.h"
 #include "refinement.h"
 #include "solver/advance.h"
-#include "solver/audit.h"
+#include "solver/contact/audit.h"
 
 namespace arris {
 namespace {

@@ -14,12 +14,12 @@
 #include <utility>
 
 #include "cloth_run.h"
-#include "geometry/initial_target.h"
-#include "geometry/mesh_quality.h"
-#include "geometry/obstacle_shapes.h"
+#include "geometry/cloth/mesh_quality.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "geometry/surgery/initial_target.h"
 #include "grid_patterns.h"
 #include "refinement.h"
-#include "solver/eol_features.h"
+#include "solver/eol/eol_features.h"
 
 namespace arris {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/initial_target.h"
+#include "geometry/surgery/initial_target.h"
 
 namespace arris {
 

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "cloth_run.h"
-#include "geometry/mesh_quality.h"
+#include "geometry/cloth/mesh_quality.h"
 #include "grid_patterns.h"
 #include "physics/feature_impulse.h"
 #include "refinement.h"
@@ -240,8 +240,8 @@ double push_of_side(const ClothRun& run)
     ClothMesh begin = run.state.mesh;
     begin.world = run.state.previous_world;
     double sum = 0.0;
-    for (const Vec3& impulse : compute_feature_impulses(begin, run.work.elements, run.work.terms, run.work.at,
-                                                        run.work.solution.velocity))
+    for (const Vec3& impulse : compute_feature_impulses(begin, run.work.mesh.elements, run.work.mesh.terms,
+                                                        run.work.at, run.work.solution.velocity))
         sum += outward.dot(impulse);
     return sum;
 }

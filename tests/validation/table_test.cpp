@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "cloth_run.h"
-#include "geometry/mesh_quality.h"
+#include "geometry/cloth/mesh_quality.h"
 #include "refinement.h"
 #include "solver/advance.h"
-#include "solver/audit.h"
+#include "solver/contact/audit.h"
 
 namespace arris {
 namespace {

@@ -10,9 +10,9 @@
 #include <numbers>
 #include <string>
 
-#include "app/frame.h"
-#include "app/viewer_html.h"
-#include "geometry/obstacle_shapes.h"
+#include "app/export/viewer_html.h"
+#include "app/files/frame.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
 
 namespace arris {
 namespace {

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/export/export_frames.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "app/export/export_obj.h"
+#include "app/export/export_usd.h"
+#include "app/export/viewer_html.h"
+#include "app/files/frame.h"
+#include "app/files/frame_files.h"
+#include "app/scene/obstacle_records.h"
+#include "geometry/input_error.h"
+
+namespace arris {
+namespace {
+
+/// What the formats are made from.
+struct Source {
+    const std::string& run_dir;
+    std::int64_t frame_count;
+    const ExportOptions& options;
+    std::vector<ObstacleRecord> obstacles;
+
+    double time(std::int64_t frame) const { return static_cast<double>(frame) / options.frames_per_second; }
+};
+
+void export_obj(const Source& run)
+{
+    for (std::int64_t i = 0; i < run.frame_count; ++i)
+        write_obj(frame_file(run.run_dir, i, "obj"), read_frame(frame_file(run.run_dir, i, "ply")));
+    for (const ObstacleRecord& obstacle : run.obstacles)
+        for (std::int64_t i = 0; i < count_obstacle_frames(obstacle, run.frame_count); ++i)
+            write_obj(frame_file(run.run_dir, i, "obj", obstacle.name), obstacle, obstacle.at(run.time(i)));
+}
+
+void export_usd(const Source& run)
+{
+    std::vector<std::string> paths;
+    for (std::int64_t i = 0; i < run.frame_count; ++i) paths.push_back(frame_file(run.run_dir, i, "ply"));
+    write_usd(run.run_dir + "/cloth.usda", paths, {run.options.title, run.options.frames_per_second},
+              run.obstacles);
+}
+
+void export_viewer(const Source& run)
+{
+    ViewerOptions viewer;
+    viewer.title = run.options.title;
+    viewer.frames_per_second = run.options.frames_per_second;
+    write_viewer(run.run_dir, viewer, run.obstacles);
+}
+
+/// A format's name and what makes it; one that is planned has no function yet.
+struct Format {
+    const char* name;
+    void (*make)(const Source&);
+    const char* place;  ///< in the run's folder
+};
+
+constexpr Format kFormats[] = {
+    {"obj", export_obj, "frames/cloth_*.obj"},
+    {"usd", export_usd, "cloth.usda"},
+    {"viewer", export_viewer, "viewer.html"},
+    {"vtk", nullptr, ""},
+    {"gltf", nullptr, ""},
+    {"pc2", nullptr, ""},
+};
+
+const Format& find_format(const std::string& name)
+{
+    std::vector<std::string> built;
+    bool is_planned = false;
+    for (const Format& format : kFormats) {
+        if (format.make != nullptr) built.push_back(format.name);
+        if (name == format.name && format.make != nullptr) return format;
+        is_planned = is_planned || name == format.name;
+    }
+    throw InputError(fmt::format("formats: \"{}\" is {}; allowed: {}", name,
+                                 is_planned ? "not built yet" : "unknown", fmt::join(built, ", ")));
+}
+
+}  // namespace
+
+std::string exported_path(const std::string& run_dir, const std::string& format)
+{
+    return (std::filesystem::path(run_dir) / find_format(format).place).string();
+}
+
+void require_known_formats(const std::vector<std::string>& formats)
+{
+    for (const std::string& name : formats) find_format(name);
+}
+
+void export_frames(const std::string& run_dir, const std::vector<std::string>& formats,
+                   const ExportOptions& options)
+{
+    require_known_formats(formats);
+    const std::int64_t frame_count = count_frames(run_dir);
+    if (frame_count == 0) throw InputError(frames_directory(run_dir) + ": no frames (cloth_00000.ply, ...)");
+    const Source source{run_dir, frame_count, options, read_obstacles(run_dir)};
+    for (const std::string& name : formats) find_format(name).make(source);
+}
+
+}  // namespace arris

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/export/export_obj.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "app/files/atomic_file.h"
+
+namespace arris {
+
+void write_obj(const std::string& path, const Frame& frame)
+{
+    fmt::memory_buffer text;
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out,
+                   "# Arris: m, z is up; vt: material coordinates; l: edges that a sharp feature holds, or "
+                   "has until a fold flew off it\no cloth\n");
+    for (const Vec3& x : frame.world) fmt::format_to(out, "v {} {} {}\n", x[0], x[1], x[2]);
+    for (const Vec2& X : frame.material) fmt::format_to(out, "vt {} {}\n", X[0], X[1]);
+    for (const Face& face : frame.faces)
+        fmt::format_to(out, "f {0}/{0} {1}/{1} {2}/{2}\n", face[0] + 1, face[1] + 1, face[2] + 1);
+    for (const auto& [a, b] : frame.eol_edges) fmt::format_to(out, "l {} {}\n", a + 1, b + 1);
+    write_atomically(path, {text.data(), text.size()});
+}
+
+void write_obj(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement)
+{
+    fmt::memory_buffer text;
+    const auto out = std::back_inserter(text);
+    const ObstacleMesh& mesh = obstacle.mesh;
+    fmt::format_to(out, "# Arris: m, z is up; l: wires; p: lone points\no {}\n", obstacle.name);
+    for (const Vec3& point : mesh.points) {
+        const Vec3 x = placement(point);
+        fmt::format_to(out, "v {} {} {}\n", x[0], x[1], x[2]);
+    }
+    for (const auto& [a, b, c] : mesh.faces) fmt::format_to(out, "f {} {} {}\n", a + 1, b + 1, c + 1);
+    for (const auto& [a, b] : mesh.segments) fmt::format_to(out, "l {} {}\n", a + 1, b + 1);
+    for (const int point : mesh.lone_points) fmt::format_to(out, "p {}\n", point + 1);
+    write_atomically(path, {text.data(), text.size()});
+}
+
+}  // namespace arris

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// USD wants all samples of one attribute together, while frames come one by one. A run of a million frames
+// does not fit into memory, so the frame files are read once for each attribute and written straight through.
+//
+// USD interpolates arrays of floats linearly between the samples on either side, and holds arrays of ints. So
+// faces need a sample only where they change, but float attributes that change at all are sampled at every
+// frame.
+#include "app/export/export_usd.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <iterator>
+#include <string_view>
+
+#include "app/files/atomic_file.h"
+#include "app/files/frame.h"
+
+namespace arris {
+namespace {
+
+/// Which frames need a sample of what, found in a first pass.
+struct Changes {
+    std::vector<std::size_t>
+        face_counts;  ///< frames whose face count differs from the frame before; 0 is always there
+    std::vector<std::size_t> faces;   ///< the same of the faces
+    bool is_material_moving = false;  ///< material coordinates change at all
+};
+
+Changes find_changes(const std::vector<std::string>& frame_paths)
+{
+    Changes changes;
+    Frame previous;
+    for (std::size_t i = 0; i < frame_paths.size(); ++i) {
+        Frame frame = read_frame(frame_paths[i]);
+        if (i == 0 || frame.faces.size() != previous.faces.size()) changes.face_counts.push_back(i);
+        if (i == 0 || frame.faces != previous.faces) changes.faces.push_back(i);
+        if (i > 0 && frame.material != previous.material) changes.is_material_moving = true;
+        previous = std::move(frame);
+    }
+    return changes;
+}
+
+std::string quote(const std::string& text)
+{
+    std::string quoted = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') quoted += '\\';
+        if (c == '\n')
+            quoted += "\\n";
+        else if (byte < 0x20 || byte == 0x7f)
+            quoted += fmt::format("\\x{:02x}", byte);
+        else
+            quoted += c;
+    }
+    return quoted + "\"";
+}
+
+void put(fmt::memory_buffer& out, std::string_view text)
+{
+    out.append(text);
+}
+
+void put(fmt::memory_buffer& out, int value)
+{
+    fmt::format_to(std::back_inserter(out), "{}", value);
+}
+
+void put(fmt::memory_buffer& out, double value)
+{
+    fmt::format_to(std::back_inserter(out), "{}", value);
+}
+
+void put(fmt::memory_buffer& out, const Face& face)
+{
+    fmt::format_to(std::back_inserter(out), "{}, {}, {}", face[0], face[1], face[2]);
+}
+
+template <class Vector>
+void put(fmt::memory_buffer& out, const Vector& vector)
+{
+    for (Eigen::Index i = 0; i < vector.size(); ++i) {
+        put(out, std::string_view(i == 0 ? "(" : ", "));
+        put(out, vector[i]);
+    }
+    put(out, std::string_view(")"));
+}
+
+template <class Items>
+void put_array(fmt::memory_buffer& out, const Items& items)
+{
+    std::string_view separator = "[";
+    for (const auto& item : items) {
+        put(out, separator);
+        put(out, item);
+        separator = ", ";
+    }
+    put(out, std::string_view(items.empty() ? "[]" : "]"));
+}
+
+void put_face_counts(fmt::memory_buffer& out, const Frame& frame)
+{
+    put_array(out, std::vector<int>(frame.faces.size(), 3));
+}
+
+void put_faces(fmt::memory_buffer& out, const Frame& frame)
+{
+    std::vector<int> indices;
+    for (const Face& face : frame.faces) indices.insert(indices.end(), face.begin(), face.end());
+    put_array(out, indices);
+}
+
+void put_extent(fmt::memory_buffer& out, const Frame& frame)
+{
+    Vec3 least = Vec3::Zero(), greatest = Vec3::Zero();
+    if (!frame.world.empty()) least = greatest = frame.world.front();
+    for (const Vec3& x : frame.world) {
+        least = least.cwiseMin(x);
+        greatest = greatest.cwiseMax(x);
+    }
+    put_array(out, std::array{least, greatest});
+}
+
+using PutSample = std::function<void(fmt::memory_buffer&, const Frame&)>;
+
+/// One attribute of the mesh: `declaration` is its type and name, `samples` the frames that have a value of
+/// their own.
+struct Attribute {
+    std::string declaration;
+    std::vector<std::size_t> samples;
+    PutSample put;
+    std::string metadata = "";
+};
+
+// One value for all time is written as the default, not as a sample. Metadata stand at a declaration of their
+// own.
+void write_attribute(AtomicFile& file, const std::vector<std::string>& frame_paths,
+                     const Attribute& attribute)
+{
+    const bool is_constant = attribute.samples.size() == 1;
+    const std::string declaration = "    " + attribute.declaration;
+    if (!attribute.metadata.empty())
+        file.write(declaration + " (\n        " + attribute.metadata + "\n    )\n");
+    file.write(declaration + (is_constant ? " = " : ".timeSamples = {\n"));
+    for (const std::size_t i : attribute.samples) {
+        fmt::memory_buffer text;
+        if (!is_constant) fmt::format_to(std::back_inserter(text), "        {}: ", i);
+        attribute.put(text, read_frame(frame_paths[i]));
+        file.write({text.data(), text.size()});
+        file.write(is_constant ? "\n" : ",\n");
+    }
+    if (!is_constant) file.write("    }\n");
+}
+
+std::vector<std::size_t> all_frames(std::size_t count)
+{
+    std::vector<std::size_t> samples(count);
+    for (std::size_t i = 0; i < count; ++i) samples[i] = i;
+    return samples;
+}
+
+std::vector<Attribute> attributes(std::size_t frame_count, const Changes& changes)
+{
+    const std::vector<std::size_t> every = all_frames(frame_count);
+    const std::vector<std::size_t> first(every.begin(),
+                                         every.begin() + std::min<std::ptrdiff_t>(1, std::ssize(every)));
+    return {
+        {"int[] faceVertexCounts", changes.face_counts, put_face_counts},
+        {"int[] faceVertexIndices", changes.faces, put_faces},
+        {"point3f[] points", every, [](auto& out, const Frame& frame) { put_array(out, frame.world); }},
+        {"vector3f[] velocities", every,
+         [](auto& out, const Frame& frame) { put_array(out, frame.vertex_velocity); }},
+        {"float3[] extent", every, put_extent},
+        {"texCoord2f[] primvars:st", changes.is_material_moving ? every : first,
+         [](auto& out, const Frame& frame) { put_array(out, frame.material); }, "interpolation = \"vertex\""},
+    };
+}
+
+std::string stage_header(std::size_t frame_count, const UsdOptions& options)
+{
+    return fmt::format(
+        "#usda 1.0\n"
+        "(\n"
+        "    doc = {}\n"
+        "    defaultPrim = \"cloth\"\n"
+        "    startTimeCode = 0\n"
+        "    endTimeCode = {}\n"
+        "    timeCodesPerSecond = {}\n"
+        "    framesPerSecond = {}\n"
+        "    metersPerUnit = 1\n"
+        "    upAxis = \"Z\"\n"
+        ")\n\n"
+        "def Mesh \"cloth\"\n"
+        "{{\n"
+        "    uniform token subdivisionScheme = \"none\"\n"
+        "    uniform token orientation = \"rightHanded\"\n"
+        "    uniform bool doubleSided = 1\n",
+        quote(options.title), frame_count == 0 ? 0 : frame_count - 1, options.frames_per_second,
+        options.frames_per_second);
+}
+
+// ---- obstacles
+
+constexpr double kDrawnWidth = 0.002;  // m, of wires and points
+
+/// USD multiplies rows from the left: the transposed of ours.
+void put(fmt::memory_buffer& out, const Placement& placement)
+{
+    for (int column = 0; column < 3; ++column) {
+        const Vec3 axis = placement.rotation.col(column);
+        fmt::format_to(std::back_inserter(out), "{}({}, {}, {}, 0)", column == 0 ? "( " : ", ", axis[0],
+                       axis[1], axis[2]);
+    }
+    const Vec3& t = placement.translation;
+    fmt::format_to(std::back_inserter(out), ", ({}, {}, {}, 1) )", t[0], t[1], t[2]);
+}
+
+template <class Items>
+void put_line(fmt::memory_buffer& out, std::string_view declaration, const Items& items)
+{
+    put(out, declaration);
+    put_array(out, items);
+    put(out, std::string_view("\n"));
+}
+
+/// A prim's points, and the box around them.
+void put_points(fmt::memory_buffer& out, const std::vector<Vec3>& points)
+{
+    Vec3 least = points.front(), greatest = least;
+    for (const Vec3& point : points) {
+        least = least.cwiseMin(point);
+        greatest = greatest.cwiseMax(point);
+    }
+    put_line(out, "        point3f[] points = ", points);
+    put_line(out, "        float3[] extent = ", std::array{least, greatest});
+}
+
+void put_surface(fmt::memory_buffer& out, const ObstacleMesh& mesh)
+{
+    put(out, std::string_view("    def Mesh \"surface\"\n    {\n"
+                              "        uniform token subdivisionScheme = \"none\"\n"
+                              "        uniform token orientation = \"rightHanded\"\n"
+                              "        uniform bool doubleSided = 1\n"));
+    put_line(out, "        int[] faceVertexCounts = ", std::vector<int>(mesh.faces.size(), 3));
+    put_line(out, "        int[] faceVertexIndices = ", mesh.faces);
+    put_points(out, mesh.points);
+    put(out, std::string_view("    }\n"));
+}
+
+void put_widths(fmt::memory_buffer& out)
+{
+    fmt::format_to(std::back_inserter(out),
+                   "        float[] widths = [{}] (\n            interpolation = \"constant\"\n        )\n",
+                   kDrawnWidth);
+}
+
+void put_wires(fmt::memory_buffer& out, const ObstacleMesh& mesh)
+{
+    std::vector<Vec3> ends;
+    for (const auto& [a, b] : mesh.segments)
+        for (const int point : {a, b}) ends.push_back(mesh.points[static_cast<std::size_t>(point)]);
+    put(out, std::string_view("    def BasisCurves \"wires\"\n    {\n"
+                              "        uniform token type = \"linear\"\n"));
+    put_line(out, "        int[] curveVertexCounts = ", std::vector<int>(mesh.segments.size(), 2));
+    put_points(out, ends);
+    put_widths(out);
+    put(out, std::string_view("    }\n"));
+}
+
+void put_lone_points(fmt::memory_buffer& out, const ObstacleMesh& mesh)
+{
+    std::vector<Vec3> places;
+    for (const int point : mesh.lone_points) places.push_back(mesh.points[static_cast<std::size_t>(point)]);
+    put(out, std::string_view("    def Points \"points\"\n    {\n"));
+    put_points(out, places);
+    put_widths(out);
+    put(out, std::string_view("    }\n"));
+}
+
+void write_obstacle(AtomicFile& file, const ObstacleRecord& obstacle, std::size_t frame_count,
+                    double frames_per_second)
+{
+    const auto write = [&](const fmt::memory_buffer& text) { file.write({text.data(), text.size()}); };
+    file.write(fmt::format("\ndef Xform \"{}\"\n{{\n    matrix4d xformOp:transform", obstacle.name));
+    const bool is_moving = obstacle.motion.is_moving() && frame_count > 1;
+    file.write(is_moving ? ".timeSamples = {\n" : " = ");
+    for (std::size_t i = 0; i < (is_moving ? frame_count : 1); ++i) {
+        fmt::memory_buffer text;
+        if (is_moving) fmt::format_to(std::back_inserter(text), "        {}: ", i);
+        put(text, obstacle.at(static_cast<double>(i) / frames_per_second));
+        put(text, std::string_view(is_moving ? ",\n" : "\n"));
+        write(text);
+    }
+    file.write(is_moving ? "    }\n" : "");
+    file.write("    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n");
+
+    fmt::memory_buffer text;
+    if (!obstacle.mesh.faces.empty()) put_surface(text, obstacle.mesh);
+    if (!obstacle.mesh.segments.empty()) put_wires(text, obstacle.mesh);
+    if (!obstacle.mesh.lone_points.empty()) put_lone_points(text, obstacle.mesh);
+    write(text);
+    file.write("}\n");
+}
+
+}  // namespace
+
+void write_usd(const std::string& path, const std::vector<std::string>& frame_paths,
+               const UsdOptions& options, const std::vector<ObstacleRecord>& obstacles)
+{
+    const Changes changes = find_changes(frame_paths);
+    AtomicFile file(path);
+    file.write(stage_header(frame_paths.size(), options));
+    for (const Attribute& attribute : attributes(frame_paths.size(), changes))
+        write_attribute(file, frame_paths, attribute);
+    file.write("}\n");
+    for (const ObstacleRecord& obstacle : obstacles)
+        write_obstacle(file, obstacle, frame_paths.size(), options.frames_per_second);
+    file.commit();
+}
+
+}  // namespace arris

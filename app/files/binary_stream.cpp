@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/files/binary_stream.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "app/files/atomic_file.h"
+#include "app/text/printable.h"
+#include "geometry/input_error.h"
+
+namespace arris {
+namespace {
+
+std::uint32_t checksum(std::string_view bytes)
+{
+    return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+}  // namespace
+
+void BinaryWriter::text(std::string_view value)
+{
+    number(static_cast<std::uint64_t>(value.size()));
+    bytes_.append(value);
+}
+
+void BinaryWriter::vector(const Vec3& value)
+{
+    for (const double c : value) number(c);
+}
+
+void BinaryWriter::vectors(const std::vector<Vec3>& values)
+{
+    list(values, [&](const Vec3& value) { vector(value); });
+}
+
+Vec3 BinaryReader::vector()
+{
+    Vec3 value;
+    for (double& c : value) c = number<double>();
+    return value;
+}
+
+std::vector<Vec3> BinaryReader::vectors()
+{
+    return list<Vec3>(3 * sizeof(double), [&] { return vector(); });
+}
+
+std::string_view BinaryReader::take(std::uint64_t size)
+{
+    if (size > left_.size()) fail("is truncated or damaged");
+    const std::string_view bytes = left_.substr(0, size);
+    left_.remove_prefix(size);
+    return bytes;
+}
+
+void BinaryReader::fail(std::string_view what) const
+{
+    throw InputError(fmt::format("{}: {}", printable(path_), what));
+}
+
+void write_sealed(const std::string& path, const FileKind& kind, const std::string& body)
+{
+    BinaryWriter file;
+    file.text(kind.version);
+    file.text(body);
+    file.number(checksum(body));
+    write_atomically(path, std::string(kind.magic) + file.bytes());
+}
+
+std::string read_sealed(const std::string& path, const FileKind& kind)
+{
+    std::ifstream in(path, std::ios::binary);
+    if (!in || !std::filesystem::is_regular_file(path))
+        throw InputError(fmt::format("{}: {}", printable(path), kind.missing));
+    const std::string bytes(std::istreambuf_iterator<char>(in), {});
+    if (!bytes.starts_with(kind.magic)) throw InputError(fmt::format("{}: {}", printable(path), kind.other));
+    BinaryReader file(std::string_view(bytes).substr(kind.magic.size()), path);
+    const std::string version = file.text();
+    if (version != kind.version)
+        file.fail(fmt::format("was written by version {}; this is version {}", printable(version, 40),
+                              kind.version));
+    std::string body = file.text();
+    if (file.number<std::uint32_t>() != checksum(body)) file.fail("is damaged: its checksum differs");
+    if (!file.is_at_end()) file.fail("is damaged: it is longer than it says");
+    return body;
+}
+
+}  // namespace arris

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geometry/vectors.h"
+#include "solver/model/step_report.h"
+
+namespace arris {
+
+/// One row of steps.csv. What is absent (std::nullopt) becomes an empty cell.
+struct StepRow {
+    std::int64_t step = 0;  ///< 0 is the initial state
+    double time = 0.0;      ///< s, at the step's end
+    double dt = 0.0;        ///< s
+    std::int64_t vertices = 0, faces = 0;
+    std::optional<std::int64_t> eol_vertices, feature_rows;
+    std::int64_t contacts = 0;    ///< constraints with a positive multiplier
+    double kinetic_energy = 0.0;  ///< J, as the other energies
+    std::optional<double> gravity_energy, stretch_energy, bending_energy;
+    double material_area = 0.0;    ///< m^2
+    double max_penetration = 0.0;  ///< m
+    std::int64_t crossings = 0;    ///< so far
+    double min_angle = 0.0;        ///< degrees, material space
+    double kkt_residual = 0.0;
+    std::int64_t factorisations = 0, nlopt_evaluations = 0;
+    PhaseSeconds seconds;                 ///< wall
+    double cpu_seconds = 0.0;             ///< of the process in this step, output included
+    bool is_halved = false;               ///< shorter than planned
+    std::int64_t solves = 0;              ///< velocity solves: more than one where the check found violations
+    std::optional<std::int64_t> rewound;  ///< vertices put back on their way, so that nothing is passed
+    std::optional<std::int64_t> yielded;  ///< contacts that could not keep their stand-off
+    std::optional<double> energy_rise;    ///< J, pushed in by a step that nothing mended; 0 else
+    std::optional<std::int64_t> eol_pressing;
+    std::optional<RowCounts> rows_by_cause;  ///< of `feature_rows`, a column each: rows_<cause>
+};
+
+/// A material point at one time: m, m/s.
+struct ProbeSample {
+    Vec3 position = Vec3::Zero();
+    Vec3 velocity = Vec3::Zero();
+};
+
+/// The column of the feature rows of a cause.
+std::string rows_column(RowCause cause);
+
+/// Header and rows, without the line's end. Numbers read back to the same double.
+std::string step_header();
+std::string format_row(const StepRow& row);
+std::string probe_header(const std::vector<std::string>& probe_names);
+std::string format_row(double time, const std::vector<ProbeSample>& probes);
+
+/// Appends lines to a CSV file. A line reaches the system in one write(), so that a killed process leaves at
+/// most one torn line, the last. Throws std::system_error naming the path where the disk refuses.
+class CsvWriter {
+  public:
+    /// A new file with this header, replacing what was there.
+    static CsvWriter create(const std::string& path, const std::string& header);
+
+    /// Goes on with a file that truncate_csv cut; InputError unless it has this header and ends with a whole
+    /// line.
+    static CsvWriter append_to(const std::string& path, const std::string& header);
+
+    CsvWriter(CsvWriter&& other) noexcept;
+    CsvWriter& operator=(CsvWriter&&) = delete;
+    ~CsvWriter();
+
+    void append(const std::string& row);
+
+  private:
+    CsvWriter(const std::string& path, int open_flags);
+
+    std::string path_;
+    int descriptor_ = -1;
+};
+
+/// Cuts a file back to its header and `rows` whole lines, whatever follows them. InputError if there are
+/// fewer.
+void truncate_csv(const std::string& path, std::int64_t rows);
+
+/// Reads a table of numbers row by row, in constant memory. A torn last line is left out.
+class CsvReader {
+  public:
+    /// InputError if the file cannot be opened or has no header.
+    explicit CsvReader(const std::string& path);
+
+    const std::vector<std::string>& names() const { return names_; }
+
+    /// Which cell has this name; InputError naming the file if none has.
+    std::size_t column(std::string_view name) const;
+    bool has_column(std::string_view name) const;
+
+    /// The next row, NaN for an empty cell; false at the end. InputError naming the line for a cell that is
+    /// not a number or a row of another length than the header.
+    bool next(std::vector<double>& cells);
+
+  private:
+    double parse(std::string_view cell) const;
+
+    std::string path_;
+    std::ifstream in_;
+    std::vector<std::string> names_;
+    std::int64_t line_ = 1;
+};
+
+/// A whole table in memory.
+struct CsvTable {
+    std::string path;
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> columns;  ///< NaN for an empty cell
+
+    std::size_t row_count() const { return columns.empty() ? 0 : columns.front().size(); }
+
+    /// InputError naming the file if it has no such column.
+    const std::vector<double>& column(std::string_view name) const;
+};
+
+CsvTable read_csv(const std::string& path);
+
+}  // namespace arris

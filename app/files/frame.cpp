@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/files/frame.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "app/files/atomic_file.h"
+#include "geometry/input_error.h"
+
+namespace arris {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "frames are copied to and from little-endian files");
+
+constexpr std::uint64_t kVertexBytes = 11 * 8 + 4 + 1 + 1;
+constexpr std::uint64_t kFaceBytes = 1 + 3 * 4 + 3 * 8;
+constexpr std::uint64_t kEdgeBytes = 2 * 4;
+constexpr std::size_t kMaxHeaderBytes = 2048;
+
+struct Counts {
+    std::uint64_t vertices = 0, faces = 0, edges = 0;
+
+    std::uint64_t body_bytes() const
+    {
+        return vertices * kVertexBytes + faces * kFaceBytes + edges * kEdgeBytes;
+    }
+};
+
+// The only place that knows the header: the reader compares with it.
+std::string header(const Counts& counts)
+{
+    std::string text = "ply\nformat binary_little_endian 1.0\n";
+    text += "comment Arris frame: m, m/s, J; v: of the vertex, w: of the material there\n";
+    text += fmt::format("element vertex {}\n", counts.vertices);
+    for (const char* name : {"x", "y", "z", "u", "v", "vx", "vy", "vz", "wx", "wy", "wz"})
+        text += fmt::format("property double {}\n", name);
+    text += "property uint id\nproperty uchar eol\nproperty uchar contact\n";
+    text += fmt::format("element face {}\n", counts.faces);
+    text += "property list uchar int vertex_indices\n";
+    text += "property double strain\nproperty double stretch_energy\nproperty double bending_energy\n";
+    text += fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n", counts.edges);
+    return text + "end_header\n";
+}
+
+template <class T>
+void put(std::string& bytes, const T& value)
+{
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <class Vector>
+void put_vector(std::string& bytes, const Vector& vector)
+{
+    for (Eigen::Index i = 0; i < vector.size(); ++i) put(bytes, vector[i]);
+}
+
+void put_vertex(std::string& bytes, const Frame& frame, std::size_t i)
+{
+    put_vector(bytes, frame.world[i]);
+    put_vector(bytes, frame.material[i]);
+    put_vector(bytes, frame.vertex_velocity[i]);
+    put_vector(bytes, frame.material_velocity[i]);
+    put(bytes, frame.ids[i]);
+    put(bytes, frame.eol[i]);
+    put(bytes, frame.contact[i]);
+}
+
+void put_face(std::string& bytes, const Frame& frame, std::size_t i)
+{
+    put(bytes, std::uint8_t{3});
+    for (const int vertex : frame.faces[i]) put(bytes, std::int32_t{vertex});
+    put(bytes, frame.strain[i]);
+    put(bytes, frame.stretch_energy[i]);
+    put(bytes, frame.bending_energy[i]);
+}
+
+[[maybe_unused]] bool has_matching_sizes(const Frame& frame)
+{
+    const std::size_t n = frame.world.size(), m = frame.faces.size();
+    return frame.material.size() == n && frame.vertex_velocity.size() == n &&
+           frame.material_velocity.size() == n && frame.ids.size() == n && frame.eol.size() == n &&
+           frame.contact.size() == n && frame.strain.size() == m && frame.stretch_energy.size() == m &&
+           frame.bending_energy.size() == m;
+}
+
+// Takes values from a body whose length was checked against the header.
+class BodyReader {
+  public:
+    BodyReader(const std::string& path, const std::string& bytes) : path_(path), at_(bytes.data()) {}
+
+    template <class T>
+    T take()
+    {
+        T value;
+        std::memcpy(&value, at_, sizeof value);
+        at_ += sizeof value;
+        return value;
+    }
+
+    double take_finite(const char* element, std::size_t i)
+    {
+        const double value = take<double>();
+        if (!std::isfinite(value)) fail(element, i, "has a value that is not finite");
+        return value;
+    }
+
+    template <class Vector>
+    Vector take_vector(std::size_t i)
+    {
+        Vector vector;
+        for (Eigen::Index k = 0; k < vector.size(); ++k) vector[k] = take_finite("vertex", i);
+        return vector;
+    }
+
+    std::uint8_t take_at_most(std::uint8_t greatest, std::size_t i)
+    {
+        const auto value = take<std::uint8_t>();
+        if (value > greatest) fail("vertex", i, "has an eol or contact value that is not allowed");
+        return value;
+    }
+
+    int take_index(std::size_t vertex_count, const char* element, std::size_t i)
+    {
+        const auto index = take<std::int32_t>();
+        if (index < 0 || static_cast<std::size_t>(index) >= vertex_count)
+            fail(element, i, fmt::format("names vertex {} of {}", index, vertex_count));
+        return index;
+    }
+
+    [[noreturn]] void fail(const char* element, std::size_t i, const std::string& what) const
+    {
+        throw InputError(fmt::format("{}: {} {} {}", path_, element, i, what));
+    }
+
+  private:
+    const std::string& path_;
+    const char* at_;
+};
+
+void take_vertex(BodyReader& reader, std::size_t i, Frame& frame)
+{
+    frame.world[i] = reader.take_vector<Vec3>(i);
+    frame.material[i] = reader.take_vector<Vec2>(i);
+    frame.vertex_velocity[i] = reader.take_vector<Vec3>(i);
+    frame.material_velocity[i] = reader.take_vector<Vec3>(i);
+    frame.ids[i] = reader.take<std::uint32_t>();
+    frame.eol[i] = reader.take_at_most(2, i);
+    frame.contact[i] = reader.take_at_most(1, i);
+}
+
+void take_face(BodyReader& reader, std::size_t i, Frame& frame)
+{
+    if (reader.take<std::uint8_t>() != 3) reader.fail("face", i, "is not a triangle");
+    Face& face = frame.faces[i];
+    for (int& vertex : face) vertex = reader.take_index(frame.world.size(), "face", i);
+    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
+        reader.fail("face", i, "repeats a vertex");
+    frame.strain[i] = reader.take_finite("face", i);
+    frame.stretch_energy[i] = reader.take_finite("face", i);
+    frame.bending_energy[i] = reader.take_finite("face", i);
+}
+
+void take_edge(BodyReader& reader, std::size_t i, Frame& frame)
+{
+    auto& edge = frame.eol_edges[i];
+    for (int& vertex : edge) vertex = reader.take_index(frame.world.size(), "edge", i);
+    if (edge[0] == edge[1]) reader.fail("edge", i, "repeats a vertex");
+}
+
+void resize(Frame& frame, const Counts& counts)
+{
+    for (auto* vectors : {&frame.world, &frame.vertex_velocity, &frame.material_velocity})
+        vectors->resize(counts.vertices);
+    frame.material.resize(counts.vertices);
+    frame.ids.resize(counts.vertices);
+    for (auto* flags : {&frame.eol, &frame.contact}) flags->resize(counts.vertices);
+    frame.faces.resize(counts.faces);
+    for (auto* values : {&frame.strain, &frame.stretch_energy, &frame.bending_energy})
+        values->resize(counts.faces);
+    frame.eol_edges.resize(counts.edges);
+}
+
+std::uint64_t find_count(const std::string& path, const std::string& text, const std::string& element)
+{
+    const std::string key = "\nelement " + element + " ";
+    const std::size_t at = text.find(key);
+    std::uint64_t count = 0;
+    const char* end = text.data() + text.size();
+    if (at == std::string::npos ||
+        std::from_chars(text.data() + at + key.size(), end, count).ec != std::errc() ||
+        count > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))
+        throw InputError(
+            fmt::format("{}: not a frame: no count of its {} elements that makes sense", path, element));
+    return count;
+}
+
+// Returns the counts and leaves the stream at the body. Only the header that write_frame makes is accepted.
+Counts read_header(const std::string& path, std::istream& in)
+{
+    std::string text(kMaxHeaderBytes, '\0');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    if (!text.starts_with("ply\n")) throw InputError(path + ": not a frame: it does not begin with \"ply\"");
+    const Counts counts = {find_count(path, text, "vertex"), find_count(path, text, "face"),
+                           find_count(path, text, "edge")};
+    const std::string expected = header(counts);
+    if (!text.starts_with(expected))
+        throw InputError(path + ": not a frame: its header is not the one that `arris run` writes");
+    in.clear();
+    in.seekg(static_cast<std::streamoff>(expected.size()));
+    return counts;
+}
+
+std::string read_body(const std::string& path, std::istream& in, const Counts& counts,
+                      std::uint64_t file_bytes)
+{
+    const std::uint64_t promised = header(counts).size() + counts.body_bytes();
+    if (promised != file_bytes)
+        throw InputError(fmt::format("{}: {} bytes, but its header promises {}", path, file_bytes, promised));
+    std::string body(counts.body_bytes(), '\0');
+    in.read(body.data(), static_cast<std::streamsize>(body.size()));
+    if (in.gcount() != static_cast<std::streamsize>(body.size())) throw InputError(path + ": cannot be read");
+    return body;
+}
+
+}  // namespace
+
+void write_frame(const std::string& path, const Frame& frame)
+{
+    assert(has_matching_sizes(frame) && "a frame's arrays have one entry a vertex or a face");
+    const Counts counts = {frame.world.size(), frame.faces.size(), frame.eol_edges.size()};
+    std::string bytes = header(counts);
+    bytes.reserve(bytes.size() + counts.body_bytes());
+    for (std::size_t i = 0; i < counts.vertices; ++i) put_vertex(bytes, frame, i);
+    for (std::size_t i = 0; i < counts.faces; ++i) put_face(bytes, frame, i);
+    for (const auto& edge : frame.eol_edges)
+        for (const int vertex : edge) put(bytes, std::int32_t{vertex});
+    write_atomically(path, bytes);
+}
+
+Frame read_frame(const std::string& path)
+{
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) throw InputError(path + ": no such frame file");
+    const std::uint64_t file_bytes = std::filesystem::file_size(path, error);
+    std::ifstream in(path, std::ios::binary);
+    if (error || !in) throw InputError(path + ": cannot be opened");
+
+    const Counts counts = read_header(path, in);
+    const std::string body = read_body(path, in, counts, file_bytes);
+    Frame frame;
+    resize(frame, counts);
+    BodyReader reader(path, body);
+    for (std::size_t i = 0; i < counts.vertices; ++i) take_vertex(reader, i, frame);
+    for (std::size_t i = 0; i < counts.faces; ++i) take_face(reader, i, frame);
+    for (std::size_t i = 0; i < counts.edges; ++i) take_edge(reader, i, frame);
+    return frame;
+}
+
+}  // namespace arris

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/report/report_html.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "app/files/atomic_file.h"
+#include "app/report/report_features.h"
+#include "app/report/report_plots.h"
+#include "app/report/svg_plot.h"
+#include "app/text/html_escape.h"
+#include "embedded/report_template.h"
+
+namespace arris {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMaxProbePlots = 24;
+constexpr std::size_t kMaxSceneValue = 400;  // characters shown of one key's value
+
+// Replaces each {{name}} by its HTML, in one pass: what is put in is not searched again.
+std::string fill_template(std::string_view page, const std::map<std::string_view, std::string>& parts)
+{
+    std::string filled;
+    for (;;) {
+        const std::size_t open = page.find("{{");
+        filled += page.substr(0, open);
+        if (open == std::string_view::npos) return filled;
+        const std::size_t close = page.find("}}", open);
+        assert(close != std::string_view::npos && "report_template.html has an unclosed {{");
+        const auto part = parts.find(page.substr(open + 2, close - open - 2));
+        assert(part != parts.end() && "report_template.html names a part that is not made");
+        filled += part->second;
+        page.remove_prefix(close + 2);
+    }
+}
+
+std::string format_seconds(double seconds)
+{
+    if (seconds < 1.0) return fmt::format("{:.3g} ms", 1e3 * seconds);
+    if (seconds < 120.0) return fmt::format("{:.3g} s", seconds);
+    const double whole = std::floor(seconds);
+    const double hours = std::floor(whole / 3600.0), minutes = std::floor((whole - 3600.0 * hours) / 60.0);
+    if (hours < 1.0) return fmt::format("{} min {} s", minutes, whole - 60.0 * minutes);
+    return fmt::format("{} h {} min", hours, minutes);
+}
+
+std::string format_bytes(std::int64_t bytes)
+{
+    const double mebibytes = static_cast<double>(bytes) / (1024.0 * 1024.0);
+    return mebibytes < 1024.0 ? fmt::format("{:.1f} MiB", mebibytes)
+                              : fmt::format("{:.2f} GiB", mebibytes / 1024.0);
+}
+
+std::string status_words(RunStatus status)
+{
+    std::string words = to_string(status);
+    std::replace(words.begin(), words.end(), '_', ' ');
+    return words;
+}
+
+std::string status_html(const RunReport& report)
+{
+    const char* tone = report.status == RunStatus::Finished      ? "good"
+                       : report.status == RunStatus::Interrupted ? "warn"
+                                                                 : "bad";
+    std::string html = fmt::format("<span class=\"status {}\">{}</span>", tone, status_words(report.status));
+    if (!report.message.empty())
+        html += " <span class=\"message\">" + escape_html(report.message) + "</span>";
+    return html;
+}
+
+/// A figure with its name, a short addition, and one line that says what it is.
+struct Fact {
+    std::string_view name;
+    std::string value, note;
+    std::string_view what;
+    bool is_bad = false;
+};
+
+std::string fact_html(const Fact& fact)
+{
+    std::string html = fmt::format("<div class=\"fact{}\"><dt>{}</dt><dd>{}", fact.is_bad ? " bad" : "",
+                                   fact.name, fact.value);
+    if (!fact.note.empty()) html += fmt::format("<small>{}</small>", fact.note);
+    return html + fmt::format("</dd><dd class=\"why\">{}</dd></div>\n", fact.what);
+}
+
+std::vector<Fact> work_facts(const RunReport& report)
+{
+    const StepTotals& totals = report.totals;
+    const std::string halved =
+        totals.halved_steps > 0 ? fmt::format("{} of them halved", totals.halved_steps) : "";
+    const std::string a_step =
+        totals.steps > 0 ? format_seconds(totals.wall_seconds / static_cast<double>(totals.steps)) + " a step"
+                         : "";
+    const std::string threads = fmt::format("{} thread{}", report.threads, report.threads == 1 ? "" : "s");
+    return {
+        {"Simulated", fmt::format("{:.6g} s", totals.simulated_seconds), "", "Time in the scene, from 0 on."},
+        {"Steps", fmt::format("{}", totals.steps), halved,
+         totals.halved_steps > 0 ? "Accepted ones. Halved: shorter than planned, as the whole step was not "
+                                   "accepted or too much material would have flowed in it."
+                                 : "Accepted ones, all of them as long as planned."},
+        {"Wall time", format_seconds(totals.wall_seconds), a_step, "By the clock, files included."},
+        {"CPU time", format_seconds(totals.cpu_seconds), threads, "Of all threads together."},
+        {"Peak memory", format_bytes(report.peak_memory_bytes), "", "The most that was held at one time."},
+    };
+}
+
+std::vector<Fact> quality_facts(const RunReport& report, std::optional<double> tolerance)
+{
+    const StepTotals& totals = report.totals;
+    std::vector<Fact> facts;
+    // Without an obstacle there is nothing that the cloth could have passed through.
+    if (std::find(report.effects.begin(), report.effects.end(), "obstacle") != report.effects.end()) {
+        facts.push_back({"Greatest penetration", fmt::format("{:.3g} m", totals.max_penetration), "",
+                         "Depth of the cloth in an obstacle, looked for anew at each frame: 0 is right.",
+                         totals.max_penetration > 0});
+        facts.push_back({"Crossings", fmt::format("{}", totals.crossings), "",
+                         "How often anything has passed through an obstacle: 0 is right.",
+                         totals.crossings > 0});
+    }
+    if (totals.features)
+        facts.push_back({"EOL share", format_share(totals.features->eol_share()), "",
+                         "Of the contacts that press on sharp features for a second step or longer: those "
+                         "that the cloth slides over by a vertex on the feature. The rest may snag."});
+    facts.push_back({"Greatest KKT residual", fmt::format("{:.2e}", totals.max_kkt_residual),
+                     tolerance ? fmt::format("{:.3g} allowed", *tolerance) : "",
+                     "By how much the worst velocity solve misses balance of forces and contact "
+                     "conditions, relative: 1e-15 is rounding.",
+                     tolerance && !(totals.max_kkt_residual <= *tolerance)});
+    return facts;
+}
+
+std::string facts_html(const RunReport& report, std::optional<double> tolerance)
+{
+    std::string html;
+    for (const Fact& fact : work_facts(report)) html += fact_html(fact);
+    for (const Fact& fact : quality_facts(report, tolerance)) html += fact_html(fact);
+    return html;
+}
+
+std::string features_html(const StepTotals& totals)
+{
+    if (!totals.features) return "";
+    return "<section><h2>Contacts on sharp features</h2>\n<p class=\"why\">What pressed on the obstacles' "
+           "sharp edges, corners, wires and nails, counted once a step. An EOL vertex lets material flow "
+           "over the feature; a row only keeps the cloth off it. After each row why it is one.</p>\n"
+           "<table class=\"causes\"><tbody>\n" +
+           feature_rows_html(*totals.features) + "</tbody></table></section>";
+}
+
+std::string effects_html(const RunReport& report)
+{
+    if (report.effects.empty()) return "<p class=\"nothing\">none</p>";
+    std::string html = "<ul class=\"chips\">";
+    for (const std::string& effect : report.effects) html += "<li>" + escape_html(effect) + "</li>";
+    return html + "</ul>";
+}
+
+std::string warnings_html(const RunReport& report)
+{
+    if (report.warnings.empty()) return "";
+    std::string html = "<section class=\"warnings\"><h2>Warnings</h2><ul>";
+    for (const std::string& warning : report.warnings) html += "<li>" + escape_html(warning) + "</li>";
+    return html + "</ul></section>";
+}
+
+std::string phases_html(const StepTotals& totals)
+{
+    std::string html;
+    std::size_t colour = 0;
+    for (const NamedSeconds& phase : list_phases(totals.phases)) {
+        const double share = totals.wall_seconds > 0.0 ? 100.0 * phase.seconds / totals.wall_seconds : 0.0;
+        html += fmt::format(
+            "<tr><th scope=\"row\">{}<small class=\"why\">{}</small></th><td class=\"bar\"><span "
+            "class=\"fill c{}\" style=\"width:{:.1f}%\"></span></td><td>{}</td><td>{:.1f} %</td></tr>\n",
+            phase.name, phase.what, colour++, share, format_seconds(phase.seconds), share);
+    }
+    return html;
+}
+
+std::string plots_html(const std::vector<Plot>& plots)
+{
+    std::string html;
+    for (const Plot& plot : plots) html += draw_plot(plot);
+    return html;
+}
+
+std::string probes_html(const std::string& probes_csv)
+{
+    if (!std::filesystem::exists(probes_csv)) return "";
+    const ProbePlots probes = plot_probes(probes_csv, kMaxProbePlots);
+    if (probes.plots.empty()) return "";
+    std::string html = "<section><h2>Probes</h2><div class=\"plots\">" + plots_html(probes.plots) + "</div>";
+    if (probes.left_out > 0) html += fmt::format("<p>{} more probes are in probes.csv.</p>", probes.left_out);
+    return html + "</section>";
+}
+
+std::string scene_value(const ordered_json& value)
+{
+    std::string text = value.is_string() ? value.get<std::string>()
+                                         : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+    if (text.size() <= kMaxSceneValue) return escape_html(text);
+    // Not inside a character of several bytes.
+    std::size_t end = kMaxSceneValue;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+    return escape_html(text.substr(0, end)) +
+           fmt::format(" … <i>({} characters; whole in report.json)</i>", text.size());
+}
+
+// Tables and arrays of tables row by row, under dotted keys as --set takes them. Scenes nest a few levels
+// deep.
+void append_scene_rows(const std::string& key, const ordered_json& value, std::string& html)
+{
+    const bool is_tables = value.is_array() && !value.empty() && value.front().is_object();
+    if (!value.is_object() && !is_tables) {
+        html +=
+            "<tr><th scope=\"row\">" + escape_html(key) + "</th><td>" + scene_value(value) + "</td></tr>\n";
+        return;
+    }
+    const std::string prefix = key.empty() ? "" : key + ".";
+    std::size_t index = 0;
+    for (const auto& [name, child] : value.items())
+        append_scene_rows(prefix + (is_tables ? std::to_string(index++) : name), child, html);
+}
+
+std::string scene_html(const ordered_json& scene)
+{
+    std::string html;
+    append_scene_rows("", scene, html);
+    return html;
+}
+
+std::string title_of(const RunReport& report)
+{
+    const auto title = report.scene.find("title");
+    const bool has_title =
+        title != report.scene.end() && title->is_string() && !title->get<std::string>().empty();
+    return has_title ? title->get<std::string>() : "Untitled scene";
+}
+
+std::optional<double> tolerance_of(const RunReport& report)
+{
+    const ordered_json::json_pointer key("/solver/tolerance");
+    if (!report.scene.contains(key) || !report.scene[key].is_number()) return std::nullopt;
+    return report.scene[key].get<double>();
+}
+
+}  // namespace
+
+void write_report_html(const std::string& run_dir, const RunReport& report)
+{
+    const std::optional<double> tolerance = tolerance_of(report);
+    const std::string page = fill_template(
+        embedded::report_template(), {{"title", escape_html(title_of(report))},
+                                      {"status", status_html(report)},
+                                      {"facts", facts_html(report, tolerance)},
+                                      {"effects", effects_html(report)},
+                                      {"warnings", warnings_html(report)},
+                                      {"features", features_html(report.totals)},
+                                      {"phases", phases_html(report.totals)},
+                                      {"plots", plots_html(plot_steps(run_dir + "/steps.csv", tolerance))},
+                                      {"probes", probes_html(run_dir + "/probes.csv")},
+                                      {"scene", scene_html(report.scene)},
+                                      {"version", escape_html(report.version)}});
+    write_atomically(run_dir + "/report.html", page);
+}
+
+}  // namespace arris

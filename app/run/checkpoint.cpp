@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "app/files/binary_stream.h"
+#include "app/text/version.h"
+#include "geometry/cloth/mesh_topology.h"
+
+namespace arris {
+
+namespace {
+
+constexpr FileKind kKind = {"ARRIS checkpoint\n", kCheckpointVersion,
+                            "there is no checkpoint to resume from; arris run makes the run anew",
+                            "is not a checkpoint of arris"};
+
+void write_vectors(BinaryWriter& out, const std::vector<Vec2>& vectors)
+{
+    out.list(vectors, [&](const Vec2& X) {
+        for (const double c : X) out.number(c);
+    });
+}
+
+std::vector<Vec2> read_vectors(BinaryReader& in)
+{
+    return in.list<Vec2>(2 * sizeof(double), [&] {
+        const double u = in.number<double>();
+        return Vec2(u, in.number<double>());
+    });
+}
+
+void write_state(BinaryWriter& out, const State& state)
+{
+    out.number(state.time);
+    out.number(state.step);
+    write_vectors(out, state.mesh.material);
+    out.vectors(state.mesh.world);
+    out.list(state.mesh.faces, [&](const Face& face) {
+        for (const int v : face) out.number(static_cast<std::int32_t>(v));
+    });
+    out.list(state.ids, [&](std::uint32_t id) { out.number(id); });
+    out.number(state.next_id);
+    out.vectors(state.velocity);
+    write_vectors(out, state.material_velocity);
+    out.number(state.previous_dt);
+    out.vectors(state.previous_world);
+    out.vectors(state.previous_velocity);
+    write_vectors(out, state.previous_material);
+    write_vectors(out, state.previous_material_velocity);
+    out.list(state.eol, [&](const EolVertex& vertex) {
+        out.number(vertex.vertex_id);
+        out.number(vertex.obstacle);
+        out.number(static_cast<std::int32_t>(vertex.is_corner));
+        out.number(vertex.feature);
+        out.vector(vertex.outward);
+        out.number(vertex.idle);
+        out.number(vertex.side);
+        out.number(vertex.turn);
+    });
+    out.list(state.anchors, [&](const PinAnchor& anchor) {
+        out.number(anchor.pin);
+        out.number(anchor.vertex_id);
+        out.vector(anchor.origin);
+    });
+    out.list(state.active, [&](const ActiveContact& contact) {
+        for (const std::uint32_t id : contact.vertex_ids) out.number(id);
+        out.number(static_cast<std::int32_t>(contact.kind));
+        out.number(contact.obstacle);
+        out.number(contact.element);
+        out.vector(contact.normal);
+        out.number(contact.multiplier);
+    });
+    out.number(state.crossings);
+}
+
+State read_state(BinaryReader& in)
+{
+    State state;
+    state.time = in.number<double>();
+    state.step = in.number<std::int64_t>();
+    state.mesh.material = read_vectors(in);
+    state.mesh.world = in.vectors();
+    state.mesh.faces = in.list<Face>(3 * sizeof(std::int32_t), [&] {
+        Face face;
+        for (int& v : face) v = in.number<std::int32_t>();
+        return face;
+    });
+    state.ids = in.list<std::uint32_t>(sizeof(std::uint32_t), [&] { return in.number<std::uint32_t>(); });
+    state.next_id = in.number<std::uint32_t>();
+    state.velocity = in.vectors();
+    state.material_velocity = read_vectors(in);
+    state.previous_dt = in.number<double>();
+    state.previous_world = in.vectors();
+    state.previous_velocity = in.vectors();
+    state.previous_material = read_vectors(in);
+    state.previous_material_velocity = read_vectors(in);
+    constexpr std::size_t kEolBytes = 7 * sizeof(std::int32_t) + 3 * sizeof(double);
+    state.eol = in.list<EolVertex>(kEolBytes, [&] {
+        EolVertex vertex;
+        vertex.vertex_id = in.number<std::uint32_t>();
+        vertex.obstacle = in.number<std::int32_t>();
+        vertex.is_corner = in.number<std::int32_t>() != 0;
+        vertex.feature = in.number<std::int32_t>();
+        vertex.outward = in.vector();
+        vertex.idle = in.number<std::int32_t>();
+        vertex.side = in.number<std::int32_t>();
+        vertex.turn = in.number<std::int32_t>();
+        return vertex;
+    });
+    state.anchors = in.list<PinAnchor>(2 * sizeof(std::uint32_t) + 3 * sizeof(double), [&] {
+        PinAnchor anchor;
+        anchor.pin = in.number<std::uint32_t>();
+        anchor.vertex_id = in.number<std::uint32_t>();
+        anchor.origin = in.vector();
+        return anchor;
+    });
+    constexpr std::size_t kContactBytes =
+        3 * sizeof(std::uint32_t) + 3 * sizeof(std::int32_t) + 4 * sizeof(double);
+    state.active = in.list<ActiveContact>(kContactBytes, [&] {
+        ActiveContact contact;
+        for (std::uint32_t& id : contact.vertex_ids) id = in.number<std::uint32_t>();
+        contact.kind = static_cast<ContactKind>(in.number<std::int32_t>());
+        contact.obstacle = in.number<std::int32_t>();
+        contact.element = in.number<std::int32_t>();
+        contact.normal = in.vector();
+        contact.multiplier = in.number<double>();
+        return contact;
+    });
+    state.crossings = in.number<std::int64_t>();
+    return state;
+}
+
+/// What is wrong with contacts on vertices `ids`; empty if nothing.
+std::string find_defect(const std::vector<ActiveContact>& contacts, const std::vector<std::uint32_t>& ids)
+{
+    const auto order = [](const ActiveContact& contact) {
+        return std::tuple(contact.vertex_ids, contact.obstacle, contact.kind, contact.element);
+    };
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+        const ActiveContact& contact = contacts[k];
+        if (k > 0 && !(order(contacts[k - 1]) < order(contact))) return "contacts do not ascend";
+        if (!contact.normal.allFinite() || !std::isfinite(contact.multiplier))
+            return fmt::format("contact {} is not finite", k);
+        if (contact.kind < ContactKind::Vertex || contact.kind > ContactKind::Triangle)
+            return fmt::format("contact {} is of no kind", k);
+        for (const std::uint32_t id : contact.vertex_ids)
+            if (id != ActiveContact::kNoVertex && !std::binary_search(ids.begin(), ids.end(), id))
+                return fmt::format("contact {} is on no vertex", k);
+    }
+    return {};
+}
+
+/// What is wrong with vertices on features; empty if nothing.
+std::string find_defect(const std::vector<EolVertex>& eol, const std::vector<std::uint32_t>& ids)
+{
+    for (std::size_t k = 0; k < eol.size(); ++k) {
+        if (k > 0 && eol[k].vertex_id <= eol[k - 1].vertex_id) return "EOL vertices do not ascend";
+        const bool is_turn_sound = eol[k].turn >= -1 && eol[k].turn <= (eol[k].is_corner ? -1 : 1);
+        if (!eol[k].outward.allFinite() || eol[k].idle < 0 || std::abs(eol[k].side) > 1 || !is_turn_sound)
+            return fmt::format("EOL vertex {} cannot be", k);
+        if (!std::binary_search(ids.begin(), ids.end(), eol[k].vertex_id))
+            return fmt::format("EOL vertex {} is on no vertex", k);
+    }
+    return {};
+}
+
+/// What no run could have written; empty if nothing.
+std::string find_defect(const Checkpoint& checkpoint)
+{
+    const State& state = checkpoint.state;
+    const std::size_t n = state.mesh.world.size();
+    if (state.ids.size() != n || state.velocity.size() != n || state.previous_world.size() != n ||
+        state.previous_velocity.size() != n || state.mesh.material.size() != n ||
+        state.material_velocity.size() != n || state.previous_material.size() != n ||
+        state.previous_material_velocity.size() != n)
+        return "its arrays differ in length";
+    for (std::size_t v = 1; v < n; ++v)
+        if (state.ids[v] <= state.ids[v - 1]) return "vertex ids do not ascend";
+    for (std::size_t v = 0; v < n; ++v)
+        if (!state.velocity[v].allFinite() || !state.previous_world[v].allFinite() ||
+            !state.previous_velocity[v].allFinite() || !state.material_velocity[v].allFinite() ||
+            !state.previous_material[v].allFinite() || !state.previous_material_velocity[v].allFinite())
+            return fmt::format("vertex {} is not finite", v);
+    if (const std::string defect = find_defect(state.active, state.ids); !defect.empty()) return defect;
+    if (const std::string defect = find_defect(state.eol, state.ids); !defect.empty()) return defect;
+    for (std::size_t k = 0; k < state.anchors.size(); ++k) {
+        const PinAnchor& anchor = state.anchors[k];
+        if (!anchor.origin.allFinite()) return fmt::format("anchor {} is not finite", k);
+        if (k > 0 && std::pair(anchor.pin, anchor.vertex_id) <=
+                         std::pair(state.anchors[k - 1].pin, state.anchors[k - 1].vertex_id))
+            return "anchors do not ascend";
+    }
+    if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) ||
+        !std::isfinite(checkpoint.position.begin) || checkpoint.position.begin < 0.0 ||
+        checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1 || state.crossings < 0)
+        return "its times or counts cannot be";
+    return validate(state.mesh);
+}
+
+}  // namespace
+
+void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
+{
+    BinaryWriter body;
+    body.text(checkpoint.source.path);
+    body.text(checkpoint.source.text);
+    body.list(checkpoint.source.overrides, [&](const std::string& item) { body.text(item); });
+    body.list(checkpoint.warnings, [&](const std::string& item) { body.text(item); });
+    write_state(body, checkpoint.state);
+    body.number(checkpoint.position.begin);
+    body.number(checkpoint.position.done);
+    body.number(checkpoint.frames);
+    body.number(checkpoint.rows);
+
+    write_sealed(path, kKind, body.bytes());
+}
+
+Checkpoint read_checkpoint(const std::string& path)
+{
+    const std::string body = read_sealed(path, kKind);
+    BinaryReader in(body, path);
+    Checkpoint checkpoint;
+    checkpoint.source.path = in.text();
+    checkpoint.source.text = in.text();
+    checkpoint.source.overrides = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
+    checkpoint.warnings = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
+    checkpoint.state = read_state(in);
+    checkpoint.position.begin = in.number<double>();
+    checkpoint.position.done = in.number<std::int64_t>();
+    checkpoint.frames = in.number<std::int64_t>();
+    checkpoint.rows = in.number<std::int64_t>();
+    if (!in.is_at_end()) in.fail("is damaged: it is longer than it says");
+    if (const std::string defect = find_defect(checkpoint); !defect.empty()) in.fail("is damaged: " + defect);
+    return checkpoint;
+}
+
+}  // namespace arris

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace arris {
+
+namespace {
+
+std::string format_duration(double seconds)
+{
+    const long whole = std::lround(std::min(seconds, 359999.0));
+    if (whole >= 3600) return fmt::format("{}h{:02}m", whole / 3600, whole / 60 % 60);
+    if (whole >= 60) return fmt::format("{}m{:02}s", whole / 60, whole % 60);
+    return fmt::format("{}s", whole);
+}
+
+}  // namespace
+
+Progress::Progress(double from, double to, bool is_quiet)
+    : from_(from),
+      to_(to),
+      is_quiet_(is_quiet),
+      is_terminal_(isatty(STDOUT_FILENO) == 1),
+      start_(Clock::now())
+{
+}
+
+void Progress::update(double time, const std::string& detail)
+{
+    if (is_quiet_ || !(to_ > from_)) return;
+    const double share = std::clamp((time - from_) / (to_ - from_), 0.0, 1.0);
+    const auto now = Clock::now();
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const std::string left = share > 0.0 ? format_duration(elapsed * (1.0 - share) / share) : "?";
+
+    if (!is_terminal_) {
+        const int tenths = static_cast<int>(10.0 * share);
+        if (tenths <= tenths_told_) return;
+        tenths_told_ = tenths;
+        fmt::print("{:3.0f} %  t = {:.3f} s  {}  {} left\n", 100.0 * share, time, detail, left);
+        std::fflush(stdout);
+        return;
+    }
+    constexpr auto kRedraw = std::chrono::milliseconds(100);
+    if (share < 1.0 && now - last_drawn_ < kRedraw) return;
+    last_drawn_ = now;
+    constexpr int kWidth = 30;
+    const int filled = static_cast<int>(kWidth * share);
+    // \x1b[K clears what a longer line left.
+    fmt::print("\r[{}{}] {:3.0f} %  t = {:.3f} s  {}  {} left\x1b[K", std::string(filled, '#'),
+               std::string(kWidth - filled, '.'), 100.0 * share, time, detail, left);
+    std::fflush(stdout);
+    is_line_open_ = true;
+}
+
+void Progress::finish()
+{
+    if (is_line_open_) fmt::print("\n");
+    std::fflush(stdout);
+    is_line_open_ = false;
+}
+
+}  // namespace arris

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/resumed_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "app/files/frame.h"
+#include "app/files/frame_files.h"
+#include "app/run/run_directory.h"
+#include "app/run/timeline.h"
+#include "app/text/printable.h"
+#include "geometry/input_error.h"
+
+namespace arris {
+namespace {
+
+/// A checkpoint is untrusted input: what it names must be in its scene.
+void check_references(const std::string& directory, const State& state, const Scene& scene)
+{
+    const auto is_sound = [](std::int64_t index, std::size_t count) {
+        return index >= 0 && index < static_cast<std::int64_t>(count);
+    };
+    const bool has_pins =
+        std::all_of(state.anchors.begin(), state.anchors.end(),
+                    [&](const PinAnchor& anchor) { return is_sound(anchor.pin, scene.pins.size()); });
+    const auto is_there = [&](const ActiveContact& contact) {
+        if (!is_sound(contact.obstacle, scene.obstacles.size())) return false;
+        const Obstacle& obstacle = scene.obstacles[static_cast<std::size_t>(contact.obstacle)];
+        switch (contact.kind) {
+            case ContactKind::Vertex:
+                return true;  // its element only serves to compare
+            case ContactKind::Edge:
+                return is_sound(contact.element, obstacle.topology().edges.size());
+            case ContactKind::Triangle:
+                return is_sound(contact.element, obstacle.mesh().points.size());
+        }
+        return false;
+    };
+    const auto is_on_feature = [&](const EolVertex& vertex) {
+        if (!is_sound(vertex.obstacle, scene.obstacles.size())) return false;
+        const ObstacleFeatures& features =
+            scene.obstacles[static_cast<std::size_t>(vertex.obstacle)].features();
+        return is_sound(vertex.feature, vertex.is_corner ? features.corners.size() : features.edges.size());
+    };
+    const bool has_obstacles = std::all_of(state.active.begin(), state.active.end(), is_there) &&
+                               std::all_of(state.eol.begin(), state.eol.end(), is_on_feature);
+    if (!has_pins || !has_obstacles)
+        throw InputError(fmt::format("{}: is damaged: it names {} that its scene has not",
+                                     printable(checkpoint_file(directory)),
+                                     has_pins ? "parts of obstacles" : "pins"));
+}
+
+/// The cloth as the run began, which says how fine its mesh is to be. Without its frame the run's directory
+/// is refused later.
+ClothMesh read_first_cloth(const std::string& directory, const State& state)
+{
+    const std::string path = frame_file(directory, 0, "ply");
+    if (!std::filesystem::exists(path)) return state.mesh;
+    Frame first = read_frame(path);
+    ClothMesh cloth{std::move(first.material), std::move(first.world), std::move(first.faces)};
+    if (const std::string defect = validate(cloth); !defect.empty())
+        throw InputError(fmt::format("{}: is damaged: {}", printable(path), defect));
+    return cloth;
+}
+
+}  // namespace
+
+RunConfig load_resumed(const std::string& directory, const std::optional<double>& until,
+                       Checkpoint& checkpoint)
+{
+    const std::vector<ObstacleRecord> obstacles = read_obstacles(directory);
+    const ClothMesh first = read_first_cloth(directory, checkpoint.state);
+    LoadOptions options;
+    options.cloth = &first;
+    options.obstacles = &obstacles;
+    options.obstacles_file = obstacles_file(directory);
+    RunConfig config = load_scene(checkpoint.source, options);
+    check_references(directory, checkpoint.state, config.scene);
+    if (until) {
+        if (!(*until > checkpoint.state.time) || !std::isfinite(*until))
+            throw InputError(fmt::format("--until {}: not a time after t = {} s, where the run has come to",
+                                         *until, checkpoint.state.time));
+        const double begin = checkpoint.position.begin;
+        const double planned_end = Timeline(config).interval_end(begin);
+        checkpoint.source.overrides.push_back(fmt::format("duration={}", *until));
+        config = load_scene(checkpoint.source, options);
+        if (Timeline(config).interval_end(begin) != planned_end)
+            checkpoint.position = {checkpoint.state.time, 0};
+    }
+    config.warnings = checkpoint.warnings;
+    return config;
+}
+
+}  // namespace arris

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/run.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "app/export/export_frames.h"
+#include "app/files/frame.h"
+#include "app/files/frame_files.h"
+#include "app/report/report_html.h"
+#include "app/run/interrupt.h"
+#include "app/run/progress.h"
+#include "app/run/resumed_scene.h"
+#include "app/run/run_directory.h"
+#include "app/run/run_ending.h"
+#include "app/run/state_readings.h"
+#include "app/run/step_row.h"
+#include "app/run/timeline.h"
+#include "app/scene/run_config.h"
+#include "app/scene/scene_effects.h"
+#include "app/text/error_line.h"
+#include "app/text/printable.h"
+#include "app/text/version.h"
+#include "geometry/cloth/mesh_quality.h"
+#include "geometry/input_error.h"
+#include "physics/inertia.h"
+#include "solver/advance.h"
+#include "solver/contact/audit.h"
+#include "solver/model/stopwatch.h"
+#include "solver/step.h"
+
+namespace arris {
+
+namespace {
+
+/// A run under way: what the loop below works on.
+struct Run {
+    const RunConfig& config;
+    const Timeline timeline;
+    RunDirectory files;
+    Checkpoint at;  ///< as it would be written now
+    Workspace work;
+    Audit audited;  ///< of the cloth as it is, where it is a frame
+    double cpu_told = process_cpu_seconds();
+    std::optional<StepReport> opening;  ///< of the step that is being made, not told yet
+
+    Run(const RunConfig& config_, RunDirectory files_, Checkpoint at_)
+        : config(config_), timeline(config_), files(std::move(files_)), at(std::move(at_))
+    {
+        prepare(config.scene, at.state, work);
+    }
+};
+
+/// Frame, probes and row of the state as it is. The row comes last: where it is there, all of its step is.
+void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is_halved)
+{
+    const State& state = run.at.state;
+    prepare(run.config.scene, state, run.work);  // elements where material has flowed
+    const bool is_audited = run.timeline.frame_at(state.time) >= 0 || state.time >= run.config.duration;
+    run.audited = is_audited ? audit(run.config.scene, state) : Audit();
+    StepRow row = make_step_row(run.config, state, run.work, run.audited, report);
+    row.is_halved = is_halved;
+    if (const std::int64_t index = run.timeline.frame_at(state.time); index >= 0) {
+        run.files.write_frame(index, make_frame(run.config.scene.obstacles, state, run.work.mesh.elements,
+                                                run.work.mesh.terms));
+        run.at.frames = index + 1;
+    }
+    run.files.append_probes(state.time, sample_probes(run.config.probes, state));
+    row.seconds.output += watch.lap();
+    const double cpu = process_cpu_seconds();
+    row.cpu_seconds = cpu - run.cpu_told;
+    run.cpu_told = cpu;
+    run.files.append_step(row);
+    ++run.at.rows;
+}
+
+/// One planned step, to its end, with a row for each of its parts but an opening's.
+std::optional<RunEnding> advance(Run& run)
+{
+    State& state = run.at.state;
+    if (run.timeline.jumps_at(state.time)) restart(state);
+    const auto accept = [&run](const StepReport& report, bool is_halved) {
+        if (report.part == StepPart::Opening) {
+            run.opening = report;
+            return true;
+        }
+        Stopwatch watch;
+        if (run.opening) --run.at.state.step;
+        write_outputs(run, run.opening ? join_parts(*run.opening, report) : report, watch, is_halved);
+        run.opening.reset();
+        return run.audited.obstacle < 0;
+    };
+    const double end = run.timeline.next_end(run.at.position);
+    if (const std::optional<StepReport> failed =
+            advance(run.config.scene, run.config.settings, end, state, run.work, accept)) {
+        if (run.opening) {  // is all there is of its step
+            Stopwatch watch;
+            write_outputs(run, *std::exchange(run.opening, std::nullopt), watch, true);
+        }
+        return explain_ending(*failed, run.config.settings.tolerance, state);
+    }
+    if (run.audited.obstacle >= 0) return explain_ending(run.audited, run.config.scene, state);
+    run.at.position = run.timeline.advance(run.at.position);
+    return std::nullopt;
+}
+
+/// Steps until the end, an interrupt or a step that cannot be made. A checkpoint at each frame, every two
+/// seconds of work and at the end.
+RunEnding simulate(Run& run, bool is_quiet)
+{
+    Progress progress(run.at.state.time, run.config.duration, is_quiet);
+    RunEnding ending;
+    constexpr double kCheckpointSeconds = 2.0;
+    Stopwatch watch;
+    double unsaved = 0.0;
+    while (!run.timeline.is_over(run.at.position)) {
+        if (is_interrupted()) {
+            ending = {RunStatus::Interrupted, fmt::format("stopped at t = {:.6g} s", run.at.state.time)};
+            break;
+        }
+        if (const std::optional<RunEnding> failed = advance(run)) {
+            ending = *failed;
+            break;
+        }
+        unsaved += watch.lap();
+        if (unsaved > kCheckpointSeconds || run.timeline.frame_at(run.at.state.time) >= 0) {
+            run.files.write_checkpoint(run.at);
+            unsaved = 0.0;
+        }
+        progress.update(run.at.state.time, fmt::format("{} vertices", run.at.state.mesh.vertex_count()));
+    }
+    progress.finish();
+    run.files.write_checkpoint(run.at);
+    return ending;
+}
+
+RunReport make_report(const Run& run, const RunEnding& ending, double export_seconds, int threads)
+{
+    RunReport report;
+    report.status = ending.status;
+    report.message = ending.message;
+    report.totals = sum_steps(steps_file(run.files.path()));
+    report.totals.phases.output += export_seconds;
+    report.totals.wall_seconds += export_seconds;
+    report.totals.cpu_seconds += process_cpu_seconds() - run.cpu_told;
+    report.peak_memory_bytes = peak_memory_bytes();
+    for (const SceneEffect& effect : list_effects(run.config))
+        if (effect.is_on) report.effects.push_back(effect.name);
+    report.warnings = run.config.warnings;
+    report.scene = run.config.as_run;
+    report.version = kVersion;
+    report.threads = threads;
+    return report;
+}
+
+/// What is made once, when the steps are over: formats of the frames, reports. A disk that refuses is told in
+/// the report where that can still be written.
+RunEnding write_results(const Run& run, RunEnding ending, int threads)
+{
+    const std::string& dir = run.files.path();
+    Stopwatch watch;
+    try {
+        if (run.at.frames > 0 && !run.config.output.formats.empty())
+            export_frames(dir, run.config.output.formats,
+                          {run.config.title, run.config.output.frames_per_second});
+    } catch (const std::runtime_error& error) {  // the disk, or frames that a format cannot hold
+        ending = {RunStatus::IoError, error_line(error)};
+    }
+    const RunReport report = make_report(run, ending, watch.lap(), threads);
+    write_report_json((std::filesystem::path(dir) / "report.json").string(), report);
+    write_report_html(dir, report);
+    return ending;
+}
+
+void tell_ending(const Run& run, const RunEnding& ending, bool is_quiet)
+{
+    const std::string dir = printable(run.files.path());
+    if (ending.status != RunStatus::Finished)
+        fmt::print(stderr, "arris: {}: {}\n", to_string(ending.status), printable(ending.message));
+    if (is_quiet) return;
+    if (run.at.frames > 0) fmt::print("frames  {}/frames ({})\n", dir, run.at.frames);
+    if (std::filesystem::exists(std::filesystem::path(run.files.path()) / "viewer.html"))
+        fmt::print("viewer  {}/viewer.html\n", dir);
+    fmt::print("report  {}/report.html\n", dir);
+    if (ending.status == RunStatus::Interrupted) fmt::print("go on   arris resume {}\n", dir);
+}
+
+/// From here on a run's end is told by its files, whatever it is.
+RunStatus run_to_the_end(Run& run, bool is_quiet, int threads)
+{
+    watch_for_interrupt();
+    RunEnding ending;
+    try {
+        ending = simulate(run, is_quiet);
+    } catch (const std::exception& error) {  // the disk, or memory for a factor that does not fit
+        ending = {RunStatus::IoError, error_line(error)};
+    }
+    ending = write_results(run, ending, threads);
+    tell_ending(run, ending, is_quiet);
+    return ending.status;
+}
+
+std::string default_directory(const std::string& scene)
+{
+    return (std::filesystem::path("out") / std::filesystem::path(scene).stem()).string();
+}
+
+void tell_warnings(const RunConfig& config)
+{
+    for (const std::string& warning : config.warnings)
+        fmt::print(stderr, "warning: {}\n", printable(warning));
+}
+
+/// Of a run that is resumed and has no step left to make.
+void tell_is_over(const Run& run)
+{
+    const std::string dir = printable(run.files.path());
+    fmt::print("nothing to do: the run has come to its end, t = {} s\n", run.at.state.time);
+    fmt::print("go on   arris resume {} --until T, T a later time in s\n", dir);
+    fmt::print(
+        "        (with the same frames a second; for others run the scene anew: arris run SCENE "
+        "--set output.frames_per_second=N)\n");
+}
+
+int thread_count(int asked)
+{
+    return asked > 0 ? asked : tbb::info::default_concurrency();
+}
+
+}  // namespace
+
+RunStatus run(const RunRequest& request)
+{
+    const int threads = thread_count(request.threads);
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    Stopwatch watch;
+    Checkpoint start;
+    start.source = read_scene_source(request.scene, request.overrides);
+    const RunConfig config = load_scene(start.source);
+    start.source.path =
+        std::filesystem::absolute(start.source.path).string();  // resume may be called from elsewhere
+    tell_warnings(config);
+    const std::string directory =
+        request.directory.empty() ? default_directory(request.scene) : request.directory;
+    RunDirectory files = RunDirectory::create(directory, request.is_overwriting, config);
+
+    start.warnings = config.warnings;
+    start.state = make_state(config.scene, config.cloth, config.cloth_velocity);
+    Run run(config, std::move(files), std::move(start));
+    StepReport initial;
+    initial.seconds.advance = watch.lap();  // loading
+    write_outputs(run, initial, watch, false);
+    run.files.write_checkpoint(run.at);
+    return run_to_the_end(run, request.is_quiet, threads);
+}
+
+RunStatus resume(const ResumeRequest& request)
+{
+    const int threads = thread_count(request.threads);
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    require_run(request.directory);
+    Checkpoint checkpoint = read_checkpoint(checkpoint_file(request.directory));
+    const RunConfig config = load_resumed(request.directory, request.until, checkpoint);
+    tell_warnings(config);
+    RunDirectory files = RunDirectory::reopen(request.directory, checkpoint, config);
+    Run run(config, std::move(files), std::move(checkpoint));
+    if (run.timeline.is_over(run.at.position) && !request.is_quiet) tell_is_over(run);
+    return run_to_the_end(run, request.is_quiet, threads);
+}
+
+}  // namespace arris

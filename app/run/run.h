@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/report/report.h"
+
+namespace arris {
+
+struct RunRequest {
+    std::string scene;                   ///< path
+    std::string directory;               ///< empty: out/<scene file's stem>
+    std::vector<std::string> overrides;  ///< KEY=VALUE
+    bool is_overwriting = false;
+    bool is_quiet = false;
+    int threads = 0;  ///< 0: as many as the machine has
+};
+
+struct ResumeRequest {
+    std::string directory;
+    std::optional<double> until;  ///< s, instead of the scene's duration
+    bool is_quiet = false;
+    int threads = 0;
+};
+
+/// Simulate a scene, or go on from a checkpoint; write all that SCENE promises. However a run ends, what was
+/// computed and a checkpoint are kept. Throw InputError for bad input, std::system_error where nothing can be
+/// written at all.
+RunStatus run(const RunRequest& request);
+RunStatus resume(const ResumeRequest& request);
+
+}  // namespace arris

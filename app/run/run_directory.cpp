@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/run_directory.h"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "app/files/frame_files.h"
+#include "app/report/report.h"
+#include "app/scene/obstacle_records.h"
+#include "app/text/printable.h"
+#include "geometry/input_error.h"
+
+namespace arris {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a run leaves besides its frames' folder.
+constexpr std::array kRunFiles = {"steps.csv",   "probes.csv", "report.json", "report.html",
+                                  "viewer.html", "cloth.usda", "checkpoint",  "obstacles"};
+
+std::vector<std::string> probe_names(const RunConfig& config)
+{
+    std::vector<std::string> names;
+    for (const Probe& probe : config.probes) names.push_back(probe.name);
+    return names;
+}
+
+bool holds_run(const std::string& dir)
+{
+    std::error_code error;  // what cannot be looked at is told where it is to be used
+    return fs::exists(checkpoint_file(dir), error) || fs::exists(steps_file(dir), error);
+}
+
+/// What a frame's file shows, and when: "table" and 7 of table_00007.obj.
+struct FrameName {
+    std::string_view subject;
+    std::int64_t index;
+};
+
+std::optional<FrameName> parse_frame_name(std::string_view name)
+{
+    const std::size_t digits = name.find_last_of('_') + 1;  // of npos 0
+    std::int64_t index = -1;
+    const char* end = name.data() + name.size();
+    const auto [rest, error] = std::from_chars(name.data() + digits, end, index);
+    const std::string_view extension(rest, static_cast<std::size_t>(end - rest));
+    const bool is_frame =
+        extension == ".ply" || extension == ".obj" || extension == ".ply.tmp" || extension == ".obj.tmp";
+    if (digits == 0 || error != std::errc() || !is_frame) return std::nullopt;
+    return FrameName{name.substr(0, digits - 1), index};
+}
+
+/// Files of frames whose index is `first` or more, in every format, of the cloth and of `obstacles`; what
+/// else is there is the user's.
+void remove_frames(const std::string& dir, std::int64_t first, const std::set<std::string>& obstacles)
+{
+    if (!fs::is_directory(frames_directory(dir))) return;
+    for (const fs::directory_entry& entry : fs::directory_iterator(frames_directory(dir))) {
+        const std::string file = entry.path().filename().string();
+        const std::optional<FrameName> name = parse_frame_name(file);
+        if (!name || name->index < first) continue;
+        if (name->subject == "cloth" || obstacles.contains(std::string(name->subject)))
+            fs::remove(entry.path());
+    }
+}
+
+/// Names of the obstacles of the run that `dir` holds; none where they cannot be read.
+std::set<std::string> stored_names(const std::string& dir)
+{
+    std::set<std::string> names;
+    try {
+        for (const ObstacleRecord& record : read_obstacles(dir)) names.insert(record.name);
+    } catch (const InputError&) {  // that run is to be removed: what is wrong with it does not matter
+    }
+    return names;
+}
+
+/// Removes what an earlier run has left, and nothing else.
+void remove_run(const std::string& dir)
+{
+    remove_frames(dir, 0, stored_names(dir));
+    for (const char* name : kRunFiles) {
+        std::error_code error;
+        fs::remove(fs::path(dir) / name, error);
+        if (error)
+            throw InputError(
+                fmt::format("-o {}: its {} cannot be replaced: {}", printable(dir), name, error.message()));
+    }
+}
+
+void make_folders(const std::string& path)
+{
+    std::error_code error;
+    fs::create_directories(frames_directory(path), error);
+    if (error) throw InputError(fmt::format("-o {}: cannot be made: {}", printable(path), error.message()));
+}
+
+}  // namespace
+
+std::string checkpoint_file(const std::string& run_dir)
+{
+    return (fs::path(run_dir) / "checkpoint").string();
+}
+std::string steps_file(const std::string& run_dir)
+{
+    return (fs::path(run_dir) / "steps.csv").string();
+}
+std::string probes_file(const std::string& run_dir)
+{
+    return (fs::path(run_dir) / "probes.csv").string();
+}
+
+void require_run(const std::string& path)
+{
+    constexpr const char* kAllowed = "allowed: a folder that arris run has written";
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status))
+        throw InputError(fmt::format("{}: {}; {}", path.empty() ? "\"\"" : printable(path),
+                                     error ? error.message() : "is not there", kAllowed));
+    if (!fs::is_directory(status))
+        throw InputError(fmt::format("{}: is not a folder; {}", printable(path), kAllowed));
+    const bool has_report = fs::exists(fs::path(path) / "report.json", error);
+    if (!holds_run(path) && !has_report)
+        throw InputError(fmt::format("{}: holds no run (no checkpoint, steps.csv or report.json); {}",
+                                     printable(path), kAllowed));
+}
+
+FolderLock::FolderLock(const std::string& path)
+    : descriptor_(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+{
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), path);
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    close(descriptor_);
+    throw InputError(fmt::format("{}: another arris is running there", printable(path)));
+}
+
+FolderLock::FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+FolderLock::~FolderLock()
+{
+    if (descriptor_ >= 0) close(descriptor_);
+}
+
+RunDirectory::RunDirectory(std::string path, FolderLock lock, CsvWriter steps, CsvWriter probes)
+    : path_(std::move(path)), lock_(std::move(lock)), steps_(std::move(steps)), probes_(std::move(probes))
+{
+}
+
+RunDirectory RunDirectory::create(const std::string& path, bool is_overwriting, const RunConfig& config)
+{
+    std::error_code error;  // what cannot be looked at cannot be made either, and that says why
+    if (fs::exists(path, error) && !fs::is_directory(path, error))
+        throw InputError(fmt::format("-o {}: is not a folder", printable(path)));
+    if (holds_run(path) && !is_overwriting)
+        throw InputError(fmt::format(
+            "-o {}: holds a run already; --overwrite replaces it, another -o keeps it", printable(path)));
+    make_folders(path);
+    FolderLock lock(path);
+    if (holds_run(path)) remove_run(path);
+    RunDirectory files(path, std::move(lock), CsvWriter::create(steps_file(path), step_header()),
+                       CsvWriter::create(probes_file(path), probe_header(probe_names(config))));
+    if (!config.scene.obstacles.empty()) write_obstacles(path, record_obstacles(config));
+    return files;
+}
+
+RunDirectory RunDirectory::reopen(const std::string& path, const Checkpoint& checkpoint,
+                                  const RunConfig& config)
+{
+    FolderLock lock(path);
+    if (const std::int64_t frames = count_frames(path); frames < checkpoint.frames)
+        throw InputError(fmt::format("{}: holds {} frames where its checkpoint tells of {}",
+                                     printable(frames_directory(path)), frames, checkpoint.frames));
+    truncate_csv(steps_file(path), checkpoint.rows);
+    truncate_csv(probes_file(path), checkpoint.rows);
+    sum_steps(steps_file(path));  // a damaged row is told now, not when the rest has been simulated
+    std::set<std::string> obstacles;
+    for (const Obstacle& obstacle : config.scene.obstacles) obstacles.insert(obstacle.name());
+    remove_frames(path, checkpoint.frames, obstacles);
+    make_folders(path);
+    return {path, std::move(lock), CsvWriter::append_to(steps_file(path), step_header()),
+            CsvWriter::append_to(probes_file(path), probe_header(probe_names(config)))};
+}
+
+void RunDirectory::write_frame(std::int64_t index, const Frame& frame)
+{
+    arris::write_frame(frame_file(path_, index, "ply"), frame);
+}
+
+void RunDirectory::write_checkpoint(const Checkpoint& checkpoint)
+{
+    arris::write_checkpoint(checkpoint_file(path_), checkpoint);
+}
+
+}  // namespace arris

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/files/csv_table.h"
+#include "app/files/frame.h"
+#include "app/run/checkpoint.h"
+#include "app/scene/run_config.h"
+
+namespace arris {
+
+/// Keeps a second process from writing the same run, for as long as it lives. InputError where one does
+/// already.
+class FolderLock {
+  public:
+    explicit FolderLock(const std::string& path);
+    FolderLock(FolderLock&& other) noexcept;
+    FolderLock& operator=(FolderLock&&) = delete;
+    ~FolderLock();
+
+  private:
+    int descriptor_;
+};
+
+/// The files of a run while it runs: CSVs, frames and the checkpoint.
+class RunDirectory {
+  public:
+    /// Makes `path` for a new run. InputError where it holds a run already, unless `is_overwriting`; then
+    /// what the earlier run left is removed, and nothing else.
+    static RunDirectory create(const std::string& path, bool is_overwriting, const RunConfig& config);
+
+    /// Cuts the files of an earlier run back to its checkpoint.
+    static RunDirectory reopen(const std::string& path, const Checkpoint& checkpoint,
+                               const RunConfig& config);
+
+    const std::string& path() const { return path_; }
+
+    void append_step(const StepRow& row) { steps_.append(format_row(row)); }
+    void append_probes(double time, const std::vector<ProbeSample>& samples)
+    {
+        probes_.append(format_row(time, samples));
+    }
+    void write_frame(std::int64_t index, const Frame& frame);
+    void write_checkpoint(const Checkpoint& checkpoint);
+
+  private:
+    RunDirectory(std::string path, FolderLock lock, CsvWriter steps, CsvWriter probes);
+
+    std::string path_;
+    FolderLock lock_;
+    CsvWriter steps_, probes_;
+};
+
+/// InputError, which says what is missing, unless `path` is the folder of a run.
+void require_run(const std::string& path);
+
+/// <run_dir>/checkpoint, <run_dir>/steps.csv, <run_dir>/probes.csv
+std::string checkpoint_file(const std::string& run_dir);
+std::string steps_file(const std::string& run_dir);
+std::string probes_file(const std::string& run_dir);
+
+}  // namespace arris

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/run_ending.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace arris {
+namespace {
+
+/// A vertex by what a user can find it by; new ones of a step that was not taken by their number alone.
+std::string name_vertex(const State& state, std::int64_t id)
+{
+    const auto at = std::lower_bound(state.ids.begin(), state.ids.end(), id);
+    if (at == state.ids.end() || *at != id) return fmt::format("vertex {}", id);
+    const auto v = static_cast<std::size_t>(at - state.ids.begin());
+    const Vec3& x = state.mesh.world[v];
+    const Vec2& X = state.mesh.material[v];
+    return fmt::format("vertex {}, at [{:.6g}, {:.6g}, {:.6g}] (m, material [{:.6g}, {:.6g}]),", id, x.x(),
+                       x.y(), x.z(), X.x(), X.y());
+}
+
+}  // namespace
+
+RunEnding explain_ending(const StepReport& report, double tolerance, const State& state)
+{
+    const std::string place = fmt::format("in the step after t = {} s (step {})", state.time, state.step);
+    switch (report.status) {
+        case StepStatus::NotFinite:
+            return {RunStatus::NotFinite,
+                    fmt::format("a number that is not finite {}, also with 64 times smaller steps", place)};
+        case StepStatus::Overrun:
+            return {RunStatus::NotConverged,
+                    fmt::format("material flows over a feature faster than the mesh can follow {}, also with "
+                                "64 times smaller steps",
+                                place)};
+        case StepStatus::Infeasible:
+            return {RunStatus::Infeasible,
+                    fmt::format(
+                        "nothing keeps {} out of the obstacles {}: a pin drives it into one, or two leave "
+                        "it no room",
+                        name_vertex(state, report.infeasible_vertex), place)};
+        case StepStatus::Penetration:
+            return {RunStatus::Penetration,
+                    fmt::format("the cloth cannot be kept out of an obstacle {}, also with 64 times smaller "
+                                "steps",
+                                place)};
+        default:
+            if (!std::isfinite(report.kkt_residual))
+                return {
+                    RunStatus::NotConverged,
+                    fmt::format("the velocity's system cannot be factorised {}: stiffness and mass are too "
+                                "many orders of magnitude apart, also with 64 times smaller steps",
+                                place)};
+            return {
+                RunStatus::NotConverged,
+                fmt::format("the velocity solve reached a residual of {:.1e} where {:.1e} is asked {}, also "
+                            "with 64 times smaller steps",
+                            report.kkt_residual, tolerance, place)};
+    }
+}
+
+RunEnding explain_ending(const Audit& audited, const Scene& scene, const State& state)
+{
+    const Vec3& place = audited.found.place;
+    return {
+        RunStatus::Penetration,
+        fmt::format("the cloth reaches {:.3g} m into {} at [{:.6g}, {:.6g}, {:.6g}], at t = {} s",
+                    audited.found.depth, scene.obstacles[static_cast<std::size_t>(audited.obstacle)].name(),
+                    place.x(), place.y(), place.z(), state.time)};
+}
+
+}  // namespace arris

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/run_export_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/run/run_directory.h"
+#include "geometry/input_error.h"
+
+namespace arris {
+namespace {
+
+nlohmann::ordered_json read_report(const std::string& path)
+{
+    std::ifstream in(path);
+    if (!in || !std::filesystem::is_regular_file(path))
+        throw InputError(path + ": is not there or cannot be read; allowed: the report of a run");
+    nlohmann::ordered_json report = nlohmann::ordered_json::parse(in, nullptr, /*allow_exceptions=*/false);
+    if (!report.is_object() || !report.contains("scene") || !report["scene"].is_object())
+        throw InputError(path + ": not a run's report: it has no scene");
+    return report;
+}
+
+}  // namespace
+
+ExportOptions read_export_options(const std::string& run_dir)
+{
+    require_run(run_dir);
+    const std::string path = run_dir + "/report.json";
+    if (!std::filesystem::exists(path) && std::filesystem::exists(checkpoint_file(run_dir))) {
+        // A run that was killed before its first report.
+        const Checkpoint checkpoint = read_checkpoint(checkpoint_file(run_dir));
+        const std::vector<ObstacleRecord> obstacles = read_obstacles(run_dir);
+        LoadOptions load;
+        load.cloth = &checkpoint.state.mesh;
+        load.obstacles = &obstacles;
+        const RunConfig config = load_scene(checkpoint.source, load);
+        return {config.title, config.output.frames_per_second};
+    }
+    const nlohmann::ordered_json report = read_report(path);
+    const nlohmann::ordered_json& scene = report["scene"];
+
+    ExportOptions options;
+    if (scene.contains("title") && scene["title"].is_string()) options.title = scene["title"];
+    const auto rate = nlohmann::ordered_json::json_pointer("/output/frames_per_second");
+    if (!scene.contains(rate) || !scene[rate].is_number())
+        throw InputError(path + ": scene.output.frames_per_second is not there or not a number");
+    options.frames_per_second = scene[rate];
+    if (!(options.frames_per_second > 0.0) || !std::isfinite(options.frames_per_second))
+        throw InputError(fmt::format("{}: scene.output.frames_per_second is {}: the run wrote no frames",
+                                     path, options.frames_per_second));
+    return options;
+}
+
+}  // namespace arris

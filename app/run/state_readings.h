@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "app/files/csv_table.h"
+#include "app/files/frame.h"
+#include "app/scene/run_config.h"
+#include "physics/energies.h"
+#include "solver/model/state.h"
+
+namespace arris {
+
+/// The state as a frame. `elements` are those of its mesh.
+Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, const ClothElements& elements,
+                 const Terms& terms);
+
+/// Where the probes' material points are and how fast, in the order of `probes`.
+std::vector<ProbeSample> sample_probes(const std::vector<Probe>& probes, const State& state);
+
+}  // namespace arris

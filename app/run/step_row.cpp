@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/step_row.h"
+
+#include <algorithm>
+
+#include "geometry/cloth/mesh_quality.h"
+#include "physics/inertia.h"
+
+namespace arris {
+
+StepRow make_step_row(const RunConfig& config, const State& state, const Workspace& work,
+                      const Audit& audited, const StepReport& report)
+{
+    const Scene& scene = config.scene;
+    const ClothElements& elements = work.mesh.elements;
+    const Energies energies = compute_energies(elements, work.mesh.terms, state.mesh.world);
+    const CornerVelocities moving =
+        compute_corner_velocities(elements, state.mesh.world, state.velocity, state.material_velocity);
+    StepRow row;
+    row.step = state.step;
+    row.time = state.time;
+    row.dt = report.dt;
+    row.vertices = state.mesh.vertex_count();
+    row.faces = state.mesh.face_count();
+    row.contacts = report.contacts;
+    row.kinetic_energy = kinetic_energy(scene.material.density, elements, moving);
+    if (scene.gravity) row.gravity_energy = energies.gravity;
+    row.stretch_energy = energies.stretch;
+    if (scene.material.bending_stiffness > 0.0) row.bending_energy = energies.bending;
+    if (!scene.obstacles.empty()) {
+        row.feature_rows = report.feature_rows;
+        if (scene.eol) {
+            row.eol_vertices = report.eol_vertices;
+            row.eol_pressing = report.eol_pressing;
+            row.rows_by_cause = report.rows_by_cause;
+        }
+        row.rewound = report.rewound;
+        row.yielded = report.yielded;
+    }
+    row.energy_rise = report.energy_rise;
+    row.material_area = material_area(state.mesh);
+    row.max_penetration = audited.found.depth;
+    row.crossings = state.crossings;
+    row.min_angle = least_material_angle(state.mesh);
+    row.kkt_residual = report.kkt_residual;
+    row.factorisations = report.factorisations;
+    row.nlopt_evaluations = report.nlopt_evaluations;
+    row.solves = report.solves;
+    row.seconds = report.seconds;
+    return row;
+}
+
+StepReport join_parts(const StepReport& opening, StepReport rest)
+{
+    rest.dt += opening.dt;
+    rest.energy_rise += opening.energy_rise;
+    rest.kkt_residual = std::max(rest.kkt_residual, opening.kkt_residual);
+    rest.yielded += opening.yielded;
+    rest.rewound += opening.rewound;
+    rest.add_cost(opening);
+    return rest;
+}
+
+}  // namespace arris

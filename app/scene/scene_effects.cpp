@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/scene_effects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace arris {
+namespace {
+
+SceneEffect obstacle_effect(const RunConfig& config)
+{
+    constexpr std::size_t kMostNames = 5;
+    const std::vector<Obstacle>& obstacles = config.scene.obstacles;
+    if (obstacles.empty()) return {"obstacle", false, "no [[obstacle]]"};
+    std::string names;
+    for (std::size_t i = 0; i < std::min(obstacles.size(), kMostNames); ++i)
+        names += (i > 0 ? ", " : "") + obstacles[i].name();
+    if (obstacles.size() > kMostNames) names += fmt::format(" and {} more", obstacles.size() - kMostNames);
+    return {"obstacle", true, names};
+}
+
+SceneEffect eol_effect(const RunConfig& config)
+{
+    if (config.scene.eol) return {"eol", true, "eol.enabled, and an obstacle has sharp features"};
+    return {"eol", false,
+            has_features(config.scene) ? "eol.enabled is false: contacts keep the cloth off sharp features"
+                                       : "no obstacle has sharp features"};
+}
+
+SceneEffect by_table(const RunConfig& config, const std::string& table, bool is_list)
+{
+    const bool is_on = config.as_run.contains(table) && !config.as_run[table].empty();
+    const std::string name = is_list ? fmt::format("[[{}]]", table) : fmt::format("[{}]", table);
+    if (!is_on) return {table, false, "no " + name};
+    if (!is_list) return {table, true, name + " is there"};
+    return {table, true, fmt::format("{} {}", config.as_run[table].size(), name)};
+}
+
+SceneEffect by_value(const std::string& name, const std::string& key, double value, std::string_view unit)
+{
+    const bool is_on = value > 0.0;
+    return {name, is_on, fmt::format("{} is {:g} {}", key, value, unit)};
+}
+
+}  // namespace
+
+std::vector<SceneEffect> list_effects(const RunConfig& config)
+{
+    const Material& material = config.scene.material;
+    return {
+        by_value("bending", "cloth.material.bending_stiffness", material.bending_stiffness, "J"),
+        by_value("damping", "cloth.material.damping", material.damping, "s"),
+        by_table(config, "gravity", false),
+        by_table(config, "wind", false),
+        by_table(config, "pull", true),
+        by_table(config, "pin", true),
+        obstacle_effect(config),
+        eol_effect(config),
+        {"remesh", false, "not in this version: the mesh changes near sharp features only, with eol"},
+        {"friction", false, "not in this version: the cloth slides freely over obstacles"},
+        {"self_contact", false, "not in this version: the cloth may pass through itself"},
+    };
+}
+
+}  // namespace arris

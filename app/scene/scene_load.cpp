@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a scene file to a RunConfig, in the order in which mistakes are cheapest to find: each key by itself
+// (scene_values), rules between keys (scene_rules), how large the run would be (scene_estimate), and only
+// then the cloth, what pins, pulls and probes meet of it, and the obstacles.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "app/scene/merge_events.h"
+#include "app/scene/run_config.h"
+#include "app/scene/scene_document.h"
+#include "app/scene/scene_estimate.h"
+#include "app/scene/scene_json.h"
+#include "app/scene/scene_obstacles.h"
+#include "app/scene/scene_rules.h"
+#include "app/scene/scene_values.h"
+#include "app/scene/scene_warnings.h"
+#include "app/scene/start_strain.h"
+#include "geometry/cloth_input/cloth_file.h"
+#include "geometry/cloth_input/cloth_grid.h"
+#include "geometry/input_error.h"
+#include "geometry/sort_unique.h"
+#include "geometry/surgery/initial_target.h"
+
+namespace arris {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// ---- JSON to plain types
+
+RigidMotion to_pin_motion(const Json& pin)
+{
+    RigidMotion motion;
+    if (pin.contains("follow")) return motion;
+    if (pin.contains("keyframes")) {
+        motion.keyframes = to_keyframes(pin["keyframes"]);
+        return motion;
+    }
+    motion.velocity = to_vec3(pin["velocity"]);
+    motion.angular_velocity = to_vec3(pin["angular_velocity"]);
+    motion.pivot = to_vec3(pin["pivot"]);
+    return motion;
+}
+
+/// Index of the obstacle called `name`, which is there.
+int find_obstacle(const Json& obstacles, const Json& name)
+{
+    int index = 0;
+    while (obstacles[static_cast<std::size_t>(index)]["name"] != name) ++index;
+    return index;
+}
+
+Pin to_pin(const Json& scene, const Json& json)
+{
+    Pin pin;
+    pin.material = to_material_box(json["material"]);
+    pin.motion = to_pin_motion(json);
+    pin.held = {false, false, false};
+    for (const Json& direction : json["directions"]) pin.held[direction.get<std::string>()[0] - 'x'] = true;
+    pin.release = to_time(json["release"]);
+    if (json.contains("follow")) pin.follows = find_obstacle(scene["obstacle"], json["follow"]);
+    return pin;
+}
+
+Wind to_wind(const Json& json)
+{
+    Wind wind;
+    wind.velocity = to_vec3(json["velocity"]);
+    wind.air_density = to_double(json["air_density"]);
+    wind.drag = to_double(json["drag"]);
+    if (json.contains("gust"))
+        wind.gust = Gust{to_double(json["gust"]["amplitude"]), to_double(json["gust"]["frequency"]),
+                         json["gust"]["seed"].get<long>()};
+    return wind;
+}
+
+Material to_material(const Json& json)
+{
+    return {to_double(json["density"]),       to_double(json["youngs_modulus"]),
+            to_double(json["poisson_ratio"]), to_double(json["bending_stiffness"]),
+            to_double(json["damping"]),       to_double(json["thickness"])};
+}
+
+Scene to_scene(const Json& json)
+{
+    Scene scene;
+    scene.material = to_material(json["cloth"]["material"]);
+    if (json.contains("gravity")) scene.gravity = Gravity{to_vec3(json["gravity"]["acceleration"])};
+    if (json.contains("wind")) scene.wind = to_wind(json["wind"]);
+    for (const Json& pull : json.value("pull", Json::array()))
+        scene.pulls.push_back({to_material_box(pull["material"]), to_vec3(pull["force"]),
+                               to_double(pull["start"]), to_time(pull["stop"])});
+    for (const Json& pin : json.value("pin", Json::array())) scene.pins.push_back(to_pin(json, pin));
+    return scene;
+}
+
+Settings to_settings(const Json& json)
+{
+    Settings settings;
+    settings.integrator = json["time"]["integrator"] == "bdf2" ? Integrator::Bdf2 : Integrator::ImplicitEuler;
+    settings.step = to_double(json["time"]["step"]);
+    settings.tolerance = to_double(json["solver"]["tolerance"]);
+    return settings;
+}
+
+// ---- how large
+
+[[noreturn]] void refuse_estimate(const SceneDocument& document, const std::string& key, double count,
+                                  const std::string& what, double most)
+{
+    document.fail(key, fmt::format("the run would have about {:.7g} {}", count, what),
+                  fmt::format("at most {:.7g} {}", most, what));
+}
+
+void check_size(const SceneDocument& document, const RunConfig& config, SceneEstimate& estimate)
+{
+    const std::string cloth_key = document.find("cloth.file") ? "cloth.file" : "cloth.resolution";
+    if (estimate.vertices > kMaxVertices)
+        refuse_estimate(document, cloth_key, estimate.vertices, "vertices", kMaxVertices);
+    estimate_bytes(config.output.formats, estimate);
+    if (const std::optional<Excess> excess = find_memory_excess(estimate, machine_memory_bytes()))
+        document.fail(cloth_key, excess->wrong, excess->allowed);
+}
+
+/// Jumps of the input, with those of obstacles that are not in the scene yet.
+std::vector<double> all_jumps(const Scene& scene, const std::vector<ObstaclePlan>& plans)
+{
+    std::vector<double> times = input_jumps(scene);
+    for (const ObstaclePlan& plan : plans) {
+        const std::vector<double> jumps = plan.motion.jumps();
+        times.insert(times.end(), jumps.begin(), jumps.end());
+    }
+    sort_unique(times);
+    return times;
+}
+
+void check_length(const SceneDocument& document, const RunConfig& config,
+                  const std::vector<ObstaclePlan>& plans)
+{
+    SceneEstimate estimate;
+    // The key a person would change: the one that was written.
+    const auto written = [&](const std::string& key) { return document.find(key) ? key : "duration"; };
+    const double fps = config.output.frames_per_second, step = config.settings.step;
+    estimate.frames = count_frames(config.duration, fps);
+    if (estimate.frames > kMaxFrames)
+        refuse_estimate(document, written("output.frames_per_second"), estimate.frames, "frames", kMaxFrames);
+    estimate.steps = config.duration / step;
+    if (estimate.steps <= kMaxSteps)
+        estimate.steps = count_steps(config.duration, step, fps, all_jumps(config.scene, plans));
+    if (estimate.steps > kMaxSteps)
+        refuse_estimate(document, written("time.step"), estimate.steps, "steps", kMaxSteps);
+}
+
+// ---- the cloth
+
+ClothGrid to_grid(const Json& cloth)
+{
+    ClothGrid grid;
+    grid.size = to_vec2(cloth["size"]);
+    grid.resolution = {cloth["resolution"][0].get<int>(), cloth["resolution"][1].get<int>()};
+    const std::string pattern = cloth["pattern"].get<std::string>();
+    grid.pattern = pattern == "diagonal"      ? GridPattern::Diagonal
+                   : pattern == "alternating" ? GridPattern::Alternating
+                   : pattern == "cross"       ? GridPattern::Cross
+                                              : GridPattern::Unstructured;
+    grid.pattern_angle = to_double(cloth["pattern_angle"]);
+    for (const Json& fold : cloth.value("folds", Json::array()))
+        grid.folds.push_back(
+            {{to_vec2(fold["line"][0]), to_vec2(fold["line"][1])}, to_double(fold["degrees"])});
+    return grid;
+}
+
+/// Runs `build`; what it finds wrong with its input is the fault of `key`.
+template <typename Build>
+auto blame(const SceneDocument& document, const std::string& key, const Build& build)
+{
+    try {
+        return build();
+    } catch (const InputError& error) {
+        document.fail(document.find(key) ? key : "cloth", error.what());
+    }
+}
+
+ClothMesh make_rectangle(const SceneDocument& document, const ClothGrid& grid)
+{
+    return blame(document, "cloth.folds", [&] {
+        ClothMesh mesh = make_cloth_grid(grid);
+        fold_cloth(grid.folds, mesh);
+        return mesh;
+    });
+}
+
+ClothMesh read_cloth(const SceneDocument& document, const Json& cloth, std::vector<std::string>& warnings)
+{
+    const std::filesystem::path name(cloth["file"].get<std::string>());
+    const std::string path = (std::filesystem::path(document.path()).parent_path() / name).string();
+    const std::string unit = cloth["units"].get<std::string>();
+    std::string extension = name.extension().string();
+    for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    if (extension != ".obj")
+        document.fail("cloth.file", "a cloth of this format is not built yet in this version",
+                      "an .obj file");
+    ClothFile file = blame(document, "cloth.file", [&] {
+        return read_cloth_file(path, metres_of(unit), cloth["up"].get<std::string>()[0]);
+    });
+    for (const std::string& warning : file.warnings)
+        warnings.push_back(fmt::format("{}: {}", document.describe("cloth.file"), warning));
+    return std::move(file.mesh);
+}
+
+ClothMesh make_cloth(const SceneDocument& document, RunConfig& config)
+{
+    const Json& cloth = config.as_run["cloth"];
+    SceneEstimate estimate;
+    ClothMesh mesh;
+    if (cloth.contains("file")) {
+        mesh = read_cloth(document, cloth, config.warnings);
+        estimate.vertices = mesh.vertex_count();
+        check_size(document, config, estimate);
+    } else {
+        const ClothGrid grid = to_grid(cloth);
+        blame(document, "cloth.folds", [&] { estimate_grid(grid, estimate); });
+        check_size(document, config, estimate);
+        mesh = make_rectangle(document, grid);
+    }
+    const double scale = to_double(cloth["scale"]);
+    const Placement placement = {to_rotation(cloth["rotate"]), to_vec3(cloth["translate"])};
+    for (Vec3& x : mesh.world) x = placement(scale * x);
+    return mesh;
+}
+
+// ---- what meets the cloth
+
+[[noreturn]] void refuse_miss(const SceneDocument& document, const std::string& key, const ClothMesh& cloth,
+                              std::string_view wrong)
+{
+    Vec2 least = cloth.material.front(), greatest = least;
+    for (const Vec2& X : cloth.material) {
+        least = least.cwiseMin(X);
+        greatest = greatest.cwiseMax(X);
+    }
+    document.fail(
+        key, wrong,
+        fmt::format("material coordinates of the cloth, within [[{:.6g}, {:.6g}], [{:.6g}, {:.6g}]] (m)",
+                    least.x(), least.y(), greatest.x(), greatest.y()));
+}
+
+/// Keyframes that have the cloth elsewhere at time 0 than where it is placed.
+void warn_of_first_keyframes(const SceneDocument& document, RunConfig& config)
+{
+    const double tolerance = 1e-12 * (1.0 + material_size(config.cloth.material));
+    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
+        const Pin& pin = config.scene.pins[i];
+        if (pin.motion.keyframes.empty() || !(pin.release > 0.0)) continue;
+        const Placement first = pin.motion.at(0.0);
+        int moved = 0;
+        for (const int v : vertices_in_box(config.cloth, pin.material)) {
+            Vec3 way = first(config.cloth.world[v]) - config.cloth.world[v];
+            for (int d = 0; d < 3; ++d)
+                if (!pin.held[d]) way[d] = 0.0;
+            if (way.norm() > tolerance) ++moved;
+        }
+        if (moved > 0)
+            config.warnings.push_back(
+                fmt::format("{}: moves {} vertices from where the cloth is placed, at time 0",
+                            document.describe(fmt::format("pin.{}.keyframes", i)), moved));
+    }
+}
+
+void check_meetings(const SceneDocument& document, const RunConfig& config)
+{
+    const ClothMesh& cloth = config.cloth;
+    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
+        const MaterialBox& box = config.scene.pins[i].material;
+        if (!vertices_in_box(cloth, box).empty()) continue;
+        const Vec2 middle = 0.5 * (box.min + box.max);
+        const Vec2 nearest = *std::min_element(
+            cloth.material.begin(), cloth.material.end(), [&](const Vec2& a, const Vec2& b) {
+                return (a - middle).squaredNorm() < (b - middle).squaredNorm();
+            });
+        refuse_miss(document, fmt::format("pin.{}.material", i), cloth,
+                    fmt::format("holds no vertex of the cloth; the nearest is at [{:.6g}, {:.6g}]",
+                                nearest.x(), nearest.y()));
+    }
+    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i)
+        if (spread_over_box(cloth, config.scene.pulls[i].material).empty())
+            refuse_miss(document, fmt::format("pull.{}.material", i), cloth, "meets no cloth");
+    for (std::size_t i = 0; i < config.probes.size(); ++i)
+        if (locate(cloth, config.probes[i].material).face < 0)
+            refuse_miss(document, fmt::format("probe.{}.material", i), cloth, "meets no cloth");
+}
+
+/// How the cloth stands to the obstacles at time 0.
+void check_start(const SceneDocument& document, const LoadOptions& options, const StrainRange& placed,
+                 RunConfig& config)
+{
+    config.intersections = find_intersections(document, config);
+    if (config.intersections.empty())
+        keep_stand_off(placed, config);
+    else if (!options.tells_intersections)
+        throw InputError(config.intersections.front());
+}
+
+}  // namespace
+
+std::vector<ObstacleRecord> record_obstacles(const RunConfig& config)
+{
+    std::vector<ObstacleRecord> records;
+    for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
+        const Obstacle& obstacle = config.scene.obstacles[i];
+        records.push_back(
+            {obstacle.name(), obstacle.mesh(), config.obstacle_placements[i], obstacle.motion()});
+    }
+    return records;
+}
+
+SceneSource read_scene_source(const std::string& path, const std::vector<std::string>& overrides)
+{
+    return {path, read_scene_text(path), overrides};
+}
+
+RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
+{
+    SceneDocument document(source.path, source.text);
+    for (const std::string& assignment : source.overrides) document.set(assignment);
+
+    RunConfig config;
+    config.as_run = complete_scene(document);
+    apply_scene_rules(document, config.as_run);
+
+    const Json& json = config.as_run;
+    config.title = json["title"].get<std::string>();
+    config.duration = to_double(json["duration"]);
+    config.scene = to_scene(json);
+    config.settings = to_settings(json);
+    config.output.frames_per_second = to_double(json["output"]["frames_per_second"]);
+    config.output.formats = json["output"]["formats"].get<std::vector<std::string>>();
+    for (const Json& probe : json.value("probe", Json::array()))
+        config.probes.push_back({probe["name"].get<std::string>(), to_vec2(probe["material"])});
+
+    std::vector<ObstaclePlan> plans = plan_obstacles(json);
+    std::vector<RigidMotion*> motions;
+    for (ObstaclePlan& plan : plans) motions.push_back(&plan.motion);
+    merge_events(config, motions);
+    check_length(document, config, plans);
+    config.cloth = options.cloth ? *options.cloth : make_cloth(document, config);
+    config.cloth_velocity = to_vec3(json["cloth"]["velocity"]);
+    check_meetings(document, config);
+    load_obstacles(document, options, std::move(plans), config);
+    if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))
+        config.scene.eol = make_initial_target(config.cloth);
+    const StrainRange placed = measure_strain(config.cloth);
+    if (!options.cloth) check_start(document, options, placed, config);
+    warn_of_first_keyframes(document, config);
+
+    const std::vector<std::string> ineffective = find_ineffective_keys(document, config, placed);
+    config.warnings.insert(config.warnings.end(), ineffective.begin(), ineffective.end());
+    return config;
+}
+
+}  // namespace arris

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/scene_rules.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <initializer_list>
+#include <map>
+
+#include "app/scene/scene_keys.h"
+#include "app/text/printable.h"
+#include "physics/material.h"
+
+namespace arris {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void fill_title(const SceneDocument& document, Json& scene)
+{
+    if (scene["title"].is_null())
+        scene["title"] = printable(std::filesystem::path(document.path()).stem().string(), 199);
+}
+
+void fill_material(Json& material)
+{
+    const auto fill = [&](const char* key, double value) {
+        if (material[key].is_null()) material[key] = value;
+    };
+    const Material preset = find_material_preset(material["preset"].get<std::string>()).value();
+    fill("density", preset.density);
+    fill("youngs_modulus", preset.youngs_modulus);
+    fill("poisson_ratio", preset.poisson_ratio);
+    fill("bending_stiffness", preset.bending_stiffness);
+}
+
+/// A cloth is a rectangle or a file.
+void settle_cloth_source(const SceneDocument& document, Json& cloth)
+{
+    if (!cloth.contains("file")) {
+        for (const std::string key : {"cloth.size", "cloth.resolution"})
+            if (!document.find(key))
+                document.fail(key, "is required and missing (or else cloth.file)",
+                              allowed_values(*find_scene_key(key)));
+        cloth.erase("units");
+        cloth.erase("up");
+        return;
+    }
+    for (const std::string key : {"size", "resolution", "pattern", "pattern_angle", "folds"}) {
+        if (document.find("cloth." + key))
+            document.fail("cloth." + key, "contradicts cloth.file",
+                          "either a rectangle's keys or cloth.file");
+        cloth.erase(key);
+    }
+}
+
+/// `chosen` stands in the place of `others`, which may not be written beside it.
+void settle_choice(const SceneDocument& document, const std::string& path, const std::string& chosen,
+                   std::initializer_list<const char*> others, std::string_view allowed, Json& table)
+{
+    for (const char* other : others) {
+        const std::string key = fmt::format("{}.{}", path, other);
+        if (document.find(key)) document.fail(key, fmt::format("contradicts {}.{}", path, chosen), allowed);
+        table.erase(other);
+    }
+}
+
+void check_keyframes(const SceneDocument& document, const std::string& path, const Json& keyframes)
+{
+    if (keyframes.empty()) document.fail(path, "is empty", "one or more keyframes");
+    for (std::size_t i = 1; i < keyframes.size(); ++i) {
+        const double before = keyframes[i - 1]["time"].get<double>();
+        if (!(keyframes[i]["time"].get<double>() > before))
+            document.fail(fmt::format("{}.{}.time", path, i), "is not later than the keyframe before",
+                          fmt::format("a number > {} (s)", before));
+    }
+}
+
+/// A pin follows an obstacle of the scene.
+void check_followed(const SceneDocument& document, const std::string& key, const Json& pin, const Json& scene)
+{
+    std::string names;
+    if (scene.contains("obstacle")) {
+        for (const Json& obstacle : scene["obstacle"]) {
+            if (obstacle["name"] == pin["follow"]) return;
+            names += (names.empty() ? "" : ", ") + obstacle["name"].get<std::string>();
+        }
+    }
+    document.fail(key, "is no obstacle",
+                  names.empty() ? "the name of an [[obstacle]]; this scene has none"
+                                : "the name of an obstacle: " + names);
+}
+
+/// A pin moves by velocities, by keyframes, or with an obstacle.
+void settle_pin_motion(const SceneDocument& document, const std::string& path, const Json& scene, Json& pin)
+{
+    if (pin.contains("follow")) {
+        settle_choice(document, path, "follow", {"velocity", "angular_velocity", "pivot", "keyframes"},
+                      "either follow, or velocity, angular_velocity and pivot, or keyframes", pin);
+        check_followed(document, path + ".follow", pin, scene);
+    }
+    if (pin.contains("keyframes")) {
+        settle_choice(document, path, "keyframes", {"velocity", "angular_velocity", "pivot"},
+                      "either velocity, angular_velocity and pivot, or keyframes", pin);
+        check_keyframes(document, path + ".keyframes", pin["keyframes"]);
+    }
+}
+
+/// An obstacle has one shape; keys of the other shapes have no value.
+void settle_shape(const SceneDocument& document, const std::string& path, Json& obstacle)
+{
+    constexpr std::string_view kAllowed = "one of file, box, points, wire, teeth";
+    std::string shape;
+    for (const char* key : {"file", "box", "points", "wire", "teeth"}) {
+        if (!obstacle.contains(key)) continue;
+        if (!shape.empty())
+            document.fail(fmt::format("{}.{}", path, key), fmt::format("contradicts {}.{}", path, shape),
+                          kAllowed);
+        shape = key;
+    }
+    if (shape.empty()) document.fail(path, "has no shape", kAllowed);
+    if (shape != "file") {
+        obstacle.erase("units");
+        obstacle.erase("up");
+    }
+    if (shape != "wire") obstacle.erase("closed");
+}
+
+void settle_obstacle_motion(const SceneDocument& document, const std::string& path, Json& obstacle)
+{
+    if (obstacle.contains("keyframes")) {
+        settle_choice(document, path, "keyframes", {"motion", "translate", "rotate"},
+                      "either motion, translate and rotate, or keyframes", obstacle);
+        check_keyframes(document, path + ".keyframes", obstacle["keyframes"]);
+    }
+    if (!obstacle.contains("motion")) return;
+    const Json& motion = obstacle["motion"];
+    const double start = motion["start"].get<double>();
+    if (!motion["stop"].is_null() && !(motion["stop"].get<double>() > start))
+        document.fail(path + ".motion.stop", "is not later than the motion's start",
+                      fmt::format("a number > {} (s)", start));
+}
+
+void settle_obstacles(const SceneDocument& document, Json& obstacles)
+{
+    // Each costs a pass over the cloth a step.
+    constexpr std::size_t kMostObstacles = 1000;
+    if (obstacles.size() > kMostObstacles)
+        document.fail(
+            fmt::format("obstacle.{}", kMostObstacles),
+            fmt::format("is one of {} obstacles", obstacles.size()),
+            fmt::format("at most {}; one file, or one list of points, may hold many things", kMostObstacles));
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+        const std::string path = fmt::format("obstacle.{}", i);
+        if (obstacles[i]["name"].is_null()) obstacles[i]["name"] = fmt::format("obstacle{}", i);
+        settle_shape(document, path, obstacles[i]);
+        settle_obstacle_motion(document, path, obstacles[i]);
+    }
+}
+
+void check_pull_times(const SceneDocument& document, const std::string& path, const Json& pull)
+{
+    const double start = pull["start"].get<double>();
+    if (pull["stop"].is_null() || pull["stop"].get<double>() > start) return;
+    document.fail(path + ".stop", "is not later than the pull's start",
+                  fmt::format("a number > {} (s)", start));
+}
+
+/// Names of obstacles and probes are unique, and none is the cloth's.
+void check_names(const SceneDocument& document, const Json& scene)
+{
+    std::map<std::string, std::string> seen = {{"cloth", "the cloth"}};
+    for (const char* table : {"obstacle", "probe"}) {
+        const Json elements = scene.value(table, Json::array());
+        for (std::size_t i = 0; i < elements.size(); ++i) {
+            const std::string path = fmt::format("{}.{}", table, i);
+            const std::string name = elements[i]["name"].get<std::string>();
+            const auto [other, is_new] = seen.emplace(name, path);
+            if (is_new) continue;
+            const bool is_default = document.find(path + ".name") == nullptr;
+            document.fail(
+                path + ".name",
+                fmt::format("{}is the name of {} already",
+                            is_default ? fmt::format("its default, {}, ", name) : "", other->second),
+                "a name of its own, not cloth");
+        }
+    }
+}
+
+}  // namespace
+
+void apply_scene_rules(const SceneDocument& document, Json& scene)
+{
+    fill_title(document, scene);
+    fill_material(scene["cloth"]["material"]);
+    settle_cloth_source(document, scene["cloth"]);
+    if (scene.contains("obstacle")) settle_obstacles(document, scene["obstacle"]);
+    if (scene.contains("pin"))
+        for (std::size_t i = 0; i < scene["pin"].size(); ++i)
+            settle_pin_motion(document, fmt::format("pin.{}", i), scene, scene["pin"][i]);
+    if (scene.contains("pull"))
+        for (std::size_t i = 0; i < scene["pull"].size(); ++i)
+            check_pull_times(document, fmt::format("pull.{}", i), scene["pull"][i]);
+    check_names(document, scene);
+}
+
+}  // namespace arris

@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/scene_warnings.h"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "app/scene/scene_estimate.h"
+#include "app/scene/still_scene.h"
+#include "app/text/printable.h"
+#include "geometry/cloth/mesh_quality.h"
+#include "geometry/cloth/mesh_topology.h"
+#include "geometry/obstacle_input/sheet_opening.h"
+#include "solver/eol/creases.h"
+
+namespace arris {
+namespace {
+
+/// Collects warnings about keys that are written.
+class Warnings {
+  public:
+    explicit Warnings(const SceneDocument& document) : document_(document) {}
+
+    bool is_written(const std::string& key) const { return document_.find(key) != nullptr; }
+
+    void add(const std::string& key, const std::string& why)
+    {
+        if (is_written(key))
+            lines_.push_back(fmt::format("{}: has no effect: {}", document_.describe(key), why));
+    }
+
+    /// `key` does what it says, and something surprising follows from it.
+    void note(const std::string& key, const std::string& what)
+    {
+        lines_.push_back(fmt::format("{}: {}", document_.describe(key), what));
+    }
+
+    /// Of the scene as a whole.
+    void note(const std::string& what)
+    {
+        lines_.push_back(fmt::format("{}: {}", printable(document_.path()), what));
+    }
+
+    std::vector<std::string> lines_;
+
+  private:
+    const SceneDocument& document_;
+};
+
+// Inputs, not results: a value that was written as 0 is exactly 0.
+bool is_zero(double value)
+{
+    return !(value < 0.0) && !(value > 0.0);
+}
+bool is_zero(const Vec3& value)
+{
+    return is_zero(value.squaredNorm());
+}
+
+void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
+{
+    if (!warnings.is_written("cloth.file")) {
+        warnings.add("cloth.units", "the cloth is not from a file");
+        warnings.add("cloth.up", "the cloth is not from a file");
+    }
+    if (config.as_run["cloth"].value("pattern", "") == "unstructured")
+        warnings.add("cloth.pattern_angle", "an unstructured mesh has no direction");
+
+    const Material& material = config.scene.material;
+    constexpr std::array kPresetKeys = {"density", "youngs_modulus", "poisson_ratio", "bending_stiffness"};
+    const bool overrides_all = std::all_of(kPresetKeys.begin(), kPresetKeys.end(), [&](const char* key) {
+        return warnings.is_written(std::string("cloth.material.") + key);
+    });
+    if (overrides_all) warnings.add("cloth.material.preset", "all its values are overridden");
+    constexpr double kStiffest = 1e6;  // N/m: ten times what sailcloth has
+    if (material.youngs_modulus > kStiffest && warnings.is_written("cloth.material.youngs_modulus"))
+        warnings.note("cloth.material.youngs_modulus",
+                      "is in N/m, a modulus in Pa times the cloth's own thickness in m");
+    if (material.bending_stiffness > 0.0 && topology.hinges.empty())
+        warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
+    if (config.scene.obstacles.empty())
+        warnings.add("cloth.material.thickness", "there is no obstacle to keep away from");
+}
+
+/// A cloth that is no cloth's size is mostly one in other units.
+void check_cloth_size(const RunConfig& config, Warnings& warnings)
+{
+    constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m: of its longer side
+    Eigen::AlignedBox2d material;
+    for (const Vec2& X : config.cloth.material) material.extend(X);
+    const Vec2 sides = material.sizes();
+    if (sides.maxCoeff() >= kSmallest && sides.maxCoeff() <= kLargest) return;
+    const bool is_from_file = warnings.is_written("cloth.file");
+    warnings.note(
+        is_from_file ? "cloth.file" : "cloth.size",
+        fmt::format("the cloth is {:.4g} x {:.4g} m: {}", sides.x(), sides.y(),
+                    is_from_file
+                        ? "a file in other units than metres needs 'units', such as \"mm\"; UVs, where "
+                          "it has them, are in metres whatever its units"
+                        : "sizes are in metres"));
+}
+
+void check_wind(const RunConfig& config, Warnings& warnings)
+{
+    if (config.scene.gravity && is_zero(config.scene.gravity->acceleration))
+        warnings.add("gravity.acceleration", "it is zero");
+    if (!config.scene.wind) return;
+    const Wind& wind = *config.scene.wind;
+    if (is_zero(wind.drag) || is_zero(wind.air_density))
+        warnings.add("wind", is_zero(wind.drag) ? "its drag is zero" : "its air_density is zero");
+    if (!wind.gust) return;
+    if (is_zero(wind.velocity))
+        warnings.add("wind.gust", "the wind's velocity is zero");
+    else if (is_zero(wind.gust->amplitude))
+        warnings.add("wind.gust", "its amplitude is zero");
+}
+
+void check_pulls(const RunConfig& config, Warnings& warnings)
+{
+    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i) {
+        const Pull& pull = config.scene.pulls[i];
+        const std::string path = fmt::format("pull.{}", i);
+        if (is_zero(pull.force)) warnings.add(path + ".force", "it is zero");
+        if (pull.start >= config.duration)
+            warnings.add(path + ".start", "the pull starts after the end of the run");
+        else if (pull.stop >= config.duration)
+            warnings.add(path + ".stop", "the run ends before");
+    }
+}
+
+void check_pin_motion(const RunConfig& config, const Pin& pin, const std::string& path, Warnings& warnings)
+{
+    for (int d = 0; d < 3; ++d)
+        if (!pin.held[d] && !is_zero(pin.motion.velocity[d]))
+            warnings.add(path + ".velocity", fmt::format("the pin does not hold {}", "xyz"[d]));
+    if (is_zero(pin.motion.angular_velocity))
+        warnings.add(path + ".pivot", "there is no angular_velocity about it");
+    // A keyframe counts as long as the one before it is in time.
+    const auto& keyframes = pin.motion.keyframes;
+    for (std::size_t k = 1; k < keyframes.size(); ++k)
+        if (keyframes[k - 1].time >= std::min(config.duration, pin.release))
+            warnings.add(fmt::format("{}.keyframes.{}.time", path, k),
+                         "the one before is at the end of the run already");
+}
+
+bool is_moving(const Scene& scene, const Pin& pin)
+{
+    if (pin.follows) return scene.obstacles[static_cast<std::size_t>(*pin.follows)].motion().is_moving();
+    return pin.motion.is_moving();
+}
+
+void check_obstacle_motion(const RunConfig& config, const RigidMotion& motion, const std::string& path,
+                           Warnings& warnings)
+{
+    if (is_zero(motion.velocity) && is_zero(motion.angular_velocity))
+        warnings.add(path + ".motion", "it has no velocity");
+    else if (is_zero(motion.angular_velocity))
+        warnings.add(path + ".motion.pivot", "there is no angular_velocity about it");
+    if (motion.start >= config.duration)
+        warnings.add(path + ".motion.start", "it starts after the end of the run");
+    else if (motion.stop >= config.duration)
+        warnings.add(path + ".motion.stop", "the run ends before");
+    for (std::size_t k = 1; k < motion.keyframes.size(); ++k)
+        if (motion.keyframes[k - 1].time >= config.duration)
+            warnings.add(fmt::format("{}.keyframes.{}.time", path, k),
+                         "the one before is at the end of the run already");
+}
+
+/// A file without units that is far larger or smaller than the cloth is mostly one in other units.
+void check_units(const RunConfig& config, std::size_t i, Warnings& warnings)
+{
+    constexpr double kSurprising = 100.0;  // millimetres are a thousand
+    const auto& json = config.as_run["obstacle"][i];
+    if (!json.contains("file") || !json["units"].is_null()) return;
+    const Obstacle& obstacle = config.scene.obstacles[i];
+    Box3 around_cloth;
+    for (const Vec3& x : config.cloth.world) around_cloth.extend(x);
+    const double size = obstacle.bounds().diagonal().norm(), cloth = around_cloth.diagonal().norm();
+    if (size < kSurprising * cloth && cloth < kSurprising * size) return;
+    warnings.note(
+        fmt::format("obstacle.{}.file", i),
+        fmt::format("is {:.3g} m in size and the cloth {:.3g} m: 'units' or 'scale' say so where the "
+                    "file is not in metres",
+                    size, cloth));
+}
+
+/// A surface that closes but for a hole looks solid, and is none.
+void check_inside(const RunConfig& config, std::size_t i, Warnings& warnings)
+{
+    const auto& json = config.as_run["obstacle"][i];
+    if (!json.contains("file")) return;
+    const Obstacle& obstacle = config.scene.obstacles[i];
+    int count = 0, border_edges = 0;
+    for (const SheetOpening& opening : find_sheet_openings(obstacle.mesh(), obstacle.topology())) {
+        if (!opening.looks_solid()) continue;
+        ++count;
+        border_edges += opening.border_edges;
+    }
+    if (count == 0) return;
+    const std::string which = count == 1 ? "a surface" : fmt::format("each of {} surfaces", count);
+    warnings.note(
+        fmt::format("obstacle.{}.file", i),
+        fmt::format("{} closes but for a hole ({} border edges{}) and so is a sheet that has no inside: "
+                    "cloth may come in by the hole; close the mesh where a solid is meant",
+                    which, border_edges, count == 1 ? "" : " in all"));
+}
+
+void check_obstacles(const RunConfig& config, Warnings& warnings)
+{
+    for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
+        const Obstacle& obstacle = config.scene.obstacles[i];
+        const std::string path = fmt::format("obstacle.{}", i);
+        const auto& json = config.as_run["obstacle"][i];
+        if (!json.contains("file")) {
+            warnings.add(path + ".units", "the obstacle is not from a file");
+            warnings.add(path + ".up", "the obstacle is not from a file");
+        }
+        if (!json.contains("wire")) warnings.add(path + ".closed", "the obstacle is no wire");
+        if (obstacle.mesh().faces.empty()) warnings.add(path + ".feature_angle", "the obstacle has no faces");
+        check_units(config, i, warnings);
+        check_inside(config, i, warnings);
+        check_obstacle_motion(config, obstacle.motion(), path, warnings);
+    }
+    if (config.as_run["eol"]["enabled"].get<bool>() && !config.scene.eol)
+        warnings.add("eol.enabled", "no obstacle has a sharp feature");
+}
+
+void check_pins(const RunConfig& config, Warnings& warnings)
+{
+    // Which pin held a vertex's direction last: where pins overlap, the last one moves it.
+    std::map<std::pair<int, int>, std::size_t> holder;
+    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
+        const Pin& pin = config.scene.pins[i];
+        const std::string path = fmt::format("pin.{}", i);
+        check_pin_motion(config, pin, path, warnings);
+        if (is_zero(pin.release))
+            warnings.add(path + ".release", "the pin is released before it holds anything");
+        else if (pin.release >= config.duration)
+            warnings.add(path + ".release", "the run ends before");
+
+        std::map<std::size_t, int> shared;
+        for (const int v : vertices_in_box(config.cloth, pin.material))
+            for (int d = 0; d < 3; ++d) {
+                if (!pin.held[d]) continue;
+                const auto [other, is_first] = holder.try_emplace({v, d}, i);
+                if (!is_first) ++shared[other->second];
+                other->second = i;
+            }
+        for (const auto& [other, count] : shared)
+            if (is_moving(config.scene, config.scene.pins[other]) || is_moving(config.scene, pin))
+                warnings.note(
+                    path + ".material",
+                    fmt::format(
+                        "holds {} vertex directions that pin.{} holds too; there pin.{} alone decides", count,
+                        other, i));
+    }
+}
+
+void check_time(const RunConfig& config, Warnings& warnings)
+{
+    const double fps = config.output.frames_per_second;
+    if (is_zero(fps) && !config.output.formats.empty())
+        warnings.add("output.formats", "with frames_per_second = 0 there are no frames to make them from");
+    const double longest = fps > 0.0 ? std::min(config.duration, 1.0 / fps) : config.duration;
+    if (config.settings.step > longest * (1.0 + 1e-9))
+        warnings.note("time.step",
+                      fmt::format("acts as {:.6g} s: steps end on frames and on the duration", longest));
+}
+
+/// Greatest angle between neighbours that slerp can mean; what was written as more turns the other way, or
+/// not at all.
+void check_turns(const std::string& key, const nlohmann::ordered_json& keyframes, Warnings& warnings)
+{
+    for (std::size_t k = 1; k < keyframes.size(); ++k) {
+        const auto &from = keyframes[k - 1]["rotate"], &to = keyframes[k]["rotate"];
+        const double turn = to["degrees"].get<double>() - from["degrees"].get<double>();
+        if (from["axis"] != to["axis"] || !(std::abs(turn) > 180.0)) continue;
+        warnings.note(
+            key,
+            fmt::format("turns by {:.6g} degrees from {} to {}: it takes the shorter arc; write keyframes "
+                        "at most 180 degrees apart",
+                        turn, k - 1, k));
+    }
+}
+
+void check_turns(const RunConfig& config, Warnings& warnings)
+{
+    for (const char* table : {"pin", "obstacle"}) {
+        if (!config.as_run.contains(table)) continue;
+        const auto& elements = config.as_run[table];
+        for (std::size_t i = 0; i < elements.size(); ++i)
+            if (elements[i].contains("keyframes"))
+                check_turns(fmt::format("{}.{}.keyframes", table, i), elements[i]["keyframes"], warnings);
+    }
+}
+
+/// A cloth that is placed far from its material's size is mostly one whose UVs are not in metres.
+void check_strain(const StrainRange& placed, Warnings& warnings)
+{
+    if (placed.is_surprising())
+        warnings.note("cloth",
+                      fmt::format("starts strained, {}: material coordinates are metres, and the cloth "
+                                  "will pull itself to their size",
+                                  in_words(placed)));
+}
+
+/// Faces that surgery hardly puts a feature's vertex into: it moves none where that would leave such.
+void check_angles(const RunConfig& config, Warnings& warnings)
+{
+    constexpr double kThin = 5.0;  // degrees
+    if (!config.scene.eol) return;
+    const ClothMesh& cloth = config.cloth;
+    int thin = 0, thinnest = 0;
+    double least = kThin;
+    for (int f = 0; f < cloth.face_count(); ++f) {
+        const double angle = least_material_angle(cloth, f);
+        if (!(angle < kThin)) continue;
+        ++thin;
+        if (angle < least) std::tie(least, thinnest) = std::pair(angle, f);
+    }
+    if (thin == 0) return;
+    const bool is_from_file = warnings.is_written("cloth.file");
+    const Vec2& X = cloth.material[cloth.faces[thinnest][0]];
+    warnings.note(
+        is_from_file ? "cloth.file" : "cloth.resolution",
+        fmt::format(
+            "{} of {} faces have an angle below {:g} degrees, the least {:.2g} at [{:.6g}, {:.6g}] of the "
+            "material: sharp features hardly find a place for vertices in faces so thin; {}",
+            thin, cloth.face_count(), kThin, least, X.x(), X.y(),
+            is_from_file ? "mesh the file anew with more even faces"
+                         : "cells with more even sides, or folds and a pattern_angle that cut off no "
+                           "slivers, have none"));
+}
+
+/// A stand-off as large as the cloth's cells is mostly one in other units.
+void check_thickness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
+{
+    if (config.scene.obstacles.empty()) return;
+    const double cell = measure_edges(config.cloth, topology).mean;
+    const double thickness = config.scene.material.thickness;
+    if (thickness > cell)
+        warnings.note(
+            "cloth.material.thickness",
+            fmt::format("is more than an edge of the cloth's mesh ({:.3g} m in the mean): it is the distance "
+                        "kept from obstacles, in metres, and should be well below that edge",
+                        cell));
+}
+
+/// Where rows alone slide as well, EOL vertices cost time, and the bend that passes through them energy.
+void check_bends(const RunConfig& config, Warnings& warnings)
+{
+    if (!resolves_bends(config.scene, config.cloth)) return;
+    const std::string stiffness = "cloth.material.bending_stiffness", preset = "cloth.material.preset";
+    const double bending_stiffness = config.scene.material.bending_stiffness;
+    const std::string what = fmt::format(
+        "edges of {:.3g} m in the mean resolve the bend that {:.3g} J make over a sharp feature: cloth "
+        "slides as well "
+        "without EOL vertices (eol.enabled = false), at less cost; see docs/accuracy.md, Stiff bends",
+        config.scene.eol->mean_length, bending_stiffness);
+    if (warnings.is_written(stiffness))
+        warnings.note(stiffness, what);
+    else if (warnings.is_written(preset))
+        warnings.note(preset, what);
+    else
+        warnings.note(what);
+}
+
+void check_stillness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
+{
+    if (stays_still(config, topology))
+        warnings.note(
+            "nothing moves the cloth: there is no [gravity], no wind or [[pull]] that acts, no pin or "
+            "obstacle that moves and no cloth.velocity, and it starts flat and unstrained");
+}
+
+}  // namespace
+
+std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config,
+                                               const StrainRange& placed)
+{
+    Warnings warnings(document);
+    const MeshTopology topology = make_topology(config.cloth.vertex_count(), config.cloth.faces);
+    check_time(config, warnings);
+    check_cloth(config, topology, warnings);
+    check_cloth_size(config, warnings);
+    check_angles(config, warnings);
+    check_pins(config, warnings);
+    check_wind(config, warnings);
+    check_pulls(config, warnings);
+    check_obstacles(config, warnings);
+    check_turns(config, warnings);
+    check_strain(placed, warnings);
+    check_thickness(config, topology, warnings);
+    check_bends(config, warnings);
+    check_stillness(config, topology, warnings);
+    return warnings.lines_;
+}
+
+}  // namespace arris

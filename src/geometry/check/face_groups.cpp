@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/check/face_groups.h"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <utility>
+
+namespace arris {
+namespace {
+
+using Iterator = std::vector<int>::iterator;
+
+void halve(const std::vector<Vec3>& centers, int group_size, Iterator begin, Iterator end)
+{
+    const int count = static_cast<int>(end - begin);
+    if (count <= group_size) return;
+    Box3 box;
+    for (Iterator i = begin; i != end; ++i) box.extend(centers[*i]);
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    // The first part is whole groups, so that runs do not straddle the halves.
+    const int groups = (count + group_size - 1) / group_size;
+    const Iterator middle = begin + groups / 2 * group_size;
+    std::nth_element(begin, middle, end, [&](int a, int b) {
+        return std::pair(centers[a][axis], a) < std::pair(centers[b][axis], b);
+    });
+    halve(centers, group_size, begin, middle);
+    halve(centers, group_size, middle, end);
+}
+
+}  // namespace
+
+std::vector<int> order_by_place(const std::vector<Box3>& boxes, int group_size)
+{
+    assert(group_size > 0);
+    std::vector<Vec3> centers;
+    centers.reserve(boxes.size());
+    for (const Box3& box : boxes) centers.push_back(box.center());
+    std::vector<int> order(boxes.size());
+    std::iota(order.begin(), order.end(), 0);
+    halve(centers, group_size, order.begin(), order.end());
+    return order;
+}
+
+}  // namespace arris

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two surfaces that are apart and then are not have met first where a vertex of the one touched a face of the
+// other, or an edge of the one an edge of the other. So these pairs, swept over the step, are all there is to
+// check; every pair that is not swept is known to stay apart: by boxes, or by a plane between a cloth face's
+// sweep and a face of the obstacle.
+//
+// Every cloth vertex and edge belongs to one cloth face and is swept with it alone. Cloth faces that lie
+// together share one query of the obstacle.
+#include "geometry/check/sweep_check.h"
+
+#include <algorithm>
+#include <cassert>
+#include <span>
+#include <tuple>
+
+#include "geometry/check/face_groups.h"
+#include "geometry/check/sweep_violation.h"
+#include "geometry/check/swept_face.h"
+#include "geometry/contact/contact_batches.h"
+#include "geometry/obstacle/obstacle_touch.h"
+#include "geometry/sort_unique.h"
+
+namespace arris {
+namespace {
+
+// Nearer than this share of a swept cloth face's box two elements count as touching, unless they began
+// nearer: far above the rounding of differences (1e-14), far below any stand-off.
+constexpr double kTouching = 1e-11;
+constexpr int kMostViolations = 9;  // of one cloth face
+constexpr int kGroupSize = 16;      // cloth faces a query: fewer, and queries cost; more, and their boxes do
+
+/// Elements that belong to a cloth face; -1 where there are fewer.
+struct Owned {
+    std::array<int, 3> vertices{-1, -1, -1};
+    std::array<int, 3> edges{-1, -1, -1};
+};
+
+/// What was found about a cloth face that is not clean.
+struct FaceFinding {
+    int face;
+    bool is_touching = false;        ///< the obstacle at the end
+    bool is_met = false;             ///< by a point
+    std::vector<int> vertices = {};  ///< of its own that met something
+    std::vector<int> edges = {};
+    std::vector<ObstacleContact> violations = {};
+
+    bool is_clean() const { return !is_touching && !is_met && vertices.empty() && edges.empty(); }
+};
+
+std::vector<Box3> sweep_boxes(const ClothMotion& motion)
+{
+    std::vector<Box3> boxes(motion.faces->size());
+    for (std::size_t f = 0; f < boxes.size(); ++f)
+        for (const int v : (*motion.faces)[f]) boxes[f].extend(motion.begin[v]).extend(motion.end[v]);
+    return boxes;
+}
+
+std::vector<Owned> assign_owners(const ClothMotion& motion)
+{
+    const std::vector<Face>& faces = *motion.faces;
+    std::vector<Owned> owned(faces.size());
+    std::vector<char> is_taken(motion.begin.size(), 0);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        for (int k = 0; k < 3; ++k) {
+            if (is_taken[faces[f][k]]) continue;
+            is_taken[faces[f][k]] = 1;
+            owned[f].vertices[k] = faces[f][k];
+        }
+    }
+    const int edge_count = static_cast<int>(motion.edges->size());
+    for (int e = 0; e < edge_count; ++e) {
+        std::array<int, 3>& edges = owned[(*motion.edges)[e].face_left].edges;
+        *std::find(edges.begin(), edges.end(), -1) = e;
+    }
+    return owned;
+}
+
+Box3 box_of(std::span<const Vec3> points)
+{
+    Box3 box;
+    for (const Vec3& p : points) box.extend(p);
+    return box;
+}
+
+/// An element of the cloth met one of the obstacle.
+struct Meeting {
+    ContactKind kind;
+    int cloth_element, obstacle_element;
+    SweepHit hit;
+    double depth;  ///< how far past the meeting point, against its normal, the cloth's point ends
+};
+
+/// A face, wire or lone point of the obstacle: its face, edge of the topology or point.
+struct Near {
+    int element;
+    Box3 box;
+};
+
+/// Checks cloth faces that lie together; keeps lists for reuse.
+class GroupSearch {
+  public:
+    GroupSearch(const Obstacle& obstacle, const ClothMotion& motion, double thickness)
+        : obstacle_(obstacle), motion_(motion), thickness_(thickness)
+    {
+    }
+
+    /// Appends what is not clean.
+    void search(std::span<const int> faces, const std::vector<Box3>& boxes, const std::vector<Owned>& owned,
+                std::vector<FaceFinding>& findings)
+    {
+        Box3 group;
+        for (const int f : faces) group.extend(boxes[f]);
+        if (!group.intersects(obstacle_.bounds())) return;
+        // Boxes of faces, compared below, are exact; the query need not be.
+        const double margin = kTouching * group.diagonal().norm();
+        collect_group(Box3(group.min().array() - margin, group.max().array() + margin));
+        for (const int f : faces) {
+            FaceFinding finding{f};
+            search_face(boxes[f], owned[f], finding);
+            if (!finding.is_clean()) findings.push_back(std::move(finding));
+        }
+    }
+
+  private:
+    void collect_group(const Box3& group)
+    {
+        const ObstacleMesh& mesh = obstacle_.mesh();
+        const ObstacleFeatures& features = obstacle_.features();
+        near_faces_.clear();
+        near_wires_.clear();
+        near_points_.clear();
+        obstacle_.find_faces(group, found_);
+        for (const int f : found_) near_faces_.push_back({f, box_of(triangle(f))});
+        if (!mesh.segments.empty()) {
+            obstacle_.find_feature_edges(group, found_);
+            for (const int f : found_) {
+                const FeatureEdge& feature = features.edges[f];
+                if (feature.kind == FeatureKind::Wire)
+                    near_wires_.push_back({feature.edge, box_of(segment(feature.edge))});
+            }
+        }
+        if (!mesh.lone_points.empty()) {
+            obstacle_.find_corners(group, found_);
+            for (const int c : found_) {
+                const int p = features.corners[c].point;
+                if (obstacle_.topology().edge_count_at(p) == 0)
+                    near_points_.push_back({p, Box3(mesh.points[p], mesh.points[p])});
+            }
+        }
+    }
+
+    void search_face(const Box3& box, const Owned& owned, FaceFinding& finding)
+    {
+        copy_touching(near_faces_, box, faces_);
+        copy_touching(near_wires_, box, edges_);
+        copy_touching(near_points_, box, points_);
+        if (faces_.empty() && edges_.empty() && points_.empty()) return;
+        const SweptFace swept(motion_, finding.face);
+        keep_reachable(swept);
+        if (faces_.empty() && edges_.empty() && points_.empty()) return;
+        if (swept.is_moving()) {
+            distance_ = kTouching * box.diagonal().norm();
+            meetings_.clear();
+            sweep_vertices(owned, finding);
+            sweep_edges(owned, finding);
+            sweep_face(swept, finding);
+            keep_deepest(finding);
+        }
+        find_touches(obstacle_, swept.end(), touch_);
+        finding.is_touching = touch_.is_any();
+    }
+
+    static void copy_touching(const std::vector<Near>& all, const Box3& box, std::vector<int>& chosen)
+    {
+        chosen.clear();
+        for (const Near& near : all)
+            if (near.box.intersects(box)) chosen.push_back(near.element);
+    }
+
+    /// Drops what a plane keeps off the swept face; edges and points of what remains join the others.
+    void keep_reachable(const SweptFace& swept)
+    {
+        const ObstacleMesh& mesh = obstacle_.mesh();
+        const ObstacleTopology& topology = obstacle_.topology();
+        std::erase_if(faces_, [&](int f) { return swept.is_apart(triangle(f), &topology.face_normals[f]); });
+        std::erase_if(edges_, [&](int e) { return swept.is_apart(segment(e)); });
+        std::erase_if(points_, [&](int p) { return swept.is_apart(std::span(&mesh.points[p], 1)); });
+        for (const int e : edges_) {
+            const std::array<int, 2>& ends = topology.edges[e].points;
+            points_.insert(points_.end(), ends.begin(), ends.end());
+        }
+        for (const int f : faces_) {
+            edges_.insert(edges_.end(), topology.face_edges[f].begin(), topology.face_edges[f].end());
+            points_.insert(points_.end(), mesh.faces[f].begin(), mesh.faces[f].end());
+        }
+        sort_unique(edges_);
+        sort_unique(points_);
+    }
+
+    /// Of what a vertex meets only the first counts: the rest lies behind it.
+    void sweep_vertices(const Owned& owned, FaceFinding& finding)
+    {
+        for (const int v : owned.vertices) {
+            if (v < 0) continue;
+            std::optional<SweepHit> first;
+            int first_face = -1;
+            for (const int f : faces_) {
+                const auto hit = sweep_vertex_face(motion_.begin[v], motion_.end[v], triangle(f), distance_);
+                if (!hit || (first && hit->time >= first->time)) continue;
+                first = hit;
+                first_face = f;
+            }
+            if (!first) continue;
+            finding.vertices.push_back(v);
+            note(ContactKind::Vertex, v, first_face, *first, {v, -1, -1});
+        }
+    }
+
+    void sweep_edges(const Owned& owned, FaceFinding& finding)
+    {
+        for (const int c : owned.edges) {
+            if (c < 0) continue;
+            const int a = (*motion_.edges)[c].a, b = (*motion_.edges)[c].b;
+            bool is_met = false;
+            for (const int e : edges_) {
+                const auto hit = sweep_edge_edge({motion_.begin[a], motion_.begin[b]},
+                                                 {motion_.end[a], motion_.end[b]}, segment(e), distance_);
+                if (!hit) continue;
+                is_met = true;
+                note(ContactKind::Edge, c, e, *hit, {a, b, -1});
+            }
+            if (is_met) finding.edges.push_back(c);
+        }
+    }
+
+    void sweep_face(const SweptFace& swept, FaceFinding& finding)
+    {
+        const Face& face = (*motion_.faces)[finding.face];
+        for (const int p : points_) {
+            const auto hit =
+                sweep_face_point(swept.begin(), swept.end(), obstacle_.mesh().points[p], distance_);
+            if (!hit) continue;
+            finding.is_met = true;
+            note(ContactKind::Triangle, finding.face, p, *hit, face);
+        }
+    }
+
+    void note(ContactKind kind, int cloth_element, int obstacle_element, const SweepHit& hit,
+              const std::array<int, 3>& vertices)
+    {
+        const Vec3 end = ClothPoint{vertices, hit.weights}.at(motion_.end);
+        meetings_.push_back({kind, cloth_element, obstacle_element, hit, hit.normal.dot(hit.point - end)});
+    }
+
+    /// On a fine obstacle a coarse face has hundreds.
+    void keep_deepest(FaceFinding& finding)
+    {
+        const auto is_deeper = [](const Meeting& a, const Meeting& b) {
+            return std::tie(b.depth, a.kind, a.cloth_element, a.obstacle_element) <
+                   std::tie(a.depth, b.kind, b.cloth_element, b.obstacle_element);
+        };
+        const std::size_t count = std::min<std::size_t>(meetings_.size(), kMostViolations);
+        std::partial_sort(meetings_.begin(), meetings_.begin() + count, meetings_.end(), is_deeper);
+        for (std::size_t i = 0; i < count; ++i)
+            if (const auto contact = make_contact_of(meetings_[i])) finding.violations.push_back(*contact);
+    }
+
+    std::optional<ObstacleContact> make_contact_of(const Meeting& m) const
+    {
+        const int c = m.cloth_element, o = m.obstacle_element;
+        if (m.kind == ContactKind::Vertex)
+            return make_vertex_violation(obstacle_, motion_, c, o, m.hit, thickness_);
+        if (m.kind == ContactKind::Edge)
+            return make_edge_violation(obstacle_, motion_, c, o, m.hit, thickness_);
+        return make_face_violation(obstacle_, motion_, c, o, m.hit, thickness_);
+    }
+
+    std::array<Vec3, 3> triangle(int face) const
+    {
+        const std::vector<Vec3>& points = obstacle_.mesh().points;
+        const Face& f = obstacle_.mesh().faces[face];
+        return {points[f[0]], points[f[1]], points[f[2]]};
+    }
+
+    std::array<Vec3, 2> segment(int edge) const
+    {
+        const std::vector<Vec3>& points = obstacle_.mesh().points;
+        const std::array<int, 2>& ends = obstacle_.topology().edges[edge].points;
+        return {points[ends[0]], points[ends[1]]};
+    }
+
+    const Obstacle& obstacle_;
+    const ClothMotion& motion_;
+    double thickness_;
+    double distance_ = 0.0;
+    std::vector<Near> near_faces_, near_wires_, near_points_;  ///< of the group
+    std::vector<int> faces_, edges_, points_;                  ///< of those, near the present face
+    std::vector<Meeting> meetings_;                            ///< of the present face
+    std::vector<int> found_;
+    ObstacleTouch touch_;
+};
+
+/// Cloth faces of which any part met the obstacle or touches it.
+std::vector<int> find_unclean(const ClothMotion& motion, const std::vector<FaceFinding>& findings)
+{
+    std::vector<char> is_vertex_met(motion.begin.size(), 0);
+    std::vector<int> unclean;
+    for (const FaceFinding& finding : findings) {
+        for (const int v : finding.vertices) is_vertex_met[v] = 1;
+        for (const int e : finding.edges) {
+            const MeshEdge& edge = (*motion.edges)[e];
+            unclean.push_back(edge.face_left);
+            if (edge.face_right >= 0) unclean.push_back(edge.face_right);
+        }
+        if (finding.is_met || finding.is_touching) unclean.push_back(finding.face);
+    }
+    const int face_count = static_cast<int>(motion.faces->size());
+    for (int f = 0; f < face_count; ++f) {
+        const Face& face = (*motion.faces)[f];
+        if (is_vertex_met[face[0]] || is_vertex_met[face[1]] || is_vertex_met[face[2]]) unclean.push_back(f);
+    }
+    sort_unique(unclean);
+    return unclean;
+}
+
+SweepReport summarize(const ClothMotion& motion, const std::vector<FaceFinding>& findings)
+{
+    SweepReport report;
+    if (findings.empty()) return report;
+    for (const FaceFinding& finding : findings) {
+        report.crossings += static_cast<int>(finding.vertices.size() + finding.edges.size()) + finding.is_met;
+        report.intersections += finding.is_touching;
+        report.violations.insert(report.violations.end(), finding.violations.begin(),
+                                 finding.violations.end());
+    }
+    report.faces = find_unclean(motion, findings);
+    const auto key = [](const ObstacleContact& c) { return std::tie(c.kind, c.vertices, c.element); };
+    std::stable_sort(report.violations.begin(), report.violations.end(),
+                     [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    // A point that meets the edge between two faces meets both.
+    const auto last = std::unique(report.violations.begin(), report.violations.end(),
+                                  [&](const auto& a, const auto& b) { return key(a) == key(b); });
+    report.violations.erase(last, report.violations.end());
+    return report;
+}
+
+}  // namespace
+
+SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, double thickness)
+{
+    assert(motion.begin.size() == motion.end.size());
+    const std::vector<Box3> boxes = sweep_boxes(motion);
+    Box3 cloth;
+    for (const Box3& box : boxes) cloth.extend(box);
+    if (!cloth.intersects(obstacle.bounds())) return {};
+
+    const std::vector<Owned> owned = assign_owners(motion);
+    const std::vector<int> order = order_by_place(boxes, kGroupSize);
+    const int count = static_cast<int>(order.size());
+    const auto find = [&](int first, int last, std::vector<FaceFinding>& findings) {
+        GroupSearch search(obstacle, motion, thickness);
+        for (int begin = first; begin < last; begin += kGroupSize) {
+            const int size = std::min(kGroupSize, last - begin);
+            search.search(std::span(&order[begin], size), boxes, owned, findings);
+        }
+    };
+    return summarize(motion, collect_in_batches<FaceFinding>(count, find));
+}
+
+}  // namespace arris

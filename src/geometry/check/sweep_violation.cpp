@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/check/sweep_violation.h"
+
+#include <algorithm>
+
+namespace arris {
+namespace {
+
+// Sine below which the way to a point is along a plane, which then tells no side of it and holds nothing
+// back.
+constexpr double kAlongPlane = 1e-3;
+
+/// What a hit is made of, whichever elements met.
+struct Meeting {
+    const ClothMotion& motion;
+    ContactKind kind;
+    ClothPoint cloth_point;
+    int element;
+    Vec3 point;
+    double thickness;
+
+    Vec3 begin() const { return cloth_point.at(motion.begin); }
+    Vec3 end() const { return cloth_point.at(motion.end); }
+};
+
+/// Nothing where the plane does not part the cloth's point at begin, which came along `way`, from that at the
+/// end. The stand-off goes by begin alone: unlike in contacts made before the solve, for which the end tells
+/// what slides along a curve, the end is what is to be mended.
+std::optional<ObstacleContact> as_violation(const Meeting& meeting, ObstacleContact contact,
+                                            double least_sine)
+{
+    const ClothPoint cloth_point{contact.vertices, contact.weights};
+    const Vec3 way = cloth_point.at(meeting.motion.begin) - contact.point;
+    const double begin_gap = contact.normal.dot(way);
+    if (!(begin_gap > least_sine * way.norm())) return std::nullopt;
+    contact.least_gap = std::min(meeting.thickness, begin_gap);
+    const double end_gap = contact.normal.dot(cloth_point.at(meeting.motion.end) - contact.point);
+    if (!(end_gap < contact.least_gap)) return std::nullopt;
+    return contact;
+}
+
+/// The plane through the meeting point.
+std::optional<ObstacleContact> try_normal(const Meeting& meeting, const Vec3& normal, double least_sine)
+{
+    if (!(normal.squaredNorm() > 0.0)) return std::nullopt;
+    const ObstacleContact contact = make_contact(meeting.kind, meeting.cloth_point, meeting.element, normal,
+                                                 meeting.point, meeting.thickness);
+    return as_violation(meeting, contact, least_sine);
+}
+
+/// The plane of the hit, or, where that does not serve, across the way of the cloth's point, which began
+/// before that one and ended behind it.
+std::optional<ObstacleContact> by_hit(const Meeting& meeting, const SweepHit& hit)
+{
+    const std::optional<ObstacleContact> contact = try_normal(meeting, hit.normal, 0.0);
+    return contact ? contact : try_normal(meeting, (meeting.begin() - meeting.end()).stableNormalized(), 0.0);
+}
+
+}  // namespace
+
+std::optional<ObstacleContact> make_vertex_violation(const Obstacle& obstacle, const ClothMotion& motion,
+                                                     int vertex, int face, const SweepHit& hit,
+                                                     double thickness)
+{
+    const Meeting meeting{motion, ContactKind::Vertex, {{vertex, -1, -1}, hit.weights},
+                          face,   hit.point,           thickness};
+    const Vec3& normal = obstacle.topology().face_normals[face];
+    const bool is_above = normal.dot(meeting.begin() - hit.point) > 0.0;
+    const auto contact = try_normal(meeting, is_above ? normal : Vec3(-normal), kAlongPlane);
+    return contact ? contact : by_hit(meeting, hit);
+}
+
+std::optional<ObstacleContact> make_edge_violation(const Obstacle& obstacle, const ClothMotion& motion,
+                                                   int cloth_edge, int edge, const SweepHit& hit,
+                                                   double thickness)
+{
+    const MeshEdge& cloth = (*motion.edges)[cloth_edge];
+    const Meeting meeting{motion, ContactKind::Edge, {{cloth.a, cloth.b, -1}, hit.weights},
+                          edge,   hit.point,         thickness};
+    const auto found = make_edge_contact(obstacle, motion, motion.end, {cloth.a, cloth.b}, edge, thickness);
+    // However nearly along it the cloth came, its begin told the side: the hit's own direction may point in.
+    const auto contact = found ? as_violation(meeting, *found, 0.0) : std::nullopt;
+    return contact ? contact : by_hit(meeting, hit);
+}
+
+std::optional<ObstacleContact> make_face_violation(const Obstacle& obstacle, const ClothMotion& motion,
+                                                   int cloth_face, int point, const SweepHit& hit,
+                                                   double thickness)
+{
+    const Meeting meeting{
+        motion,   ContactKind::Triangle, {(*motion.faces)[cloth_face], hit.weights}, point, hit.point,
+        thickness};
+    const auto found = make_face_contact(obstacle, motion, motion.end, cloth_face, point, thickness);
+    const auto contact = found ? as_violation(meeting, *found, kAlongPlane) : std::nullopt;
+    return contact ? contact : by_hit(meeting, hit);
+}
+
+}  // namespace arris

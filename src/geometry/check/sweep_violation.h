@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "geometry/contact/contact_plane.h"
+#include "geometry/contact/continuous_collision.h"
+
+namespace arris {
+
+// Each makes a contact of a hit of the sweep from `motion.begin` to `motion.end`, with a plane that has the
+// cloth's point on its free side at begin and that the end violates; nothing only where that point touched at
+// begin or does not move. The stand-off is the thickness, or what the point had at begin where that was less.
+
+/// A vertex and a face.
+std::optional<ObstacleContact> make_vertex_violation(const Obstacle& obstacle, const ClothMotion& motion,
+                                                     int vertex, int face, const SweepHit& hit,
+                                                     double thickness);
+
+/// A cloth edge (index) and an edge of the topology.
+std::optional<ObstacleContact> make_edge_violation(const Obstacle& obstacle, const ClothMotion& motion,
+                                                   int cloth_edge, int edge, const SweepHit& hit,
+                                                   double thickness);
+
+/// A cloth face and a point of the mesh.
+std::optional<ObstacleContact> make_face_violation(const Obstacle& obstacle, const ClothMotion& motion,
+                                                   int cloth_face, int point, const SweepHit& hit,
+                                                   double thickness);
+
+}  // namespace arris

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/cloth/material_box.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "geometry/cgal.h"
+
+namespace arris {
+namespace {
+
+// Material coordinates are accepted as equal within this share of the cloth's size.
+constexpr double kMaterialTolerance = 1e-9;
+
+MaterialBox bounding_box(const std::vector<Vec2>& material)
+{
+    MaterialBox box{material.front(), material.front()};
+    for (const Vec2& X : material) {
+        box.min = box.min.cwiseMin(X);
+        box.max = box.max.cwiseMax(X);
+    }
+    return box;
+}
+
+// Load gathered on vertices; normalised once, at the end. Extended precision so that 1e6 shares sum to 1.
+class ShareSum {
+  public:
+    explicit ShareSum(const ClothMesh& mesh) : mesh_(mesh), weight_(mesh.vertex_count(), 0.0L) {}
+
+    void add(int f, const Vec3& weights)
+    {
+        const Face& face = mesh_.faces[f];
+        for (int k = 0; k < 3; ++k) {
+            weight_[face[k]] += static_cast<long double>(weights[k]);
+            total_ += static_cast<long double>(weights[k]);
+        }
+        if (weights.maxCoeff() > 0.0) by_face_.push_back({f, weights});
+    }
+
+    bool is_empty() const { return !(total_ > 0.0L); }
+
+    std::vector<LoadShare> shares() const
+    {
+        std::vector<LoadShare> result;
+        for (int v = 0; v < static_cast<int>(weight_.size()); ++v)
+            if (weight_[v] > 0.0L) result.push_back({v, static_cast<double>(weight_[v] / total_)});
+        return result;
+    }
+
+    std::vector<FaceShare> face_shares() const
+    {
+        std::vector<FaceShare> result = by_face_;
+        for (FaceShare& share : result) share.weights /= static_cast<double>(total_);
+        return result;
+    }
+
+  private:
+    const ClothMesh& mesh_;
+    std::vector<FaceShare> by_face_;
+    std::vector<long double> weight_;
+    long double total_ = 0.0L;
+};
+
+// A point of a face while it is clipped: where, and its barycentric coordinates.
+struct ClipPoint {
+    Vec2 X;
+    Vec3 weights;
+};
+
+struct ClipPolygon {
+    std::array<ClipPoint, 8> points;  // a triangle clipped by four half planes has at most 7
+    int count = 0;
+
+    void push(const ClipPoint& p) { points[count++] = p; }
+};
+
+ClipPoint interpolate(const ClipPoint& p, const ClipPoint& q, double s)
+{
+    return {p.X + s * (q.X - p.X), p.weights + s * (q.weights - p.weights)};
+}
+
+ClipPolygon corners_of(const ClothMesh& mesh, const Face& face)
+{
+    ClipPolygon polygon;
+    for (int k = 0; k < 3; ++k) polygon.push({mesh.material[face[k]], Vec3::Unit(k)});
+    return polygon;
+}
+
+// Sutherland-Hodgman against sign * (X[axis] - bound) >= 0.
+ClipPolygon clip(const ClipPolygon& polygon, int axis, double bound, double sign)
+{
+    ClipPolygon kept;
+    for (int k = 0; k < polygon.count; ++k) {
+        const ClipPoint& p = polygon.points[k];
+        const ClipPoint& q = polygon.points[(k + 1) % polygon.count];
+        const double dp = sign * (p.X[axis] - bound);
+        const double dq = sign * (q.X[axis] - bound);
+        if (dp >= 0.0) kept.push(p);
+        if ((dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0)) {
+            ClipPoint crossing = interpolate(p, q, dp / (dp - dq));
+            crossing.X[axis] = bound;
+            kept.push(crossing);
+        }
+    }
+    return kept;
+}
+
+// Integrals of a face's three shape functions over its part inside the box.
+Vec3 integrate_area(const ClothMesh& mesh, const Face& face, const MaterialBox& box)
+{
+    ClipPolygon polygon = corners_of(mesh, face);
+    for (int axis = 0; axis < 2; ++axis) {
+        polygon = clip(polygon, axis, box.min[axis], 1.0);
+        polygon = clip(polygon, axis, box.max[axis], -1.0);
+    }
+    Vec3 integral = Vec3::Zero();
+    for (int k = 1; k + 1 < polygon.count; ++k) {
+        const ClipPoint& a = polygon.points[0];
+        const ClipPoint& b = polygon.points[k];
+        const ClipPoint& c = polygon.points[k + 1];
+        const double area = 0.5 * twice_area(a.X, b.X, c.X);
+        integral += area / 3.0 * (a.weights + b.weights + c.weights);
+    }
+    return integral.cwiseMax(0.0);
+}
+
+bool overlaps(const ClothMesh& mesh, const Face& face, const MaterialBox& box)
+{
+    const Vec2& a = mesh.material[face[0]];
+    const Vec2& b = mesh.material[face[1]];
+    const Vec2& c = mesh.material[face[2]];
+    return (a.cwiseMin(b).cwiseMin(c).array() <= box.max.array()).all() &&
+           (a.cwiseMax(b).cwiseMax(c).array() >= box.min.array()).all();
+}
+
+void spread_by_area(const ClothMesh& mesh, const MaterialBox& box, ShareSum& sum)
+{
+    for (int f = 0; f < mesh.face_count(); ++f)
+        if (overlaps(mesh, mesh.faces[f], box)) sum.add(f, integrate_area(mesh, mesh.faces[f], box));
+}
+
+// The part of an axis-parallel line inside one face, from `begin` to `end`.
+struct LinePart {
+    ClipPoint begin, end;
+    int face;
+};
+
+// `axis` is the direction the line runs in; box.min and box.max agree in the other.
+std::optional<LinePart> clip_line(const ClothMesh& mesh, int f, const MaterialBox& box, int axis)
+{
+    const int across = 1 - axis;
+    ClipPolygon polygon = corners_of(mesh, mesh.faces[f]);
+    polygon = clip(polygon, across, box.min[across], 1.0);
+    polygon = clip(polygon, across, box.min[across], -1.0);
+    polygon = clip(polygon, axis, box.min[axis], 1.0);
+    polygon = clip(polygon, axis, box.max[axis], -1.0);
+    if (polygon.count < 2) return std::nullopt;
+    const auto ahead = [axis](const ClipPoint& p, const ClipPoint& q) { return p.X[axis] < q.X[axis]; };
+    const auto [first, last] =
+        std::minmax_element(polygon.points.begin(), polygon.points.begin() + polygon.count, ahead);
+    if (!ahead(*first, *last)) return std::nullopt;
+    return LinePart{*first, *last, f};
+}
+
+// A line along a mesh edge lies in two faces: every stretch of it is taken from the first part that reaches
+// it, in the order of where parts begin, so that none counts twice.
+void spread_by_length(const ClothMesh& mesh, const MaterialBox& box, int axis, ShareSum& sum)
+{
+    std::vector<LinePart> parts;
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        if (!overlaps(mesh, mesh.faces[f], box)) continue;
+        if (const auto part = clip_line(mesh, f, box, axis)) parts.push_back(*part);
+    }
+    std::stable_sort(parts.begin(), parts.end(), [axis](const LinePart& p, const LinePart& q) {
+        return p.begin.X[axis] < q.begin.X[axis];
+    });
+    double reached = box.min[axis];
+    for (const LinePart& part : parts) {
+        const double begin = std::max(part.begin.X[axis], reached);
+        const double end = part.end.X[axis];
+        if (!(end > begin)) continue;
+        const double s = (begin - part.begin.X[axis]) / (end - part.begin.X[axis]);
+        const Vec3 at_begin = interpolate(part.begin, part.end, s).weights;
+        sum.add(part.face, 0.5 * (end - begin) * (at_begin + part.end.weights).cwiseMax(0.0));
+        reached = end;
+    }
+}
+
+// All on the nearest of `candidates` to `point`, lowest index on ties; as a corner of face `preferred` where
+// it is one, else of the first face that has it.
+void spread_to_nearest_vertex(const ClothMesh& mesh, const std::vector<int>& candidates, const Vec2& point,
+                              int preferred, ShareSum& sum)
+{
+    int nearest = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (const int v : candidates) {
+        const double squared_distance = (mesh.material[v] - point).squaredNorm();
+        if (squared_distance < least) {
+            least = squared_distance;
+            nearest = v;
+        }
+    }
+    if (nearest < 0) return;
+    const auto add_to = [&](int f) {
+        const Face& face = mesh.faces[f];
+        const auto corner = std::find(face.begin(), face.end(), nearest);
+        if (corner == face.end()) return false;
+        sum.add(f, Vec3::Unit(corner - face.begin()));
+        return true;
+    };
+    if (preferred >= 0 && add_to(preferred)) return;
+    for (int f = 0; f < mesh.face_count(); ++f)
+        if (add_to(f)) return;
+}
+
+void spread_over_point(const ClothMesh& mesh, const Vec2& point, ShareSum& sum)
+{
+    const int face = locate(mesh, point).face;
+    if (face < 0) return;
+    std::vector<int> all(mesh.material.size());
+    for (int v = 0; v < static_cast<int>(all.size()); ++v) all[v] = v;
+    spread_to_nearest_vertex(mesh, all, point, face, sum);
+}
+
+// Where the box only touches the cloth from outside: along its sides, else at vertices.
+void spread_over_sides(const ClothMesh& mesh, const MaterialBox& box, ShareSum& sum)
+{
+    for (int axis = 0; axis < 2; ++axis) {
+        for (const double bound : {box.min[1 - axis], box.max[1 - axis]}) {
+            MaterialBox side = box;
+            side.min[1 - axis] = side.max[1 - axis] = bound;
+            if (box.max[axis] > box.min[axis]) spread_by_length(mesh, side, axis, sum);
+        }
+    }
+    if (!sum.is_empty()) return;
+    constexpr int kNoFace = -1;
+    spread_to_nearest_vertex(mesh, vertices_in_box(mesh, box), 0.5 * (box.min + box.max), kNoFace, sum);
+}
+
+// The box's part within the cloth's bounding box; a side no longer than the tolerance becomes none.
+std::optional<MaterialBox> part_near_cloth(const ClothMesh& mesh, const MaterialBox& box)
+{
+    const double tolerance = kMaterialTolerance * material_size(mesh.material);
+    const MaterialBox bounds = bounding_box(mesh.material);
+    MaterialBox part{box.min.cwiseMax(bounds.min), box.max.cwiseMin(bounds.max)};
+    for (int axis = 0; axis < 2; ++axis) {
+        const double length = part.max[axis] - part.min[axis];
+        if (!(length >= -tolerance)) return std::nullopt;
+        if (length > tolerance) continue;
+        const double middle = 0.5 * (part.min[axis] + part.max[axis]);
+        part.min[axis] = part.max[axis] = std::clamp(middle, bounds.min[axis], bounds.max[axis]);
+    }
+    return part;
+}
+
+ShareSum spread(const ClothMesh& mesh, const MaterialBox& box)
+{
+    ShareSum sum(mesh);
+    if (mesh.faces.empty()) return sum;
+    const auto part = part_near_cloth(mesh, box);
+    if (!part) return sum;
+    const Vec2 extent = part->max - part->min;
+    if (!(extent.maxCoeff() > 0.0)) {
+        spread_over_point(mesh, part->min, sum);
+        return sum;
+    }
+    if (extent.minCoeff() > 0.0) {
+        spread_by_area(mesh, *part, sum);
+    } else {
+        spread_by_length(mesh, *part, extent.x() > 0.0 ? 0 : 1, sum);
+    }
+    if (sum.is_empty()) spread_over_sides(mesh, *part, sum);
+    return sum;
+}
+
+Vec2 nearest_on_segment(const Vec2& a, const Vec2& b, const Vec2& p)
+{
+    const Vec2 d = b - a;
+    return a + std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d;
+}
+
+// Nearest to `point` among the face's border points; for points outside.
+Vec2 nearest_on_border(const std::array<Vec2, 3>& X, const Vec2& point)
+{
+    Vec2 nearest = X[0];
+    for (int k = 0; k < 3; ++k) {
+        const Vec2 candidate = nearest_on_segment(X[k], X[(k + 1) % 3], point);
+        if ((candidate - point).squaredNorm() < (nearest - point).squaredNorm()) nearest = candidate;
+    }
+    return nearest;
+}
+
+bool contains(const std::array<Vec2, 3>& X, const Vec2& point)
+{
+    for (int k = 0; k < 3; ++k)
+        if (exact_orientation(X[k], X[(k + 1) % 3], point) < 0) return false;
+    return true;
+}
+
+Vec3 barycentric(const std::array<Vec2, 3>& X, const Vec2& point)
+{
+    Vec3 weights(twice_area(point, X[1], X[2]), twice_area(X[0], point, X[2]), twice_area(X[0], X[1], point));
+    weights = weights.cwiseMax(0.0);
+    return weights / weights.sum();
+}
+
+}  // namespace
+
+double material_size(const std::vector<Vec2>& material)
+{
+    if (material.empty()) return 0.0;
+    const MaterialBox box = bounding_box(material);
+    return (box.max - box.min).maxCoeff();
+}
+
+std::vector<int> vertices_in_box(const ClothMesh& mesh, const MaterialBox& box)
+{
+    const double tolerance = kMaterialTolerance * material_size(mesh.material);
+    std::vector<int> inside;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+        const Vec2& X = mesh.material[v];
+        if ((X.array() >= box.min.array() - tolerance).all() &&
+            (X.array() <= box.max.array() + tolerance).all())
+            inside.push_back(v);
+    }
+    return inside;
+}
+
+std::vector<LoadShare> spread_over_box(const ClothMesh& mesh, const MaterialBox& box)
+{
+    return spread(mesh, box).shares();
+}
+
+std::vector<FaceShare> spread_over_faces(const ClothMesh& mesh, const MaterialBox& box)
+{
+    return spread(mesh, box).face_shares();
+}
+
+MaterialLocation locate(const ClothMesh& mesh, const Vec2& point)
+{
+    const double tolerance = kMaterialTolerance * material_size(mesh.material);
+    const MaterialBox near{point.array() - tolerance, point.array() + tolerance};
+    MaterialLocation nearest;
+    double least = tolerance;
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        const Face& face = mesh.faces[f];
+        if (!overlaps(mesh, face, near)) continue;
+        const std::array<Vec2, 3> X = {mesh.material[face[0]], mesh.material[face[1]],
+                                       mesh.material[face[2]]};
+        if (contains(X, point)) return {f, barycentric(X, point)};
+        const Vec2 on_border = nearest_on_border(X, point);
+        const double distance = (on_border - point).norm();
+        if (distance < least || (nearest.face < 0 && distance <= least)) {
+            least = distance;
+            nearest = {f, barycentric(X, on_border)};
+        }
+    }
+    return nearest;
+}
+
+}  // namespace arris

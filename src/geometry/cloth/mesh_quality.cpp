@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/cloth/mesh_quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace arris {
+
+double material_area(const ClothMesh& mesh)
+{
+    double doubled = 0.0;
+    for (const Face& f : mesh.faces)
+        doubled += twice_area(mesh.material[f[0]], mesh.material[f[1]], mesh.material[f[2]]);
+    return 0.5 * doubled;
+}
+
+namespace {
+
+/// Radians.
+double least_angle(const ClothMesh& mesh, const Face& f)
+{
+    // At each corner tan = cross / dot; atan2 needs no division and no clamp.
+    double least = std::numbers::pi;
+    const double doubled = twice_area(mesh.material[f[0]], mesh.material[f[1]], mesh.material[f[2]]);
+    for (int k = 0; k < 3; ++k) {
+        const Vec2& apex = mesh.material[f[k]];
+        const Vec2 to_next = mesh.material[f[(k + 1) % 3]] - apex;
+        const Vec2 to_last = mesh.material[f[(k + 2) % 3]] - apex;
+        least = std::min(least, std::atan2(doubled, to_next.dot(to_last)));
+    }
+    return least;
+}
+
+double in_degrees(double angle)
+{
+    return angle * 180.0 / std::numbers::pi;
+}
+
+}  // namespace
+
+double least_material_angle(const ClothMesh& mesh, int face)
+{
+    return in_degrees(least_angle(mesh, mesh.faces[face]));
+}
+
+double least_material_angle(const ClothMesh& mesh)
+{
+    double least = mesh.faces.empty() ? 0.0 : std::numbers::pi;
+    for (const Face& f : mesh.faces) least = std::min(least, least_angle(mesh, f));
+    return in_degrees(least);
+}
+
+}  // namespace arris

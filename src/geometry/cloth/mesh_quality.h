@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "geometry/cloth/cloth_mesh.h"
+
+namespace arris {
+
+/// Sum of the faces' material areas, m^2.
+double material_area(const ClothMesh& mesh);
+
+/// Least angle of a face in material space, degrees.
+double least_material_angle(const ClothMesh& mesh, int face);
+
+/// Least angle of any face in material space, degrees; 0 for an empty mesh.
+double least_material_angle(const ClothMesh& mesh);
+
+}  // namespace arris

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/cloth_input/cloth_file.h"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <assimp/DefaultLogger.hpp>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <tuple>
+
+#include "geometry/cgal.h"
+#include "geometry/cloth/material_box.h"
+#include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth_input/chart_overlap.h"
+#include "geometry/cloth_input/obj_outline.h"
+#include "geometry/input_error.h"
+
+namespace arris {
+namespace {
+
+// Cloth farther out or larger than this is in the wrong unit.
+constexpr double kLargestCoordinate = 1e6;  // m
+
+// A mesh is flat within this share of its size: files are often written in single precision.
+constexpr double kFlat = 1e-6;
+
+// Takes assimp's warnings and errors for as long as it lives.
+class LogCapture : public Assimp::LogStream {
+  public:
+    LogCapture()
+    {
+        Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+        Assimp::DefaultLogger::get()->attachStream(this, kSeverity);
+    }
+    ~LogCapture() override
+    {
+        Assimp::DefaultLogger::get()->detachStream(this, kSeverity);
+        Assimp::DefaultLogger::kill();
+    }
+    LogCapture(const LogCapture&) = delete;
+    LogCapture& operator=(const LogCapture&) = delete;
+
+    void write(const char* message) override
+    {
+        std::string line = message;
+        while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())) != 0) line.pop_back();
+        lines.push_back("assimp: " + line);
+    }
+
+    std::vector<std::string> lines;
+
+  private:
+    static constexpr unsigned kSeverity = Assimp::Logger::Err | Assimp::Logger::Warn;
+};
+
+// A corner of a face as the file has it.
+struct FileVertex {
+    Vec3 position;
+    Vec2 uv;
+
+    auto place() const { return std::tuple(position.x(), position.y(), position.z()); }
+    auto key() const { return std::tuple_cat(place(), std::tuple(uv.x(), uv.y())); }
+};
+
+struct FileMesh {
+    std::vector<FileVertex> vertices;
+    std::vector<int> numbers;  // counted from 1, of the `v` statement of each vertex (the first of several)
+    std::vector<Face> faces;
+    std::vector<int> lines;  // of the file, that of each face
+    bool has_uv = false;
+};
+
+// assimp keeps coordinates in single precision, and not their order: each corner's number travels as its UVs,
+// in two parts that single precision holds exactly.
+constexpr int kNumberBase = 1 << 12;
+
+// The faces of an outline as text for assimp, near the origin so that single precision tells vertices apart.
+std::string numbered_text(const ObjOutline& outline)
+{
+    const Vec3 origin = outline.vertices[outline.corners.front().vertex].place;
+    std::string text;
+    for (const ObjCorner& corner : outline.corners) {
+        const Vec3 p = outline.vertices[corner.vertex].place - origin;
+        fmt::format_to(std::back_inserter(text), "v {} {} {}\n", p.x(), p.y(), p.z());
+    }
+    const int count = static_cast<int>(outline.corners.size());
+    for (int c = 0; c < count; ++c)
+        fmt::format_to(std::back_inserter(text), "vt {} {}\n", c % kNumberBase, c / kNumberBase);
+    int corner = 0;
+    for (const int corners : outline.corner_counts) {
+        text += 'f';
+        for (int k = 0; k < corners; ++k, ++corner)
+            fmt::format_to(std::back_inserter(text), " {}/{}", corner + 1, corner + 1);
+        text += '\n';
+    }
+    return text;
+}
+
+int number_of_corner(const aiVector3D& uv)
+{
+    return static_cast<int>(uv.x) + kNumberBase * static_cast<int>(uv.y);
+}
+
+class ClothReader {
+  public:
+    ClothReader(const std::string& path, double unit_in_metres, char up)
+        : path_(path), unit_(unit_in_metres), to_z_up_(turn_up(up))
+    {
+        if (!std::isfinite(unit_) || !(unit_ > 0.0)) refuse(fmt::format("unit {} m must be positive", unit_));
+    }
+
+    ClothFile read()
+    {
+        require_regular_obj();
+        outline_ = read_obj_outline(path_);
+        file_.has_uv = outline_.corners.front().uv >= 0;
+        for (const ObjCorner& corner : outline_.corners) require_finite(corner);
+        import();
+        warn_about_dropped();
+        require_single_uvs();
+        place_in_world();
+        require_distinct_faces();
+        if (file_.has_uv) {
+            take_uvs();
+        } else {
+            flatten();
+        }
+        orient();
+        require_manifold();
+        require_no_overlap();
+        return {mesh_, warnings_};
+    }
+
+  private:
+    [[noreturn]] void refuse(const std::string& why) const { throw InputError(path_ + ": " + why); }
+
+    Mat3 turn_up(char up) const
+    {
+        Mat3 turn = Mat3::Identity();
+        if (up == 'y') turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+        if (up == 'x') turn << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+        if (up != 'x' && up != 'y' && up != 'z') refuse(fmt::format("up '{}' must be x, y or z", up));
+        return turn;
+    }
+
+    void require_regular_obj() const
+    {
+        std::error_code error;
+        if (!std::filesystem::exists(path_, error)) refuse("no such file");
+        if (!std::filesystem::is_regular_file(path_, error)) refuse("not a regular file");
+        std::string extension = std::filesystem::path(path_).extension().string();
+        std::transform(extension.begin(), extension.end(), extension.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        if (extension != ".obj") refuse(fmt::format("cloth is read from .obj files, not '{}'", extension));
+    }
+
+    // The file's triangles, vertices welded where position and UVs agree to the last bit. assimp's own
+    // welding would join what is within 1e-5, whatever the cloth's size.
+    void import()
+    {
+        LogCapture log;
+        Assimp::Importer importer;
+        const std::string text = numbered_text(outline_);
+        const aiScene* scene = importer.ReadFileFromMemory(
+            text.data(), text.size(), aiProcess_Triangulate | aiProcess_ValidateDataStructure, "obj");
+        if (scene == nullptr) refuse(std::string("cannot be imported: ") + importer.GetErrorString());
+        warnings_ = log.lines;
+        collect(*scene);
+        const std::size_t expected = outline_.corners.size() - 2 * outline_.corner_counts.size();
+        if (file_.faces.size() != expected)
+            refuse(fmt::format(
+                "its polygons should make {} triangles but made {}: one crosses itself or has no area",
+                expected, file_.faces.size()));
+    }
+
+    void collect(const aiScene& scene)
+    {
+        std::map<decltype(FileVertex().key()), int> index;
+        for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+            const aiMesh& part = *scene.mMeshes[m];
+            for (unsigned f = 0; f < part.mNumFaces; ++f) {
+                Face face;
+                int line = 0;
+                for (unsigned k = 0; k < 3; ++k) {
+                    const aiVector3D& number = part.mTextureCoords[0][part.mFaces[f].mIndices[k]];
+                    const ObjCorner& corner = outline_.corners[number_of_corner(number)];
+                    face[k] = weld(corner, index);
+                    line = corner.line;
+                }
+                file_.faces.push_back(face);
+                file_.lines.push_back(line);
+            }
+        }
+    }
+
+    FileVertex vertex_at(const ObjCorner& corner) const
+    {
+        return {outline_.vertices[corner.vertex].place,
+                corner.uv < 0 ? Vec2(Vec2::Zero()) : outline_.uvs[corner.uv].place};
+    }
+
+    template <class Index>
+    int weld(const ObjCorner& corner, Index& index)
+    {
+        const FileVertex vertex = vertex_at(corner);
+        const auto [found, is_new] = index.emplace(vertex.key(), static_cast<int>(file_.vertices.size()));
+        if (is_new) {
+            file_.vertices.push_back(vertex);
+            file_.numbers.push_back(corner.vertex + 1);
+        }
+        return found->second;
+    }
+
+    void warn_about_dropped()
+    {
+        if (outline_.unused_vertex_count > 0)
+            warnings_.push_back(fmt::format("{}: {} of {} vertices belong to no face and were dropped", path_,
+                                            outline_.unused_vertex_count, outline_.vertices.size()));
+        if (outline_.line_and_point_count > 0)
+            warnings_.push_back(fmt::format("{}: {} lines and points are no cloth and were dropped", path_,
+                                            outline_.line_and_point_count));
+    }
+
+    [[noreturn]] void refuse_line(int line, const std::string& why) const
+    {
+        throw InputError(fmt::format("{}, line {}: {}", path_, line, why));
+    }
+
+    void require_finite(const ObjCorner& corner) const
+    {
+        const auto& [p, line] = outline_.vertices[corner.vertex];
+        if (!p.allFinite() || !(p.cwiseAbs().maxCoeff() * unit_ <= kLargestCoordinate))
+            refuse_line(
+                line, fmt::format("vertex ({}, {}, {}) must be finite and within {:g} m of the origin", p.x(),
+                                  p.y(), p.z(), kLargestCoordinate));
+        if (corner.uv < 0) return;
+        const auto& [uv, uv_line] = outline_.uvs[corner.uv];
+        if (!uv.allFinite() || !(uv.cwiseAbs().maxCoeff() <= kLargestCoordinate))
+            refuse_line(uv_line, fmt::format("UV ({}, {}) must be finite and within {:g} m", uv.x(), uv.y(),
+                                             kLargestCoordinate));
+    }
+
+    // A place with two UVs is a seam: the cloth would come apart there.
+    void require_single_uvs() const
+    {
+        std::vector<int> order(file_.vertices.size());
+        for (std::size_t v = 0; v < order.size(); ++v) order[v] = static_cast<int>(v);
+        const auto place = [&](int v) { return file_.vertices[v].place(); };
+        std::sort(order.begin(), order.end(), [&](int v, int w) { return place(v) < place(w); });
+        const auto twin = std::adjacent_find(order.begin(), order.end(),
+                                             [&](int v, int w) { return place(v) == place(w); });
+        if (twin == order.end()) return;
+        const FileVertex& a = file_.vertices[*twin];
+        const FileVertex& b = file_.vertices[*(twin + 1)];
+        refuse(fmt::format("vertex ({}, {}, {}) has two UVs, ({}, {}) and ({}, {}): UV seams are not allowed",
+                           a.position.x(), a.position.y(), a.position.z(), a.uv.x(), a.uv.y(), b.uv.x(),
+                           b.uv.y()));
+    }
+
+    void place_in_world()
+    {
+        mesh_.faces = file_.faces;
+        for (const FileVertex& vertex : file_.vertices)
+            mesh_.world.push_back(to_z_up_ * (unit_ * vertex.position));
+    }
+
+    double world_size() const
+    {
+        Vec3 low = mesh_.world.front();
+        Vec3 high = low;
+        for (const Vec3& x : mesh_.world) {
+            low = low.cwiseMin(x);
+            high = high.cwiseMax(x);
+        }
+        return (high - low).maxCoeff();
+    }
+
+    std::string describe(int face) const
+    {
+        const Vec3& a = mesh_.world[mesh_.faces[face][0]];
+        return fmt::format("the face of line {} (at {:.6g}, {:.6g}, {:.6g} m)", file_.lines[face], a.x(),
+                           a.y(), a.z());
+    }
+
+    // No face without area in the world, and none twice, in whichever direction.
+    void require_distinct_faces() const
+    {
+        std::map<Face, int> seen;
+        for (int f = 0; f < mesh_.face_count(); ++f) {
+            const auto& [a, b, c] = mesh_.faces[f];
+            if (a == b || b == c || c == a ||
+                CGAL::collinear(to_cgal(mesh_.world[a]), to_cgal(mesh_.world[b]), to_cgal(mesh_.world[c])))
+                refuse(describe(f) + " has no area");
+            Face key = mesh_.faces[f];
+            std::sort(key.begin(), key.end());
+            const auto [first, is_new] = seen.emplace(key, f);
+            if (!is_new)
+                refuse(fmt::format("{} is there twice, first in line {}", describe(f),
+                                   file_.lines[first->second]));
+        }
+    }
+
+    void take_uvs()
+    {
+        for (const FileVertex& vertex : file_.vertices) mesh_.material.push_back(vertex.uv);
+    }
+
+    // Twice the area vector of the largest face.
+    Vec3 largest_area() const
+    {
+        Vec3 largest = Vec3::Zero();
+        for (const auto& [a, b, c] : mesh_.faces) {
+            const Vec3 area = (mesh_.world[b] - mesh_.world[a]).cross(mesh_.world[c] - mesh_.world[a]);
+            if (area.norm() > largest.norm()) largest = area;
+        }
+        return largest;
+    }
+
+    // Without UVs: the mesh's own plane, seen from the side its faces turn counter-clockwise on.
+    void flatten()
+    {
+        const Vec3& origin = mesh_.world.front();
+        const Vec3 normal = largest_area().stableNormalized();
+        for (const Vec3& x : mesh_.world)
+            if (!(std::abs((x - origin).dot(normal)) <= kFlat * world_size()))
+                refuse(fmt::format(
+                    "curved (by {:.3g} m at ({:.6g}, {:.6g}, {:.6g}) m) and without UVs: give UVs in "
+                    "metres, or a flat mesh",
+                    std::abs((x - origin).dot(normal)), x.x(), x.y(), x.z()));
+        // u along x where the plane allows, so that a horizontal mesh has its own x and y as material
+        // coordinates.
+        const Vec3 guide = std::abs(normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+        const Vec3 along_u = (guide - guide.dot(normal) * normal).normalized();
+        const Vec3 along_v = normal.cross(along_u);
+        for (const Vec3& x : mesh_.world) mesh_.material.emplace_back(x.dot(along_u), x.dot(along_v));
+    }
+
+    int orientation_of(int face) const
+    {
+        const auto& [a, b, c] = mesh_.faces[face];
+        return exact_orientation(mesh_.material[a], mesh_.material[b], mesh_.material[c]);
+    }
+
+    // Makes every face counter-clockwise in material space, where one mirror does.
+    void orient()
+    {
+        int clockwise = 0;
+        for (int f = 0; f < mesh_.face_count(); ++f) {
+            const int turn = orientation_of(f);
+            if (turn == 0) refuse(describe(f) + " has no area in material space (its UVs lie on a line)");
+            if (turn < 0) ++clockwise;
+        }
+        if (clockwise == 0) return;
+        if (clockwise < mesh_.face_count())
+            refuse(fmt::format(
+                "{} of {} triangles are clockwise in material space: the chart is folded, or faces "
+                "run in different directions",
+                clockwise, mesh_.face_count()));
+        mirror();
+    }
+
+    void mirror()
+    {
+        double least = mesh_.material.front().x();
+        double most = least;
+        for (const Vec2& X : mesh_.material) {
+            least = std::min(least, X.x());
+            most = std::max(most, X.x());
+        }
+        for (Vec2& X : mesh_.material) X.x() = least + most - X.x();
+        warnings_.push_back(path_ +
+                            ": its UVs are mirrored; u was turned round (u became u_min + u_max - u)");
+    }
+
+    void require_manifold() const
+    {
+        const ElementNumbers numbers = {file_.numbers, file_.lines};
+        if (const std::string wrong = validate(mesh_, numbers); !wrong.empty())
+            refuse(wrong + " (vertices as the file numbers them, counted from 1, and faces by their line)");
+    }
+
+    void require_no_overlap() const
+    {
+        if (const auto pair = find_overlap(mesh_.material, mesh_.faces))
+            refuse(fmt::format("{} and {} overlap in material space", describe((*pair)[0]),
+                               describe((*pair)[1])));
+    }
+
+    std::string path_;
+    double unit_;
+    Mat3 to_z_up_;
+    ObjOutline outline_;
+    FileMesh file_;
+    ClothMesh mesh_;
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace
+
+ClothFile read_cloth_file(const std::string& path, double unit_in_metres, char up)
+{
+    return ClothReader(path, unit_in_metres, up).read();
+}
+
+}  // namespace arris

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/cloth_input/delaunay.h"
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_mesh_face_base_2.h>
+#include <CGAL/Delaunay_mesh_size_criteria_2.h>
+#include <CGAL/Delaunay_mesh_vertex_base_2.h>
+#include <CGAL/Delaunay_mesher_2.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "geometry/cgal.h"
+
+namespace arris {
+namespace {
+
+// sin^2 of the least angle, the greatest bound for which the refinement is proven to end (20.7 degrees).
+constexpr double kAngleBound = 0.125;
+
+// A vertex's index in the graph, or kNew for one that the refinement added.
+constexpr int kNew = -1;
+struct Index {
+    int value = kNew;
+};
+
+using VertexBase =
+    CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel, CGAL::Delaunay_mesh_vertex_base_2<Kernel>>;
+using FaceBase = CGAL::Delaunay_mesh_face_base_2<Kernel>;
+using Triangulation =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
+                                               CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>>;
+using VertexHandle = Triangulation::Vertex_handle;
+using FaceHandle = Triangulation::Face_handle;
+
+// An order of insertion without quadratic cases; the same at every call.
+std::vector<std::size_t> insertion_order(const std::vector<Point2>& points)
+{
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    using Traits =
+        CGAL::Spatial_sort_traits_adapter_2<Kernel, CGAL::Pointer_property_map<Point2>::const_type>;
+    CGAL::spatial_sort(order.begin(), order.end(), Traits(CGAL::make_property_map(points)));
+    return order;
+}
+
+Triangulation build(const PlanarGraph& graph)
+{
+    std::vector<Point2> points;
+    points.reserve(graph.points.size());
+    for (const Vec2& p : graph.points) points.push_back(to_cgal(p));
+    Triangulation triangulation;
+    std::vector<VertexHandle> vertices(points.size());
+    FaceHandle hint;
+    for (const std::size_t v : insertion_order(points)) {
+        vertices[v] = triangulation.insert(points[v], hint);
+        vertices[v]->info().value = static_cast<int>(v);
+        hint = vertices[v]->face();
+    }
+    for (const auto& [a, b] : graph.edges) triangulation.insert_constraint(vertices[a], vertices[b]);
+    return triangulation;
+}
+
+// Faces reached from `start` without crossing an edge of the graph.
+std::vector<FaceHandle> region_of(FaceHandle start, std::set<FaceHandle>& visited)
+{
+    std::vector<FaceHandle> region = {start};
+    visited.insert(start);
+    for (std::size_t next = 0; next < region.size(); ++next) {
+        for (int k = 0; k < 3; ++k) {
+            const FaceHandle neighbour = region[next]->neighbor(k);
+            if (region[next]->is_constrained(k) || !visited.insert(neighbour).second) continue;
+            region.push_back(neighbour);
+        }
+    }
+    return region;
+}
+
+Face indices_of(const FaceHandle& face)
+{
+    return {face->vertex(0)->info().value, face->vertex(1)->info().value, face->vertex(2)->info().value};
+}
+
+// Starts each face at its lowest vertex and sorts, so that the order does not depend on CGAL's storage.
+void make_canonical(std::vector<Face>& faces)
+{
+    for (Face& face : faces)
+        std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    std::sort(faces.begin(), faces.end());
+}
+
+// In the order of their coordinates, appended to `points`.
+void number_new_vertices(Triangulation& triangulation, std::vector<Vec2>& points)
+{
+    std::vector<VertexHandle> added;
+    for (const VertexHandle v : triangulation.finite_vertex_handles())
+        if (v->info().value == kNew) added.push_back(v);
+    std::sort(added.begin(), added.end(), [](const VertexHandle& v, const VertexHandle& w) {
+        return std::pair(v->point().y(), v->point().x()) < std::pair(w->point().y(), w->point().x());
+    });
+    for (const VertexHandle& v : added) {
+        v->info().value = static_cast<int>(points.size());
+        points.push_back(to_eigen(v->point()));
+    }
+}
+
+void find_crowded(const Triangulation& triangulation, RefinedTriangulation& refined)
+{
+    refined.shortest = std::numeric_limits<double>::infinity();
+    for (const auto& [face, k] : triangulation.finite_edges()) {
+        const Vec2 a = to_eigen(face->vertex(Triangulation::cw(k))->point());
+        const Vec2 b = to_eigen(face->vertex(Triangulation::ccw(k))->point());
+        if (!((b - a).norm() < refined.shortest)) continue;
+        refined.shortest = (b - a).norm();
+        refined.crowded = 0.5 * (a + b);
+    }
+}
+
+bool has_side_in(const FaceHandle& face, const std::set<std::array<int, 2>>& directed)
+{
+    const Face f = indices_of(face);
+    return directed.contains({f[0], f[1]}) || directed.contains({f[1], f[2]}) ||
+           directed.contains({f[2], f[0]});
+}
+
+}  // namespace
+
+std::vector<Face> triangulate(const PlanarGraph& graph, const std::vector<std::array<int, 2>>& filled)
+{
+    const Triangulation triangulation = build(graph);
+    const std::set<std::array<int, 2>> filled_sides(filled.begin(), filled.end());
+    std::set<FaceHandle> visited;
+    region_of(triangulation.infinite_face(), visited);
+    std::vector<Face> faces;
+    for (const FaceHandle start : triangulation.finite_face_handles()) {
+        if (visited.contains(start)) continue;
+        const std::vector<FaceHandle> region = region_of(start, visited);
+        const bool is_filled = std::any_of(region.begin(), region.end(), [&](const FaceHandle& face) {
+            return has_side_in(face, filled_sides);
+        });
+        if (is_filled) continue;
+        for (const FaceHandle& face : region) faces.push_back(indices_of(face));
+    }
+    make_canonical(faces);
+    return faces;
+}
+
+RefinedTriangulation refine(const PlanarGraph& graph, double size, std::size_t most_points)
+{
+    Triangulation triangulation = build(graph);
+    using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Triangulation>;
+    CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(kAngleBound, size));
+    mesher.init();
+    while (triangulation.number_of_vertices() <= most_points)
+        if (!mesher.step_by_step_refine_mesh()) break;
+
+    RefinedTriangulation refined;
+    refined.is_complete = triangulation.number_of_vertices() <= most_points;
+    if (!refined.is_complete) {
+        find_crowded(triangulation, refined);
+        return refined;
+    }
+    refined.points = graph.points;
+    number_new_vertices(triangulation, refined.points);
+    for (const FaceHandle face : triangulation.finite_face_handles())
+        if (face->is_in_domain()) refined.faces.push_back(indices_of(face));
+    make_canonical(refined.faces);
+    return refined;
+}
+
+}  // namespace arris

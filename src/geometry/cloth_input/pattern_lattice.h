@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/cloth_input/cloth_grid.h"
+
+namespace arris {
+
+/// A grid's regular pattern, turned about the middle of the rectangle: those of its vertices that lie in the
+/// rectangle, in *cell coordinates*, where a cell is the unit square between whole numbers and a "cross" cell
+/// has its middle at halves. Storage is proportional to the cells inside and the border's length in cells.
+class PatternLattice {
+  public:
+    /// `grid` must be valid and its pattern regular.
+    explicit PatternLattice(const ClothGrid& grid);
+
+    Vec2 to_cells(const Vec2& material) const;
+    Vec2 to_material(const Vec2& cells) const;
+
+    int vertex_count() const { return static_cast<int>(places_.size()); }
+    const Vec2& place(int vertex) const { return places_[vertex]; }  ///< cell coordinates
+
+    /// Vertices whose cell coordinates lie in the box, in ascending order.
+    std::vector<int> vertices_in(const Vec2& min, const Vec2& max) const;
+
+    /// Cells that meet the box, each named by the vertex at its lower left corner, ascending. A cell without
+    /// that vertex is never named: its faces would not be whole.
+    std::vector<int> cells_in(const Vec2& min, const Vec2& max) const;
+
+    /// The faces of a cell, counter-clockwise; a vertex outside the rectangle is -1, as are all of a face
+    /// that the pattern does not have.
+    std::array<Face, 4> faces_of(int cell) const;
+
+  private:
+    // Vertices at height `half_row` / 2, from x = first (+ 1/2 where half_row is odd).
+    struct Row {
+        int first = 0, count = 0, offset = 0;
+    };
+
+    int find(int half_row, int i) const;
+    const Row* row_at(int half_row) const;
+    void append_row(int half_row, const std::array<Vec2, 4>& corners);
+
+    GridPattern pattern_;
+    Vec2 size_, centre_;
+    std::array<int, 2> resolution_;
+    Mat2 rotation_ = Mat2::Identity();
+    bool is_turned_ = false;
+    int first_half_row_ = 0;
+    std::vector<Row> rows_;
+    std::vector<Vec2> places_;
+};
+
+}  // namespace arris

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/contact/contact_plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/closest_point.h"
+#include "geometry/obstacle/obstacle_distance.h"
+
+namespace arris {
+
+double touch_distance(const Obstacle& obstacle, double thickness)
+{
+    constexpr double kShare = 1e-6;
+    constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+    const Box3& bounds = obstacle.bounds();
+    const double largest = std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
+    return std::max(kShare * thickness, kRounding * largest);
+}
+
+double longest_reach(const ClothMotion& motion, std::span<const int> vertices, double thickness)
+{
+    double way = 0.0;
+    for (const int v : vertices) way = std::max(way, (motion.end[v] - motion.begin[v]).squaredNorm());
+    return kReachThicknesses * thickness + kReachShareOfWay * std::sqrt(way);
+}
+
+ObstacleContact make_contact(ContactKind kind, const ClothPoint& cloth_point, int element, const Vec3& normal,
+                             const Vec3& point, double least_gap)
+{
+    ObstacleContact contact{cloth_point, kind, element, normal, point, least_gap};
+    // Ascending, unused ones last.
+    const auto swap_if = [&](int i, int j) {
+        const int a = contact.vertices[i], b = contact.vertices[j];
+        if (b < 0 || (a >= 0 && a < b)) return;
+        std::swap(contact.vertices[i], contact.vertices[j]);
+        std::swap(contact.weights[i], contact.weights[j]);
+    };
+    swap_if(0, 1);
+    swap_if(1, 2);
+    swap_if(0, 1);
+    return contact;
+}
+
+namespace {
+
+/// Of the cloth's element from that of the obstacle at the begin. Its point alone may have been far away: it
+/// comes along the cloth that slides over an edge.
+double distance_between_elements(const Obstacle& obstacle, const ClothMotion& motion,
+                                 const ObstacleContact& contact)
+{
+    if (contact.vertices[1] < 0) return std::numeric_limits<double>::infinity();
+    std::array<Vec3, 3> cloth;
+    for (int i = 0; i < 3; ++i)
+        cloth[i] = motion.begin[contact.vertices[i] < 0 ? contact.vertices[0] : contact.vertices[i]];
+    const auto from = [&](const Vec3& place) { return (place - contact.point).norm(); };
+    if (contact.kind == ContactKind::Edge) {
+        const std::vector<Vec3>& points = obstacle.mesh().points;
+        const auto& [a, b] = obstacle.topology().edges[contact.element].points;
+        const SegmentPair nearest = closest_between_segments({cloth[0], cloth[1]}, {points[a], points[b]});
+        return (nearest.first - nearest.second).norm();
+    }
+    if (contact.vertices[2] < 0) {
+        const double s = closest_on_segment(contact.point, cloth[0], cloth[1]);
+        return from((1.0 - s) * cloth[0] + s * cloth[1]);
+    }
+    const Vec3 normal = (cloth[1] - cloth[0]).cross(cloth[2] - cloth[0]).stableNormalized();
+    return from(closest_on_triangle(contact.point, cloth, normal).point);
+}
+
+}  // namespace
+
+ObstacleContact make_contact(const Obstacle& obstacle, const ClothMotion& motion, ContactKind kind,
+                             const ClothPoint& cloth_point, int element, const Vec3& normal,
+                             const Vec3& point, double thickness)
+{
+    const Vec3 begin = cloth_point.at(motion.begin);
+    const double before = normal.dot(begin - point);
+    const double after = normal.dot(cloth_point.at(motion.end) - point);
+    ObstacleContact contact =
+        make_contact(kind, cloth_point, element, normal, point, std::min(thickness, before));
+    // What slides along a curved surface comes to this plane from below it, and goes on as far from the
+    // surface as it was.
+    if (contact.least_gap < std::min(thickness, after)) {
+        const double farthest = std::min(thickness, distance_between_elements(obstacle, motion, contact));
+        contact.least_gap =
+            std::max(contact.least_gap, std::min(after, distance_to(obstacle, begin, farthest)));
+    }
+    return contact;
+}
+
+}  // namespace arris

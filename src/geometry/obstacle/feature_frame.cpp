@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/obstacle/feature_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/closest_point.h"
+#include "geometry/middle_direction.h"
+#include "geometry/obstacle/feature_path.h"
+#include "geometry/obstacle/normal_cone.h"
+
+namespace arris {
+namespace {
+
+constexpr double kLongestMitre = 2.0;  // sharp stays sharp: a knife's mitre would have no end
+constexpr double kLeastPart = 0.1;     // of the outward direction along each normal
+
+double mitre_of(double least_part)
+{
+    return least_part * kLongestMitre > 1.0 ? 1.0 / least_part : kLongestMitre;
+}
+
+// The cloth's mean normal on its side, and the direction against where it leaves: of cloth that bends over
+// the feature like a V both point the same way, the one short where the other is long, so that their sum
+// turns evenly from flat cloth to cloth that hangs down on both sides. Nothing where both are too short.
+std::optional<Vec3> outward_of_cloth(const ClothAround& cloth, const Vec3& tangent)
+{
+    constexpr double kShort = 1e-3;  // of a sum of unit vectors
+    const auto across = [&](const Vec3& v) { return Vec3(v - tangent.dot(v) * tangent); };
+    const Vec3 normal = across(cloth.normal), back = across(-cloth.leaving);
+    if (!(std::max(normal.norm(), back.norm()) > kShort)) return std::nullopt;
+    // Which way the normal goes, unless it is known, the fold tells where there is one, else where the cloth
+    // has been.
+    const Vec3& known = back.norm() > normal.norm() ? back : cloth.side;
+    const bool is_inward = cloth.orientation != 0 ? cloth.orientation < 0 : normal.dot(known) < 0.0;
+    const Vec3 outward = is_inward ? Vec3(back - normal) : Vec3(back + normal);
+    if (!(outward.norm() > kShort)) return std::nullopt;
+    return outward.normalized();
+}
+
+// Unit directions from a point along its feature edges.
+std::vector<Vec3> find_edges_away(const Obstacle& obstacle, int point)
+{
+    const ObstacleTopology& topology = obstacle.topology();
+    std::vector<Vec3> away;
+    for (int k = 0; k < topology.edge_count_at(point); ++k) {
+        const auto& [a, b] = topology.edges[topology.edge_at(point, k)].points;
+        const int other = a == point ? b : a;
+        away.push_back((obstacle.mesh().points[other] - obstacle.mesh().points[point]).normalized());
+    }
+    return away;
+}
+
+bool is_on_solid(const Obstacle& obstacle, int point)
+{
+    const ObstacleTopology& topology = obstacle.topology();
+    for (int k = 0; k < topology.edge_count_at(point); ++k)
+        for (const int f : topology.edges[topology.edge_at(point, k)].faces)
+            if (f >= 0) return topology.is_solid[topology.component[f]] != 0;
+    return false;
+}
+
+}  // namespace
+
+std::optional<FeatureFrame> find_edge_frame(const Obstacle& obstacle, int edge, const Vec3& place,
+                                            const ClothAround& cloth)
+{
+    const FeatureEdge& feature = obstacle.features().edges[edge];
+    const ObstacleEdge& ends = obstacle.topology().edges[feature.edge];
+    const Vec3& a = obstacle.mesh().points[ends.points[0]];
+    const Vec3& b = obstacle.mesh().points[ends.points[1]];
+    const double s = closest_on_segment(place, a, b);
+    FeatureFrame frame{a + s * (b - a), (b - a).normalized(), Vec3::Zero(), 1.0};
+    if (feature.kind == FeatureKind::Wire) {
+        const std::optional<Vec3> outward = outward_of_cloth(cloth, frame.tangent);
+        if (!outward) return std::nullopt;
+        frame.outward = *outward;
+        return frame;
+    }
+    // Against the inside of both faces: the bisector of their normals, also on a knife, where these cancel.
+    Vec3 inside = Vec3::Zero();
+    for (const int f : ends.faces)
+        if (f >= 0) inside += into_face(obstacle, f, feature.edge);
+    frame.outward = -inside.normalized();
+    if (feature.kind == FeatureKind::Convex)
+        frame.mitre = mitre_of(std::abs(feature.normals[0].dot(frame.outward)));
+    return frame;
+}
+
+std::optional<FeatureFrame> find_turn_frame(const Obstacle& obstacle, int edge, int end,
+                                            const ClothAround& cloth)
+{
+    const FeatureTurn turn{edge, end};
+    const Vec3 tangent = tangent_at(obstacle, turn);
+    const std::optional<Vec3> outward = outward_of_cloth(cloth, tangent);
+    if (!outward) return std::nullopt;
+    return FeatureFrame{turn_point(obstacle, turn), tangent, *outward, 1.0};
+}
+
+std::optional<FeatureFrame> find_corner_frame(const Obstacle& obstacle, int corner, const Vec3& place,
+                                              const ClothAround& cloth)
+{
+    const FeatureCorner& feature = obstacle.features().corners[corner];
+    FeatureFrame frame{obstacle.mesh().points[feature.point], Vec3::Zero(), Vec3::Zero(), 1.0};
+    std::optional<Vec3> outward;
+    if (feature.normals.empty()) {
+        ClothAround around = cloth;
+        if (around.side.squaredNorm() == 0.0) around.side = place - frame.point;
+        outward = outward_of_cloth(around, Vec3::Zero());
+    } else {
+        std::vector<Vec3> directions = feature.normals;
+        if (!is_on_solid(obstacle, feature.point)) {
+            directions = find_edges_away(obstacle, feature.point);
+            for (Vec3& d : directions) d = -d;
+        }
+        outward = find_middle(directions);
+        if (outward && least_part(directions, *outward) < kLeastPart) return std::nullopt;
+        if (outward) frame.mitre = mitre_of(least_part(feature.normals, *outward));
+    }
+    if (!outward) return std::nullopt;
+    frame.outward = *outward;
+    return frame;
+}
+
+}  // namespace arris

@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/obstacle/obstacle_features.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "geometry/cgal.h"
+
+namespace arris {
+namespace {
+
+// Rounding of turns near the threshold, so that at 90 degrees a turned box is what an upright one is.
+constexpr double kTurnSlack = 1e-6;  // degrees
+constexpr double kCornerTurn = 30.0;
+constexpr double kWireCornerTurn = 60.0;  // wires have one plane halfway between both edges up to there
+constexpr double kCornerDefect = 60.0;
+
+// Faces of one plane: their normals agree as well as coordinates in single precision let them.
+constexpr double kPlanarAngle = 1e-6;     // rad
+constexpr double kPlanarDistance = 1e-6;  // of the bounding box's diagonal
+
+// Coordinates in single precision are rounded by up to 6e-8 of their size: the normal of a sliver that is
+// lower than a few of these is noise.
+constexpr double kThinHeight = 3e-7;  // of the bounding box's diagonal
+constexpr double kThinAspect = 1e-2;  // of its longest edge
+
+double angle_between(const Vec3& a, const Vec3& b)
+{
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+double degrees(double radians)
+{
+    return radians * 180.0 / std::numbers::pi;
+}
+
+double diagonal_of(const ObstacleMesh& mesh)
+{
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : mesh.points) box.extend(p);
+    return box.isEmpty() ? 0.0 : box.diagonal().norm();
+}
+
+/// The normals by which faces are compared. A thin face has that of the first face that is not thin across
+/// longest sides: a cap that rounding bent out of its plane lies in its neighbour's, as was meant.
+struct FacePlanes {
+    std::vector<Vec3> normals;
+    std::vector<char> is_borrowed;
+};
+
+double side_length(const ObstacleMesh& mesh, int face, int i)
+{
+    return (mesh.points[mesh.faces[face][(i + 1) % 3]] - mesh.points[mesh.faces[face][i]]).norm();
+}
+
+bool is_thin(const ObstacleMesh& mesh, int face, double diagonal)
+{
+    const auto& [a, b, c] = mesh.faces[face];
+    const double length =
+        std::max({side_length(mesh, face, 0), side_length(mesh, face, 1), side_length(mesh, face, 2)});
+    const Vec3 ab = mesh.points[b] - mesh.points[a], ac = mesh.points[c] - mesh.points[a];
+    const double height = (ab / length).cross(ac).norm();
+    return height < kThinHeight * diagonal && height < kThinAspect * length;
+}
+
+/// Across the longest side that is no border; -1 where all are.
+int widest_neighbour(const ObstacleMesh& mesh, const ObstacleTopology& topology, int face)
+{
+    int widest = -1;
+    double longest = -1.0;
+    for (int i = 0; i < 3; ++i)
+        if (topology.neighbour(face, i) >= 0 && side_length(mesh, face, i) > longest) {
+            longest = side_length(mesh, face, i);
+            widest = topology.neighbour(face, i);
+        }
+    return widest;
+}
+
+FacePlanes find_planes(const ObstacleMesh& mesh, const ObstacleTopology& topology, double diagonal)
+{
+    const int n = static_cast<int>(mesh.faces.size());
+    std::vector<char> thin(n);
+    for (int f = 0; f < n; ++f) thin[f] = is_thin(mesh, f, diagonal);
+
+    FacePlanes planes{topology.face_normals, std::vector<char>(n, 0)};
+    constexpr int kMostThinInARow = 64;  // a way that ends in a circle is no use
+    for (int f = 0; f < n; ++f) {
+        int from = f;
+        for (int k = 0; k < kMostThinInARow && from >= 0 && thin[from]; ++k)
+            from = widest_neighbour(mesh, topology, from);
+        if (from < 0 || from == f || thin[from]) continue;
+        planes.normals[f] = topology.face_normals[from];
+        planes.is_borrowed[f] = 1;
+    }
+    return planes;
+}
+
+/// Along an edge in the direction in which `face` runs; not unit.
+Vec3 direction_in(const ObstacleMesh& mesh, const ObstacleTopology& topology, int face, int edge)
+{
+    const std::array<int, 3>& sides = topology.face_edges[face];
+    const int i = static_cast<int>(std::find(sides.begin(), sides.end(), edge) - sides.begin());
+    return mesh.points[mesh.faces[face][(i + 1) % 3]] - mesh.points[mesh.faces[face][i]];
+}
+
+/// Radians by which the faces beside an inner edge turn, negative where it is reflex.
+double signed_turn(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes,
+                   int edge)
+{
+    const auto [f, g] = topology.edges[edge].faces;
+    const double turn = angle_between(planes.normals[f], planes.normals[g]);
+    const Vec3 axis = planes.normals[f].cross(planes.normals[g]);
+    return axis.dot(direction_in(mesh, topology, f, edge)) < 0.0 ? -turn : turn;
+}
+
+int apex_across(const ObstacleMesh& mesh, const std::array<int, 2>& side, int face)
+{
+    for (const int p : mesh.faces[face])
+        if (p != side[0] && p != side[1]) return p;
+    return -1;
+}
+
+/// Whether a solid's sharp edge is convex. Faces folded flat onto one another count as convex: cloth can
+/// reach the edge of a plate without thickness, but no crack without width.
+bool is_convex(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes, int edge)
+{
+    const auto [f, g] = topology.edges[edge].faces;
+    if (planes.is_borrowed[f] || planes.is_borrowed[g])
+        return signed_turn(mesh, topology, planes, edge) > 0.0;
+    const Face& face = mesh.faces[f];
+    const int apex = apex_across(mesh, topology.edges[edge].points, g);
+    return CGAL::orientation(to_cgal(mesh.points[face[0]]), to_cgal(mesh.points[face[1]]),
+                             to_cgal(mesh.points[face[2]]), to_cgal(mesh.points[apex])) != CGAL::POSITIVE;
+}
+
+std::vector<FeatureEdge> find_feature_edges(const ObstacleMesh& mesh, const ObstacleTopology& topology,
+                                            const FacePlanes& planes, double feature_angle)
+{
+    std::vector<FeatureEdge> found;
+    for (int e = 0; e < static_cast<int>(topology.edges.size()); ++e) {
+        const auto [f, g] = topology.edges[e].faces;
+        if (f < 0) {
+            found.push_back({e, FeatureKind::Wire, {Vec3::Zero(), Vec3::Zero()}, -1});
+        } else if (g < 0) {
+            found.push_back({e, FeatureKind::Border, {planes.normals[f], planes.normals[f]}, -1});
+        } else if (degrees(angle_between(planes.normals[f], planes.normals[g])) >
+                   feature_angle + kTurnSlack) {
+            const bool is_sheet = !topology.is_solid[topology.component[f]];
+            if (is_sheet || is_convex(mesh, topology, planes, e))
+                found.push_back({e, FeatureKind::Convex, {planes.normals[f], planes.normals[g]}, -1});
+        }
+    }
+    return found;
+}
+
+/// Feature edges at a point: how many, and the first two of them.
+struct EdgesAt {
+    int count = 0;
+    std::array<int, 2> edges = {-1, -1};
+
+    int other_than(int edge) const { return edges[0] == edge ? edges[1] : edges[0]; }
+};
+
+std::vector<EdgesAt> gather_at_points(const ObstacleTopology& topology, const std::vector<FeatureEdge>& edges,
+                                      std::size_t point_count)
+{
+    std::vector<EdgesAt> at(point_count);
+    for (int k = 0; k < static_cast<int>(edges.size()); ++k)
+        for (const int p : topology.edges[edges[k].edge].points) {
+            if (at[p].count < 2) at[p].edges[at[p].count] = k;
+            ++at[p].count;
+        }
+    return at;
+}
+
+int other_end(const ObstacleEdge& edge, int point)
+{
+    return edge.points[0] == point ? edge.points[1] : edge.points[0];
+}
+
+/// Whether features meet, end, turn or change their kind at a point.
+bool is_node(const ObstacleMesh& mesh, const ObstacleTopology& topology,
+             const std::vector<FeatureEdge>& edges, const EdgesAt& at, int point)
+{
+    if (at.count != 2) return at.count > 0;
+    const FeatureEdge& first = edges[at.edges[0]];
+    const FeatureEdge& second = edges[at.edges[1]];
+    if (first.kind != second.kind) return true;
+    const Vec3& from = mesh.points[other_end(topology.edges[first.edge], point)];
+    const Vec3& to = mesh.points[other_end(topology.edges[second.edge], point)];
+    const double turn = angle_between((mesh.points[point] - from).stableNormalized(),
+                                      (to - mesh.points[point]).stableNormalized());
+    const double most = first.kind == FeatureKind::Wire ? kWireCornerTurn : kCornerTurn;
+    return degrees(turn) > most + kTurnSlack;
+}
+
+/// 3 face + corner.
+int corner_of(const ObstacleMesh& mesh, int face, int point)
+{
+    const Face& f = mesh.faces[face];
+    return 3 * face + static_cast<int>(std::find(f.begin(), f.end(), point) - f.begin());
+}
+
+double angle_at(const ObstacleMesh& mesh, const Face& face, int corner)
+{
+    const Vec3& p = mesh.points[face[corner]];
+    return angle_between((mesh.points[face[(corner + 1) % 3]] - p).stableNormalized(),
+                         (mesh.points[face[(corner + 2) % 3]] - p).stableNormalized());
+}
+
+/// For each corner of a face (3 face + corner) one that stands for its fan: the corners at a point that are
+/// joined through edges. Surfaces that meet in a point alone are a fan each.
+std::vector<int> find_fans(const ObstacleMesh& mesh, const ObstacleTopology& topology)
+{
+    std::vector<int> parent(3 * mesh.faces.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](int c) {
+        while (parent[c] != c) c = parent[c] = parent[parent[c]];
+        return c;
+    };
+    for (int e = 0; e < topology.surface_edge_count; ++e) {
+        const auto [f, g] = topology.edges[e].faces;
+        if (g < 0) continue;
+        for (const int p : topology.edges[e].points)
+            parent[root(corner_of(mesh, f, p))] = root(corner_of(mesh, g, p));
+    }
+    for (int c = 0; c < static_cast<int>(parent.size()); ++c) parent[c] = root(c);
+    return parent;
+}
+
+/// Marks the apexes of cones: points where the angles of a closed fan of faces fall short of a full turn by
+/// much. A solid's pits, reflex on the whole, are none.
+void mark_apexes(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes,
+                 std::vector<char>& is_corner)
+{
+    struct Fan {
+        double angle = 0.0, turn = 0.0;
+        bool is_open = false;
+    };
+    const std::vector<int> fan_of = find_fans(mesh, topology);
+    std::vector<Fan> fans(fan_of.size());
+    for (int e = 0; e < topology.surface_edge_count; ++e) {
+        const auto [f, g] = topology.edges[e].faces;
+        const double turn = g < 0 ? 0.0 : signed_turn(mesh, topology, planes, e);
+        for (const int p : topology.edges[e].points) {
+            Fan& fan = fans[fan_of[corner_of(mesh, f, p)]];
+            fan.turn += turn;
+            fan.is_open |= g < 0;
+        }
+    }
+    for (int c = 0; c < static_cast<int>(fans.size()); ++c)
+        fans[fan_of[c]].angle += angle_at(mesh, mesh.faces[c / 3], c % 3);
+
+    for (int c = 0; c < static_cast<int>(fans.size()); ++c) {
+        const Fan& fan = fans[c];
+        if (fan_of[c] != c || fan.is_open) continue;
+        if (360.0 - degrees(fan.angle) <= kCornerDefect + kTurnSlack) continue;
+        const bool is_sheet = !topology.is_solid[topology.component[c / 3]];
+        if (is_sheet || fan.turn > 0.0) is_corner[mesh.faces[c / 3][c % 3]] = 1;
+    }
+}
+
+/// Numbers the chains of feature edges between corners in the order of their first edges.
+int chain(const ObstacleTopology& topology, const std::vector<EdgesAt>& at,
+          const std::vector<char>& is_corner, std::vector<FeatureEdge>& edges)
+{
+    int count = 0;
+    for (int seed = 0; seed < static_cast<int>(edges.size()); ++seed) {
+        if (edges[seed].polyline >= 0) continue;
+        const int polyline = count++;
+        for (int point : topology.edges[edges[seed].edge].points) {
+            // Ends at a corner, or where a closed chain comes round.
+            int k = seed;
+            edges[k].polyline = polyline;
+            while (!is_corner[point]) {
+                k = at[point].other_than(k);
+                if (edges[k].polyline >= 0) break;
+                edges[k].polyline = polyline;
+                point = other_end(topology.edges[edges[k].edge], point);
+            }
+        }
+    }
+    return count;
+}
+
+std::vector<int> find_patches(const ObstacleMesh& mesh, const ObstacleTopology& topology,
+                              const FacePlanes& planes, double diagonal)
+{
+    std::vector<int> patch(mesh.faces.size(), -1);
+    int count = 0;
+    for (int seed = 0; seed < static_cast<int>(mesh.faces.size()); ++seed) {
+        if (patch[seed] >= 0) continue;
+        // All are compared with the seed, so that a finely curved surface does not drift into one patch.
+        const Vec3& normal = planes.normals[seed];
+        const Vec3& origin = mesh.points[mesh.faces[seed][0]];
+        const auto is_in_plane = [&](int f) {
+            return angle_between(normal, planes.normals[f]) <= kPlanarAngle &&
+                   std::all_of(mesh.faces[f].begin(), mesh.faces[f].end(), [&](int p) {
+                       return std::abs(normal.dot(mesh.points[p] - origin)) <= kPlanarDistance * diagonal;
+                   });
+        };
+        label_connected(topology, seed, count++, is_in_plane, patch);
+    }
+    return patch;
+}
+
+/// Normals of the planes around a point, in the order of their first faces there; each once.
+std::vector<Vec3> normals_around(const ObstacleTopology& topology, const FacePlanes& planes,
+                                 const std::vector<int>& patch, int point)
+{
+    std::vector<int> faces;
+    for (int k = 0; k < topology.edge_count_at(point); ++k)
+        for (const int f : topology.edges[topology.edge_at(point, k)].faces)
+            if (f >= 0) faces.push_back(f);
+    std::sort(faces.begin(), faces.end());
+    std::vector<int> seen;
+    std::vector<Vec3> normals;
+    for (const int f : faces) {
+        const Vec3& normal = planes.normals[f];
+        if (std::find(seen.begin(), seen.end(), patch[f]) != seen.end()) continue;
+        seen.push_back(patch[f]);
+        if (std::none_of(normals.begin(), normals.end(),
+                         [&](const Vec3& n) { return (n - normal).norm() <= kPlanarAngle; }))
+            normals.push_back(normal);
+    }
+    return normals;
+}
+
+}  // namespace
+
+ObstacleFeatures find_features(const ObstacleMesh& mesh, const ObstacleTopology& topology,
+                               double feature_angle)
+{
+    const double diagonal = diagonal_of(mesh);
+    const FacePlanes planes = find_planes(mesh, topology, diagonal);
+
+    ObstacleFeatures features;
+    features.edges = find_feature_edges(mesh, topology, planes, feature_angle);
+    features.patch = find_patches(mesh, topology, planes, diagonal);
+
+    const std::vector<EdgesAt> at = gather_at_points(topology, features.edges, mesh.points.size());
+    std::vector<char> is_corner(mesh.points.size(), 0);
+    mark_apexes(mesh, topology, planes, is_corner);
+    for (const int p : mesh.lone_points) is_corner[p] = 1;
+    for (int p = 0; p < static_cast<int>(mesh.points.size()); ++p)
+        if (is_node(mesh, topology, features.edges, at[p], p)) is_corner[p] = 1;
+
+    features.polyline_count = chain(topology, at, is_corner, features.edges);
+    for (int p = 0; p < static_cast<int>(mesh.points.size()); ++p)
+        if (is_corner[p])
+            features.corners.push_back({p, normals_around(topology, planes, features.patch, p)});
+    return features;
+}
+
+}  // namespace arris

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "geometry/obstacle/obstacle_mesh.h"
+
+namespace arris {
+
+/// An edge of an obstacle's triangles, or a wire's segment.
+struct ObstacleEdge {
+    std::array<int, 2> points;  ///< ascending
+    std::array<int, 2> faces;   ///< beside it: the second is -1 on a border, both are on a wire
+};
+
+/// What is next to what in an obstacle. Edges of triangles come first, ascending by points; then the wires'
+/// segments in the order of the mesh.
+struct ObstacleTopology {
+    std::vector<ObstacleEdge> edges;
+    int surface_edge_count = 0;
+    std::vector<std::array<int, 3>> face_edges;  ///< edge i runs from corner i to corner i + 1
+    std::vector<Vec3> face_normals;              ///< unit
+    std::vector<int> first_edge;                 ///< of each point in `point_edges`; one more than points
+    std::vector<int> point_edges;                ///< edges at a point, ascending
+    std::vector<int> component;                  ///< of each face
+    std::vector<char> is_solid;                  ///< of each component: has no border
+
+    int edge_at(int point, int k) const { return point_edges[first_edge[point] + k]; }
+    int edge_count_at(int point) const { return first_edge[point + 1] - first_edge[point]; }
+
+    /// The face across edge i of `face`; -1 on a border.
+    int neighbour(int face, int i) const
+    {
+        const std::array<int, 2>& sides = edges[face_edges[face][i]].faces;
+        return sides[0] == face ? sides[1] : sides[0];
+    }
+};
+
+/// Gives `seed` and the faces joined to it through unlabelled ones that may be entered (a function of the
+/// face) this label; -1 is none.
+template <typename MayEnter>
+void label_connected(const ObstacleTopology& topology, int seed, int label, const MayEnter& may_enter,
+                     std::vector<int>& labels)
+{
+    std::vector<int> open(1, seed);
+    labels[seed] = label;
+    while (!open.empty()) {
+        const int f = open.back();
+        open.pop_back();
+        for (int i = 0; i < 3; ++i) {
+            const int g = topology.neighbour(f, i);
+            if (g < 0 || labels[g] >= 0 || !may_enter(g)) continue;
+            labels[g] = label;
+            open.push_back(g);
+        }
+    }
+}
+
+/// Linear in the mesh but for a sort. The mesh must pass `validate`.
+ObstacleTopology make_topology(const ObstacleMesh& mesh);
+
+/// Names what is wrong with an obstacle's mesh: empty if coordinates are finite, indices in range, no face
+/// or segment degenerate (by exact predicate), at most two faces at an edge and those oriented alike.
+std::string validate(const ObstacleMesh& mesh);
+
+}  // namespace arris

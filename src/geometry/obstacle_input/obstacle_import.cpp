@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/obstacle_input/obstacle_import.h"
+
+#include <assimp/BaseImporter.h>
+#include <assimp/config.h>
+#include <assimp/importerdesc.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <unistd.h>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <string_view>
+#include <utility>
+
+#include "geometry/input_error.h"
+#include "geometry/obstacle_input/import_log.h"
+#include "geometry/obstacle_input/mesh_file_check.h"
+#include "geometry/obstacle_input/mesh_folder_io.h"
+#include "geometry/obstacle_input/obj_numbers.h"
+#include "geometry/obstacle_input/obstacle_reply.h"
+#include "geometry/obstacle_input/soup_repair.h"
+#include "geometry/obstacle_input/soup_weld.h"
+#include "geometry/obstacle_input/three_mf_unit.h"
+
+// The importer is given one format's reader, no post-processing but triangulation, and a file system of one
+// folder. Its own checks, joining of vertices (within 1e-5, whatever the unit) and flattening of the node
+// tree (in single precision) are not used: positions leave it as the file has them and are double from there.
+namespace arris {
+namespace {
+
+constexpr std::uintmax_t kLargestFile = std::uintmax_t{2} << 30;
+constexpr std::size_t kMostFaces = 10'000'000;
+constexpr std::size_t kMostNodes = 1'000'000;
+constexpr double kLargestCoordinate = 1e6;  // m, as everywhere: what is farther out is in the wrong unit
+
+// Single precision moves points by 6e-8 of their distance from the origin: beyond this ratio by more than
+// 6e-4 of the mesh's size.
+constexpr double kFarFromOrigin = 1e4;
+
+using Placement4 = Eigen::Matrix4d;
+
+// Leaves `importer` the one reader of files with this extension.
+void keep_reader_of(const std::string& extension, Assimp::Importer& importer)
+{
+    std::vector<Assimp::BaseImporter*> others;
+    bool is_kept = false;
+    for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
+        const aiImporterDesc& about = *importer.GetImporterInfo(i);
+        const std::string extensions = fmt::format(" {} ", about.mFileExtensions);
+        // Of two readers of glTF one is of its first version, long out of use.
+        const bool is_reader = extensions.find(" " + extension + " ") != std::string::npos &&
+                               std::string_view(about.mName) != "glTF Importer";
+        if (is_reader && !is_kept)
+            is_kept = true;
+        else
+            others.push_back(importer.GetImporter(i));
+    }
+    if (!is_kept) throw InputError(fmt::format("the import library cannot read .{} files", extension));
+    for (Assimp::BaseImporter* other : others) {
+        importer.UnregisterLoader(other);
+        const std::unique_ptr<Assimp::BaseImporter> owned(other);
+    }
+}
+
+// The shortest decimal number that is `value` in single precision: 0.01f is 0.01.
+double decimal(float value)
+{
+    return std::strtod(fmt::format("{}", value).c_str(), nullptr);
+}
+
+Placement4 to_eigen(const aiMatrix4x4& m)
+{
+    Placement4 placement;
+    placement << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3,
+        m.d4;
+    return placement;
+}
+
+std::string extension_of(const std::string& path)
+{
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    extension.erase(0, 1);
+    return extension;
+}
+
+class ObstacleImporter {
+  public:
+    ObstacleImporter(std::string path, std::optional<double> unit, std::optional<char> up)
+        : path_(std::move(path)), extension_(extension_of(path_)), unit_(unit), up_(up)
+    {
+    }
+
+    ObstacleFile import()
+    {
+        const std::vector<std::string>& known = mesh_extensions();
+        if (std::find(known.begin(), known.end(), extension_) == known.end())
+            throw InputError(fmt::format("unknown format '.{}'; allowed: .{}", one_line(extension_),
+                                         fmt::join(known, ", .")));
+        std::string bytes = read_regular_file(path_, kLargestFile);
+        warnings_ = check_mesh_bytes(extension_, bytes);
+        if (extension_ == "3mf") declared_unit_ = three_mf_unit(bytes);
+        if (extension_ == "obj") bytes = spell_out_numbers(bytes);
+        load(bytes);
+        place();
+        warn_where_far();
+        // All but these two give each face points of its own, whatever the file has.
+        if (extension_ != "stl" && extension_ != "ply") join_equal_points(soup_);
+        RepairedSoup repaired = repair_soup(std::move(soup_));
+        warnings_.insert(warnings_.end(), repaired.warnings.begin(), repaired.warnings.end());
+        return {std::move(repaired.mesh), std::move(warnings_), std::move(repaired.notes)};
+    }
+
+  private:
+    void load(const std::string& bytes)
+    {
+        const std::string name = "mesh." + extension_;
+        const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+        ImportLog log;
+        Assimp::Importer importer;
+        keep_reader_of(extension_, importer);
+        auto owned_files = std::make_unique<MeshFolderIo>(name, bytes, folder.empty() ? "." : folder);
+        const MeshFolderIo& files = *owned_files;
+        importer.SetIOHandler(owned_files.release());  // it deletes what it is given
+        // Scenes without a mesh are not given one that shows their nodes.
+        importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+        const aiScene* scene = importer.ReadFile(name, 0);
+        if (scene == nullptr || scene->mRootNode == nullptr)
+            refuse_import(importer.GetErrorString(), files.refusals());
+        log.require_no_damage();
+        read_declared(*scene);
+        for (unsigned m = 0; m < scene->mNumMeshes; ++m) check(*scene->mMeshes[m], m, *scene);
+        const std::size_t expected = count_triangles(*scene);
+        const aiScene* triangulated = importer.ApplyPostProcessing(aiProcess_Triangulate);
+        if (triangulated == nullptr) refuse_import(importer.GetErrorString(), {});
+        if (const std::size_t made = count_triangles(*triangulated); made < expected)
+            warnings_.push_back(
+                fmt::format("{} triangles are missing: polygons that cross themselves could not "
+                            "be cut into triangles",
+                            expected - made));
+        collect(*triangulated);
+        log.append_to(warnings_);
+        for (const std::string& refusal : files.refusals()) warnings_.push_back(refusal);
+    }
+
+    [[noreturn]] static void refuse_import(const char* error, const std::vector<std::string>& refusals)
+    {
+        if (std::string_view(error).find("bad_alloc") != std::string_view::npos) throw std::bad_alloc();
+        std::string why = std::string("cannot be imported: ") + error;
+        for (const std::string& refusal : refusals) why += "; " + refusal;
+        throw InputError(one_line(why));
+    }
+
+    // --- what the file declares
+
+    void read_declared(const aiScene& scene)
+    {
+        if (extension_ == "gltf" || extension_ == "glb") declared_up_ = 'y';
+        if (extension_ == "dae") read_root(scene.mRootNode->mTransformation);
+        if (extension_ == "fbx") read_fbx_metadata(scene);
+    }
+
+    // The COLLADA reader puts unit and up axis into its root node, which is otherwise without a placement.
+    void read_root(const aiMatrix4x4& root)
+    {
+        const Placement4 m = to_eigen(root);
+        const double unit = m.col(0).head<3>().norm();
+        if (!(unit > 0.0 && std::isfinite(unit))) throw InputError(fmt::format("its unit is {} m", unit));
+        declared_unit_ = decimal(static_cast<float>(unit));
+        // It turns up axes to y.
+        int axis = 0;
+        m.row(1).head<3>().cwiseAbs().maxCoeff(&axis);
+        declared_up_ = "xyz"[axis];
+    }
+
+    void read_fbx_metadata(const aiScene& scene)
+    {
+        constexpr double kCentimetre = 0.01;
+        float factor = 1.0f;
+        std::int32_t axis = 1;
+        std::int32_t sign = 1;
+        if (scene.mMetaData != nullptr) {
+            scene.mMetaData->Get("UnitScaleFactor", factor);
+            scene.mMetaData->Get("UpAxis", axis);
+            scene.mMetaData->Get("UpAxisSign", sign);
+        }
+        if (!unit_ && !(factor > 0.0f && std::isfinite(factor)))
+            throw InputError(fmt::format("its UnitScaleFactor is {}: state the units", factor));
+        if (!up_ && (axis < 0 || axis > 2 || sign != 1))
+            throw InputError(fmt::format("its UpAxis is {} with sign {}: state the up axis", axis, sign));
+        declared_unit_ = decimal(factor) * kCentimetre;
+        if (axis >= 0 && axis <= 2) declared_up_ = "xyz"[axis];
+    }
+
+    // --- checks, before anything is done with the numbers
+
+    static std::string name_of(unsigned mesh, const aiScene& scene)
+    {
+        return scene.mNumMeshes > 1 ? fmt::format("mesh {}, ", mesh + 1) : "";
+    }
+
+    static void check(const aiMesh& mesh, unsigned number, const aiScene& scene)
+    {
+        if (mesh.mVertices == nullptr && mesh.mNumFaces > 0)
+            throw InputError(name_of(number, scene) + "it has faces, but no vertices");
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            for (unsigned k = 0; k < face.mNumIndices; ++k) {
+                const unsigned v = face.mIndices[k];
+                if (v >= mesh.mNumVertices)
+                    throw InputError(fmt::format("{}face {} names vertex {}, but there are {}",
+                                                 name_of(number, scene), f + 1, v + 1ULL, mesh.mNumVertices));
+                const aiVector3D& p = mesh.mVertices[v];
+                if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+                    throw InputError(fmt::format("{}vertex {} ({}, {}, {}) of face {} is not finite",
+                                                 name_of(number, scene), v + 1, p.x, p.y, p.z, f + 1));
+            }
+        }
+    }
+
+    static std::size_t count_triangles(const aiScene& scene)
+    {
+        std::size_t count = 0;
+        for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+            for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
+                if (const unsigned corners = scene.mMeshes[m]->mFaces[f].mNumIndices; corners > 2)
+                    count += corners - 2;
+        return count;
+    }
+
+    // --- the node tree
+
+    void collect(const aiScene& scene)
+    {
+        struct Visit {
+            const aiNode* node;
+            Placement4 parent;
+        };
+        std::vector<Visit> visits = {{scene.mRootNode, Placement4::Identity()}};
+        // COLLADA's root is what read_root takes; that of 3DS turns z to y.
+        const bool skips_root = extension_ == "dae" || extension_ == "3ds";
+        for (std::size_t visited = 0; !visits.empty(); ++visited) {
+            if (visited == kMostNodes) throw InputError(fmt::format("more than {} nodes", kMostNodes));
+            const Visit visit = visits.back();
+            visits.pop_back();
+            const bool is_skipped = skips_root && visit.node == scene.mRootNode;
+            const Placement4 own =
+                is_skipped ? Placement4::Identity() : to_eigen(visit.node->mTransformation);
+            const Placement4 placement = visit.parent * own;
+            for (unsigned m = 0; m < visit.node->mNumMeshes; ++m)
+                take(*scene.mMeshes[visit.node->mMeshes[m]], placement);
+            for (unsigned c = visit.node->mNumChildren; c-- > 0;)
+                visits.push_back({visit.node->mChildren[c], placement});
+        }
+    }
+
+    void take(const aiMesh& mesh, const Placement4& placement)
+    {
+        const int base = static_cast<int>(soup_.points.size());
+        const std::size_t total = soup_.faces.size() + soup_.segments.size() + soup_.lone_points.size();
+        if (total + mesh.mNumFaces > kMostFaces || base + std::size_t{mesh.mNumVertices} > 3 * kMostFaces)
+            throw InputError(fmt::format("more than {} faces", kMostFaces));
+        for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+            const aiVector3D& p = mesh.mVertices[v];
+            soup_.points.push_back((placement * Eigen::Vector4d(p.x, p.y, p.z, 1.0)).head<3>());
+        }
+        // A mirror turns faces inside out.
+        const bool is_mirrored = placement.topLeftCorner<3, 3>().determinant() < 0.0;
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            const auto point = [&](unsigned k) { return base + static_cast<int>(face.mIndices[k]); };
+            if (face.mNumIndices == 1) soup_.lone_points.push_back(point(0));
+            if (face.mNumIndices == 2) soup_.segments.push_back({point(0), point(1)});
+            if (face.mNumIndices != 3) continue;
+            soup_.faces.push_back({point(0), point(is_mirrored ? 2 : 1), point(is_mirrored ? 1 : 2)});
+        }
+        // A PLY file of vertices alone is a cloud of points.
+        if (mesh.mNumFaces == 0 && extension_ == "ply")
+            for (unsigned v = 0; v < mesh.mNumVertices; ++v)
+                soup_.lone_points.push_back(base + static_cast<int>(v));
+    }
+
+    // --- from the file's unit and axes to ours
+
+    void place()
+    {
+        if (soup_.faces.empty() && soup_.segments.empty() && soup_.lone_points.empty())
+            throw InputError("no faces, lines or points");
+        Mat3 turn = Mat3::Identity();
+        const char up = up_.value_or(declared_up_);
+        if (up == 'y') turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+        if (up == 'x') turn << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+        const double unit = unit_.value_or(declared_unit_);
+        for (Vec3& p : soup_.points) p = turn * (unit * p);
+    }
+
+    void warn_where_far()
+    {
+        Vec3 low = Vec3::Constant(kLargestCoordinate);
+        Vec3 high = -low;
+        const auto extend = [&](int point) {
+            low = low.cwiseMin(soup_.points[point]);
+            high = high.cwiseMax(soup_.points[point]);
+        };
+        for (const Face& face : soup_.faces)
+            for (const int p : face) extend(p);
+        for (const std::array<int, 2>& segment : soup_.segments)
+            for (const int p : segment) extend(p);
+        for (const int p : soup_.lone_points) extend(p);
+        const double offset = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
+        const double size = (high - low).norm();
+        if (offset > kFarFromOrigin * size && size > 0.0)
+            warnings_.push_back(fmt::format(
+                "it lies {:.3g} times its size from the origin: single precision moves its points by up to "
+                "{:.2g} m; move it near the origin",
+                offset / size, offset * 6e-8));
+    }
+
+    std::string path_;
+    std::string extension_;
+    std::optional<double> unit_;
+    std::optional<char> up_;
+    double declared_unit_ = 1.0;  // m
+    char declared_up_ = 'z';
+    ObstacleMesh soup_;
+    std::vector<std::string> warnings_;
+};
+
+std::string make_reply(char** arguments)
+{
+    try {
+        const std::string unit = arguments[1];
+        const std::string up = arguments[2];
+        return encode_reply(
+            import_obstacle(arguments[3], unit == "-" ? std::nullopt : std::optional<double>(std::stod(unit)),
+                            up == "-" ? std::nullopt : std::optional<char>(up[0])));
+    } catch (const InputError& error) {
+        return encode_refusal(error.what());
+    } catch (const std::bad_alloc&) {
+        return encode_refusal("its import needs more memory than it may have");
+    } catch (const std::exception& error) {
+        return encode_refusal(std::string("cannot be imported: ") + error.what());
+    }
+}
+
+bool write_all(int descriptor, std::string_view bytes)
+{
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return false;
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return true;
+}
+
+}  // namespace
+
+ObstacleFile import_obstacle(const std::string& path, std::optional<double> metres_per_unit,
+                             std::optional<char> up)
+{
+    return ObstacleImporter(path, metres_per_unit, up).import();
+}
+
+int import_obstacle_command(int count, char** arguments)
+{
+    if (count != 4) return 2;
+    return write_all(std::atoi(arguments[0]), make_reply(arguments)) ? 0 : 1;
+}
+
+}  // namespace arris

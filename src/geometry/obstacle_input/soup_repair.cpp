@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/obstacle_input/soup_repair.h"
+
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/repair_degeneracies.h>
+#include <CGAL/Polygon_mesh_processing/stitch_borders.h>
+#include <CGAL/Surface_mesh.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "geometry/cgal.h"
+#include "geometry/input_error.h"
+#include "geometry/obstacle/obstacle_topology.h"
+#include "geometry/obstacle_input/shell_orientation.h"
+#include "geometry/obstacle_input/soup_weld.h"
+
+namespace arris {
+namespace {
+
+namespace PMP = CGAL::Polygon_mesh_processing;
+
+using SurfaceMesh = CGAL::Surface_mesh<Point3>;
+using Polygon = std::array<std::size_t, 3>;
+
+// What is larger or farther out is in the wrong unit.
+constexpr double kLargestCoordinate = 1e6;  // m
+
+std::array<int, 2> edge_of(const Face& face, int k)
+{
+    const auto [low, high] = std::minmax(face[k], face[(k + 1) % 3]);
+    return {low, high};
+}
+
+// CGAL takes NaN and wrong indices for granted: these checks stand before all else.
+void require_sound(const ObstacleMesh& soup)
+{
+    for (std::size_t i = 0; i < soup.points.size(); ++i) {
+        const Vec3& p = soup.points[i];
+        if (!p.allFinite() || !(p.cwiseAbs().maxCoeff() <= kLargestCoordinate))
+            throw InputError(
+                fmt::format("vertex {} ({:g}, {:g}, {:g}) m must be finite and within {:g} m of the origin",
+                            i + 1, p.x(), p.y(), p.z(), kLargestCoordinate));
+    }
+    const int count = static_cast<int>(soup.points.size());
+    const auto require_index = [&](const char* what, std::size_t i, int p) {
+        if (p < 0 || p >= count)
+            throw InputError(fmt::format("{} {} names vertex {}, but there are {}", what, i + 1,
+                                         static_cast<long long>(p) + 1, count));
+    };
+    for (std::size_t i = 0; i < soup.faces.size(); ++i)
+        for (const int p : soup.faces[i]) require_index("face", i, p);
+    for (std::size_t i = 0; i < soup.segments.size(); ++i)
+        for (const int p : soup.segments[i]) require_index("segment", i, p);
+    for (std::size_t i = 0; i < soup.lone_points.size(); ++i)
+        require_index("lone point", i, soup.lone_points[i]);
+}
+
+// Hears which point orient_polygon_soup made a copy of.
+struct CopyListener : PMP::Default_orientation_visitor {
+    explicit CopyListener(std::vector<int>* origin) : origin_of(origin) {}
+    void duplicated_vertex(std::size_t original, std::size_t copy)
+    {
+        if (origin_of->size() <= copy) origin_of->resize(copy + 1, -1);
+        (*origin_of)[copy] = (*origin_of)[original];
+    }
+    std::vector<int>* origin_of;
+};
+
+class SoupRepairer {
+  public:
+    explicit SoupRepairer(ObstacleMesh soup) : soup_(std::move(soup)) {}
+
+    RepairedSoup repair()
+    {
+        require_sound(soup_);
+        tell(weld(soup_));
+        drop_stray_flat_faces();
+        if (!soup_.faces.empty()) {
+            build_surface();
+            remove_flat_faces();
+            extract_surface();
+            const ShellReport shells = orient_shells(mesh_);
+            tell(shells);
+        }
+        attach_wires_and_points();
+        tell_flat_faces();
+        if (mesh_.faces.empty() && mesh_.segments.empty() && mesh_.lone_points.empty())
+            throw InputError("nothing is left of it: " +
+                             (warnings_.empty() ? "no faces, lines or points" : warnings_.front()));
+        return {std::move(mesh_), std::move(warnings_), std::move(notes_)};
+    }
+
+  private:
+    void warn_of(int count, const char* sentence)
+    {
+        if (count > 0) warnings_.push_back(fmt::format(fmt::runtime(sentence), count));
+    }
+
+    void tell(const WeldCounts& counts)
+    {
+        if (counts.near_points > 0)
+            warnings_.push_back(fmt::format("welded {} vertices ({} equal to others, {} within {:.3g} m)",
+                                            counts.equal_points + counts.near_points, counts.equal_points,
+                                            counts.near_points, counts.tolerance));
+        else if (counts.equal_points > 0)  // some formats know no shared vertices
+            notes_.push_back(fmt::format("welded {} vertices that equal others", counts.equal_points));
+        warn_of(counts.collapsed_faces, "dropped {} faces that name a vertex twice");
+        warn_of(counts.duplicate_faces, "dropped {} duplicate faces");
+        warn_of(counts.zero_segments, "dropped {} segments of no length");
+        warn_of(counts.duplicate_segments, "dropped {} duplicate segments");
+        warn_of(counts.duplicate_lone_points, "dropped {} duplicate points");
+    }
+
+    bool is_flat(int a, int b, int c) const
+    {
+        const auto place = [&](int p) { return to_cgal(soup_.points[p]); };
+        return CGAL::collinear(place(a), place(b), place(c));
+    }
+
+    // A face without area that closes a surface (two neighbours on each edge) must be taken out by flips, or
+    // a slit would stay; any other is dropped.
+    void drop_stray_flat_faces()
+    {
+        std::vector<char> is_flat_face(soup_.faces.size(), 0);
+        for (std::size_t f = 0; f < soup_.faces.size(); ++f)
+            if (is_flat(soup_.faces[f][0], soup_.faces[f][1], soup_.faces[f][2])) is_flat_face[f] = 1;
+        if (std::find(is_flat_face.begin(), is_flat_face.end(), 1) == is_flat_face.end()) return;
+
+        std::vector<std::array<int, 2>> edges;
+        for (const Face& face : soup_.faces)
+            for (int k = 0; k < 3; ++k) edges.push_back(edge_of(face, k));
+        std::sort(edges.begin(), edges.end());
+        const auto face_count = [&](const std::array<int, 2>& edge) {
+            const auto [first, last] = std::equal_range(edges.begin(), edges.end(), edge);
+            return last - first;
+        };
+        std::size_t kept = 0;
+        for (std::size_t f = 0; f < soup_.faces.size(); ++f) {
+            bool is_stray = false;
+            for (int k = 0; k < 3 && is_flat_face[f] != 0; ++k)
+                is_stray = is_stray || face_count(edge_of(soup_.faces[f], k)) != 2;
+            if (is_stray)
+                ++flat_faces_;
+            else
+                soup_.faces[kept++] = soup_.faces[f];
+        }
+        soup_.faces.resize(kept);
+    }
+
+    void build_surface()
+    {
+        std::vector<Point3> points;
+        for (const Vec3& p : soup_.points) points.push_back(to_cgal(p));
+        std::vector<Polygon> polygons;
+        for (const auto& [a, b, c] : soup_.faces)
+            polygons.push_back(
+                {static_cast<std::size_t>(a), static_cast<std::size_t>(b), static_cast<std::size_t>(c)});
+        std::vector<int> origin(points.size());
+        for (std::size_t p = 0; p < origin.size(); ++p) origin[p] = static_cast<int>(p);
+        PMP::orient_polygon_soup(points, polygons, CGAL::parameters::visitor(CopyListener(&origin)));
+
+        const auto copies = points.size() - soup_.points.size();
+        PMP::polygon_soup_to_polygon_mesh(points, polygons, surface_);
+        origin_ = surface_.add_property_map<SurfaceMesh::Vertex_index, int>("v:origin", -1).first;
+        for (const SurfaceMesh::Vertex_index v : surface_.vertices())
+            origin_[v] = origin[static_cast<std::size_t>(v)];
+        // Copies whose borders can be sewn again without harm were no defect: they are no longer told.
+        if (copies > 0) PMP::stitch_borders(surface_);
+        surface_.collect_garbage();
+    }
+
+    // The flips that take out a sliver may leave another: what is left is dropped in the end.
+    void remove_flat_faces()
+    {
+        const auto is_flat_face = [&](SurfaceMesh::Face_index f) {
+            return PMP::is_degenerate_triangle_face(f, surface_);
+        };
+        const auto faces = surface_.faces();
+        const auto count = std::count_if(faces.begin(), faces.end(), is_flat_face);
+        if (count == 0) return;
+        flat_faces_ += static_cast<int>(count);
+        PMP::remove_degenerate_faces(surface_);
+        for (const SurfaceMesh::Face_index f : surface_.faces())
+            if (is_flat_face(f)) CGAL::Euler::remove_face(surface_.halfedge(f), surface_);
+        surface_.collect_garbage();
+    }
+
+    // Points that faces use come first, in their order of before.
+    void extract_surface()
+    {
+        std::vector<SurfaceMesh::Vertex_index> order;
+        for (const SurfaceMesh::Vertex_index v : surface_.vertices())
+            if (!surface_.is_isolated(v)) order.push_back(v);
+        std::stable_sort(order.begin(), order.end(),
+                         [&](SurfaceMesh::Vertex_index v, SurfaceMesh::Vertex_index w) {
+                             return origin_[v] < origin_[w];
+                         });
+        std::vector<int> name(surface_.num_vertices(), -1);
+        for (const SurfaceMesh::Vertex_index v : order) {
+            name[static_cast<std::size_t>(v)] = static_cast<int>(mesh_.points.size());
+            mesh_.points.push_back(to_eigen(surface_.point(v)));
+            origins_.push_back(origin_[v]);
+        }
+        for (const SurfaceMesh::Face_index f : surface_.faces()) {
+            Face face{};
+            int k = 0;
+            for (const SurfaceMesh::Vertex_index v : surface_.vertices_around_face(surface_.halfedge(f)))
+                face[k++] = name[static_cast<std::size_t>(v)];
+            mesh_.faces.push_back(face);
+        }
+        for (std::size_t p = 1; p < origins_.size(); ++p)
+            if (origins_[p] >= 0 && origins_[p] == origins_[p - 1]) ++split_;
+    }
+
+    // The corners of a face in a fixed rotation: least first.
+    static Face rotated(Face face)
+    {
+        std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+        return face;
+    }
+
+    // How many faces run the other way than in the soup. Of a sheet, whose sides are alike, the fewer: those
+    // that disagreed with the rest.
+    int count_turned() const
+    {
+        std::vector<Face> before;
+        for (const Face& face : soup_.faces) before.push_back(rotated(face));
+        std::sort(before.begin(), before.end());
+        const ObstacleTopology topology = make_topology(mesh_);
+        std::vector<std::array<int, 2>> counts(topology.is_solid.size(), {0, 0});
+        for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
+            const auto& [a, b, c] = mesh_.faces[f];
+            const Face turned = rotated({origins_[a], origins_[c], origins_[b]});
+            ++counts[topology.component[f]][std::binary_search(before.begin(), before.end(), turned) ? 1 : 0];
+        }
+        int turned = 0;
+        for (std::size_t c = 0; c < counts.size(); ++c)
+            turned += topology.is_solid[c] != 0 ? counts[c][1] : std::min(counts[c][0], counts[c][1]);
+        return turned;
+    }
+
+    void tell(const ShellReport& shells)
+    {
+        warn_of(split_,
+                "split {} vertices where more than two faces meet at an edge, or faces at a point only");
+        if (const int turned = count_turned(); turned > 0)
+            warnings_.push_back(
+                fmt::format("turned {} of {} faces round, to agree with their neighbours and "
+                            "to face outward (cavities: inward)",
+                            turned, mesh_.faces.size()));
+        if (shells.crossing_pairs > 0) {
+            const Vec3& p = shells.crossing_place;
+            warnings_.push_back(fmt::format(
+                "{} pairs of faces cross, overlap or touch, the first near [{:.6g}, {:.6g}, {:.6g}] (m, "
+                "z up, before it is scaled and placed): sharp edges where they do are not found, and cloth "
+                "may snag there; unite its parts (a boolean union) where it was made",
+                shells.crossing_pairs, p.x(), p.y(), p.z()));
+        }
+        if (shells.cavities > 0)
+            notes_.push_back(
+                fmt::format("{} closed shells lie inside others and bound cavities", shells.cavities));
+        if (shells.border_edges > 0)
+            notes_.push_back(fmt::format("open: {} border edges, two-sided", shells.border_edges));
+    }
+
+    void tell_flat_faces() { warn_of(flat_faces_, "removed {} faces without area"); }
+
+    // Wires and lone points share points with the faces where they touch.
+    void attach_wires_and_points()
+    {
+        std::vector<int> name(soup_.points.size(), -1);
+        for (std::size_t p = origins_.size(); p-- > 0;)
+            if (origins_[p] >= 0) name[origins_[p]] = static_cast<int>(p);
+        const auto name_of = [&](int p) {
+            if (name[p] < 0) {
+                name[p] = static_cast<int>(mesh_.points.size());
+                mesh_.points.push_back(soup_.points[p]);
+            }
+            return name[p];
+        };
+        for (const auto& [a, b] : soup_.segments) {
+            const int first = name_of(a);
+            mesh_.segments.push_back({first, name_of(b)});
+        }
+        for (const int p : soup_.lone_points) mesh_.lone_points.push_back(name_of(p));
+    }
+
+    ObstacleMesh soup_;
+    SurfaceMesh surface_;
+    SurfaceMesh::Property_map<SurfaceMesh::Vertex_index, int> origin_;  // in the soup
+    ObstacleMesh mesh_;
+    std::vector<int> origins_;  // in the soup, of the faces' points; -1 for one that is new
+    int flat_faces_ = 0;
+    int split_ = 0;
+    std::vector<std::string> warnings_;
+    std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+RepairedSoup repair_soup(ObstacleMesh soup)
+{
+    return SoupRepairer(std::move(soup)).repair();
+}
+
+}  // namespace arris

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "geometry/cgal.h"
+#include "geometry/surgery/cloth_surgery.h"
+#include "geometry/surgery/material_location.h"
+#include "geometry/surgery/surgery_mesh.h"
+
+// ClothSurgery's data and the parts of its proposals. For its .cpp files only.
+namespace arris {
+
+// A point computed on a line between two others is off it by rounding: a few units in the last place of the
+// greatest coordinate.
+inline constexpr double kOnLineUlps = 16.0;
+
+inline bool is_on_line(const Vec2& a, const Vec2& b, const Vec2& p)
+{
+    const double scale =
+        std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), p.cwiseAbs().maxCoeff()});
+    const double slack = kOnLineUlps * std::numeric_limits<double>::epsilon() * scale;
+    return std::abs(twice_area(a, b, p)) <= slack * (b - a).norm();
+}
+
+inline bool is_between(const Vec2& a, const Vec2& b, const Vec2& p)
+{
+    return is_on_line(a, b, p) && (p - a).dot(b - a) > 0.0 && (p - b).dot(a - b) > 0.0;
+}
+
+inline bool is_counter_clockwise(const PatchFace& face)
+{
+    const auto& X = face.material;
+    return X[0].allFinite() && X[1].allFinite() && X[2].allFinite() &&
+           exact_orientation(X[0], X[1], X[2]) > 0;
+}
+
+class ClothSurgery::Implementation {
+  public:
+    Implementation(const ClothMesh& cloth, const std::vector<VertexId>& ids, VertexId first_free_id,
+                   const std::vector<MeshEdge>& edges)
+        : mesh(cloth, ids, edges), next_id(first_free_id)
+    {
+    }
+
+    // --- parts of proposals
+
+    PatchFace patch_face(const IdFace& face) const
+    {
+        PatchFace patch{face, {}, {}};
+        for (int k = 0; k < 3; ++k) {
+            patch.material[k] = mesh.material(face[k]);
+            patch.world[k] = mesh.world(face[k]);
+        }
+        return patch;
+    }
+
+    // As `patch_face`, with the event's new and moved vertices at their new places.
+    PatchFace changed_face(const SurgeryEvent& event, const IdFace& face) const
+    {
+        PatchFace patch{face, {}, {}};
+        for (int k = 0; k < 3; ++k) {
+            const auto change = std::find_if(event.changes.begin(), event.changes.end(),
+                                             [&](const VertexChange& c) { return c.vertex == face[k]; });
+            const bool is_changed = change != event.changes.end();
+            patch.material[k] = is_changed ? change->new_material : mesh.material(face[k]);
+            patch.world[k] = is_changed ? change->new_world : mesh.world(face[k]);
+        }
+        return patch;
+    }
+
+    void add_after(SurgeryEvent& event, const IdFace& face) const
+    {
+        event.after.push_back(changed_face(event, face));
+    }
+
+    static void check_orientation(SurgeryProposal& proposal)
+    {
+        if (!std::all_of(proposal.event.after.begin(), proposal.event.after.end(), is_counter_clockwise))
+            proposal.verdict = Verdict::Orientation;
+    }
+
+    VertexChange change_at(const IdFace& parents, const Vec3& weights) const
+    {
+        // From the first parent: a point between two of equal coordinate has it exactly.
+        VertexChange change{
+            next_id, mesh.material(parents[0]), Vec2::Zero(), mesh.world(parents[0]), Vec3::Zero(), parents,
+            weights};
+        change.new_material = change.old_material;
+        change.new_world = change.old_world;
+        for (int k = 1; k < 3; ++k) {
+            change.new_material += weights[k] * (mesh.material(parents[k]) - mesh.material(parents[0]));
+            change.new_world += weights[k] * (mesh.world(parents[k]) - mesh.world(parents[0]));
+        }
+        change.old_material = change.new_material;
+        change.old_world = change.new_world;
+        return change;
+    }
+
+    std::vector<IdFace> faces_at(VertexId v) const
+    {
+        const VertexRing ring = mesh.ring(v);
+        const std::size_t n = ring.vertices.size();
+        std::vector<IdFace> faces;
+        faces.reserve(n);
+        for (std::size_t k = 0; k + (ring.is_closed ? 0 : 1) < n; ++k)
+            faces.push_back({v, ring.vertices[k], ring.vertices[(k + 1) % n]});
+        return faces;
+    }
+
+    VertexId apex(VertexId a, VertexId b) const
+    {
+        const auto h = mesh.halfedge(a, b);
+        if (h == SurgeryMesh::Mesh::null_halfedge() || !mesh.has_face(h)) return kNoVertex;
+        return mesh.apex(h);
+    }
+
+    bool has_edge(VertexId a, VertexId b) const
+    {
+        return mesh.halfedge(a, b) != SurgeryMesh::Mesh::null_halfedge();
+    }
+
+    bool is_border_edge(VertexId a, VertexId b) const { return mesh.is_border_edge(mesh.halfedge(a, b)); }
+
+    bool is_corner(VertexId v) const
+    {
+        if (!mesh.is_on_border(v)) return false;
+        const VertexRing ring = mesh.ring(v);
+        return !ring.is_closed && !is_between(mesh.material(ring.vertices.front()),
+                                              mesh.material(ring.vertices.back()), mesh.material(v));
+    }
+
+    // --- whether a collapse is allowed, but for orientation
+
+    Verdict check_trace_collapse(VertexId v, VertexId w) const
+    {
+        if (mesh.role(v) == TraceRole::Node) return Verdict::Fixed;
+        if (mesh.role(v) == TraceRole::Free) return Verdict::Done;
+        const std::vector<VertexId> along = mesh.trace_neighbours(v);
+        if (along.size() != 2 || (along[0] != w && along[1] != w)) return Verdict::Trace;
+        const VertexId other = along[0] == w ? along[1] : along[0];
+        if (mesh.edge_tag(mesh.halfedge(v, w)) != mesh.edge_tag(mesh.halfedge(v, other)))
+            return Verdict::Trace;
+        // The two edges become one, which must not be on a trace yet.
+        const bool is_loop = has_edge(w, other) && mesh.edge_tag(mesh.halfedge(w, other)) != kNoTag;
+        return is_loop ? Verdict::Trace : Verdict::Done;
+    }
+
+    Verdict check_border_collapse(VertexId v, VertexId w, const VertexRing& ring) const
+    {
+        if (ring.is_closed) return Verdict::Done;
+        const VertexId first = ring.vertices.front();
+        const VertexId last = ring.vertices.back();
+        if (w != first && w != last) return Verdict::Border;
+        return is_between(mesh.material(first), mesh.material(last), mesh.material(v)) ? Verdict::Done
+                                                                                       : Verdict::Border;
+    }
+
+    // Common neighbours other than the apexes of v-w would be joined to w twice.
+    Verdict check_link(VertexId v, VertexId w, const VertexRing& ring) const
+    {
+        const VertexId left = apex(v, w);
+        const VertexId right = apex(w, v);
+        for (const VertexId n : ring.vertices)
+            if (n != left && n != right && n != w && has_edge(n, w)) return Verdict::Topology;
+        return Verdict::Done;
+    }
+
+    // --- moves
+
+    // Where the surface, as it is, has a material point; the nearest place in the vertex's faces where none
+    // does (by rounding on a slanted border).
+    VertexChange interpolated(const ClothSurgery& surgery, VertexId v, const Vec2& material) const
+    {
+        MaterialLocation best;
+        if (const auto found = locate(surgery, material, v)) {
+            best = *found;
+        } else {
+            double least_error = std::numeric_limits<double>::infinity();
+            for (const IdFace& face : faces_at(v)) {
+                const auto X = patch_face(face).material;
+                const Vec3 weights = clamped_weights(X, material);
+                const double error =
+                    (weights[0] * X[0] + weights[1] * X[1] + weights[2] * X[2] - material).norm();
+                if (!(error < least_error)) continue;
+                least_error = error;
+                best = {face, weights};
+            }
+        }
+        VertexChange change = change_at(best.face, best.weights);
+        change.vertex = v;
+        change.old_material = mesh.material(v);
+        change.old_world = mesh.world(v);
+        change.new_material = material;
+        return change;
+    }
+
+    // Border vertices must come to lie between their border neighbours, where these come to lie: from corner
+    // to corner that leaves only the line they are on.
+    bool keeps_border(const SurgeryEvent& event, VertexId v) const
+    {
+        const VertexRing ring = mesh.ring(v);
+        if (ring.is_closed) return true;
+        const PatchFace places = changed_face(event, {ring.vertices.front(), v, ring.vertices.back()});
+        return is_between(places.material[0], places.material[2], places.material[1]);
+    }
+
+    void apply(const SurgeryEvent& event)
+    {
+        const auto [a, b] = event.edge;
+        switch (event.operation) {
+            case SurgeryOperation::SplitEdge:
+                mesh.split_edge(a, b, event.changes[0]);
+                break;
+            case SurgeryOperation::SplitFace:
+                mesh.split_face(event.before[0].vertices, event.changes[0]);
+                break;
+            case SurgeryOperation::Move:
+                for (const VertexChange& c : event.changes) mesh.move(c.vertex, c.new_material, c.new_world);
+                break;
+            case SurgeryOperation::Collapse:
+                mesh.collapse(a, b);
+                break;
+            case SurgeryOperation::Flip:
+                mesh.flip(a, b);
+                break;
+        }
+        const bool is_split =
+            event.operation == SurgeryOperation::SplitEdge || event.operation == SurgeryOperation::SplitFace;
+        if (!is_split) return;
+        assert(event.changes[0].vertex == next_id && "the mesh changed since the proposal was made");
+        ++next_id;
+        mesh.set_role(event.changes[0].vertex, event.role, event.tag);
+    }
+
+    SurgeryMesh mesh;
+    VertexId next_id;
+    SurgeryGuard guard;
+    std::vector<SurgeryEvent> events;
+    std::set<VertexId> touched;
+};
+
+}  // namespace arris

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+//        ahead                    A face turns over when a moving corner comes to the line of the other two.
+//   *-----*-----*  trace          Such a face is threatened. It is saved by merging what stands there into
+//    \   / \   /    |             the trace, by merging it into something farther away, or by turning the
+//     \ /   \ /     v             edge that lies across the way. Where two vertices of the trace approach
+//      p-----q                    each other, as at a corner that slides along its edge, one is merged into
+//                               the other.
+//
+// Clearing ends: a merge removes a vertex, and a flip is made only where it leaves fewer threatened faces, so
+// that (vertices, threatened faces) sinks strictly in lexicographic order.
+#include "geometry/surgery/trace_clearing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "geometry/surgery/material_walk.h"
+#include "geometry/surgery/vertex_table.h"
+
+namespace arris {
+namespace {
+
+constexpr double kClear = 0.3;       // of the target length
+constexpr double kSoundAngle = 3.0;  // degrees: preferred are ways that leave no thinner face
+constexpr double kLeastAngle = 0.1;  // degrees: where rounding decides which side up a face is
+constexpr int kInstants = 4;         // of the way, at which faces are looked at: corners go straight
+constexpr int kMostStages = 100;
+
+/// Ways as they are looked up: of every face there is, three times.
+class WayTable {
+  public:
+    explicit WayTable(const TraceWays& ways) : places_(ways.size())
+    {
+        ways_.reserve(ways.size());
+        for (const auto& [v, way] : ways) {
+            places_.add(v, static_cast<std::uint32_t>(ways_.size()));
+            ways_.push_back(way);
+        }
+    }
+
+    bool contains(VertexId v) const { return places_.find(v) != VertexTable::kNone; }
+    /// Zero where it has none.
+    Vec2 of(VertexId v) const
+    {
+        const std::uint32_t at = places_.find(v);
+        return at != VertexTable::kNone ? ways_[at] : Vec2(Vec2::Zero());
+    }
+
+  private:
+    VertexTable places_;
+    std::vector<Vec2> ways_;
+};
+
+std::array<Vec2, 3> ways_of(const PatchFace& face, const WayTable& ways)
+{
+    return {ways.of(face.vertices[0]), ways.of(face.vertices[1]), ways.of(face.vertices[2])};
+}
+
+std::array<Vec2, 3> ways_of(const PatchFace& face, const TraceWays& ways)
+{
+    std::array<Vec2, 3> way;
+    for (int k = 0; k < 3; ++k) {
+        const auto at = ways.find(face.vertices[k]);
+        way[k] = at != ways.end() ? at->second : Vec2(Vec2::Zero());
+    }
+    return way;
+}
+
+// The least doubled area on the way.
+double least_area(const PatchFace& face, const std::array<Vec2, 3>& way)
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 1; i <= kInstants; ++i) {
+        std::array<Vec2, 3> X = face.material;
+        for (int k = 0; k < 3; ++k) X[k] += double(i) / kInstants * way[k];
+        least = std::min(least, twice_area(X[0], X[1], X[2]));
+    }
+    return least;
+}
+
+// That over the square of the longest side as it is: how far from turning.
+double soundness(const PatchFace& face, const WayTable& ways)
+{
+    double side = 0.0;
+    for (int k = 0; k < 3; ++k) side = std::max(side, (face.material[(k + 1) % 3] - face.material[k]).norm());
+    return least_area(face, ways_of(face, ways)) / (side * side);
+}
+
+// False where the doubled area, (b + t db) x (c + t dc), is above zero for certain at every t in [0, 1].
+bool is_at_risk(const PatchFace& face, const WayTable& ways)
+{
+    constexpr double kRounding = 1e-6;  // of the sides' squares: far above any in the area
+    const auto cross = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
+    const std::array<Vec2, 3> way = ways_of(face, ways);
+    const Vec2 b = face.material[1] - face.material[0], c = face.material[2] - face.material[0];
+    const Vec2 db = way[1] - way[0], dc = way[2] - way[0];
+    const double slope = cross(b, dc) + cross(db, c), curvature = cross(db, dc);
+    const double least = cross(b, c) + std::min(0.0, slope) + std::min(0.0, curvature);
+    const double squares = b.squaredNorm() + c.squaredNorm() + db.squaredNorm() + dc.squaredNorm();
+    return !(least > kRounding * squares);
+}
+
+// Vertices that move with a face that may turn over, whatever share of their ways they go: around others
+// there is nothing to clear.
+class RiskWatch {
+  public:
+    RiskWatch(const ClothSurgery& surgery, const TraceWays& ahead, const TraceWays& room)
+        : surgery_(surgery), ways_{WayTable(ahead), WayTable(room)}, events_(surgery.events().size())
+    {
+        for (const auto& [v, way] : ahead)
+            for (const IdFace& face : surgery.faces_at(v))
+                if (is_at_risk(surgery.patch_face(face))) watched_.insert(v);
+    }
+
+    // Takes in the faces that operations have made since.
+    void follow()
+    {
+        for (; events_ < surgery_.events().size(); ++events_)
+            for (const PatchFace& face : surgery_.events()[events_].after) {
+                if (!is_at_risk(face)) continue;
+                for (const VertexId v : face.vertices)
+                    if (ways_[0].contains(v)) watched_.insert(v);
+            }
+    }
+
+    // Those of them that have not been merged, ascending.
+    std::vector<VertexId> vertices() const
+    {
+        std::vector<VertexId> left;
+        for (const VertexId v : watched_)
+            if (surgery_.has_vertex(v)) left.push_back(v);
+        return left;
+    }
+
+  private:
+    bool is_at_risk(const PatchFace& face) const
+    {
+        return arris::is_at_risk(face, ways_[0]) || arris::is_at_risk(face, ways_[1]);
+    }
+
+    const ClothSurgery& surgery_;
+    std::array<WayTable, 2> ways_;  // of the same vertices
+    std::size_t events_;            // that have been taken in
+    std::set<VertexId> watched_;
+};
+
+enum class Need {
+    Way,  ///< of what moves: where vertices of traces come upon each other, some go
+    Room  ///< for what may come: none between traces, which will not come as near as that
+};
+
+class Clearing {
+  public:
+    Clearing(ClothSurgery& surgery, const TraceWays& ahead, Need need)
+        : surgery_(surgery), ahead_(ahead), need_(need)
+    {
+    }
+
+    /// Around `vertices`; how much it has done.
+    int run(const std::vector<VertexId>& vertices)
+    {
+        int operations = 0;
+        std::set<IdFace> queue;
+        const auto add = [&](const PatchFace& face) {
+            if (turns_over(face)) queue.insert(from_least(face.vertices));
+        };
+        for (const VertexId v : vertices)
+            for (const IdFace& face : surgery_.faces_at(v)) add(surgery_.patch_face(face));
+        while (!queue.empty()) {
+            const IdFace face = *queue.begin();
+            queue.erase(queue.begin());
+            if (surgery_.apex(face[0], face[1]) != face[2] || !is_threatened(surgery_.patch_face(face)))
+                continue;
+            if (!save(face)) continue;
+            ++operations;
+            for (const PatchFace& made : surgery_.events().back().after) add(made);
+        }
+        return operations;
+    }
+
+  private:
+    static IdFace from_least(IdFace face)
+    {
+        std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+        return face;
+    }
+
+    bool is_moving(VertexId v) const { return ahead_.contains(v); }
+
+    double soundness(const PatchFace& face) const { return arris::soundness(face, ahead_); }
+    bool is_threatened(const PatchFace& face) const
+    {
+        return !(need_ == Need::Room && is_between_traces(face)) && turns_over(face);
+    }
+    bool turns_over(const PatchFace& face) const { return !(least_area(face, ways_of(face, ahead_)) > 0.0); }
+
+    bool is_between_traces(const PatchFace& face) const
+    {
+        for (int k = 0; k < 3; ++k) {
+            const VertexId a = face.vertices[k], b = face.vertices[(k + 1) % 3];
+            if (is_moving(a) && is_moving(b) && surgery_.edge_tag(a, b) == kNoTag) return true;
+        }
+        return false;
+    }
+
+    struct Candidate {
+        int change;  // in the number of threatened faces
+        double soundness;
+        bool is_into_trace;
+        bool is_of_trace;  // what would go moves
+        bool is_thin;      // it leaves thin faces
+        SurgeryProposal proposal;
+
+        // Fewer threatened faces; as many, with the obstacle merged into the trace; fewer, for a vertex less
+        // on the trace; a merge that is a step on the way at best.
+        int rank() const
+        {
+            if (is_of_trace) return 2;
+            return change < 0 ? 0 : (change == 0 && is_into_trace ? 1 : 3);
+        }
+    };
+
+    Candidate judge(SurgeryProposal proposal, bool is_thin) const
+    {
+        const bool is_merge = proposal.event.operation == SurgeryOperation::Collapse;
+        Candidate candidate{0,
+                            std::numeric_limits<double>::infinity(),
+                            is_merge && is_moving(proposal.event.edge[1]),
+                            is_merge && is_moving(proposal.event.edge[0]),
+                            is_thin,
+                            {}};
+        for (const PatchFace& face : proposal.event.after) {
+            candidate.change += is_threatened(face) ? 1 : 0;
+            candidate.soundness = std::min(candidate.soundness, soundness(face));
+        }
+        for (const PatchFace& face : proposal.event.before) candidate.change -= is_threatened(face) ? 1 : 0;
+        candidate.proposal = std::move(proposal);
+        return candidate;
+    }
+
+    void consider(SurgeryProposal proposal, std::vector<Candidate>& candidates) const
+    {
+        if (!proposal.is_legal()) return;
+        const double before = least_angle(proposal.event.before);
+        const double after = least_angle(proposal.event.after);
+        if (after < std::min(kLeastAngle, before)) return;
+        const bool is_merge = proposal.event.operation == SurgeryOperation::Collapse;
+        Candidate candidate = judge(std::move(proposal), after < std::min(kSoundAngle, before));
+        if (candidate.is_of_trace && need_ == Need::Room) return;
+        if (candidate.change < 0 || (is_merge && !candidate.is_of_trace))
+            candidates.push_back(std::move(candidate));
+    }
+
+    // Best first: by rank, then those that leave no thin faces, then by the number of threatened faces, then
+    // the soundest; equal ones stay in the order in which they were found.
+    static bool is_better(const Candidate& c, const Candidate& d)
+    {
+        const auto key = [](const Candidate& e) {
+            return std::tuple(e.rank(), e.is_thin, e.change, -e.soundness);
+        };
+        return key(c) < key(d);
+    }
+
+    bool save(const IdFace& face)
+    {
+        std::vector<Candidate> candidates;
+        for (int k = 0; k < 3; ++k) {
+            consider(surgery_.propose_flip(face[k], face[(k + 1) % 3]), candidates);
+            for (const VertexId w : surgery_.ring(face[k]).vertices)
+                if (!is_moving(face[k]) || surgery_.edge_tag(face[k], w) != kNoTag)
+                    consider(surgery_.propose_collapse(face[k], w), candidates);
+        }
+        std::stable_sort(candidates.begin(), candidates.end(), is_better);
+        for (const Candidate& candidate : candidates)
+            if (surgery_.commit(candidate.proposal) == Verdict::Done) return true;
+        return false;
+    }
+
+    ClothSurgery& surgery_;
+    const WayTable ahead_;
+    const Need need_;
+};
+
+// The way, made longer as far as that stays on the cloth, to the factor 2.
+Vec2 find_room(const ClothSurgery& surgery, VertexId v, const Vec2& way, double times)
+{
+    while (times > 1.0 && leads_off(surgery, v, times * way)) times *= 0.5;
+    return std::max(times, 1.0) * way;
+}
+
+std::vector<VertexId> find_blocked(const ClothSurgery& surgery, const TraceWays& ahead,
+                                   const std::vector<VertexId>& vertices)
+{
+    std::vector<VertexId> blocked;
+    for (const VertexId v : vertices) {
+        const std::vector<IdFace> faces = surgery.faces_at(v);
+        if (std::any_of(faces.begin(), faces.end(),
+                        [&](const IdFace& face) { return turns_over(surgery.patch_face(face), ahead); }))
+            blocked.push_back(v);
+    }
+    return blocked;
+}
+
+}  // namespace
+
+bool turns_over(const PatchFace& face, const TraceWays& ways)
+{
+    return !(least_area(face, ways_of(face, ways)) > 0.0);
+}
+
+// In stages of at most kClear of the target length, so that what stands nearest goes first: vertices of one
+// cell after the other can be merged into the trace, but not those behind others. Then up to kClear where the
+// way is shorter: that is room for what comes, which another trace may take, too.
+ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
+                            const std::vector<TraceAdvance>& advances)
+{
+    TraceWays ahead;
+    for (const TraceAdvance& advance : advances) {
+        const bool is_cut = advance.least < 1.0 && leads_off(surgery, advance.vertex, advance.ahead);
+        ahead[advance.vertex] = (is_cut ? advance.least : 1.0) * advance.ahead;
+    }
+    constexpr double kResting = 1e-12;  // of the room there is to be: its direction is rounding
+    double stages = 1.0;
+    TraceWays room;
+    for (auto at = ahead.begin(); at != ahead.end();) {
+        const auto& [v, way] = *at;
+        const double length = way.norm();
+        const double least = kClear * target.length(surgery.material(v));
+        if (length > kResting * least) room[v] = find_room(surgery, v, way, least / length);
+        stages = std::max(stages, std::ceil(length / least));
+        at = length > 0.0 ? std::next(at) : ahead.erase(at);
+    }
+    const int count = static_cast<int>(std::min(stages, double(kMostStages)));
+    ClearanceReport report;
+    RiskWatch watch(surgery, ahead, room);
+    const auto clear_part = [&](const TraceWays& part, Need need) {
+        report.operations += Clearing(surgery, part, need).run(watch.vertices());
+        watch.follow();
+    };
+    for (int k = 1; k <= count; ++k) {
+        TraceWays part = ahead;
+        for (auto& [v, way] : part) way *= double(k) / count;
+        clear_part(part, Need::Way);
+    }
+    clear_part(room, Need::Room);
+    TraceWays least = ahead;
+    for (const TraceAdvance& advance : advances)
+        if (const auto at = least.find(advance.vertex); at != least.end())
+            at->second = advance.least * advance.ahead;
+    report.blocked = find_blocked(surgery, least, watch.vertices());
+    report.ways = std::move(room);
+    report.needed = std::move(ahead);
+    return report;
+}
+
+}  // namespace arris

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/contact/audit.h"
+
+#include "solver/contact/contacts.h"
+
+namespace arris {
+
+namespace {
+
+Audit deepest_of(const std::vector<Audit>& penetrations)
+{
+    Audit deepest;
+    for (const Audit& one : penetrations)
+        if (deepest.obstacle < 0 || one.found.depth > deepest.found.depth) deepest = one;
+    return deepest;
+}
+
+}  // namespace
+
+std::vector<Audit> find_penetrations(const Scene& scene, const State& state)
+{
+    std::vector<Audit> penetrations;
+    for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
+        const Placement frame = scene.obstacles[o].at(state.time);
+        Penetration found =
+            find_penetration(scene.obstacles[o], to_frame(frame, state.mesh.world), state.mesh.faces);
+        if (!found.is_any()) continue;
+        found.place = frame(found.place);
+        penetrations.push_back({static_cast<int>(o), found});
+    }
+    return penetrations;
+}
+
+std::vector<Audit> find_penetrations(const Scene& scene, const ClothMesh& mesh, double time)
+{
+    State state;
+    state.mesh = mesh;
+    state.time = time;
+    return find_penetrations(scene, state);
+}
+
+Audit audit(const Scene& scene, const State& state)
+{
+    return deepest_of(find_penetrations(scene, state));
+}
+
+Audit audit(const Scene& scene, const ClothMesh& mesh, double time)
+{
+    return deepest_of(find_penetrations(scene, mesh, time));
+}
+
+}  // namespace arris

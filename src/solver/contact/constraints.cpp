@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/contact/constraints.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace arris {
+
+namespace {
+
+/// Rows of a vertex's coordinates as they are chosen: pinned axes, then normals.
+struct Frame {
+    Mat3 rows = Mat3::Zero();
+    Mat3 span = Mat3::Zero();  ///< orthonormal, of the same span
+    int count = 0;
+
+    /// Adds a unit direction where its part across those chosen is large enough to divide by.
+    bool add(const Vec3& direction)
+    {
+        constexpr double kLeastPart = 0.2;  // with less the basis would amplify round-off and stiffness alike
+        Vec3 across = direction;
+        for (int k = 0; k < count; ++k) across -= span.row(k).dot(direction) * span.row(k).transpose();
+        if (count == 3 || across.norm() < kLeastPart) return false;
+        rows.row(count) = direction;
+        span.row(count++) = across.normalized();
+        return true;
+    }
+
+    /// Columns: v - drift = basis u.
+    Mat3 basis() const
+    {
+        Mat3 all = rows;
+        if (count == 1) {
+            all.row(1) = span.row(0).unitOrthogonal();
+            all.row(2) = span.row(0).cross(all.row(1));
+        } else if (count == 2) {
+            all.row(2) = span.row(0).cross(span.row(1));
+        }
+        return count == 1 ? Mat3(all.transpose()) : Mat3(all.inverse());
+    }
+};
+
+/// Takes hold of the pinned directions: their axes come first, and their u is 0.
+void hold(const std::vector<HeldVertex>& held, const Prediction& prediction, std::vector<Frame>& frames,
+          Linearization& at, VelocityProblem& problem)
+{
+    for (const HeldVertex& vertex : held) {
+        const int v = vertex.vertex;
+        const Vec3 drift = (vertex.target - prediction.position[v]) / prediction.gamma;
+        for (int d = 0; d < 3; ++d) {
+            if (!vertex.held[d]) continue;
+            at.drift[v][d] = drift[d];
+            problem.is_fixed[3 * v + frames[v].count] = 1;
+            frames[v].add(Vec3::Unit(d));
+        }
+    }
+}
+
+/// EOL vertices have coordinates of their own, and start from where riding on the obstacle takes them.
+void let_flow(const std::vector<EolCoordinates>& eol, const Prediction& prediction, Linearization& at)
+{
+    at.flow.reset();
+    if (eol.empty()) return;
+    const std::size_t n = at.drift.size();
+    MaterialFlow& flow = at.flow.emplace();
+    flow.is_eulerian.assign(n, 0);
+    flow.basis.assign(n, Mat23::Zero());
+    for (const EolCoordinates& vertex : eol) {
+        const int v = vertex.vertex;
+        at.drift[v] = (vertex.carried - prediction.position[v]) / prediction.gamma;
+        at.basis[v] = vertex.basis;
+        at.has_basis[v] = 1;
+        flow.is_eulerian[v] = 1;
+        flow.basis[v] = vertex.material_basis;
+    }
+}
+
+/// Contacts in the order in which they may become bounds: what pressed comes first.
+std::vector<std::size_t> order_of(const std::vector<Contact>& contacts)
+{
+    std::vector<std::size_t> order(contacts.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_partition(order.begin(), order.end(), [&](std::size_t c) { return contacts[c].was_active; });
+    return order;
+}
+
+/// Expected active: what pressed in the last step, and what would pass its plane at its last velocity.
+bool is_expected(const Contact& contact, const Prediction& prediction, const State& state)
+{
+    const double closing = contact.normal.dot(contact.in_frame.at(state.velocity));
+    return contact.was_active || contact.is_pressing || contact.gap + prediction.gamma * closing < 0.0;
+}
+
+void add_row(const Prediction& prediction, const Linearization& at, Contact& contact,
+             VelocityProblem& problem)
+{
+    ConstraintRow row;
+    row.lower = -contact.gap / prediction.gamma;
+    const ObstacleContact& local = contact.in_frame;
+    for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
+        const int v = local.vertices[i];
+        const Vec3 gradient = local.weights[i] * (at.basis[v].transpose() * contact.normal);
+        row.lower -= local.weights[i] * contact.normal.dot(at.drift[v]);
+        for (int d = 0; d < 3; ++d) {
+            row.coordinate[row.count] = 3 * v + d;
+            row.coefficient[row.count++] = gradient[d];
+        }
+    }
+    row.group = local.vertices[0];
+    contact.row = static_cast<int>(problem.rows.size());
+    problem.rows.push_back(row);
+}
+
+}  // namespace
+
+void append_rows(const Prediction& prediction, const Linearization& at, std::size_t first,
+                 std::vector<Contact>& contacts, VelocityProblem& problem)
+{
+    for (std::size_t c = first; c < contacts.size(); ++c) {
+        add_row(prediction, at, contacts[c], problem);
+    }
+}
+
+void build_constraints(const std::vector<HeldVertex>& held, const std::vector<EolCoordinates>& eol,
+                       const Prediction& prediction, const State& state, std::vector<Contact>& contacts,
+                       Linearization& at, VelocityProblem& problem)
+{
+    const std::size_t n = state.mesh.world.size();
+    at.drift.assign(n, Vec3::Zero());
+    at.basis.assign(n, Mat3::Identity());
+    at.has_basis.assign(n, 0);
+    problem.lower = Eigen::VectorXd::Constant(3 * n, -std::numeric_limits<double>::infinity());
+    problem.is_fixed.assign(3 * n, 0);
+    problem.guess.clear();
+    problem.rows.clear();
+    problem.row_guess.clear();
+
+    // Bounds: as many of a vertex's contacts as have independent normals.
+    std::vector<Frame> frames(n);
+    hold(held, prediction, frames, at, problem);
+    let_flow(eol, prediction, at);
+    for (const std::size_t c : order_of(contacts)) {
+        Contact& contact = contacts[c];
+        const int v = contact.in_frame.vertices[0];
+        contact.bound = contact.row = -1;
+        if (contact.eol >= 0) {
+            contact.bound = 3 * v;
+        } else {
+            const bool is_flowing = at.flow && at.flow->is_eulerian[v];
+            if (!contact.is_vertex() || is_flowing || !frames[v].add(contact.normal)) continue;
+            contact.bound = 3 * v + frames[v].count - 1;
+        }
+        problem.lower[contact.bound] = -contact.gap / prediction.gamma - contact.normal.dot(at.drift[v]);
+        if (is_expected(contact, prediction, state)) problem.guess.push_back(contact.bound);
+    }
+    std::sort(problem.guess.begin(), problem.guess.end());
+    for (std::size_t v = 0; v < n; ++v) {
+        if (frames[v].count == 0) continue;
+        at.basis[v] = frames[v].basis();
+        at.has_basis[v] = at.basis[v] != Mat3::Identity();
+    }
+
+    // Rows: the rest.
+    for (Contact& contact : contacts) {
+        if (contact.bound >= 0) continue;
+        add_row(prediction, at, contact, problem);
+        if (is_expected(contact, prediction, state)) problem.row_guess.push_back(contact.row);
+    }
+}
+
+std::vector<double> contact_multipliers(const std::vector<Contact>& contacts,
+                                        const VelocitySolution& solution)
+{
+    std::vector<double> multiplier;
+    for (const Contact& contact : contacts)
+        multiplier.push_back(contact.bound >= 0 ? solution.multipliers[contact.bound]
+                                                : solution.row_multipliers[contact.row]);
+    return multiplier;
+}
+
+}  // namespace arris

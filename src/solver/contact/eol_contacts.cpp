@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/contact/eol_contacts.h"
+
+#include <algorithm>
+
+#include "geometry/contact/contact_plane.h"
+#include "geometry/obstacle/feature_nodes.h"
+#include "geometry/obstacle/feature_path.h"
+#include "solver/contact/fold_contacts.h"
+#include "solver/eol/eol_coordinates.h"
+#include "solver/eol/eol_features.h"
+
+namespace arris {
+
+namespace {
+
+/// On a wire or at its end.
+bool is_on_wire(const Obstacle& obstacle, const EolVertex& eol)
+{
+    if (!eol.is_corner) return obstacle.features().edges[eol.feature].kind == FeatureKind::Wire;
+    const ObstacleTopology& topology = obstacle.topology();
+    const int point = held_point(obstacle, eol);
+    return topology.edge_count_at(point) > 0 && topology.edges[topology.edge_at(point, 0)].faces[0] < 0;
+}
+
+/// Whether a wire's contact with cloth that is joined to a vertex on it is beside that vertex.
+bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, const Vec3& place,
+               double thickness, const ObstacleContact& contact)
+{
+    constexpr double kReach = 10.0;  // heights: cloth that leaves it at 6 degrees is a stand-off away there
+    const ObstacleFeatures& features = obstacle.features();
+    const double height = std::max((place - at.frame.point).norm(), thickness);
+    if ((contact.point - at.frame.point).norm() > kReach * height) return false;
+    const int corner = held_point(obstacle, eol);
+    const auto is_of_wire = [&](int edge) {
+        const auto& ends = obstacle.topology().edges[edge].points;
+        if (eol.is_corner) return ends[0] == corner || ends[1] == corner;
+        const int feature = feature_of_edge(features, edge);
+        return feature >= 0 && features.edges[feature].polyline == features.edges[eol.feature].polyline;
+    };
+    if (contact.kind == ContactKind::Edge) return is_of_wire(contact.element);
+    if (eol.is_corner) return contact.element == corner;
+    const ObstacleTopology& topology = obstacle.topology();
+    return !is_corner(features, contact.element) && topology.edge_count_at(contact.element) > 0 &&
+           is_of_wire(topology.edge_at(contact.element, 0));
+}
+
+/// Whether a point of the obstacle is within the mitre and a little of the feature of an EOL vertex, wherever
+/// along it: that is where the vertex has gone by the step's end.
+bool is_near_feature(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at,
+                     double thickness, const Vec3& point)
+{
+    const Vec3 nearest =
+        eol.is_corner
+            ? at.frame.point
+            : place_on_feature(obstacle, follow_polyline(obstacle, eol.feature, point).feature, point).point;
+    return (point - nearest).norm() <= kOnFeature * thickness;
+}
+
+/// Whether a contact that the search found is one of an EOL vertex with the feature it is on.
+bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, const Vec3& place,
+                double thickness, const ObstacleContact& contact)
+{
+    const ObstacleFeatures& features = obstacle.features();
+    const int corner = held_point(obstacle, eol);
+    if (contact.kind != ContactKind::Vertex && is_on_wire(obstacle, eol))
+        return is_beside(obstacle, eol, at, place, thickness, contact);
+    if (contact.kind == ContactKind::Triangle) return contact.element == corner;
+    if (contact.kind == ContactKind::Vertex)
+        return contact.normal.dot(at.frame.outward) > 0.0 &&
+               is_near_feature(obstacle, eol, at, thickness, contact.point);
+    const ObstacleEdge& edge = obstacle.topology().edges[contact.element];
+    if (!eol.is_corner) return contact.element == features.edges[eol.feature].edge;
+    return edge.points[0] == corner || edge.points[1] == corner;
+}
+
+/// Keeps the sides of cloth folded over a wire apart.
+void append_folds(const Scene& scene, const State& state, const ClothStars& stars,
+                  const Prediction& prediction, const std::vector<ObstacleStep>& steps,
+                  const std::vector<EolCoordinates>& eol, std::vector<Contact>& contacts)
+{
+    const double thickness = scene.material.thickness;
+    std::vector<const std::vector<Vec3>*> positions;
+    for (const ObstacleStep& step : steps) positions.push_back(&step.motion.begin);
+    for (const FoldContact& fold : find_fold_contacts(scene.obstacles, state, stars, eol, positions)) {
+        const ObstacleStep& step = steps[fold.obstacle];
+        const ObstacleContact contact =
+            make_contact(ContactKind::Vertex, {{fold.vertex, -1, -1}, {1.0, 0.0, 0.0}}, kFoldElement,
+                         fold.bound.normal, fold.point, fold.bound.least_gap);
+        contacts.push_back(place_contact(contact, fold.obstacle, step, prediction));
+        contacts.back().mitre = fold.bound.wanted / thickness;
+    }
+}
+
+Contact make_eol_contact(const ObstacleStep& step, const Prediction& prediction, double thickness,
+                         int obstacle, const EolCoordinates& at)
+{
+    const ClothPoint point = {{at.vertex, -1, -1}, {1.0, 0.0, 0.0}};
+    // Never more than it has: on its way out it would be held to the speed it has, and, with its history
+    // flattened, pushed out faster step by step.
+    const double now = at.frame.outward.dot(step.motion.begin[at.vertex] - at.frame.point);
+    const ObstacleContact contact = make_contact(ContactKind::Vertex, point, -1, at.frame.outward,
+                                                 at.frame.point, std::min(at.frame.mitre * thickness, now));
+    return place_contact(contact, obstacle, step, prediction);
+}
+
+}  // namespace
+
+std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& state, const ClothStars& stars,
+                                             const Prediction& prediction, double turning,
+                                             const std::vector<ObstacleStep>& steps,
+                                             std::vector<Contact>& contacts)
+{
+    const double thickness = scene.material.thickness;
+    std::vector<EolCoordinates> eol;
+    std::vector<int> slot(state.mesh.world.size(), -1);
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
+        const int o = state.eol[entry].obstacle;
+        const EolPlacing placing = place_eol_vertex(scene.obstacles[o], thickness, state, entry, stars,
+                                                    steps[o].motion.begin, steps[o].end, turning);
+        if (!placing.coordinates) continue;
+        slot[placing.coordinates->vertex] = static_cast<int>(eol.size());
+        eol.push_back(*placing.coordinates);
+    }
+    // The cloth's edge between two vertices on one wire is the trace itself: a row there is all but singular.
+    const auto is_trace = [&](const Contact& contact) {
+        const auto& [a, b, c] = contact.in_frame.vertices;
+        if (contact.in_frame.kind != ContactKind::Edge || slot[a] < 0 || slot[b] < 0) return false;
+        const int o = contact.obstacle;
+        const EolVertex &p = state.eol[eol[slot[a]].entry], &q = state.eol[eol[slot[b]].entry];
+        return p.obstacle == o && !p.is_corner && !q.is_corner && is_on_wire(scene.obstacles[o], p) &&
+               feature_of_edge(scene.obstacles[o].features(), contact.in_frame.element) >= 0 &&
+               is_trace_edge(scene.obstacles[o], {p, steps[o].motion.begin[a]},
+                             {q, steps[o].motion.begin[b]});
+    };
+    std::erase_if(contacts, [&](const Contact& contact) {
+        if (is_trace(contact)) return true;
+        const int o = contact.obstacle;
+        for (const int v : contact.in_frame.vertices) {
+            if (v < 0 || slot[v] < 0) continue;
+            const EolVertex& vertex = state.eol[eol[slot[v]].entry];
+            if (vertex.obstacle == o && is_covered(scene.obstacles[o], vertex, eol[slot[v]],
+                                                   steps[o].motion.begin[v], thickness, contact.in_frame))
+                return true;
+        }
+        return false;
+    });
+    const std::size_t found = contacts.size();
+    for (std::size_t e = 0; e < eol.size(); ++e) {
+        const int o = state.eol[eol[e].entry].obstacle;
+        contacts.push_back(make_eol_contact(steps[o], prediction, thickness, o, eol[e]));
+        contacts.back().eol = static_cast<int>(e);
+        contacts.back().mitre = eol[e].frame.mitre;
+        contacts.back().may_grow = false;  // pushing it out would stretch the cloth on both sides
+    }
+    append_folds(scene, state, stars, prediction, steps, eol, contacts);
+    for (std::size_t c = found; c < contacts.size(); ++c)
+        contacts[c].was_active = was_active(state, contacts[c]);
+    return eol;
+}
+
+}  // namespace arris

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/contact/fold_contacts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "geometry/obstacle/feature_path.h"
+
+namespace arris {
+
+namespace {
+
+// rad: nobody gets round by the one in a step; what is farther than the other on the wrong side, where the
+// cloth has passed through itself, stays there.
+constexpr double kFarRound = 1.0, kWrong = 0.5;
+
+// Of the vertex on the wire: its neighbours' mean distance, and the time after which it comes to what now is
+// as far away as it has gone then. What has swung past the plane farther down comes to the wire on the wrong
+// side of it, where nothing can be merged across the wire, and holds all of the cloth: so the time in which a
+// metre of cloth slides off, not that in which it only swings. But a plane that goes along with its wire
+// pushes cloth, the more the farther it reaches.
+constexpr double kCells = 4.0, kTime = 1.0, kTimeOfMoving = 0.2;  // s
+
+class FoldSearch {
+  public:
+    FoldSearch(const std::vector<Obstacle>& obstacles, const State& state, const ClothStars& stars,
+               const std::vector<EolCoordinates>& eol, const std::vector<const std::vector<Vec3>*>& positions)
+        : obstacles_(obstacles),
+          state_(state),
+          stars_(stars),
+          eol_(eol),
+          positions_(positions),
+          is_eol_(state.ids.size(), 0)
+    {
+        for (const EolCoordinates& at : eol) is_eol_[at.vertex] = 1;
+    }
+
+    std::vector<FoldContact> run()
+    {
+        for (const EolCoordinates& at : eol_) {
+            const EolVertex& vertex = state_.eol[at.entry];
+            if (!is_on_wire(vertex)) continue;
+            const Wire wire = {vertex.obstacle, polyline_of(vertex)};
+            const double reach = find_reach(at.vertex, wire);
+            for_neighbours(at.vertex, wire, [&](int w) {
+                const double angle = angle_behind(at.frame, place_of(w, wire));
+                add(planes_, {w, wire}, {&at, angle < 0.0 ? -1 : 1, std::abs(angle), reach});
+            });
+        }
+        for (Planes layer = planes_; !layer.empty();) {
+            layer = find_beyond(layer);
+            planes_.insert(layer.begin(), layer.end());
+        }
+        return contacts();
+    }
+
+  private:
+    using Wire = std::array<int, 2>;  ///< obstacle, polyline
+    struct Key {
+        int vertex;
+        Wire wire;
+        auto operator<=>(const Key&) const = default;
+    };
+    struct Plane {
+        const EolCoordinates* at;
+        int side;      ///< 0 where two planes do not agree
+        double angle;  ///< rad, to its side
+        double reach;  ///< m, material, from its vertex
+    };
+    using Planes = std::map<Key, Plane>;
+
+    bool is_on_wire(const EolVertex& vertex) const
+    {
+        return !vertex.is_corner &&
+               obstacles_[vertex.obstacle].features().edges[vertex.feature].kind == FeatureKind::Wire;
+    }
+
+    int polyline_of(const EolVertex& vertex) const
+    {
+        return obstacles_[vertex.obstacle].features().edges[vertex.feature].polyline;
+    }
+
+    const Vec3& place_of(int vertex, const Wire& wire) const { return (*positions_[wire[0]])[vertex]; }
+
+    /// That are not on the wire themselves.
+    template <typename Visit>
+    void for_neighbours(int vertex, const Wire& wire, const Visit& visit) const
+    {
+        for (const int f : stars_.faces[vertex])
+            for (const int w : state_.mesh.faces[f]) {
+                const int entry = state_.eol_entry(state_.ids[w]);
+                const bool is_there =
+                    entry >= 0 && is_on_wire(state_.eol[entry]) &&
+                    Wire{state_.eol[entry].obstacle, polyline_of(state_.eol[entry])} == wire;
+                if (w != vertex && !is_there) visit(w);
+            }
+    }
+
+    double way(int v, int w) const { return (state_.mesh.material[v] - state_.mesh.material[w]).norm(); }
+
+    /// How far from a vertex on the wire what comes to it soon is, m of material.
+    double find_reach(int vertex, const Wire& wire) const
+    {
+        double sum = 0.0;
+        int count = 0;
+        for_neighbours(vertex, wire, [&](int w) {
+            sum += way(vertex, w);
+            ++count;
+        });
+        const double cell = count > 0 ? sum / count : 0.0;
+        const double time = obstacles_[wire[0]].motion().is_moving() ? kTimeOfMoving : kTime;
+        return kCells * cell + time * state_.material_velocity[vertex].norm();
+    }
+
+    /// Beyond the wire's end there is nothing to get round. Cloth that hangs down there lies in the very
+    /// plane of what is on the wire, and is on neither side of it.
+    bool is_past_end(const EolCoordinates& at, int w, const Wire& wire) const
+    {
+        const Obstacle& obstacle = obstacles_[wire[0]];
+        const Vec3& place = place_of(w, wire);
+        const int edge = follow_polyline(obstacle, state_.eol[at.entry].feature, place).feature;
+        return arris::is_past_end(obstacle, edge, place);
+    }
+
+    /// Neighbours of the last that were found, each on the side of its own. What is held elsewhere, as at the
+    /// wire's end, is on no side that it could hand on.
+    Planes find_beyond(const Planes& last) const
+    {
+        Planes next;
+        for (const auto& [key, plane] : last) {
+            if (is_eol_[key.vertex]) continue;
+            for_neighbours(key.vertex, key.wire, [&](int w) {
+                if (planes_.contains({w, key.wire}) || way(plane.at->vertex, w) > plane.reach ||
+                    is_past_end(*plane.at, w, key.wire))
+                    return;
+                const double angle = plane.side * angle_behind(plane.at->frame, place_of(w, key.wire));
+                add(next, {w, key.wire}, {plane.at, plane.side, angle, plane.reach});
+            });
+        }
+        return next;
+    }
+
+    static void add(Planes& planes, const Key& key, const Plane& plane)
+    {
+        const auto [known, is_new] = planes.try_emplace(key, plane);
+        if (is_new) return;
+        const bool is_disputed = known->second.side != plane.side;
+        if (plane.angle < known->second.angle) known->second = plane;
+        if (is_disputed) known->second.side = 0;
+    }
+
+    std::vector<FoldContact> contacts() const
+    {
+        std::vector<FoldContact> found;
+        for (const auto& [key, plane] : planes_)
+            if (plane.side != 0 && plane.angle < kFarRound && plane.angle > -kWrong && !is_eol_[key.vertex])
+                found.push_back({key.vertex, key.wire[0],
+                                 find_fold_bound(plane.at->frame, place_of(key.vertex, key.wire), plane.side),
+                                 plane.at->frame.point});
+        return found;
+    }
+
+    const std::vector<Obstacle>& obstacles_;
+    const State& state_;
+    const ClothStars& stars_;
+    const std::vector<EolCoordinates>& eol_;
+    const std::vector<const std::vector<Vec3>*>& positions_;
+    /// Also on another feature, or the wire's end: that holds it, and it has no way to go where a bound
+    /// leads.
+    std::vector<char> is_eol_;
+    Planes planes_;
+};
+
+}  // namespace
+
+std::vector<FoldContact> find_fold_contacts(const std::vector<Obstacle>& obstacles, const State& state,
+                                            const ClothStars& stars, const std::vector<EolCoordinates>& eol,
+                                            const std::vector<const std::vector<Vec3>*>& positions)
+{
+    return FoldSearch(obstacles, state, stars, eol, positions).run();
+}
+
+}  // namespace arris

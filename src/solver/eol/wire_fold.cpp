@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/eol/wire_fold.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace arris {
+
+namespace {
+
+// rad: 1e-5 of what hangs straight down is missed in height, and the cloth passes the wire at 5e-3
+// stand-offs.
+constexpr double kLeastAngle = 5e-3;
+
+}  // namespace
+
+double angle_behind(const FeatureFrame& frame, const Vec3& place)
+{
+    const Vec3 from = place - frame.point;
+    return std::atan2(frame.outward.cross(frame.tangent).dot(from), -frame.outward.dot(from));
+}
+
+Vec3 turn_outward(const FeatureFrame& wanted, const Vec3& place, const std::vector<Vec3>& beside, double dt)
+{
+    constexpr double kRoundOff = 1e-13;
+    constexpr double kSpeed = 0.1;  // m/s
+    constexpr double kShare = 0.5;  // of what is missing, a step: outward turns with cloth that shakes
+    const Vec3& t = wanted.tangent;
+    const Vec3 from = place - wanted.point - t.dot(place - wanted.point) * t;
+    if (!(from.norm() > kRoundOff * place.norm())) return wanted.outward;
+    const Vec3 outward = from.normalized();
+    double turn = kShare * std::atan2(t.dot(outward.cross(wanted.outward)), outward.dot(wanted.outward));
+    turn = std::clamp(turn, -kSpeed * dt / from.norm(), kSpeed * dt / from.norm());
+    for (const Vec3& neighbour : beside) {
+        const double angle = angle_behind({wanted.point, t, outward, 1.0}, neighbour);
+        const double room = kShare * std::max(std::abs(angle) - kLeastAngle, 0.0);
+        turn = angle > 0.0 ? std::min(turn, room) : std::max(turn, -room);
+    }
+    return Eigen::AngleAxisd(turn, t) * outward;
+}
+
+FoldBound find_fold_bound(const FeatureFrame& frame, const Vec3& place, int side)
+{
+    const Vec3 from = place - frame.point, normal = side * frame.outward.cross(frame.tangent);
+    const double wanted = std::max(-kLeastAngle * frame.outward.dot(from), 0.0);
+    return {normal, std::min(normal.dot(from), wanted), wanted};
+}
+
+}  // namespace arris

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "physics/cloth_elements.h"
+#include "physics/linear_system.h"
+#include "physics/term.h"
+#include "solver/eol/cloth_stars.h"
+#include "solver/model/row_cause.h"
+#include "solver/model/state.h"
+
+namespace arris {
+
+/// Data derived from the step's mesh, kept from step to step and rebuilt only where the mesh has changed.
+struct MeshCache {
+    ClothStars stars;
+    std::vector<Face> faces_of_stars;  ///< of the mesh `stars` was made for
+    Terms terms;
+    ClothElements elements;
+    LinearSystem system;
+    std::vector<Face> faces_of_elements;  ///< of the mesh `elements` was made for
+    std::vector<Vec2> material_of_elements;
+
+    // choose_step_mesh
+    std::vector<RefusedContact> refused;  ///< contacts that pressed on a feature and are rows in this step
+    State conformed;                      ///< the state on the step's mesh, where that is a new one
+};
+
+}  // namespace arris

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/mesh_change/mesh_transfer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <unordered_map>
+
+#include "geometry/cloth/mesh_topology.h"
+#include "physics/deformation_gradient.h"
+#include "solver/eol/eol_coordinates.h"
+#include "solver/mesh_change/changed_patches.h"
+
+namespace arris {
+
+namespace {
+
+/// What one vertex carries; of BDF2's history too.
+struct Carried {
+    Vec2 X, V, previous_X, previous_V;
+    Vec3 x, v, previous_x, previous_v;
+};
+
+Carried read(const State& state, std::size_t v)
+{
+    return {state.mesh.material[v],     state.material_velocity[v],
+            state.previous_material[v], state.previous_material_velocity[v],
+            state.mesh.world[v],        state.velocity[v],
+            state.previous_world[v],    state.previous_velocity[v]};
+}
+
+/// What surgery has changed, and of other vertices what they had.
+class CarriedById {
+  public:
+    explicit CarriedById(const State& before) : before_(before) {}
+
+    Carried at(VertexId id) const
+    {
+        const auto found = changed_.find(id);
+        return found != changed_.end() ? found->second
+                                       : read(before_, static_cast<std::size_t>(before_.index_of(id)));
+    }
+    const std::unordered_map<VertexId, Carried>& changed() const { return changed_; }
+    bool has_changed(VertexId id) const { return changed_.contains(id); }
+    void set(VertexId id, const Carried& carried) { changed_.insert_or_assign(id, carried); }
+
+  private:
+    const State& before_;
+    std::unordered_map<VertexId, Carried> changed_;
+};
+
+Vec3 weights_of(const std::array<Vec2, 3>& X, const Vec2& place)
+{
+    const double area = twice_area(X[0], X[1], X[2]);
+    const double second = twice_area(X[0], place, X[2]) / area, third = twice_area(X[0], X[1], place) / area;
+    return {1.0 - second - third, second, third};
+}
+
+/// Position and material velocity of the surface at a material point of a face.
+struct SurfaceSample {
+    Vec3 x, v;
+};
+
+SurfaceSample sample(const std::array<Vec2, 3>& X, const std::array<Vec3, 3>& x, const std::array<Vec3, 3>& v,
+                     const std::array<Vec2, 3>& V, const Vec2& place)
+{
+    const Mat32 F = deformation_gradient(X, x);
+    const Vec3 weights = weights_of(X, place);
+    SurfaceSample at{Vec3::Zero(), Vec3::Zero()};
+    for (int i = 0; i < 3; ++i) {
+        at.x += weights[i] * x[i];
+        at.v += weights[i] * (v[i] - F * V[i]);
+    }
+    return at;
+}
+
+/// Whether a material point was in a face or so near to it that its plane may be continued. Not where the
+/// material has flowed so that a step ago its corners were no face: as near to a line as you like, a plane
+/// through them may lead anywhere.
+bool is_near(const std::array<Vec2, 3>& X, const Vec2& place)
+{
+    constexpr double kMostWeights = 3.0;  // inside they are 1: by how much it makes more of what corners have
+    return twice_area(X[0], X[1], X[2]) > 0.0 && weights_of(X, place).lpNorm<1>() <= kMostWeights;
+}
+
+/// The vertex is of the material from now on: it has what the surface has there, now and a step of `dt` (s)
+/// ago; where that cannot be told it has moved as it moves now.
+void interpolate(const SurgeryEvent& event, const VertexChange& change, double dt, CarriedById& all)
+{
+    Carried made{};
+    made.X = made.previous_X = change.new_material;
+    made.x = change.new_world;
+    made.V = made.previous_V = Vec2::Zero();
+    made.v = made.previous_v = made.previous_x = Vec3::Zero();
+    double count = 0.0, previous_count = 0.0;
+    for (const PatchFace& face : event.before) {
+        const auto is_of_face = [&](int i) {
+            return change.weights[i] == 0.0 || std::find(face.vertices.begin(), face.vertices.end(),
+                                                         change.parents[i]) != face.vertices.end();
+        };
+        if (!is_of_face(0) || !is_of_face(1) || !is_of_face(2)) continue;
+        std::array<Vec2, 3> X, V, previous_X, previous_V;
+        std::array<Vec3, 3> x, v, previous_x, previous_v;
+        for (int i = 0; i < 3; ++i) {
+            const Carried corner = all.at(face.vertices[i]);
+            X[i] = corner.X, V[i] = corner.V, x[i] = corner.x, v[i] = corner.v;
+            previous_X[i] = corner.previous_X, previous_V[i] = corner.previous_V;
+            previous_x[i] = corner.previous_x, previous_v[i] = corner.previous_v;
+        }
+        const SurfaceSample now = sample(X, x, v, V, made.X);
+        made.v += now.v;
+        count += 1.0;
+        if (!is_near(previous_X, made.X)) continue;
+        const SurfaceSample then = sample(previous_X, previous_x, previous_v, previous_V, made.X);
+        made.previous_x += then.x;
+        made.previous_v += then.v;
+        previous_count += 1.0;
+    }
+    made.v /= count;
+    made.previous_x =
+        previous_count > 0.0 ? Vec3(made.previous_x / previous_count) : Vec3(made.x - dt * made.v);
+    made.previous_v = previous_count > 0.0 ? Vec3(made.previous_v / previous_count) : made.v;
+    all.set(change.vertex, made);
+}
+
+/// A contact of an edge or face that was split, merged or flipped goes: it would hold the cloth where there
+/// is none, for as long as its vertices are there.
+void drop_contacts_without_element(const ClothStars& stars, State& state)
+{
+    const auto has_element = [&](const ActiveContact& contact) {
+        if (contact.kind == ContactKind::Vertex) return state.index_of(contact.vertex_ids[0]) >= 0;
+        const auto has_corner = [&](const Face& face, std::uint32_t id) {
+            return std::any_of(face.begin(), face.end(), [&](int v) { return state.ids[v] == id; });
+        };
+        const int first = state.index_of(contact.vertex_ids[0]);
+        if (first < 0) return false;
+        const std::span<const int> around = stars.faces[first];
+        return std::any_of(around.begin(), around.end(), [&](int f) {
+            return std::all_of(contact.vertex_ids.begin(), contact.vertex_ids.end(), [&](std::uint32_t id) {
+                return id == ActiveContact::kNoVertex || has_corner(state.mesh.faces[f], id);
+            });
+        });
+    };
+    std::erase_if(state.active, [&](const ActiveContact& contact) { return !has_element(contact); });
+}
+
+State on_new_mesh(const State& before, const ConformedMesh& conformed, const CarriedById& all)
+{
+    State after;
+    after.time = before.time;
+    after.step = before.step;
+    after.mesh = conformed.surgery.mesh;
+    after.ids = conformed.surgery.ids;
+    after.next_id = conformed.surgery.next_id;
+    after.previous_dt = before.previous_dt;
+    after.eol = conformed.eol;
+    after.anchors = before.anchors;
+    after.active = before.active;
+    after.crossings = before.crossings;
+    const std::size_t n = after.ids.size();
+    after.velocity.resize(n);
+    after.material_velocity.resize(n);
+    after.previous_world.resize(n);
+    after.previous_velocity.resize(n);
+    after.previous_material.resize(n);
+    after.previous_material_velocity.resize(n);
+    const auto write = [&](std::size_t v, const Carried& carried) {
+        after.velocity[v] = carried.v;
+        after.material_velocity[v] = carried.V;
+        after.previous_world[v] = carried.previous_x;
+        after.previous_velocity[v] = carried.previous_v;
+        after.previous_material[v] = carried.previous_X;
+        after.previous_material_velocity[v] = carried.previous_V;
+    };
+    for (std::size_t v = 0, then = 0; v < n; ++v) {
+        while (then < before.ids.size() && before.ids[then] < after.ids[v]) ++then;
+        if (then < before.ids.size() && before.ids[then] == after.ids[v])
+            write(v, read(before, then));
+        else
+            assert(all.has_changed(after.ids[v]) && "what is new has been carried over");
+    }
+    for (const auto& [id, carried] : all.changed())  // in any order: each has its own place
+        if (const int v = after.index_of(id); v >= 0) write(static_cast<std::size_t>(v), carried);
+    std::erase_if(after.anchors, [&](const PinAnchor& a) { return after.index_of(a.vertex_id) < 0; });
+    return after;
+}
+
+/// Whether material flows through each vertex: those of EOL entries that can have coordinates. Surgery beside
+/// one can take them from it, and it is of the material for the step that is left to it.
+std::vector<char> find_flowing(const Scene& scene, const State& state, const ClothStars& stars)
+{
+    std::vector<char> is_flowing(state.ids.size(), 0);
+    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry)
+        if (const EolPlacing placing = placer.place(entry); placing.coordinates)
+            is_flowing[placing.coordinates->vertex] = 1;
+    return is_flowing;
+}
+
+/// The fit changes how material flows, on which it depends whether a vertex can have coordinates. One that
+/// has none moves with the material around it. Which flow.
+std::vector<char> stop_flow(const Scene& scene, const ClothStars& stars, State& state)
+{
+    std::vector<char> is_flowing = find_flowing(scene, state, stars);
+    for (std::size_t v = 0; v < is_flowing.size(); ++v) {
+        if (is_flowing[v] || state.material_velocity[v].isZero()) continue;
+        Vec3 carried = Vec3::Zero();
+        double area = 0.0;
+        for (const int f : stars.faces[static_cast<int>(v)]) {
+            const auto& [a, b, c] = state.mesh.faces[f];
+            const std::vector<Vec2>& X = state.mesh.material;
+            const std::vector<Vec3>& x = state.mesh.world;
+            const double weight = twice_area(X[a], X[b], X[c]);
+            const Mat32 F = deformation_gradient({X[a], X[b], X[c]}, {x[a], x[b], x[c]});
+            carried += weight * (F * state.material_velocity[v]);
+            area += weight;
+        }
+        state.velocity[v] -= carried / area;
+        state.material_velocity[v].setZero();
+    }
+    return is_flowing;
+}
+
+/// A vertex that is EOL from now on, or no more, has moved so far as it moves now.
+void begin_history(const State& before, const std::vector<char>& is_flowing, State& after)
+{
+    for (const EolVertex& eol : after.eol) {
+        const int v = after.index_of(eol.vertex_id);
+        if (before.eol_entry(eol.vertex_id) >= 0 || !is_flowing[v]) continue;
+        after.previous_world[v] = after.mesh.world[v] - after.previous_dt * after.velocity[v];
+        after.previous_material[v] = after.mesh.material[v] - after.previous_dt * after.material_velocity[v];
+        after.previous_velocity[v] = after.velocity[v];
+        after.previous_material_velocity[v] = after.material_velocity[v];
+    }
+    for (const EolVertex& eol : before.eol) {
+        const int v = after.index_of(eol.vertex_id);
+        if (v < 0 || is_flowing[v]) continue;
+        after.previous_world[v] = after.mesh.world[v] - after.previous_dt * after.velocity[v];
+        after.previous_material[v] = after.mesh.material[v];
+        after.previous_velocity[v] = after.velocity[v];
+        after.previous_material_velocity[v].setZero();
+    }
+}
+
+}  // namespace
+
+State transfer(const Scene& scene, const State& before, const ClothStars& stars,
+               const ConformedMesh& conformed, const ClothStars& stars_after, TransferReport& report,
+               double most_strain)
+{
+    CarriedById all(before);
+    for (const SurgeryEvent& event : conformed.events)
+        for (const VertexChange& change : event.changes)
+            if (event.operation != SurgeryOperation::Collapse)
+                interpolate(event, change, before.previous_dt, all);
+    State after = on_new_mesh(before, conformed, all);
+    drop_contacts_without_element(stars_after, after);
+    const std::vector<ChangedPatch> patches =
+        find_changed_patches({before, after, conformed.events, stars.faces, stars_after.faces});
+    report = fit_patches(scene, before, stars, patches, stars_after, most_strain, after);
+    if (report.strain > most_strain) return after;  // nobody takes it
+    begin_history(before, stop_flow(scene, stars_after, after), after);
+    return after;
+}
+
+}  // namespace arris

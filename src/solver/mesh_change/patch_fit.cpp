@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/mesh_change/patch_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/sort_unique.h"
+#include "physics/deformation_gradient.h"
+#include "physics/velocity_fit.h"
+#include "solver/eol/eol_coordinates.h"
+#include "solver/mesh_change/patch_relaxation.h"
+#include "solver/mesh_change/strain_allowance.h"
+#include "solver/model/held_vertices.h"
+
+namespace arris {
+
+namespace {
+
+class PatchFitter {
+  public:
+    PatchFitter(const Scene& scene, const State& before, const ClothStars& stars_before,
+                const ClothStars& stars, State& after)
+        : scene_(scene),
+          before_(before),
+          after_(after),
+          placer_(scene.obstacles, scene.material.thickness, after, stars),
+          held_(find_held_vertices(scene, after, after.time)),
+          creases_before_(find_creases(scene, before, stars_before)),
+          creases_(find_creases(scene, after, stars))
+    {
+    }
+
+    TransferReport run(const std::vector<ChangedPatch>& patches, double most_strain)
+    {
+        TransferReport report;
+        std::vector<VelocityField> fields;
+        for (const ChangedPatch& patch : patches) fields.push_back(old_field(patch));
+        for (const StrainedPatch& strained : find_strained(patches, fields)) {
+            const ChangedPatch& patch = patches[strained.index];
+            const double gain = relax_patch(patch, strained.energy_before);
+            if (!(gain > 0.0)) continue;
+            const double small = std::min(report.strain, kPatchStrain);
+            const double strain = strain_of(patch, gain, strained.kinetic, small);
+            if (strain > kPatchStrain) report.strained.push_back(vertices_before(patch));
+            report.strain = std::max(report.strain, strain);
+            if (report.strain > most_strain) return report;
+        }
+        for (std::size_t i = 0; i < patches.size(); ++i) {
+            const std::optional<VelocityFit> fit = fit_patch(patches[i], fields[i]);
+            if (!fit) continue;
+            ++report.patches;
+            report.energy_gain += fit->energy_gain;
+        }
+        return report;
+    }
+
+  private:
+    /// One with more energy than before, J.
+    struct StrainedPatch {
+        std::size_t index;
+        double energy_before, kinetic;
+        double strain_bound;  ///< as it is, at most: that costs no lookups of targets
+    };
+
+    /// The most strained first: what cannot be, is seen there.
+    std::vector<StrainedPatch> find_strained(const std::vector<ChangedPatch>& patches,
+                                             const std::vector<VelocityField>& fields) const
+    {
+        std::vector<StrainedPatch> strained;
+        for (std::size_t i = 0; i < patches.size(); ++i) {
+            const ChangedPatch& patch = patches[i];
+            const double before =
+                find_patch_energy(scene_, creases_before_, before_.mesh, patch.faces_before);
+            const double gain = find_patch_energy(scene_, creases_, after_.mesh, patch.faces) - before;
+            if (!(gain > 0.0)) continue;
+            const double kinetic = compute_kinetic_energy(scene_.material.density, fields[i]);
+            const double bound = gain / moving_energy(kinetic, area_of(patch), scene_.eol->shortest);
+            strained.push_back({i, before, kinetic, bound});
+        }
+        std::stable_sort(
+            strained.begin(), strained.end(),
+            [](const StrainedPatch& a, const StrainedPatch& b) { return a.strain_bound > b.strain_bound; });
+        return strained;
+    }
+
+    VelocityField old_field(const ChangedPatch& patch) const
+    {
+        VelocityField field;
+        for (const int f : patch.faces_before) {
+            const Face& face = before_.mesh.faces[f];
+            std::array<Vec2, 3> X;
+            std::array<Vec3, 3> x, w;
+            for (int i = 0; i < 3; ++i) {
+                X[i] = before_.mesh.material[face[i]];
+                x[i] = before_.mesh.world[face[i]];
+            }
+            const Mat32 F = deformation_gradient(X, x);
+            for (int i = 0; i < 3; ++i)
+                w[i] = before_.velocity[face[i]] - F * before_.material_velocity[face[i]];
+            field.triangles.push_back(X);
+            field.velocity.push_back(w);
+        }
+        return field;
+    }
+
+    /// A mesh that strains the cloth more than the one before, which had that energy, gives way.
+    /// Returns by how much its energy is above what it was, J.
+    double relax_patch(const ChangedPatch& patch, double before)
+    {
+        relaxed_.faces = patch.faces;
+        relaxed_.is_free.resize(after_.ids.size());
+        relaxed_.normals.resize(after_.ids.size());
+        relaxed_.wanted = before;
+        for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
+            const int v = patch.vertices[i];
+            relaxed_.is_free[v] = after_.eol_entry(after_.ids[v]) < 0 && patch.is_inside[i];
+        }
+        for (const HeldVertex& held : held_) relaxed_.is_free[held.vertex] = 0;
+        for (const int v : patch.vertices)
+            relaxed_.normals[v] =
+                relaxed_.is_free[v] ? find_kept_normal(scene_, after_, after_.ids[v]) : Vec3(Vec3::Zero());
+        return relax(scene_, creases_, relaxed_, after_) - before;
+    }
+
+    double area_of(const ChangedPatch& patch) const
+    {
+        const std::vector<Vec2>& X = after_.mesh.material;
+        double area = 0.0;
+        for (const int f : patch.faces) {
+            const auto& [a, b, c] = after_.mesh.faces[f];
+            area += 0.5 * twice_area(X[a], X[b], X[c]);
+        }
+        return area;
+    }
+
+    /// All that moves a patch, J: its kinetic energy, and its weight over a cell.
+    double moving_energy(double kinetic, double area, double cell) const
+    {
+        return kinetic + weight_over(scene_, area, cell);
+    }
+
+    std::vector<VertexId> vertices_before(const ChangedPatch& patch) const
+    {
+        std::vector<VertexId> ids;
+        for (const int f : patch.faces_before)
+            for (const int v : before_.mesh.faces[f]) ids.push_back(before_.ids[v]);
+        sort_unique(ids);
+        return ids;
+    }
+
+    /// What `gain` is beside all that moves a patch, over the longest of its cells; where an
+    /// upper bound of it is no more than `small`, that.
+    double strain_of(const ChangedPatch& patch, double gain, double kinetic, double small) const
+    {
+        const double area = area_of(patch);
+        const auto strain = [&](double cell) { return gain / moving_energy(kinetic, area, cell); };
+        const double bound = strain(scene_.eol->shortest);
+        if (!(bound > small)) return bound;
+        double cell = 0.0;
+        int last = -1;
+        for (const int f : patch.faces)
+            if (const int v = after_.mesh.faces[f][0]; v != last)
+                cell = std::max(cell, scene_.eol->length(after_.mesh.material[last = v]));
+        return strain(cell);
+    }
+
+    std::optional<VelocityFit> fit_patch(const ChangedPatch& changed, const VelocityField& old)
+    {
+        FitPatch patch;
+        local_.resize(after_.ids.size());
+        for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
+            local_[changed.vertices[i]] = static_cast<int>(i);
+            add_vertex(changed.vertices[i], changed.is_inside[i], patch);
+        }
+        for (const int f : changed.faces) {
+            const Face& face = after_.mesh.faces[f];
+            patch.faces.push_back({local_[face[0]], local_[face[1]], local_[face[2]]});
+        }
+        const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch);
+        if (!fit) return fit;
+        for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
+            after_.velocity[changed.vertices[i]] = fit->velocity[i];
+            after_.material_velocity[changed.vertices[i]] = fit->material_velocity[i];
+        }
+        return fit;
+    }
+
+    void add_vertex(int v, bool is_inside, FitPatch& patch)
+    {
+        patch.material.push_back(after_.mesh.material[v]);
+        patch.world.push_back(after_.mesh.world[v]);
+        patch.is_free.push_back(is_inside);
+        Vec3 drift = Vec3::Zero();
+        Vec2 material_drift = Vec2::Zero();
+        Mat3 basis = Mat3::Identity();
+        Mat23 material_basis = Mat23::Zero();
+        if (!is_inside) {
+            drift = after_.velocity[v];
+            material_drift = after_.material_velocity[v];
+        } else if (const int entry = after_.eol_entry(after_.ids[v]); entry >= 0) {
+            if (const EolPlacing placing = placer_.place(entry); placing.coordinates) {
+                const Obstacle& obstacle = scene_.obstacles[after_.eol[entry].obstacle];
+                basis = placing.coordinates->basis;
+                material_basis = placing.coordinates->material_basis;
+                drift = obstacle.velocity_after(after_.time, after_.mesh.world[v]);
+            }
+        }
+        patch.drift.push_back(drift);
+        patch.material_drift.push_back(material_drift);
+        patch.basis.push_back(basis);
+        patch.material_basis.push_back(material_basis);
+    }
+
+    const Scene& scene_;
+    const State& before_;
+    State& after_;
+    EolPlacer placer_;
+    std::vector<HeldVertex> held_;
+    Creases creases_before_, creases_;
+    // Of vertices of other patches nothing that means anything.
+    RelaxedPatch relaxed_;
+    std::vector<int> local_;  ///< of each vertex its place in the patch
+};
+
+}  // namespace
+
+TransferReport fit_patches(const Scene& scene, const State& before, const ClothStars& stars_before,
+                           const std::vector<ChangedPatch>& patches, const ClothStars& stars,
+                           double most_strain, State& after)
+{
+    return PatchFitter(scene, before, stars_before, stars, after).run(patches, most_strain);
+}
+
+}  // namespace arris

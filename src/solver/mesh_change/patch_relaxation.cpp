@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/mesh_change/patch_relaxation.h"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "geometry/check/sweep_check.h"
+#include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth/sub_mesh.h"
+#include "geometry/obstacle/obstacle_distance.h"
+#include "physics/energies.h"
+#include "physics/term.h"
+#include "solver/mesh_change/patch_equations.h"
+#include "solver/mesh_change/strain_allowance.h"
+
+namespace arris {
+
+namespace {
+
+constexpr int kMostSteps = 8;
+
+/// What has an energy, and mass.
+Terms make_energy_terms(const Scene& scene)
+{
+    return make_terms(scene.material, scene.gravity, {}, {});
+}
+
+/// Of each of the steps, s. In all together nothing falls by more than `kAllowedStrain` of a cell, or twice
+/// that. Without gravity nothing falls: mass only keeps what has no stiffness where it is.
+double find_step_time(const Scene& scene)
+{
+    const double weight = scene.gravity ? scene.gravity->acceleration.norm() : 0.0;
+    if (!(weight > 0.0) || !scene.eol) return 1.0;
+    return std::min(1.0, std::sqrt(kAllowedStrain * scene.eol->mean_length / (kMostSteps * weight)));
+}
+
+/// Those of a part of the cloth, whose vertex i is `vertices[i]` of the whole.
+Creases find_part(const Creases& creases, const std::vector<int>& vertices)
+{
+    Creases part{creases.width, {}};
+    if (creases.edges.empty()) return part;
+    std::unordered_map<int, int> local;  // looked up only
+    for (std::size_t i = 0; i < vertices.size(); ++i) local[vertices[i]] = static_cast<int>(i);
+    for (const auto& [a, b] : creases.edges) {
+        const auto at_a = local.find(a), at_b = local.find(b);
+        if (at_a == local.end() || at_b == local.end()) continue;
+        const auto [first, second] = std::minmax(at_a->second, at_b->second);
+        part.edges.push_back({first, second});
+    }
+    std::sort(part.edges.begin(), part.edges.end());
+    return part;
+}
+
+/// The patch as a small cloth of its own, at rest.
+class Relaxation {
+  public:
+    Relaxation(const Scene& scene, LoosePatch patch)
+        : scene_(scene),
+          patch_(std::move(patch)),
+          terms_(make_energy_terms(scene)),
+          step_time_(find_step_time(scene))
+    {
+        place_.assign(patch_.is_free.size(), -1);
+        for (std::size_t v = 0; v < patch_.is_free.size(); ++v) {
+            if (!patch_.is_free[v]) continue;
+            place_[v] = static_cast<int>(free_.size());
+            free_.push_back(static_cast<int>(v));
+        }
+        MeshTopology topology = make_topology(patch_.mesh.vertex_count(), patch_.mesh.faces);
+        elements_ = list_elements(patch_.mesh, topology);
+        mark_creases(patch_.creases, patch_.mesh, elements_);
+        const ClothElements held = take_held();
+        edges_ = std::move(topology.edges);
+        held_energy_ = compute_energies(held, terms_, patch_.mesh.world).sum();
+        energy_ = energy_at(patch_.mesh.world);
+    }
+
+    /// Lowers the energy to `wanted`, or until it is seen that a few steps do not bring it there, which it
+    /// tells. A full step lowers the energy by less than the one before, as every mode decays: what the steps
+    /// that are left would bring is less than as often what the last one did, and hardly ever (of 3400
+    /// patches before a sliding box, of 3) more than twice that. After one that was cut short that is a
+    /// guess, on the side of no.
+    bool run(double wanted)
+    {
+        constexpr double kMostToCome = 2.0;  // times what the last step did
+        for (int left = kMostSteps - 1; left >= 0 && energy_ > wanted; --left) {
+            const double before = energy_;
+            if (!descend(wanted)) return false;
+            if (energy_ - wanted > std::min(double(left), kMostToCome) * (before - energy_)) return false;
+        }
+        return energy_ <= wanted;
+    }
+
+    /// Back on the last step's way to where the energy has just fallen to `wanted`: what strain the cloth had
+    /// before is its own.
+    void rise_to(double wanted)
+    {
+        if (!(energy_ < wanted) || before_last_.empty()) return;
+        const std::vector<Vec3> end = std::move(patch_.mesh.world);
+        const auto energy_along = [&](double share) {
+            patch_.mesh.world = before_last_;
+            for (std::size_t v = 0; v < end.size(); ++v)
+                patch_.mesh.world[v] += share * (end[v] - before_last_[v]);
+            return energy_at(patch_.mesh.world);
+        };
+        constexpr int kBits = 12;  // of the share
+        std::uintmax_t most_evaluations = 50;
+        const auto [above, below] = boost::math::tools::toms748_solve(
+            [&](double share) { return energy_along(share) - wanted; }, 0.0, 1.0,
+            energy_before_last_ - wanted, energy_ - wanted, boost::math::tools::eps_tolerance<double>(kBits),
+            most_evaluations);
+        energy_ = energy_along(below);
+    }
+
+    double energy() const { return energy_; }
+    const std::vector<Vec3>& world() const { return patch_.mesh.world; }
+
+    bool is_way_free(const std::vector<Vec3>& begin, double time) const
+    {
+        for (const Obstacle& obstacle : scene_.obstacles) {
+            const Placement now = obstacle.at(time);
+            const ClothMotion motion = {&patch_.mesh.faces, &edges_, to_frame(now, begin),
+                                        to_frame(now, patch_.mesh.world)};
+            if (!check_sweep(obstacle, motion, scene_.material.thickness).is_clean()) return false;
+        }
+        return true;
+    }
+
+    /// What has come into the stand-off goes back towards `begin` by halves, at last all of its way, until it
+    /// is as far from the obstacles as it was: what sinks there would be pushed out again.
+    void keep_off(const std::vector<Vec3>& begin, double time)
+    {
+        for (const Obstacle& obstacle : scene_.obstacles) {
+            const Placement now = obstacle.at(time);
+            const auto gap_at = [&](const Vec3& place) {
+                return distance_to(obstacle, now.inverse(place), scene_.material.thickness);
+            };
+            for (const int v : free_) keep_off(gap_at, begin[v], patch_.mesh.world[v]);
+        }
+        energy_ = energy_at(patch_.mesh.world);
+    }
+
+    void go_back_half(const std::vector<Vec3>& begin)
+    {
+        for (std::size_t v = 0; v < begin.size(); ++v)
+            patch_.mesh.world[v] = 0.5 * (patch_.mesh.world[v] + begin[v]);
+        energy_ = energy_at(patch_.mesh.world);
+    }
+
+  private:
+    /// The elements that concern no free vertex, out of the others.
+    ClothElements take_held()
+    {
+        ClothElements held;
+        take_held(elements_.faces, held.faces);
+        take_held(elements_.hinges, held.hinges);
+        return held;
+    }
+
+    template <typename Element>
+    void take_held(std::vector<Element>& elements, std::vector<Element>& held) const
+    {
+        const auto is_held = [this](const Element& element) {
+            return std::all_of(element.vertices.begin(), element.vertices.end(),
+                               [this](int v) { return place_[v] < 0; });
+        };
+        std::copy_if(elements.begin(), elements.end(), std::back_inserter(held), is_held);
+        std::erase_if(elements, is_held);
+    }
+
+    template <typename Gap>
+    void keep_off(const Gap& gap_at, const Vec3& begin, Vec3& place) const
+    {
+        constexpr int kMostHalvings = 5;
+        constexpr double kRounding = 1e-3;
+        if (place == begin || !(gap_at(place) < scene_.material.thickness)) return;
+        const double least = (1.0 - kRounding) * gap_at(begin);
+        for (int k = 0; k < kMostHalvings && gap_at(place) < least; ++k) place = 0.5 * (place + begin);
+        if (gap_at(place) < least) place = begin;
+    }
+
+    /// One step from rest that lowers the energy; false where there is none.
+    bool descend(double wanted)
+    {
+        constexpr int kMostHalvings = 8;
+        constexpr double kWorthwhile = 1e-3;  // of what there is to lower
+        const std::vector<Vec3> way = find_way();
+        double share = 1.0;
+        for (int k = 0; k < kMostHalvings; ++k, share *= 0.5) {
+            std::vector<Vec3> next = patch_.mesh.world;
+            for (std::size_t v = 0; v < next.size(); ++v) next[v] += share * way[v];
+            const double reached = energy_at(next);
+            if (!(reached < energy_ - kWorthwhile * (energy_ - wanted))) continue;
+            before_last_ = std::exchange(patch_.mesh.world, std::move(next));
+            energy_before_last_ = std::exchange(energy_, reached);
+            return true;
+        }
+        return false;
+    }
+
+    double energy_at(const std::vector<Vec3>& world) const
+    {
+        return held_energy_ + compute_energies(elements_, terms_, world).sum();
+    }
+
+    std::vector<Vec3> find_way()
+    {
+        std::vector<Vec3> way(patch_.mesh.world.size(), Vec3::Zero());
+        if (free_.empty()) return way;
+        if (!equations_) equations_.emplace(place_, free_, step_time_);  // many a patch never moves
+        const auto found = equations_->find_way(patch_.mesh, elements_, terms_, patch_.normals);
+        if (!found) return way;
+        for (std::size_t k = 0; k < free_.size(); ++k)
+            way[free_[k]] = found->segment<3>(static_cast<Eigen::Index>(3 * k));
+        return way;
+    }
+
+    const Scene& scene_;
+    LoosePatch patch_;
+    std::vector<int> free_;   ///< vertices, ascending
+    std::vector<int> place_;  ///< of each vertex in `free_`; -1 where it is held
+    std::vector<MeshEdge> edges_;
+    ClothElements elements_;  ///< that concern a free vertex; their hinges' faces mean nothing
+    Terms terms_;
+    double step_time_;                 ///< s
+    double held_energy_ = 0.0;         ///< J, of what does not move
+    double energy_ = 0.0;              ///< J, where it is
+    std::vector<Vec3> before_last_;    ///< where it was before the last step
+    double energy_before_last_ = 0.0;  ///< J, there
+    std::optional<PatchEquations> equations_;
+};
+
+}  // namespace
+
+Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vertex_id)
+{
+    Vec3 normal = Vec3::Zero();
+    auto contact = std::lower_bound(
+        state.active.begin(), state.active.end(), vertex_id,
+        [](const ActiveContact& active, std::uint32_t id) { return active.vertex_ids[0] < id; });
+    for (; contact != state.active.end() && contact->vertex_ids[0] == vertex_id; ++contact)
+        if (contact->kind == ContactKind::Vertex)
+            normal = scene.obstacles[contact->obstacle].at(state.time).rotation * contact->normal;
+    return normal;
+}
+
+double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state)
+{
+    constexpr int kMostHalvings = 4;
+    constexpr double kRounding = 1e-9;  // of sums over the patch: a split leaves the energy as it is
+    SubMesh part = extract_faces(state.mesh, patch.faces);
+    LoosePatch loose{std::move(part.mesh), {}, {}, find_part(creases, part.vertices)};
+    for (const int v : part.vertices) {
+        loose.is_free.push_back(patch.is_free[v]);
+        loose.normals.push_back(patch.normals[v]);
+    }
+    Relaxation relaxation(scene, std::move(loose));
+    const std::vector<Vec3> begin = relaxation.world();
+    const double before = relaxation.energy();
+    if (before - patch.wanted <= kRounding * std::abs(patch.wanted)) return before;
+    relaxation.run(patch.wanted);
+    relaxation.rise_to(patch.wanted);
+    relaxation.keep_off(begin, state.time);
+    if (!(relaxation.energy() < before)) return before;
+    for (int k = 0; !relaxation.is_way_free(begin, state.time); ++k) {
+        if (k == kMostHalvings) return before;
+        relaxation.go_back_half(begin);
+    }
+    for (std::size_t i = 0; i < begin.size(); ++i) {
+        const Vec3 moved = relaxation.world()[i] - begin[i];
+        state.mesh.world[part.vertices[i]] += moved;
+        state.previous_world[part.vertices[i]] += moved;
+    }
+    return relaxation.energy();
+}
+
+bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop)
+{
+    Relaxation relaxation(scene, patch);
+    const double wanted = relaxation.energy() - drop;
+    return relaxation.run(wanted);
+}
+
+double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& mesh)
+{
+    ClothElements elements = list_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
+    mark_creases(creases, mesh, elements);
+    return compute_energies(elements, make_energy_terms(scene), mesh.world).sum();
+}
+
+double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& cloth,
+                         const std::vector<int>& faces)
+{
+    const SubMesh part = extract_faces(cloth, faces);
+    return find_patch_energy(scene, find_part(creases, part.vertices), part.mesh);
+}
+
+}  // namespace arris

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/mesh_change/step_mesh.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "geometry/sort_unique.h"
+#include "solver/eol/creases.h"
+#include "solver/mesh_change/conform.h"
+#include "solver/mesh_change/mesh_transfer.h"
+#include "solver/mesh_change/relaxation_memo.h"
+#include "solver/mesh_change/strain_allowance.h"
+#include "solver/model/stopwatch.h"
+
+namespace arris {
+
+namespace {
+
+void prepare_stars(const State& state, MeshCache& cache)
+{
+    if (cache.faces_of_stars == state.mesh.faces) return;
+    cache.stars = make_stars(state.mesh.vertex_count(), state.mesh.faces);
+    cache.faces_of_stars = state.mesh.faces;
+}
+
+/// The elements of the state's mesh; true where they are of other faces than before.
+bool prepare_elements(const State& state, MeshCache& cache)
+{
+    prepare_stars(state, cache);
+    const bool has_faces = cache.faces_of_elements == state.mesh.faces;
+    if (has_faces && cache.material_of_elements == state.mesh.material) return false;
+    if (has_faces) {  // material has flowed
+        const std::vector<Vec2>& then = cache.material_of_elements;
+        std::vector<char> is_moved(then.size());
+        for (std::size_t v = 0; v < then.size(); ++v) is_moved[v] = then[v] != state.mesh.material[v];
+        update_elements(state.mesh, is_moved, cache.elements);
+        cache.material_of_elements = state.mesh.material;
+        return false;
+    }
+    cache.elements = make_elements(state.mesh, cache.stars.topology);
+    cache.system.make_pattern(cache.elements);
+    cache.faces_of_elements = state.mesh.faces;
+    cache.material_of_elements = state.mesh.material;
+    return true;
+}
+
+constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr int kAnyNumber = std::numeric_limits<int>::max();
+
+/// A mesh, and the state on it where that has been carried over.
+struct TriedMesh {
+    ConformOutcome outcome;
+    std::optional<State> state;
+    ClothStars stars;
+    TransferReport transferred;
+    double most_strain = 0.0;  ///< with which it was carried over
+
+    double strain() const { return transferred.strain; }
+    bool is_carried_over() const { return state && strain() <= most_strain; }
+};
+
+/// The meshes that a step may have.
+class MeshTries {
+  public:
+    MeshTries(const Scene& scene, double dt, const State& state, const MeshCache& cache,
+              const FailedFlow& failed, Stopwatch& watch, PhaseSeconds& seconds)
+        : scene_(scene),
+          dt_(dt),
+          state_(state),
+          cache_(cache),
+          failed_(failed),
+          changes_(find_feature_changes(scene, state, cache.stars)),
+          watch_(watch),
+          seconds_(seconds)
+    {
+    }
+
+    /// The best of them; none, and the step is made on the mesh there is, where that strains the cloth by
+    /// more than can be borne, as long as attempts at the step have not come to give vertices up.
+    TriedMesh find_best()
+    {
+        TriedMesh best = choose();
+        if (best.strain() <= kMostStrain || !failed_.given_up.empty() || !failed_.made_at.empty())
+            return best;
+        TriedMesh none;
+        none.outcome.refused = std::move(best.outcome.refused);
+        for (const FeatureSite& site : changes_.sites) {
+            if (site.contact < 0) continue;
+            const ActiveContact& contact = state_.active[site.contact];
+            none.outcome.refused.push_back(
+                {contact.vertex_ids, contact.kind, contact.obstacle, contact.element, RowCause::Guard});
+        }
+        return none;
+    }
+
+  private:
+    /// One that gives way, or one more carefully made where the cloth could not give way as it should have.
+    TriedMesh choose()
+    {
+        TriedMesh giving = make({});
+        carry_over(giving, kTraceStrain);
+        const int lost = giving.outcome.lost;
+        TriedMesh careful = more_careful(std::move(giving));
+        const bool is_costly = careful.outcome.lost > lost;
+        return or_forced(std::move(careful), is_costly);
+    }
+
+    /// That, made again with care where it is strained, as far as that has been looked at; where that does
+    /// not help, with care everywhere. As it is where nothing in what is strained relies on cloth that gives
+    /// way, or where care would cost a trace vertices and it strains but little more than it should.
+    TriedMesh more_careful(TriedMesh mesh)
+    {
+        constexpr int kMostTries = 2;  // what is strained after the first is most often elsewhere
+        ConformLimits limits;
+        for (int k = 0; k <= kMostTries && mesh.strain() > kPatchStrain; ++k) {
+            if (!add_strained(mesh, limits.careful_at)) break;
+            if (k == kMostTries) limits = {.strain = StrainLimit::AsMade};
+            limits.lost = mesh.strain() <= kTraceStrain ? mesh.outcome.lost : kAnyNumber;
+            TriedMesh next = make(limits);
+            if (next.outcome.lost > limits.lost) break;
+            if (k < kMostTries) carry_over(next, kTraceStrain);
+            mesh = std::move(next);
+        }
+        return mesh;
+    }
+
+    /// The vertices of strained patches in which something relies on cloth that gives way; whether there are
+    /// any more of them.
+    static bool add_strained(const TriedMesh& mesh, std::vector<VertexId>& careful_at)
+    {
+        const std::vector<VertexId>& relies_at = mesh.outcome.relies_at;
+        const std::size_t known = careful_at.size();
+        for (const std::vector<VertexId>& patch : mesh.transferred.strained)
+            if (std::any_of(patch.begin(), patch.end(), [&](VertexId v) {
+                    return std::binary_search(relies_at.begin(), relies_at.end(), v);
+                }))
+                careful_at.insert(careful_at.end(), patch.begin(), patch.end());
+        sort_unique(careful_at);
+        return careful_at.size() > known;
+    }
+
+    /// That, or one made by force where that leaves less blocked and strains the cloth but little more than
+    /// it should, or where the other is costly, no more than it should. What is blocked would be met by rows,
+    /// which stop what slides and all the cloth that hangs on it.
+    TriedMesh or_forced(TriedMesh gentle, bool is_costly)
+    {
+        if (is_costly || gentle.outcome.blocked > 0) {
+            const int most_blocked = is_costly ? kAnyNumber : gentle.outcome.blocked - 1;
+            TriedMesh forced = make({.strain = StrainLimit::Forced, .blocked = most_blocked});
+            const bool is_freer = forced.outcome.blocked < gentle.outcome.blocked;
+            const double most_strain = is_freer ? kTraceStrain : kPatchStrain;
+            if (forced.outcome.blocked <= most_blocked) {
+                carry_over(forced, most_strain);
+                if (forced.strain() <= most_strain) return forced;
+            }
+        }
+        carry_over(gentle, kAny);
+        return gentle;
+    }
+
+    TriedMesh make(const ConformLimits& limits)
+    {
+        TriedMesh made;
+        made.outcome =
+            conform_mesh(scene_, dt_, state_, cache_.stars, changes_, failed_, limits, relaxations_);
+        seconds_.conform += watch_.lap();
+        return made;
+    }
+
+    /// Once; not to the end where a patch would be strained by more than `most_strain`.
+    void carry_over(TriedMesh& made, double most_strain)
+    {
+        if (!made.outcome.mesh || made.is_carried_over()) return;
+        const ClothMesh& mesh = made.outcome.mesh->surgery.mesh;
+        made.stars = make_stars(mesh.vertex_count(), mesh.faces);
+        seconds_.move += watch_.lap();
+        made.state = transfer(scene_, state_, cache_.stars, *made.outcome.mesh, made.stars, made.transferred,
+                              most_strain);
+        made.most_strain = most_strain;
+        seconds_.transfer += watch_.lap();
+    }
+
+    const Scene& scene_;
+    double dt_;  ///< s
+    const State& state_;
+    const MeshCache& cache_;
+    const FailedFlow& failed_;
+    FeatureChanges changes_;
+    RelaxationMemo relaxations_;
+    Stopwatch& watch_;
+    PhaseSeconds& seconds_;
+};
+
+}  // namespace
+
+StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& failed, State& state,
+                          MeshCache& cache, StepReport& report)
+{
+    Stopwatch watch;
+    prepare_stars(state, cache);
+    report.seconds.move += watch.lap();
+    TriedMesh best =
+        MeshTries(scene, end - state.time, state, cache, failed, watch, report.seconds).find_best();
+    cache.refused = std::move(best.outcome.refused);
+    const bool is_new = best.outcome.mesh.has_value();
+    if (is_new) {
+        report.inserted = best.outcome.mesh->report.inserted;
+        report.released = best.outcome.mesh->report.released;
+        cache.conformed = std::move(*best.state);
+        cache.stars = std::move(best.stars);
+        cache.faces_of_stars = cache.conformed.mesh.faces;
+    }
+    State& start = is_new ? cache.conformed : state;
+    const bool is_changed = update_mesh_cache(scene, start, cache);
+    report.seconds.move += watch.lap();
+    return {start, is_changed};
+}
+
+bool update_mesh_cache(const Scene& scene, const State& state, MeshCache& cache)
+{
+    if (cache.terms.faces.empty())
+        cache.terms = make_terms(scene.material, scene.gravity, scene.wind, scene.pulls);
+    const bool has_new_elements = prepare_elements(state, cache);
+    const Creases creases = find_creases(scene, state, cache.stars);
+    const bool has_new_creases = mark_creases(creases, state.mesh, cache.elements);
+    return has_new_elements || has_new_creases;
+}
+
+}  // namespace arris

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/mesh_change/surgery_energy.h"
+
+#include <algorithm>
+
+namespace arris {
+
+namespace {
+
+bool has_tag(const ClothSurgery& surgery, VertexId a, VertexId b)
+{
+    return surgery.has_vertex(a) && surgery.has_vertex(b) && surgery.edge_tag(a, b) != kNoTag;
+}
+
+/// A few faces, and what of the mesh around makes hinges with them.
+class PatchElements {
+  public:
+    PatchElements(const ClothSurgery& surgery, const SurgeryEvent& event, const std::vector<PatchFace>& faces)
+        : surgery_(surgery), event_(event)
+    {
+        for (const PatchFace& face : faces) {
+            Face made;
+            for (int k = 0; k < 3; ++k) made[k] = add(face.vertices[k], face.material[k], face.world[k]);
+            elements_.faces.push_back(make_face_element(material_, made));
+        }
+    }
+
+    void add_hinges(double crease_width)
+    {
+        const int count = static_cast<int>(elements_.faces.size());
+        for (int f = 0; f < count; ++f)
+            for (int k = 0; k < 3; ++k) add_hinge(f, k, crease_width);
+    }
+
+    Energies energies(const Terms& terms) const { return compute_energies(elements_, terms, world_); }
+
+  private:
+    int add(VertexId id, const Vec2& material, const Vec3& world)
+    {
+        const auto found = std::find(ids_.begin(), ids_.end(), id);
+        if (found != ids_.end()) return static_cast<int>(found - ids_.begin());
+        ids_.push_back(id);
+        material_.push_back(material);
+        world_.push_back(world);
+        return static_cast<int>(ids_.size()) - 1;
+    }
+
+    /// Across edge k of face f; of one between two of the faces, once.
+    void add_hinge(int f, int k, double crease_width)
+    {
+        const Face& face = elements_.faces[f].vertices;
+        const int a = face[k], b = face[(k + 1) % 3], c = face[(k + 2) % 3];
+        int d = apex_within(b, a);
+        if (d >= 0 && ids_[a] > ids_[b]) return;
+        if (d < 0) d = apex_around(b, a);
+        if (d < 0) return;
+        HingeElement hinge{{a, b, c, d}, {f, -1}};
+        const bool is_crease = crease_width > 0.0 && is_on_trace(surgery_, event_, ids_[a], ids_[b]);
+        hinge.crease_width = is_crease ? crease_width : 0.0;
+        const double area_d = 0.5 * twice_area(material_[b], material_[a], material_[d]);
+        hinge.weight = compute_hinge_weight(material_, hinge, elements_.faces[f].area, area_d);
+        elements_.hinges.push_back(hinge);
+    }
+
+    int apex_within(int a, int b) const
+    {
+        for (const FaceElement& face : elements_.faces)
+            for (int k = 0; k < 3; ++k)
+                if (face.vertices[k] == a && face.vertices[(k + 1) % 3] == b)
+                    return face.vertices[(k + 2) % 3];
+        return -1;
+    }
+
+    int apex_around(int a, int b)
+    {
+        if (!surgery_.has_vertex(ids_[a]) || !surgery_.has_vertex(ids_[b])) return -1;
+        const VertexId apex = surgery_.apex(ids_[a], ids_[b]);
+        return apex == kNoVertex ? -1 : add(apex, surgery_.material(apex), surgery_.world(apex));
+    }
+
+    const ClothSurgery& surgery_;
+    const SurgeryEvent& event_;
+    std::vector<VertexId> ids_;  // of a dozen vertices
+    std::vector<Vec2> material_;
+    std::vector<Vec3> world_;
+    ClothElements elements_;
+};
+
+}  // namespace
+
+bool is_on_trace(const ClothSurgery& surgery, const SurgeryEvent& event, VertexId a, VertexId b)
+{
+    if (has_tag(surgery, a, b)) return true;
+    const auto [first, second] = event.edge;
+    const auto is_made = [&](VertexId at, VertexId other) {
+        if (event.operation == SurgeryOperation::Collapse)
+            return at == second && other != first && has_tag(surgery, first, other);
+        return event.operation == SurgeryOperation::SplitEdge && at == event.changes[0].vertex &&
+               (other == first || other == second) && has_tag(surgery, first, second);
+    };
+    return is_made(a, b) || is_made(b, a);
+}
+
+Energies find_energies(const ClothSurgery& surgery, const SurgeryEvent& event,
+                       const std::vector<PatchFace>& faces, const Terms& terms, double crease_width)
+{
+    PatchElements patch(surgery, event, faces);
+    if (!terms.hinges.empty()) patch.add_hinges(crease_width);
+    return patch.energies(terms);
+}
+
+}  // namespace arris

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/model/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/sort_unique.h"
+
+namespace arris {
+
+bool has_features(const Scene& scene)
+{
+    return std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const Obstacle& obstacle) {
+        return !obstacle.features().edges.empty() || !obstacle.features().corners.empty();
+    });
+}
+
+Placement pin_placement(const Scene& scene, const Pin& pin, double time)
+{
+    if (!pin.follows) return pin.motion.at(time);
+    const Obstacle& obstacle = scene.obstacles[*pin.follows];
+    return obstacle.at(time) * obstacle.at(0.0).inverse();
+}
+
+Vec3 pin_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place)
+{
+    return pin.follows ? scene.obstacles[*pin.follows].velocity_after(time, place)
+                       : pin.motion.velocity_after(time, place);
+}
+
+std::vector<double> input_jumps(const Scene& scene)
+{
+    std::vector<double> times;
+    const auto add = [&](const std::vector<double>& jumps) {
+        times.insert(times.end(), jumps.begin(), jumps.end());
+    };
+    for (const Pin& pin : scene.pins) {
+        if (!pin.follows) add(pin.motion.jumps());
+        times.push_back(pin.release);
+    }
+    for (const Obstacle& obstacle : scene.obstacles) add(obstacle.motion().jumps());
+    for (const Pull& pull : scene.pulls) times.insert(times.end(), {pull.start, pull.stop});
+
+    std::erase_if(times, [](double t) { return !(t > 0.0) || !std::isfinite(t); });
+    sort_unique(times);
+    return times;
+}
+
+}  // namespace arris

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "geometry/cloth/material_box.h"
+#include "geometry/cloth/mesh_target.h"
+#include "geometry/obstacle/obstacle.h"
+#include "geometry/rigid_motion.h"
+#include "physics/effects.h"
+#include "physics/material.h"
+
+namespace arris {
+
+/// Cloth vertices whose material coordinates lie in `material` are held in `held` world directions and moved.
+struct Pin {
+    MaterialBox material;
+    RigidMotion motion;
+    std::array<bool, 3> held = {true, true, true};             ///< x, y, z
+    double release = std::numeric_limits<double>::infinity();  ///< s
+    std::optional<int> follows =
+        {};  ///< an obstacle (index in the scene) on which they ride instead of `motion`
+
+    bool holds_until(double end) const { return end <= release; }
+};
+
+/// What is simulated: const while stepping. An effect that is absent here costs nothing.
+struct Scene {
+    Material material;
+    std::optional<Gravity> gravity;
+    std::optional<Wind> wind;
+    std::vector<Pull> pulls;
+    std::vector<Pin> pins;
+    std::vector<Obstacle> obstacles;
+    std::optional<MeshTarget> eol;  ///< what the mesh near features should be; without it none is EOL
+};
+
+/// Whether any obstacle has a sharp edge, corner, wire or point.
+bool has_features(const Scene& scene);
+
+/// Maps where something that `pin` holds was at time 0 to where it has it at `time` (s).
+Placement pin_placement(const Scene& scene, const Pin& pin, double time);
+
+/// Velocity (m/s) just after `time` of what `pin` holds at `place` then.
+Vec3 pin_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place);
+
+/// Times after 0 at which the input jumps (motion starts or stops, keyframe, release, pull): ascending,
+/// unique. Steps end on them, and the step after one is implicit Euler.
+std::vector<double> input_jumps(const Scene& scene);
+
+}  // namespace arris

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/cloth/cloth_mesh.h"
+#include "geometry/contact/obstacle_contact.h"
+
+namespace arris {
+
+/// A contact that pressed at the end of a step, with its multiplier: the next solve's warm start, and what
+/// the next search looks at again.
+struct ActiveContact {
+    static constexpr std::uint32_t kNoVertex = 0xffffffffu;
+    std::array<std::uint32_t, 3>
+        vertex_ids;  ///< of the cloth's vertex, edge or face, ascending; rest kNoVertex
+    ContactKind kind;
+    std::int32_t obstacle;  ///< index in the scene
+    std::int32_t element;   ///< as ObstacleContact's
+    Vec3 normal;            ///< in the obstacle's frame
+    double multiplier;      ///< N s
+};
+
+/// A vertex on a sharp feature of an obstacle, through which the material flows (Eulerian on Lagrangian).
+struct EolVertex {
+    std::uint32_t vertex_id;
+    std::int32_t obstacle;  ///< index in the scene
+    bool is_corner;
+    std::int32_t feature;    ///< index in the obstacle's features().corners or .edges
+    Vec3 outward;            ///< unit, from the feature, in the obstacle's frame
+    std::int32_t idle;       ///< steps in a row at whose end it did not press
+    std::int32_t side = 0;   ///< of a wire or point: 1 where the normals of the cloth's faces point outward,
+                             ///< -1 where inward, 0 as long as that is not known
+    std::int32_t turn = -1;  ///< end (0 or 1) of its edge at which a wire turns and it is held; else -1
+};
+
+/// Where a vertex that a pin holds was at time 0: the pin's motion maps this to where it must be.
+struct PinAnchor {
+    std::uint32_t pin;  ///< index in the scene
+    std::uint32_t vertex_id;
+    Vec3 origin;  ///< x(0), m
+};
+
+/// Exactly what a resumed run needs, and nothing that could be computed from it.
+struct State {
+    double time = 0.0;  ///< s
+    std::int64_t step = 0;
+    ClothMesh mesh;
+    std::vector<std::uint32_t> ids;  ///< persistent, one a vertex, ascending
+    std::uint32_t next_id = 0;
+    std::vector<Vec3> velocity;           ///< v_k, m/s
+    std::vector<Vec2> material_velocity;  ///< V_k, m/s: with which X moves; zero but at EOL vertices
+
+    // One step back, for BDF2; meaningless where `previous_dt` is 0 (first step, after a jump of the input).
+    double previous_dt = 0.0;  ///< s
+    std::vector<Vec3> previous_world;
+    std::vector<Vec3> previous_velocity;
+    std::vector<Vec2> previous_material;
+    std::vector<Vec2> previous_material_velocity;
+
+    std::vector<EolVertex> eol;         ///< ascending by vertex_id
+    std::vector<PinAnchor> anchors;     ///< ascending by (pin, vertex_id)
+    std::vector<ActiveContact> active;  ///< ascending by (vertex_ids, obstacle, kind, element)
+    std::int64_t crossings = 0;         ///< how often, so far, something passed through
+
+    /// -1 where there is no such vertex.
+    int index_of(std::uint32_t id) const
+    {
+        const auto found = std::lower_bound(ids.begin(), ids.end(), id);
+        return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
+    }
+
+    /// Entry in `eol` of the vertex with this id; -1 where it is none.
+    int eol_entry(std::uint32_t id) const
+    {
+        const auto found = std::lower_bound(
+            eol.begin(), eol.end(), id, [](const EolVertex& e, std::uint32_t i) { return e.vertex_id < i; });
+        return found != eol.end() && found->vertex_id == id ? static_cast<int>(found - eol.begin()) : -1;
+    }
+};
+
+}  // namespace arris

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "solver/model/row_cause.h"
+
+namespace arris {
+
+enum class StepStatus { Done, NotConverged, Infeasible, NotFinite, Penetration, EnergyRise, Overrun };
+
+/// Wall seconds of one step by phase.
+struct PhaseSeconds {
+    double move = 0, contacts = 0, conform = 0, transfer = 0, assemble = 0, factorise = 0, solve = 0,
+           check = 0, advance = 0, output = 0;
+
+    PhaseSeconds& operator+=(const PhaseSeconds& other)
+    {
+        for (const auto phase :
+             {&PhaseSeconds::move, &PhaseSeconds::contacts, &PhaseSeconds::conform, &PhaseSeconds::transfer,
+              &PhaseSeconds::assemble, &PhaseSeconds::factorise, &PhaseSeconds::solve, &PhaseSeconds::check,
+              &PhaseSeconds::advance, &PhaseSeconds::output})
+            this->*phase += other.*phase;
+        return *this;
+    }
+};
+
+/// A step that has no past to go on is made in two parts, told as one; any other part of a step, or all of
+/// it, is told as it is.
+enum class StepPart { Ordinary, Opening, Rest };
+
+struct StepReport {
+    StepStatus status = StepStatus::Done;
+    double dt = 0.0;  ///< s
+    StepPart part = StepPart::Ordinary;
+    std::int64_t infeasible_vertex = -1;  ///< id of one whose pins and contacts no velocity meets
+    int contacts = 0;                     ///< that press, without planes behind wires
+    int feature_rows = 0;                 ///< those at a sharp edge, corner, wire or point but EOL vertices
+    RowCounts rows_by_cause{};            ///< these, by why they are rows, in a scene with EOL vertices
+    int eol_pressing = 0;                 ///< EOL vertices with a positive multiplier
+    int crossings = 0;                    ///< in this step
+    int solves = 0;                       ///< velocity solves: more than one where the check found violations
+    int relinearisations = 0;             ///< solves of forces linearised again (relinearization.h)
+    double energy_rise = 0.0;             ///< J, what was pushed in by a step that nothing mended
+    int yielded = 0;                      ///< contacts that could not keep their stand-off
+    int rewound = 0;                      ///< vertices put back on their way, so that nothing is passed
+    double kkt_residual = 0.0;
+    int factorisations = 0;
+    int nlopt_evaluations = 0;
+    int eol_vertices = 0;
+    int inserted = 0, released = 0;  ///< EOL vertices
+    PhaseSeconds seconds;
+
+    void add_cost(const StepReport& other)
+    {
+        solves += other.solves;
+        factorisations += other.factorisations;
+        nlopt_evaluations += other.nlopt_evaluations;
+        seconds += other.seconds;
+    }
+};
+
+}  // namespace arris

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/sites/border_room.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "solver/eol/eol_features.h"
+
+namespace arris {
+
+namespace {
+
+/// World, now.
+Vec3 tangent_of(const Scene& scene, const State& state, const EolVertex& eol)
+{
+    const Obstacle& obstacle = scene.obstacles[eol.obstacle];
+    return obstacle.at(state.time).rotation * feature_tangent(obstacle, eol);
+}
+
+bool is_cloth_corner(const State& state, const ClothStars& stars, int v)
+{
+    constexpr double kStraight = 0.9;  // cosine
+    const auto [a, b] = stars.border_neighbours[v];
+    const Vec2 before = (state.mesh.material[v] - state.mesh.material[a]).normalized();
+    const Vec2 after = (state.mesh.material[b] - state.mesh.material[v]).normalized();
+    return before.dot(after) < kStraight;
+}
+
+}  // namespace
+
+double room_to_border(const Scene& scene, const State& state, const ClothStars& stars, const Vec2& X, int v,
+                      bool is_on_border, const EolVertex& eol)
+{
+    std::optional<Vec3> tangent;  // most are not asked for
+    double least = std::numeric_limits<double>::infinity();
+    for (const int f : stars.faces[v])
+        for (const int w : state.mesh.faces[f]) {
+            if (stars.border_neighbours[w][0] < 0) continue;
+            if (is_on_border) {
+                if (is_cloth_corner(state, stars, w))
+                    least = std::min(least, (X - state.mesh.material[w]).norm());
+                continue;
+            }
+            for (const int next : stars.border_neighbours[w]) {
+                const Vec3 way = (state.mesh.world[next] - state.mesh.world[w]).normalized();
+                constexpr double kAlong = 0.7;  // cosine
+                if (!tangent) tangent = tangent_of(scene, state, eol);
+                if (!is_fixed(eol) && !(std::abs(way.dot(*tangent)) > kAlong)) continue;
+                const Vec2 &a = state.mesh.material[w], &b = state.mesh.material[next];
+                const double s = std::clamp((X - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+                least = std::min(least, (X - a - s * (b - a)).norm());
+            }
+        }
+    return least;
+}
+
+bool is_along_border(const Scene& scene, const State& state, const ClothStars& stars,
+                     const std::array<int, 2>& edge, const EolVertex& eol)
+{
+    const double kCos20 = std::cos(20.0 * M_PI / 180.0);
+    const auto [from, to] = edge[0] == edge[1] ? stars.border_neighbours[edge[0]] : edge;
+    const Vec3 border = (state.mesh.world[to] - state.mesh.world[from]).stableNormalized();
+    return std::abs(border.dot(tangent_of(scene, state, eol))) > kCos20;
+}
+
+}  // namespace arris

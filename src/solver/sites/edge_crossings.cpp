@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/sites/edge_crossings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geometry/closest_point.h"
+#include "geometry/obstacle/feature_frame.h"
+#include "geometry/obstacle/feature_nodes.h"
+#include "geometry/obstacle/feature_path.h"
+#include "geometry/obstacle/normal_cone.h"
+#include "geometry/sort_unique.h"
+#include "solver/eol/eol_features.h"
+
+namespace arris {
+
+namespace {
+
+constexpr double kInPlane = 1e-6;  // thicknesses: a vertex nearer to a feature's plane is in it
+constexpr double kAsGood = 0.1;    // the same, where the cloth comes no nearer: its edge begins or ends there
+
+}  // namespace
+
+EdgeCrossings::EdgeCrossings(const Scene& scene, const State& state, const ClothStars& stars,
+                             std::int32_t obstacle)
+    : state_(state),
+      stars_(stars),
+      obstacle_(scene.obstacles[obstacle]),
+      o_(obstacle),
+      thickness_(scene.material.thickness),
+      positions_(to_frame(obstacle_.at(state.time), state.mesh.world))
+{
+}
+
+std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const Vec3& normal) const
+{
+    return find(a, b, feature, normal, {kInPlane, kOnFeature * thickness_});
+}
+
+std::optional<FeatureSite> EdgeCrossings::find_pressed(int a, int b, int feature, const Vec3& normal) const
+{
+    const double height = kOnFeature * thickness_ + find_rise(a, b, feature, normal);
+    for (const double in_plane : {kInPlane, kAsGood})
+        if (const auto crossing = find(a, b, feature, normal, {in_plane, height})) return crossing;
+    return find_beyond_end(a, b, feature, normal);
+}
+
+std::vector<int> EdgeCrossings::neighbours(int vertex) const
+{
+    std::vector<int> found;
+    for (const int f : stars_.faces[vertex])
+        for (const int w : state_.mesh.faces[f])
+            if (w != vertex) found.push_back(w);
+    sort_unique(found);
+    return found;
+}
+
+std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const Vec3& normal,
+                                               const Reach& reach) const
+{
+    if (a > b) std::swap(a, b);
+    const std::optional<double> s = find_share(a, b, feature, reach);
+    if (!s || (*s == 0.0 && is_eol(a)) || (*s == 1.0 && is_eol(b))) return std::nullopt;
+    const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
+    FeatureSite site = {o_, false, feature, X, state_.ids[*s < 0.5 ? a : b], normal};
+    site.edge = {*s < 1.0 ? a : b, *s > 0.0 ? b : a};
+    const auto [before, after] = stars_.border_neighbours[site.edge[0]];
+    site.is_on_border = site.edge[0] == site.edge[1] ? before >= 0 : before == b || after == b;
+    return site;
+}
+
+/// Where it crosses, from a (0) to b (1).
+std::optional<double> EdgeCrossings::find_share(int a, int b, int feature, const Reach& reach) const
+{
+    const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
+    const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
+    const FeatureEdge& edge = obstacle_.features().edges[feature];
+    if (edge.kind != FeatureKind::Convex) {
+        const bool is_near = (nearest.first - nearest.second).norm() <= kOnFeature * thickness_;
+        const auto& ends = obstacle_.topology().edges[edge.edge].points;
+        const bool is_at_corner = (nearest.t <= 0.0 && is_corner(obstacle_.features(), ends[0])) ||
+                                  (nearest.t >= 1.0 && is_corner(obstacle_.features(), ends[1]));
+        if (!is_near || is_at_corner) return std::nullopt;
+        return nearest.s;
+    }
+    const std::optional<FeatureFrame> frame =
+        find_edge_frame(obstacle_, feature, nearest.second, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+    const Vec3 across = frame->tangent.cross(frame->outward);
+    const double of_a = across.dot(positions_[a] - frame->point);
+    const double of_b = across.dot(positions_[b] - frame->point);
+    const bool is_at_a = std::abs(of_a) <= reach.in_plane * thickness_;
+    const bool is_at_b = std::abs(of_b) <= reach.in_plane * thickness_;
+    if (!is_at_a && !is_at_b && (of_a > 0.0) == (of_b > 0.0)) return std::nullopt;
+    const double s = is_at_a ? 0.0 : is_at_b ? 1.0 : of_a / (of_a - of_b);
+    const Vec3 place = (1.0 - s) * positions_[a] + s * positions_[b];
+    const double height = frame->outward.dot(place - frame->point);
+    const double along = closest_on_segment(place, segment[0], segment[1]);
+    if (!(height >= 0.0 && height <= reach.height && along > 0.0 && along < 1.0)) return std::nullopt;
+    return s;
+}
+
+/// How much higher an edge of the cloth that pressed along `normal` may be over the feature by now. What
+/// kept the gap is the point that touched; the edge has slid on from there, and turned.
+double EdgeCrossings::find_rise(int a, int b, int feature, const Vec3& normal) const
+{
+    const auto [from, to] = feature_segment(obstacle_, feature);
+    const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, {from, to});
+    const Placement now = obstacle_.at(state_.time);
+    const Vec3 velocity = (1.0 - nearest.s) * state_.velocity[a] + nearest.s * state_.velocity[b] -
+                          obstacle_.velocity_after(state_.time, now(nearest.second));
+    const Vec3 along = (to - from).normalized();
+    const Vec3 sliding = now.rotation.transpose() * velocity;
+    const double slide = state_.previous_dt * (sliding - along.dot(sliding) * along).norm();
+    return slide * std::abs(normal.dot((positions_[b] - positions_[a]).normalized()));
+}
+
+/// Cloth a stand-off above an edge passes through its plane a little beyond where it is nearest: where an
+/// edge of it ends between the two, on one that goes on from there.
+std::optional<FeatureSite> EdgeCrossings::find_beyond_end(int a, int b, int feature, const Vec3& normal) const
+{
+    if (obstacle_.features().edges[feature].kind != FeatureKind::Convex) return std::nullopt;
+    const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
+    const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
+    const int end = nearest.s < 0.5 ? a : b;
+    if (!((positions_[end] - nearest.second).norm() <= kOnFeature * thickness_)) return std::nullopt;
+    for (const int w : neighbours(end))
+        if (w != a && w != b)
+            if (const auto site = find(end, w, feature, normal)) return site;
+    return std::nullopt;
+}
+
+}  // namespace arris

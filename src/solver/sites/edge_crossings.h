@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "solver/sites/feature_sites.h"
+
+namespace arris {
+
+/// Where edges of the cloth cross the feature edges of one obstacle: on a convex edge where they pass through
+/// the plane in which an EOL vertex may move, no higher than cloth that lies on it; on a wire or border,
+/// whose plane turns with the cloth, where they are nearest.
+class EdgeCrossings {
+  public:
+    /// `stars` are the state's.
+    EdgeCrossings(const Scene& scene, const State& state, const ClothStars& stars, std::int32_t obstacle);
+
+    /// Of the edge from vertex a to b with feature edge `feature`, on which it lies or presses along `normal`
+    /// (in the obstacle's frame). Nothing at an EOL vertex.
+    std::optional<FeatureSite> find(int a, int b, int feature, const Vec3& normal) const;
+
+    /// The same of an edge that pressed: that may be higher by now, or end before it crosses, on an edge that
+    /// goes on from there.
+    std::optional<FeatureSite> find_pressed(int a, int b, int feature, const Vec3& normal) const;
+
+    const Obstacle& obstacle() const { return obstacle_; }
+    std::int32_t obstacle_index() const { return o_; }
+    const State& state() const { return state_; }
+    const ClothStars& stars() const { return stars_; }
+
+    /// Of the cloth, in the obstacle's frame.
+    const std::vector<Vec3>& positions() const { return positions_; }
+
+    /// Of a vertex of the cloth, ascending.
+    std::vector<int> neighbours(int vertex) const;
+
+  private:
+    struct Reach {
+        double in_plane;  ///< thicknesses from the plane, within which an edge's end is the crossing
+        double height;    ///< m, above the feature, to which cloth lies on it
+    };
+    std::optional<FeatureSite> find(int a, int b, int feature, const Vec3& normal, const Reach& reach) const;
+    std::optional<double> find_share(int a, int b, int feature, const Reach& reach) const;
+    double find_rise(int a, int b, int feature, const Vec3& normal) const;
+    std::optional<FeatureSite> find_beyond_end(int a, int b, int feature, const Vec3& normal) const;
+    bool is_eol(int v) const { return state_.eol_entry(state_.ids[v]) >= 0; }
+
+    const State& state_;
+    const ClothStars& stars_;
+    const Obstacle& obstacle_;
+    std::int32_t o_;
+    double thickness_;
+    std::vector<Vec3> positions_;
+};
+
+}  // namespace arris

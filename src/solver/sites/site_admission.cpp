@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/sites/site_admission.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/obstacle/feature_frame.h"
+#include "geometry/obstacle/feature_path.h"
+#include "solver/eol/eol_features.h"
+#include "solver/eol/free_fold.h"
+#include "solver/sites/border_room.h"
+#include "solver/sites/eol_release.h"
+
+namespace arris {
+
+namespace {
+
+// Target lengths to a border ahead, below which no vertex is made.
+constexpr double kInsertRoom = 0.3, kCornerInsertRoom = 0.5;
+
+/// Whether what presses at a site of an edge is flat on a face beside it.
+bool is_along_face(const Obstacle& obstacle, const FeatureSite& site)
+{
+    const auto& normals = obstacle.features().edges[site.feature].normals;
+    return std::any_of(normals.begin(), normals.end(),
+                       [&](const Vec3& n) { return n.dot(site.outward) > kFlat; });
+}
+
+}  // namespace
+
+std::optional<RowCause> SiteAdmission::find_refusal(const FeatureSite& site, int v, const Vec2& flow) const
+{
+    if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
+    if (is_beside_other(site)) return RowCause::OtherFeature;
+    if (const std::optional<RowCause> fold = find_fold_cause(site)) return fold;
+    if ((site.is_corner || site.turn >= 0) && has_vertex_on(site)) return RowCause::BesideEol;
+    return std::nullopt;
+}
+
+/// Why the cloth's border leaves no room for a vertex; nothing where it does.
+std::optional<RowCause> SiteAdmission::find_border_cause(const FeatureSite& site, int v,
+                                                         const Vec2& flow) const
+{
+    const double h = scene_.eol->length(site.material);
+    EolVertex eol{site.near, site.obstacle, site.is_corner, site.feature, site.outward, 0};
+    eol.turn = site.turn;
+    if (site.is_on_border && site.turn >= 0) return RowCause::NearBorder;
+    if (site.is_on_border && !site.is_corner && is_along_border(scene_, state_, stars_, site.edge, eol))
+        return RowCause::AlongBorder;
+    const auto room_at = [&](const Vec2& X) {
+        return room_to_border(scene_, state_, stars_, X, v, site.is_on_border, eol);
+    };
+    const double room = room_at(site.material);
+    if (room < (is_fixed(eol) ? kCornerInsertRoom : kInsertRoom) * h) return RowCause::NearBorder;
+    // What comes fast would have to go at once.
+    constexpr double kAside = 1e-3;  // of the target length: to see how fast the room closes
+    const Vec2 aside = kAside * h * flow.stableNormalized();
+    const double closing = (room - room_at(site.material + aside)) / (kAside * h) * flow.norm();
+    if (room < soon_ * closing) return RowCause::BorderAhead;
+    return std::nullopt;
+}
+
+/// Of edges nearer to each other than the cloth is thick one has a trace: between two there is no room.
+bool SiteAdmission::is_beside_other(const FeatureSite& site) const
+{
+    if (site.is_corner) return false;
+    const Obstacle& obstacle = scene_.obstacles[site.obstacle];
+    const std::vector<FeatureEdge>& edges = obstacle.features().edges;
+    const double h = scene_.eol->length(site.material);
+    return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
+        if (e.obstacle != site.obstacle || e.is_corner || !trace_.is_on_trace(e.vertex_id) ||
+            edges[e.feature].polyline == edges[site.feature].polyline ||
+            !((trace_.surgery().material(e.vertex_id) - site.material).norm() < 1.5 * h))
+            return false;
+        const Vec3 there = place_on_feature(obstacle, e.feature, trace_.placed(e).place).point;
+        const Vec3 here = place_on_feature(obstacle, site.feature, there).point;
+        return (there - here).norm() < scene_.material.thickness;
+    });
+}
+
+/// Whether an EOL vertex is of a fold that has left its edge.
+bool SiteAdmission::has_left(const EolVertex& eol) const
+{
+    const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+    if (!is_on_convex_edge(obstacle, eol)) return false;
+    const Vec3 place = trace_.placed(eol).place;
+    return has_left_feature(place_on_feature(obstacle, eol.feature, place).point, place,
+                            scene_.material.thickness);
+}
+
+/// Where a site on an edge of the cloth is.
+Vec3 SiteAdmission::world_at(const FeatureSite& site) const
+{
+    const auto& [a, b] = site.edge;
+    if (a < 0) return state_.mesh.world[state_.index_of(site.near)];
+    const std::vector<Vec2>& X = state_.mesh.material;
+    const double length = (X[b] - X[a]).norm();
+    const double s = length > 0.0 ? (site.material - X[a]).norm() / length : 0.0;
+    return (1.0 - s) * state_.mesh.world[a] + s * state_.mesh.world[b];
+}
+
+/// Where a fold has left an edge, what follows it over the edge, as much material away as the fold is from
+/// the edge, is mostly flat. Where it is not it gets a trace of its own, as soon as there is room for two.
+/// What is in one line with the fold is of its trace, where some of it has come back.
+std::optional<RowCause> SiteAdmission::find_fold_cause(const FeatureSite& site) const
+{
+    constexpr double kRoom = 1.0;  // target lengths: at less two traces are not told apart
+    if (site.is_corner) return std::nullopt;
+    const std::optional<double> way = find_free_fold(site);
+    if (!way) return std::nullopt;
+    const bool is_between = site.contact < 0;  // and presses nowhere itself
+    if (is_between || is_along_face(scene_.obstacles[site.obstacle], site)) return RowCause::FlatBehind;
+    return *way < kRoom * scene_.eol->length(site.material) ? std::optional(RowCause::BesideEol)
+                                                            : std::nullopt;
+}
+
+/// How far the fold that a site follows is from the edge, m: the least, if there are several.
+std::optional<double> SiteAdmission::find_free_fold(const FeatureSite& site) const
+{
+    const Obstacle& obstacle = scene_.obstacles[site.obstacle];
+    const std::vector<FeatureEdge>& edges = obstacle.features().edges;
+    const Vec3 here = obstacle.at(state_.time).inverse(world_at(site));
+    const auto [from, to] = feature_segment(obstacle, site.feature);
+    const double h = scene_.eol->length(site.material);
+    std::optional<double> least;
+    for (const EolVertex& e : trace_.eol()) {
+        if (e.obstacle != site.obstacle || e.is_corner || !trace_.is_on_trace(e.vertex_id) ||
+            edges[e.feature].polyline != edges[site.feature].polyline || !has_left(e))
+            continue;
+        constexpr double kShare = 0.5;  // of the fold's way from the edge
+        constexpr double kSoon = 0.05;  // s, in which it flows through the fold
+        constexpr double kNear = 2.0;   // target lengths: a fold is held for one, and its first steps
+        const Vec3 off = trace_.placed(e).place - here;
+        const double along = std::abs((to - from).normalized().dot(off));
+        const double way = (trace_.surgery().material(e.vertex_id) - site.material).norm();
+        const double across = std::sqrt(std::max(way * way - along * along, 0.0));
+        const double left = std::sqrt(std::max(off.squaredNorm() - along * along, 0.0));
+        const double reach = std::min(kNear * h, kSoon * trace_.flow(e.vertex_id).norm());
+        if (way < reach && along < h && across > kShare * left) least = std::min(least.value_or(left), left);
+    }
+    return least;
+}
+
+bool SiteAdmission::is_in_plane(const EolVertex& eol) const
+{
+    constexpr double kOff = 0.1;  // thicknesses
+    const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+    const Vec3 place = trace_.placed(eol).place;
+    if (eol.is_corner) return true;
+    const FeatureEdge& edge = obstacle.features().edges[eol.feature];
+    const Vec3 off = place - place_on_feature(obstacle, eol.feature, place).point;
+    if (edge.kind != FeatureKind::Convex) return off.norm() <= kOnFeature * scene_.material.thickness;
+    if (has_left(eol))  // and may be anywhere beyond both faces
+        return std::all_of(edge.normals.begin(), edge.normals.end(), [&](const Vec3& normal) {
+            return normal.dot(off) >= -kOff * scene_.material.thickness;
+        });
+    const std::optional<FeatureFrame> frame =
+        find_edge_frame(obstacle, eol.feature, place, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+    const Vec3 across = frame->tangent.cross(frame->outward);
+    return std::abs(across.dot(place - frame->point)) <= kOff * scene_.material.thickness;
+}
+
+bool SiteAdmission::is_on_side(const EolVertex& eol) const
+{
+    constexpr double kAlong = 0.5;  // cosine
+    const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+    if (eol.is_corner || obstacle.features().edges[eol.feature].kind == FeatureKind::Convex) return true;
+    const Vec3 place = trace_.placed(eol).place;
+    const Vec3 from = place - place_on_feature(obstacle, eol.feature, place).point;
+    return from.dot(eol.outward) >= kAlong * from.norm();
+}
+
+/// A corner or turn holds one vertex of a cloth that lies over it.
+bool SiteAdmission::has_vertex_on(const FeatureSite& site) const
+{
+    const double h = scene_.eol->length(site.material);
+    return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
+        return is_fixed(e) && e.obstacle == site.obstacle && e.is_corner == site.is_corner &&
+               e.feature == site.feature && e.turn == site.turn && trace_.is_on_trace(e.vertex_id) &&
+               (trace_.surgery().material(e.vertex_id) - site.material).norm() < h;
+    });
+}
+
+}  // namespace arris

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/sites/trace_mesh.h"
+
+#include <algorithm>
+
+#include "geometry/obstacle/feature_path.h"
+
+namespace arris {
+
+FeatureTags::FeatureTags(const std::vector<Obstacle>& obstacles) : obstacles_(obstacles)
+{
+    for (const Obstacle& obstacle : obstacles) {
+        first_.push_back(count_);
+        const ObstacleFeatures& features = obstacle.features();
+        count_ += features.polyline_count + static_cast<int>(features.corners.size());
+    }
+}
+
+int FeatureTags::tag(std::int32_t obstacle, bool is_corner, std::int32_t feature) const
+{
+    const ObstacleFeatures& features = obstacles_[obstacle].features();
+    return first_[obstacle] +
+           (is_corner ? features.polyline_count + feature : features.edges[feature].polyline);
+}
+
+TraceMesh::TraceMesh(const Scene& scene, const State& state, const ClothStars& stars,
+                     const std::vector<VertexId>& pinned)
+    : obstacles_(scene.obstacles),
+      target_(*scene.eol),
+      state_(state),
+      tags_(scene.obstacles),
+      surgery_(state.mesh, state.ids, state.next_id, pinned, stars.topology.edges),
+      eol_(state.eol)
+{
+    for (const EolVertex& e : eol_) {
+        surgery_.set_role(e.vertex_id, is_fixed(e) ? TraceRole::Node : TraceRole::OnTrace, tags_.tag(e));
+        flow_[e.vertex_id] = state.material_velocity[state.index_of(e.vertex_id)];
+    }
+    for (const auto& [a, b] : find_trace_edges(obstacles_, state, stars)) {
+        const EolVertex &p = eol_[a], &q = eol_[b];
+        surgery_.set_edge_tag(p.vertex_id, q.vertex_id, tags_.tag(p.is_corner ? q : p));
+    }
+    surgery_.take_touched();
+}
+
+std::vector<EolVertex>::const_iterator TraceMesh::place_of(VertexId v) const
+{
+    return std::lower_bound(eol_.begin(), eol_.end(), v,
+                            [](const EolVertex& e, VertexId id) { return e.vertex_id < id; });
+}
+
+const EolVertex* TraceMesh::find(VertexId v) const
+{
+    const auto at = place_of(v);
+    return at != eol_.end() && at->vertex_id == v ? &*at : nullptr;
+}
+
+bool TraceMesh::is_on_trace(VertexId v) const
+{
+    return surgery_.has_vertex(v) && surgery_.role(v) != TraceRole::Free;
+}
+
+void TraceMesh::add(const EolVertex& made, const Vec2& flow)
+{
+    eol_.insert(place_of(made.vertex_id), made);
+    flow_.try_emplace(made.vertex_id, flow);
+}
+
+EolVertex& TraceMesh::entry_of(VertexId v)
+{
+    return eol_[static_cast<std::size_t>(place_of(v) - eol_.begin())];
+}
+
+void TraceMesh::slide(VertexId v, int feature)
+{
+    entry_of(v).feature = feature;
+}
+
+void TraceMesh::hold(VertexId v, int feature, int turn)
+{
+    surgery_.set_role(v, TraceRole::Node, surgery_.tag(v));
+    EolVertex& held = entry_of(v);
+    held.feature = feature;
+    held.turn = turn;
+    held.idle = 0;
+}
+
+void TraceMesh::forget_released()
+{
+    std::erase_if(eol_, [this](const EolVertex& e) { return !is_on_trace(e.vertex_id); });
+    std::erase_if(flow_, [this](const auto& of) { return !is_on_trace(of.first); });
+}
+
+PlacedEol TraceMesh::placed(const EolVertex& eol) const
+{
+    return {eol, obstacles_[eol.obstacle].at(state_.time).inverse(surgery_.world(eol.vertex_id))};
+}
+
+std::vector<PlacedEol> TraceMesh::placed() const
+{
+    std::vector<PlacedEol> on_trace;
+    for (const EolVertex& e : eol_)
+        if (is_on_trace(e.vertex_id)) on_trace.push_back(placed(e));
+    return on_trace;
+}
+
+std::optional<EolVertex> TraceMesh::like_neighbour(VertexId v, int tag) const
+{
+    for (const VertexId w : surgery_.ring(v).vertices) {
+        const EolVertex* known = find(w);
+        if (!known || known->is_corner || tags_.tag(*known) != tag) continue;
+        EolVertex made = *known;
+        made.vertex_id = v;
+        made.idle = 0;
+        made.turn = -1;
+        made.feature = follow_polyline(obstacles_[made.obstacle], made.feature, placed(made).place).feature;
+        return made;
+    }
+    return std::nullopt;
+}
+
+int TraceMesh::side_beside(int tag, const Vec2& material) const
+{
+    constexpr double kBeside = 2.0;  // target lengths
+    double least = kBeside * target_.length(material);
+    int side = 0;
+    for (const EolVertex& e : eol_) {
+        if (e.side == 0 || !is_on_trace(e.vertex_id) || tags_.tag(e) != tag) continue;
+        const double distance = (surgery_.material(e.vertex_id) - material).norm();
+        if (distance < least) side = e.side;
+        least = std::min(least, distance);
+    }
+    return side;
+}
+
+VertexId TraceMesh::nearest_to(const Vec2& material) const
+{
+    VertexId nearest = kNoVertex;
+    double least = 0.0;
+    for (std::size_t v = 0; v < state_.ids.size(); ++v) {
+        if (!surgery_.has_vertex(state_.ids[v])) continue;
+        const double distance = (state_.mesh.material[v] - material).squaredNorm();
+        if (nearest != kNoVertex && distance >= least) continue;
+        nearest = state_.ids[v];
+        least = distance;
+    }
+    return nearest;
+}
+
+}  // namespace arris

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/sites/turn_sites.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "geometry/closest_point.h"
+#include "geometry/obstacle/feature_path.h"
+#include "solver/eol/eol_features.h"
+
+namespace arris {
+
+namespace {
+
+// Thicknesses: nearer to its turn a chord is as good. Less than one: beside a fold's top its faces pass the
+// wire nearer than that, and a turn that presses through them blocks what slides.
+constexpr double kMissed = 0.3;
+constexpr double kLongest = 2.0;  // target lengths between neighbours along a trace
+
+/// On a wire: an EOL vertex or a site.
+struct Place {
+    double along;  ///< m, from the polyline's begin
+    Vec3 point;    ///< of the wire
+    Vec2 material;
+    int vertex;  ///< of the cloth, there or next to it
+    int turn;    ///< point of the obstacle's mesh that it is held at; else -1
+};
+
+struct Turn {
+    double along;
+    int point;
+    FeatureTurn turn;
+};
+
+class TurnFinder {
+  public:
+    TurnFinder(const Scene& scene, const State& state, const ClothStars& stars, std::int32_t o,
+               const std::vector<Vec3>& positions)
+        : scene_(scene),
+          state_(state),
+          stars_(stars),
+          o_(o),
+          obstacle_(scene.obstacles[static_cast<std::size_t>(o)]),
+          positions_(positions)
+    {
+    }
+
+    void find(int polyline, const std::vector<FeatureSite>& sites, std::vector<FeatureSite>& found) const
+    {
+        const Polyline traced = trace_polyline(obstacle_, polyline);
+        const std::vector<Turn> turns = turns_of(traced);
+        if (turns.empty()) return;
+        const std::vector<Place> places = places_on(traced, sites);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const bool is_last = i + 1 == places.size();
+            if (is_last && (!traced.is_closed || places.size() < 3)) break;
+            const Place& p = places[i];
+            Place q = places[is_last ? 0 : i + 1];
+            if (is_last) q.along += traced.length;
+            if (const auto site = between(p, q, turns, traced.length)) found.push_back(*site);
+        }
+    }
+
+  private:
+    std::vector<Turn> turns_of(const Polyline& polyline) const
+    {
+        std::vector<Turn> turns;
+        for (const PolylineEdge& edge : polyline.edges) {
+            const int point = point_at(obstacle_, {edge.feature, edge.is_forward ? 0 : 1});
+            if (const auto turn = find_turn(obstacle_, point)) turns.push_back({edge.begin, point, *turn});
+        }
+        return turns;
+    }
+
+    Place place_at(const PolylineEdge& edge, const Vec3& place) const
+    {
+        const PointOnFeature at = place_on_feature(obstacle_, edge.feature, place);
+        const auto [a, b] = feature_segment(obstacle_, edge.feature);
+        const double along = edge.begin + (edge.is_forward ? at.s : 1.0 - at.s) * (b - a).norm();
+        return {along, at.point, Vec2::Zero(), -1, -1};
+    }
+
+    std::vector<Place> places_on(const Polyline& polyline, const std::vector<FeatureSite>& sites) const
+    {
+        std::map<int, const PolylineEdge*> edges;
+        for (const PolylineEdge& edge : polyline.edges) edges[edge.feature] = &edge;
+        std::vector<Place> places;
+        const auto add = [&](int feature, int turn, const Vec3& place, const Vec2& material, int vertex) {
+            const auto edge = edges.find(feature);
+            if (edge == edges.end()) return;
+            Place at = place_at(*edge->second, place);
+            at.material = material;
+            at.vertex = vertex;
+            if (turn >= 0) at.turn = point_at(obstacle_, {feature, turn});
+            places.push_back(at);
+        };
+        for (const EolVertex& eol : state_.eol) {
+            const int v = state_.index_of(eol.vertex_id);
+            if (eol.obstacle == o_ && !eol.is_corner)
+                add(eol.feature, eol.turn, positions_[v], state_.mesh.material[v], v);
+        }
+        for (const FeatureSite& site : sites)
+            if (!site.is_corner)
+                add(site.feature, site.turn, place_of(site), site.material, state_.index_of(site.near));
+        std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+            return std::tuple(a.along, a.vertex) < std::tuple(b.along, b.vertex);
+        });
+        return places;
+    }
+
+    Vec3 place_of(const FeatureSite& site) const
+    {
+        if (site.turn >= 0) return turn_point(obstacle_, {site.feature, site.turn});
+        const auto& [a, b] = site.edge;
+        const std::vector<Vec2>& X = state_.mesh.material;
+        const double length = (X[b] - X[a]).norm();
+        const double s = length > 0.0 ? (site.material - X[a]).norm() / length : 0.0;
+        return (1.0 - s) * positions_[a] + s * positions_[b];
+    }
+
+    /// Of the turns between two neighbours the one that their chord misses most. `length`: of the polyline.
+    std::optional<FeatureSite> between(const Place& p, const Place& q, const std::vector<Turn>& turns,
+                                       double length) const
+    {
+        const double cell = scene_.eol->length(p.material);
+        if (!((p.material - q.material).norm() < kLongest * cell)) return std::nullopt;
+        const Turn* worst = nullptr;
+        double most = kMissed * scene_.material.thickness;
+        for (const Turn& turn : turns)
+            for (const double along : {turn.along, turn.along + length}) {
+                if (!(along > p.along && along < q.along) || turn.point == p.turn || turn.point == q.turn ||
+                    !is_held_at(scene_, obstacle_, turn.turn, p.material))
+                    continue;
+                const Vec3& at = obstacle_.mesh().points[static_cast<std::size_t>(turn.point)];
+                const double s = closest_on_segment(at, p.point, q.point);
+                const double missed = (at - (p.point + s * (q.point - p.point))).norm();
+                if (missed > most) worst = &turn;
+                most = std::max(most, missed);
+            }
+        return worst ? nearest_to(*worst, {p.vertex, q.vertex}) : std::nullopt;
+    }
+
+    /// Where the cloth around two vertices is nearest to a turn.
+    std::optional<FeatureSite> nearest_to(const Turn& turn, const std::array<int, 2>& around) const
+    {
+        const Vec3& point = obstacle_.mesh().points[static_cast<std::size_t>(turn.point)];
+        double least = kOnFeature * scene_.material.thickness;
+        std::optional<FeatureSite> site;
+        for (const int f : faces_around(around)) {
+            const auto& [a, b, c] = state_.mesh.faces[f];
+            const std::array<Vec3, 3> triangle = {positions_[a], positions_[b], positions_[c]};
+            const Vec3 up = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).stableNormalized();
+            const PointOnTriangle closest = closest_on_triangle(point, triangle, up);
+            const double distance = (closest.point - point).norm();
+            if (!(distance < least)) continue;
+            least = distance;
+            site = make_turn_site(state_, stars_, o_, turn.turn, state_.mesh.faces[f], closest.weights,
+                                  (closest.point - point) / distance);
+        }
+        return site;
+    }
+
+    /// And their neighbours.
+    std::set<int> faces_around(const std::array<int, 2>& vertices) const
+    {
+        std::set<int> faces;
+        for (const int v : vertices)
+            for (const int f : stars_.faces[v])
+                for (const int w : state_.mesh.faces[f])
+                    faces.insert(stars_.faces[w].begin(), stars_.faces[w].end());
+        return faces;
+    }
+
+    const Scene& scene_;
+    const State& state_;
+    const ClothStars& stars_;
+    std::int32_t o_;
+    const Obstacle& obstacle_;
+    const std::vector<Vec3>& positions_;
+};
+
+}  // namespace
+
+bool is_held_at(const Scene& scene, const Obstacle& obstacle, const FeatureTurn& turn, const Vec2& material)
+{
+    const double half_cell = 0.5 * scene.eol->length(material);
+    return missed_by_chord(obstacle, turn, half_cell) > kMissed * scene.material.thickness;
+}
+
+FeatureSite make_turn_site(const State& state, const ClothStars& stars, std::int32_t o,
+                           const FeatureTurn& turn, const std::array<int, 3>& vertices,
+                           const std::array<double, 3>& weights, const Vec3& outward)
+{
+    Vec2 X = Vec2::Zero();
+    int near = 0, count = 0, border = 0;
+    for (int i = 0; i < 3 && vertices[i] >= 0; ++i) {
+        X += weights[i] * state.mesh.material[vertices[i]];
+        if (weights[i] > weights[near]) near = i;
+        if (!(weights[i] > 0.0)) continue;
+        ++count;
+        border += stars.border_neighbours[vertices[i]][0] >= 0 ? 1 : 0;
+    }
+    FeatureSite site{o, false, turn.feature, X, state.ids[vertices[near]], outward};
+    site.turn = turn.end;
+    site.is_on_border = count < 3 && border == count;
+    return site;
+}
+
+std::vector<FeatureSite> find_turn_sites(const Scene& scene, const State& state, const ClothStars& stars,
+                                         std::int32_t o, const std::vector<Vec3>& positions,
+                                         const std::vector<FeatureSite>& sites)
+{
+    const std::vector<FeatureEdge>& edges = scene.obstacles[static_cast<std::size_t>(o)].features().edges;
+    std::set<int> polylines;
+    const auto add = [&](int feature) {
+        if (edges[feature].kind == FeatureKind::Wire) polylines.insert(edges[feature].polyline);
+    };
+    for (const EolVertex& eol : state.eol)
+        if (eol.obstacle == o && !eol.is_corner) add(eol.feature);
+    for (const FeatureSite& site : sites)
+        if (!site.is_corner) add(site.feature);
+    const TurnFinder finder(scene, state, stars, o, positions);
+    std::vector<FeatureSite> found;
+    for (const int polyline : polylines) finder.find(polyline, sites, found);
+    return found;
+}
+
+}  // namespace arris

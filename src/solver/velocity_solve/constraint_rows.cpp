@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/velocity_solve/constraint_rows.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "solver/velocity_solve/symmetric_product.h"
+
+namespace arris {
+namespace {
+
+/// Cap of a multiplier in units of free speed / (g^T D^-1 g). Rows that can be met stay below 0.1, those that
+/// cannot grow without limit; stationarity loses as many digits as this has.
+constexpr double kCap = 1e3;
+
+/// Sums of 18 terms cancel to no less than this share of the largest.
+constexpr double kRoundOff = 1e-14;
+
+/// Of the free speed: where rows bring everything to rest, velocities, gaps and forces left are all nothing
+/// but round-off, about 1e-16, of what is held back, and relative to each other they mean nothing.
+constexpr double kLeastSpeed = 1e-6;
+
+/// Conjugate-gradient steps that estimate the free speed: the first finds rigid motion, the others what
+/// ripples.
+constexpr int kSpeedSteps = 4;
+
+bool is_well_formed(const ConstraintRow& row)
+{
+    if (!(row.lower < std::numeric_limits<double>::infinity())) return false;
+    for (int k = 0; k < row.count; ++k)
+        if (!std::isfinite(row.coefficient[k])) return false;
+    return true;
+}
+
+double largest_coefficient(const ConstraintRow& row)
+{
+    double largest = 0.0;
+    for (int k = 0; k < row.count; ++k) largest = std::max(largest, std::abs(row.coefficient[k]));
+    return largest;
+}
+
+/// 1 where there is no positive one: such a matrix is not positive definite, or the coordinate is fixed.
+Eigen::VectorXd positive_diagonal(const Eigen::SparseMatrix<double>& matrix)
+{
+    Eigen::VectorXd diagonal = matrix.diagonal();
+    for (double& value : diagonal)
+        if (!(value > 0.0)) value = 1.0;
+    return diagonal;
+}
+
+/// One entry a coordinate that can move, ascending, without those that are round-off.
+SparseVector movable_entries(const VelocityProblem& problem, const ConstraintRow& row)
+{
+    SparseVector entries;
+    for (int k = 0; k < row.count; ++k) {
+        assert(row.coordinate[k] >= 0 && row.coordinate[k] < problem.rhs->size());
+        if (!problem.is_fixed[row.coordinate[k]]) entries.emplace_back(row.coordinate[k], row.coefficient[k]);
+    }
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    SparseVector merged;
+    for (const auto& [coordinate, value] : entries)
+        if (!merged.empty() && merged.back().first == coordinate)
+            merged.back().second += value;
+        else
+            merged.emplace_back(coordinate, value);
+    const double negligible = kRoundOff * largest_coefficient(row);
+    std::erase_if(merged, [&](const auto& entry) { return !(std::abs(entry.second) > negligible); });
+    return merged;
+}
+
+ScaledRow scale_row(const VelocityProblem& problem, const Eigen::VectorXd& diagonal, const ConstraintRow& row)
+{
+    ScaledRow scaled;
+    scaled.group = row.group;
+    if (row.lower == -std::numeric_limits<double>::infinity()) return scaled;  // no bound
+    scaled.entries = movable_entries(problem, row);
+    if (scaled.entries.empty()) return scaled;
+    scaled.scale = 0.0;
+    for (const auto& [coordinate, value] : scaled.entries)
+        scaled.scale = std::max(scaled.scale, std::abs(value));
+    scaled.lower = row.lower / scaled.scale;
+    scaled.compliance = 0.0;
+    for (auto& [coordinate, value] : scaled.entries) {
+        value /= scaled.scale;
+        scaled.compliance += value * value / diagonal[coordinate];
+    }
+    return scaled;
+}
+
+}  // namespace
+
+ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
+{
+    ConstraintRows result;
+    if (problem.rows.empty()) return result;
+    const Eigen::VectorXd diagonal = positive_diagonal(*problem.matrix);
+    double speed = free_speed;
+    for (int i = 0; i < problem.lower.size(); ++i)
+        if (!problem.is_fixed[i]) speed = std::max(speed, problem.lower[i]);
+    for (const ConstraintRow& row : problem.rows) {
+        result.is_finite = result.is_finite && is_well_formed(row);
+        if (!result.is_finite) return result;
+        result.rows.push_back(scale_row(problem, diagonal, row));
+        const bool can_move = !result.rows.back().entries.empty();
+        if (!can_move && row.lower > 0.0)
+            result.impossible.push_back(static_cast<int>(result.rows.size()) - 1);
+        // What the whole row asks for: one of which only a tiny part can move may ask that for any speed.
+        if (can_move) speed = std::max(speed, row.lower / largest_coefficient(row));
+    }
+    result.least_speed = kLeastSpeed * speed;
+    for (ScaledRow& row : result.rows) {
+        row.cap = kCap * speed / row.compliance;
+        if (row.entries.empty()) continue;
+        result.is_finite = result.is_finite && std::isfinite(row.cap) && std::isfinite(row.lower);
+    }
+    return result;
+}
+
+/// Conjugate gradients on A u = b, preconditioned by the diagonal: their iterates grow towards A^-1 b from
+/// below (Steihaug 1983, Theorem 2.1). In units of |D^-1 b|, so that squares neither overflow nor vanish.
+double estimate_free_speed(const VelocityProblem& problem)
+{
+    const Eigen::VectorXd diagonal = positive_diagonal(*problem.matrix);
+    const auto hold_fixed = [&](Eigen::VectorXd& vector) {
+        for (int i = 0; i < vector.size(); ++i)
+            if (problem.is_fixed[i]) vector[i] = 0.0;
+    };
+    Eigen::VectorXd velocity = problem.rhs->cwiseQuotient(diagonal);
+    hold_fixed(velocity);
+    const double unit = velocity.lpNorm<Eigen::Infinity>();
+    if (!(unit > 0.0) || !std::isfinite(unit)) return unit;
+
+    Eigen::VectorXd residual = *problem.rhs / unit, preconditioned = velocity / unit,
+                    direction = preconditioned;
+    hold_fixed(residual);
+    velocity.setZero();
+    double product = residual.dot(preconditioned), largest = 1.0;
+    for (int step = 0; step < kSpeedSteps; ++step) {
+        Eigen::VectorXd image = symmetric_product(*problem.matrix, direction);
+        hold_fixed(image);
+        const double length = product / direction.dot(image);
+        if (!(length > 0.0) || !std::isfinite(length)) break;
+        velocity += length * direction;
+        largest = std::max(largest, velocity.lpNorm<Eigen::Infinity>());
+        residual -= length * image;
+        preconditioned = residual.cwiseQuotient(diagonal);
+        const double next = residual.dot(preconditioned);
+        direction = preconditioned + next / product * direction;
+        product = next;
+    }
+    return unit * largest;
+}
+
+double gap(const ScaledRow& row, const Eigen::VectorXd& velocity)
+{
+    double value = 0.0;
+    for (const auto& [coordinate, coefficient] : row.entries) value += coefficient * velocity[coordinate];
+    return value - row.lower;
+}
+
+}  // namespace arris

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <memory>
+#include <vector>
+
+#include "solver/velocity_solve/vertex_ordering.h"
+
+namespace arris {
+
+/// One dense block of L as CHOLMOD stores it: `columns` consecutive columns, which all have their entries in
+/// `rows`; the first `columns` rows are the triangle on the diagonal. Column-major, leading dimension
+/// `row_count`.
+struct Supernode {
+    int first;  ///< column of L
+    int columns;
+    const int* rows;
+    int row_count;
+    const double* values;
+};
+
+/// Sparse Cholesky P A P^T = L L^T of a symmetric positive definite matrix with three unknowns a vertex, in
+/// which chosen coordinates are pinned: their rows and columns are replaced by a diagonal, so that the
+/// pattern, and the symbolic analysis with it, stays whatever is pinned. One BLAS thread: with more, threads
+/// of small blocks cost up to 47 times the work on a loaded machine, and results must not depend on their
+/// number.
+class Factorization {
+  public:
+    explicit Factorization(VertexOrdering ordering = VertexOrdering::Metis);
+    ~Factorization();
+    Factorization(Factorization&&) noexcept;
+    Factorization& operator=(Factorization&&) noexcept;
+
+    /// Orders the unknowns where the pattern is not the last one's; else this costs one comparison of the
+    /// arrays. `matrix`: compressed, lower triangle with every diagonal entry; entries above the diagonal are
+    /// ignored. Throws std::bad_alloc or std::length_error where the factor does not fit.
+    void analyse(const Eigen::SparseMatrix<double>& matrix);
+
+    /// Numeric factorisation of the matrix analysed last. False where it is not positive definite.
+    bool factorise(const Eigen::SparseMatrix<double>& matrix, const std::vector<char>& is_pinned);
+
+    Eigen::VectorXd solve_forward(const Eigen::VectorXd& rhs) const;       ///< L^-1 P rhs
+    Eigen::VectorXd solve_backward(const Eigen::VectorXd& forward) const;  ///< P^T L^-T forward
+
+    /// Place of each unknown in the elimination order: (P x)[position()[i]] = x[i].
+    const std::vector<int>& position() const;
+
+    int supernode_count() const;
+    Supernode supernode(int index) const;
+    int supernode_of(int position) const;
+    int parent(int supernode) const;  ///< in the elimination tree; -1 at a root
+    double nonzeros() const;          ///< stored entries of L
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace arris

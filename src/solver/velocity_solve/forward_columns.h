@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "solver/velocity_solve/factorization.h"
+
+namespace arris {
+
+/// A sparse right-hand side: (unknown, value).
+using SparseVector = std::vector<std::pair<int, double>>;
+
+/// The growing matrix G = L^-1 P C of forward-solved sparse columns, and its Gram matrix G^T G. A column is
+/// non-zero only on the path from its unknowns to the root of the elimination tree: only those blocks are
+/// computed and kept, in panels of neighbouring columns. Refers to `factorization`, which must stay as it is.
+class ForwardColumns {
+  public:
+    explicit ForwardColumns(const Factorization& factorization);
+
+    /// Appends columns in the given order; neighbours in elimination order should stand together.
+    void append(const std::vector<SparseVector>& columns);
+
+    int size() const { return size_; }
+    const Eigen::MatrixXd& gram() const { return gram_; }
+    Eigen::VectorXd dot(const Eigen::VectorXd& forward) const;                             ///< G^T f
+    void accumulate(const Eigen::VectorXd& coefficients, Eigen::VectorXd& forward) const;  ///< f += G c
+
+  private:
+    /// `width` columns; block k stands on supernode path[k], transposed: width x columns, column-major.
+    struct Panel {
+        int first, width;
+        std::vector<int> path;  ///< ascending
+        std::vector<std::size_t> offset;
+        std::vector<double> values;
+    };
+    std::vector<int> path_of(const SparseVector* columns, int width);
+    void append_panel(const SparseVector* columns, int width);
+    void solve(Panel& panel);
+    void extend_gram(const Panel& panel);
+
+    const Factorization* factorization_;
+    int size_ = 0;
+    std::vector<Panel> panels_;
+    Eigen::MatrixXd gram_;
+    std::vector<double> rows_;  ///< unknowns x width, row-major: the panel being solved; zero between panels
+    std::vector<double> update_;    ///< width x rows below the triangle
+    std::vector<char> is_on_path_;  ///< by supernode
+};
+
+}  // namespace arris

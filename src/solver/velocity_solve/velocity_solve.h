@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "solver/model/settings.h"
+
+namespace arris {
+
+/// sum_k coefficient_k u_(coordinate_k) >= lower. Entries of fixed coordinates count nothing.
+struct ConstraintRow {
+    static constexpr int kMostEntries = 18;  ///< two faces of three vertices
+    std::array<int, kMostEntries> coordinate{};
+    std::array<double, kMostEntries> coefficient{};
+    int count = 0;
+    double lower = 0.0;  ///< m/s where the coefficients are weights
+    int group = 0;       ///< rows of one cloth face share a group: of each only the worst joins at a time
+};
+
+/// min 1/2 u^T A u - b^T u subject to u >= lower, u = 0 where fixed, and rows. Three unknowns a vertex.
+struct VelocityProblem {
+    const Eigen::SparseMatrix<double>* matrix =
+        nullptr;                           ///< A, SPD: lower triangle, and whole 3x3 diagonal blocks
+    const Eigen::VectorXd* rhs = nullptr;  ///< b
+    Eigen::VectorXd lower;                 ///< -infinity where there is no bound
+    std::vector<char> is_fixed;            ///< pinned: u = 0, whatever the bound
+    std::vector<int> guess;                ///< coordinates expected active, ascending (warm start)
+    std::vector<ConstraintRow> rows;
+    std::vector<int> row_guess;  ///< rows expected active, ascending
+};
+
+enum class SolveStatus { Certified, NotConverged, NotFinite, Infeasible };
+
+/// The answer and how it was reached. `kkt_residual` is recomputed from A, b and the bounds alone.
+struct VelocitySolution {
+    SolveStatus status = SolveStatus::NotConverged;
+    Eigen::VectorXd velocity;          ///< u
+    Eigen::VectorXd multipliers;       ///< lambda >= 0, one a coordinate, 0 where no bound is active
+    Eigen::VectorXd row_multipliers;   ///< in [0, cap], one a row
+    std::vector<int> infeasible_rows;  ///< at their cap with slack: the rest is met as well as it can be
+    double kkt_residual = 0.0;
+    int factorisations = 0;
+    int nlopt_evaluations = 0;
+    double factorise_seconds = 0.0;  ///< wall, numeric factorisation
+    double solve_seconds = 0.0;      ///< wall, all else, symbolic analysis included
+};
+
+/// Solves the constrained velocity step by the working-set method: the guess's coordinates are pinned in one
+/// sparse factorisation, violators are collected, NLopt solves the condensed dense problem on them, a
+/// KKT certificate accepts. Keeps the symbolic analysis between solves while the pattern stays.
+class VelocitySolver {
+  public:
+    VelocitySolver();
+    ~VelocitySolver();
+    VelocitySolver(VelocitySolver&&) noexcept;
+    VelocitySolver& operator=(VelocitySolver&&) noexcept;
+
+    VelocitySolution solve(const VelocityProblem& problem, const Settings& settings);
+
+    /// As `solve`, where since this solver's last call rows were appended to the problem and nothing else
+    /// changed but row_guess: goes on from the last base and working set, which costs some solves and no
+    /// factorisation, unless as many bounds change sides as would make `solve` factorise again.
+    VelocitySolution resume(const VelocityProblem& problem, const Settings& settings);
+
+  private:
+    struct Cache;
+    std::unique_ptr<Cache> cache_;
+};
+
+}  // namespace arris

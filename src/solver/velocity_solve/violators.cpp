@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/velocity_solve/violators.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace arris {
+namespace {
+
+/// Signs are trusted down to this share of the largest speed, or of the terms a multiplier is the sum of.
+constexpr double kSignTolerance = 1e-13;
+
+/// The greatest violation of the set's rows that are not at their cap, or gap of those that press.
+double error_of_members(const ConstraintRows& constraints, const Iterate& iterate, const WorkingSet& set)
+{
+    double error = 0.0;
+    for (std::size_t k = 0; k < constraints.rows.size(); ++k) {
+        if (!set.contains_row(static_cast<int>(k))) continue;
+        const double multiplier = iterate.row_multipliers[static_cast<Eigen::Index>(k)];
+        if (multiplier >= constraints.rows[k].cap) continue;
+        const double left = gap(constraints.rows[k], iterate.velocity);
+        error = std::max(error, multiplier > 0.0 ? std::abs(left) : -left);
+    }
+    return error;
+}
+
+/// Violation by which rows are compared: that of a unit compliance.
+double weighed_violation(const ScaledRow& row, const Eigen::VectorXd& velocity)
+{
+    return -gap(row, velocity) / std::sqrt(row.compliance);
+}
+
+std::vector<int> find_rows(const ConstraintRows& constraints, const Iterate& iterate, const WorkingSet& set,
+                           double margin)
+{
+    std::map<int, std::pair<double, int>> worst;  // by group
+    for (int k = 0; k < static_cast<int>(constraints.rows.size()); ++k) {
+        const ScaledRow& row = constraints.rows[k];
+        if (row.entries.empty() || set.contains_row(k)) continue;
+        if (gap(row, iterate.velocity) >= -margin) continue;
+        const double violation = weighed_violation(row, iterate.velocity);
+        const auto [at, is_new] = worst.try_emplace(row.group, violation, k);
+        if (!is_new && violation > at->second.first) at->second = {violation, k};
+    }
+    std::vector<int> rows;
+    for (const auto& [group, candidate] : worst) rows.push_back(candidate.second);
+    std::sort(rows.begin(), rows.end());
+    return rows;
+}
+
+}  // namespace
+
+Violators find_violators(const PinnedBase& base, const Iterate& iterate, const WorkingSet& set)
+{
+    const VelocityProblem& problem = *base.problem;
+    const double margin = kSignTolerance * iterate.velocity.lpNorm<Eigen::Infinity>();
+    Violators violators;
+    for (int i = 0; i < iterate.velocity.size(); ++i) {
+        if (problem.is_fixed[i] || set.contains(i)) continue;
+        const bool is_right = iterate.is_active[i]
+                                  ? iterate.gradient[i] >= -kSignTolerance * iterate.magnitude[i]
+                                  : iterate.velocity[i] >= problem.lower[i] - margin;
+        if (!is_right) violators.coordinates.push_back(i);
+    }
+    const double least = kSignTolerance * base.constraints->least_speed;
+    const double error = error_of_members(*base.constraints, iterate, set);
+    violators.rows = find_rows(*base.constraints, iterate, set, std::max({margin, least, 2.0 * error}));
+    return violators;
+}
+
+void keep_worst_coordinates(const PinnedBase& base, const Iterate& iterate, int count,
+                            std::vector<int>& coordinates)
+{
+    const VelocityProblem& problem = *base.problem;
+    const Eigen::VectorXd diagonal = problem.matrix->diagonal();
+    const auto energy = [&](int i) {
+        const double gap = problem.lower[i] - iterate.velocity[i];
+        return iterate.is_active[i] ? iterate.gradient[i] * iterate.gradient[i] / diagonal[i]
+                                    : diagonal[i] * gap * gap;
+    };
+    std::nth_element(coordinates.begin(), coordinates.begin() + count, coordinates.end(),
+                     [&](int a, int b) { return std::pair(-energy(a), a) < std::pair(-energy(b), b); });
+    coordinates.resize(static_cast<std::size_t>(count));
+}
+
+void keep_worst_rows(const PinnedBase& base, const Iterate& iterate, int count, std::vector<int>& rows)
+{
+    const std::vector<ScaledRow>& all = base.constraints->rows;
+    const auto violation = [&](int k) { return weighed_violation(all[k], iterate.velocity); };
+    std::nth_element(rows.begin(), rows.begin() + count, rows.end(),
+                     [&](int a, int b) { return std::pair(-violation(a), a) < std::pair(-violation(b), b); });
+    rows.resize(static_cast<std::size_t>(count));
+}
+
+}  // namespace arris

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/velocity_solve/working_set.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace arris {
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+namespace {
+
+/// Of the diagonal: lets rows that depend on others pass the refinement's elimination.
+constexpr double kRowShift = 1e-12;
+
+}  // namespace
+
+WorkingSet::WorkingSet(const PinnedBase& base)
+    : base_(&base),
+      is_member_(base.is_pinned.size(), 0),
+      is_row_member_(base.constraints->rows.size(), 0),
+      columns_(*base.factorization)
+{
+}
+
+void WorkingSet::see_new_rows()
+{
+    is_row_member_.resize(base_->constraints->rows.size(), 0);
+}
+
+void WorkingSet::enter(std::vector<Member>& added, Member member)
+{
+    char& is_in = member.kind == Kind::Row ? is_row_member_[member.index] : is_member_[member.index];
+    assert(!is_in);
+    is_in = 1;
+    added.push_back(member);
+}
+
+void WorkingSet::release_pins_of(const std::vector<int>& rows, std::vector<Member>& added)
+{
+    for (const int row : rows)
+        for (const auto& [coordinate, coefficient] : base_->constraints->rows[row].entries)
+            if (base_->is_pinned[coordinate] && !is_member_[coordinate]) {
+                enter(added, {Kind::Released, coordinate});
+                ++followers_;
+            }
+}
+
+/// In elimination order; of a row that of its first entry.
+int WorkingSet::position_of(const Member& member) const
+{
+    const std::vector<int>& position = base_->factorization->position();
+    if (member.kind != Kind::Row) return position[member.index];
+    int first = static_cast<int>(position.size());
+    for (const auto& [coordinate, coefficient] : row_of(member).entries)
+        if (!base_->is_pinned[coordinate]) first = std::min(first, position[coordinate]);
+    return first;
+}
+
+void WorkingSet::extend(const std::vector<int>& coordinates, const std::vector<int>& rows)
+{
+    std::vector<Member> added;
+    for (const int coordinate : coordinates)
+        enter(added, {base_->is_pinned[coordinate] ? Kind::Released : Kind::Stopped, coordinate});
+    for (const int row : rows) enter(added, {Kind::Row, row});
+    row_count_ += static_cast<int>(rows.size());
+    release_pins_of(rows, added);
+    // Neighbours in elimination order share their paths.
+    std::stable_sort(added.begin(), added.end(),
+                     [&](const Member& a, const Member& b) { return position_of(a) < position_of(b); });
+
+    const int old_size = size(), new_size = old_size + static_cast<int>(added.size());
+    members_.insert(members_.end(), added.begin(), added.end());
+    multipliers_.conservativeResize(new_size);
+    multipliers_.tail(new_size - old_size).setZero();
+    direct_.conservativeResize(new_size, new_size);
+    direct_.rightCols(new_size - old_size).setZero();
+    direct_.bottomRows(new_size - old_size).setZero();
+    columns_.append(right_hand_sides(added));
+}
+
+/// A_FR for a pin released, a unit vector for a coordinate stopped, the free coefficients of a row.
+std::vector<SparseVector> WorkingSet::right_hand_sides(const std::vector<Member>& added)
+{
+    const int first = size() - static_cast<int>(added.size());
+    std::vector<SparseVector> result(added.size());
+    std::vector<int> place(is_member_.size(), -1);  // in U, of the released
+    bool is_any_released = false;
+    for (int k = 0; k < size(); ++k)
+        if (members_[k].kind == Kind::Released) place[members_[k].index] = k;
+    for (std::size_t k = 0; k < added.size(); ++k) {
+        is_any_released |= added[k].kind == Kind::Released;
+        if (added[k].kind == Kind::Stopped) result[k].emplace_back(added[k].index, 1.0);
+        if (added[k].kind == Kind::Row) add_row(first + static_cast<int>(k), place, result[k]);
+    }
+    if (is_any_released) add_released(first, place, result);
+    return result;
+}
+
+void WorkingSet::add_row(int member, const std::vector<int>& place, SparseVector& column)
+{
+    for (const auto& [coordinate, coefficient] : row_of(members_[member]).entries) {
+        const int k = place[coordinate];
+        if (!base_->is_pinned[coordinate])
+            column.emplace_back(coordinate, coefficient);
+        else
+            direct_(k, member) = direct_(member, k) = coefficient;
+    }
+}
+
+/// One pass over the lower triangle finds the columns of all released from member `first` on, and A_RR.
+void WorkingSet::add_released(int first, const std::vector<int>& place, std::vector<SparseVector>& columns)
+{
+    const Matrix& matrix = *base_->problem->matrix;
+    const auto enter_column = [&](int released, int other, double value) {
+        if (released >= first && !base_->is_pinned[other])
+            columns[released - first].emplace_back(other, value);
+    };
+    for (int column = 0; column < matrix.cols(); ++column)
+        for (Matrix::InnerIterator entry(matrix, column); entry; ++entry) {
+            const int row = static_cast<int>(entry.row());
+            if (row < column) continue;
+            const int k = place[row], l = place[column];
+            if (k >= 0 && l >= 0) direct_(k, l) = direct_(l, k) = entry.value();
+            if (k >= 0) enter_column(k, column, entry.value());
+            if (l >= 0) enter_column(l, row, entry.value());
+        }
+}
+
+/// Entry of [C, B; -B^T, Y^T Y], the matrix of (dR, lambda_a).
+double WorkingSet::mixed(int i, int j) const
+{
+    const double rest = columns_.gram()(i, j) - direct_(i, j);
+    return members_[j].kind == Kind::Released ? -rest : rest;
+}
+
+/// S and q by eliminating dR = C^-1 (lambda_R - gradient0_R - B lambda_a).
+std::optional<CondensedQp> WorkingSet::condense() const
+{
+    const Eigen::MatrixXd& gram = columns_.gram();
+    std::vector<int> released, stopped;  // rows count as stopped
+    for (int k = 0; k < size(); ++k) (members_[k].kind == Kind::Released ? released : stopped).push_back(k);
+    CondensedQp qp = {gram, Eigen::VectorXd(size()), caps()};
+    for (const int k : stopped) qp.linear[k] = gap_of(members_[k], base_->iterate.velocity);
+    if (released.empty()) return qp;
+
+    Eigen::VectorXd gradient(static_cast<Eigen::Index>(released.size()));
+    for (std::size_t k = 0; k < released.size(); ++k)
+        gradient[static_cast<Eigen::Index>(k)] = base_->iterate.gradient[members_[released[k]].index];
+    const Eigen::LLT<Eigen::MatrixXd> stiffness(direct_(released, released) - gram(released, released));
+    if (stiffness.info() != Eigen::Success) return std::nullopt;
+    const Eigen::MatrixXd compliance =
+        stiffness.solve(Eigen::MatrixXd::Identity(gradient.size(), gradient.size()));
+    const Eigen::VectorXd step = stiffness.solve(gradient);
+    qp.hessian(released, released) = 0.5 * (compliance + compliance.transpose());
+    qp.linear(released) = -step;
+    if (stopped.empty()) return qp;
+
+    const Eigen::MatrixXd coupling = gram(released, stopped) - direct_(released, stopped);
+    const Eigen::MatrixXd moved = stiffness.solve(coupling);
+    qp.hessian(released, stopped) = -moved;
+    qp.hessian(stopped, released) = -moved.transpose();
+    qp.hessian(stopped, stopped) += coupling.transpose() * moved;
+    qp.linear(stopped) += coupling.transpose() * step;
+    return qp;
+}
+
+/// u - lower or g^T u - lower.
+double WorkingSet::gap_of(const Member& member, const Eigen::VectorXd& velocity) const
+{
+    if (member.kind == Kind::Row) return gap(row_of(member), velocity);
+    return velocity[member.index] - base_->problem->lower[member.index];
+}
+
+/// Empty without rows.
+Eigen::VectorXd WorkingSet::caps() const
+{
+    Eigen::VectorXd result;
+    if (row_count_ == 0) return result;
+    result.setConstant(size(), std::numeric_limits<double>::infinity());
+    for (int k = 0; k < size(); ++k)
+        if (members_[k].kind == Kind::Row) result[k] = row_of(members_[k]).cap;
+    return result;
+}
+
+bool WorkingSet::solve(Iterate& iterate, int& nlopt_evaluations)
+{
+    const std::optional<CondensedQp> qp = condense();
+    if (!qp) return false;
+    const std::optional<CondensedAnswer> answer = solve_condensed_qp(*qp, multipliers_);
+    if (!answer) return false;
+    nlopt_evaluations += answer->nlopt_evaluations;
+    multipliers_ = answer->z;
+
+    // f = f0 - W dR + Y lambda_a; then one backward solve.
+    iterate = base_->iterate;
+    Eigen::VectorXd coefficients(size());
+    for (int k = 0; k < size(); ++k)
+        coefficients[k] = members_[k].kind == Kind::Released ? -answer->w[k] : answer->z[k];
+    Eigen::VectorXd forward = base_->forward;
+    columns_.accumulate(coefficients, forward);
+    set_members(*answer, base_->factorization->solve_backward(forward), iterate);
+    return true;
+}
+
+bool WorkingSet::correct(Iterate& iterate)
+{
+    const std::optional<CondensedQp> qp = condense();
+    if (!qp) return false;
+    Eigen::VectorXd multipliers(size()), gaps(size());
+    for (int k = 0; k < size(); ++k) {
+        const auto [kind, i] = members_[k];
+        multipliers[k] = kind == Kind::Row      ? iterate.row_multipliers[i]
+                         : iterate.is_active[i] ? iterate.gradient[i]
+                                                : 0.0;
+        gaps[k] = gap_of(members_[k], iterate.velocity);
+    }
+    const std::optional<CondensedAnswer> answer = solve_by_descent(*qp, multipliers, gaps);
+    if (!answer) return false;
+    multipliers_ = answer->z;
+
+    Eigen::VectorXd coefficients(size());
+    for (int k = 0; k < size(); ++k)
+        coefficients[k] =
+            members_[k].kind == Kind::Released ? gaps[k] - answer->w[k] : answer->z[k] - multipliers[k];
+    Eigen::VectorXd forward = Eigen::VectorXd::Zero(base_->forward.size());
+    columns_.accumulate(coefficients, forward);
+    const Eigen::VectorXd change = base_->factorization->solve_backward(forward);
+    set_members(*answer, iterate.velocity + change, iterate);
+    return true;
+}
+
+void WorkingSet::set_members(const CondensedAnswer& answer, const Eigen::VectorXd& free,
+                             Iterate& iterate) const
+{
+    for (int i = 0; i < free.size(); ++i)
+        if (!base_->is_pinned[i]) iterate.velocity[i] = free[i];
+    for (int k = 0; k < size(); ++k) set_member(k, answer, iterate);
+    evaluate_gradient(*base_->problem, *base_->constraints, iterate);
+}
+
+void WorkingSet::set_member(int k, const CondensedAnswer& answer, Iterate& iterate) const
+{
+    const auto [kind, i] = members_[k];
+    if (kind == Kind::Row) {
+        iterate.row_multipliers[i] = answer.z[k];
+        return;
+    }
+    iterate.is_active[i] = answer.stand[k] == Stand::Between;
+    if (kind == Kind::Released || iterate.is_active[i]) {
+        const double gap = iterate.is_active[i] ? 0.0 : answer.w[k];
+        iterate.velocity[i] = base_->problem->lower[i] + gap;
+    }
+}
+
+/// Pins that are free now, and what was free and is met as an equation now.
+bool WorkingSet::is_equation(const Member& member, const Iterate& iterate) const
+{
+    if (member.kind != Kind::Row)
+        return (member.kind == Kind::Released) != (iterate.is_active[member.index] != 0);
+    const double multiplier = iterate.row_multipliers[member.index];
+    return multiplier > 0.0 && multiplier < row_of(member).cap;
+}
+
+/// With r = -gradient on the free coordinates: L f = P r, then (dR, lambda_a), then one backward solve.
+bool WorkingSet::refine(Iterate& iterate) const
+{
+    Eigen::VectorXd residual = Eigen::VectorXd::Zero(iterate.velocity.size());
+    for (int i = 0; i < residual.size(); ++i)
+        if (!base_->is_pinned[i] && !iterate.is_active[i]) residual[i] = -iterate.gradient[i];
+    Eigen::VectorXd forward = base_->factorization->solve_forward(residual);
+    std::vector<int> equations;
+    for (int k = 0; k < size(); ++k)
+        if (is_equation(members_[k], iterate)) equations.push_back(k);
+
+    const Eigen::VectorXd step = step_of(equations, iterate, forward);
+    if (!step.allFinite()) return false;
+    if (!equations.empty()) {
+        Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(size());
+        for (std::size_t i = 0; i < equations.size(); ++i) {
+            const double change = step[static_cast<Eigen::Index>(i)];
+            coefficients[equations[i]] = members_[equations[i]].kind == Kind::Released ? -change : change;
+        }
+        columns_.accumulate(coefficients, forward);
+    }
+    const Eigen::VectorXd free = base_->factorization->solve_backward(forward);
+    for (int i = 0; i < free.size(); ++i)
+        if (!base_->is_pinned[i] && !iterate.is_active[i]) iterate.velocity[i] += free[i];
+    for (std::size_t i = 0; i < equations.size(); ++i) {
+        const Member& member = members_[equations[i]];
+        const double change = step[static_cast<Eigen::Index>(i)];
+        if (member.kind == Kind::Released) iterate.velocity[member.index] += change;
+        if (member.kind != Kind::Row) continue;
+        double& multiplier = iterate.row_multipliers[member.index];
+        multiplier = std::clamp(multiplier + change, 0.0, row_of(member).cap);
+    }
+    evaluate_gradient(*base_->problem, *base_->constraints, iterate);
+    return true;
+}
+
+/// (dR, lambda_a) from [C, B; -B^T, Y^T Y] (dR; lambda) = (r_R - W^T f; -gap_a - Y^T f); the gap of a bound
+/// is zero exactly.
+Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Iterate& iterate,
+                                    const Eigen::VectorXd& forward) const
+{
+    const auto count = static_cast<Eigen::Index>(equations.size());
+    if (count == 0) return {};
+    const Eigen::VectorXd product = columns_.dot(forward);
+    Eigen::MatrixXd matrix(count, count);
+    Eigen::VectorXd rhs(count), scale(count), shift = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const int k = equations[i];
+        const Member& member = members_[k];
+        double size = std::abs(mixed(k, k)), known = 0.0;
+        if (member.kind == Kind::Released) known = -iterate.gradient[member.index];
+        if (member.kind == Kind::Row) {
+            known = -gap_of(member, iterate.velocity);
+            size = std::max(size, row_of(member).compliance);  // on pins alone its own entry is 0
+            shift[i] = kRowShift;
+        }
+        scale[i] = 1.0 / std::sqrt(size);
+        rhs[i] = known - product[k];
+        for (Eigen::Index j = 0; j < count; ++j) matrix(i, j) = mixed(k, equations[j]);
+    }
+    // Members have different units: to a unit diagonal first.
+    matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
+    if (row_count_ > 0) matrix.diagonal() += shift;
+    return scale.cwiseProduct(matrix.partialPivLu().solve(scale.cwiseProduct(rhs)));
+}
+
+}  // namespace arris

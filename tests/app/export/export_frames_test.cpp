@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/export/export_frames.h"
+#include "app/run/run_export_options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/files/frame_files.h"
+#include "app/report/report.h"
+#include "geometry/input_error.h"
+#include "tests/app/error_of.h"
+#include "tests/app/example_frame.h"
+#include "tests/app/temporary_directory.h"
+
+namespace arris {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// A cloth that a viewer can show: the example's greatest doubles have no finite bounding box.
+Frame make_tame_frame(int i)
+{
+    Frame frame = make_moved_frame(i);
+    frame.world[2] = {0.0, 1.0, 0.0};
+    frame.vertex_velocity[3] = {0.0, 0.0, 1.0};
+    return frame;
+}
+
+void write_run(const TemporaryDirectory& dir, int frame_count, const char* scene)
+{
+    std::filesystem::create_directories(frames_directory(dir.path()));
+    for (int i = 0; i < frame_count; ++i) write_frame(frame_file(dir.path(), i, "ply"), make_tame_frame(i));
+    RunReport report;
+    report.scene = nlohmann::ordered_json::parse(scene);
+    write_report_json(dir / "report.json", report);
+}
+
+constexpr const char* kScene = R"({"title": "T \"q\" </script>", "output": {"frames_per_second": 12.5}})";
+
+TEST(ExportFrames, MakesEveryFormatFromTheRunsReport)
+{
+    const TemporaryDirectory dir;
+    write_run(dir, 3, kScene);
+    const ExportOptions options = read_export_options(dir.path());
+    EXPECT_EQ(options.title, "T \"q\" </script>");
+    EXPECT_EQ(options.frames_per_second, 12.5);
+    export_frames(dir.path(), {"obj", "usd", "viewer"}, options);
+    for (const char* file : {"frames/cloth_00000.obj", "frames/cloth_00002.obj", "cloth.usda", "viewer.html"})
+        EXPECT_TRUE(std::filesystem::exists(dir / file)) << file;
+    EXPECT_THAT(read_bytes(dir / "cloth.usda"), HasSubstr("timeCodesPerSecond = 12.5\n"));
+    EXPECT_EQ(dir.entry_count(), 1U + 3U + 3U + 3U);
+}
+
+TEST(ExportFrames, RefusesUnknownFormatsBeforeItWritesAny)
+{
+    const TemporaryDirectory dir;
+    write_run(dir, 1, kScene);
+    const auto error_with = [&](const char* format) {
+        return error_of([&] { export_frames(dir.path(), {"obj", format}, {}); });
+    };
+    EXPECT_THAT(error_with("fbx"), AllOf(HasSubstr("\"fbx\""), HasSubstr("obj, usd, viewer")));
+    EXPECT_THAT(error_with(""), HasSubstr("\"\""));
+    for (const char* planned : {"vtk", "gltf", "pc2"})
+        EXPECT_THAT(error_with(planned), AllOf(HasSubstr(planned), HasSubstr("not built yet")));
+    EXPECT_FALSE(std::filesystem::exists(dir / "frames/cloth_00000.obj"));
+    require_known_formats({"viewer", "usd", "obj", "obj"});
+    require_known_formats({});
+}
+
+TEST(ExportFrames, SaysWhatIsMissing)
+{
+    const TemporaryDirectory dir;
+    EXPECT_THAT(error_of([&] { read_export_options(dir.path()); }), HasSubstr("holds no run"));
+    EXPECT_THAT(error_of([&] { export_frames(dir.path(), {"obj"}, {}); }), HasSubstr("no frames"));
+    write_run(dir, 3, kScene);
+    std::filesystem::remove(frame_file(dir.path(), 1, "ply"));
+    EXPECT_THAT(error_of([&] { export_frames(dir.path(), {"obj"}, {}); }),
+                HasSubstr("cloth_00001.ply: missing"));
+}
+
+TEST(ExportFrames, RefusesReportsThatAreNone)
+{
+    const TemporaryDirectory dir;
+    const auto error_in = [&](const std::string& report) {
+        write_bytes(dir / "report.json", report);
+        return error_of([&] { read_export_options(dir.path()); });
+    };
+    for (const char* report : {"", "{", "[]", "3", "{}", R"({"scene": 3})", "\xff\xfe"})
+        EXPECT_THAT(error_in(report), HasSubstr("report.json: not a run's report")) << report;
+    EXPECT_THAT(error_in(R"({"scene": {}})"), HasSubstr("frames_per_second"));
+    EXPECT_THAT(error_in(R"({"scene": {"output": 3}})"), HasSubstr("frames_per_second"));
+    EXPECT_THAT(error_in(R"({"scene": {"output": {"frames_per_second": "24"}}})"), HasSubstr("not a number"));
+    EXPECT_THAT(error_in(R"({"scene": {"output": {"frames_per_second": 0}}})"), HasSubstr("wrote no frames"));
+    EXPECT_THAT(error_in(R"({"scene": {"output": {"frames_per_second": -1}}})"), HasSubstr("is -1"));
+    EXPECT_EQ(error_in(R"({"scene": {"title": 7, "output": {"frames_per_second": 24}}})"), "");
+}
+
+}  // namespace
+}  // namespace arris

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/checkpoint.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "geometry/cloth_input/cloth_grid.h"
+#include "geometry/input_error.h"
+#include "solver/step.h"
+#include "tests/app/temporary_directory.h"
+
+namespace arris {
+namespace {
+
+Checkpoint make_checkpoint()
+{
+    Checkpoint checkpoint;
+    checkpoint.source = {"/somewhere/scene.toml", "title = \"é\"\n", {"time.step=0.001", "title=x"}};
+    ClothGrid grid;
+    grid.resolution = {3, 2};
+    checkpoint.state = make_state(Scene{}, make_cloth_grid(grid), Vec3(1, -0.0, 1e-310));
+    checkpoint.state.time = 0.1;
+    checkpoint.state.step = 17;
+    checkpoint.state.previous_dt = 0.005;
+    constexpr std::uint32_t kNo = ActiveContact::kNoVertex;
+    checkpoint.state.active = {{{2, 5, kNo}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1},
+                               {{2, kNo, kNo}, ContactKind::Vertex, 1, 7, Vec3::UnitZ(), 1e-7}};
+    checkpoint.state.eol = {{1, 0, false, 4, Vec3::UnitZ(), 0, 0, 1}, {5, 1, true, 2, Vec3::UnitX(), 2, -1}};
+    checkpoint.state.material_velocity[1] = Vec2(0.25, -1e-310);
+    checkpoint.state.crossings = 3;
+    checkpoint.position = {0.0625, 3};
+    checkpoint.frames = 4;
+    checkpoint.rows = 18;
+    return checkpoint;
+}
+
+std::string refusal(const std::string& path)
+{
+    try {
+        read_checkpoint(path);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Checkpoint, ReadsBackToTheSameBytes)
+{
+    const TemporaryDirectory folder;
+    const std::string path = folder / "checkpoint";
+    write_checkpoint(path, make_checkpoint());
+    const Checkpoint read = read_checkpoint(path);
+    EXPECT_EQ(read.source.overrides, make_checkpoint().source.overrides);
+    EXPECT_EQ(read.state.active[0].multiplier, 0.1);
+    EXPECT_EQ(read.state.active[0].kind, ContactKind::Edge);
+    EXPECT_EQ(read.state.active[0].element, 3);
+    EXPECT_EQ(read.state.active[0].normal, Vec3::UnitX());
+    EXPECT_EQ(read.state.active[1].obstacle, 1);
+    EXPECT_EQ(read.state.eol[1].vertex_id, 5u);
+    EXPECT_TRUE(read.state.eol[1].is_corner);
+    EXPECT_EQ(read.state.eol[1].feature, 2);
+    EXPECT_EQ(read.state.eol[1].idle, 2);
+    EXPECT_EQ(read.state.eol[1].side, -1);
+    EXPECT_EQ(read.state.eol[0].turn, 1);
+    EXPECT_EQ(read.state.eol[1].turn, -1);
+    EXPECT_EQ(read.state.eol[0].outward, Vec3::UnitZ());
+    EXPECT_EQ(read.state.material_velocity[1], Vec2(0.25, -1e-310));
+    EXPECT_EQ(read.state.crossings, 3);
+    EXPECT_EQ(read.position.done, 3);
+    write_checkpoint(path + "2", read);
+    EXPECT_EQ(read_bytes(path), read_bytes(path + "2"));
+}
+
+TEST(Checkpoint, EveryTruncationAndEveryFlippedByteIsOneInputError)
+{
+    const TemporaryDirectory folder;
+    const std::string path = folder / "checkpoint";
+    write_checkpoint(path, make_checkpoint());
+    const std::string whole = read_bytes(path);
+    for (std::size_t length = 0; length < whole.size(); length += 1 + length / 40) {
+        write_bytes(path, whole.substr(0, length));
+        EXPECT_NE(refusal(path), "") << length;
+    }
+    for (std::size_t k = 0; k < whole.size(); k += 1 + k / 40) {
+        std::string damaged = whole;
+        damaged[k] = static_cast<char>(damaged[k] ^ 0x81);
+        write_bytes(path, damaged);
+        EXPECT_NE(refusal(path).find(path), std::string::npos) << k;
+    }
+    write_bytes(path, whole + "x");
+    EXPECT_NE(refusal(path), "");
+}
+
+TEST(Checkpoint, AnotherVersionIsNamed)
+{
+    const TemporaryDirectory folder;
+    const std::string path = folder / "checkpoint";
+    write_checkpoint(path, make_checkpoint());
+    std::string bytes = read_bytes(path);
+    const std::size_t at = bytes.find("0.1.0");
+    ASSERT_NE(at, std::string::npos);
+    bytes.replace(at, 5, "9.8.7");
+    write_bytes(path, bytes);
+    EXPECT_NE(refusal(path).find("9.8.7"), std::string::npos) << refusal(path);
+}
+
+TEST(Checkpoint, AStateThatCannotBeIsRefused)
+{
+    const TemporaryDirectory folder;
+    const std::string path = folder / "checkpoint";
+    const auto refused = [&](const char* what, const auto& damage) {
+        Checkpoint checkpoint = make_checkpoint();
+        damage(checkpoint);
+        write_checkpoint(path, checkpoint);
+        EXPECT_NE(refusal(path).find("damaged"), std::string::npos) << what;
+    };
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    refused("face index", [](Checkpoint& c) { c.state.mesh.faces[0][1] = 1000; });
+    refused("negative face index", [](Checkpoint& c) { c.state.mesh.faces[0][1] = -1; });
+    refused("position", [&](Checkpoint& c) { c.state.mesh.world[3].y() = kNan; });
+    refused("velocity", [&](Checkpoint& c) { c.state.velocity[3].y() = kNan; });
+    refused("history", [&](Checkpoint& c) { c.state.previous_world[0].x() = INFINITY; });
+    refused("ids", [](Checkpoint& c) { std::swap(c.state.ids[0], c.state.ids[1]); });
+    refused("lengths", [](Checkpoint& c) { c.state.velocity.pop_back(); });
+    refused("orientation",
+            [](Checkpoint& c) { std::swap(c.state.mesh.faces[0][1], c.state.mesh.faces[0][2]); });
+    refused("time", [&](Checkpoint& c) { c.state.time = kNan; });
+    refused("previous step", [&](Checkpoint& c) { c.state.previous_dt = -1.0; });
+    refused("rows", [](Checkpoint& c) { c.rows = 0; });
+    refused("contacts", [](Checkpoint& c) { std::swap(c.state.active[0], c.state.active[1]); });
+    refused("contact", [](Checkpoint& c) { c.state.active[0].vertex_ids[1] = 99; });
+    refused("kind", [](Checkpoint& c) { c.state.active[0].kind = static_cast<ContactKind>(-1); });
+    refused("normal", [&](Checkpoint& c) { c.state.active[1].normal.z() = kNan; });
+    refused("material velocity", [&](Checkpoint& c) { c.state.material_velocity[2].x() = kNan; });
+    refused("material history", [](Checkpoint& c) { c.state.previous_material.pop_back(); });
+    refused("EOL order", [](Checkpoint& c) { std::swap(c.state.eol[0], c.state.eol[1]); });
+    refused("EOL vertex", [](Checkpoint& c) { c.state.eol[1].vertex_id = 99; });
+    refused("EOL direction", [&](Checkpoint& c) { c.state.eol[0].outward.x() = kNan; });
+    refused("EOL side", [](Checkpoint& c) { c.state.eol[0].side = 2; });
+    refused("EOL turn", [](Checkpoint& c) { c.state.eol[0].turn = 2; });
+    refused("EOL turn of a corner", [](Checkpoint& c) { c.state.eol[1].turn = 0; });
+    refused("EOL count", [](Checkpoint& c) { c.state.eol[0].idle = -1; });
+    refused("crossings", [](Checkpoint& c) { c.state.crossings = -1; });
+}
+
+TEST(Checkpoint, AMissingOneOrAFolderIsOneInputError)
+{
+    const TemporaryDirectory folder;
+    EXPECT_NE(refusal(folder / "checkpoint").find("no checkpoint"), std::string::npos);
+    EXPECT_NE(refusal(folder.path()).find("no checkpoint"), std::string::npos);
+    EXPECT_NE(refusal("/dev/zero").find("no checkpoint"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace arris

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/scene_docs.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/scene/run_config.h"
+#include "app/scene/scene_keys.h"
+#include "tests/app/temporary_directory.h"
+
+namespace arris {
+namespace {
+
+const std::string kDocs = std::string(ARRIS_SOURCE_DIR) + "/docs/";
+
+TEST(SceneDocs, InTheRepositoryAreThoseOfTheTable)
+{
+    EXPECT_TRUE(read_bytes(kDocs + "scene.md") == scene_markdown()) << "run scripts/docs";
+    EXPECT_TRUE(read_bytes(kDocs + "scene.schema.json") == scene_schema()) << "run scripts/docs";
+}
+
+TEST(SceneDocs, NameEveryKey)
+{
+    const std::string text = scene_markdown();
+    for (const SceneKey& key : scene_keys()) {
+        EXPECT_NE(text.find(key.sentence), std::string::npos) << key.name;
+        EXPECT_NE(text.find(leaf_name(key.name)), std::string::npos) << key.name;
+    }
+}
+
+TEST(SceneDocs, OpenWithASceneThatLoads)
+{
+    const std::string text = scene_markdown();
+    const std::size_t begin = text.find("```toml\n") + 8;
+    const RunConfig config =
+        load_scene(SceneSource{"s.toml", text.substr(begin, text.find("```", begin) - begin), {}});
+    EXPECT_EQ(config.title, "Flag");
+    EXPECT_TRUE(config.warnings.empty());
+}
+
+/// The schema of a key: through objects by name, through arrays by their items.
+nlohmann::json schema_of(std::string_view name)
+{
+    nlohmann::json schema = nlohmann::json::parse(scene_schema());
+    while (!name.empty()) {
+        const std::size_t end = std::min(name.find('.'), name.size());
+        std::string part(name.substr(0, end));
+        const bool is_list = part.ends_with("[]");
+        if (is_list) part.resize(part.size() - 2);
+        schema = schema.at("properties").at(part);
+        if (is_list) schema = schema.at("items");
+        name.remove_prefix(std::min(end + 1, name.size()));
+    }
+    return schema;
+}
+
+TEST(SceneSchema, HasEveryBuiltKeyAndRefusesTheOthers)
+{
+    for (const SceneKey& key : scene_keys()) {
+        if (is_built(key)) {
+            EXPECT_TRUE(schema_of(key.name).contains("type")) << key.name;
+        } else if (!key.is_built) {
+            EXPECT_TRUE(schema_of(key.name).contains("not")) << key.name;
+        }
+    }
+}
+
+TEST(SceneSchema, StatesTypesRangesAndDefaults)
+{
+    const auto step = schema_of("time.step");
+    EXPECT_EQ(step["type"], "number");
+    EXPECT_EQ(step["exclusiveMinimum"], 0.0);
+    EXPECT_EQ(step["default"], 0.005);
+    EXPECT_EQ(schema_of("pin[]")["required"], nlohmann::json::array({"material"}));
+    EXPECT_EQ(schema_of("output.formats")["items"]["enum"], nlohmann::json::array({"obj", "usd", "viewer"}));
+    EXPECT_EQ(schema_of("eol.enabled")["type"], "boolean");
+    EXPECT_EQ(schema_of("cloth")["additionalProperties"], false);
+    EXPECT_EQ(schema_of("")["required"], nlohmann::json::array({"duration", "cloth"}));
+}
+
+}  // namespace
+}  // namespace arris

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/scene_obstacles.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "geometry/input_error.h"
+#include "solver/step.h"
+#include "tests/app/error_of.h"
+#include "tests/app/program.h"
+#include "tests/app/temporary_directory.h"
+
+namespace arris {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+constexpr double kRoundOff = 1e-14;  // of lengths of about 1 m
+const std::string kBase = "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";  // at z = 0
+
+RunConfig load(const std::string& text, const LoadOptions& options = with_program())
+{
+    return load_scene(SceneSource{"s.toml", text, {}}, options);
+}
+
+/// A tetrahedron with its right angle at the origin and legs of 1, 2, 3 units.
+constexpr const char* kTetrahedron =
+    "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+Box3 world_bounds(const Obstacle& obstacle, double time)
+{
+    Box3 box;
+    for (const Vec3& point : obstacle.mesh().points) box.extend(obstacle.at(time)(point));
+    return box;
+}
+
+void expect_box(const Box3& box, const Vec3& least, const Vec3& greatest)
+{
+    EXPECT_NEAR((box.min() - least).norm(), 0.0, kRoundOff) << box.min().transpose();
+    EXPECT_NEAR((box.max() - greatest).norm(), 0.0, kRoundOff) << box.max().transpose();
+}
+
+TEST(SceneObstacles, BuildsEveryShape)
+{
+    const RunConfig config =
+        load(kBase +
+             "[[obstacle]]\nbox = [1, 2, 3]\ntranslate = [0, 0, 5]\n"
+             "[[obstacle]]\nname = \"nails\"\npoints = [[0, 0, 1], [0.5, 0, 2]]\n"
+             "[[obstacle]]\nwire = [[0, 0, 1], [1, 0, 1], [1, 1, 1]]\n"
+             "[[obstacle]]\nwire = [[0, 0, 1], [1, 0, 1], [1, 1, 1]]\nclosed = true\n"
+             "[[obstacle]]\nteeth = { count = 2, pitch = 0.5, height = 0.25, width = 2, tip_degrees = 60 }\n"
+             "translate = [0, 0, -4]\n[gravity]\n");
+    const std::vector<Obstacle>& obstacles = config.scene.obstacles;
+    ASSERT_EQ(obstacles.size(), 5U);
+    EXPECT_EQ(obstacles[0].name(), "obstacle0");
+    EXPECT_EQ(obstacles[1].name(), "nails");
+    EXPECT_EQ(obstacles[4].name(), "obstacle4");
+    expect_box(world_bounds(obstacles[0], 0.0), {-0.5, -1.0, 3.5}, {0.5, 1.0, 6.5});
+    EXPECT_THAT(obstacles[1].mesh().lone_points, SizeIs(2));
+    EXPECT_THAT(obstacles[2].mesh().segments, SizeIs(2));
+    EXPECT_THAT(obstacles[3].mesh().segments, SizeIs(3));
+    EXPECT_EQ(world_bounds(obstacles[4], 0.0).max().z(), -3.75);
+    EXPECT_THAT(config.warnings, IsEmpty());
+}
+
+TEST(SceneObstacles, WritesTheirDefaultsOutAndOnlyThoseOfTheirShape)
+{
+    const auto json =
+        load(kBase + "[[obstacle]]\nbox = [1, 1, 1]\ntranslate = [0, 0, 5]\n").as_run["obstacle"][0];
+    EXPECT_EQ(json["name"], "obstacle0");
+    EXPECT_EQ(json["scale"], 1.0);
+    EXPECT_EQ(json["feature_angle"], 30.0);
+    EXPECT_EQ(json["rotate"]["degrees"], 0.0);
+    for (const char* absent : {"file", "units", "up", "closed", "motion", "keyframes", "points"})
+        EXPECT_FALSE(json.contains(absent)) << absent;
+}
+
+TEST(SceneObstacles, PlacesThemByScaleRotationAndTranslation)
+{
+    const RunConfig config = load(kBase +
+                                  "[[obstacle]]\nwire = [[0, 0, 0], [1, 0, 0], [1, 2, 0]]\nscale = 2\n"
+                                  "rotate = { axis = [0, 0, 1], degrees = 90 }\ntranslate = [0, 0, 5]\n");
+    const Obstacle& wire = config.scene.obstacles[0];
+    const Placement placement = wire.at(0.0);
+    // translate + R (2 p): x turns to y, y to -x.
+    const Vec3 expected[] = {{0.0, 0.0, 5.0}, {0.0, 2.0, 5.0}, {-4.0, 2.0, 5.0}};
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR((placement(wire.mesh().points[static_cast<std::size_t>(i)]) - expected[i]).norm(), 0.0,
+                    kRoundOff);
+}
+
+TEST(SceneObstacles, MovesThemAsWritten)
+{
+    const RunConfig config = load(
+        kBase +
+        "[[obstacle]]\npoints = [[0, 0, 5]]\ntranslate = [1, 0, 0]\n"
+        "motion = { velocity = [0, 0, 1], angular_velocity = [0, 0, 2], pivot = [1, 1, 0], start = 0.25, "
+        "stop = 0.75 }\n"
+        "[[obstacle]]\npoints = [[0, 0, 5]]\nkeyframes = [ { time = 0, translate = [0, 0, 1] }, { time = "
+        "1, translate = [0, 4, 1] } ]\n");
+    const Obstacle &turning = config.scene.obstacles[0], &keyed = config.scene.obstacles[1];
+    const auto place = [](const Obstacle& obstacle, double time) {
+        return obstacle.at(time)(obstacle.mesh().points[0]);
+    };
+    EXPECT_EQ(place(turning, 0.25), Vec3(1.0, 0.0, 5.0));
+    // p = pivot + v tau + R(2 tau)(p0 - pivot), tau = 0.5, p0 - pivot = (0, -1, 5)
+    const Vec3 turned(1.0 + std::sin(1.0), 1.0 - std::cos(1.0), 5.5);
+    EXPECT_NEAR((place(turning, 0.75) - turned).norm(), 0.0, kRoundOff);
+    EXPECT_EQ(place(turning, 9.0), place(turning, 0.75));
+    EXPECT_NEAR((place(keyed, 0.0) - Vec3(0, 0, 6)).norm(), 0.0, kRoundOff);
+    EXPECT_NEAR((place(keyed, 0.5) - Vec3(0, 2, 6)).norm(), 0.0, kRoundOff);
+    EXPECT_THAT(input_jumps(config.scene), ElementsAre(0.25, 0.75, 1.0));
+}
+
+TEST(SceneObstacles, TheirTimesSnapToFramesAsAllOthersDo)
+{
+    const RunConfig config =
+        load(kBase +
+             "[output]\nframes_per_second = 10\n[[obstacle]]\npoints = [[0, 0, 5]]\nmotion = { "
+             "velocity = [0, 0, 1], start = 0.30000000000000004 }\n");
+    EXPECT_EQ(config.scene.obstacles[0].motion().start, 3 / 10.0);
+}
+
+TEST(SceneObstacles, APinFollowsByName)
+{
+    const RunConfig config = load(
+        kBase +
+        "[[obstacle]]\npoints = [[0, 0, 5]]\n"
+        "[[obstacle]]\nname = \"rod\"\nwire = [[0, 0, 5], [1, 0, 5]]\nmotion = { velocity = [0, 0, 1] }\n"
+        "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nfollow = \"rod\"\n");
+    ASSERT_TRUE(config.scene.pins[0].follows);
+    EXPECT_EQ(*config.scene.pins[0].follows, 1);
+    EXPECT_EQ(config.as_run["pin"][0]["follow"], "rod");
+    for (const char* absent : {"velocity", "angular_velocity", "pivot", "keyframes"})
+        EXPECT_FALSE(config.as_run["pin"][0].contains(absent)) << absent;
+    const Placement half_way = pin_placement(config.scene, config.scene.pins[0], 0.5);
+    EXPECT_NEAR((half_way(Vec3(0, 1, 0)) - Vec3(0, 1, 0.5)).norm(), 0.0, kRoundOff);
+}
+
+TEST(SceneObstacles, ReadsFilesBesideTheSceneInTheirUnits)
+{
+    const TemporaryDirectory dir;
+    std::filesystem::create_directories(dir / "meshes");
+    write_bytes(dir / "meshes/wedge.obj", kTetrahedron);
+    write_bytes(dir / "s.toml",
+                kBase +
+                    "[[obstacle]]\nfile = \"meshes/wedge.obj\"\ntranslate = [0, 0, 5]\n"
+                    "[[obstacle]]\nfile = \"meshes/wedge.obj\"\nunits = \"cm\"\nup = \"y\"\nscale = 10\n"
+                    "translate = [0, 0, 5]\n");
+    const RunConfig config = load_scene(dir / "s.toml", {}, with_program());
+    expect_box(world_bounds(config.scene.obstacles[0], 0.0), {0.0, 0.0, 5.0}, {1.0, 2.0, 8.0});
+    // y up becomes z: (x, y, z) -> (x, -z, y), a tenth as large.
+    expect_box(world_bounds(config.scene.obstacles[1], 0.0), {0.0, -0.3, 5.0}, {0.1, 0.0, 5.2});
+    EXPECT_EQ(config.scene.obstacles[0].topology().is_solid, std::vector<char>{1});
+}
+
+TEST(SceneObstacles, TellOfAFileThatIsMostlyInOtherUnits)
+{
+    const TemporaryDirectory dir;
+    write_bytes(dir / "wedge.obj", kTetrahedron);
+    const auto warnings_of = [&](const std::string& keys) {
+        write_bytes(dir / "s.toml", kBase + "[[obstacle]]\nfile = \"wedge.obj\"\ntranslate = [0, 0, 500]\n" +
+                                        keys + "[gravity]\n");
+        return load_scene(dir / "s.toml", {}, with_program()).warnings;
+    };
+    EXPECT_THAT(warnings_of(""), IsEmpty());
+    EXPECT_THAT(warnings_of("scale = 30\n"), IsEmpty());
+    EXPECT_THAT(warnings_of("scale = 100\n"),
+                ElementsAre(AllOf(HasSubstr("obstacle.0.file"),
+                                  HasSubstr("374 m in size and the cloth 1.41 m"), HasSubstr("'units'"))));
+    EXPECT_THAT(warnings_of("scale = 1e-3\n"), SizeIs(1));
+    EXPECT_THAT(warnings_of("scale = 100\nunits = \"m\"\n"), IsEmpty());
+}
+
+TEST(SceneObstacles, TellOfASurfaceThatClosesButForAHole)
+{
+    const TemporaryDirectory dir;
+    const std::string cube =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    const auto warnings_of = [&](const std::string& obj) {
+        write_bytes(dir / "box.obj", obj);
+        write_bytes(dir / "s.toml",
+                    kBase + "[[obstacle]]\nfile = \"box.obj\"\ntranslate = [0, 0, 5]\n[gravity]\n");
+        return load_scene(dir / "s.toml", {}, with_program()).warnings;
+    };
+    EXPECT_THAT(warnings_of(cube),
+                ElementsAre(AllOf(HasSubstr("s.toml:6: obstacle.0.file = \"box.obj\": "),
+                                  HasSubstr("a surface closes but for a hole (4 border edges)"),
+                                  HasSubstr("no inside"))));
+    EXPECT_THAT(warnings_of(cube + "f 5 6 7 8\n"), IsEmpty()) << "with a lid";
+    EXPECT_THAT(warnings_of("v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"), IsEmpty())
+        << "an open sheet is meant as one";
+    // Three sides of a long box, and four of them: a channel and a tube.
+    const std::string channel =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 9\nv 1 0 9\nv 1 1 9\nv 0 1 9\n"
+        "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n";
+    EXPECT_THAT(warnings_of(channel), IsEmpty());
+    EXPECT_THAT(warnings_of(channel + "f 4 1 5 8\n"), IsEmpty());
+    // A hemisphere of rings of eight.
+    std::string bowl = "v 0 0 0\n";
+    constexpr int kRings = 4, kAround = 8;
+    for (int ring = 1; ring <= kRings; ++ring)
+        for (int k = 0; k < kAround; ++k) {
+            const double down = 0.5 * M_PI * ring / kRings, around = 2.0 * M_PI * k / kAround;
+            bowl += fmt::format("v {} {} {}\n", std::sin(down) * std::cos(around),
+                                std::sin(down) * std::sin(around), 1.0 - std::cos(down));
+        }
+    for (int ring = 0; ring < kRings; ++ring)
+        for (int k = 0; k < kAround; ++k) {
+            const auto at = [&](int r, int j) { return r == 0 ? 1 : 2 + (r - 1) * kAround + j % kAround; };
+            if (ring > 0) bowl += fmt::format("f {} {} {}\n", at(ring, k), at(ring + 1, k), at(ring, k + 1));
+            bowl += fmt::format("f {} {} {}\n", at(ring, k + 1), at(ring + 1, k), at(ring + 1, k + 1));
+        }
+    EXPECT_THAT(warnings_of(bowl), IsEmpty());
+}
+
+TEST(SceneObstacles, TellWhereFacesCrossAndWhatToDo)
+{
+    const TemporaryDirectory dir;
+    // A leaf through another, within 2 to 3 mm.
+    write_bytes(dir / "leaves.obj",
+                "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 2 2 -1\nv 2 2 1\nv 3 3 1\n"
+                "f 1 2 3\nf 4 5 6\n");
+    write_bytes(dir / "s.toml", kBase +
+                                    "[[obstacle]]\nfile = \"leaves.obj\"\nunits = \"mm\"\ntranslate = [0, 0, "
+                                    "5]\n[gravity]\n");
+    EXPECT_THAT(load_scene(dir / "s.toml", {}, with_program()).warnings,
+                ElementsAre(AllOf(HasSubstr("1 pairs of faces cross"),
+                                  HasSubstr("near [0.0025, 0.0025, 0] (m, z up, before it is scaled"),
+                                  HasSubstr("unite its parts"))));
+}
+
+TEST(SceneObstacles, BlamesTheKeyThatNamesABadFileAndTellsWhatWasRepaired)
+{
+    const TemporaryDirectory dir;
+    const std::string scene = dir / "s.toml";
+    write_bytes(scene, kBase + "[[obstacle]]\nfile = \"table.obj\"\ntranslate = [0, 0, 5]\n[gravity]\n");
+    const auto refusal = [&] { return error_of([&] { load_scene(scene, {}, with_program()); }); };
+    EXPECT_THAT(refusal(), HasSubstr("s.toml:6: obstacle.0.file = \"table.obj\": "));
+    write_bytes(dir / "table.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_THAT(refusal(), HasSubstr("s.toml:6: obstacle.0.file = \"table.obj\": "));
+    EXPECT_EQ(refusal().find('\n'), std::string::npos);
+
+    write_bytes(dir / "table.obj", kTetrahedron + std::string("f 2 3 4\n"));
+    const RunConfig config = load_scene(scene, {}, with_program());
+    EXPECT_THAT(config.warnings, ElementsAre(HasSubstr("s.toml:6: obstacle.0.file = \"table.obj\": ")));
+
+    LoadOptions options = with_program();
+    options.importer = {"/bin/false"};
+    EXPECT_THAT(error_of([&] { load_scene(scene, {}, options); }), HasSubstr("obstacle.0.file"));
+}
+
+TEST(SceneObstacles, TakeTheStoredMeshesWhateverBecameOfTheFiles)
+{
+    const TemporaryDirectory dir;
+    write_bytes(dir / "wedge.obj", kTetrahedron);
+    write_bytes(dir / "s.toml",
+                kBase + "[[obstacle]]\nfile = \"wedge.obj\"\nscale = 2\ntranslate = [0, 0, 5]\n");
+    const RunConfig first = load_scene(dir / "s.toml", {}, with_program());
+    const std::vector<ObstacleRecord> records = record_obstacles(first);
+    std::filesystem::remove(dir / "wedge.obj");
+
+    LoadOptions options;
+    options.importer = {};
+    options.cloth = &first.cloth;
+    options.obstacles = &records;
+    const RunConfig again = load_scene(dir / "s.toml", {}, options);
+    EXPECT_EQ(again.scene.obstacles[0].mesh().points, first.scene.obstacles[0].mesh().points);
+    EXPECT_EQ(again.scene.obstacles[0].at(0.0).translation, Vec3(0, 0, 5));
+
+    const std::vector<ObstacleRecord> none;
+    options.obstacles = &none;
+    EXPECT_THAT(error_of([&] { load_scene(dir / "s.toml", {}, options); }),
+                HasSubstr("obstacle0 is not among the obstacles that the run stored"));
+}
+
+const std::string kCrate = "[[obstacle]]\nname = \"crate\"\nbox = [0.4, 0.4, 0.4]\n";
+
+TEST(SceneObstacles, RefuseClothThatIntersectsThemOnlyAtTime0)
+{
+    const std::string inside = kBase + kCrate + "translate = [0.5, 0.5, 0.1]\n";
+    EXPECT_THAT(error_of([&] { load(inside); }),
+                AllOf(HasSubstr("crate"), HasSubstr("0.1 m deep"),
+                      HasSubstr("move one of them ('translate')"), Not(HasSubstr("'units'"))));
+
+    LoadOptions telling = with_program();
+    telling.tells_intersections = true;
+    const RunConfig told = load(inside, telling);
+    EXPECT_THAT(told.intersections, ElementsAre(HasSubstr("0.1 m deep into crate")));
+
+    // A resumed run's cloth is where it is.
+    LoadOptions resumed = with_program();
+    const std::vector<ObstacleRecord> records = record_obstacles(told);
+    resumed.cloth = &told.cloth;
+    resumed.obstacles = &records;
+    EXPECT_EQ(load(inside, resumed).cloth.world, told.cloth.world);
+}
+
+TEST(SceneObstacles, AskAfterUnitsWhereAFileIntersectsTheCloth)
+{
+    const TemporaryDirectory dir;
+    write_bytes(dir / "wedge.obj", kTetrahedron);
+    write_bytes(dir / "s.toml",
+                kBase + "[[obstacle]]\nfile = \"wedge.obj\"\ntranslate = [0.2, 0.2, -0.1]\n[gravity]\n");
+    EXPECT_THAT(error_of([&] { load_scene(dir / "s.toml", {}, with_program()); }),
+                AllOf(HasSubstr("at least 0.001 m apart"), HasSubstr("'units'")));
+}
+
+TEST(SceneObstacles, MeetTheClothWherePinsHaveItAtTime0)
+{
+    // Without its pin the cloth is at z = 0, in the crate; its pin lifts all of it out.
+    const std::string lifted =
+        "[[pin]]\nmaterial = [[0, 0], [1, 1]]\nkeyframes = [ { time = 0, translate = [0, 0, 3] } ]\n";
+    EXPECT_EQ(error_of([&] { load(kBase + kCrate + "translate = [0.5, 0.5, 0]\n" + lifted); }), "");
+    EXPECT_THAT(error_of([&] { load(kBase + kCrate + "translate = [0.5, 0.5, 3]\n" + lifted); }),
+                HasSubstr("crate"));
+}
+
+TEST(SceneObstacles, MoveClothOutThatIsClearButNearerThanItsThickness)
+{
+    // The crate's top is 0.2 mm below the cloth, whose middle vertex is above it.
+    const RunConfig config = load(kBase + kCrate + "translate = [0.5, 0.5, -0.2002]\n[gravity]\n");
+    EXPECT_THAT(config.warnings,
+                ElementsAre(AllOf(HasSubstr("nearer to obstacles than its thickness, 0.001 m"),
+                                  HasSubstr("of its vertices moved out to it"))));
+    for (int v = 0; v < config.cloth.vertex_count(); ++v)
+        if ((config.cloth.material[static_cast<std::size_t>(v)] - Vec2(0.5, 0.5)).norm() < 0.1) {
+            EXPECT_GE(config.cloth.world[static_cast<std::size_t>(v)].z(),
+                      0.0008 - 1e-9);  // thickness - 0.2 mm
+        }
+    EXPECT_THAT(load(kBase + kCrate + "translate = [0.5, 0.5, -0.2012]\n[gravity]\n").warnings, IsEmpty());
+}
+
+TEST(SceneObstacles, BlameTheThicknessWhereItStrainsTheCloth)
+{
+    const std::string scene = kBase + "[gravity]\n" + kCrate + "translate = [0.5, 0.5, -0.25]\n";
+    const auto load_with = [&](const std::vector<std::string>& overrides) {
+        return load_scene(SceneSource{"s.toml", scene, overrides}, with_program()).warnings;
+    };
+    EXPECT_THAT(
+        load_with({"cloth.material.thickness=0.6"}),
+        ElementsAre(AllOf(HasSubstr("nearer to obstacles than its thickness, 0.6 m"),
+                          HasSubstr("which strains it from "),
+                          HasSubstr("make cloth.material.thickness less"), HasSubstr("0.416 m in the mean")),
+                    HasSubstr("0.6: is more than an edge of the cloth's mesh "
+                              "(0.416 m in the mean)")));
+    // What is strained where it is placed still is its UVs' doing.
+    EXPECT_THAT(load_with({"cloth.material.thickness=0.07", "cloth.scale=3"}),
+                ElementsAre(Not(HasSubstr("strains it")), HasSubstr("material coordinates are metres")));
+}
+
+}  // namespace
+}  // namespace arris

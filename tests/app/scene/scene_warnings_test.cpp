@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/scene_warnings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/app/temporary_directory.h"
+
+namespace arris {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const std::string kBase = "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";  // 4 lines
+const std::string kPin = "[[pin]]\nmaterial = [[0, 0], [0, 1]]\n";
+const std::string kBox = "[[obstacle]]\nbox = [1, 1, 1]\ntranslate = [0, 0, 9]\n";
+const std::string kPull = "[[pull]]\nmaterial = [[1, 0], [1, 1]]\n";
+const std::string kMoving = "cloth.velocity=[0,0,-1]";  // or a warning says that nothing moves
+
+struct IneffectiveKey {
+    std::string name;
+    std::string text;  ///< after kBase
+    std::string warning;
+};
+
+void PrintTo(const IneffectiveKey& key, std::ostream* out)
+{
+    *out << key.name;
+}
+
+class IneffectiveKeyTest : public ::testing::TestWithParam<IneffectiveKey> {};
+
+TEST_P(IneffectiveKeyTest, IsTheOneWarning)
+{
+    const RunConfig config = load_scene(SceneSource{"s.toml", kBase + GetParam().text, {kMoving}});
+    EXPECT_THAT(config.warnings, ::testing::ElementsAre("s.toml:" + GetParam().warning));
+}
+
+const std::vector<IneffectiveKey> kIneffectiveKeys = {
+    {"Units", "units = \"cm\"\n", "5: cloth.units = \"cm\": has no effect: the cloth is not from a file"},
+    {"Up", "up = \"y\"\n", "5: cloth.up = \"y\": has no effect: the cloth is not from a file"},
+    {"PatternAngle", "pattern = \"unstructured\"\npattern_angle = 10\n",
+     "6: cloth.pattern_angle = 10: has no effect: an unstructured mesh has no direction"},
+    {"Preset",
+     "[cloth.material]\npreset = \"silk\"\ndensity = 1\nyoungs_modulus = 1\npoisson_ratio = "
+     "0\nbending_stiffness = 0\n",
+     "6: cloth.material.preset = \"silk\": has no effect: all its values are overridden"},
+    {"Thickness", "[cloth.material]\nthickness = 1e-3\n",
+     "6: cloth.material.thickness = 1e-3: has no effect: there is no obstacle to keep away from"},
+    {"Eol", "[eol]\nenabled = true\n",
+     "6: eol.enabled = true: has no effect: no obstacle has a sharp feature"},
+    {"Gravity", "[gravity]\nacceleration = [0, 0, 0]\n",
+     "6: gravity.acceleration = [0, 0, 0]: has no effect: it is zero"},
+    {"Drag", "[wind]\nvelocity = [1, 0, 0]\ndrag = 0\n", "5: wind: has no effect: its drag is zero"},
+    {"AirDensity", "[wind]\nvelocity = [1, 0, 0]\nair_density = 0\n",
+     "5: wind: has no effect: its air_density is zero"},
+    {"GustAmplitude", "[wind]\nvelocity = [1, 0, 0]\ngust = { amplitude = 0, frequency = 1 }\n",
+     "7: wind.gust = { amplitude = 0, frequency = 1 }: has no effect: its amplitude is zero"},
+    {"GustOfStillAir", "[wind]\nvelocity = [0, 0, 0]\n[wind.gust]\namplitude = 1\nfrequency = 1\n",
+     "7: wind.gust: has no effect: the wind's velocity is zero"},
+    {"Force", kPull + "force = [0, 0, 0]\n", "7: pull.0.force = [0, 0, 0]: has no effect: it is zero"},
+    {"LateStart", kPull + "force = [0, 0, 1]\nstart = 1\n",
+     "8: pull.0.start = 1: has no effect: the pull starts after the end of the run"},
+    {"LateStop", kPull + "force = [0, 0, 1]\nstop = 1\n",
+     "8: pull.0.stop = 1: has no effect: the run ends before"},
+    {"LateRelease", kPin + "release = 1.5\n", "7: pin.0.release = 1.5: has no effect: the run ends before"},
+    {"EarlyRelease", kPin + "release = 0\n",
+     "7: pin.0.release = 0: has no effect: the pin is released before it holds anything"},
+    {"Pivot", kPin + "pivot = [0, 0, 1]\n",
+     "7: pin.0.pivot = [0, 0, 1]: has no effect: there is no angular_velocity about it"},
+    {"VelocityAcross", kPin + "velocity = [1, 0, 0]\ndirections = [\"z\"]\n",
+     "7: pin.0.velocity = [1, 0, 0]: has no effect: the pin does not hold x"},
+    {"LateKeyframe", kPin + "keyframes = [ { time = 0 }, { time = 1 }, { time = 1.5 } ]\n",
+     "7: pin.0.keyframes.2.time = 1.5: has no effect: the one before is at the end of the run already"},
+    {"ObstacleUnits", kBox + "units = \"cm\"\n",
+     "8: obstacle.0.units = \"cm\": has no effect: the obstacle is not from a file"},
+    {"ObstacleUp", kBox + "up = \"y\"\n",
+     "8: obstacle.0.up = \"y\": has no effect: the obstacle is not from a file"},
+    {"Closed", kBox + "closed = true\n",
+     "8: obstacle.0.closed = true: has no effect: the obstacle is no wire"},
+    {"FeatureAngle", "[[obstacle]]\npoints = [[0, 0, 9]]\nfeature_angle = 20\n",
+     "7: obstacle.0.feature_angle = 20: has no effect: the obstacle has no faces"},
+    {"Motion", kBox + "motion = {}\n", "8: obstacle.0.motion = {}: has no effect: it has no velocity"},
+    {"MotionPivot", kBox + "motion = { velocity = [0, 0, 1], pivot = [1, 1, 1] }\n",
+     "8: obstacle.0.motion.pivot = [1, 1, 1]: has no effect: there is no angular_velocity about it"},
+    {"MotionStart", kBox + "motion = { velocity = [0, 0, 1], start = 1 }\n",
+     "8: obstacle.0.motion.start = 1: has no effect: it starts after the end of the run"},
+    {"MotionStop", kBox + "motion = { velocity = [0, 0, 1], stop = 2 }\n",
+     "8: obstacle.0.motion.stop = 2: has no effect: the run ends before"},
+    {"LateObstacleKeyframe",
+     "[[obstacle]]\nbox = [1, 1, 1]\nkeyframes = [ { time = 1, translate = [0, 0, 9] }, { time = 2 } ]\n",
+     "7: obstacle.0.keyframes.1.time = 2: has no effect: the one before is at the end of the run already"},
+    {"Formats", "[output]\nframes_per_second = 0\nformats = [\"obj\"]\n",
+     "7: output.formats = [\"obj\"]: has no effect: with frames_per_second = 0 there are no frames to make "
+     "them from"},
+    {"LongStep", "[time]\nstep = 0.1\n[output]\nframes_per_second = 20\n",
+     "6: time.step = 0.1: acts as 0.05 s: steps end on frames and on the duration"},
+    {"OverlappingPins", kPin + "velocity = [0, 0, 1]\n[[pin]]\nmaterial = [[0, 0], [1, 0]]\n",
+     "9: pin.1.material = [[0, 0], [1, 0]]: holds 3 vertex directions that pin.0 holds too; there pin.1 "
+     "alone decides"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Scene, IneffectiveKeyTest, ::testing::ValuesIn(kIneffectiveKeys),
+                         [](const auto& key) { return key.param.name; });
+
+TEST(SceneWarnings, TellOfAClothThatStartsStrained)
+{
+    const RunConfig config = load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=3"}});
+    ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
+    EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("starts strained, from 0 % to +200 %"));
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=1.05", kMoving}}).warnings,
+                ::testing::IsEmpty());
+}
+
+/// A square of two triangles with this side, in the file's unit; with UVs of `uv` metres where that is given.
+std::string square_obj(const std::string& side, const std::string& uv = "")
+{
+    std::string text = "v 0 0 0\nv " + side + " 0 0\nv " + side + " " + side + " 0\nv 0 " + side + " 0\n";
+    if (uv.empty()) return text + "f 1 2 3\nf 1 3 4\n";
+    text += "vt 0 0\nvt " + uv + " 0\nvt " + uv + " " + uv + "\nvt 0 " + uv + "\n";
+    return text + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+}
+
+TEST(SceneWarnings, TellOfAClothWhoseSizeIsNoCloths)
+{
+    const TemporaryDirectory dir;
+    const auto of_file = [&](const std::string& obj, const std::string& keys) {
+        write_bytes(dir / "c.obj", obj);
+        write_bytes(dir / "s.toml", "duration = 1\n[cloth]\nfile = \"c.obj\"\n" + keys);
+        return load_scene(dir / "s.toml", {kMoving}).warnings;
+    };
+    EXPECT_THAT(of_file(square_obj("500"), ""),
+                ElementsAre(AllOf(HasSubstr("s.toml:3: cloth.file = \"c.obj\": the cloth is 500 x 500 m: "),
+                                  HasSubstr("'units'"))));
+    EXPECT_THAT(of_file(square_obj("500"), "units = \"mm\"\n"), IsEmpty());
+    EXPECT_THAT(of_file(square_obj("0.5"), "units = \"mm\"\n"),
+                ElementsAre(HasSubstr("the cloth is 0.0005 x 0.0005 m")));
+    EXPECT_THAT(of_file(square_obj("500", "500"), ""), ElementsAre(HasSubstr("UVs, where it has them")));
+    EXPECT_THAT(of_file(square_obj("500", "0.5"), "units = \"mm\"\n"), IsEmpty());
+
+    const auto of_size = [](const std::string& size, const std::string& resolution) {
+        return load_scene(SceneSource{"s.toml",
+                                      kBase,
+                                      {"cloth.size=" + size, "cloth.resolution=" + resolution, kMoving}})
+            .warnings;
+    };
+    EXPECT_THAT(of_size("[300,400]", "[3,4]"),
+                ElementsAre(HasSubstr("the cloth is 300 x 400 m: sizes are in metres")));
+    EXPECT_THAT(of_size("[1,50]", "[1,50]"), IsEmpty()) << "a ribbon";
+}
+
+TEST(SceneWarnings, TellOfAMeshThatResolvesTheBendsOfItsCloth)
+{
+    const auto of = [](std::vector<std::string> set) {
+        set.insert(set.end(), {kMoving, "cloth.material.density=0.05"});
+        return load_scene(SceneSource{"s.toml", kBase + kBox, set}).warnings;
+    };
+    // T = .05 kg/m^2 * 9.81 m/s^2 * 1 m; 16 cells' mean edge is .0505 m: T h^2 = 1.25e-3 J.
+    const std::string stiff = "cloth.material.bending_stiffness=";
+    EXPECT_THAT(of({stiff + "1.2e-3", "cloth.resolution=[16,16]", "gravity={}"}), IsEmpty());
+    EXPECT_THAT(of({stiff + "1.3e-3", "cloth.resolution=[16,16]", "gravity={}"}),
+                ElementsAre(AllOf(HasSubstr("cloth.material.bending_stiffness=1.3e-3: edges of 0.0505 m"),
+                                  HasSubstr("eol.enabled = false"))));
+    EXPECT_THAT(of({stiff + "1.2e-3", "cloth.resolution=[32,32]", "gravity={}"}), ::testing::SizeIs(1));
+    EXPECT_THAT(of({stiff + "1.3e-3", "cloth.resolution=[16,16]", "gravity={}", "eol.enabled=false"}),
+                IsEmpty());
+    EXPECT_THAT(of({stiff + "1.3e-3", "cloth.resolution=[16,16]"}), IsEmpty()) << "nothing weighs";
+}
+
+TEST(SceneWarnings, TellOfFacesThatAreThinAndWhatToDo)
+{
+    const std::string nail = "[[obstacle]]\npoints = [[0, 0, 9]]\n";
+    const auto of_cells = [&](const std::string& resolution) {
+        return load_scene(SceneSource{"s.toml", kBase + nail, {"cloth.resolution=" + resolution, kMoving}})
+            .warnings;
+    };
+    // Of a cell's four faces those on its long sides have atan(width / height) at their ends.
+    EXPECT_THAT(of_cells("[12, 1]"),
+                ElementsAre(AllOf(HasSubstr("cloth.resolution=[12, 1]: 24 of 48 faces have an angle below 5 "
+                                            "degrees, the least 4.8 at "),
+                                  HasSubstr("cells with more even sides"))));
+    EXPECT_THAT(of_cells("[11, 1]"), IsEmpty());
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.resolution=[12, 1]", kMoving}}).warnings,
+                IsEmpty())
+        << "no feature, no place for it";
+
+    const TemporaryDirectory dir;
+    write_bytes(dir / "c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.5 -0.01 0\nf 1 2 3\nf 1 4 2\n");
+    write_bytes(dir / "s.toml", "duration = 1\n[cloth]\nfile = \"c.obj\"\n" + nail);
+    EXPECT_THAT(
+        load_scene(dir / "s.toml", {kMoving}).warnings,
+        ElementsAre(AllOf(HasSubstr("cloth.file = \"c.obj\": 1 of 2 faces have an angle below 5 degrees, "
+                                    "the least 1.1 at "),
+                          HasSubstr("mesh the file anew"))));
+}
+
+TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
+{
+    const auto load = [](const std::string& thickness) {
+        return load_scene(SceneSource{
+            "s.toml", kBase + "[cloth.material]\nthickness = " + thickness + "\n" + kBox, {kMoving}});
+    };
+    const RunConfig config = load("1");
+    ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
+    EXPECT_THAT(config.warnings[0],
+                ::testing::HasSubstr("cloth.material.thickness = 1: is more than an edge"));
+    EXPECT_THAT(load("0.4").warnings, ::testing::IsEmpty());
+}
+
+TEST(SceneWarnings, TellOfAModulusInPascal)
+{
+    const auto load = [](const std::string& modulus) {
+        return load_scene(
+            SceneSource{"s.toml", kBase + "[cloth.material]\nyoungs_modulus = " + modulus + "\n", {kMoving}});
+    };
+    const RunConfig config = load("2e9");
+    ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
+    EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("youngs_modulus = 2e9: is in N/m"));
+    EXPECT_THAT(load("1e5").warnings, ::testing::IsEmpty());
+}
+
+TEST(SceneWarnings, TellOfATurnThatSlerpCannotMean)
+{
+    const auto turned = [](const std::string& degrees) {
+        return kBase + kPin +
+               "keyframes = [ { time = 0 }, { time = 0.5, rotate = { axis = [0, 0, 1], degrees = " + degrees +
+               " } } ]\n";
+    };
+    const RunConfig config = load_scene(SceneSource{"s.toml", turned("360"), {kMoving}});
+    ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
+    EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("turns by 360 degrees"));
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", turned("180"), {kMoving}}).warnings, ::testing::IsEmpty());
+}
+
+TEST(SceneWarnings, AreNotGivenForDefaultsOfTheSameValue)
+{
+    const RunConfig config =
+        load_scene(SceneSource{"s.toml", kBase + kPin + "[output]\nframes_per_second = 0\n", {kMoving}});
+    EXPECT_TRUE(config.warnings.empty());
+}
+
+TEST(SceneWarnings, AreNotGivenForKeysThatWork)
+{
+    const std::string text =
+        kBase + "[time]\nstep = 0.05\n[output]\nframes_per_second = 20\n" + kPin +
+        "velocity = [0, 0, 1]\nangular_velocity = [0, 0, 1]\npivot = [0, 0, 1]\nrelease = 0.5\n" + kPull +
+        "force = [0, 0, 1]\nstart = 0.5\nstop = 0.9\n[cloth.material]\npreset = \"silk\"\ndensity = 1\n";
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", text, {kMoving}}).warnings, ::testing::IsEmpty());
+}
+
+TEST(SceneWarnings, TellOfAClothThatNothingMoves)
+{
+    const auto is_told = [](const std::string& text, const std::vector<std::string>& overrides = {}) {
+        const auto warnings = load_scene(SceneSource{"s.toml", kBase + text, overrides}).warnings;
+        return std::any_of(warnings.begin(), warnings.end(), [](const std::string& line) {
+            return line.starts_with("s.toml: nothing moves the cloth: there is no [gravity], ");
+        });
+    };
+    for (const std::string& text : {std::string(), kPin, kBox, "[gravity]\nacceleration = [0, 0, 0]\n" + kPin,
+                                    kPull + "force = [0, 0, 0]\n", kPull + "force = [0, 0, 1]\nstart = 1\n",
+                                    std::string("[wind]\nvelocity = [0, 0, 0]\n"),
+                                    std::string("[wind]\nvelocity = [1, 0, 0]\ndrag = 0\n"),
+                                    kPin + "velocity = [0, 0, 1]\nrelease = 0\n",
+                                    kBox + "motion = { velocity = [0, 0, 1], start = 1 }\n"})
+        EXPECT_TRUE(is_told(text)) << text;
+    for (const std::string& text :
+         {std::string("[gravity]\n"), std::string("[wind]\nvelocity = [1, 0, 0]\n"),
+          kPull + "force = [0, 0, 1]\n", kPin + "velocity = [0, 0, 1]\n",
+          kPin + "keyframes = [ { time = 0 }, { time = 0.5, translate = [0, 0, 1] } ]\n",
+          kPin + "keyframes = [ { time = 0, translate = [0.1, 0, 0] } ]\n",
+          kBox + "motion = { velocity = [0, 0, -1] }\n",
+          std::string("folds = [ { line = [[0.5, 0], [0.5, 1]], degrees = 60 } ]\n"),
+          std::string("velocity = [1, 0, 0]\n")})
+        EXPECT_FALSE(is_told(text)) << text;
+    EXPECT_FALSE(is_told("", {"cloth.scale=1.01"})) << "it pulls itself to its size";
+}
+
+}  // namespace
+}  // namespace arris

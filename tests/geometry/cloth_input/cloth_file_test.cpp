@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/cloth_input/cloth_file.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "geometry/cloth/material_box.h"
+#include "geometry/cloth/mesh_topology.h"
+#include "geometry/input_error.h"
+
+namespace arris {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double kRounding = 1e-15;  // of coordinates about 1
+
+// A folder of its own for each test.
+class ClothFileTest : public ::testing::Test {
+  protected:
+    ClothFileTest()
+        : folder_(std::filesystem::path(::testing::TempDir()) /
+                  (std::string("arris_cloth_file_") +
+                   ::testing::UnitTest::GetInstance()->current_test_info()->name()))
+    {
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_);
+    }
+    ~ClothFileTest() override { std::filesystem::remove_all(folder_); }
+
+    std::string write(const std::string& text, const std::string& name = "cloth.obj") const
+    {
+        const std::string path = (folder_ / name).string();
+        std::ofstream(path, std::ios::binary) << text;
+        return path;
+    }
+
+    ClothFile read(const std::string& text, double unit = 1.0, char up = 'z') const
+    {
+        return read_cloth_file(write(text), unit, up);
+    }
+
+    // The one line of the error, which must begin with the file's name.
+    static std::string refusal_of(const std::string& path, double unit = 1.0, char up = 'z')
+    {
+        try {
+            read_cloth_file(path, unit, up);
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), ::testing::StartsWith(path));
+            EXPECT_THAT(error.what(), ::testing::Not(HasSubstr("\n")));
+            return error.what();
+        }
+        ADD_FAILURE() << path << " was accepted";
+        return {};
+    }
+
+    std::string refusal(const std::string& text) const { return refusal_of(write(text)); }
+
+    std::filesystem::path folder_;
+};
+
+// Two triangles of a curved square with UVs 0.1 apart in the material.
+constexpr const char* kSquare =
+    "v 0 0 0\nv 1 0 0.5\nv 1 1 0\nv 0 1 0.5\n"
+    "vt 0 0\nvt 1.1 0\nvt 1.1 1.1\nvt 0 1.1\n"
+    "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+
+TEST_F(ClothFileTest, ReadsPositionsAndUvs)
+{
+    const ClothFile file = read(kSquare);
+    EXPECT_THAT(file.warnings, IsEmpty());
+    EXPECT_EQ(validate(file.mesh), "");
+    ASSERT_EQ(file.mesh.vertex_count(), 4);
+    ASSERT_EQ(file.mesh.face_count(), 2);
+    for (int v = 0; v < 4; ++v) {
+        const Vec2& X = file.mesh.material[v];
+        const Vec3& x = file.mesh.world[v];
+        EXPECT_LT((X - 1.1 * x.head<2>()).norm(), kRounding);
+        EXPECT_NEAR(x.z(), std::abs(x.x() - x.y()) * 0.5, kRounding);
+    }
+}
+
+TEST_F(ClothFileTest, UnitScalesPositionsAndNotUvs)
+{
+    const ClothFile file = read(kSquare, 0.01);
+    for (int v = 0; v < 4; ++v)
+        EXPECT_LT((file.mesh.material[v] - 110.0 * file.mesh.world[v].head<2>()).norm(), kRounding);
+}
+
+TEST_F(ClothFileTest, UpAxisIsTurnedToZ)
+{
+    const std::string text =
+        "v 0 0 0\nv 1 0 0\nv 1 2 0\nv 0 0 3\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+        "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+    const auto world = [&](char up) { return read(text, 1.0, up).mesh.world; };
+    EXPECT_EQ(world('z')[2], Vec3(1, 2, 0));
+    EXPECT_EQ(world('y')[2], Vec3(1, 0, 2));
+    EXPECT_EQ(world('y')[3], Vec3(0, -3, 0));
+    EXPECT_EQ(world('x')[2], Vec3(0, 2, 1));
+    EXPECT_EQ(world('x')[3], Vec3(-3, 0, 0));
+    // No mirror among them: the volume of a frame keeps its sign.
+    for (const char up : {'x', 'y', 'z'}) {
+        Mat3 frame;
+        frame << world(up)[1], world(up)[2], world(up)[3];
+        EXPECT_DOUBLE_EQ(frame.determinant(), 6.0) << up;
+    }
+}
+
+TEST_F(ClothFileTest, FlatMeshWithoutUvsIsItsOwnChart)
+{
+    const ClothFile flat = read("v 0.25 0.5 2\nv 1 0.5 2\nv 1 1 2\nv 0.25 1 2\nf 1 2 3 4\n");
+    EXPECT_EQ(validate(flat.mesh), "");
+    for (int v = 0; v < 4; ++v) EXPECT_EQ(flat.mesh.material[v], Vec2(flat.mesh.world[v].head<2>()));
+    // Seen from below it is turned over, and on a slant it keeps its lengths.
+    for (const char* text : {"v 0 0 0\nv 0 1 0\nv 1 1 0\nv 1 0 0\nf 1 2 3 4\n",
+                             "v 0 0 0\nv 0.6 0 0.8\nv 0.6 1 0.8\nv 0 1 0\nf 1 2 3 4\n",
+                             "v 0 0 0\nv 0 1 0\nv 0 1 1\nv 0 0 1\nf 1 2 3 4\n"}) {
+        const ClothFile file = read(text);
+        EXPECT_EQ(validate(file.mesh), "");
+        for (const auto& [a, b, c] : file.mesh.faces)
+            EXPECT_NEAR(twice_area(file.mesh.material[a], file.mesh.material[b], file.mesh.material[c]), 1.0,
+                        10 * kRounding);
+    }
+}
+
+TEST_F(ClothFileTest, AcceptsWhatTheFormatAllows)
+{
+    // Carriage returns, comments, groups, negative indices, continued lines, normals, materials.
+    const std::string text =
+        "# cloth\r\nmtllib none.mtl\r\no sheet\r\nv 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nvt 0 0\r\nvt 1 0\r\nvt 1 "
+        "1\r\n"
+        "vn 0 0 1\r\ng one\r\nf -3/-3/1 -2/-2/1 \\\r\n-1/-1/1\r\nv 0 1 0\r\nvt 0 1\r\ng two\r\ns 1\r\n"
+        "f 1/1/1 3/3/1 4/4/1\r\n";
+    const ClothFile file = read(text);
+    EXPECT_EQ(validate(file.mesh), "");
+    EXPECT_EQ(file.mesh.vertex_count(), 4);
+    EXPECT_EQ(file.mesh.face_count(), 2);
+    EXPECT_EQ(make_topology(4, file.mesh.faces).hinges.size(), 1u);
+}
+
+TEST_F(ClothFileTest, TriangulatesPolygons)
+{
+    std::string text;
+    const int n = 30;
+    for (int k = 0; k < n; ++k)
+        text += "v " + std::to_string(std::cos(0.2 * k)) + " " + std::to_string(std::sin(0.2 * k)) + " 0\n";
+    text += "v 0 0 0\nf";
+    for (int k = 1; k <= n + 1; ++k) text += " " + std::to_string(k);  // concave at the middle
+    const ClothFile file = read(text + "\n");
+    EXPECT_EQ(validate(file.mesh), "");
+    EXPECT_EQ(file.mesh.face_count(), n - 1);
+}
+
+TEST_F(ClothFileTest, KeepsSmallClothApart)
+{
+    // Vertices 1e-6 apart, which an importer's own welding would join.
+    const ClothFile file = read("v 0 0 0\nv 1e-6 0 0\nv 1e-6 1e-6 0\nv 0 1e-6 0\nf 1 2 3\nf 1 3 4\n");
+    EXPECT_EQ(file.mesh.vertex_count(), 4);
+    EXPECT_EQ(validate(file.mesh), "");
+}
+
+TEST_F(ClothFileTest, AcceptsSeveralPiecesWhoseChartsAreApart)
+{
+    const ClothFile file = read(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n"
+        "vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\n"
+        "f 1/1 2/2 3/3\nf 4/4 5/3 6/2\n");  // the charts share a border
+    EXPECT_EQ(validate(file.mesh), "");
+    EXPECT_EQ(file.mesh.vertex_count(), 6);
+}
+
+TEST_F(ClothFileTest, MirroredChartIsTurnedRoundWithAWarning)
+{
+    const ClothFile file = read(
+        "v 0 0 0\nv 1 0 0.5\nv 1 1 0\nv 0 1 0.5\nvt 3 0\nvt 2 0\nvt 2 1\nvt 3 1\n"
+        "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+    EXPECT_EQ(validate(file.mesh), "");
+    ASSERT_EQ(file.warnings.size(), 1u);
+    EXPECT_THAT(file.warnings[0], HasSubstr("mirrored"));
+    EXPECT_EQ(file.mesh.material[0], Vec2(2, 0));
+    EXPECT_EQ(file.mesh.material[1], Vec2(3, 0));
+}
+
+TEST_F(ClothFileTest, CountsWhatItDrops)
+{
+    const ClothFile file = read(std::string(kSquare) + "v 9 9 9\nv 8 8 8\nl 1 2\np 3\n");
+    EXPECT_EQ(file.mesh.vertex_count(), 4);
+    EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("2 of 6 vertices belong to no face")));
+    EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("2 lines and points")));
+}
+
+// Seventeen digits, which tell every double apart.
+std::string digits(double value)
+{
+    return fmt::format("{:.17g}", value);
+}
+
+TEST_F(ClothFileTest, CoordinatesAreTheDoublesOfTheFile)
+{
+    const std::vector<Vec3> world = {{1.0 / 3.0, 0.7, 1e-7},
+                                     {1.0 + 1.0 / 3.0, 0.7, -1e-7},
+                                     {1.1, 1.7000000000000002, 5e-324},
+                                     {0.1, 1.9, 2e-7}};
+    const std::vector<Vec2> material = {
+        {0.7, 1e-7}, {1.7, 1.0 / 3.0}, {1.7000000000000002, 4.0 / 3.0}, {0.7, 1.1}};
+    std::string text;
+    for (const Vec3& x : world)
+        text += "v " + digits(x.x()) + " " + digits(x.y()) + " " + digits(x.z()) + "\n";
+    for (const Vec2& X : material) text += "vt " + digits(X.x()) + " +" + digits(X.y()) + " 0\n";
+    for (const char* faces : {"f 1/1 2/2 3/3 4/4\n", "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n"}) {
+        const ClothFile file = read(text + faces);
+        EXPECT_EQ(file.mesh.world, world);
+        EXPECT_EQ(file.mesh.material, material);
+    }
+}
+
+TEST_F(ClothFileTest, PinBoxHoldsTheVerticesOfItsNumbers)
+{
+    const ClothFile file = read(
+        "v 0 0 0\nv 0.7 0 0\nv 0.7 0.7 0\nv 0 0.7 0\nvt 0 0\nvt 0.7 0\nvt 0.7 0.7\nvt 0 0.7\n"
+        "f 1/1 2/2 3/3 4/4\n");
+    EXPECT_THAT(vertices_in_box(file.mesh, {{0.7, 0.0}, {0.7, 1.0}}), ::testing::ElementsAre(1, 2));
+}
+
+TEST_F(ClothFileTest, PlacesOfOneSingleAndTwoDoublesStayApart)
+{
+    // All corners are the same in single precision.
+    const std::vector<Vec3> corners = {
+        {1, 1, 0}, {1 + 1e-12, 1, 0}, {1 + 1e-12, 1 + 1e-12, 0}, {1, 1 + 1e-12, 0}};
+    std::string text;
+    for (const Vec3& x : corners) text += "v " + digits(x.x()) + " " + digits(x.y()) + " 0\n";
+    for (const char* faces : {"f 1 2 3\nf 1 3 4\n", "f 1 2 3 4\n"}) {
+        const ClothFile file = read(text + faces);
+        EXPECT_EQ(file.mesh.world, corners);
+        EXPECT_EQ(validate(file.mesh), "");
+    }
+}
+
+TEST_F(ClothFileTest, ManyCornersKeepTheirPlaces)
+{
+    const int n = 60;
+    std::string text;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) text += "v " + digits(i / 7.0) + " " + digits(j / 11.0) + " 0\n";
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const int a = j * (n + 1) + i + 1;
+            text += fmt::format("f {} {} {} {}\n", a, a + 1, a + n + 2, a + n + 1);
+        }
+    const ClothFile file = read(text);
+    ASSERT_EQ(file.mesh.vertex_count(), (n + 1) * (n + 1));
+    ASSERT_EQ(file.mesh.face_count(), 2 * n * n);
+    EXPECT_EQ(validate(file.mesh), "");
+    EXPECT_EQ(file.mesh.world.back(), Vec3(n / 7.0, n / 11.0, 0.0));
+}
+
+TEST_F(ClothFileTest, FarFromItsOriginClothKeepsItsShape)
+{
+    const ClothFile file =
+        read("v 60000.1 0 0\nv 60001.1 0 0\nv 60001.1 0.1 0\nv 60000.1 0.1 0\nf 1 2 3 4\n");
+    EXPECT_THAT(file.warnings, IsEmpty());
+    EXPECT_EQ(file.mesh.world[0].x(), 60000.1);
+    EXPECT_EQ(file.mesh.world[1].x(), 60001.1);
+}
+
+TEST_F(ClothFileTest, WeightDividesAndColourDoesNot)
+{
+    const ClothFile file = read("v 2 0 0 2\nv 2 0 0 0.5 0.5 0.5\nv 2 2 0\nf 1 2 3\n");
+    EXPECT_EQ(file.mesh.world[0], Vec3(1, 0, 0));
+    EXPECT_EQ(file.mesh.world[1], Vec3(2, 0, 0));
+}
+
+// What cannot be cloth: the text of a file, and what the error must say.
+struct Defect {
+    const char* name;
+    std::string text;
+    const char* says;
+};
+
+const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string kUvs = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+
+std::vector<Defect> defects()
+{
+    return {
+        {"empty", "", "no faces"},
+        {"garbage",
+         std::string("\x7f"
+                     "ELF\0\1\2\xff\xfe garbage \0 f",
+                     21),
+         ""},
+        {"text", "this is not a mesh\nat all\n", "no faces among 0 vertices, 0 lines and points and 2 other"},
+        {"text says what is allowed", "this is not a mesh\nat all\n",
+         "allowed: vertices as 'v x y z' and faces"},
+        {"no faces", kCorners, "no faces among 4 vertices"},
+        {"word for a number", "v 0 0 0\nv 1 0 zero\nv 1 1 0\nf 1 2 3\n",
+         "line 2: 'v 1 0 zero': 'zero' is no number; allowed: 'v x y z'"},
+        {"number with a tail", "v 0 0 0\nv 1 0 0x\nv 1 1 0\nf 1 2 3\n",
+         "line 2: 'v 1 0 0x': '0x' is no number"},
+        {"word for a uv", kCorners + "vt 0 zero\nf 1/1 2/1 3/1\n",
+         "line 5: 'vt 0 zero': 'zero' is no number"},
+        {"uv of one number", kCorners + "vt 0\nf 1/1 2/1 3/1\n", "line 5: 'vt 0': 1 numbers, but a UV has 2"},
+        {"after a continued line", "v 0 \\\n0 0\nv 1 0 zero\nv 1 1 0\nf 1 2 3\n", "line 3: 'v 1 0 zero'"},
+        {"beyond double", "v 0 0 0\nv 1e999 0 0\nv 1 1 0\nf 1 2 3\n", "'1e999' is beyond double precision"},
+        {"weight of nothing", "v 0 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", "line 1: vertex ("},
+        {"lines only", kCorners + "l 1 2 3\n", "no faces"},
+        {"points only", kCorners + "p 1\n", "no faces"},
+        {"truncated face", kCorners + "f 1 2 3\nf 1 3", "line 6: 'f 1 3': a face of 2 corners"},
+        {"truncated vertex", "v 0 0 0\nv 1 0 0\nv 1 1\nf 1 2 3\n",
+         "line 3: 'v 1 1': 2 numbers, but a vertex has 3"},
+        {"truncated count", "v 0 0 0\nv 1 0 0\nf 1 2 3\nv 1", "line 4"},
+        {"face before its vertices are there", "f 1 2 3\nv 0 0 0\nv 1 0 0\n",
+         "names vertex 3, but there are 2"},
+        {"nan", "v 0 0 0\nv nan 0 0\nv 1 1 0\nf 1 2 3\n", "finite"},
+        {"inf", "v 0 0 0\nv inf 0 0\nv 1 1 0\nf 1 2 3\n", "finite"},
+        {"minus inf", "v 0 0 0\nv 1 -inf 0\nv 1 1 0\nf 1 2 3\n", "finite"},
+        {"overflow", "v 0 0 0\nv 1e300 0 0\nv 1 1 0\nf 1 2 3\n", "finite"},
+        {"huge", "v 0 0 0\nv 1e20 0 0\nv 1 1e20 0\nf 1 2 3\n", "within 1e+06 m"},
+        {"nan uv", kCorners + "vt 0 0\nvt nan 0\nvt 1 1\nf 1/1 2/2 3/3\n", "UV"},
+        {"huge uv", kCorners + "vt 0 0\nvt 1e30 0\nvt 1 1\nf 1/1 2/2 3/3\n", "UV"},
+        {"index 0", kCorners + "f 0 1 2\n", "line 5: 'f 0 1 2': a face names vertex 0"},
+        {"index out of range", kCorners + "f 1 2 5\n", "names vertex 5, but there are 4"},
+        {"negative index out of range", kCorners + "f -1 -2 -5\n", "line 5"},
+        {"index of a billion", kCorners + "f 1 2 1000000000000\n", "names vertex 1000000000000"},
+        {"index that is none", kCorners + "f 1 2 x\n",
+         "line 5: 'f 1 2 x': 'x' is no index; allowed: 'f' and at least 3"},
+        {"uv index out of range", kCorners + kUvs + "f 1/1 2/2 3/9\n",
+         "line 9: a face names UV 9, but there are 4"},
+        {"seam", kCorners + kUvs + "vt 5 5\nvt 6 6\nf 1/1 2/2 3/3\nf 1/5 3/6 4/4\n", "two UVs"},
+        {"mixed uvs", kCorners + kUvs + "f 1/1 2/2 3/3\nf 1 3 4\n", "some faces have UVs"},
+        {"overlapping pieces",
+         kCorners + "v 5 0 0\nv 6 0 0\nv 6 1 0\n" + kUvs + "f 1/1 2/2 3/3\nf 5/1 6/2 7/3\n",
+         "overlap in material space"},
+        {"overlapping corners",
+         kCorners + "v 5 0 0\nv 6 0 0\nv 6 1 0\n" + kUvs +
+             "vt 0.9 0.1\nvt 2 0\nvt 2 1\nf 1/1 2/2 3/3\nf 5/5 6/6 7/7\n",
+         "overlap in material space"},
+        {"mirrored piece",
+         kCorners + "v 5 0 0\nv 6 0 0\nv 6 1 0\n" + kUvs + "vt 9 0\nvt 8 0\nvt 8 1\n" +
+             "f 1/1 2/2 3/3\nf 5/5 6/6 7/7\n",
+         "1 of 2 triangles are clockwise"},
+        {"folded chart", kCorners + "vt 0 0\nvt 1 0\nvt 1 1\nvt 1 0.2\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
+         "clockwise"},
+        {"faces of both directions", kCorners + "f 1 2 3\nf 1 4 3\n", "clockwise"},
+        {"three faces on an edge", kCorners + "v 2 0.5 0\nf 1 2 3\nf 1 3 4\nf 1 3 5\n", ""},
+        {"three faces on a curved edge",
+         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nvt 0 -1\nvt 0 2\n"
+         "f 1/1 2/2 3/3\nf 2/2 1/1 4/4\nf 1/1 2/2 5/5\n",
+         "edge (1, 2) has more than two faces (11, 13, 12) (vertices as the file numbers them"},
+        {"bow-tie", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 1 4 5\n",
+         "vertex 1 joins parts of the cloth in a single point (faces 6 and 7)"},
+        {"duplicate face", kCorners + "f 1 2 3\nf 1 3 4\nf 3 1 2\n",
+         "line 7 (at 1, 1, 0 m) is there twice, first in line 5"},
+        {"duplicate face turned over", kCorners + "f 1 2 3\nf 1 3 4\nf 1 3 2\n", "is there twice"},
+        {"no area in the world", kCorners + "v 2 0 0\n" + kUvs + "vt 2 5\nf 1/1 2/2 3/3\nf 1/1 2/2 5/5\n",
+         "has no area"},
+        {"vertex twice in a face", kCorners + "f 1 2 3\nf 1 3 3\n", "has no area"},
+        {"no area in the material", kCorners + "vt 0 0\nvt 1 0\nvt 2 0\nf 1/1 2/2 3/3\n",
+         "no area in material space"},
+        {"one uv for all", kCorners + "vt 0 0\nf 1/1 2/1 3/1\n", "no area in material space"},
+        {"curved without uvs", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.01\nf 1 2 3\nf 1 3 4\n", "without UVs"},
+    };
+}
+
+TEST_F(ClothFileTest, RefusesWhatCannotBeCloth)
+{
+    for (const Defect& defect : defects()) {
+        SCOPED_TRACE(defect.name);
+        EXPECT_THAT(refusal(defect.text), HasSubstr(defect.says));
+    }
+}
+
+TEST_F(ClothFileTest, RefusesWhatIsNoObjFile)
+{
+    EXPECT_THAT(refusal_of((folder_ / "missing.obj").string()), HasSubstr("no such file"));
+    std::filesystem::create_directory(folder_ / "folder.obj");
+    EXPECT_THAT(refusal_of((folder_ / "folder.obj").string()), HasSubstr("not a regular file"));
+    EXPECT_THAT(refusal_of("/dev/null"), HasSubstr("not a regular file"));
+    EXPECT_THAT(refusal_of(write(kSquare, "cloth.ply")), HasSubstr(".obj"));
+    EXPECT_THAT(refusal_of(write(kSquare), 0.0), HasSubstr("unit"));
+    EXPECT_THAT(refusal_of(write(kSquare), std::nan("")), HasSubstr("unit"));
+    EXPECT_THAT(refusal_of(write(kSquare), 1.0, 'w'), HasSubstr("up"));
+}
+
+TEST_F(ClothFileTest, EveryTruncationIsReadOrRefused)
+{
+    const std::string text = kSquare;
+    for (std::size_t length = 0; length < text.size(); ++length) {
+        try {
+            const ClothFile file = read(text.substr(0, length));
+            EXPECT_EQ(validate(file.mesh), "") << length;
+        } catch (const InputError&) {
+        }
+    }
+}
+
+}  // namespace
+}  // namespace arris

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/mesh_change/step_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "solver/mesh_change/mesh_transfer.h"
+#include "solver/mesh_change/strain_allowance.h"
+#include "tests/solver/eol_cloth.h"
+
+namespace arris {
+namespace {
+
+using testing::EolCloth;
+using testing::kLyingCell;
+using testing::kStep;
+using testing::lying;
+using testing::press_edges;
+
+/// A trace half a cell beside a row of vertices that stands up, as a pleat does, and behind which a pin holds
+/// the cloth: merged into the trace it would leave the cloth too short, by 5 %. The trace flows towards it, a
+/// quarter of a cell a step.
+EolCloth heading_for_pleat(double youngs_modulus)
+{
+    EolCloth cloth = lying(0.0);
+    cloth.scene.gravity = Gravity{};
+    cloth.scene.material.youngs_modulus = youngs_modulus;
+    press_edges(cloth);
+    testing::take(cloth);
+
+    Pin pin;
+    pin.material = {Vec2(4.9 * kLyingCell, 0.0), Vec2(0.4, 0.4)};
+    cloth.scene.pins = {pin};
+    constexpr double kHeight = 0.2;  // cells
+    const double before = 0.5 - std::sqrt(0.25 - kHeight * kHeight);
+    const double behind = 1.0 - std::sqrt(1.0 - kHeight * kHeight);
+    for (std::size_t v = 0; v < cloth.state.mesh.world.size(); ++v) {
+        const double u = cloth.state.mesh.material[v].x() / kLyingCell;
+        if (u < 3.6) continue;
+        const bool is_pleat = u < 4.5;
+        cloth.state.mesh.world[v].x() -= (is_pleat ? before : before + behind) * kLyingCell;
+        if (is_pleat) cloth.state.mesh.world[v].z() += kHeight * kLyingCell;
+    }
+    for (const EolVertex& e : cloth.state.eol)
+        cloth.state.material_velocity[cloth.state.index_of(e.vertex_id)] =
+            Vec2(0.25 * kLyingCell / kStep, 0.0);
+    press_edges(cloth);
+    return cloth;
+}
+
+TEST(StepMesh, ClearsATracesWayByForceWhereThatStrainsLittle)
+{
+    // By .047 and .2 of what moves the cloth around; kTraceStrain is .06.
+    for (const double youngs_modulus : {200.0, 800.0}) {
+        EolCloth cloth = heading_for_pleat(youngs_modulus);
+        for (const StrainLimit limit : {StrainLimit::GivesWay, StrainLimit::AsMade})
+            EXPECT_GT(testing::conform_cloth(cloth, {}, {.strain = limit}).blocked, 0)
+                << "nothing gentler does";
+        MeshCache cache;
+        update_mesh_cache(cloth.scene, cloth.state, cache);
+        StepReport report;
+        const std::size_t eol = cloth.state.eol.size();
+        ASSERT_GT(eol, 6u);
+        const State& start =
+            choose_step_mesh(cloth.scene, cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
+                .start;
+        const auto blocked =
+            std::count_if(cache.refused.begin(), cache.refused.end(),
+                          [](const RefusedContact& refused) { return refused.cause == RowCause::Blocked; });
+        if (youngs_modulus < 500.0) {
+            EXPECT_EQ(blocked, 0);
+            EXPECT_EQ(start.eol.size(), eol);
+        } else {
+            EXPECT_GT(blocked, 0);
+            EXPECT_LT(start.eol.size(), eol);
+        }
+    }
+}
+
+constexpr int kCells = 21;
+constexpr double kCell = 0.4 / kCells;  // m
+
+/// As above, half a cell beside a pleat at either end of the trace, without a pin. Between them it rests, or
+/// flows as well.
+EolCloth heading_for_two_pleats(double youngs_modulus, double turn, const std::array<double, 2>& heights,
+                                bool rests_between)
+{
+    EolCloth cloth(testing::make_ridge(60.0), testing::make_draped({kCells, turn, 180.0}));
+    cloth.scene.eol = uniform_target(kCell, 10.0);
+    for (Vec3& x : cloth.state.mesh.world) x.z() += testing::kThickness;
+    cloth.scene.gravity = Gravity{};
+    cloth.scene.material.youngs_modulus = youngs_modulus;
+    press_edges(cloth);
+    testing::take(cloth);
+
+    const auto is_between = [](const Vec2& X) { return std::abs(X.y() - 0.2) < 0.07; };
+    for (std::size_t v = 0; v < cloth.state.mesh.world.size(); ++v) {
+        const Vec2& X = cloth.state.mesh.material[v];
+        const double u = X.x() / kCell - 0.5 * kCells;
+        if (u < 0.1 || is_between(X)) continue;
+        const double height = heights[X.y() > 0.2 ? 1 : 0];
+        const double before = 0.5 - std::sqrt(0.25 - height * height);
+        const double behind = 1.0 - std::sqrt(1.0 - height * height);
+        const bool is_pleat = u < 1.0;
+        cloth.state.mesh.world[v].x() -= (is_pleat ? before : before + behind) * kCell;
+        if (is_pleat) cloth.state.mesh.world[v].z() += height * kCell;
+    }
+    for (const EolVertex& e : cloth.state.eol) {
+        const int v = cloth.state.index_of(e.vertex_id);
+        if (!rests_between || !is_between(cloth.state.mesh.material[v]))
+            cloth.state.material_velocity[v] = Vec2(0.25 * kCell / kStep, 0.0);
+    }
+    press_edges(cloth);
+    return cloth;
+}
+
+TEST(StepMesh, IsMadeWithCareOnlyWhereItStrainsTheCloth)
+{
+    // Both pleats are cleared where the cloth gives way. At the higher one it cannot: by .3 of what moves it.
+    EolCloth cloth = heading_for_two_pleats(100.0, -0.5, {0.2, 0.3}, true);
+    const auto count_low = [](const std::vector<EolVertex>& eol, const std::vector<VertexId>& ids,
+                              const std::vector<Vec2>& material) {
+        return std::count_if(eol.begin(), eol.end(), [&](const EolVertex& e) {
+            const auto at = std::lower_bound(ids.begin(), ids.end(), e.vertex_id) - ids.begin();
+            return material[at].y() < 0.2;
+        });
+    };
+    const std::size_t eol = cloth.state.eol.size();
+    const auto low = count_low(cloth.state.eol, cloth.state.ids, cloth.state.mesh.material);
+    ASSERT_GT(low, 8);
+    const ConformOutcome giving = testing::conform_cloth(cloth);
+    EXPECT_EQ(giving.lost, 0);
+    const ConformOutcome careful = testing::conform_cloth(cloth, {}, {.strain = StrainLimit::AsMade});
+    ASSERT_TRUE(careful.mesh);
+    const SurgeryResult& made = careful.mesh->surgery;
+    EXPECT_LT(count_low(careful.mesh->eol, made.ids, made.mesh.material), low - 5) << "care costs vertices";
+
+    MeshCache cache;
+    update_mesh_cache(cloth.scene, cloth.state, cache);
+    StepReport report;
+    const State& start =
+        choose_step_mesh(cloth.scene, cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
+            .start;
+    EXPECT_LT(start.eol.size(), eol) << "what strains the cloth is not done";
+    EXPECT_EQ(count_low(start.eol, start.ids, start.mesh.material), low);
+}
+
+TEST(StepMesh, OfPatchesThatStayStrainedTheVerticesAreKnown)
+{
+    const EolCloth cloth = heading_for_two_pleats(100.0, -0.5, {0.2, 0.3}, true);
+    const ConformOutcome giving = testing::conform_cloth(cloth);
+    ASSERT_TRUE(giving.mesh);
+    TransferReport report;
+    transfer(cloth.scene, cloth.state, cloth.stars(), *giving.mesh,
+             testing::stars_of(giving.mesh->surgery.mesh), report);
+    EXPECT_GT(report.patches, 1);
+    EXPECT_GT(report.strain, kPatchStrain);
+    ASSERT_EQ(report.strained.size(), 1u) << "the cloth gives way at the lower pleat";
+    const std::vector<VertexId>& patch = report.strained[0];
+    EXPECT_TRUE(std::is_sorted(patch.begin(), patch.end()));
+    EXPECT_GT(patch.size(), 20u);
+    for (const VertexId id : patch) {
+        const int v = cloth.state.index_of(id);
+        ASSERT_GE(v, 0) << "there before";
+        EXPECT_GT(cloth.state.mesh.material[v].y(), 0.2);
+    }
+}
+
+TEST(StepMesh, AMeshThatStaysStrainedIsCarriedOverWhole)
+{
+    EolCloth cloth = heading_for_two_pleats(200.0, -2.0, {0.1, 0.45}, false);
+    const Vec3 before = testing::momentum_of(cloth.scene, cloth.state);
+    MeshCache cache;
+    update_mesh_cache(cloth.scene, cloth.state, cache);
+    StepReport report;
+    const State& start =
+        choose_step_mesh(cloth.scene, cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
+            .start;
+    ASSERT_GT(report.released, 0);
+    const Vec3 change = testing::momentum_of(cloth.scene, start) - before;
+    EXPECT_LT(change.norm(), 1e-12 * before.norm());
+}
+
+}  // namespace
+}  // namespace arris

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/model/row_cause.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "solver/eol/eol_coordinates.h"
+#include "solver/mesh_change/conform.h"
+#include "solver/sites/eol_release.h"
+#include "tests/solver/eol_cloth.h"
+
+namespace arris {
+namespace {
+
+using testing::conform_cloth;
+using testing::EolCloth;
+using testing::kLyingCell;
+using testing::kStep;
+using testing::lying;
+using testing::press_edges;
+
+int count(const ConformOutcome& outcome, RowCause cause)
+{
+    return static_cast<int>(
+        std::count_if(outcome.refused.begin(), outcome.refused.end(),
+                      [cause](const RefusedContact& refused) { return refused.cause == cause; }));
+}
+
+void take_without_rows(EolCloth& cloth)
+{
+    testing::take(cloth);
+    cloth.state.active.clear();
+}
+
+/// Holds the vertices between these material coordinates u.
+void hold(EolCloth& cloth, double from, double to)
+{
+    Pin pin;
+    pin.material = {Vec2(from, 0.0), Vec2(to, 0.4)};
+    cloth.scene.pins = {pin};
+}
+
+TEST(RowCause, EachHasItsOwnName)
+{
+    std::set<std::string> names;
+    for (std::size_t k = 0; k < kRowCauses; ++k) names.insert(to_string(static_cast<RowCause>(k)));
+    EXPECT_EQ(names.size(), kRowCauses);
+    EXPECT_FALSE(names.contains(""));
+}
+
+TEST(RowCause, WhatBecomesEolIsRefusedByNothing)
+{
+    EolCloth cloth = lying(17.0);
+    press_edges(cloth);
+    const ConformOutcome outcome = conform_cloth(cloth);
+    ASSERT_TRUE(outcome.mesh);
+    EXPECT_GE(outcome.mesh->report.inserted + count(outcome, RowCause::BesideEol),
+              static_cast<int>(cloth.state.active.size()));
+    EXPECT_EQ(static_cast<int>(outcome.refused.size()), count(outcome, RowCause::BesideEol))
+        << "two edges that cross the feature at one vertex of the cloth";
+}
+
+TEST(RowCause, EveryRowNearABorderIsCounted)
+{
+    EolCloth cloth = lying(0.0, 0.2 - 0.1 * kLyingCell);
+    press_edges(cloth);
+    const ConformOutcome outcome = conform_cloth(cloth);
+    EXPECT_FALSE(outcome.mesh);
+    EXPECT_EQ(count(outcome, RowCause::NearBorder), static_cast<int>(cloth.state.active.size()));
+    ASSERT_GT(cloth.state.active.size(), 6u);
+    for (std::size_t k = 0; k < outcome.refused.size(); ++k) {
+        EXPECT_EQ(outcome.refused[k].kind, ContactKind::Edge);
+        EXPECT_EQ(outcome.refused[k].obstacle, 0);
+    }
+}
+
+TEST(RowCause, WhatComesFastToABorderIsNotNearItYet)
+{
+    // 34 mm are left, of which four steps use up 20 mm for each m/s; not where it goes away.
+    for (const double speed : {1.5, 2.0, -2.0}) {
+        EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
+        for (Vec3& v : cloth.state.velocity) v = Vec3(speed, 0, 0);
+        press_edges(cloth);
+        const ConformOutcome outcome = conform_cloth(cloth);
+        EXPECT_EQ(count(outcome, RowCause::BorderAhead),
+                  speed > 1.7 ? static_cast<int>(cloth.state.active.size()) : 0);
+        EXPECT_EQ(count(outcome, RowCause::NearBorder), 0);
+    }
+}
+
+TEST(RowCause, WhereTheBorderRunsAlongTheFeatureItIsNotTried)
+{
+    for (const double turn : {8.0, 17.0, 23.0, 40.0}) {
+        EolCloth cloth = lying(turn, 0.2);
+        press_edges(cloth);
+        std::erase_if(cloth.state.active, [&](const ActiveContact& row) {  // edges of the border stay
+            const auto is_on_border = [&](std::uint32_t id) {
+                return cloth.state.mesh.material[cloth.state.index_of(id)].x() < 1e-9;
+            };
+            return !is_on_border(row.vertex_ids[0]) || !is_on_border(row.vertex_ids[1]);
+        });
+        ASSERT_EQ(cloth.state.active.size(), 1u) << turn;
+        const ConformOutcome outcome = conform_cloth(cloth);
+        EXPECT_EQ(count(outcome, RowCause::AlongBorder), turn < 20.0 ? 1 : 0) << turn;
+        EXPECT_EQ(outcome.mesh.has_value(), turn > 20.0) << turn;
+    }
+}
+
+TEST(RowCause, WhatHasComeToTheBorderIsCountedAsNearIt)
+{
+    EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
+    press_edges(cloth);
+    take_without_rows(cloth);
+    ASSERT_GT(cloth.state.eol.size(), 4u);
+    for (const EolVertex& e : cloth.state.eol)
+        cloth.state.mesh.material[cloth.state.index_of(e.vertex_id)].x() = 0.1 * kLyingCell;
+    const ConformOutcome outcome = conform_cloth(cloth);
+    EXPECT_EQ(count(outcome, RowCause::NearBorder), static_cast<int>(cloth.state.eol.size()));
+    EXPECT_EQ(count(outcome, RowCause::Released), 0);
+}
+
+TEST(RowCause, AVertexThatIsGivenUpIsCountedAndWhatIsNotTriedAgain)
+{
+    EolCloth cloth = lying(17.0);
+    press_edges(cloth);
+    const std::vector<ActiveContact> rows = cloth.state.active;
+    take_without_rows(cloth);
+    const VertexId given_up = cloth.state.eol[2].vertex_id;
+    const ConformOutcome alone = conform_cloth(cloth, {{}, {given_up}});
+    ASSERT_TRUE(alone.mesh);
+    ASSERT_EQ(alone.refused.size(), 1u);
+    EXPECT_EQ(alone.refused[0].cause, RowCause::GivenUp);
+    EXPECT_EQ(alone.refused[0].vertex_ids[0], given_up);
+
+    EolCloth fresh = lying(17.0);
+    fresh.state.active = rows;
+    const ConformOutcome none = conform_cloth(fresh, {{}, {given_up}});
+    EXPECT_EQ(count(none, RowCause::GivenUp), static_cast<int>(rows.size()));
+}
+
+TEST(RowCause, WhatIsReleasedIsCountedWithItsReason)
+{
+    EolCloth cloth = lying(17.0);
+    press_edges(cloth);
+    take_without_rows(cloth);
+    const auto last = std::max_element(
+        cloth.state.eol.begin(), cloth.state.eol.end(), [&](const EolVertex& a, const EolVertex& b) {
+            const auto y = [&](const EolVertex& e) {
+                return cloth.state.mesh.world[cloth.state.index_of(e.vertex_id)].y();
+            };
+            return y(a) < y(b);
+        });
+    last->idle = kIdleSteps;  // an end of the trace: nothing holds it between
+    const ConformOutcome idle = conform_cloth(cloth);
+    ASSERT_EQ(idle.refused.size(), 1u);
+    EXPECT_EQ(idle.refused[0].cause, RowCause::Released);
+    EXPECT_EQ(idle.refused[0].vertex_ids[0], last->vertex_id);
+    EXPECT_EQ(idle.refused[0].vertex_ids[1], ActiveContact::kNoVertex);
+    EXPECT_EQ(idle.refused[0].kind, ContactKind::Vertex);
+}
+
+TEST(RowCause, WhatLiesBetweenPressingContactsIsNoContact)
+{
+    // Two contacts near the border, and all that is between them: none becomes EOL, two are counted.
+    EolCloth cloth = lying(0.0, 0.2 - 0.1 * kLyingCell);
+    press_edges(cloth);
+    ASSERT_GT(cloth.state.active.size(), 6u);
+    cloth.state.active = {cloth.state.active.front(), cloth.state.active.back()};
+    EXPECT_EQ(conform_cloth(cloth).refused.size(), 2u);
+}
+
+TEST(RowCause, WhatHasNoCoordinatesSaysWhy)
+{
+    // Cloth upright over the ridge: its plane contains the outward direction.
+    EolCloth upright = lying(0.0);
+    for (Vec3& x : upright.state.mesh.world) x = Vec3(0.0, x.y(), x.x() + 0.3);
+    upright.add_eol(upright.vertex_at(0.2, 0.2), false, testing::tip_of(upright.scene.obstacles[0]));
+    EXPECT_EQ(count(conform_cloth(upright), RowCause::EdgeOn), 1);
+
+    // A border along the ridge, and the cloth's corner.
+    EolCloth along = lying(0.0, 0.2);
+    along.add_eol(along.vertex_at(0.0, 0.2), false, testing::tip_of(along.scene.obstacles[0]));
+    EXPECT_EQ(count(conform_cloth(along), RowCause::AlongBorder), 1);
+    EolCloth corner = lying(0.0, 0.2);
+    corner.add_eol(corner.vertex_at(0.0, 0.0), false, testing::tip_of(corner.scene.obstacles[0]));
+    EXPECT_EQ(count(conform_cloth(corner), RowCause::ClothCorner), 1);
+
+    for (const RowCause cause :
+         {RowCause::NoDirection, RowCause::AlongBorder, RowCause::EdgeOn, RowCause::ClothCorner,
+          RowCause::OtherObstacle, RowCause::NearBorder, RowCause::AtEol, RowCause::FlatBehind})
+        EXPECT_TRUE(is_excluded(cause)) << to_string(cause);
+    for (const RowCause cause :
+         {RowCause::New, RowCause::NotCrossing, RowCause::BesideEol, RowCause::BorderAhead, RowCause::Guard,
+          RowCause::Quality, RowCause::OffPlane, RowCause::Blocked, RowCause::GivenUp, RowCause::Released,
+          RowCause::OtherFeature})
+        EXPECT_FALSE(is_excluded(cause)) << to_string(cause);
+}
+
+TEST(RowCause, WhereHeldVerticesLeaveNoPlaceTheMeshIsTheReason)
+{
+    // The ridge is a fiftieth of a cell beside a row of vertices that a pin holds.
+    EolCloth cloth = lying(0.0, 0.2 - 3.02 * kLyingCell);
+    hold(cloth, 3.0 * kLyingCell - 1e-6, 3.0 * kLyingCell + 1e-6);
+    press_edges(cloth);
+    const ConformOutcome outcome = conform_cloth(cloth);
+    EXPECT_GT(count(outcome, RowCause::Quality), 4);
+    EXPECT_EQ(count(outcome, RowCause::Guard), 0);
+}
+
+/// A trace that flows towards a held row, which is half a cell away: it is there before the four steps that
+/// are cleared.
+EolCloth heading_for_held_row()
+{
+    EolCloth cloth = lying(0.0);
+    press_edges(cloth);
+    take_without_rows(cloth);
+    hold(cloth, 4.0 * kLyingCell - 1e-6, 4.0 * kLyingCell + 1e-6);
+    for (const EolVertex& e : cloth.state.eol)
+        cloth.state.material_velocity[cloth.state.index_of(e.vertex_id)] =
+            Vec2(0.25 * kLyingCell / kStep, 0.0);
+    press_edges(cloth);
+    return cloth;
+}
+
+TEST(RowCause, AWayThatCannotBeClearedIsCounted)
+{
+    const ConformOutcome outcome = conform_cloth(heading_for_held_row());
+    ASSERT_TRUE(outcome.mesh);
+    EXPECT_GT(outcome.mesh->report.released, 2);
+    EXPECT_EQ(count(outcome, RowCause::Blocked), outcome.mesh->report.released);
+    EXPECT_GT(outcome.blocked, 0);
+    EXPECT_LE(outcome.blocked, outcome.mesh->report.released)
+        << "some lead off the cloth: no force clears that";
+    EXPECT_GE(outcome.lost, outcome.mesh->report.released) << "others may have been merged";
+    EXPECT_EQ(count(outcome, RowCause::GivenUp), 0);
+}
+
+TEST(RowCause, AMeshThatLosesMoreVerticesThanItMayIsNotMade)
+{
+    const EolCloth cloth = heading_for_held_row();
+    const ConformOutcome whole = conform_cloth(cloth);
+    EXPECT_TRUE(conform_cloth(cloth, {}, {.lost = whole.lost, .blocked = whole.blocked}).mesh);
+    for (const ConformLimits& limits :
+         {ConformLimits{.lost = whole.lost - 1}, ConformLimits{.blocked = whole.blocked - 1}}) {
+        const ConformOutcome unfinished = conform_cloth(cloth, {}, limits);
+        EXPECT_FALSE(unfinished.mesh);
+        EXPECT_EQ(unfinished.lost, whole.lost);
+        EXPECT_EQ(unfinished.blocked, whole.blocked);
+    }
+}
+
+TEST(RowCause, WhatIsMadeAndFindsNoWayIsCountedAsTheContactItWas)
+{
+    for (const double side : {-1.0, 1.0}) {
+        EolCloth cloth = lying(0.0);
+        const double row = side > 0.0 ? 4.0 : 3.0;
+        hold(cloth, row * kLyingCell - 1e-6, row * kLyingCell + 1e-6);
+        for (Vec3& v : cloth.state.velocity) v = Vec3(-side * 0.25 * kLyingCell / kStep, 0.0, 0.0);
+        press_edges(cloth);
+        const ConformOutcome outcome = conform_cloth(cloth);
+        ASSERT_TRUE(outcome.mesh);
+        EXPECT_GT(outcome.mesh->report.released, 1);
+        EXPECT_EQ(count(outcome, RowCause::Blocked), outcome.mesh->report.released);
+        for (const RefusedContact& refused : outcome.refused)
+            EXPECT_EQ(refused.kind, ContactKind::Edge) << "none was EOL before";
+    }
+}
+
+TEST(RowCause, StiffClothThatWouldBeStrainedIsGuarded)
+{
+    // A crease along the row of vertices beside the ridge, which would have to move down its slope. Nearer
+    // than a tenth of the target length there is no place for another row of them.
+    for (const double cells : {0.04, 0.15}) {
+        const double beside = cells * kLyingCell;
+        EolCloth cloth = lying(0.0, 0.2 - 3.0 * kLyingCell + beside);
+        cloth.scene.material.youngs_modulus = 1e7;
+        for (Vec3& x : cloth.state.mesh.world) {
+            const double away = x.x() - beside;
+            x = Vec3(beside + 0.8 * away, x.y(), x.z() + 0.6 * (beside / 0.8 - std::abs(away)));
+        }
+        press_edges(cloth);
+        const ConformOutcome outcome = conform_cloth(cloth, {}, {.strain = StrainLimit::AsMade});
+        const int guarded = count(outcome, RowCause::Guard);
+        if (cells < 0.1) {
+            EXPECT_GT(guarded, 4);
+        } else {
+            EXPECT_EQ(guarded, 0);
+            ASSERT_TRUE(outcome.mesh);
+            EXPECT_GT(outcome.mesh->report.inserted, 4);
+        }
+    }
+}
+
+TEST(RowCause, WhatSurgeryBesideItMovesOffThePlaneIsCounted)
+{
+    // Material lines are wavy across the ridge and the cloth gives way to anything.
+    EolCloth cloth = lying(17.0);
+    cloth.scene.material.youngs_modulus = 1e-9;
+    cloth.scene.gravity = Gravity{};
+    for (Vec3& x : cloth.state.mesh.world) x.x() += 0.012 * std::sin(90.0 * x.y() + 40.0 * x.x());
+    press_edges(cloth);
+    const ConformOutcome outcome = conform_cloth(cloth);
+    EXPECT_GT(count(outcome, RowCause::OffPlane), 0);
+}
+
+}  // namespace
+}  // namespace arris

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/sites/eol_release.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "solver/eol/eol_coordinates.h"
+#include "solver/eol/eol_features.h"
+#include "solver/sites/feature_sites.h"
+#include "tests/solver/eol_cloth.h"
+
+namespace arris {
+namespace {
+
+using testing::Drape;
+using testing::EolCloth;
+
+constexpr double kSpeed = 1.5;  // m/s
+
+/// Cloth that flows over a ridge, all of it as fast, with EOL vertices where it is folded, and its middle
+/// one.
+struct FlowingCloth {
+    EolCloth cloth;
+    int middle, entry;
+
+    explicit FlowingCloth(double fold_degrees, double speed = kSpeed)
+        : cloth(testing::make_ridge(60.0), testing::make_draped({8, 0.0, fold_degrees})),
+          middle(cloth.vertex_at(0.2, 0.2))
+    {
+        State& state = cloth.state;
+        const Vec3 before =
+            (state.mesh.world[middle] - state.mesh.world[cloth.vertex_at(0.1, 0.2)]).normalized();
+        const Vec3 after =
+            (state.mesh.world[cloth.vertex_at(0.3, 0.2)] - state.mesh.world[middle]).normalized();
+        for (int v = 0; v < state.mesh.vertex_count(); ++v) {
+            const double s = state.mesh.material[v].x() - 0.2;
+            state.velocity[v] = s < 0.0 ? Vec3(speed * before) : Vec3(speed * after);
+            if (std::abs(s) > 1e-9) continue;
+            state.velocity[v].setZero();
+            state.material_velocity[v] = Vec2(-speed, 0.0);
+            cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+        }
+        entry = state.eol_entry(state.ids[middle]);
+        set_idle(kIdleSteps);
+    }
+
+    void set_idle(int steps) { cloth.state.eol[entry].idle = steps; }
+
+    EolHold hold() const
+    {
+        const EolPlacing placing = cloth.place(middle);
+        return find_hold(cloth.scene, cloth.state, cloth.stars(), entry, *placing.coordinates,
+                         cloth.state.mesh.world[middle]);
+    }
+    bool can_be_let_go() const { return hold() != EolHold::Firm; }
+};
+
+TEST(EolRelease, OfAFoldWaitsWhetherMaterialFlowsOrNot)
+{
+    for (const double speed : {kSpeed, 0.0}) {
+        for (const double fold : {60.0, 90.0, 120.0, 165.0, 173.0})
+            EXPECT_FALSE(FlowingCloth(fold, speed).can_be_let_go()) << fold;
+        for (const double fold : {175.0, 180.0})
+            EXPECT_TRUE(FlowingCloth(fold, speed).can_be_let_go()) << fold;
+    }
+}
+
+TEST(EolRelease, OfFlatClothWaitsForThreeStepsWithoutPressing)
+{
+    FlowingCloth flat(180.0);
+    EXPECT_TRUE(flat.can_be_let_go());
+    flat.set_idle(kIdleSteps - 1);
+    EXPECT_FALSE(flat.can_be_let_go()) << "it may press again at once";
+}
+
+TEST(EolRelease, WhileItPressesNeverIs)
+{
+    FlowingCloth flat(180.0);
+    flat.set_idle(0);
+    EXPECT_FALSE(flat.can_be_let_go());
+}
+
+TEST(EolRelease, ComesAtTheLatestACellFromTheFeatureHoweverFastItFlows)
+{
+    for (const double speed : {kSpeed, 0.1, 0.0})
+        for (const auto& [share, is_far] : {std::pair{0.95, false}, {1.05, true}}) {
+            FlowingCloth lifted(90.0, speed);
+            const double cell = lifted.cloth.scene.eol->length(Vec2(0.2, 0.2));
+            for (Vec3& x : lifted.cloth.state.mesh.world) x.z() += share * cell;
+            EXPECT_EQ(lifted.can_be_let_go(), is_far) << speed;
+        }
+}
+
+// What flows fast over a flat fold comes to it along neither face of the ridge.
+TEST(EolRelease, ComesBeforeThatWhereAFastFoldIsLedOtherwiseThanItsClothComes)
+{
+    for (const auto& [fold, speed, is_astray] :
+         {std::tuple{150.0, kSpeed, true}, {150.0, 0.1, false}, {90.0, kSpeed, false}})
+        for (const double share : {0.9, 1.1}) {
+            FlowingCloth lifted(fold, speed);
+            const double cell = lifted.cloth.scene.eol->length(Vec2(0.2, 0.2));
+            for (Vec3& x : lifted.cloth.state.mesh.world) x.z() += share * kAstrayCells * cell;
+            EXPECT_EQ(lifted.can_be_let_go(), is_astray && share > 1.0) << fold << ", " << speed;
+        }
+}
+
+TEST(EolRelease, OfATentThatIsOffItsNailComesWhereTheNailPressesOnAnotherFace)
+{
+    for (const double height : {2.0, 3.0})  // thicknesses
+        for (const bool is_pressing : {false, true}) {
+            EolCloth cloth(Obstacle("nails", make_points({{1.0, 0.0, 0.0}, Vec3::Zero()}), {}, {}, 30.0),
+                           testing::make_draped({8, 0.0, 180.0}));
+            for (Vec3& x : cloth.state.mesh.world)
+                x.z() = height * testing::kThickness - 0.5 * std::hypot(x.x(), x.y());
+            const int v = cloth.vertex_at(0.2, 0.2);
+            const int entry = cloth.add_eol(v, true, 1);
+            cloth.state.eol[entry].idle = kIdleSteps;
+            // Of another nail, and, perhaps, of its own.
+            for (const int nail : {0, 1})
+                if (nail == 0 || is_pressing)
+                    cloth.state.active.push_back(
+                        {{0, 1, 10}, ContactKind::Triangle, 0, nail, Vec3::UnitZ(), 1e-6});
+            const EolPlacing placing = cloth.place(v);
+            ASSERT_TRUE(placing.coordinates);
+            const EolHold hold = find_hold(cloth.scene, cloth.state, cloth.stars(), entry,
+                                           *placing.coordinates, cloth.state.mesh.world[v]);
+            EXPECT_EQ(hold, is_pressing && height > kOnFeature ? EolHold::None : EolHold::Firm) << height;
+        }
+}
+
+TEST(EolRelease, OfATentThatIsOffACornerComesWhereThatPressesOnAnotherFace)
+{
+    for (const bool is_pressing : {false, true}) {
+        EolCloth cloth(testing::make_ridge(60.0, 0.1), testing::make_draped({8, 0.0, 180.0}));
+        for (Vec3& x : cloth.state.mesh.world)
+            x.z() = 3.0 * testing::kThickness - 0.5 * std::hypot(x.x(), x.y() - 0.1);
+        const Obstacle& ridge = cloth.scene.obstacles[0];
+        const int v = cloth.vertex_at(0.2, 0.3), corner = testing::end_of(ridge);
+        const int entry = cloth.add_eol(v, true, corner);
+        cloth.state.eol[entry].idle = kIdleSteps;
+        if (is_pressing)
+            cloth.state.active.push_back({{0, 1, 10},
+                                          ContactKind::Triangle,
+                                          0,
+                                          ridge.features().corners[corner].point,
+                                          Vec3::UnitZ(),
+                                          1e-6});
+        const EolPlacing placing = cloth.place(v);
+        ASSERT_TRUE(placing.coordinates);
+        const EolHold hold = find_hold(cloth.scene, cloth.state, cloth.stars(), entry, *placing.coordinates,
+                                       cloth.state.mesh.world[v]);
+        EXPECT_EQ(hold, is_pressing ? EolHold::None : EolHold::Firm);
+    }
+}
+
+/// What becomes of the holds of a row of EOL vertices along the ridge, F, L or N each, in the material's
+/// order.
+std::string hold_between_of(const std::string& along)
+{
+    const FlowingCloth flowing(90.0, 0.0);
+    const State& state = flowing.cloth.state;
+    EXPECT_EQ(along.size(), state.eol.size());
+    std::vector<std::pair<double, int>> row;
+    for (int e = 0; e < static_cast<int>(state.eol.size()); ++e)
+        row.emplace_back(state.mesh.material[state.index_of(state.eol[e].vertex_id)].y(), e);
+    std::sort(row.begin(), row.end());
+    std::vector<EolHold> holds(row.size());
+    for (std::size_t k = 0; k < row.size(); ++k)
+        holds[row[k].second] = along[k] == 'F'   ? EolHold::Firm
+                               : along[k] == 'L' ? EolHold::Loose
+                                                 : EolHold::None;
+    hold_between(flowing.cloth.scene, state, flowing.cloth.stars(), holds);
+    std::string found;
+    for (const auto& [y, e] : row)
+        found += holds[e] == EolHold::Firm ? 'F' : holds[e] == EolHold::Loose ? 'L' : 'N';
+    return found;
+}
+
+TEST(EolRelease, LeavesNoHolesInATrace)
+{
+    EXPECT_EQ(hold_between_of("FLFLLLFFF"), "FFFFFFFFF");
+    EXPECT_EQ(hold_between_of("LLFLLFNLL"), "NNFFFFNNN");
+    EXPECT_EQ(hold_between_of("FLNLFLLLL"), "FNNNFNNNN");
+    EXPECT_EQ(hold_between_of("LLLLLLLLL"), "NNNNNNNNN");
+}
+
+TEST(EolRelease, HoldsNothingBetweenThatIsOffTheFeature)
+{
+    FlowingCloth still(180.0, 0.0);
+    EXPECT_EQ(still.hold(), EolHold::Loose);
+    const double thickness = still.cloth.scene.material.thickness;
+    for (Vec3& x : still.cloth.state.mesh.world) x.z() += 3.0 * thickness;
+    EXPECT_EQ(still.hold(), EolHold::None);
+}
+
+}  // namespace
+}  // namespace arris

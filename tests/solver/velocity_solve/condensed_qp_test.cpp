@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/velocity_solve/condensed_qp.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace arris {
+namespace {
+
+constexpr double kComplementary = 1e-11;  // of the largest |q|; conditions are below 1e3
+
+CondensedQp make_random_qp(int size, std::mt19937& random)
+{
+    std::normal_distribution<double> normal;
+    const Eigen::MatrixXd g = Eigen::MatrixXd::NullaryExpr(size, size, [&] { return normal(random); });
+    return {g * g.transpose() / size + 0.05 * Eigen::MatrixXd::Identity(size, size),
+            Eigen::VectorXd::NullaryExpr(size, [&] { return normal(random); })};
+}
+
+std::vector<Stand> make_random_set(int size, std::mt19937& random)
+{
+    std::vector<Stand> set(static_cast<std::size_t>(size));
+    for (Stand& member : set) member = random() % 2 ? Stand::Between : Stand::AtZero;
+    return set;
+}
+
+void expect_solved(const CondensedQp& qp, const std::optional<CondensedAnswer>& answer)
+{
+    ASSERT_TRUE(answer);
+    const Eigen::VectorXd w = qp.hessian * answer->z + qp.linear;
+    const double scale = qp.linear.lpNorm<Eigen::Infinity>();
+    EXPECT_TRUE((answer->z.array() >= 0.0).all());
+    EXPECT_LE((w - answer->w).lpNorm<Eigen::Infinity>(), kComplementary * scale);
+    EXPECT_GE(w.minCoeff(), -kComplementary * scale);
+    for (int i = 0; i < w.size(); ++i)
+        EXPECT_TRUE(answer->stand[i] == Stand::Between ? answer->w[i] <= 0.0 : answer->z[i] <= 0.0);
+}
+
+/// From the empty set, exchanging all that is wrong goes {} -> {1,3} -> {0,1,2,3} -> {0,1} -> {} for ever.
+CondensedQp make_cycling_qp()
+{
+    const Eigen::Matrix4d s{{58, -2, 33, -16}, {-2, 7, 3, -9}, {33, 3, 28, -24}, {-16, -9, -24, 34}};
+    return {s, Eigen::Vector4d(3, -6, 6, -3)};
+}
+
+TEST(CondensedQp, IsComplementaryToRoundOff)
+{
+    std::mt19937 random(1);
+    for (int trial = 0; trial < 300; ++trial) {
+        const CondensedQp qp = make_random_qp(1 + trial % 40, random);
+        expect_solved(qp, solve_condensed_qp(qp, Eigen::VectorXd::Zero(qp.linear.size())));
+    }
+}
+
+TEST(CondensedQp, PivotingEndsInTheSameAnswerFromAnySet)
+{
+    std::mt19937 random(2);
+    for (int trial = 0; trial < 200; ++trial) {
+        const CondensedQp qp = make_random_qp(1 + trial % 25, random);
+        const auto expected = solve_condensed_qp(qp, Eigen::VectorXd::Zero(qp.linear.size()));
+        const auto answer =
+            solve_by_pivoting(qp, make_random_set(static_cast<int>(qp.linear.size()), random));
+        expect_solved(qp, answer);
+        ASSERT_TRUE(expected);
+        EXPECT_EQ(answer->stand, expected->stand);
+    }
+}
+
+TEST(CondensedQp, PivotingLeavesACycleOfBlockExchanges)
+{
+    const CondensedQp qp = make_cycling_qp();
+    for (int set = 0; set < 16; ++set) {
+        std::vector<Stand> start;
+        for (int i = 0; i < 4; ++i) start.push_back(set >> i & 1 ? Stand::Between : Stand::AtZero);
+        expect_solved(qp, solve_by_pivoting(qp, start));
+    }
+}
+
+TEST(CondensedQp, UnitsChangeNothing)
+{
+    // Multipliers of 1e-12 N s and bounds of 1e12 are as exact as those of 1; NLopt alone takes 1e-8 for
+    // zero.
+    std::mt19937 random(4);
+    for (const double unit : {1e-150, 1e-12, 1e-7, 1e7, 1e12, 1e150}) {
+        const CondensedQp qp = make_random_qp(20, random);
+        const auto expected = solve_condensed_qp(qp, Eigen::VectorXd::Zero(20));
+        const auto answer = solve_condensed_qp({qp.hessian, qp.linear * unit}, Eigen::VectorXd::Zero(20));
+        ASSERT_TRUE(expected && answer);
+        EXPECT_GT(answer->nlopt_evaluations, 3);
+        EXPECT_EQ(answer->stand, expected->stand);
+        EXPECT_LE((answer->z / unit - expected->z).lpNorm<Eigen::Infinity>(), 1e-12);
+        const auto stiffer = solve_condensed_qp({qp.hessian * unit, qp.linear}, Eigen::VectorXd::Zero(20));
+        ASSERT_TRUE(stiffer);
+        EXPECT_LE((stiffer->z * unit - expected->z).lpNorm<Eigen::Infinity>(), 1e-12);
+    }
+}
+
+TEST(CondensedQp, NLoptFindsTheSetSoThatPivotingHasNothingLeft)
+{
+    std::mt19937 random(5);
+    const CondensedQp qp = make_random_qp(60, random);
+    const auto answer = solve_condensed_qp(qp, Eigen::VectorXd::Zero(60));
+    ASSERT_TRUE(answer);
+    EXPECT_LE(answer->nlopt_evaluations, 4 * 60 + 100);
+    // Started from its own answer it has nothing to do.
+    const auto again = solve_condensed_qp(qp, answer->z);
+    ASSERT_TRUE(again);
+    EXPECT_LE(again->nlopt_evaluations, 5);
+    EXPECT_LE((again->z - answer->z).lpNorm<Eigen::Infinity>(), 1e-12);
+}
+
+TEST(CondensedQp, IsDecidedWithoutNLoptWhereNothingIsBelowItsBound)
+{
+    const CondensedQp qp = {Eigen::Matrix2d::Identity(), Eigen::Vector2d(0.0, 1.0)};
+    const auto answer = solve_condensed_qp(qp, Eigen::Vector2d::Zero());
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->nlopt_evaluations, 0);
+    EXPECT_EQ(answer->z, Eigen::VectorXd(Eigen::Vector2d::Zero()));
+}
+
+TEST(CondensedQp, LivesWithTwoEqualBounds)
+{
+    // S is singular: the multipliers are not unique, what they do is.
+    const CondensedQp qp = {Eigen::Matrix2d::Ones(), Eigen::Vector2d(-1.0, -1.0)};
+    const auto answer = solve_condensed_qp(qp, Eigen::Vector2d::Zero());
+    ASSERT_TRUE(answer);
+    EXPECT_NEAR(answer->z.sum(), 1.0, 1e-11);
+}
+
+TEST(CondensedQp, RejectsWhatIsNotFiniteOrNotPositive)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 infinity = std::numeric_limits<double>::infinity();
+    Eigen::MatrixXd s = Eigen::Matrix2d::Identity();
+    const Eigen::VectorXd q = Eigen::Vector2d(-1.0, -1.0), zero = Eigen::Vector2d::Zero();
+    for (const double bad : {nan, infinity}) {
+        s(1, 0) = bad;
+        EXPECT_FALSE(solve_condensed_qp({s, q}, zero));
+        EXPECT_FALSE(solve_condensed_qp({Eigen::Matrix2d::Identity(), Eigen::Vector2d(bad, -1.0)}, zero));
+    }
+    EXPECT_FALSE(solve_condensed_qp({Eigen::Vector2d(1.0, 0.0).asDiagonal(), q}, zero));
+    const Eigen::Matrix2d indefinite{{1.0, 2.0}, {2.0, 1.0}};
+    EXPECT_FALSE(solve_by_pivoting({indefinite, q}, {Stand::Between, Stand::Between}));
+}
+
+/// w = S z + q as the stands and caps ask for, to `precision` of the largest q.
+void expect_solved_with_caps(const CondensedQp& qp, const std::optional<CondensedAnswer>& answer,
+                             double precision)
+{
+    ASSERT_TRUE(answer);
+    const Eigen::VectorXd w = qp.hessian * answer->z + qp.linear;
+    const double slack = precision * qp.linear.lpNorm<Eigen::Infinity>();
+    for (int i = 0; i < w.size(); ++i) {
+        EXPECT_GE(answer->z[i], 0.0);
+        EXPECT_LE(answer->z[i], qp.cap[i]);
+        EXPECT_TRUE(answer->z[i] >= qp.cap[i] || w[i] >= -slack) << i << " " << w[i];
+        EXPECT_TRUE(answer->z[i] <= 0.0 || w[i] <= slack) << i << " " << w[i];
+    }
+}
+
+TEST(CondensedQp, KeepsToItsCaps)
+{
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> chance;
+    int capped = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        CondensedQp qp = make_random_qp(1 + trial % 40, random);
+        qp.cap = Eigen::VectorXd::NullaryExpr(qp.linear.size(), [&] { return 2.0 * chance(random); });
+        qp.cap[0] = std::numeric_limits<double>::infinity();
+        const Eigen::VectorXd zero = Eigen::VectorXd::Zero(qp.linear.size());
+        const auto answer = solve_condensed_qp(qp, zero);
+        expect_solved_with_caps(qp, answer, kComplementary);
+        expect_solved_with_caps(qp, solve_by_descent(qp, zero, qp.linear), kComplementary);
+        expect_solved_with_caps(qp,
+                                solve_by_pivoting(qp, make_random_set(static_cast<int>(zero.size()), random)),
+                                kComplementary);
+        capped += static_cast<int>(std::count(answer->stand.begin(), answer->stand.end(), Stand::AtCap));
+    }
+    EXPECT_GT(capped, 300);
+}
+
+TEST(CondensedQp, IsSolvedWhereConstraintsDependOnEachOther)
+{
+    // S = G^T G of more columns than rows, some of them opposite or nearly equal: without caps unbounded.
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    for (int trial = 0; trial < 100; ++trial) {
+        const int rank = 1 + trial % 8, size = 4 * rank + 2;
+        Eigen::MatrixXd g = Eigen::MatrixXd::NullaryExpr(rank, size, [&] { return normal(random); });
+        g.col(1) = -g.col(0);
+        for (int i = 2; i < rank + 2; ++i)
+            g.col(i + rank) =
+                (1.0 + std::pow(10.0, -(trial % 16))) * g.col(i) + Eigen::VectorXd::Constant(rank, 1e-9);
+        CondensedQp qp = {g.transpose() * g,
+                          Eigen::VectorXd::NullaryExpr(size, [&] { return normal(random); }),
+                          Eigen::VectorXd::Constant(size, 100.0)};
+        const auto answer = solve_condensed_qp(qp, Eigen::VectorXd::Zero(size));
+        expect_solved_with_caps(qp, answer, 1e-8);  // what is known of w is 1e-15 of S z, with z up to 100
+        expect_solved_with_caps(qp, solve_by_descent(qp, Eigen::VectorXd::Zero(size), qp.linear), 1e-8);
+    }
+}
+
+}  // namespace
+}  // namespace arris
