@@ -128,7 +128,7 @@ void assembly(benchmark::State& bench)
         bench, drop, [] {},
         [&] {
             drop.work.mesh.system.assemble(drop.state.mesh, drop.work.mesh.elements, drop.work.mesh.terms,
-                                           drop.work.at);
+                                           drop.work.linearization);
         });
 }
 

@@ -56,13 +56,13 @@ void write_state(BinaryWriter& out, const State& state)
     write_vectors(out, state.previous_material_velocity);
     out.list(state.eol, [&](const EolVertex& vertex) {
         out.number(vertex.vertex_id);
-        out.number(vertex.obstacle);
-        out.number(static_cast<std::int32_t>(vertex.is_corner));
-        out.number(vertex.feature);
+        out.number(vertex.on.obstacle);
+        out.number(static_cast<std::int32_t>(vertex.on.kind));
+        out.number(vertex.on.index);
         out.vector(vertex.outward);
         out.number(vertex.idle);
         out.number(vertex.side);
-        out.number(vertex.turn);
+        out.number(vertex.on.end);
     });
     out.list(state.anchors, [&](const PinAnchor& anchor) {
         out.number(anchor.pin);
@@ -105,13 +105,13 @@ State read_state(BinaryReader& in)
     state.eol = in.list<EolVertex>(kEolBytes, [&] {
         EolVertex vertex;
         vertex.vertex_id = in.number<std::uint32_t>();
-        vertex.obstacle = in.number<std::int32_t>();
-        vertex.is_corner = in.number<std::int32_t>() != 0;
-        vertex.feature = in.number<std::int32_t>();
+        vertex.on.obstacle = in.number<std::int32_t>();
+        vertex.on.kind = static_cast<FeatureId::Kind>(in.number<std::int32_t>());
+        vertex.on.index = in.number<std::int32_t>();
         vertex.outward = in.vector();
         vertex.idle = in.number<std::int32_t>();
         vertex.side = in.number<std::int32_t>();
-        vertex.turn = in.number<std::int32_t>();
+        vertex.on.end = in.number<std::int32_t>();
         return vertex;
     });
     state.anchors = in.list<PinAnchor>(2 * sizeof(std::uint32_t) + 3 * sizeof(double), [&] {
@@ -162,8 +162,11 @@ std::string find_defect(const std::vector<EolVertex>& eol, const std::vector<std
 {
     for (std::size_t k = 0; k < eol.size(); ++k) {
         if (k > 0 && eol[k].vertex_id <= eol[k - 1].vertex_id) return "EOL vertices do not ascend";
-        const bool is_turn_sound = eol[k].turn >= -1 && eol[k].turn <= (eol[k].is_corner ? -1 : 1);
-        if (!eol[k].outward.allFinite() || eol[k].idle < 0 || std::abs(eol[k].side) > 1 || !is_turn_sound)
+        const FeatureId& on = eol[k].on;
+        const bool is_kind = on.kind >= FeatureId::Kind::Edge && on.kind <= FeatureId::Kind::Bend;
+        const bool is_end_sound = on.is_bend() ? on.end == 0 || on.end == 1 : on.end == -1;
+        if (!eol[k].outward.allFinite() || eol[k].idle < 0 || std::abs(eol[k].side) > 1 || !is_kind ||
+            !is_end_sound)
             return fmt::format("EOL vertex {} cannot be", k);
         if (!std::binary_search(ids.begin(), ids.end(), eol[k].vertex_id))
             return fmt::format("EOL vertex {} is on no vertex", k);

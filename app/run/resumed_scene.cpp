@@ -41,10 +41,11 @@ void check_references(const std::string& directory, const State& state, const Sc
         return false;
     };
     const auto is_on_feature = [&](const EolVertex& vertex) {
-        if (!is_sound(vertex.obstacle, scene.obstacles.size())) return false;
+        if (!is_sound(vertex.on.obstacle, scene.obstacles.size())) return false;
         const ObstacleFeatures& features =
-            scene.obstacles[static_cast<std::size_t>(vertex.obstacle)].features();
-        return is_sound(vertex.feature, vertex.is_corner ? features.corners.size() : features.edges.size());
+            scene.obstacles[static_cast<std::size_t>(vertex.on.obstacle)].features();
+        return is_sound(vertex.on.index,
+                        vertex.on.is_corner() ? features.corners.size() : features.edges.size());
     };
     const bool has_obstacles = std::all_of(state.active.begin(), state.active.end(), is_there) &&
                                std::all_of(state.eol.begin(), state.eol.end(), is_on_feature);

@@ -38,7 +38,8 @@ Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, con
         state.velocity, state.material_velocity);
     frame.ids = state.ids;
     frame.eol.assign(state.ids.size(), 0);
-    for (const EolVertex& eol : state.eol) frame.eol[state.index_of(eol.vertex_id)] = eol.is_corner ? 2 : 1;
+    for (const EolVertex& eol : state.eol)
+        frame.eol[state.index_of(eol.vertex_id)] = eol.on.is_corner() ? 2 : 1;
     if (!state.eol.empty()) frame.eol_edges = find_eol_edges(obstacles, state);
     frame.contact.assign(state.ids.size(), 0);
     for (const ActiveContact& contact : state.active)

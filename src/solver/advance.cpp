@@ -23,7 +23,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
         parts = kStartParts;
     }
     StepReport failed;  // attempts since the last part that was made: what they cost
-    work.failed.forget();
+    work.retry.forget();
     while (state.time < end) {
         const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
         const Attempt attempt = shrink == kMostParts ? Attempt::Last : Attempt::Ordinary;
@@ -38,15 +38,15 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
             continue;
         }
         failed.add_cost(report);
-        if (attempt == Attempt::Last && work.failed.may_mesh_help() && work.failed.has_given_up_all()) {
+        if (attempt == Attempt::Last && work.retry.may_mesh_help() && work.retry.has_given_up_all()) {
             // What was no step for the one mesh may be one for the other.
             parts = std::max(parts / shrink, 1);
             shrink = 1;
-        } else if (work.failed.may_staying_help()) {
+        } else if (work.retry.may_staying_help()) {
             continue;
         } else if (report.status == StepStatus::EnergyRise && work.prediction.has_history) {
             restart(state);
-        } else if (work.failed.may_mesh_help()) {
+        } else if (work.retry.may_mesh_help()) {
             continue;
         } else if (shrink == kMostParts) {
             return report;

@@ -12,8 +12,8 @@ constexpr int kShortens = 2, kGivesUp = 3;
 
 }  // namespace
 
-void FailedAttempts::note(const StepReport& report, Attempt attempt, const State& state, const State& start,
-                          const Failure& failure)
+void RetryPolicy::note(const StepReport& report, Attempt attempt, const State& state, const State& start,
+                       const Failure& failure)
 {
     const bool is_staying = is_staying_;
     if (report.status == StepStatus::Done) {
@@ -43,10 +43,11 @@ void FailedAttempts::note(const StepReport& report, Attempt attempt, const State
         may_mesh_help_ = overruns_ <= kMostOverruns + 1 && (overruns_ != kShortens || is_last);
     } else {
         // A shorter step would find them in the same place: they are ordinary vertices first.
-        const bool is_pinched = !failure.pinched.empty() && pinched_++ < kMostPinched;
-        if (is_pinched)
-            for (const int v : failure.pinched) flow_.given_up.insert(start.ids[v]);
-        may_mesh_help_ = is_pinched || (is_last && !start.eol.empty());
+        const bool is_overconstrained =
+            !failure.overconstrained.empty() && overconstrained_++ < kMostOverconstrained;
+        if (is_overconstrained)
+            for (const int v : failure.overconstrained) flow_.given_up.insert(start.ids[v]);
+        may_mesh_help_ = is_overconstrained || (is_last && !start.eol.empty());
     }
     if (report.status == StepStatus::NotConverged || report.status == StepStatus::NotFinite) ++unsolved_;
     const bool is_hopeless = report.status == StepStatus::Overrun ? overruns_ > kMostOverruns : is_last;

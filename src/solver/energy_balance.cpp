@@ -26,7 +26,7 @@ constexpr double kDriven = 0.25;
 /// A u - b is the impulse of all constraints; without the rows' it is the pins' along their coordinates.
 double work_of_pins(const State& state, const Workspace& work)
 {
-    if (work.held.empty()) return 0.0;
+    if (work.pin_targets.empty()) return 0.0;
     Eigen::VectorXd impulse =
         symmetric_product(work.mesh.system.matrix(), work.solution.velocity) - work.mesh.system.rhs();
     for (std::size_t k = 0; k < work.problem.rows.size(); ++k) {
@@ -35,7 +35,7 @@ double work_of_pins(const State& state, const Workspace& work)
         for (int e = 0; e < row.count; ++e) impulse[row.coordinate[e]] -= multiplier * row.coefficient[e];
     }
     double sum = 0.0;
-    for (const HeldVertex& held : work.held) {
+    for (const PinTarget& held : work.pin_targets) {
         int coordinate = 3 * held.vertex;  // pinned axes come first
         for (int d = 0; d < 3; ++d)
             if (held.held[d])
@@ -63,7 +63,7 @@ double work_of_rows(const std::vector<double>& multiplier, const Workspace& work
 double work_of_features(const State& state, const std::vector<double>& multiplier, const Workspace& work)
 {
     std::vector<Vec3> impulse = compute_feature_impulses(state.mesh, work.mesh.elements, work.mesh.terms,
-                                                         work.at, work.solution.velocity);
+                                                         work.linearization, work.solution.velocity);
     for (std::size_t c = 0; c < work.contacts.size(); ++c) {
         const Contact& contact = work.contacts[c];
         if (contact.eol >= 0) continue;
@@ -74,7 +74,7 @@ double work_of_features(const State& state, const std::vector<double>& multiplie
     double sum = 0.0;
     for (const EolCoordinates& vertex : work.eol) {
         const int v = vertex.vertex;
-        const ObstacleStep& step = work.obstacles[state.eol[vertex.entry].obstacle];
+        const ObstacleStep& step = work.obstacles[state.eol[vertex.entry].on.obstacle];
         sum += impulse[v].dot(step.end(step.motion.begin[v]) - state.mesh.world[v]);
     }
     return sum / work.prediction.gamma;
@@ -141,11 +141,11 @@ double compute_driven_work(const State& state, const Workspace& work)
     std::vector<Vec3> displacement = find_end(work.prediction, velocity_of(work.proposal)).world;
     for (std::size_t v = 0; v < displacement.size(); ++v) displacement[v] -= state.mesh.world[v];
     return work_of_pins(state, work) + work_of_obstacles(state, work) +
-           compute_load_work(state.mesh, work.mesh.elements, work.mesh.terms, work.at, work.proposal.velocity,
-                             displacement);
+           compute_load_work(state.mesh, work.mesh.elements, work.mesh.terms, work.linearization,
+                             work.proposal.velocity, displacement);
 }
 
-double energy_at_stake(const Workspace& work)
+double energy_scale(const Workspace& work)
 {
     constexpr double kRoundOff = 1e-9;  // of the energies themselves, which are sums over all elements
     const ClothEnergy& before = work.energy;
@@ -163,7 +163,7 @@ double energy_at_stake(const Workspace& work)
 
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work)
 {
-    double allowed = kRise * energy_at_stake(work);
+    double allowed = kRise * energy_scale(work);
     double rise = work.solved_energy.sum() - work.energy.sum();
     if (!(rise > allowed)) return 0.0;
     allowed += round_off_energy(scene, state, work.mesh.elements);
@@ -178,7 +178,7 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
     // A third difference over thirds of the way is 4/9 of what is of fourth order, as the stretch of what
     // moves across itself is, and 2/9 of what is of third.
     constexpr double kFourthOrder = 9.0 / 4.0;
-    const double least = kRise * energy_at_stake(work);
+    const double least = kRise * energy_scale(work);
     const Energies &before = work.energy.potential, &after = work.solved_energy.potential;
     const double gained = after.elastic() - before.elastic();
     if (!(gained > least)) return 0.0;
@@ -198,7 +198,7 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
     return unforeseen > least ? unforeseen : 0.0;
 }
 
-void weigh_start(const Scene& scene, const State& state, Workspace& work)
+void measure_start_energy(const Scene& scene, const State& state, Workspace& work)
 {
     const bool is_known = work.known.world == state.mesh.world &&
                           work.known.material == state.mesh.material &&
@@ -211,7 +211,7 @@ void weigh_start(const Scene& scene, const State& state, Workspace& work)
                        {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}});
 }
 
-void weigh_proposal(const Scene& scene, double dt, Workspace& work)
+void measure_proposal_energy(const Scene& scene, double dt, Workspace& work)
 {
     constexpr double kStill = 1e-6;  // m/s: round-off, of pins and what is mended, is slower
     const Proposal& proposal = work.proposal;
@@ -224,7 +224,7 @@ void weigh_proposal(const Scene& scene, double dt, Workspace& work)
     if (!(fastest > kStill * kStill)) work.solved_energy = work.proposed_energy;
 }
 
-bool is_push_costly(const Scene& scene, double dt, const Workspace& work)
+bool does_push_out_strain(const Scene& scene, double dt, const Workspace& work)
 {
     const Energies& before = work.solved_energy.potential;
     const Energies& after = work.proposed_energy.potential;

@@ -36,13 +36,13 @@ ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, cons
 double compute_driven_work(const State& state, const Workspace& work);
 
 /// `work.energy` at the step's start, as the last step left it where that is known.
-void weigh_start(const Scene& scene, const State& state, Workspace& work);
+void measure_start_energy(const Scene& scene, const State& state, Workspace& work);
 
 /// `work.solved_energy` and `work.proposed_energy` of a proposal after `dt` (s).
-void weigh_proposal(const Scene& scene, double dt, Workspace& work);
+void measure_proposal_energy(const Scene& scene, double dt, Workspace& work);
 
 /// J, of the cloth of a weighed proposal: what was in motion at the step's start, or changed kind in it.
-double energy_at_stake(const Workspace& work);
+double energy_scale(const Workspace& work);
 
 /// By how much, J, the proposal in `work`, before anything was moved out to its stand-off, raises the cloth's
 /// energy beyond the work that drives it, where that is more than a step may; else 0. Weigh it first.
@@ -56,7 +56,7 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work);
 
 /// Whether moving the proposal's positions out to their stand-off in `dt` (s) has cost more elastic energy
 /// than a push at that speed could give, and a share of what there is. Weigh it first.
-bool is_push_costly(const Scene& scene, double dt, const Workspace& work);
+bool does_push_out_strain(const Scene& scene, double dt, const Workspace& work);
 
 /// 1/2 |v - v~|_M^2 + V(q~ + gamma v), J: what the step minimises, but for wind, pulls and damping.
 double compute_step_objective(const Scene& scene, const Workspace& work, const ClothVelocity& velocity);

@@ -54,8 +54,8 @@ class Census {
     {
         if (const std::optional<RowCause> refusal = find_refusal(entry)) return *refusal;
         if (!contact.was_active) return RowCause::New;
-        return contact.obstacle == state_.eol[entry].obstacle ? RowCause::OtherFeature
-                                                              : RowCause::OtherObstacle;
+        return contact.obstacle == state_.eol[entry].on.obstacle ? RowCause::OtherFeature
+                                                                 : RowCause::OtherObstacle;
     }
 
     /// What EOL vertices a contact has beside it, on the feature that it touches.
@@ -83,11 +83,11 @@ class Census {
     /// same polyline or its corner, or on the same corner.
     bool is_of(const Contact& contact, const EolVertex& eol) const
     {
-        if (eol.obstacle != contact.obstacle) return false;
+        if (eol.on.obstacle != contact.obstacle) return false;
         const ObstacleFeatures& features = scene_.obstacles[contact.obstacle].features();
         const ObstacleContact& local = contact.in_frame;
         if (local.kind == ContactKind::Triangle)
-            return held_point(scene_.obstacles[contact.obstacle], eol) == local.element;
+            return fixed_point(scene_.obstacles[contact.obstacle], eol) == local.element;
         if (local.kind != ContactKind::Edge) return false;
         const int v = state_.index_of(eol.vertex_id);
         const int feature = feature_of_edge(features, local.element);
@@ -98,11 +98,11 @@ class Census {
     /// Whether an EOL vertex is on the polyline of a feature edge of its obstacle, or at an end of it.
     bool is_along(const EolVertex& eol, int feature) const
     {
-        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+        const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
         const auto& edges = obstacle.features().edges;
-        if (!eol.is_corner) return edges[eol.feature].polyline == edges[feature].polyline;
+        if (!eol.on.is_corner()) return edges[eol.on.index].polyline == edges[feature].polyline;
         constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-        return distance_to_corner(obstacle, {feature, 0.5}, eol.feature, kAnywhere).has_value();
+        return distance_to_corner(obstacle, {feature, 0.5}, eol.on.index, kAnywhere).has_value();
     }
 
     /// Whether a contact is of the trace's own edge: the cloth's edge is that, or its face has that and
@@ -113,7 +113,7 @@ class Census {
         const ObstacleContact& local = contact.in_frame;
         const auto has_eol = [&](int v, int feature) {
             const int entry = state_.eol_entry(state_.ids[v]);
-            return entry >= 0 && state_.eol[entry].obstacle == contact.obstacle &&
+            return entry >= 0 && state_.eol[entry].on.obstacle == contact.obstacle &&
                    is_along(state_.eol[entry], feature) && !find_refusal(entry);
         };
         const auto is_trace = [&](int feature, int a, int b) {
@@ -161,9 +161,9 @@ class Census {
     std::optional<RowCause> find_refusal(int entry) const
     {
         const EolVertex& eol = state_.eol[entry];
-        const ObstacleStep& way = work_.obstacles[eol.obstacle];
+        const ObstacleStep& way = work_.obstacles[eol.on.obstacle];
         const EolPlacing placing =
-            place_eol_vertex(scene_.obstacles[eol.obstacle], scene_.material.thickness, state_, entry,
+            place_eol_vertex(scene_.obstacles[eol.on.obstacle], scene_.material.thickness, state_, entry,
                              work_.mesh.stars, way.motion.begin, way.end);
         return placing.coordinates ? std::nullopt : std::optional(placing.refusal);
     }

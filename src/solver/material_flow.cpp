@@ -19,7 +19,7 @@ bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
             const double left = 0.5 * twice_area(material[a], material[b], material[c]);
             if (left >= kLeast * work.mesh.elements.faces[f].area) continue;
             const Vec2 way = material[eol.vertex] - work.mesh.material_of_elements[eol.vertex];
-            work.overrun.push_back({eol.vertex, way / (work.at.time - work.at.begin)});
+            work.overrun.push_back({eol.vertex, way / (work.linearization.time - work.linearization.begin)});
         }
     return work.overrun.empty();
 }
@@ -79,7 +79,7 @@ bool linearise_flow(const State& state, Workspace& work)
     if (!work.overrun.empty()) return false;
     MovingCloth past = extrapolate(state, prediction);
     shorten(state, work, past);
-    MaterialFlow& flow = *work.at.flow;
+    MaterialFlow& flow = *work.linearization.flow;
     flow.position = std::move(end.material);
     flow.v_predicted = prediction.material_velocity;
     flow.v_expansion = work.expansion.material;

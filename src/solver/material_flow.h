@@ -20,10 +20,10 @@ int find_flow_parts(const Scene& scene, const State& state, double dt);
 /// what is linear in the step follows is another question, to which the energy's balance has the answer.
 bool has_material_left(const std::vector<Vec2>& material, Workspace& work);
 
-/// The material side of the linearisation in `work.at`, which must have one, at q^ of `work.expansion` and at
-/// the extrapolated state. Neither is where the step will end: vertices that would leave too little material
-/// there go back on their way, in the world and in the material together, in `work.expansion` too. False
-/// where even that does not do, as where something is not finite.
+/// The material side of the linearisation in `work.linearization`, which must have one, at q^ of
+/// `work.expansion` and at the extrapolated state. Neither is where the step will end: vertices that would
+/// leave too little material there go back on their way, in the world and in the material together, in
+/// `work.expansion` too. False where even that does not do, as where something is not finite.
 bool linearise_flow(const State& state, Workspace& work);
 
 /// X' = X~ + gamma V' of the velocity solved. False where the mesh has not that much material: `work.overrun`

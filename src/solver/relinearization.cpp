@@ -51,8 +51,8 @@ void take_least(Workspace& work)
 
 }  // namespace
 
-bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
-                 Workspace& work, StepReport& report)
+bool enforce_energy_balance(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
+                            Workspace& work, StepReport& report)
 {
     const double rise = find_energy_rise(scene, state, work);
     report.energy_rise = rise;
@@ -80,7 +80,7 @@ bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool m
     return true;
 }
 
-bool fall_back(Workspace& work, StepReport& report)
+bool restore_least_rise(Workspace& work, StepReport& report)
 {
     const bool was_good = !work.least_at.world.empty() && !(work.least_rise > 0.0);
     if (!was_good || work.is_least_taken || report.status == StepStatus::EnergyRise) return false;

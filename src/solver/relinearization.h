@@ -13,12 +13,12 @@ namespace arris {
 /// forces are to be linearised again, at the velocity found (`work.expansion`), and true means solve again.
 /// Where that is no way out, `report.status` says so; with the last attempt the least that there was is
 /// taken.
-bool keep_energy(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
-                 Workspace& work, StepReport& report);
+bool enforce_energy_balance(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
+                            Workspace& work, StepReport& report);
 
 /// Where a step has failed after all, but had a velocity that raised no energy before its forces were
 /// linearised again: true where it is to be solved for once more.
-bool fall_back(Workspace& work, StepReport& report);
+bool restore_least_rise(Workspace& work, StepReport& report);
 
 /// Where the velocity solved, of which `work.proposal` has all, would take more material than there is: the
 /// forces are to be linearised again as far on the way to it as there is, and true means solve again. What q^

@@ -14,7 +14,7 @@
 #include "solver/material_flow.h"
 #include "solver/mesh_change/step_mesh.h"
 #include "solver/model/stopwatch.h"
-#include "solver/pinched_vertices.h"
+#include "solver/overconstrained.h"
 #include "solver/relinearization.h"
 
 namespace arris {
@@ -34,9 +34,9 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
     }
     work.is_least_taken = false;
     work.least_at = {};
-    work.held = find_held_vertices(scene, state, end);
+    work.pin_targets = find_pin_targets(scene, state, end);
     work.obstacles =
-        move_obstacles(scene, state, work.mesh.stars.topology.edges, work.prediction, work.held, end);
+        move_obstacles(scene, state, work.mesh.stars.topology.edges, work.prediction, work.pin_targets, end);
 }
 
 /// What the cloth may touch; history that runs into it is flattened. False where it would be crushed.
@@ -45,18 +45,19 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
     work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
     work.eol.clear();
     if (!state.eol.empty()) {
-        const double turning = work.failed.may_turn() ? work.prediction.gamma : 0.0;
+        const double turning = work.retry.may_turn() ? work.prediction.gamma : 0.0;
         work.eol = add_eol_contacts(scene, state, work.mesh.stars, work.prediction, turning, work.obstacles,
                                     work.contacts);
     }
-    weigh_start(scene, state, work);
-    const std::optional<int> crushed = share_room(work.obstacles, work.prediction, work.contacts).crushed;
+    measure_start_energy(scene, state, work);
+    const std::optional<int> overconstrained =
+        share_room(work.obstacles, work.prediction, work.contacts).overconstrained;
     flatten_history(scene, state, work.obstacles, work.eol, 0, work.contacts, work.prediction);
     work.has_system = false;
     work.yielded = 0;
-    if (!crushed) return true;
+    if (!overconstrained) return true;
     report.status = StepStatus::Infeasible;
-    report.infeasible_vertex = state.ids[*crushed];
+    report.infeasible_vertex = state.ids[*overconstrained];
     return false;
 }
 
@@ -65,8 +66,9 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
 bool assemble(const Scene& scene, double end, const State& state, Workspace& work)
 {
     if (work.has_system) return true;
-    build_constraints(work.held, work.eol, work.prediction, state, work.contacts, work.at, work.problem);
-    Linearization& at = work.at;
+    build_constraints(work.pin_targets, work.eol, work.prediction, state, work.contacts, work.linearization,
+                      work.problem);
+    Linearization& at = work.linearization;
     const Prediction& prediction = work.prediction;
     at.begin = state.time;
     at.time = end;
@@ -120,10 +122,11 @@ void propose(const Scene& scene, double growth, Workspace& work)
     work.proposal.velocity.resize(n);
     for (std::size_t v = 0; v < n; ++v) {
         Vec3& velocity = work.proposal.velocity[v];
-        velocity = work.at.drift[v] + work.at.basis[v] * work.solution.velocity.segment<3>(3 * v);
+        velocity = work.linearization.drift[v] +
+                   work.linearization.basis[v] * work.solution.velocity.segment<3>(3 * v);
         work.proposal.world[v] = work.prediction.position[v] + work.prediction.gamma * velocity;
     }
-    restore_stand_off(work.contacts, work.obstacles, work.held, scene.material.thickness, growth,
+    restore_stand_off(work.contacts, work.obstacles, work.pin_targets, scene.material.thickness, growth,
                       work.proposal);
 }
 
@@ -131,8 +134,8 @@ void propose(const Scene& scene, double growth, Workspace& work)
 std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
 {
     const auto is_held = [&](int v) {
-        return std::any_of(work.held.begin(), work.held.end(),
-                           [v](const HeldVertex& held) { return held.vertex == v; });
+        return std::any_of(work.pin_targets.begin(), work.pin_targets.end(),
+                           [v](const PinTarget& held) { return held.vertex == v; });
     };
     std::int64_t named = -1;
     for (const int row : work.solution.infeasible_rows)
@@ -166,7 +169,7 @@ bool yield_infeasible(const Scene& scene, Workspace& work)
 bool yield_folds(const Scene& scene, Workspace& work)
 {
     bool is_changed = false;
-    for (const int fold : find_squeezing_folds(work))
+    for (const int fold : find_overconstraining_folds(work))
         is_changed |=
             yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, work.contacts[fold]);
     work.has_system = work.has_system && !is_changed;
@@ -177,22 +180,22 @@ bool yield_folds(const Scene& scene, Workspace& work)
 bool has_turned(const Workspace& work, const State& state)
 {
     return std::any_of(work.eol.begin(), work.eol.end(), [&](const EolCoordinates& eol) {
-        const ObstacleStep& step = work.obstacles[state.eol[eol.entry].obstacle];
+        const ObstacleStep& step = work.obstacles[state.eol[eol.entry].on.obstacle];
         return eol.carried != step.end(step.motion.begin[eol.vertex]);
     });
 }
 
 /// Rounds have run out, or the check names nothing that a row could mend.
-void give_up(const Scene& scene, double end, const State& state, Attempt attempt, Workspace& work,
-             StepReport& report)
+void fail_or_rewind(const Scene& scene, double end, const State& state, Attempt attempt, Workspace& work,
+                    StepReport& report)
 {
     if (report.status == StepStatus::Infeasible)
         report.infeasible_vertex = find_infeasible_vertex(state, work);
     else
         report.status = StepStatus::Penetration;
     if (attempt == Attempt::Ordinary) return;
-    const std::optional<int> rewound =
-        rewind(scene, state, work.held, work.prediction, end - state.time, work.obstacles, work.proposal);
+    const std::optional<int> rewound = rewind(scene, state, work.pin_targets, work.prediction,
+                                              end - state.time, work.obstacles, work.proposal);
     if (!rewound) return;
     report.rewound = *rewound;
     report.status = StepStatus::Done;
@@ -202,15 +205,15 @@ void give_up(const Scene& scene, double end, const State& state, Attempt attempt
 /// something, or strains stiff cloth, it is not moved.
 Violations propose_and_check(const Scene& scene, double dt, double growth, Workspace& work)
 {
-    const auto propose_weighed = [&](double by) {
+    const auto propose_measured = [&](double by) {
         propose(scene, by, work);
-        weigh_proposal(scene, dt, work);
+        measure_proposal_energy(scene, dt, work);
     };
-    propose_weighed(growth);
-    if (growth > 0.0 && is_push_costly(scene, dt, work)) propose_weighed(growth = 0.0);
+    propose_measured(growth);
+    if (growth > 0.0 && does_push_out_strain(scene, dt, work)) propose_measured(growth = 0.0);
     const Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
     if (violations.is_clean() || growth <= 0.0) return violations;
-    propose_weighed(0.0);
+    propose_measured(0.0);
     return check_proposal(scene, work.proposal, work.prediction, work.obstacles);
 }
 
@@ -226,7 +229,7 @@ bool add_violations(const Scene& scene, const State& state, const Violations& vi
         is_shared)
         work.has_system = false;
     else
-        append_rows(work.prediction, work.at, first, work.contacts, work.problem);
+        append_rows(work.prediction, work.linearization, first, work.contacts, work.problem);
     return true;
 }
 
@@ -266,17 +269,18 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
     const Violations violations = propose_and_check(scene, end - state.time, growth, work);
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
-    if (is_done && !find_squeezed_vertices(work).empty()) {
+    if (is_done && !find_overpressed_vertices(work).empty()) {
         report.status = StepStatus::Infeasible;
         report.seconds.check += watch.lap();
         return false;
     }
-    if (is_done && keep_energy(scene, state, attempt, report.solves < kMostSolves, work, report)) return true;
+    if (is_done && enforce_energy_balance(scene, state, attempt, report.solves < kMostSolves, work, report))
+        return true;
     const bool is_again = !is_done && report.status == StepStatus::Done && report.solves < kMostSolves &&
                           add_violations(scene, state, violations, work);
     const bool is_certified = report.kkt_residual <= settings.tolerance;
     if (!is_done && !is_again)
-        give_up(scene, end, state, is_certified ? attempt : Attempt::Ordinary, work, report);
+        fail_or_rewind(scene, end, state, is_certified ? attempt : Attempt::Ordinary, work, report);
     report.crossings = is_again || report.rewound > 0 ? 0 : violations.crossings;
     report.yielded = work.yielded;
     report.seconds.check += watch.lap();
@@ -357,7 +361,7 @@ State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity)
     state.material_velocity.assign(n, Vec2::Zero());
     state.previous_material = state.mesh.material;
     state.previous_material_velocity.assign(n, Vec2::Zero());
-    take_hold(scene, state);
+    attach_pins(scene, state);
     return state;
 }
 
@@ -381,7 +385,7 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
         state.active = find_pressing(scene, settings, end, state, work, attempt);
 
     // 1. EOL vertices on the features that press; elements of a mesh that changed.
-    const StepMesh mesh = choose_step_mesh(scene, end, work.failed.flow(), state, work.mesh, report);
+    const StepMesh mesh = choose_step_mesh(scene, end, work.retry.flow(), state, work.mesh, report);
     if (mesh.is_changed) work.known.world.clear();
     State& start = mesh.start;
     watch.lap();
@@ -392,7 +396,7 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
 
     // 3. What the cloth may touch: vertices, edges and faces; nothing can move where it has no room.
     if (!find_contacts(scene, start, work, report)) {
-        work.failed.note(report, attempt, state, start, {});
+        work.retry.note(report, attempt, state, start, {});
         return report;
     }
     report.seconds.contacts += watch.lap();
@@ -402,11 +406,12 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     const Attempt resort = start.eol.empty() ? attempt : Attempt::Ordinary;
     do {
         while (solve_and_check(scene, settings, end, start, resort, work, report)) continue;
-    } while (report.status != StepStatus::Done && fall_back(work, report));
+    } while (report.status != StepStatus::Done && restore_least_rise(work, report));
     watch.lap();
 
-    work.failed.note(report, attempt, state, start,
-                     {work.overrun, find_pinched_vertices(start, work, report), has_turned(work, start)});
+    work.retry.note(
+        report, attempt, state, start,
+        {work.overrun, find_overconstrained_vertices(start, work, report), has_turned(work, start)});
 
     // 7. Swapped in, or the state stays as it was.
     commit(scene, end, work, start, report);

@@ -27,17 +27,17 @@ struct Workspace {
 
     // retries of the step
     std::vector<Overrun> overrun;
-    FailedAttempts failed;  ///< at this step
+    RetryPolicy retry;  ///< at this step
 
     // move
     Prediction prediction;
-    std::vector<HeldVertex> held;
+    std::vector<PinTarget> pin_targets;
     std::vector<ObstacleStep> obstacles;
 
     // find_contacts, build_constraints, add_violations
     std::vector<Contact> contacts;
     std::vector<EolCoordinates> eol;
-    Linearization at;
+    Linearization linearization;
     ClothVelocity expansion;  ///< v^
     VelocityProblem problem;
     int yielded = 0;
@@ -48,7 +48,7 @@ struct Workspace {
     VelocitySolution solution;
     Proposal proposal;
 
-    // find_contacts, weigh_proposal, keep_energy
+    // find_contacts, measure_proposal_energy, enforce_energy_balance
     ClothEnergy energy;           ///< at the step's start
     ClothEnergy solved_energy;    ///< of the proposal before anything was moved out to its stand-off
     ClothEnergy proposed_energy;  ///< and after

@@ -207,11 +207,11 @@ const std::vector<Shape> kShapes = {
      [](Generator& g, auto& x) {
          for (Vec3& p : x) p = 3.0 * p + random_vector(g, 0.1);
      }},
-    {"squeezed 0.5 x", true,
+    {"overpressed 0.5 x", true,
      [](Generator& g, auto& x) {
          for (Vec3& p : x) p = 0.5 * p + random_vector(g, 0.02);
      }},
-    {"squeezed along one direction", true,
+    {"overpressed along one direction", true,
      [](Generator& g, auto& x) {
          for (Vec3& p : x) {
              p.x() *= 0.4;

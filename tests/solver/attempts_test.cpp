@@ -10,7 +10,7 @@ State state_with_eol(std::vector<std::uint32_t> vertices)
 {
     State state;
     state.ids = {0, 1, 2, 3, 4};
-    for (const std::uint32_t v : vertices) state.eol.push_back({v, 0, false, 0, {0, 0, 1}, 0});
+    for (const std::uint32_t v : vertices) state.eol.push_back({v, FeatureId::edge(0, 0), {0, 0, 1}, 0});
     return state;
 }
 
@@ -21,10 +21,10 @@ StepReport with(StepStatus status)
     return report;
 }
 
-TEST(FailedAttempts, WhatOverrunsIsClearedThenShortenedThenGivenUpOneByOneThenAll)
+TEST(RetryPolicy, WhatOverrunsIsClearedThenShortenedThenGivenUpOneByOneThenAll)
 {
     const State state = state_with_eol({1, 2, 3});
-    FailedAttempts failed;
+    RetryPolicy failed;
     const std::vector<Overrun> overrun = {{2, {1.0, 0.0}}};
     const auto fail = [&] {
         failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, {overrun});
@@ -36,7 +36,7 @@ TEST(FailedAttempts, WhatOverrunsIsClearedThenShortenedThenGivenUpOneByOneThenAl
     fail();
     EXPECT_FALSE(failed.may_mesh_help());  // a shorter step first
     EXPECT_TRUE(failed.flow().given_up.empty());
-    for (int k = 3; k <= FailedAttempts::kMostOverruns; ++k) {
+    for (int k = 3; k <= RetryPolicy::kMostOverruns; ++k) {
         fail();
         EXPECT_TRUE(failed.may_mesh_help());
         EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{2}));
@@ -48,12 +48,12 @@ TEST(FailedAttempts, WhatOverrunsIsClearedThenShortenedThenGivenUpOneByOneThenAl
     EXPECT_FALSE(failed.may_mesh_help());  // bounded, whatever goes on to fail
 }
 
-TEST(FailedAttempts, WhatIsNewIsGivenUpByItsPlace)
+TEST(RetryPolicy, WhatIsNewIsGivenUpByItsPlace)
 {
     const State state = state_with_eol({1});
     State start = state_with_eol({1, 3});
     start.mesh.material = {{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}, {3.0, 0.0}, {4.0, 0.0}};
-    FailedAttempts failed;
+    RetryPolicy failed;
     const auto fail = [&](Attempt attempt) {
         failed.note(with(StepStatus::Overrun), attempt, state, start, {{{3, {1.0, 0.0}}}});
     };
@@ -72,18 +72,18 @@ TEST(FailedAttempts, WhatIsNewIsGivenUpByItsPlace)
     EXPECT_EQ(failed.flow().made_at.size(), 1u) << "there is no shorter step";
 }
 
-TEST(FailedAttempts, WhereNoShorterStepIsLeftAnotherMeshIsTried)
+TEST(RetryPolicy, WhereNoShorterStepIsLeftAnotherMeshIsTried)
 {
     const State state = state_with_eol({1, 2});
-    FailedAttempts failed;
-    for (int k = 0; k <= FailedAttempts::kMostOverruns; ++k) {
+    RetryPolicy failed;
+    for (int k = 0; k <= RetryPolicy::kMostOverruns; ++k) {
         failed.note(with(StepStatus::Overrun), Attempt::Last, state, state, {{{1, {1.0, 0.0}}}});
         EXPECT_TRUE(failed.may_mesh_help()) << k;
     }
     EXPECT_EQ(failed.flow().given_up.size(), 2u);
     for (const StepStatus status :
          {StepStatus::NotConverged, StepStatus::NotFinite, StepStatus::Penetration, StepStatus::Infeasible}) {
-        FailedAttempts other;
+        RetryPolicy other;
         other.note(with(status), Attempt::Last, state, state, {});
         EXPECT_TRUE(other.may_mesh_help());
         EXPECT_EQ(other.flow().given_up.size(), 2u);
@@ -93,10 +93,10 @@ TEST(FailedAttempts, WhereNoShorterStepIsLeftAnotherMeshIsTried)
     }
 }
 
-TEST(FailedAttempts, WhatAllWasGivenUpForStaysSoForTheRestOfTheStep)
+TEST(RetryPolicy, WhatAllWasGivenUpForStaysSoForTheRestOfTheStep)
 {
     const State state = state_with_eol({1, 2});
-    FailedAttempts failed;
+    RetryPolicy failed;
     failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, {{{1, {1.0, 0.0}}}});
     failed.note(with(StepStatus::Done), Attempt::Ordinary, state, state, {});
     EXPECT_TRUE(failed.flow().empty());
@@ -110,11 +110,11 @@ TEST(FailedAttempts, WhatAllWasGivenUpForStaysSoForTheRestOfTheStep)
     EXPECT_TRUE(failed.flow().empty());
 }
 
-TEST(FailedAttempts, WhatContactsPinchIsGivenUpBeforeAShorterStepIsTried)
+TEST(RetryPolicy, WhatContactsPinchIsGivenUpBeforeAShorterStepIsTried)
 {
     const State state = state_with_eol({1, 2, 3});
-    FailedAttempts failed;
-    for (int k = 0; k < FailedAttempts::kMostPinched; ++k) {
+    RetryPolicy failed;
+    for (int k = 0; k < RetryPolicy::kMostOverconstrained; ++k) {
         failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {{}, {2}});
         EXPECT_TRUE(failed.may_mesh_help()) << k;
         EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{2}));
@@ -127,10 +127,10 @@ TEST(FailedAttempts, WhatContactsPinchIsGivenUpBeforeAShorterStepIsTried)
     EXPECT_TRUE(failed.flow().given_up.empty());
 }
 
-TEST(FailedAttempts, OfStateAndOfWhatConformMadeOfItAllAreGivenUp)
+TEST(RetryPolicy, OfStateAndOfWhatConformMadeOfItAllAreGivenUp)
 {
     const State state = state_with_eol({1, 2}), start = state_with_eol({2, 4});
-    FailedAttempts failed;
+    RetryPolicy failed;
     failed.note(with(StepStatus::NotConverged), Attempt::Ordinary, state, start, {});
     EXPECT_FALSE(failed.may_mesh_help());
     EXPECT_TRUE(failed.flow().empty());
@@ -138,10 +138,10 @@ TEST(FailedAttempts, OfStateAndOfWhatConformMadeOfItAllAreGivenUp)
     EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{1, 2, 4}));
 }
 
-TEST(FailedAttempts, AStepThatIsDoneForgets)
+TEST(RetryPolicy, AStepThatIsDoneForgets)
 {
     const State state = state_with_eol({1});
-    FailedAttempts failed;
+    RetryPolicy failed;
     failed.note(with(StepStatus::Overrun), Attempt::Last, state, state, {{{1, {1.0, 0.0}}}});
     failed.note(with(StepStatus::Done), Attempt::Last, state, state, {});
     EXPECT_FALSE(failed.may_mesh_help());
@@ -150,13 +150,13 @@ TEST(FailedAttempts, AStepThatIsDoneForgets)
 
 // Going round a wire with the cloth is no step of the equations: where that pushes energy in, it is left, for
 // as long as the step that was planned takes.
-TEST(FailedAttempts, WhereTurningRaisesTheEnergyVerticesStay)
+TEST(RetryPolicy, WhereTurningRaisesTheEnergyVerticesStay)
 {
     const State state = state_with_eol({1});
-    const auto fail = [&](FailedAttempts& failed, StepStatus status, bool has_turned) {
+    const auto fail = [&](RetryPolicy& failed, StepStatus status, bool has_turned) {
         failed.note(with(status), Attempt::Ordinary, state, state, {{}, {}, has_turned});
     };
-    FailedAttempts failed;
+    RetryPolicy failed;
     EXPECT_TRUE(failed.may_turn());
     fail(failed, StepStatus::EnergyRise, false);
     EXPECT_FALSE(failed.may_staying_help());

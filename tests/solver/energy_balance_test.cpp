@@ -55,13 +55,13 @@ struct OneStep {
     void weigh()
     {
         work.proposal.world = end();
-        weigh_proposal(scene, kStep, work);
+        measure_proposal_energy(scene, kStep, work);
     }
-    bool is_push_costly_to(const std::vector<Vec3>& world)
+    bool does_push_out_strain_to(const std::vector<Vec3>& world)
     {
         work.proposal.world = world;
-        weigh_proposal(scene, kStep, work);
-        return is_push_costly(scene, kStep, work);
+        measure_proposal_energy(scene, kStep, work);
+        return does_push_out_strain(scene, kStep, work);
     }
     double driven() const { return compute_driven_work(before, work); }
 };
@@ -282,19 +282,19 @@ TEST(Push, IsCostlyWhereItStrainsAndFreeWhereItDoesNot)
 {
     OneStep one{Scene()};
     const std::vector<Vec3> flat = one.end();
-    EXPECT_FALSE(one.is_push_costly_to(flat)) << "nothing is moved";
+    EXPECT_FALSE(one.does_push_out_strain_to(flat)) << "nothing is moved";
     std::vector<Vec3> world = flat;
     for (Vec3& x : world) x.z() += 1e-3;
-    EXPECT_FALSE(one.is_push_costly_to(world)) << "as a whole";
+    EXPECT_FALSE(one.does_push_out_strain_to(world)) << "as a whole";
     world = flat;
     world[7].z() += 1e-4;
-    EXPECT_FALSE(one.is_push_costly_to(world)) << "one vertex, out of the plane";
+    EXPECT_FALSE(one.does_push_out_strain_to(world)) << "one vertex, out of the plane";
     world = flat;
     world[7].x() += 1e-3;
-    EXPECT_TRUE(one.is_push_costly_to(world)) << "one vertex, in the plane";
+    EXPECT_TRUE(one.does_push_out_strain_to(world)) << "one vertex, in the plane";
     for (Vec3& v : one.work.proposal.velocity) v = Vec3(10, 0, 0);
     for (Vec3& x : world) x.x() += one.work.prediction.gamma * 10.0;
-    EXPECT_FALSE(one.is_push_costly_to(world)) << "little beside what is in motion";
+    EXPECT_FALSE(one.does_push_out_strain_to(world)) << "little beside what is in motion";
 }
 
 }  // namespace

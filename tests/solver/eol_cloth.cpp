@@ -104,7 +104,8 @@ int EolCloth::vertex_at(double u, double v) const
 
 int EolCloth::add_eol(int vertex, bool is_corner, int feature)
 {
-    state.eol.push_back({state.ids[vertex], 0, is_corner, feature, Vec3::UnitZ(), 0});
+    const FeatureId on = is_corner ? FeatureId::corner(0, feature) : FeatureId::edge(0, feature);
+    state.eol.push_back({state.ids[vertex], on, Vec3::UnitZ(), 0});
     std::sort(state.eol.begin(), state.eol.end(),
               [](const EolVertex& a, const EolVertex& b) { return a.vertex_id < b.vertex_id; });
     return state.eol_entry(state.ids[vertex]);

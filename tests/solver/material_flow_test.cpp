@@ -78,9 +78,9 @@ struct FlowingCloth {
         cloth.add_eol(v, false, tip_of(cloth.scene.obstacles[0]));
         prepare(cloth.scene, cloth.state, work);
         work.eol = {*cloth.place(v).coordinates};
-        work.at.begin = 0.0;
-        work.at.time = kStep;
-        work.at.flow.emplace();
+        work.linearization.begin = 0.0;
+        work.linearization.time = kStep;
+        work.linearization.flow.emplace();
     }
     /// Through it flow `now` and, a step ago, `before` cells a step; it rises by as much.
     void flow(double now, double before)
@@ -133,7 +133,7 @@ TEST(MaterialFlow, IsLinearisedWhereItWouldEndAsLongAsThereIsMaterial)
     const MovingCloth end = find_end(flowing.work.prediction, flowing.work.expansion);
     const std::vector<Vec3> expansion = flowing.work.expansion.world;
     ASSERT_TRUE(linearise_flow(flowing.cloth.state, flowing.work));
-    EXPECT_EQ(flowing.work.at.flow->position, end.material);
+    EXPECT_EQ(flowing.work.linearization.flow->position, end.material);
     EXPECT_EQ(flowing.work.expansion.world, expansion);
 }
 
@@ -149,7 +149,7 @@ TEST(MaterialFlow, IsLinearisedOnTheWayThereWhereThereIsNone)
         ASSERT_TRUE(linearise_flow(state, flowing.work));
         const MovingCloth there = find_end(flowing.work.prediction, flowing.work.expansion);
         EXPECT_GE(flowing.least_left(there.material), 0.4);
-        EXPECT_GE(flowing.least_left(flowing.work.at.flow->extrapolated.material), 0.4);
+        EXPECT_GE(flowing.least_left(flowing.work.linearization.flow->extrapolated.material), 0.4);
         // World and material have gone the same share of their ways.
         const double share =
             (there.material[v] - state.mesh.material[v]).x() / (end.material[v] - state.mesh.material[v]).x();
@@ -168,7 +168,7 @@ TEST(MaterialFlow, ThatTurnsBackIsNotExtrapolatedPastTheMaterial)
     const std::vector<Vec2> past = extrapolate(flowing.cloth.state, flowing.work.prediction).material;
     ASSERT_LT(flowing.least_left(past), 0.4);
     EXPECT_TRUE(linearise_flow(flowing.cloth.state, flowing.work));
-    EXPECT_GE(flowing.least_left(flowing.work.at.flow->extrapolated.material), 0.4);
+    EXPECT_GE(flowing.least_left(flowing.work.linearization.flow->extrapolated.material), 0.4);
 }
 
 TEST(MaterialFlow, ThatIsNotFiniteIsNotLinearised)

@@ -35,12 +35,12 @@ struct Proposed {
         work.proposal.material_velocity.assign(state.velocity.size(), Vec2::Zero());
         work.proposal.world =
             find_end(work.prediction, {work.proposal.velocity, work.proposal.material_velocity}).world;
-        weigh_proposal(scene, kStep, work);
+        measure_proposal_energy(scene, kStep, work);
     }
 
     bool keep(Attempt attempt, bool may_solve_again)
     {
-        return keep_energy(scene, state, attempt, may_solve_again, work, report);
+        return enforce_energy_balance(scene, state, attempt, may_solve_again, work, report);
     }
 };
 
@@ -89,17 +89,17 @@ TEST(FallBack, IsToAVelocityThatRaisedNoEnergyAndOnce)
 {
     Proposed proposed(Vec3::Zero());
     proposed.report.status = StepStatus::NotConverged;
-    EXPECT_FALSE(fall_back(proposed.work, proposed.report)) << "there was none";
+    EXPECT_FALSE(restore_least_rise(proposed.work, proposed.report)) << "there was none";
     proposed.report.status = StepStatus::Done;
     EXPECT_FALSE(proposed.keep(Attempt::Ordinary, true));
     const ClothVelocity good = proposed.work.expansion;
     proposed.work.expansion.world.front() = kDriven;
     proposed.report.status = StepStatus::EnergyRise;  // for which there are other ways
-    EXPECT_FALSE(fall_back(proposed.work, proposed.report));
+    EXPECT_FALSE(restore_least_rise(proposed.work, proposed.report));
     proposed.report.status = StepStatus::Overrun;
-    EXPECT_TRUE(fall_back(proposed.work, proposed.report));
+    EXPECT_TRUE(restore_least_rise(proposed.work, proposed.report));
     EXPECT_EQ(proposed.work.expansion.world, good.world);
-    EXPECT_FALSE(fall_back(proposed.work, proposed.report));
+    EXPECT_FALSE(restore_least_rise(proposed.work, proposed.report));
 }
 
 }  // namespace

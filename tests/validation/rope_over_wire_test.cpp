@@ -132,7 +132,7 @@ ClothRun make_rope_run(const RopeCase& rope)
     run.settings.integrator = rope.integrator;
     for (int v = 0; v < run.state.mesh.vertex_count(); ++v)
         if (run.state.mesh.material[v].x() == fold)
-            run.state.eol.push_back({run.state.ids[v], 0, false, 0, Vec3::UnitZ(), 0});
+            run.state.eol.push_back({run.state.ids[v], FeatureId::edge(0, 0), Vec3::UnitZ(), 0});
     follow_features(run.scene.obstacles, run.state);
     return run;
 }

@@ -241,7 +241,7 @@ double push_of_side(const ClothRun& run)
     begin.world = run.state.previous_world;
     double sum = 0.0;
     for (const Vec3& impulse : compute_feature_impulses(begin, run.work.mesh.elements, run.work.mesh.terms,
-                                                        run.work.at, run.work.solution.velocity))
+                                                        run.work.linearization, run.work.solution.velocity))
         sum += outward.dot(impulse);
     return sum;
 }

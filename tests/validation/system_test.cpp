@@ -125,8 +125,8 @@ const std::vector<Shape> kNastyShapes = {
      [](const Vec3& x, Generator&) -> Vec3 {
          return {x.x(), 0.0, 0.0};
      }},
-    {"squeezed to 1e-4", [](const Vec3& x, Generator&) -> Vec3 { return 1e-4 * x; }},
-    {"squeezed along u to 1e-4",
+    {"overpressed to 1e-4", [](const Vec3& x, Generator&) -> Vec3 { return 1e-4 * x; }},
+    {"overpressed along u to 1e-4",
      [](const Vec3& x, Generator&) -> Vec3 {
          return {1e-4 * x.x(), x.y(), 0.0};
      }},

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/cloth_input/crease_graph.h"
 #include "geometry/cloth_input/cut_pattern.h"
+#include "geometry/cloth_input/fold_lines.h"
 #include "geometry/input_error.h"
 #include "geometry/rigid_motion.h"
 
@@ -112,7 +112,7 @@ double count_faces(double vertices, double border)
 // Creases are a cell's length divided, and clear pattern vertices from a strip on either side.
 GridCount estimate_cut_pattern(const ClothGrid& grid)
 {
-    const CreaseGraph graph = make_crease_graph(grid.size, grid.folds);
+    const FoldLines graph = make_fold_lines(grid.size, grid.folds);
     const Mat2 back = rotation_about(Vec3::UnitZ(), -grid.pattern_angle).topLeftCorner<2, 2>();
     const Vec2 cell(grid.size.x() / grid.resolution[0], grid.size.y() / grid.resolution[1]);
     double border = 0.0, inside = 0.0;

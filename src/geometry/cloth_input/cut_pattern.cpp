@@ -18,8 +18,8 @@
 
 #include "geometry/cgal.h"
 #include "geometry/cloth_input/angle_relaxation.h"
-#include "geometry/cloth_input/crease_graph.h"
 #include "geometry/cloth_input/delaunay.h"
+#include "geometry/cloth_input/fold_lines.h"
 #include "geometry/cloth_input/pattern_lattice.h"
 #include "geometry/input_error.h"
 
@@ -47,7 +47,7 @@ struct CreaseVertex {
 class CutPattern {
   public:
     explicit CutPattern(const ClothGrid& grid)
-        : graph_(make_crease_graph(grid.size, grid.folds)),
+        : graph_(make_fold_lines(grid.size, grid.folds)),
           lattice_(grid),
           index_(lattice_.vertex_count(), kFree)
     {
@@ -325,7 +325,7 @@ class CutPattern {
         return mesh;
     }
 
-    CreaseGraph graph_;
+    FoldLines graph_;
     PatternLattice lattice_;
     std::vector<int> index_;               // of each pattern vertex in the mesh, or kFree, kDropped
     std::vector<Vec2> places_;             // of the mesh's vertices, in cells: nodes, creases, pattern
@@ -347,7 +347,7 @@ ClothMesh make_cut_pattern(const ClothGrid& grid)
 
 ClothMesh make_unstructured(const ClothGrid& grid)
 {
-    const CreaseGraph graph = make_crease_graph(grid.size, grid.folds);
+    const FoldLines graph = make_fold_lines(grid.size, grid.folds);
     const double side = 0.5 * (grid.size.x() / grid.resolution[0] + grid.size.y() / grid.resolution[1]);
     PlanarGraph outline{graph.nodes, {}};
     for (const auto& [a, b] : graph.segments) {

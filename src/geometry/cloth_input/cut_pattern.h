@@ -6,7 +6,7 @@
 namespace arris {
 
 /// A regular pattern that does not fit its rectangle as it is: turned, or with fold lines. Throws InputError
-/// where the fold lines do (crease_graph.h). Angles are judged in cell coordinates (pattern_lattice.h).
+/// where the fold lines do (fold_lines.h). Angles are judged in cell coordinates (pattern_lattice.h).
 ClothMesh make_cut_pattern(const ClothGrid& grid);
 
 /// CGAL's Delaunay refinement of the rectangle with its fold lines, edges about as long as the cells' sides.

@@ -87,14 +87,14 @@ std::optional<FeatureFrame> find_edge_frame(const Obstacle& obstacle, int edge, 
     return frame;
 }
 
-std::optional<FeatureFrame> find_turn_frame(const Obstacle& obstacle, int edge, int end,
+std::optional<FeatureFrame> find_bend_frame(const Obstacle& obstacle, int edge, int end,
                                             const ClothAround& cloth)
 {
-    const FeatureTurn turn{edge, end};
-    const Vec3 tangent = tangent_at(obstacle, turn);
+    const FeatureBend bend{edge, end};
+    const Vec3 tangent = tangent_at(obstacle, bend);
     const std::optional<Vec3> outward = outward_of_cloth(cloth, tangent);
     if (!outward) return std::nullopt;
-    return FeatureFrame{turn_point(obstacle, turn), tangent, *outward, 1.0};
+    return FeatureFrame{bend_point(obstacle, bend), tangent, *outward, 1.0};
 }
 
 std::optional<FeatureFrame> find_corner_frame(const Obstacle& obstacle, int corner, const Vec3& place,

@@ -34,7 +34,7 @@ std::optional<FeatureFrame> find_edge_frame(const Obstacle& obstacle, int edge, 
                                             const ClothAround& cloth);
 
 /// Where a wire turns at end `end` (0 or 1) of edge `edge`: as on an edge that runs halfway between both.
-std::optional<FeatureFrame> find_turn_frame(const Obstacle& obstacle, int edge, int end,
+std::optional<FeatureFrame> find_bend_frame(const Obstacle& obstacle, int edge, int end,
                                             const ClothAround& cloth);
 
 /// On corner `corner` (index in features().corners). On a solid the direction whose least part along the

@@ -112,7 +112,7 @@ bool is_past_end(const Obstacle& obstacle, int feature, const Vec3& place)
     return is_corner(features, ends[s > 0.0 ? 1 : 0]);
 }
 
-std::optional<FeatureTurn> find_turn(const Obstacle& obstacle, int point)
+std::optional<FeatureBend> find_bend(const Obstacle& obstacle, int point)
 {
     constexpr double kLeast = 0.0175;  // sine of a degree
     const ObstacleTopology& topology = obstacle.topology();
@@ -125,37 +125,37 @@ std::optional<FeatureTurn> find_turn(const Obstacle& obstacle, int point)
         const std::optional<Step> next = across(obstacle, feature, end);
         if (!next) continue;
         const Vec3 sine = direction_of(obstacle, feature).cross(direction_of(obstacle, next->feature));
-        if (sine.norm() > kLeast) return FeatureTurn{feature, end};
+        if (sine.norm() > kLeast) return FeatureBend{feature, end};
     }
     return std::nullopt;
 }
 
-double missed_by_chord(const Obstacle& obstacle, const FeatureTurn& turn, double reach)
+double missed_by_chord(const Obstacle& obstacle, const FeatureBend& bend, double reach)
 {
-    const std::optional<Step> next = across(obstacle, turn.feature, turn.end);
-    if (!next || std::min(length_of(obstacle, turn.feature), length_of(obstacle, next->feature)) < reach)
+    const std::optional<Step> next = across(obstacle, bend.feature, bend.end);
+    if (!next || std::min(length_of(obstacle, bend.feature), length_of(obstacle, next->feature)) < reach)
         return 0.0;
     // Half the angle between the ways is what lies between either and the tangent.
-    return reach * direction_of(obstacle, turn.feature).cross(tangent_at(obstacle, turn)).norm();
+    return reach * direction_of(obstacle, bend.feature).cross(tangent_at(obstacle, bend)).norm();
 }
 
-int point_at(const Obstacle& obstacle, const FeatureTurn& turn)
+int point_at(const Obstacle& obstacle, const FeatureBend& bend)
 {
-    return obstacle.topology().edges[obstacle.features().edges[turn.feature].edge].points[turn.end];
+    return obstacle.topology().edges[obstacle.features().edges[bend.feature].edge].points[bend.end];
 }
 
-Vec3 turn_point(const Obstacle& obstacle, const FeatureTurn& turn)
+Vec3 bend_point(const Obstacle& obstacle, const FeatureBend& bend)
 {
-    return feature_segment(obstacle, turn.feature)[turn.end];
+    return feature_segment(obstacle, bend.feature)[bend.end];
 }
 
-Vec3 tangent_at(const Obstacle& obstacle, const FeatureTurn& turn)
+Vec3 tangent_at(const Obstacle& obstacle, const FeatureBend& bend)
 {
-    const Vec3 way = direction_of(obstacle, turn.feature);
-    const std::optional<Step> next = across(obstacle, turn.feature, turn.end);
+    const Vec3 way = direction_of(obstacle, bend.feature);
+    const std::optional<Step> next = across(obstacle, bend.feature, bend.end);
     if (!next) return way;
     const Vec3 onward = direction_of(obstacle, next->feature);
-    return (way + (next->end == turn.end ? Vec3(-onward) : onward)).normalized();
+    return (way + (next->end == bend.end ? Vec3(-onward) : onward)).normalized();
 }
 
 std::optional<double> distance_along(const Obstacle& obstacle, const FeaturePlace& a, const FeaturePlace& b,

@@ -35,23 +35,23 @@ FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& 
 bool is_past_end(const Obstacle& obstacle, int feature, const Vec3& place);
 
 /// Where a wire turns: an end (0 or 1) of one of its edges, beyond which the polyline goes on elsewhere.
-struct FeatureTurn {
+struct FeatureBend {
     int feature;
     int end;
 };
 
 /// At a point of the mesh: the first edge there of a wire that turns by more than a degree but has no corner.
-std::optional<FeatureTurn> find_turn(const Obstacle& obstacle, int point);
+std::optional<FeatureBend> find_bend(const Obstacle& obstacle, int point);
 
 /// By how much a chord from `reach` before a turn to as far behind it passes it by, m. 0 where one of its two
 /// edges is shorter than that: it is one of many then, and its wire a curve.
-double missed_by_chord(const Obstacle& obstacle, const FeatureTurn& turn, double reach);
+double missed_by_chord(const Obstacle& obstacle, const FeatureBend& bend, double reach);
 
 /// Of the mesh, and where that is.
-int point_at(const Obstacle& obstacle, const FeatureTurn& turn);
-Vec3 turn_point(const Obstacle& obstacle, const FeatureTurn& turn);
+int point_at(const Obstacle& obstacle, const FeatureBend& bend);
+Vec3 bend_point(const Obstacle& obstacle, const FeatureBend& bend);
 /// Unit, halfway between the directions of both edges there, seen along the turn's own.
-Vec3 tangent_at(const Obstacle& obstacle, const FeatureTurn& turn);
+Vec3 tangent_at(const Obstacle& obstacle, const FeatureBend& bend);
 
 /// Length of the polyline between two places on it, m; nothing where it is more than `most`, or where they
 /// are on different ones.

@@ -44,10 +44,10 @@ struct Frame {
 };
 
 /// Takes hold of the pinned directions: their axes come first, and their u is 0.
-void hold(const std::vector<HeldVertex>& held, const Prediction& prediction, std::vector<Frame>& frames,
+void hold(const std::vector<PinTarget>& held, const Prediction& prediction, std::vector<Frame>& frames,
           Linearization& at, VelocityProblem& problem)
 {
-    for (const HeldVertex& vertex : held) {
+    for (const PinTarget& vertex : held) {
         const int v = vertex.vertex;
         const Vec3 drift = (vertex.target - prediction.position[v]) / prediction.gamma;
         for (int d = 0; d < 3; ++d) {
@@ -124,7 +124,7 @@ void append_rows(const Prediction& prediction, const Linearization& at, std::siz
     }
 }
 
-void build_constraints(const std::vector<HeldVertex>& held, const std::vector<EolCoordinates>& eol,
+void build_constraints(const std::vector<PinTarget>& held, const std::vector<EolCoordinates>& eol,
                        const Prediction& prediction, const State& state, std::vector<Contact>& contacts,
                        Linearization& at, VelocityProblem& problem)
 {

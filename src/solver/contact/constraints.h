@@ -6,7 +6,7 @@
 #include "physics/linearization.h"
 #include "solver/contact/contacts.h"
 #include "solver/eol/eol_coordinates.h"
-#include "solver/model/held_vertices.h"
+#include "solver/model/pin_targets.h"
 #include "solver/velocity_solve/velocity_solve.h"
 
 namespace arris {
@@ -18,7 +18,7 @@ namespace arris {
 /// guess (what was active, and what would arrive at its last velocity), and of `contacts` which constraint
 /// they are. A constraint is gap + gamma n . v' >= 0. EOL vertices have the coordinates of `eol` instead:
 /// relative to their place on the obstacle, their own contact a bound on the first, any others rows.
-void build_constraints(const std::vector<HeldVertex>& held, const std::vector<EolCoordinates>& eol,
+void build_constraints(const std::vector<PinTarget>& held, const std::vector<EolCoordinates>& eol,
                        const Prediction& prediction, const State& state, std::vector<Contact>& contacts,
                        Linearization& at, VelocityProblem& problem);
 

@@ -158,15 +158,15 @@ SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& 
         contact->may_grow = false;
         update_gap(steps[contact->obstacle], prediction, *contact);
     }
-    const bool is_crushed = !(room > kNoRoom * wanted) && cosine < kFacing;
-    return {true, is_crushed ? std::optional(a.in_frame.vertices[0]) : std::nullopt};
+    const bool is_overconstrained = !(room > kNoRoom * wanted) && cosine < kFacing;
+    return {true, is_overconstrained ? std::optional(a.in_frame.vertices[0]) : std::nullopt};
 }
 
 }  // namespace
 
 std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
                                          const std::vector<MeshEdge>& edges, const Prediction& prediction,
-                                         const std::vector<HeldVertex>& held, double end)
+                                         const std::vector<PinTarget>& held, double end)
 {
     std::vector<ObstacleStep> steps;
     if (scene.obstacles.empty()) return steps;
@@ -264,7 +264,7 @@ SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& 
              j < of_vertices.size() && vertex_of(of_vertices[j]) == vertex_of(of_vertices[i]); ++j) {
             const SharedRoom pair = share_room(steps, prediction, *of_vertices[i], *of_vertices[j]);
             shared.is_changed = shared.is_changed || pair.is_changed;
-            if (!shared.crushed) shared.crushed = pair.crushed;
+            if (!shared.overconstrained) shared.overconstrained = pair.overconstrained;
         }
     return shared;
 }

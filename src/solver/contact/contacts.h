@@ -6,7 +6,7 @@
 
 #include "geometry/contact/obstacle_contact.h"
 #include "solver/eol/eol_coordinates.h"
-#include "solver/model/held_vertices.h"
+#include "solver/model/pin_targets.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
 #include "solver/model/time_integration.h"
@@ -51,7 +51,7 @@ struct Contact {
 /// them: with the velocity it has, pins where they will be.
 std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
                                          const std::vector<MeshEdge>& edges, const Prediction& prediction,
-                                         const std::vector<HeldVertex>& held, double end);
+                                         const std::vector<PinTarget>& held, double end);
 
 /// What the cloth may touch in the step: vertices, edges and faces against each obstacle, and the pairs that
 /// pressed at the end of the last step.
@@ -72,7 +72,7 @@ Contact place_contact(const ObstacleContact& contact, int obstacle, const Obstac
 /// What `share_room` did: whether a contact keeps less now, and a vertex (index) that has no room at all.
 struct SharedRoom {
     bool is_changed = false;
-    std::optional<int> crushed;
+    std::optional<int> overconstrained;
 };
 
 /// Between two obstacles, or two faces of one, with room for less than both stand-offs, a vertex's contacts

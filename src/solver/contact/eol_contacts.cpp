@@ -17,9 +17,9 @@ namespace {
 /// On a wire or at its end.
 bool is_on_wire(const Obstacle& obstacle, const EolVertex& eol)
 {
-    if (!eol.is_corner) return obstacle.features().edges[eol.feature].kind == FeatureKind::Wire;
+    if (!eol.on.is_corner()) return obstacle.features().edges[eol.on.index].kind == FeatureKind::Wire;
     const ObstacleTopology& topology = obstacle.topology();
-    const int point = held_point(obstacle, eol);
+    const int point = fixed_point(obstacle, eol);
     return topology.edge_count_at(point) > 0 && topology.edges[topology.edge_at(point, 0)].faces[0] < 0;
 }
 
@@ -31,15 +31,15 @@ bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordina
     const ObstacleFeatures& features = obstacle.features();
     const double height = std::max((place - at.frame.point).norm(), thickness);
     if ((contact.point - at.frame.point).norm() > kReach * height) return false;
-    const int corner = held_point(obstacle, eol);
+    const int corner = fixed_point(obstacle, eol);
     const auto is_of_wire = [&](int edge) {
         const auto& ends = obstacle.topology().edges[edge].points;
-        if (eol.is_corner) return ends[0] == corner || ends[1] == corner;
+        if (eol.on.is_corner()) return ends[0] == corner || ends[1] == corner;
         const int feature = feature_of_edge(features, edge);
-        return feature >= 0 && features.edges[feature].polyline == features.edges[eol.feature].polyline;
+        return feature >= 0 && features.edges[feature].polyline == features.edges[eol.on.index].polyline;
     };
     if (contact.kind == ContactKind::Edge) return is_of_wire(contact.element);
-    if (eol.is_corner) return contact.element == corner;
+    if (eol.on.is_corner()) return contact.element == corner;
     const ObstacleTopology& topology = obstacle.topology();
     return !is_corner(features, contact.element) && topology.edge_count_at(contact.element) > 0 &&
            is_of_wire(topology.edge_at(contact.element, 0));
@@ -51,9 +51,9 @@ bool is_near_feature(const Obstacle& obstacle, const EolVertex& eol, const EolCo
                      double thickness, const Vec3& point)
 {
     const Vec3 nearest =
-        eol.is_corner
+        eol.on.is_corner()
             ? at.frame.point
-            : place_on_feature(obstacle, follow_polyline(obstacle, eol.feature, point).feature, point).point;
+            : place_on_feature(obstacle, follow_polyline(obstacle, eol.on.index, point).feature, point).point;
     return (point - nearest).norm() <= kOnFeature * thickness;
 }
 
@@ -62,7 +62,7 @@ bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordin
                 double thickness, const ObstacleContact& contact)
 {
     const ObstacleFeatures& features = obstacle.features();
-    const int corner = held_point(obstacle, eol);
+    const int corner = fixed_point(obstacle, eol);
     if (contact.kind != ContactKind::Vertex && is_on_wire(obstacle, eol))
         return is_beside(obstacle, eol, at, place, thickness, contact);
     if (contact.kind == ContactKind::Triangle) return contact.element == corner;
@@ -70,7 +70,7 @@ bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordin
         return contact.normal.dot(at.frame.outward) > 0.0 &&
                is_near_feature(obstacle, eol, at, thickness, contact.point);
     const ObstacleEdge& edge = obstacle.topology().edges[contact.element];
-    if (!eol.is_corner) return contact.element == features.edges[eol.feature].edge;
+    if (!eol.on.is_corner()) return contact.element == features.edges[eol.on.index].edge;
     return edge.points[0] == corner || edge.points[1] == corner;
 }
 
@@ -115,7 +115,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     std::vector<EolCoordinates> eol;
     std::vector<int> slot(state.mesh.world.size(), -1);
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
-        const int o = state.eol[entry].obstacle;
+        const int o = state.eol[entry].on.obstacle;
         const EolPlacing placing = place_eol_vertex(scene.obstacles[o], thickness, state, entry, stars,
                                                     steps[o].motion.begin, steps[o].end, turning);
         if (!placing.coordinates) continue;
@@ -128,7 +128,8 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         if (contact.in_frame.kind != ContactKind::Edge || slot[a] < 0 || slot[b] < 0) return false;
         const int o = contact.obstacle;
         const EolVertex &p = state.eol[eol[slot[a]].entry], &q = state.eol[eol[slot[b]].entry];
-        return p.obstacle == o && !p.is_corner && !q.is_corner && is_on_wire(scene.obstacles[o], p) &&
+        return p.on.obstacle == o && !p.on.is_corner() && !q.on.is_corner() &&
+               is_on_wire(scene.obstacles[o], p) &&
                feature_of_edge(scene.obstacles[o].features(), contact.in_frame.element) >= 0 &&
                is_trace_edge(scene.obstacles[o], {p, steps[o].motion.begin[a]},
                              {q, steps[o].motion.begin[b]});
@@ -139,15 +140,15 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         for (const int v : contact.in_frame.vertices) {
             if (v < 0 || slot[v] < 0) continue;
             const EolVertex& vertex = state.eol[eol[slot[v]].entry];
-            if (vertex.obstacle == o && is_covered(scene.obstacles[o], vertex, eol[slot[v]],
-                                                   steps[o].motion.begin[v], thickness, contact.in_frame))
+            if (vertex.on.obstacle == o && is_covered(scene.obstacles[o], vertex, eol[slot[v]],
+                                                      steps[o].motion.begin[v], thickness, contact.in_frame))
                 return true;
         }
         return false;
     });
     const std::size_t found = contacts.size();
     for (std::size_t e = 0; e < eol.size(); ++e) {
-        const int o = state.eol[eol[e].entry].obstacle;
+        const int o = state.eol[eol[e].entry].on.obstacle;
         contacts.push_back(make_eol_contact(steps[o], prediction, thickness, o, eol[e]));
         contacts.back().eol = static_cast<int>(e);
         contacts.back().mitre = eol[e].frame.mitre;

@@ -42,7 +42,7 @@ class FoldSearch {
         for (const EolCoordinates& at : eol_) {
             const EolVertex& vertex = state_.eol[at.entry];
             if (!is_on_wire(vertex)) continue;
-            const Wire wire = {vertex.obstacle, polyline_of(vertex)};
+            const Wire wire = {vertex.on.obstacle, polyline_of(vertex)};
             const double reach = find_reach(at.vertex, wire);
             for_neighbours(at.vertex, wire, [&](int w) {
                 const double angle = angle_behind(at.frame, place_of(w, wire));
@@ -73,13 +73,13 @@ class FoldSearch {
 
     bool is_on_wire(const EolVertex& vertex) const
     {
-        return !vertex.is_corner &&
-               obstacles_[vertex.obstacle].features().edges[vertex.feature].kind == FeatureKind::Wire;
+        return !vertex.on.is_corner() &&
+               obstacles_[vertex.on.obstacle].features().edges[vertex.on.index].kind == FeatureKind::Wire;
     }
 
     int polyline_of(const EolVertex& vertex) const
     {
-        return obstacles_[vertex.obstacle].features().edges[vertex.feature].polyline;
+        return obstacles_[vertex.on.obstacle].features().edges[vertex.on.index].polyline;
     }
 
     const Vec3& place_of(int vertex, const Wire& wire) const { return (*positions_[wire[0]])[vertex]; }
@@ -93,7 +93,7 @@ class FoldSearch {
                 const int entry = state_.eol_entry(state_.ids[w]);
                 const bool is_there =
                     entry >= 0 && is_on_wire(state_.eol[entry]) &&
-                    Wire{state_.eol[entry].obstacle, polyline_of(state_.eol[entry])} == wire;
+                    Wire{state_.eol[entry].on.obstacle, polyline_of(state_.eol[entry])} == wire;
                 if (w != vertex && !is_there) visit(w);
             }
     }
@@ -120,7 +120,7 @@ class FoldSearch {
     {
         const Obstacle& obstacle = obstacles_[wire[0]];
         const Vec3& place = place_of(w, wire);
-        const int edge = follow_polyline(obstacle, state_.eol[at.entry].feature, place).feature;
+        const int edge = follow_polyline(obstacle, state_.eol[at.entry].on.index, place).feature;
         return arris::is_past_end(obstacle, edge, place);
     }
 

@@ -14,10 +14,10 @@ namespace {
 /// grows the patch by the vertices of the faces around. True where anything changed.
 class Shares {
   public:
-    Shares(const std::vector<Face>& faces, const std::vector<HeldVertex>& held, std::size_t count)
+    Shares(const std::vector<Face>& faces, const std::vector<PinTarget>& held, std::size_t count)
         : faces_(faces), share_(count, 1.0), is_held_(count, 0), faces_at_(static_cast<int>(count), faces)
     {
-        for (const HeldVertex& vertex : held) is_held_[vertex.vertex] = 1;
+        for (const PinTarget& vertex : held) is_held_[vertex.vertex] = 1;
     }
 
     double operator[](std::size_t v) const { return share_[v]; }
@@ -66,7 +66,7 @@ class Shares {
 }  // namespace
 
 void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<ObstacleStep>& steps,
-                       const std::vector<HeldVertex>& held, double thickness, double growth,
+                       const std::vector<PinTarget>& held, double thickness, double growth,
                        Proposal& proposal)
 {
     constexpr double kFoldShare = 0.1;  // of the push: what hangs straight is stretched by going aside
@@ -103,7 +103,7 @@ Violations check_proposal(const Scene& scene, const Proposal& proposal, const Pr
     return violations;
 }
 
-std::optional<int> rewind(const Scene& scene, const State& state, const std::vector<HeldVertex>& held,
+std::optional<int> rewind(const Scene& scene, const State& state, const std::vector<PinTarget>& held,
                           const Prediction& prediction, double dt, std::vector<ObstacleStep>& steps,
                           Proposal& proposal)
 {

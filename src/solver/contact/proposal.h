@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solver/contact/contacts.h"
-#include "solver/model/held_vertices.h"
+#include "solver/model/pin_targets.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
 
@@ -21,7 +21,7 @@ struct Proposal {
 /// Moves positions, not velocities, out to what their contacts keep, which mends round-off, and of a cloth
 /// nearer than its stand-off by up to `growth` (m) further. Pinned directions stay.
 void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<ObstacleStep>& steps,
-                       const std::vector<HeldVertex>& held, double thickness, double growth,
+                       const std::vector<PinTarget>& held, double thickness, double growth,
                        Proposal& proposal);
 
 /// Violations of the proposed step by the exact check against every obstacle.
@@ -41,7 +41,7 @@ Violations check_proposal(const Scene& scene, const Proposal& proposal, const Pr
 /// they meet, to half of it, a quarter, ..., at last to where they were, riding on the obstacle; patches that
 /// went all the way back grow by a ring of vertices. Velocity follows. Vertices that are pinned stay. Returns
 /// how many vertices went back, or nothing where that did not make the step clean either.
-std::optional<int> rewind(const Scene& scene, const State& state, const std::vector<HeldVertex>& held,
+std::optional<int> rewind(const Scene& scene, const State& state, const std::vector<PinTarget>& held,
                           const Prediction& prediction, double dt, std::vector<ObstacleStep>& steps,
                           Proposal& proposal);
 

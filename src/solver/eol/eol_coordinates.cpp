@@ -91,9 +91,9 @@ Vec2 find_trace(const Obstacle& obstacle, const State& state, int entry, int ver
 std::optional<FeatureFrame> find_frame(const Obstacle& obstacle, const EolVertex& eol, const Vec3& place,
                                        const ClothAround& around)
 {
-    if (eol.is_corner) return find_corner_frame(obstacle, eol.feature, place, around);
-    if (eol.turn >= 0) return find_turn_frame(obstacle, eol.feature, eol.turn, around);
-    return find_edge_frame(obstacle, eol.feature, place, around);
+    if (eol.on.is_corner()) return find_corner_frame(obstacle, eol.on.index, place, around);
+    if (eol.on.is_bend()) return find_bend_frame(obstacle, eol.on.index, eol.on.end, around);
+    return find_edge_frame(obstacle, eol.on.index, place, around);
 }
 
 /// Where the cloth neither turns nor spreads across the outward direction, flow and world coincide.
@@ -163,7 +163,7 @@ void turn_with_cloth(const Obstacle& obstacle, double thickness, const State& st
                      FeatureFrame& frame, Vec3& place)
 {
     const EolVertex& eol = state.eol[entry];
-    if (eol.is_corner || obstacle.features().edges[eol.feature].kind != FeatureKind::Wire) return;
+    if (eol.on.is_corner() || obstacle.features().edges[eol.on.index].kind != FeatureKind::Wire) return;
     std::vector<Vec3> beside;
     for (const int f : faces)
         for (const int w : state.mesh.faces[f]) {
@@ -214,21 +214,21 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     const Vec3& place = positions[v];
     const std::optional<Vec2> border = find_border(state.mesh, stars, v);
     if (border && border->isZero()) return {std::nullopt, RowCause::ClothCorner};
-    if (border && is_fixed(eol)) return {std::nullopt, RowCause::AlongBorder};
+    if (border && eol.on.is_fixed()) return {std::nullopt, RowCause::AlongBorder};
 
     const Vec3 tangent = feature_tangent(obstacle, eol);
     const Star star = look_around(state.mesh, stars.faces[v], v, positions);
     Vec2 trace = Vec2::Zero();
-    if (!eol.is_corner)
+    if (!eol.on.is_corner())
         trace = find_trace(obstacle, state, entry, v, stars.faces[v], positions, star, tangent);
     if (!trace.allFinite()) return {std::nullopt, RowCause::NoDirection};
     Sides sides;
     const ClothAround around =
-        eol.is_corner ? sum_around(star, eol) : sum_sides(star, trace, tangent, eol, sides);
+        eol.on.is_corner() ? sum_around(star, eol) : sum_sides(star, trace, tangent, eol, sides);
     std::optional<FeatureFrame> frame = find_frame(obstacle, eol, place, around);
     if (!frame) return {std::nullopt, RowCause::NoDirection};
     if (is_on_convex_edge(obstacle, eol))
-        frame = turn_to_free_fold(obstacle.features().edges[eol.feature],
+        frame = turn_to_free_fold(obstacle.features().edges[eol.on.index],
                                   find_arriving(sides, trace, state.material_velocity[v]), place, thickness,
                                   *frame);
     if (is_edge_on(star, frame->outward)) return {std::nullopt, RowCause::EdgeOn};
@@ -241,20 +241,20 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
                       Mat23::Zero(),
                       find_side(around, eol, frame->outward),
                       Vec3::UnitX()};
-    if (eol.is_corner && is_tip(obstacle, eol.feature))
+    if (eol.on.is_corner() && is_tip(obstacle, eol.on.index))
         turn_with_cone(star, thickness, dt, at.frame, at.carried);
     turn_with_cloth(obstacle, thickness, state, entry, v, stars.faces[v], positions, dt, at.frame,
                     at.carried);
     at.carried = end(at.carried);
     at.basis.col(0) = at.frame.outward;
-    if (!is_fixed(eol)) at.basis.col(1) = at.frame.tangent;
-    if (eol.is_corner) {
+    if (!eol.on.is_fixed()) at.basis.col(1) = at.frame.tangent;
+    if (eol.on.is_corner()) {
         at.material_basis.col(1) = Vec2::UnitX();
         at.material_basis.col(2) = Vec2::UnitY();
         return finish(star, end, at);
     }
     if (border && leads_along(star, *border, trace, tangent)) return {std::nullopt, RowCause::AlongBorder};
-    if (eol.turn >= 0) at.material_basis.col(1) = trace;
+    if (eol.on.is_bend()) at.material_basis.col(1) = trace;
     at.material_basis.col(2) = border ? *border : perpendicular(trace);
     return finish(star, end, at);
 }
@@ -262,8 +262,8 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
 EolPlacing EolPlacer::place(int entry)
 {
     const EolVertex& eol = state_.eol[entry];
-    const Obstacle& obstacle = obstacles_[eol.obstacle];
-    if (std::exchange(of_, eol.obstacle) != eol.obstacle) now_ = obstacle.at(state_.time);
+    const Obstacle& obstacle = obstacles_[eol.on.obstacle];
+    if (std::exchange(of_, eol.on.obstacle) != eol.on.obstacle) now_ = obstacle.at(state_.time);
     positions_.resize(state_.mesh.world.size(), Vec3::Zero());
     for (const int f : stars_.faces[state_.index_of(eol.vertex_id)])
         for (const int v : state_.mesh.faces[f]) positions_[v] = now_.inverse(state_.mesh.world[v]);

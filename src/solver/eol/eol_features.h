@@ -14,12 +14,8 @@ namespace arris {
 /// Thicknesses from a feature, within which cloth lies on it: the mitre and a little.
 inline constexpr double kOnFeature = 2.5;
 
-/// Whether it stays where it is along its feature, and material flows along it, too: on a corner, or where a
-/// wire turns.
-bool is_fixed(const EolVertex& eol);
-
 /// The point of the obstacle's mesh at which a fixed vertex is held; -1 of one that slides.
-int held_point(const Obstacle& obstacle, const EolVertex& eol);
+int fixed_point(const Obstacle& obstacle, const EolVertex& eol);
 
 /// Unit, of the feature that the vertex is on, in the obstacle's frame; zero on a corner.
 Vec3 feature_tangent(const Obstacle& obstacle, const EolVertex& eol);

@@ -53,7 +53,9 @@ class PatchFinder {
     bool is_eol_changed(int now, int then) const
     {
         if ((now < 0) != (then < 0)) return true;
-        const auto kind_of = [](const EolVertex& e) { return std::tuple(e.obstacle, e.is_corner, e.turn); };
+        const auto kind_of = [](const EolVertex& e) {
+            return std::tuple(e.on.obstacle, e.on.kind, e.on.end);
+        };
         return kind_of(after_.eol[now]) != kind_of(before_.eol[then]);
     }
 

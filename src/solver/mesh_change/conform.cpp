@@ -12,7 +12,7 @@
 #include "geometry/surgery/trace_insertion.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/eol/eol_features.h"
-#include "solver/model/held_vertices.h"
+#include "solver/model/pin_targets.h"
 #include "solver/sites/eol_release.h"
 #include "solver/sites/feature_flow.h"
 #include "solver/sites/site_admission.h"
@@ -40,8 +40,7 @@ constexpr double kWireSteps = 1.0 / 0.6;
 std::vector<VertexId> find_pinned(const Scene& scene, const State& state, double end)
 {
     std::vector<VertexId> ids;
-    for (const HeldVertex& held : find_held_vertices(scene, state, end))
-        ids.push_back(state.ids[held.vertex]);
+    for (const PinTarget& held : find_pin_targets(scene, state, end)) ids.push_back(state.ids[held.vertex]);
     return ids;
 }
 
@@ -82,9 +81,9 @@ class Conforming {
   private:
     std::optional<ConformedMesh> find_mesh(const FeatureChanges& changes, const FailedFlow& failed)
     {
-        for (const VertexId v : changes.released) give_up(v, cause_of_release(v));
+        for (const VertexId v : changes.released) demote_to_row(v, cause_of_release(v));
         for (const VertexId v : failed.given_up)
-            if (trace_.is_on_trace(v)) give_up(v, RowCause::GivenUp);
+            if (trace_.is_on_trace(v)) demote_to_row(v, RowCause::GivenUp);
         for (const auto& [v, flow] : failed.flow) expect_flow(v, flow);
         clear_way();
         if (lost_ > limits_.lost || blocked_ > limits_.blocked) return std::nullopt;
@@ -113,8 +112,8 @@ class Conforming {
     /// Of its flow, without which a vertex is let go.
     double least_steps(const EolVertex& eol) const
     {
-        const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
-        if (eol.is_corner) return is_tip(obstacle, eol.feature) ? kPointSteps : kClearSteps;
+        const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
+        if (eol.on.is_corner()) return is_tip(obstacle, eol.on.index) ? kPointSteps : kClearSteps;
         return is_on_convex_edge(obstacle, eol) ? kClearSteps : kWireSteps;
     }
 
@@ -125,19 +124,19 @@ class Conforming {
 
     /// Where the cloth's border comes so soon no clearing helps, and as ordinary vertices they are in no
     /// one's way.
-    void give_up_leaving()
+    void demote_leaving()
     {
         for (const EolVertex& e : trace_.eol()) {
             if (!trace_.is_on_trace(e.vertex_id)) continue;
             const TraceAdvance advance = advance_of(e);
             if (leads_off(surgery_, e.vertex_id, advance.least * advance.ahead))
-                give_up(e.vertex_id, RowCause::Blocked);
+                demote_to_row(e.vertex_id, RowCause::Blocked);
         }
     }
 
     void clear_way()
     {
-        give_up_leaving();
+        demote_leaving();
         std::vector<TraceAdvance> advances;
         for (const EolVertex& e : trace_.eol())
             if (trace_.is_on_trace(e.vertex_id)) advances.push_back(advance_of(e));
@@ -150,7 +149,7 @@ class Conforming {
         needed_ = cleared.needed;
         // What stands in the way and cannot give way: there the feature is met by rows. Only there: the rest
         // of the trace carries the cloth on.
-        for (const VertexId v : cleared.blocked) give_up(v, RowCause::Blocked);
+        for (const VertexId v : cleared.blocked) demote_to_row(v, RowCause::Blocked);
         blocked_ += static_cast<int>(cleared.blocked.size());
         for (const TraceAdvance& advance : advances) lost_ += trace_.is_on_trace(advance.vertex) ? 0 : 1;
     }
@@ -218,23 +217,21 @@ class Conforming {
         const int v = state_.index_of(site.near);
         const Vec2 flow = find_feature_flow(scene_, state_, stars_, site);
         if (const std::optional<RowCause> cause = admission_.find_refusal(site, v, flow)) return cause;
-        if (site.turn >= 0) {
+        if (site.on.is_bend()) {
             const std::optional<VertexId> beside = find_beside(site);
             if (beside && surgery_.role(*beside) == TraceRole::Node) return RowCause::BesideEol;
-            if (beside && hold_at(*beside, site)) return std::nullopt;
+            if (beside && lock_at_bend(*beside, site)) return std::nullopt;
         }
-        const TraceVertex wanted{site.is_corner || site.turn >= 0 ? TraceRole::Node : TraceRole::OnTrace,
-                                 trace_.tags().tag(site.obstacle, site.is_corner, site.feature),
-                                 soon_ * flow};
+        const TraceVertex wanted{site.on.is_fixed() ? TraceRole::Node : TraceRole::OnTrace,
+                                 trace_.tags().tag(site.on), soon_ * flow};
         const VertexId near = surgery_.has_vertex(site.near) ? site.near : trace_.nearest_to(site.material);
         const TraceInsertion made = make_vertex(site.material, near, wanted);
         if (made.verdict != Verdict::Done)
             return made.verdict == Verdict::Guard ? RowCause::Guard : RowCause::Quality;
         if (trace_.find(made.vertex))
-            return site.is_bend() && slide_to(made.vertex, site) ? std::nullopt
-                                                                 : std::optional(RowCause::BesideEol);
-        EolVertex vertex{made.vertex, site.obstacle, site.is_corner, site.feature, site.outward, 0};
-        vertex.turn = site.turn;
+            return site.is_in_face() && slide_to(made.vertex, site) ? std::nullopt
+                                                                    : std::optional(RowCause::BesideEol);
+        EolVertex vertex{made.vertex, site.on, site.outward, 0};
         vertex.side = trace_.side_beside(wanted.tag, site.material);
         if (!admission_.is_in_plane(vertex) || !admission_.is_on_side(vertex)) {
             surgery_.release_vertex(made.vertex);
@@ -268,19 +265,19 @@ class Conforming {
 
     /// The vertex of its trace that is in a turn's way: one that is held, nearer than two may be, else one
     /// that slides, nearer than clean-up lets two be.
-    std::optional<VertexId> find_beside(const FeatureSite& turn) const
+    std::optional<VertexId> find_beside(const FeatureSite& bend) const
     {
-        constexpr double kHeld = 0.2, kSliding = 0.5;  // target lengths
-        const int tag = trace_.tags().tag(turn.obstacle, false, turn.feature);
-        const double h = target_.length(turn.material);
+        constexpr double kLocked = 0.2, kSliding = 0.5;  // target lengths
+        const int tag = trace_.tags().tag(bend.on);
+        const double h = target_.length(bend.material);
         double least = kSliding * h;
         std::optional<VertexId> nearest;
         for (const EolVertex& e : trace_.eol()) {
             if (!trace_.is_on_trace(e.vertex_id) || surgery_.tag(e.vertex_id) != tag) continue;
-            const double distance = (surgery_.material(e.vertex_id) - turn.material).norm();
-            const bool is_held = surgery_.role(e.vertex_id) == TraceRole::Node;
-            if (is_held && distance < kHeld * h) return e.vertex_id;
-            if (is_held || !(distance < least)) continue;
+            const double distance = (surgery_.material(e.vertex_id) - bend.material).norm();
+            const bool is_locked = surgery_.role(e.vertex_id) == TraceRole::Node;
+            if (is_locked && distance < kLocked * h) return e.vertex_id;
+            if (is_locked || !(distance < least)) continue;
             nearest = e.vertex_id;
             least = distance;
         }
@@ -290,17 +287,17 @@ class Conforming {
     /// One that slides beside a bend that presses goes there.
     bool slide_to(VertexId v, const FeatureSite& bend)
     {
-        if (is_fixed(*trace_.find(v)) ||
+        if (trace_.find(v)->on.is_fixed() ||
             surgery_.commit(surgery_.propose_moves({{v, bend.material}})) != Verdict::Done)
             return false;
-        trace_.slide(v, bend.feature);
+        trace_.slide(v, bend.on.index);
         return true;
     }
 
-    bool hold_at(VertexId v, const FeatureSite& turn)
+    bool lock_at_bend(VertexId v, const FeatureSite& bend)
     {
-        if (surgery_.commit(surgery_.propose_moves({{v, turn.material}})) != Verdict::Done) return false;
-        trace_.hold(v, turn.feature, turn.turn);
+        if (surgery_.commit(surgery_.propose_moves({{v, bend.material}})) != Verdict::Done) return false;
+        trace_.lock(v, bend.on);
         ++report_.inserted;
         return true;
     }
@@ -315,7 +312,7 @@ class Conforming {
     }
 
     /// A vertex that is EOL, or has just been made, is none from now on: what presses there is a row.
-    void give_up(VertexId v, RowCause cause)
+    void demote_to_row(VertexId v, RowCause cause)
     {
         release(v);
         const int entry = state_.eol_entry(v);
@@ -323,7 +320,7 @@ class Conforming {
         constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
         if (entry >= 0)
             refused_.push_back(
-                {{v, kNone, kNone}, ContactKind::Vertex, state_.eol[entry].obstacle, -1, cause});
+                {{v, kNone, kNone}, ContactKind::Vertex, state_.eol[entry].on.obstacle, -1, cause});
         else if (made != contact_of_.end())
             refuse(state_.active[made->second], cause);
     }
@@ -344,9 +341,9 @@ class Conforming {
     {
         const VertexId a = p.vertex_id, b = q.vertex_id;
         if (!trace_.is_on_trace(a) || !trace_.is_on_trace(b)) return;
-        if (!is_trace_edge(scene_.obstacles[p.obstacle], trace_.placed(p), trace_.placed(q))) return;
+        if (!is_trace_edge(scene_.obstacles[p.on.obstacle], trace_.placed(p), trace_.placed(q))) return;
         if (surgery_.edge_tag(a, b) != kNoTag) return;
-        const int tag = trace_.tags().tag(p.is_corner ? q : p);
+        const int tag = trace_.tags().tag(p.on.is_corner() ? q : p);
         if (surgery_.has_edge(a, b))
             surgery_.set_edge_tag(a, b, tag);
         else if (share_neighbours(a, b))

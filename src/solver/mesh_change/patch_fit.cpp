@@ -10,7 +10,7 @@
 #include "solver/eol/eol_coordinates.h"
 #include "solver/mesh_change/patch_relaxation.h"
 #include "solver/mesh_change/strain_allowance.h"
-#include "solver/model/held_vertices.h"
+#include "solver/model/pin_targets.h"
 
 namespace arris {
 
@@ -24,7 +24,7 @@ class PatchFitter {
           before_(before),
           after_(after),
           placer_(scene.obstacles, scene.material.thickness, after, stars),
-          held_(find_held_vertices(scene, after, after.time)),
+          held_(find_pin_targets(scene, after, after.time)),
           creases_before_(find_creases(scene, before, stars_before)),
           creases_(find_creases(scene, after, stars))
     {
@@ -115,7 +115,7 @@ class PatchFitter {
             const int v = patch.vertices[i];
             relaxed_.is_free[v] = after_.eol_entry(after_.ids[v]) < 0 && patch.is_inside[i];
         }
-        for (const HeldVertex& held : held_) relaxed_.is_free[held.vertex] = 0;
+        for (const PinTarget& held : held_) relaxed_.is_free[held.vertex] = 0;
         for (const int v : patch.vertices)
             relaxed_.normals[v] =
                 relaxed_.is_free[v] ? find_kept_normal(scene_, after_, after_.ids[v]) : Vec3(Vec3::Zero());
@@ -199,7 +199,7 @@ class PatchFitter {
             material_drift = after_.material_velocity[v];
         } else if (const int entry = after_.eol_entry(after_.ids[v]); entry >= 0) {
             if (const EolPlacing placing = placer_.place(entry); placing.coordinates) {
-                const Obstacle& obstacle = scene_.obstacles[after_.eol[entry].obstacle];
+                const Obstacle& obstacle = scene_.obstacles[after_.eol[entry].on.obstacle];
                 basis = placing.coordinates->basis;
                 material_basis = placing.coordinates->material_basis;
                 drift = obstacle.velocity_after(after_.time, after_.mesh.world[v]);
@@ -215,7 +215,7 @@ class PatchFitter {
     const State& before_;
     State& after_;
     EolPlacer placer_;
-    std::vector<HeldVertex> held_;
+    std::vector<PinTarget> held_;
     Creases creases_before_, creases_;
     // Of vertices of other patches nothing that means anything.
     RelaxedPatch relaxed_;

@@ -8,6 +8,7 @@
 
 #include "geometry/cloth/cloth_mesh.h"
 #include "geometry/contact/obstacle_contact.h"
+#include "solver/model/feature_id.h"
 
 namespace arris {
 
@@ -27,14 +28,11 @@ struct ActiveContact {
 /// A vertex on a sharp feature of an obstacle, through which the material flows (Eulerian on Lagrangian).
 struct EolVertex {
     std::uint32_t vertex_id;
-    std::int32_t obstacle;  ///< index in the scene
-    bool is_corner;
-    std::int32_t feature;    ///< index in the obstacle's features().corners or .edges
-    Vec3 outward;            ///< unit, from the feature, in the obstacle's frame
-    std::int32_t idle;       ///< steps in a row at whose end it did not press
-    std::int32_t side = 0;   ///< of a wire or point: 1 where the normals of the cloth's faces point outward,
-                             ///< -1 where inward, 0 as long as that is not known
-    std::int32_t turn = -1;  ///< end (0 or 1) of its edge at which a wire turns and it is held; else -1
+    FeatureId on;
+    Vec3 outward;           ///< unit, from the feature, in the obstacle's frame
+    std::int32_t idle;      ///< steps in a row at whose end it did not press
+    std::int32_t side = 0;  ///< of a wire or point: 1 where the normals of the cloth's faces point outward,
+                            ///< -1 where inward, 0 as long as that is not known
 };
 
 /// Where a vertex that a pin holds was at time 0: the pin's motion maps this to where it must be.

@@ -15,7 +15,7 @@ namespace {
 /// World, now.
 Vec3 tangent_of(const Scene& scene, const State& state, const EolVertex& eol)
 {
-    const Obstacle& obstacle = scene.obstacles[eol.obstacle];
+    const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
     return obstacle.at(state.time).rotation * feature_tangent(obstacle, eol);
 }
 
@@ -47,7 +47,7 @@ double room_to_border(const Scene& scene, const State& state, const ClothStars& 
                 const Vec3 way = (state.mesh.world[next] - state.mesh.world[w]).normalized();
                 constexpr double kAlong = 0.7;  // cosine
                 if (!tangent) tangent = tangent_of(scene, state, eol);
-                if (!is_fixed(eol) && !(std::abs(way.dot(*tangent)) > kAlong)) continue;
+                if (!eol.on.is_fixed() && !(std::abs(way.dot(*tangent)) > kAlong)) continue;
                 const Vec2 &a = state.mesh.material[w], &b = state.mesh.material[next];
                 const double s = std::clamp((X - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
                 least = std::min(least, (X - a - s * (b - a)).norm());

@@ -63,7 +63,7 @@ std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const 
     const std::optional<double> s = find_share(a, b, feature, reach);
     if (!s || (*s == 0.0 && is_eol(a)) || (*s == 1.0 && is_eol(b))) return std::nullopt;
     const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
-    FeatureSite site = {o_, false, feature, X, state_.ids[*s < 0.5 ? a : b], normal};
+    FeatureSite site = {FeatureId::edge(o_, feature), X, state_.ids[*s < 0.5 ? a : b], normal};
     site.edge = {*s < 1.0 ? a : b, *s > 0.0 ? b : a};
     const auto [before, after] = stars_.border_neighbours[site.edge[0]];
     site.is_on_border = site.edge[0] == site.edge[1] ? before >= 0 : before == b || after == b;

@@ -29,7 +29,7 @@ inline constexpr double kFlat = 0.9986;
 inline constexpr double kAstrayCells = 0.3;
 
 /// Whether an EOL vertex stays.
-enum class EolHold {
+enum class EolRetention {
     None,   ///< it goes
     Loose,  ///< it goes, unless it lies on its feature between two that stay
     Firm
@@ -38,13 +38,13 @@ enum class EolHold {
 /// Of EOL vertex `entry`, at `place` in its obstacle's frame. Firm where it presses; none more than a cell
 /// from its feature, or kAstrayCells where it is led astray, nor off a corner that presses on a face now;
 /// firm where the cloth is folded, by more than 6 degrees.
-EolHold find_hold(const Scene& scene, const State& state, const ClothStars& stars, int entry,
-                  const EolCoordinates& at, const Vec3& place);
+EolRetention decide_retention(const Scene& scene, const State& state, const ClothStars& stars, int entry,
+                              const EolCoordinates& at, const Vec3& place);
 
 /// Makes loose ones firm that lie along a trace between firm ones: a trace with a hole holds the cloth there.
 /// One hold an entry of `state.eol`.
-void hold_between(const Scene& scene, const State& state, const ClothStars& stars,
-                  std::vector<EolHold>& holds);
+void retain_between(const Scene& scene, const State& state, const ClothStars& stars,
+                    std::vector<EolRetention>& retained);
 
 /// Whether an EOL vertex has come so near to the cloth's border that it must go.
 bool is_at_border(const Scene& scene, const State& state, const ClothStars& stars, const EolVertex& eol);

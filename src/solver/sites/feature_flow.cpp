@@ -57,10 +57,10 @@ Vec2 find_feature_flow(const Scene& scene, const State& state, const ClothStars&
     const int v = state.index_of(site.near);
     const Star star = look_around(state.mesh, stars.faces[v], v, state.mesh.world);
     const Mat2 inverse = star.squared_F.inverse();
-    const Vec2 flow = inverse * find_lag(scene, state, stars, v, site.obstacle);
-    if (site.is_corner || site.turn >= 0) return finite_or_zero(flow);
-    const Obstacle& obstacle = scene.obstacles[site.obstacle];
-    const auto [from, to] = feature_segment(obstacle, site.feature);
+    const Vec2 flow = inverse * find_lag(scene, state, stars, v, site.on.obstacle);
+    if (site.on.is_fixed()) return finite_or_zero(flow);
+    const Obstacle& obstacle = scene.obstacles[site.on.obstacle];
+    const auto [from, to] = feature_segment(obstacle, site.on.index);
     const Vec3 tangent = obstacle.at(state.time).rotation * (to - from);
     const Vec2 trace = (inverse * (star.F_transposed * tangent)).normalized();  // F maps it nearest
     const Vec2 across(trace.y(), -trace.x());

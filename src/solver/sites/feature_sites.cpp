@@ -12,9 +12,9 @@
 #include "geometry/obstacle/feature_path.h"
 #include "geometry/obstacle/normal_cone.h"
 #include "solver/eol/eol_features.h"
+#include "solver/sites/bend_sites.h"
 #include "solver/sites/edge_crossings.h"
 #include "solver/sites/trace_gaps.h"
-#include "solver/sites/turn_sites.h"
 
 namespace arris {
 
@@ -59,16 +59,17 @@ class SiteFinder {
     {
         const int feature = feature_of_edge(obstacle_.features(), contact.element);
         if (feature < 0) return std::nullopt;
-        if (const std::optional<FeatureSite> turn = on_turn(a, b, feature, contact.normal)) return turn;
+        if (const std::optional<FeatureSite> bend = on_bend(a, b, feature, contact.normal)) return bend;
         return crossings_.find_pressed(a, b, feature, contact.normal);
     }
 
     std::optional<FeatureSite> in_face(const std::array<int, 3>& v, const ActiveContact& contact) const
     {
-        if (const auto turn = find_held_turn(contact.element, v[0])) return at_turn(*turn, v, contact.normal);
+        if (const auto bend = find_locked_bend(contact.element, v[0]))
+            return at_bend(*bend, v, contact.normal);
         const int corner = corner_at(obstacle_.features(), contact.element);
         if (v[2] < 0) return std::nullopt;
-        if (corner < 0) return at_bend(contact.element, v, contact.normal);
+        if (corner < 0) return at_rim_bend(contact.element, v, contact.normal);
         const Vec3 &a = crossings_.positions()[v[0]], &b = crossings_.positions()[v[1]],
                    &c = crossings_.positions()[v[2]];
         const PointOnTriangle closest = closest_on_triangle(obstacle_.mesh().points[contact.element],
@@ -82,7 +83,7 @@ class SiteFinder {
 
     /// Where a rim bends at a vertex of the obstacle's mesh in the middle of a convex edge: what of the face
     /// is straight outward of it. A trace without a vertex there passes by it.
-    std::optional<FeatureSite> at_bend(int point, const std::array<int, 3>& v, const Vec3& normal) const
+    std::optional<FeatureSite> at_rim_bend(int point, const std::array<int, 3>& v, const Vec3& normal) const
     {
         constexpr double kInside = 1e-6;  // thicknesses
         const Vec3& p = obstacle_.mesh().points[point];
@@ -103,8 +104,8 @@ class SiteFinder {
             Vec2 X = Vec2::Zero();
             for (int i = 0; i < 3; ++i) X += closest.weights[i] * state_.mesh.material[v[i]];
             const auto heaviest = std::max_element(closest.weights.begin(), closest.weights.end());
-            return FeatureSite{o_,    false, feature, X, state_.ids[v[heaviest - closest.weights.begin()]],
-                               normal};
+            return FeatureSite{FeatureId::edge(o_, feature), X,
+                               state_.ids[v[heaviest - closest.weights.begin()]], normal};
         }
         return std::nullopt;
     }
@@ -140,9 +141,9 @@ class SiteFinder {
         obstacle_.find_feature_edges(box, found);
         for (const int f : found)
             for (const int point : obstacle_.topology().edges[obstacle_.features().edges[f].edge].points)
-                if (const auto turn = find_held_turn(point, v);
-                    turn && (place - obstacle_.mesh().points[point]).norm() <= reach)
-                    return make_turn(*turn, {v, -1, -1}, {1.0, 0.0, 0.0}, normal);
+                if (const auto bend = find_locked_bend(point, v);
+                    bend && (place - obstacle_.mesh().points[point]).norm() <= reach)
+                    return make_bend(*bend, {v, -1, -1}, {1.0, 0.0, 0.0}, normal);
         for (const int f : found)
             for (const int w : crossings_.neighbours(v))
                 if (const std::optional<FeatureSite> site = crossings_.find(v, w, f, normal)) return site;
@@ -150,50 +151,50 @@ class SiteFinder {
     }
 
     /// At a point of the obstacle's mesh beside vertex `v` of the cloth.
-    std::optional<FeatureTurn> find_held_turn(int point, int v) const
+    std::optional<FeatureBend> find_locked_bend(int point, int v) const
     {
-        const std::optional<FeatureTurn> turn = find_turn(obstacle_, point);
-        const bool is_held = turn && is_held_at(scene_, obstacle_, *turn, state_.mesh.material[v]);
-        return is_held ? turn : std::nullopt;
+        const std::optional<FeatureBend> bend = find_bend(obstacle_, point);
+        const bool is_held = bend && locks_at_bend(scene_, obstacle_, *bend, state_.mesh.material[v]);
+        return is_held ? bend : std::nullopt;
     }
 
     /// Where the end of a wire's edge that is nearest to the cloth's is a turn.
-    std::optional<FeatureSite> on_turn(int a, int b, int feature, const Vec3& normal) const
+    std::optional<FeatureSite> on_bend(int a, int b, int feature, const Vec3& normal) const
     {
         const SegmentPair nearest = closest_between_segments(
             {crossings_.positions()[a], crossings_.positions()[b]}, feature_segment(obstacle_, feature));
         if (nearest.t > 0.0 && nearest.t < 1.0) return std::nullopt;
         const int end = nearest.t > 0.0 ? 1 : 0;
-        const auto turn = find_held_turn(point_at(obstacle_, {feature, end}), a);
-        if (!turn || !((nearest.first - nearest.second).norm() <= kOnFeature * thickness_))
+        const auto bend = find_locked_bend(point_at(obstacle_, {feature, end}), a);
+        if (!bend || !((nearest.first - nearest.second).norm() <= kOnFeature * thickness_))
             return std::nullopt;
-        return make_turn(*turn, {a, b, -1}, {1.0 - nearest.s, nearest.s, 0.0}, normal);
+        return make_bend(*bend, {a, b, -1}, {1.0 - nearest.s, nearest.s, 0.0}, normal);
     }
 
     /// Where a turn is nearest to a face, or to the edge between two.
-    std::optional<FeatureSite> at_turn(const FeatureTurn& turn, const std::array<int, 3>& v,
+    std::optional<FeatureSite> at_bend(const FeatureBend& bend, const std::array<int, 3>& v,
                                        const Vec3& normal) const
     {
-        const Vec3 point = turn_point(obstacle_, turn);
+        const Vec3 point = bend_point(obstacle_, bend);
         const Vec3 &a = crossings_.positions()[v[0]], &b = crossings_.positions()[v[1]];
         if (v[2] >= 0) {
             const Vec3& c = crossings_.positions()[v[2]];
             const Vec3 up = (b - a).cross(c - a).normalized();
-            return make_turn(turn, v, closest_on_triangle(point, {a, b, c}, up).weights, normal);
+            return make_bend(bend, v, closest_on_triangle(point, {a, b, c}, up).weights, normal);
         }
         const double s = closest_on_segment(point, a, b);
-        return make_turn(turn, v, {1.0 - s, s, 0.0}, normal);
+        return make_bend(bend, v, {1.0 - s, s, 0.0}, normal);
     }
 
-    FeatureSite make_turn(const FeatureTurn& turn, const std::array<int, 3>& v,
+    FeatureSite make_bend(const FeatureBend& bend, const std::array<int, 3>& v,
                           const std::array<double, 3>& weights, const Vec3& normal) const
     {
-        return make_turn_site(state_, stars_, o_, turn, v, weights, normal);
+        return make_bend_site(state_, stars_, o_, bend, v, weights, normal);
     }
 
     FeatureSite make_corner(int corner, const Vec2& X, int near, const Vec3& outward) const
     {
-        return {o_, true, corner, X, state_.ids[near], outward};
+        return {FeatureId::corner(o_, corner), X, state_.ids[near], outward};
     }
 
     const Scene& scene_;
@@ -222,13 +223,13 @@ std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& sta
         std::optional<FeatureSite> site = is_eol ? std::nullopt : finder_of(contact.obstacle).find(contact);
         if (!site) continue;
         site->contact = static_cast<int>(c);
-        if (site->is_corner || site->is_bend())
+        if (site->on.is_corner() || site->is_in_face())
             sites.push_back(*site);
         else
-            by_feature[{site->obstacle, site->feature}].push_back(*site);
+            by_feature[{site->on.obstacle, site->on.index}].push_back(*site);
     }
     for (const EolVertex& eol : state.eol)
-        if (!eol.is_corner) by_feature[{eol.obstacle, eol.feature}];
+        if (!eol.on.is_corner()) by_feature[{eol.on.obstacle, eol.on.index}];
     for (auto& [feature, found] : by_feature) {
         fill_trace_gaps(finder_of(feature[0]).crossings(), feature[1], found);
         sites.insert(sites.end(), found.begin(), found.end());
@@ -236,14 +237,14 @@ std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& sta
     for (const auto& [o, finder] : finders) {
         std::vector<FeatureSite> of_obstacle;
         for (const FeatureSite& site : sites)
-            if (site.obstacle == o) of_obstacle.push_back(site);
-        const std::vector<FeatureSite> turns =
-            find_turn_sites(scene, state, stars, o, finder.crossings().positions(), of_obstacle);
-        sites.insert(sites.end(), turns.begin(), turns.end());
+            if (site.on.obstacle == o) of_obstacle.push_back(site);
+        const std::vector<FeatureSite> bends =
+            find_bend_sites(scene, state, stars, o, finder.crossings().positions(), of_obstacle);
+        sites.insert(sites.end(), bends.begin(), bends.end());
     }
     std::sort(sites.begin(), sites.end(), [](const FeatureSite& a, const FeatureSite& b) {
         const auto key_of = [](const FeatureSite& s) {
-            return std::tuple(!s.is_corner, s.turn < 0, s.obstacle, s.feature, s.material.x(),
+            return std::tuple(!s.on.is_corner(), !s.on.is_bend(), s.on.obstacle, s.on.index, s.material.x(),
                               s.material.y());
         };
         return key_of(a) < key_of(b);

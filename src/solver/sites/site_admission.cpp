@@ -21,7 +21,7 @@ constexpr double kInsertRoom = 0.3, kCornerInsertRoom = 0.5;
 /// Whether what presses at a site of an edge is flat on a face beside it.
 bool is_along_face(const Obstacle& obstacle, const FeatureSite& site)
 {
-    const auto& normals = obstacle.features().edges[site.feature].normals;
+    const auto& normals = obstacle.features().edges[site.on.index].normals;
     return std::any_of(normals.begin(), normals.end(),
                        [&](const Vec3& n) { return n.dot(site.outward) > kFlat; });
 }
@@ -33,7 +33,7 @@ std::optional<RowCause> SiteAdmission::find_refusal(const FeatureSite& site, int
     if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
     if (is_beside_other(site)) return RowCause::OtherFeature;
     if (const std::optional<RowCause> fold = find_fold_cause(site)) return fold;
-    if ((site.is_corner || site.turn >= 0) && has_vertex_on(site)) return RowCause::BesideEol;
+    if ((site.on.is_fixed()) && has_vertex_on(site)) return RowCause::BesideEol;
     return std::nullopt;
 }
 
@@ -42,16 +42,15 @@ std::optional<RowCause> SiteAdmission::find_border_cause(const FeatureSite& site
                                                          const Vec2& flow) const
 {
     const double h = scene_.eol->length(site.material);
-    EolVertex eol{site.near, site.obstacle, site.is_corner, site.feature, site.outward, 0};
-    eol.turn = site.turn;
-    if (site.is_on_border && site.turn >= 0) return RowCause::NearBorder;
-    if (site.is_on_border && !site.is_corner && is_along_border(scene_, state_, stars_, site.edge, eol))
+    const EolVertex eol{site.near, site.on, site.outward, 0};
+    if (site.is_on_border && site.on.is_bend()) return RowCause::NearBorder;
+    if (site.is_on_border && !site.on.is_corner() && is_along_border(scene_, state_, stars_, site.edge, eol))
         return RowCause::AlongBorder;
     const auto room_at = [&](const Vec2& X) {
         return room_to_border(scene_, state_, stars_, X, v, site.is_on_border, eol);
     };
     const double room = room_at(site.material);
-    if (room < (is_fixed(eol) ? kCornerInsertRoom : kInsertRoom) * h) return RowCause::NearBorder;
+    if (room < (eol.on.is_fixed() ? kCornerInsertRoom : kInsertRoom) * h) return RowCause::NearBorder;
     // What comes fast would have to go at once.
     constexpr double kAside = 1e-3;  // of the target length: to see how fast the room closes
     const Vec2 aside = kAside * h * flow.stableNormalized();
@@ -63,17 +62,17 @@ std::optional<RowCause> SiteAdmission::find_border_cause(const FeatureSite& site
 /// Of edges nearer to each other than the cloth is thick one has a trace: between two there is no room.
 bool SiteAdmission::is_beside_other(const FeatureSite& site) const
 {
-    if (site.is_corner) return false;
-    const Obstacle& obstacle = scene_.obstacles[site.obstacle];
+    if (site.on.is_corner()) return false;
+    const Obstacle& obstacle = scene_.obstacles[site.on.obstacle];
     const std::vector<FeatureEdge>& edges = obstacle.features().edges;
     const double h = scene_.eol->length(site.material);
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
-        if (e.obstacle != site.obstacle || e.is_corner || !trace_.is_on_trace(e.vertex_id) ||
-            edges[e.feature].polyline == edges[site.feature].polyline ||
+        if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
+            edges[e.on.index].polyline == edges[site.on.index].polyline ||
             !((trace_.surgery().material(e.vertex_id) - site.material).norm() < 1.5 * h))
             return false;
-        const Vec3 there = place_on_feature(obstacle, e.feature, trace_.placed(e).place).point;
-        const Vec3 here = place_on_feature(obstacle, site.feature, there).point;
+        const Vec3 there = place_on_feature(obstacle, e.on.index, trace_.placed(e).place).point;
+        const Vec3 here = place_on_feature(obstacle, site.on.index, there).point;
         return (there - here).norm() < scene_.material.thickness;
     });
 }
@@ -81,10 +80,10 @@ bool SiteAdmission::is_beside_other(const FeatureSite& site) const
 /// Whether an EOL vertex is of a fold that has left its edge.
 bool SiteAdmission::has_left(const EolVertex& eol) const
 {
-    const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
     if (!is_on_convex_edge(obstacle, eol)) return false;
     const Vec3 place = trace_.placed(eol).place;
-    return has_left_feature(place_on_feature(obstacle, eol.feature, place).point, place,
+    return has_left_feature(place_on_feature(obstacle, eol.on.index, place).point, place,
                             scene_.material.thickness);
 }
 
@@ -105,11 +104,11 @@ Vec3 SiteAdmission::world_at(const FeatureSite& site) const
 std::optional<RowCause> SiteAdmission::find_fold_cause(const FeatureSite& site) const
 {
     constexpr double kRoom = 1.0;  // target lengths: at less two traces are not told apart
-    if (site.is_corner) return std::nullopt;
+    if (site.on.is_corner()) return std::nullopt;
     const std::optional<double> way = find_free_fold(site);
     if (!way) return std::nullopt;
     const bool is_between = site.contact < 0;  // and presses nowhere itself
-    if (is_between || is_along_face(scene_.obstacles[site.obstacle], site)) return RowCause::FlatBehind;
+    if (is_between || is_along_face(scene_.obstacles[site.on.obstacle], site)) return RowCause::FlatBehind;
     return *way < kRoom * scene_.eol->length(site.material) ? std::optional(RowCause::BesideEol)
                                                             : std::nullopt;
 }
@@ -117,15 +116,15 @@ std::optional<RowCause> SiteAdmission::find_fold_cause(const FeatureSite& site) 
 /// How far the fold that a site follows is from the edge, m: the least, if there are several.
 std::optional<double> SiteAdmission::find_free_fold(const FeatureSite& site) const
 {
-    const Obstacle& obstacle = scene_.obstacles[site.obstacle];
+    const Obstacle& obstacle = scene_.obstacles[site.on.obstacle];
     const std::vector<FeatureEdge>& edges = obstacle.features().edges;
     const Vec3 here = obstacle.at(state_.time).inverse(world_at(site));
-    const auto [from, to] = feature_segment(obstacle, site.feature);
+    const auto [from, to] = feature_segment(obstacle, site.on.index);
     const double h = scene_.eol->length(site.material);
     std::optional<double> least;
     for (const EolVertex& e : trace_.eol()) {
-        if (e.obstacle != site.obstacle || e.is_corner || !trace_.is_on_trace(e.vertex_id) ||
-            edges[e.feature].polyline != edges[site.feature].polyline || !has_left(e))
+        if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
+            edges[e.on.index].polyline != edges[site.on.index].polyline || !has_left(e))
             continue;
         constexpr double kShare = 0.5;  // of the fold's way from the edge
         constexpr double kSoon = 0.05;  // s, in which it flows through the fold
@@ -144,18 +143,18 @@ std::optional<double> SiteAdmission::find_free_fold(const FeatureSite& site) con
 bool SiteAdmission::is_in_plane(const EolVertex& eol) const
 {
     constexpr double kOff = 0.1;  // thicknesses
-    const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
+    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
     const Vec3 place = trace_.placed(eol).place;
-    if (eol.is_corner) return true;
-    const FeatureEdge& edge = obstacle.features().edges[eol.feature];
-    const Vec3 off = place - place_on_feature(obstacle, eol.feature, place).point;
+    if (eol.on.is_corner()) return true;
+    const FeatureEdge& edge = obstacle.features().edges[eol.on.index];
+    const Vec3 off = place - place_on_feature(obstacle, eol.on.index, place).point;
     if (edge.kind != FeatureKind::Convex) return off.norm() <= kOnFeature * scene_.material.thickness;
     if (has_left(eol))  // and may be anywhere beyond both faces
         return std::all_of(edge.normals.begin(), edge.normals.end(), [&](const Vec3& normal) {
             return normal.dot(off) >= -kOff * scene_.material.thickness;
         });
     const std::optional<FeatureFrame> frame =
-        find_edge_frame(obstacle, eol.feature, place, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+        find_edge_frame(obstacle, eol.on.index, place, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
     const Vec3 across = frame->tangent.cross(frame->outward);
     return std::abs(across.dot(place - frame->point)) <= kOff * scene_.material.thickness;
 }
@@ -163,10 +162,11 @@ bool SiteAdmission::is_in_plane(const EolVertex& eol) const
 bool SiteAdmission::is_on_side(const EolVertex& eol) const
 {
     constexpr double kAlong = 0.5;  // cosine
-    const Obstacle& obstacle = scene_.obstacles[eol.obstacle];
-    if (eol.is_corner || obstacle.features().edges[eol.feature].kind == FeatureKind::Convex) return true;
+    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
+    if (eol.on.is_corner() || obstacle.features().edges[eol.on.index].kind == FeatureKind::Convex)
+        return true;
     const Vec3 place = trace_.placed(eol).place;
-    const Vec3 from = place - place_on_feature(obstacle, eol.feature, place).point;
+    const Vec3 from = place - place_on_feature(obstacle, eol.on.index, place).point;
     return from.dot(eol.outward) >= kAlong * from.norm();
 }
 
@@ -175,8 +175,7 @@ bool SiteAdmission::has_vertex_on(const FeatureSite& site) const
 {
     const double h = scene_.eol->length(site.material);
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
-        return is_fixed(e) && e.obstacle == site.obstacle && e.is_corner == site.is_corner &&
-               e.feature == site.feature && e.turn == site.turn && trace_.is_on_trace(e.vertex_id) &&
+        return e.on.is_fixed() && e.on == site.on && trace_.is_on_trace(e.vertex_id) &&
                (trace_.surgery().material(e.vertex_id) - site.material).norm() < h;
     });
 }

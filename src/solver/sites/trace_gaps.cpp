@@ -61,9 +61,9 @@ class GapFilling {
     bool is_on_feature(int v) const
     {
         const int entry = state_.eol_entry(state_.ids[v]);
-        return entry >= 0 && !state_.eol[entry].is_corner &&
-               state_.eol[entry].obstacle == crossings_.obstacle_index() &&
-               state_.eol[entry].feature == feature_;
+        return entry >= 0 && !state_.eol[entry].on.is_corner() &&
+               state_.eol[entry].on.obstacle == crossings_.obstacle_index() &&
+               state_.eol[entry].on.index == feature_;
     }
 
     /// What is on the feature already; returned are those of them from which the trace may go on.

@@ -16,11 +16,11 @@ FeatureTags::FeatureTags(const std::vector<Obstacle>& obstacles) : obstacles_(ob
     }
 }
 
-int FeatureTags::tag(std::int32_t obstacle, bool is_corner, std::int32_t feature) const
+int FeatureTags::tag(const FeatureId& on) const
 {
-    const ObstacleFeatures& features = obstacles_[obstacle].features();
-    return first_[obstacle] +
-           (is_corner ? features.polyline_count + feature : features.edges[feature].polyline);
+    const ObstacleFeatures& features = obstacles_[on.obstacle].features();
+    return first_[on.obstacle] +
+           (on.is_corner() ? features.polyline_count + on.index : features.edges[on.index].polyline);
 }
 
 TraceMesh::TraceMesh(const Scene& scene, const State& state, const ClothStars& stars,
@@ -33,12 +33,12 @@ TraceMesh::TraceMesh(const Scene& scene, const State& state, const ClothStars& s
       eol_(state.eol)
 {
     for (const EolVertex& e : eol_) {
-        surgery_.set_role(e.vertex_id, is_fixed(e) ? TraceRole::Node : TraceRole::OnTrace, tags_.tag(e));
+        surgery_.set_role(e.vertex_id, e.on.is_fixed() ? TraceRole::Node : TraceRole::OnTrace, tags_.tag(e));
         flow_[e.vertex_id] = state.material_velocity[state.index_of(e.vertex_id)];
     }
     for (const auto& [a, b] : find_trace_edges(obstacles_, state, stars)) {
         const EolVertex &p = eol_[a], &q = eol_[b];
-        surgery_.set_edge_tag(p.vertex_id, q.vertex_id, tags_.tag(p.is_corner ? q : p));
+        surgery_.set_edge_tag(p.vertex_id, q.vertex_id, tags_.tag(p.on.is_corner() ? q : p));
     }
     surgery_.take_touched();
 }
@@ -73,16 +73,15 @@ EolVertex& TraceMesh::entry_of(VertexId v)
 
 void TraceMesh::slide(VertexId v, int feature)
 {
-    entry_of(v).feature = feature;
+    entry_of(v).on.index = feature;
 }
 
-void TraceMesh::hold(VertexId v, int feature, int turn)
+void TraceMesh::lock(VertexId v, const FeatureId& bend)
 {
     surgery_.set_role(v, TraceRole::Node, surgery_.tag(v));
-    EolVertex& held = entry_of(v);
-    held.feature = feature;
-    held.turn = turn;
-    held.idle = 0;
+    EolVertex& locked = entry_of(v);
+    locked.on = bend;
+    locked.idle = 0;
 }
 
 void TraceMesh::forget_released()
@@ -93,7 +92,7 @@ void TraceMesh::forget_released()
 
 PlacedEol TraceMesh::placed(const EolVertex& eol) const
 {
-    return {eol, obstacles_[eol.obstacle].at(state_.time).inverse(surgery_.world(eol.vertex_id))};
+    return {eol, obstacles_[eol.on.obstacle].at(state_.time).inverse(surgery_.world(eol.vertex_id))};
 }
 
 std::vector<PlacedEol> TraceMesh::placed() const
@@ -108,12 +107,13 @@ std::optional<EolVertex> TraceMesh::like_neighbour(VertexId v, int tag) const
 {
     for (const VertexId w : surgery_.ring(v).vertices) {
         const EolVertex* known = find(w);
-        if (!known || known->is_corner || tags_.tag(*known) != tag) continue;
+        if (!known || known->on.is_corner() || tags_.tag(*known) != tag) continue;
         EolVertex made = *known;
         made.vertex_id = v;
         made.idle = 0;
-        made.turn = -1;
-        made.feature = follow_polyline(obstacles_[made.obstacle], made.feature, placed(made).place).feature;
+        const std::int32_t o = known->on.obstacle;
+        made.on =
+            FeatureId::edge(o, follow_polyline(obstacles_[o], known->on.index, placed(made).place).feature);
         return made;
     }
     return std::nullopt;

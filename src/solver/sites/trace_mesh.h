@@ -18,8 +18,8 @@ class FeatureTags {
   public:
     explicit FeatureTags(const std::vector<Obstacle>& obstacles);
 
-    int tag(std::int32_t obstacle, bool is_corner, std::int32_t feature) const;
-    int tag(const EolVertex& vertex) const { return tag(vertex.obstacle, vertex.is_corner, vertex.feature); }
+    int tag(const FeatureId& on) const;
+    int tag(const EolVertex& vertex) const { return tag(vertex.on); }
 
   private:
     const std::vector<Obstacle>& obstacles_;
@@ -48,8 +48,8 @@ class TraceMesh {
     /// A new entry; a flow that is known stays.
     void add(const EolVertex& made, const Vec2& flow);
     void forget_released();
-    /// One that slides along its wire is held where that turns, from now on (EolVertex::turn).
-    void hold(VertexId v, int feature, int turn);
+    /// Fixes a vertex that slides along its wire at this bend of the wire.
+    void lock(VertexId v, const FeatureId& bend);
 
     /// One that slides along its polyline is on that edge of it now.
     void slide(VertexId v, int feature);

@@ -21,17 +21,17 @@ std::optional<double> length_before(const Obstacle& obstacle, const Polyline& po
     const auto point_of = [&](const PolylineEdge& edge, bool is_end) {
         return point_at(obstacle, {edge.feature, edge.is_forward == is_end ? 1 : 0});
     };
-    if (eol.is_corner) {
-        const int point = features.corners[eol.feature].point;
+    if (eol.on.is_corner()) {
+        const int point = features.corners[eol.on.index].point;
         if (point == point_of(polyline.edges.front(), false)) return 0.0;
         if (point == point_of(polyline.edges.back(), true)) return polyline.length;
         return std::nullopt;
     }
     const auto at = std::find_if(polyline.edges.begin(), polyline.edges.end(),
-                                 [&](const PolylineEdge& e) { return e.feature == eol.feature; });
+                                 [&](const PolylineEdge& e) { return e.feature == eol.on.index; });
     if (at == polyline.edges.end()) return std::nullopt;
-    const auto [a, b] = feature_segment(obstacle, eol.feature);
-    const double s = place_on_feature(obstacle, eol.feature, placed.place).s;
+    const auto [a, b] = feature_segment(obstacle, eol.on.index);
+    const double s = place_on_feature(obstacle, eol.on.index, placed.place).s;
     return at->begin + (at->is_forward ? s : 1.0 - s) * (b - a).norm();
 }
 
@@ -43,7 +43,7 @@ void add_along(const Obstacle& obstacle, int o, int index, const std::vector<Pla
     const Polyline polyline = trace_polyline(obstacle, index);
     std::vector<std::pair<double, const PlacedEol*>> row;  // by length along the polyline
     for (const PlacedEol& p : placed) {
-        if (p.eol.obstacle != o) continue;
+        if (p.eol.on.obstacle != o) continue;
         if (const auto along = length_before(obstacle, polyline, p)) row.emplace_back(*along, &p);
     }
     std::sort(row.begin(), row.end(), [](const auto& p, const auto& q) {
@@ -66,9 +66,9 @@ Neighbours find_trace_neighbours(const std::vector<Obstacle>& obstacles, const s
 {
     std::set<std::pair<int, int>> polylines;  // of obstacle and index
     for (const PlacedEol& p : placed)
-        if (!p.eol.is_corner)
-            polylines.emplace(p.eol.obstacle,
-                              obstacles[p.eol.obstacle].features().edges[p.eol.feature].polyline);
+        if (!p.eol.on.is_corner())
+            polylines.emplace(p.eol.on.obstacle,
+                              obstacles[p.eol.on.obstacle].features().edges[p.eol.on.index].polyline);
     Neighbours neighbours;
     for (const auto& [o, index] : polylines) add_along(obstacles[o], o, index, placed, neighbours);
     return neighbours;

@@ -27,7 +27,8 @@ Checkpoint make_checkpoint()
     constexpr std::uint32_t kNo = ActiveContact::kNoVertex;
     checkpoint.state.active = {{{2, 5, kNo}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1},
                                {{2, kNo, kNo}, ContactKind::Vertex, 1, 7, Vec3::UnitZ(), 1e-7}};
-    checkpoint.state.eol = {{1, 0, false, 4, Vec3::UnitZ(), 0, 0, 1}, {5, 1, true, 2, Vec3::UnitX(), 2, -1}};
+    checkpoint.state.eol = {{1, FeatureId::bend(0, 4, 1), Vec3::UnitZ(), 0, 0},
+                            {5, FeatureId::corner(1, 2), Vec3::UnitX(), 2, -1}};
     checkpoint.state.material_velocity[1] = Vec2(0.25, -1e-310);
     checkpoint.state.crossings = 3;
     checkpoint.position = {0.0625, 3};
@@ -59,12 +60,12 @@ TEST(Checkpoint, ReadsBackToTheSameBytes)
     EXPECT_EQ(read.state.active[0].normal, Vec3::UnitX());
     EXPECT_EQ(read.state.active[1].obstacle, 1);
     EXPECT_EQ(read.state.eol[1].vertex_id, 5u);
-    EXPECT_TRUE(read.state.eol[1].is_corner);
-    EXPECT_EQ(read.state.eol[1].feature, 2);
+    EXPECT_TRUE(read.state.eol[1].on.is_corner());
+    EXPECT_EQ(read.state.eol[1].on.index, 2);
     EXPECT_EQ(read.state.eol[1].idle, 2);
     EXPECT_EQ(read.state.eol[1].side, -1);
-    EXPECT_EQ(read.state.eol[0].turn, 1);
-    EXPECT_EQ(read.state.eol[1].turn, -1);
+    EXPECT_EQ(read.state.eol[0].on.end, 1);
+    EXPECT_EQ(read.state.eol[1].on.end, -1);
     EXPECT_EQ(read.state.eol[0].outward, Vec3::UnitZ());
     EXPECT_EQ(read.state.material_velocity[1], Vec2(0.25, -1e-310));
     EXPECT_EQ(read.state.crossings, 3);
@@ -139,8 +140,8 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("EOL vertex", [](Checkpoint& c) { c.state.eol[1].vertex_id = 99; });
     refused("EOL direction", [&](Checkpoint& c) { c.state.eol[0].outward.x() = kNan; });
     refused("EOL side", [](Checkpoint& c) { c.state.eol[0].side = 2; });
-    refused("EOL turn", [](Checkpoint& c) { c.state.eol[0].turn = 2; });
-    refused("EOL turn of a corner", [](Checkpoint& c) { c.state.eol[1].turn = 0; });
+    refused("EOL turn", [](Checkpoint& c) { c.state.eol[0].on.end = 2; });
+    refused("EOL turn of a corner", [](Checkpoint& c) { c.state.eol[1].on.end = 0; });
     refused("EOL count", [](Checkpoint& c) { c.state.eol[0].idle = -1; });
     refused("crossings", [](Checkpoint& c) { c.state.crossings = -1; });
 }

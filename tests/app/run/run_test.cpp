@@ -315,9 +315,9 @@ TEST_F(Run, ThatObstaclesCrushNamesAVertexByItsPlace)
         "duration = 1\n[cloth]\nsize = [0.5, 0.5]\nresolution = [4, 4]\ntranslate = [-0.25, -0.25, 0.11]\n"
         "[gravity]\n[[obstacle]]\nbox = [0.3, 0.3, 0.2]\n[[obstacle]]\nbox = [0.3, 0.3, 0.1]\n"
         "translate = [0, 0, 0.3]\nmotion = {velocity = [0, 0, -1]}\n");
-    Program program(folder, {"run", scene, "-o", folder / "crushed"});
+    Program program(folder, {"run", scene, "-o", folder / "overconstrained"});
     EXPECT_NE(program.wait(), 0);
-    const nlohmann::json report = nlohmann::json::parse(read_bytes(folder / "crushed/report.json"));
+    const nlohmann::json report = nlohmann::json::parse(read_bytes(folder / "overconstrained/report.json"));
     EXPECT_EQ(report["status"], "infeasible");
     const std::string message = report["message"];
     EXPECT_TRUE(std::regex_search(

@@ -76,33 +76,33 @@ TEST(FollowPolyline, DoesNotJumpToAStrandNearby)
     EXPECT_EQ(follow_polyline(hairpin, 0, Vec3(0.5, 9e-4, 0)).feature, 0);
 }
 
-TEST(FindTurn, IsWhereAWireGoesOnElsewhereButNoCorner)
+TEST(FindBend, IsWhereAWireGoesOnElsewhereButNoCorner)
 {
     const Obstacle wire = make_bent();
-    for (const auto& [point, is_turn] : {std::pair(0, false), {1, true}, {2, true}, {3, false}})
-        EXPECT_EQ(find_turn(wire, point).has_value(), is_turn) << point;
-    const FeatureTurn first = *find_turn(wire, 1);
-    EXPECT_EQ(turn_point(wire, first), Vec3(1, 0, 0));
+    for (const auto& [point, is_wire_bend] : {std::pair(0, false), {1, true}, {2, true}, {3, false}})
+        EXPECT_EQ(find_bend(wire, point).has_value(), is_wire_bend) << point;
+    const FeatureBend first = *find_bend(wire, 1);
+    EXPECT_EQ(bend_point(wire, first), Vec3(1, 0, 0));
     const Vec3 halfway = (Vec3::UnitX() + Vec3(1, 0.1, 0).normalized()).normalized();
     EXPECT_LT((tangent_at(wire, first) - halfway).norm(), kRoundOff);
     const Obstacle right = make_polyline({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, false);
-    EXPECT_FALSE(find_turn(right, 1)) << "a corner";
+    EXPECT_FALSE(find_bend(right, 1)) << "a corner";
     const Obstacle straight = make_polyline({{0, 0, 0}, {1, 0, 0}, {2, 0.017, 0}}, false);
-    EXPECT_FALSE(find_turn(straight, 1)) << "less than a degree";
+    EXPECT_FALSE(find_bend(straight, 1)) << "less than a degree";
     const Obstacle box = samples::make_obstacle(samples::box({-1, -1, -1}, {1, 1, 1}));
-    EXPECT_FALSE(find_turn(box, 0)) << "no wire";
+    EXPECT_FALSE(find_bend(box, 0)) << "no wire";
 }
 
-TEST(FindTurn, HasATangentAlongItsEdgeWhicheverWayTheOthersRun)
+TEST(FindBend, HasATangentAlongItsEdgeWhicheverWayTheOthersRun)
 {
     // The last edge of a loop begins where the first one does.
     for (const int count : {8, 24}) {
         const Obstacle loop = make_polygon(count);
         for (int point = 0; point < count; ++point) {
-            const std::optional<FeatureTurn> turn = find_turn(loop, point);
+            const std::optional<FeatureBend> turn = find_bend(loop, point);
             ASSERT_TRUE(turn) << point;
             const Vec3& at = loop.mesh().points[point];
-            EXPECT_EQ(turn_point(loop, *turn), at);
+            EXPECT_EQ(bend_point(loop, *turn), at);
             const Vec3 tangent = tangent_at(loop, *turn);
             EXPECT_NEAR(std::abs(tangent.dot(Vec3::UnitZ().cross(at))), 1.0, kRoundOff) << point;
             const auto& ends = loop.topology().edges[loop.features().edges[turn->feature].edge].points;
@@ -117,7 +117,7 @@ TEST(MissedByChord, IsTheHeightOfTheTurnOverItWhereBothEdgesAreAsLong)
         const double turn = degrees * M_PI / 180.0;
         const Vec3 onward(std::cos(turn), std::sin(turn), 0);
         const Obstacle wire = make_polyline({{-1, 0, 0}, {0, 0, 0}, 0.5 * onward, 2.0 * onward}, false);
-        const FeatureTurn at = *find_turn(wire, 1);
+        const FeatureBend at = *find_bend(wire, 1);
         for (const double reach : {0.1, 0.5}) {
             const Vec3 middle = 0.5 * reach * (onward - Vec3::UnitX());
             EXPECT_NEAR(missed_by_chord(wire, at, reach), middle.norm(), kRoundOff) << degrees;
@@ -125,7 +125,7 @@ TEST(MissedByChord, IsTheHeightOfTheTurnOverItWhereBothEdgesAreAsLong)
         EXPECT_EQ(missed_by_chord(wire, at, 0.51), 0.0) << "the edge after it is shorter";
     }
     // A circle of short edges is a curve to what reaches farther.
-    EXPECT_EQ(missed_by_chord(make_polygon(200), *find_turn(make_polygon(200), 7), 0.05), 0.0);
+    EXPECT_EQ(missed_by_chord(make_polygon(200), *find_bend(make_polygon(200), 7), 0.05), 0.0);
 }
 
 TEST(DistanceAlong, GoesTheShorterWayAroundALoop)

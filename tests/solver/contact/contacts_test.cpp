@@ -77,7 +77,7 @@ TEST(ShareRoom, DividesWhatThereIs)
             Setting gap = make_gap(room, where * room);
             const SharedRoom shared = gap.share();
             EXPECT_TRUE(shared.is_changed);
-            EXPECT_FALSE(shared.crushed) << room;
+            EXPECT_FALSE(shared.overconstrained) << room;
             double kept = 0.0;
             for (const Contact& contact : gap.contacts) {
                 kept += contact.in_frame.least_gap;
@@ -105,8 +105,8 @@ TEST(ShareRoom, NamesAVertexThatHasNone)
     for (const double room : {0.0, -1e-3, -10.0}) {
         Setting gap = make_gap(room, 0.5 * room);
         const SharedRoom shared = gap.share();
-        ASSERT_TRUE(shared.crushed) << room;
-        EXPECT_EQ(*shared.crushed, 0);
+        ASSERT_TRUE(shared.overconstrained) << room;
+        EXPECT_EQ(*shared.overconstrained, 0);
         for (const Contact& contact : gap.contacts) EXPECT_EQ(contact.in_frame.least_gap, 0.0);
     }
 }
@@ -118,7 +118,7 @@ TEST(ShareRoom, LetsAVertexSlipOutBetweenPlanesThatDoNotFaceEachOther)
     wedge.add(1, 0, Vec3(0.3, 0, -1), Vec3::Zero());
     const SharedRoom shared = wedge.share();
     EXPECT_TRUE(shared.is_changed);
-    EXPECT_FALSE(shared.crushed);
+    EXPECT_FALSE(shared.overconstrained);
 }
 
 TEST(ShareRoom, IsOfOneVertexAndOfNormalsThatOppose)

@@ -98,7 +98,7 @@ TEST(FoldContacts, AreNoneOfAVertexThatIsHeldElsewhere)
     ASSERT_TRUE(is_of(other));
     cloth.scene.obstacles.push_back(Obstacle(
         "nail", make_points({cloth.state.mesh.world[beside] - Vec3(0.0, 0.0, kThickness)}), {}, {}, 30.0));
-    cloth.state.eol[static_cast<std::size_t>(cloth.add_eol(beside, true, 0))].obstacle = 1;
+    cloth.state.eol[static_cast<std::size_t>(cloth.add_eol(beside, true, 0))].on.obstacle = 1;
     EXPECT_FALSE(is_of(beside));
     EXPECT_TRUE(is_of(other));
 }

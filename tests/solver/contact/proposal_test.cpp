@@ -24,7 +24,7 @@ struct Above {
     State state;
     std::vector<MeshEdge> edges;
     Prediction prediction;
-    std::vector<HeldVertex> held;
+    std::vector<PinTarget> held;
     std::vector<ObstacleStep> steps;
     Proposal proposal;
 
@@ -178,7 +178,7 @@ struct OverPlane {
         contacts = {place_contact(contact, 0, steps[0], prediction)};
     }
 
-    double restore(double growth, const std::vector<HeldVertex>& held = {})
+    double restore(double growth, const std::vector<PinTarget>& held = {})
     {
         restore_stand_off(contacts, steps, held, kThickness, growth, proposal);
         EXPECT_EQ(proposal.velocity[0], Vec3(0, 0, -1)) << "never through the velocity";

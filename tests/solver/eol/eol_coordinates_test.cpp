@@ -178,11 +178,11 @@ TEST(EolCoordinates, WhereAWireTurnsAreOutwardAndFlowBothWays)
             Obstacle("wire", make_wire({{0.1, -1, 0}, {0, 0, 0}, {0.1, 1, 0}}, false), {}, {}, 30.0),
             make_draped({8, 0.0, fold}));
         const int v = cloth.vertex_at(0.2, 0.2);
-        const std::optional<FeatureTurn> turn = find_turn(cloth.scene.obstacles[0], 1);
+        const std::optional<FeatureBend> turn = find_bend(cloth.scene.obstacles[0], 1);
         ASSERT_TRUE(turn);
         EolVertex& eol = cloth.state.eol[cloth.add_eol(v, false, turn->feature)];
         eol.outward = Vec3::UnitZ();
-        eol.turn = turn->end;
+        eol.on.end = turn->end;
         const EolPlacing placing = cloth.place(v);
         ASSERT_TRUE(placing.coordinates) << fold;
         const EolCoordinates& at = *placing.coordinates;
@@ -193,8 +193,8 @@ TEST(EolCoordinates, WhereAWireTurnsAreOutwardAndFlowBothWays)
         expect_parallel(at.material_basis.col(1), Vec2::UnitY());
         expect_parallel(at.material_basis.col(2), Vec2::UnitX());
         follow_features(cloth.scene.obstacles, cloth.state);
-        EXPECT_EQ(cloth.state.eol[0].feature, turn->feature);
-        EXPECT_EQ(cloth.state.eol[0].turn, turn->end);
+        EXPECT_EQ(cloth.state.eol[0].on.index, turn->feature);
+        EXPECT_EQ(cloth.state.eol[0].on.end, turn->end);
     }
 }
 
@@ -526,8 +526,8 @@ PlacedEol placed_on(const Obstacle& obstacle, const EolVertex& eol)
 {
     const ObstacleFeatures& features = obstacle.features();
     const std::vector<Vec3>& points = obstacle.mesh().points;
-    if (eol.is_corner) return {eol, points[features.corners[eol.feature].point]};
-    const auto& ends = obstacle.topology().edges[features.edges[eol.feature].edge].points;
+    if (eol.on.is_corner()) return {eol, points[features.corners[eol.on.index].point]};
+    const auto& ends = obstacle.topology().edges[features.edges[eol.on.index].edge].points;
     return {eol, 0.5 * (points[ends[0]] + points[ends[1]])};
 }
 
@@ -542,16 +542,17 @@ TEST(TraceEdge, JoinsVerticesOfOneStretchAndItsEnds)
 {
     const Obstacle ridge = make_ridge(60.0);
     const int tip = testing::tip_of(ridge), end = testing::end_of(ridge);
-    const EolVertex on_tip{0, 0, false, tip, Vec3::UnitZ(), 0}, at_end{1, 0, true, end, Vec3::UnitZ(), 0};
+    const EolVertex on_tip{0, FeatureId::edge(0, tip), Vec3::UnitZ(), 0},
+        at_end{1, FeatureId::corner(0, end), Vec3::UnitZ(), 0};
     EXPECT_TRUE(is_joined(ridge, on_tip, on_tip));
     EXPECT_TRUE(is_joined(ridge, on_tip, at_end));
     EXPECT_TRUE(is_joined(ridge, at_end, on_tip));
     EolVertex elsewhere = on_tip;
-    elsewhere.obstacle = 1;
+    elsewhere.on.obstacle = 1;
     EXPECT_FALSE(is_trace_edge(ridge, placed_on(ridge, on_tip), {elsewhere, Vec3::Zero()}));
     const auto& features = ridge.features();
     for (int f = 0; f < static_cast<int>(features.edges.size()); ++f) {
-        const EolVertex other{2, 0, false, f, Vec3::UnitZ(), 0};
+        const EolVertex other{2, FeatureId::edge(0, f), Vec3::UnitZ(), 0};
         EXPECT_EQ(is_joined(ridge, on_tip, other), f == tip);
         const auto& ends = ridge.topology().edges[features.edges[f].edge].points;
         const int point = features.corners[end].point;
@@ -561,7 +562,7 @@ TEST(TraceEdge, JoinsVerticesOfOneStretchAndItsEnds)
             const int at = features.corners[c].point;
             if (at == point) continue;
             if ((ends[0] == at && ends[1] == point) || (ends[1] == at && ends[0] == point)) {
-                EXPECT_TRUE(is_joined(ridge, at_end, {3, 0, true, c, Vec3::UnitZ(), 0}));
+                EXPECT_TRUE(is_joined(ridge, at_end, {3, FeatureId::corner(0, c), Vec3::UnitZ(), 0}));
             }
         }
     }
@@ -585,7 +586,7 @@ PlacedEol on_loop(const EolVertex& eol, double degrees)
 
 int edge_at(const Obstacle& loop, double degrees)
 {
-    const PlacedEol at = on_loop({0, 0, false, 0, Vec3::UnitZ(), 0}, degrees);
+    const PlacedEol at = on_loop({0, FeatureId::edge(0, 0), Vec3::UnitZ(), 0}, degrees);
     int nearest = 0;
     for (int f = 0; f < static_cast<int>(loop.features().edges.size()); ++f) {
         const auto distance = [&](int g) {
@@ -606,8 +607,8 @@ TEST(TraceEdge, FollowsAPolylineOfManySegmentsButNotAcrossIt)
                                              {0.0, 180.0, false},
                                              {10.0, 170.0, false},
                                              {100.0, 240.0, false}}) {
-        const EolVertex a{0, 0, false, edge_at(loop, from), Vec3::UnitZ(), 0};
-        const EolVertex b{1, 0, false, edge_at(loop, to), Vec3::UnitZ(), 0};
+        const EolVertex a{0, FeatureId::edge(0, edge_at(loop, from)), Vec3::UnitZ(), 0};
+        const EolVertex b{1, FeatureId::edge(0, edge_at(loop, to)), Vec3::UnitZ(), 0};
         EXPECT_EQ(is_trace_edge(loop, on_loop(a, from), on_loop(b, to)), is_along) << from << " to " << to;
     }
 }
@@ -621,7 +622,7 @@ TEST(FollowFeatures, VerticesPassOnFromSegmentToSegment)
     for (double degrees = 5.3; degrees < 400.0; degrees += 7.0) {
         cloth.state.mesh.world[v] = on_loop(cloth.state.eol[0], degrees).place * 1.001;
         follow_features(cloth.scene.obstacles, cloth.state);
-        EXPECT_EQ(cloth.state.eol[0].feature, edge_at(loop, degrees)) << degrees;
+        EXPECT_EQ(cloth.state.eol[0].on.index, edge_at(loop, degrees)) << degrees;
     }
     // Where its wire ends it stays on the last segment.
     EolCloth open(Obstacle("wire", make_wire({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}}, false), {}, {}, 30.0),
@@ -630,7 +631,7 @@ TEST(FollowFeatures, VerticesPassOnFromSegmentToSegment)
     for (const auto& [x, feature] : {std::pair(-0.5, 0), {0.5, 0}, {1.5, 1}, {3.0, 1}, {0.9, 0}}) {
         open.state.mesh.world[v] = Vec3(x, 0.0, 0.001);
         follow_features(open.scene.obstacles, open.state);
-        EXPECT_EQ(open.state.eol[0].feature, feature) << x;
+        EXPECT_EQ(open.state.eol[0].on.index, feature) << x;
     }
 }
 

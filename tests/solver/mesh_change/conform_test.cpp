@@ -115,8 +115,8 @@ TEST(Conform, RowsOnAnEdgeBecomeVerticesOnItWithEdgesAlongIt)
             EXPECT_TRUE(has_edge(state, row[k - 1], row[k])) << turn << " after " << k;
         EXPECT_EQ(made.surgery.tagged_edges.size(), row.size() - 1) << "all of the trace is known as such";
         for (const EolVertex& e : state.eol) {
-            EXPECT_EQ(e.feature, testing::tip_of(cloth.scene.obstacles[0]));
-            EXPECT_FALSE(e.is_corner);
+            EXPECT_EQ(e.on.index, testing::tip_of(cloth.scene.obstacles[0]));
+            EXPECT_FALSE(e.on.is_corner());
             EXPECT_EQ(e.idle, 0);
         }
         // It reaches from border to border, but for what is too near a corner of the cloth.
@@ -165,7 +165,7 @@ TEST(Conform, AWireOfManySegmentsBecomesOneTrace)
             EXPECT_TRUE(has_edge(cloth.state, row[k - 1], row[k])) << k;
         for (const EolVertex& eol : cloth.state.eol) {
             const Vec3& x = cloth.state.mesh.world[cloth.state.index_of(eol.vertex_id)];
-            const Vec3 nearest = place_on_feature(cloth.scene.obstacles[0], eol.feature, x).point;
+            const Vec3 nearest = place_on_feature(cloth.scene.obstacles[0], eol.on.index, x).point;
             EXPECT_NEAR((x - nearest).norm(), kThickness, kOnFeature) << "each is on the segment below it";
         }
     }
@@ -185,7 +185,7 @@ TEST(Conform, AWireThatBendsWithinACellHasATrace)
         EXPECT_GT(cloth.state.eol.size(), 5u) << radius;
         for (const EolVertex& eol : cloth.state.eol) {
             const Vec3& x = cloth.state.mesh.world[cloth.state.index_of(eol.vertex_id)];
-            const Vec3 nearest = place_on_feature(cloth.scene.obstacles[0], eol.feature, x).point;
+            const Vec3 nearest = place_on_feature(cloth.scene.obstacles[0], eol.on.index, x).point;
             EXPECT_NEAR((x - nearest).norm(), kThickness, kOnFeature);
         }
     }
@@ -196,7 +196,7 @@ double held_off(const State& state, const Vec3& place)
 {
     double nearest = 1.0;
     for (const EolVertex& e : state.eol)
-        if (e.turn >= 0)
+        if (e.on.is_bend())
             nearest = std::min(nearest, (state.mesh.world[state.index_of(e.vertex_id)] - place).norm());
     return nearest;
 }
@@ -256,7 +256,7 @@ TEST(Conform, ATurnThatPressesTakesTheVertexThatSlidesBesideIt)
     const double y = 0.01;
     EolCloth cloth = lying_on(make_turning(y, 15.0), 10.0);
     take(cloth);
-    for (EolVertex& e : cloth.state.eol) e.turn = -1;
+    for (EolVertex& e : cloth.state.eol) e.on.end = -1;
     const std::size_t count = cloth.state.eol.size();
     cloth.state.active.clear();
     for (Vec3& x : cloth.state.mesh.world) x.y() += 0.01;  // it has slid along
@@ -267,7 +267,7 @@ TEST(Conform, ATurnThatPressesTakesTheVertexThatSlidesBesideIt)
     EXPECT_LT(held_off(cloth.state, Vec3(0, y, kThickness)), 1e-4);
     EXPECT_LE(cloth.state.eol.size(), count + 1);
     const auto held = std::count_if(cloth.state.eol.begin(), cloth.state.eol.end(),
-                                    [](const EolVertex& e) { return e.turn >= 0; });
+                                    [](const EolVertex& e) { return e.on.is_bend(); });
     EXPECT_EQ(held, 1);
 }
 
@@ -361,7 +361,7 @@ TEST(Conform, WhereNothingHasChangedTheSecondTimeChangesNothing)
             cloth.state.active.push_back({{e.vertex_id, ActiveContact::kNoVertex, ActiveContact::kNoVertex},
                                           ContactKind::Vertex,
                                           0,
-                                          e.feature,
+                                          e.on.index,
                                           Vec3::UnitZ(),
                                           1e-6});
         EXPECT_FALSE(conform(cloth)) << "nothing flows";
@@ -553,8 +553,8 @@ TEST(Conform, ACornerBecomesANodeAtWhichTheTraceEnds)
     const std::vector<int> row = along_ridge(cloth.state);
     ASSERT_GT(row.size(), 2u);
     const EolVertex& last = cloth.state.eol[cloth.state.eol_entry(cloth.state.ids[row.back()])];
-    EXPECT_TRUE(last.is_corner);
-    EXPECT_EQ(last.feature, testing::end_of(ridge));
+    EXPECT_TRUE(last.on.is_corner());
+    EXPECT_EQ(last.on.index, testing::end_of(ridge));
     EXPECT_LT((cloth.state.mesh.world[row.back()] - Vec3(0, 0.1, kThickness)).norm(), kOnFeature);
     for (std::size_t k = 1; k < row.size(); ++k) EXPECT_TRUE(has_edge(cloth.state, row[k - 1], row[k])) << k;
 }
@@ -576,7 +576,7 @@ TEST(Conform, ACornerGoesWithATraceThatComesToItAsTheClothSlides)
         ASSERT_EQ(state.active.size(), 1u);
         const auto made = conform(cloth);
         const bool has_corner = made && std::any_of(made->eol.begin(), made->eol.end(),
-                                                    [](const EolVertex& e) { return e.is_corner; });
+                                                    [](const EolVertex& e) { return e.on.is_corner(); });
         EXPECT_TRUE(has_corner) << speed;
     }
 }
@@ -822,7 +822,7 @@ TEST(Conform, OnARimWhatSlidesBesideABendThatPressesGoesThere)
         const EolVertex made = cloth.state.eol[0];
         const std::size_t count = cloth.state.eol.size();
         // The cloth goes along the edge that the vertex is on, away from the bend.
-        const auto [a, b] = feature_segment(disk, made.feature);
+        const auto [a, b] = feature_segment(disk, made.on.index);
         const bool is_from = (a - disk.mesh().points[point]).norm() < 1e-9;
         const Vec3 way = (is_from ? b - a : a - b).normalized();
         for (Vec3& x : cloth.state.mesh.world) x += 0.2 * testing::kLyingCell * way;
@@ -870,10 +870,10 @@ TEST(ConformedSteps, WhatOverrunsInEveryAttemptBecomesRowsInAFew)
     } while (report.status == StepStatus::Overrun && attempts < 20);
     EXPECT_EQ(report.status, StepStatus::Done);
     EXPECT_GT(attempts, 2);
-    EXPECT_LE(attempts, FailedAttempts::kMostOverruns + 2);
+    EXPECT_LE(attempts, RetryPolicy::kMostOverruns + 2);
     EXPECT_LT(state.eol.size(), count);
     expect_sound(state, 0.16);
-    EXPECT_TRUE(work.failed.flow().empty());
+    EXPECT_TRUE(work.retry.flow().empty());
 }
 
 }  // namespace

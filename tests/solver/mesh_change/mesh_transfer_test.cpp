@@ -59,7 +59,7 @@ ClothSurgery operate(const State& state)
 {
     ClothSurgery surgery(state.mesh, state.ids, state.next_id);
     for (const EolVertex& e : state.eol)
-        surgery.set_role(e.vertex_id, e.is_corner ? TraceRole::Node : TraceRole::OnTrace, 0);
+        surgery.set_role(e.vertex_id, e.on.is_corner() ? TraceRole::Node : TraceRole::OnTrace, 0);
     return surgery;
 }
 
@@ -203,7 +203,7 @@ TEST(MeshTransfer, AVertexMadeOnATraceFlowsLikeItsNeighbours)
     ASSERT_EQ(surgery.commit(split), Verdict::Done);
     const VertexId made = split.event.changes[0].vertex;
     std::vector<EolVertex> eol = cloth.state.eol;
-    eol.push_back({made, 0, false, eol[0].feature, Vec3::UnitZ(), 0});
+    eol.push_back({made, FeatureId::edge(0, eol[0].on.index), Vec3::UnitZ(), 0});
     TransferReport report;
     const State after = carry(cloth, conformed(surgery, eol), &report);
     const int v = after.index_of(made);
@@ -279,10 +279,11 @@ TEST(MeshTransfer, FlatClothInUniformMotionKeepsItWhereAVertexBecomesEol)
         const VertexId id = cloth.state.ids[v];
         surgery.set_role(id, TraceRole::OnTrace, 0);
         TransferReport report;
-        const State after = carry(
-            cloth,
-            conformed(surgery, {{id, 0, false, testing::tip_of(cloth.scene.obstacles[0]), Vec3::UnitZ(), 0}}),
-            &report);
+        const State after =
+            carry(cloth,
+                  conformed(surgery, {{id, FeatureId::edge(0, testing::tip_of(cloth.scene.obstacles[0])),
+                                       Vec3::UnitZ(), 0}}),
+                  &report);
         EXPECT_LT(field_difference(cloth.state, after), kRoundOff);
         EXPECT_LT(std::abs(report.energy_gain), kRoundOff);
         EXPECT_NEAR(after.velocity[v].x(), motion.velocity.x(), kRoundOff) << "it stays over the ridge";
@@ -351,8 +352,8 @@ TEST(MeshTransfer, WhatCanHaveNoCoordinatesAnyMoreIsOfTheMaterialThoughItsEntryI
     const int at_border = flat.vertex_at(0.2, 0.0);
     ASSERT_TRUE(flat.place(at_border).coordinates);
     std::vector<EolVertex> eol = flat.state.eol;
-    eol[0].is_corner = true;  // for which the cloth's border is no place
-    eol[0].feature = testing::end_of(flat.scene.obstacles[0]);
+    // A corner, for which the cloth's border is no place.
+    eol[0].on = FeatureId::corner(0, testing::end_of(flat.scene.obstacles[0]));
     const State after = carry(flat, conformed(operate(flat.state), eol));
     ASSERT_EQ(after.eol.size(), 1u);
     EXPECT_EQ(after.material_velocity[at_border], Vec2(0, 0));

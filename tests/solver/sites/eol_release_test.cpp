@@ -49,13 +49,13 @@ struct FlowingCloth {
 
     void set_idle(int steps) { cloth.state.eol[entry].idle = steps; }
 
-    EolHold hold() const
+    EolRetention hold() const
     {
         const EolPlacing placing = cloth.place(middle);
-        return find_hold(cloth.scene, cloth.state, cloth.stars(), entry, *placing.coordinates,
-                         cloth.state.mesh.world[middle]);
+        return decide_retention(cloth.scene, cloth.state, cloth.stars(), entry, *placing.coordinates,
+                                cloth.state.mesh.world[middle]);
     }
-    bool can_be_let_go() const { return hold() != EolHold::Firm; }
+    bool can_be_let_go() const { return hold() != EolRetention::Firm; }
 };
 
 TEST(EolRelease, OfAFoldWaitsWhetherMaterialFlowsOrNot)
@@ -125,9 +125,10 @@ TEST(EolRelease, OfATentThatIsOffItsNailComesWhereTheNailPressesOnAnotherFace)
                         {{0, 1, 10}, ContactKind::Triangle, 0, nail, Vec3::UnitZ(), 1e-6});
             const EolPlacing placing = cloth.place(v);
             ASSERT_TRUE(placing.coordinates);
-            const EolHold hold = find_hold(cloth.scene, cloth.state, cloth.stars(), entry,
-                                           *placing.coordinates, cloth.state.mesh.world[v]);
-            EXPECT_EQ(hold, is_pressing && height > kOnFeature ? EolHold::None : EolHold::Firm) << height;
+            const EolRetention hold = decide_retention(cloth.scene, cloth.state, cloth.stars(), entry,
+                                                       *placing.coordinates, cloth.state.mesh.world[v]);
+            EXPECT_EQ(hold, is_pressing && height > kOnFeature ? EolRetention::None : EolRetention::Firm)
+                << height;
         }
 }
 
@@ -150,15 +151,15 @@ TEST(EolRelease, OfATentThatIsOffACornerComesWhereThatPressesOnAnotherFace)
                                           1e-6});
         const EolPlacing placing = cloth.place(v);
         ASSERT_TRUE(placing.coordinates);
-        const EolHold hold = find_hold(cloth.scene, cloth.state, cloth.stars(), entry, *placing.coordinates,
-                                       cloth.state.mesh.world[v]);
-        EXPECT_EQ(hold, is_pressing ? EolHold::None : EolHold::Firm);
+        const EolRetention hold = decide_retention(cloth.scene, cloth.state, cloth.stars(), entry,
+                                                   *placing.coordinates, cloth.state.mesh.world[v]);
+        EXPECT_EQ(hold, is_pressing ? EolRetention::None : EolRetention::Firm);
     }
 }
 
 /// What becomes of the holds of a row of EOL vertices along the ridge, F, L or N each, in the material's
 /// order.
-std::string hold_between_of(const std::string& along)
+std::string retain_between_of(const std::string& along)
 {
     const FlowingCloth flowing(90.0, 0.0);
     const State& state = flowing.cloth.state;
@@ -167,33 +168,33 @@ std::string hold_between_of(const std::string& along)
     for (int e = 0; e < static_cast<int>(state.eol.size()); ++e)
         row.emplace_back(state.mesh.material[state.index_of(state.eol[e].vertex_id)].y(), e);
     std::sort(row.begin(), row.end());
-    std::vector<EolHold> holds(row.size());
+    std::vector<EolRetention> holds(row.size());
     for (std::size_t k = 0; k < row.size(); ++k)
-        holds[row[k].second] = along[k] == 'F'   ? EolHold::Firm
-                               : along[k] == 'L' ? EolHold::Loose
-                                                 : EolHold::None;
-    hold_between(flowing.cloth.scene, state, flowing.cloth.stars(), holds);
+        holds[row[k].second] = along[k] == 'F'   ? EolRetention::Firm
+                               : along[k] == 'L' ? EolRetention::Loose
+                                                 : EolRetention::None;
+    retain_between(flowing.cloth.scene, state, flowing.cloth.stars(), holds);
     std::string found;
     for (const auto& [y, e] : row)
-        found += holds[e] == EolHold::Firm ? 'F' : holds[e] == EolHold::Loose ? 'L' : 'N';
+        found += holds[e] == EolRetention::Firm ? 'F' : holds[e] == EolRetention::Loose ? 'L' : 'N';
     return found;
 }
 
 TEST(EolRelease, LeavesNoHolesInATrace)
 {
-    EXPECT_EQ(hold_between_of("FLFLLLFFF"), "FFFFFFFFF");
-    EXPECT_EQ(hold_between_of("LLFLLFNLL"), "NNFFFFNNN");
-    EXPECT_EQ(hold_between_of("FLNLFLLLL"), "FNNNFNNNN");
-    EXPECT_EQ(hold_between_of("LLLLLLLLL"), "NNNNNNNNN");
+    EXPECT_EQ(retain_between_of("FLFLLLFFF"), "FFFFFFFFF");
+    EXPECT_EQ(retain_between_of("LLFLLFNLL"), "NNFFFFNNN");
+    EXPECT_EQ(retain_between_of("FLNLFLLLL"), "FNNNFNNNN");
+    EXPECT_EQ(retain_between_of("LLLLLLLLL"), "NNNNNNNNN");
 }
 
 TEST(EolRelease, HoldsNothingBetweenThatIsOffTheFeature)
 {
     FlowingCloth still(180.0, 0.0);
-    EXPECT_EQ(still.hold(), EolHold::Loose);
+    EXPECT_EQ(still.hold(), EolRetention::Loose);
     const double thickness = still.cloth.scene.material.thickness;
     for (Vec3& x : still.cloth.state.mesh.world) x.z() += 3.0 * thickness;
-    EXPECT_EQ(still.hold(), EolHold::None);
+    EXPECT_EQ(still.hold(), EolRetention::None);
 }
 
 }  // namespace

@@ -24,9 +24,8 @@ enum class On { Edge, EdgeAtBorder, Corner };
 Vec2 flow_at(const EolCloth& cloth, double u, double v, On on)
 {
     const int near = cloth.vertex_at(u, v);
-    const FeatureSite site{0,
-                           on == On::Corner,
-                           testing::tip_of(cloth.scene.obstacles[0]),
+    const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+    const FeatureSite site{on == On::Corner ? FeatureId::corner(0, tip) : FeatureId::edge(0, tip),
                            cloth.state.mesh.material[near],
                            cloth.state.ids[near],
                            Vec3::UnitZ(),

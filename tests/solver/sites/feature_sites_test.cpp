@@ -234,7 +234,7 @@ TEST(FeatureSites, OnATipIsAVertexThatIsOnItAlreadyWhateverFaceOfItPresses)
                 cloth.state.active = {{ids, ContactKind::Triangle, 0, 0, Vec3::UnitZ(), 1e-6}};
                 const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, cloth.state, stars);
                 ASSERT_EQ(sites.size(), 1u);
-                EXPECT_TRUE(sites[0].is_corner);
+                EXPECT_TRUE(sites[0].on.is_corner());
                 EXPECT_EQ(sites[0].contact, 0);
                 EXPECT_EQ(sites[0].near, cloth.state.ids[v]);
                 EXPECT_EQ(sites[0].material == cloth.state.mesh.material[v], height < kOnFeature) << height;
@@ -298,8 +298,8 @@ TEST(FeatureSites, AreStraightOutwardOfWhereARimBendsUnderAFace)
             }
             ASSERT_GE(sites.size(), 1u) << point;
             for (const FeatureSite& site : sites) {
-                EXPECT_FALSE(site.is_corner);
-                const auto [from, to] = feature_segment(disk, site.feature);
+                EXPECT_FALSE(site.on.is_corner());
+                const auto [from, to] = feature_segment(disk, site.on.index);
                 EXPECT_LT(std::min((from - p).norm(), (to - p).norm()), 1e-12) << "one of its two edges";
                 const Vec3 place = mesh.world[a] + F * (site.material - mesh.material[a]);
                 const Vec3 side = Vec3(from.x() + to.x(), from.y() + to.y(), 0.0).normalized();
@@ -310,7 +310,7 @@ TEST(FeatureSites, AreStraightOutwardOfWhereARimBendsUnderAFace)
             const ConformOutcome outcome = testing::conform_cloth(cloth);
             ASSERT_TRUE(outcome.mesh) << point;
             ASSERT_GE(outcome.mesh->eol.size(), 1u) << point;
-            EXPECT_EQ(outcome.mesh->eol[0].feature, sites[0].feature);
+            EXPECT_EQ(outcome.mesh->eol[0].on.index, sites[0].on.index);
         }
     }
 }

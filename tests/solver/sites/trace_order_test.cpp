@@ -21,7 +21,10 @@ struct Trace {
 
     void add(std::uint32_t id, bool is_corner, int feature, const Vec3& place, int obstacle = 0)
     {
-        eol.push_back({id, obstacle, is_corner, feature, {0, 0, 1}, 0});
+        eol.push_back({id,
+                       is_corner ? FeatureId::corner(obstacle, feature) : FeatureId::edge(obstacle, feature),
+                       {0, 0, 1},
+                       0});
         places.push_back(place);
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/pinched_vertices.h"
+#include "solver/overconstrained.h"
 
 #include <gtest/gtest.h>
 
@@ -43,15 +43,15 @@ Workspace make_vise(double angle, bool is_together)
 
 TEST(SqueezedVertices, AreThoseWhoseContactsPushAgainstEachOther)
 {
-    EXPECT_EQ(find_squeezed_vertices(make_vise(170.0, false)), std::vector{7});
-    EXPECT_TRUE(find_squeezed_vertices(make_vise(90.0, false)).empty()) << "a groove";
-    EXPECT_TRUE(find_squeezed_vertices(make_vise(170.0, true)).empty()) << "carried by both";
+    EXPECT_EQ(find_overpressed_vertices(make_vise(170.0, false)), std::vector{7});
+    EXPECT_TRUE(find_overpressed_vertices(make_vise(90.0, false)).empty()) << "a groove";
+    EXPECT_TRUE(find_overpressed_vertices(make_vise(170.0, true)).empty()) << "carried by both";
     Workspace resting = make_vise(170.0, false);
     resting.solved_energy.kinetic = resting.energy.kinetic;
-    EXPECT_TRUE(find_squeezed_vertices(resting).empty()) << "nothing is gained";
+    EXPECT_TRUE(find_overpressed_vertices(resting).empty()) << "nothing is gained";
     Workspace ordinary = make_vise(170.0, false);
     ordinary.eol.clear();
-    EXPECT_TRUE(find_squeezed_vertices(ordinary).empty()) << "it may slip out";
+    EXPECT_TRUE(find_overpressed_vertices(ordinary).empty()) << "it may slip out";
 }
 
 TEST(SqueezedVertices, AreThoseWhoseContactIsAcrossTheirWay)
@@ -62,7 +62,7 @@ TEST(SqueezedVertices, AreThoseWhoseContactIsAcrossTheirWay)
         work.contacts.pop_back();
         work.eol[0].basis = Mat3::Zero();
         work.eol[0].basis.col(0) = rotation_about(Vec3::UnitZ(), lean) * Vec3::UnitX();
-        EXPECT_EQ(find_squeezed_vertices(work).empty(), lean < 60.0) << lean;
+        EXPECT_EQ(find_overpressed_vertices(work).empty(), lean < 60.0) << lean;
     }
 }
 
@@ -73,36 +73,36 @@ TEST(SqueezingFolds, ArePlanesThatPressClothAgainstAnotherObstacle)
         work.contacts[0].in_frame.element = kFoldElement;
         return work;
     };
-    EXPECT_EQ(find_squeezing_folds(make_fold(170.0)), std::vector{0});
-    EXPECT_TRUE(find_squeezing_folds(make_fold(90.0)).empty()) << "it may slip out";
-    EXPECT_TRUE(find_squeezing_folds(make_vise(170.0, false)).empty()) << "no fold";
+    EXPECT_EQ(find_overconstraining_folds(make_fold(170.0)), std::vector{0});
+    EXPECT_TRUE(find_overconstraining_folds(make_fold(90.0)).empty()) << "it may slip out";
+    EXPECT_TRUE(find_overconstraining_folds(make_vise(170.0, false)).empty()) << "no fold";
 
     Workspace own = make_fold(170.0);
     own.contacts[1].obstacle = 0;
-    EXPECT_TRUE(find_squeezing_folds(own).empty()) << "the wire that it is folded over";
+    EXPECT_TRUE(find_overconstraining_folds(own).empty()) << "the wire that it is folded over";
     Workspace elsewhere = make_fold(170.0);
     elsewhere.contacts[1].in_frame.vertices = {6, -1, -1};
-    EXPECT_TRUE(find_squeezing_folds(elsewhere).empty()) << "another vertex";
+    EXPECT_TRUE(find_overconstraining_folds(elsewhere).empty()) << "another vertex";
     Workspace edge = make_fold(170.0);
     edge.contacts[1].in_frame.vertices = {6, 7, -1};
-    EXPECT_EQ(find_squeezing_folds(edge), std::vector{0}) << "an edge of the cloth that ends there";
+    EXPECT_EQ(find_overconstraining_folds(edge), std::vector{0}) << "an edge of the cloth that ends there";
     for (const int c : {0, 1}) {
         Workspace open = make_fold(170.0);
         open.solution.row_multipliers[c] = 0.0;
-        EXPECT_TRUE(find_squeezing_folds(open).empty()) << "one does not press: " << c;
+        EXPECT_TRUE(find_overconstraining_folds(open).empty()) << "one does not press: " << c;
     }
     Workspace both = make_fold(170.0);
     both.contacts[1].in_frame.element = kFoldElement;
-    EXPECT_TRUE(find_squeezing_folds(both).empty()) << "two planes";
+    EXPECT_TRUE(find_overconstraining_folds(both).empty()) << "two planes";
 }
 
 TEST(PinchedVertices, AreOfAnInfeasibleStepOnly)
 {
     const Workspace work = make_vise(170.0, false);
     StepReport report;
-    EXPECT_TRUE(find_pinched_vertices(State(), work, report).empty());
+    EXPECT_TRUE(find_overconstrained_vertices(State(), work, report).empty());
     report.status = StepStatus::Infeasible;
-    EXPECT_EQ(find_pinched_vertices(State(), work, report), std::vector{7});
+    EXPECT_EQ(find_overconstrained_vertices(State(), work, report), std::vector{7});
 }
 
 }  // namespace

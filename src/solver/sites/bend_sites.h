@@ -18,19 +18,20 @@ namespace arris {
 /// Whether a vertex at this turn is held there: where a chord over a cell of the cloth at `material` misses
 /// it by more than .3 of a thickness. A trace of vertices that slide follows a wire of shorter edges as well
 /// as its cells can, and vertices held nearer to each other than cells are would hold the cloth.
-bool is_held_at(const Scene& scene, const Obstacle& obstacle, const FeatureTurn& turn, const Vec2& material);
+bool locks_at_bend(const Scene& scene, const Obstacle& obstacle, const FeatureBend& bend,
+                   const Vec2& material);
 
 /// Where obstacle `o` turns, in a face, on an edge or at a vertex of the cloth: `vertices`, -1 where there
 /// are fewer, with their `weights`.
-FeatureSite make_turn_site(const State& state, const ClothStars& stars, std::int32_t o,
-                           const FeatureTurn& turn, const std::array<int, 3>& vertices,
+FeatureSite make_bend_site(const State& state, const ClothStars& stars, std::int32_t o,
+                           const FeatureBend& bend, const std::array<int, 3>& vertices,
                            const std::array<double, 3>& weights, const Vec3& outward);
 
 /// Turns of wires between neighbours along a trace, these being EOL vertices or `sites`, that their chord
 /// misses by more than .3 of a thickness, where vertices are held and the cloth is near enough to be put on
 /// them: of each pair the one that it misses most. `positions`: the cloth's in the frame of obstacle `o`.
 /// None that has a vertex or site already.
-std::vector<FeatureSite> find_turn_sites(const Scene& scene, const State& state, const ClothStars& stars,
+std::vector<FeatureSite> find_bend_sites(const Scene& scene, const State& state, const ClothStars& stars,
                                          std::int32_t o, const std::vector<Vec3>& positions,
                                          const std::vector<FeatureSite>& sites);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/cloth_input/crease_graph.h"
+#include "geometry/cloth_input/fold_lines.h"
 
 #include <fmt/format.h>
 
@@ -37,7 +37,7 @@ class GraphBuilder {
         chains_.push_back({ends});
     }
 
-    CreaseGraph build()
+    FoldLines build()
     {
         for (std::size_t i = 0; i < chains_.size(); ++i)
             for (std::size_t j = i + 1; j < chains_.size(); ++j) cross(chains_[i], chains_[j]);
@@ -152,13 +152,13 @@ class GraphBuilder {
 
     Vec2 size_;
     double tolerance_;
-    CreaseGraph graph_;
+    FoldLines graph_;
     std::vector<Chain> chains_;
 };
 
 }  // namespace
 
-CreaseGraph make_crease_graph(const Vec2& size, const std::vector<Fold>& folds)
+FoldLines make_fold_lines(const Vec2& size, const std::vector<Fold>& folds)
 {
     GraphBuilder builder(size);
     for (const Fold& fold : folds) builder.add_fold(fold);

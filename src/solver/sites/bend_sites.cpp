@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/sites/turn_sites.h"
+#include "solver/sites/bend_sites.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -27,18 +27,18 @@ struct Place {
     Vec3 point;    ///< of the wire
     Vec2 material;
     int vertex;  ///< of the cloth, there or next to it
-    int turn;    ///< point of the obstacle's mesh that it is held at; else -1
+    int bend;    ///< point of the obstacle's mesh that it is held at; else -1
 };
 
 struct Turn {
     double along;
     int point;
-    FeatureTurn turn;
+    FeatureBend bend;
 };
 
-class TurnFinder {
+class BendFinder {
   public:
-    TurnFinder(const Scene& scene, const State& state, const ClothStars& stars, std::int32_t o,
+    BendFinder(const Scene& scene, const State& state, const ClothStars& stars, std::int32_t o,
                const std::vector<Vec3>& positions)
         : scene_(scene),
           state_(state),
@@ -52,8 +52,8 @@ class TurnFinder {
     void find(int polyline, const std::vector<FeatureSite>& sites, std::vector<FeatureSite>& found) const
     {
         const Polyline traced = trace_polyline(obstacle_, polyline);
-        const std::vector<Turn> turns = turns_of(traced);
-        if (turns.empty()) return;
+        const std::vector<Turn> bends = bends_of(traced);
+        if (bends.empty()) return;
         const std::vector<Place> places = places_on(traced, sites);
         for (std::size_t i = 0; i < places.size(); ++i) {
             const bool is_last = i + 1 == places.size();
@@ -61,19 +61,19 @@ class TurnFinder {
             const Place& p = places[i];
             Place q = places[is_last ? 0 : i + 1];
             if (is_last) q.along += traced.length;
-            if (const auto site = between(p, q, turns, traced.length)) found.push_back(*site);
+            if (const auto site = between(p, q, bends, traced.length)) found.push_back(*site);
         }
     }
 
   private:
-    std::vector<Turn> turns_of(const Polyline& polyline) const
+    std::vector<Turn> bends_of(const Polyline& polyline) const
     {
-        std::vector<Turn> turns;
+        std::vector<Turn> bends;
         for (const PolylineEdge& edge : polyline.edges) {
             const int point = point_at(obstacle_, {edge.feature, edge.is_forward ? 0 : 1});
-            if (const auto turn = find_turn(obstacle_, point)) turns.push_back({edge.begin, point, *turn});
+            if (const auto bend = find_bend(obstacle_, point)) bends.push_back({edge.begin, point, *bend});
         }
-        return turns;
+        return bends;
     }
 
     Place place_at(const PolylineEdge& edge, const Vec3& place) const
@@ -89,23 +89,23 @@ class TurnFinder {
         std::map<int, const PolylineEdge*> edges;
         for (const PolylineEdge& edge : polyline.edges) edges[edge.feature] = &edge;
         std::vector<Place> places;
-        const auto add = [&](int feature, int turn, const Vec3& place, const Vec2& material, int vertex) {
+        const auto add = [&](int feature, int bend, const Vec3& place, const Vec2& material, int vertex) {
             const auto edge = edges.find(feature);
             if (edge == edges.end()) return;
             Place at = place_at(*edge->second, place);
             at.material = material;
             at.vertex = vertex;
-            if (turn >= 0) at.turn = point_at(obstacle_, {feature, turn});
+            if (bend >= 0) at.bend = point_at(obstacle_, {feature, bend});
             places.push_back(at);
         };
         for (const EolVertex& eol : state_.eol) {
             const int v = state_.index_of(eol.vertex_id);
-            if (eol.obstacle == o_ && !eol.is_corner)
-                add(eol.feature, eol.turn, positions_[v], state_.mesh.material[v], v);
+            if (eol.on.obstacle == o_ && !eol.on.is_corner())
+                add(eol.on.index, eol.on.end, positions_[v], state_.mesh.material[v], v);
         }
         for (const FeatureSite& site : sites)
-            if (!site.is_corner)
-                add(site.feature, site.turn, place_of(site), site.material, state_.index_of(site.near));
+            if (!site.on.is_corner())
+                add(site.on.index, site.on.end, place_of(site), site.material, state_.index_of(site.near));
         std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
             return std::tuple(a.along, a.vertex) < std::tuple(b.along, b.vertex);
         });
@@ -114,7 +114,7 @@ class TurnFinder {
 
     Vec3 place_of(const FeatureSite& site) const
     {
-        if (site.turn >= 0) return turn_point(obstacle_, {site.feature, site.turn});
+        if (site.on.is_bend()) return bend_point(obstacle_, {site.on.index, site.on.end});
         const auto& [a, b] = site.edge;
         const std::vector<Vec2>& X = state_.mesh.material;
         const double length = (X[b] - X[a]).norm();
@@ -123,31 +123,31 @@ class TurnFinder {
     }
 
     /// Of the turns between two neighbours the one that their chord misses most. `length`: of the polyline.
-    std::optional<FeatureSite> between(const Place& p, const Place& q, const std::vector<Turn>& turns,
+    std::optional<FeatureSite> between(const Place& p, const Place& q, const std::vector<Turn>& bends,
                                        double length) const
     {
         const double cell = scene_.eol->length(p.material);
         if (!((p.material - q.material).norm() < kLongest * cell)) return std::nullopt;
         const Turn* worst = nullptr;
         double most = kMissed * scene_.material.thickness;
-        for (const Turn& turn : turns)
-            for (const double along : {turn.along, turn.along + length}) {
-                if (!(along > p.along && along < q.along) || turn.point == p.turn || turn.point == q.turn ||
-                    !is_held_at(scene_, obstacle_, turn.turn, p.material))
+        for (const Turn& bend : bends)
+            for (const double along : {bend.along, bend.along + length}) {
+                if (!(along > p.along && along < q.along) || bend.point == p.bend || bend.point == q.bend ||
+                    !locks_at_bend(scene_, obstacle_, bend.bend, p.material))
                     continue;
-                const Vec3& at = obstacle_.mesh().points[static_cast<std::size_t>(turn.point)];
+                const Vec3& at = obstacle_.mesh().points[static_cast<std::size_t>(bend.point)];
                 const double s = closest_on_segment(at, p.point, q.point);
                 const double missed = (at - (p.point + s * (q.point - p.point))).norm();
-                if (missed > most) worst = &turn;
+                if (missed > most) worst = &bend;
                 most = std::max(most, missed);
             }
         return worst ? nearest_to(*worst, {p.vertex, q.vertex}) : std::nullopt;
     }
 
     /// Where the cloth around two vertices is nearest to a turn.
-    std::optional<FeatureSite> nearest_to(const Turn& turn, const std::array<int, 2>& around) const
+    std::optional<FeatureSite> nearest_to(const Turn& bend, const std::array<int, 2>& around) const
     {
-        const Vec3& point = obstacle_.mesh().points[static_cast<std::size_t>(turn.point)];
+        const Vec3& point = obstacle_.mesh().points[static_cast<std::size_t>(bend.point)];
         double least = kOnFeature * scene_.material.thickness;
         std::optional<FeatureSite> site;
         for (const int f : faces_around(around)) {
@@ -158,7 +158,7 @@ class TurnFinder {
             const double distance = (closest.point - point).norm();
             if (!(distance < least)) continue;
             least = distance;
-            site = make_turn_site(state_, stars_, o_, turn.turn, state_.mesh.faces[f], closest.weights,
+            site = make_bend_site(state_, stars_, o_, bend.bend, state_.mesh.faces[f], closest.weights,
                                   (closest.point - point) / distance);
         }
         return site;
@@ -185,14 +185,15 @@ class TurnFinder {
 
 }  // namespace
 
-bool is_held_at(const Scene& scene, const Obstacle& obstacle, const FeatureTurn& turn, const Vec2& material)
+bool locks_at_bend(const Scene& scene, const Obstacle& obstacle, const FeatureBend& bend,
+                   const Vec2& material)
 {
     const double half_cell = 0.5 * scene.eol->length(material);
-    return missed_by_chord(obstacle, turn, half_cell) > kMissed * scene.material.thickness;
+    return missed_by_chord(obstacle, bend, half_cell) > kMissed * scene.material.thickness;
 }
 
-FeatureSite make_turn_site(const State& state, const ClothStars& stars, std::int32_t o,
-                           const FeatureTurn& turn, const std::array<int, 3>& vertices,
+FeatureSite make_bend_site(const State& state, const ClothStars& stars, std::int32_t o,
+                           const FeatureBend& bend, const std::array<int, 3>& vertices,
                            const std::array<double, 3>& weights, const Vec3& outward)
 {
     Vec2 X = Vec2::Zero();
@@ -204,13 +205,12 @@ FeatureSite make_turn_site(const State& state, const ClothStars& stars, std::int
         ++count;
         border += stars.border_neighbours[vertices[i]][0] >= 0 ? 1 : 0;
     }
-    FeatureSite site{o, false, turn.feature, X, state.ids[vertices[near]], outward};
-    site.turn = turn.end;
+    FeatureSite site{FeatureId::bend(o, bend.feature, bend.end), X, state.ids[vertices[near]], outward};
     site.is_on_border = count < 3 && border == count;
     return site;
 }
 
-std::vector<FeatureSite> find_turn_sites(const Scene& scene, const State& state, const ClothStars& stars,
+std::vector<FeatureSite> find_bend_sites(const Scene& scene, const State& state, const ClothStars& stars,
                                          std::int32_t o, const std::vector<Vec3>& positions,
                                          const std::vector<FeatureSite>& sites)
 {
@@ -220,10 +220,10 @@ std::vector<FeatureSite> find_turn_sites(const Scene& scene, const State& state,
         if (edges[feature].kind == FeatureKind::Wire) polylines.insert(edges[feature].polyline);
     };
     for (const EolVertex& eol : state.eol)
-        if (eol.obstacle == o && !eol.is_corner) add(eol.feature);
+        if (eol.on.obstacle == o && !eol.on.is_corner()) add(eol.on.index);
     for (const FeatureSite& site : sites)
-        if (!site.is_corner) add(site.feature);
-    const TurnFinder finder(scene, state, stars, o, positions);
+        if (!site.on.is_corner()) add(site.on.index);
+    const BendFinder finder(scene, state, stars, o, positions);
     std::vector<FeatureSite> found;
     for (const int polyline : polylines) finder.find(polyline, sites, found);
     return found;

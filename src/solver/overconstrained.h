@@ -15,13 +15,14 @@ namespace arris {
 /// EOL vertices whose contacts push against each other or against what holds the vertex to its feature, most
 /// of their impulses in vain, and do work, J, on them all the same: more than a tenth of the energy at stake
 /// in a step in which the cloth gains as much. The proposal in `work` is weighed.
-std::vector<int> find_squeezed_vertices(const Workspace& work);
+std::vector<int> find_overpressed_vertices(const Workspace& work);
 
 /// Contacts (indices) of folds' planes that press cloth against another obstacle: nothing is there that would
 /// crush it.
-std::vector<int> find_squeezing_folds(const Workspace& work);
+std::vector<int> find_overconstraining_folds(const Workspace& work);
 
 /// Those of an infeasible step: in contacts that no velocity meets, or squeezed.
-std::vector<int> find_pinched_vertices(const State& state, const Workspace& work, const StepReport& report);
+std::vector<int> find_overconstrained_vertices(const State& state, const Workspace& work,
+                                               const StepReport& report);
 
 }  // namespace arris

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/model/held_vertices.h"
+#include "solver/model/pin_targets.h"
 
 #include <algorithm>
 #include <utility>
@@ -22,10 +22,10 @@ Vec3 find_origin(const State& state, std::uint32_t pin, int vertex, const Placem
 
 }  // namespace
 
-std::vector<HeldVertex> find_held_vertices(const Scene& scene, const State& state, double end)
+std::vector<PinTarget> find_pin_targets(const Scene& scene, const State& state, double end)
 {
     std::vector<int> slot(state.mesh.world.size(), -1);
-    std::vector<HeldVertex> held;
+    std::vector<PinTarget> held;
     for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
         const Pin& pin = scene.pins[p];
         if (!pin.holds_until(end)) continue;
@@ -44,18 +44,18 @@ std::vector<HeldVertex> find_held_vertices(const Scene& scene, const State& stat
         }
     }
     std::sort(held.begin(), held.end(),
-              [](const HeldVertex& a, const HeldVertex& b) { return a.vertex < b.vertex; });
+              [](const PinTarget& a, const PinTarget& b) { return a.vertex < b.vertex; });
     return held;
 }
 
-void hold_in_place(const std::vector<HeldVertex>& held, std::vector<Vec3>& world)
+void hold_in_place(const std::vector<PinTarget>& held, std::vector<Vec3>& world)
 {
-    for (const HeldVertex& vertex : held)
+    for (const PinTarget& vertex : held)
         for (int d = 0; d < 3; ++d)
             if (vertex.held[d]) world[vertex.vertex][d] = vertex.target[d];
 }
 
-void take_hold(const Scene& scene, State& state)
+void attach_pins(const Scene& scene, State& state)
 {
     const std::vector<Vec3> placed = state.mesh.world;
     for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/pinched_vertices.h"
+#include "solver/overconstrained.h"
 
 #include <algorithm>
 #include <array>
@@ -52,27 +52,27 @@ std::vector<int> find_unmet_vertices(const State& state, const Workspace& work)
 
 }  // namespace
 
-std::vector<int> find_squeezed_vertices(const Workspace& work)
+std::vector<int> find_overpressed_vertices(const Workspace& work)
 {
     constexpr double kInVain =
         2.0;                       // of impulses that add up: faces of a groove of 60 degrees, or one across
     constexpr double kWork = 0.1;  // of the energy at stake
-    std::vector<int> squeezed;
-    const double least = kWork * energy_at_stake(work);
-    if (!(work.solved_energy.sum() - work.energy.sum() > least)) return squeezed;
+    std::vector<int> overpressed;
+    const double least = kWork * energy_scale(work);
+    if (!(work.solved_energy.sum() - work.energy.sum() > least)) return overpressed;
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
     for (const EolCoordinates& eol : work.eol) {
         const Press press = sum_contacts(eol.vertex, multiplier, work);
         if (press.work > least && press.impulse > kInVain * (eol.basis.transpose() * press.net).norm())
-            squeezed.push_back(eol.vertex);
+            overpressed.push_back(eol.vertex);
     }
-    return squeezed;
+    return overpressed;
 }
 
-std::vector<int> find_squeezing_folds(const Workspace& work)
+std::vector<int> find_overconstraining_folds(const Workspace& work)
 {
     constexpr double kAgainst = -0.5;  // cosine of the normals
-    std::vector<int> squeezing;
+    std::vector<int> overconstraining;
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
     const auto is_pressing = [&](std::size_t c) { return multiplier[c] > 0.0; };
     for (std::size_t f = 0; f < work.contacts.size(); ++f) {
@@ -86,17 +86,18 @@ std::vector<int> find_squeezing_folds(const Workspace& work)
                 !(other.normal.dot(fold.normal) < kAgainst) ||
                 std::find(vertices.begin(), vertices.end(), vertex) == vertices.end())
                 continue;
-            squeezing.push_back(static_cast<int>(f));
+            overconstraining.push_back(static_cast<int>(f));
             break;
         }
     }
-    return squeezing;
+    return overconstraining;
 }
 
-std::vector<int> find_pinched_vertices(const State& state, const Workspace& work, const StepReport& report)
+std::vector<int> find_overconstrained_vertices(const State& state, const Workspace& work,
+                                               const StepReport& report)
 {
     if (report.status != StepStatus::Infeasible) return {};
-    return work.solution.infeasible_rows.empty() ? find_squeezed_vertices(work)
+    return work.solution.infeasible_rows.empty() ? find_overpressed_vertices(work)
                                                  : find_unmet_vertices(state, work);
 }
 

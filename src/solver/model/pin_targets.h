@@ -10,7 +10,7 @@
 namespace arris {
 
 /// A vertex that a pin holds, and where it must be at the step's end.
-struct HeldVertex {
+struct PinTarget {
     int vertex;
     std::array<bool, 3> held;  ///< x, y, z
     Vec3 target;               ///< m; meaningful in held directions
@@ -18,12 +18,12 @@ struct HeldVertex {
 
 /// Vertices held during the step that ends at `end` (s), ascending. Where pins overlap, a direction follows
 /// the last pin that holds it.
-std::vector<HeldVertex> find_held_vertices(const Scene& scene, const State& state, double end);
+std::vector<PinTarget> find_pin_targets(const Scene& scene, const State& state, double end);
 
 /// Puts held vertices where they must be, in the directions in which they are held.
-void hold_in_place(const std::vector<HeldVertex>& held, std::vector<Vec3>& world);
+void hold_in_place(const std::vector<PinTarget>& held, std::vector<Vec3>& world);
 
 /// What pins hold goes where they have it at time 0, and moves as they do.
-void take_hold(const Scene& scene, State& state);
+void attach_pins(const Scene& scene, State& state);
 
 }  // namespace arris
