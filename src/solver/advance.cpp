@@ -13,7 +13,7 @@ namespace arris {
 std::optional<StepReport> advance(const Scene& scene, const Settings& settings, double end, State& state,
                                   Workspace& work, const AcceptPart& accept)
 {
-    constexpr int kMostParts = 64, kStartParts = 3;
+    constexpr int kStartParts = 3;
     const double planned = end - state.time;
     int shrink = 1;                                      // how much shorter parts have become
     int parts = find_flow_parts(scene, state, planned);  // how many are left
@@ -26,7 +26,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
     work.retry.forget();
     while (state.time < end) {
         const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
-        const Attempt attempt = shrink == kMostParts ? Attempt::Last : Attempt::Ordinary;
+        const Attempt attempt = shrink == RetryPolicy::kMostParts ? Attempt::Last : Attempt::Ordinary;
         StepReport report = step(scene, settings, part_end, state, work, attempt);
         if (report.status == StepStatus::Done) {
             report.add_cost(std::exchange(failed, {}));
@@ -38,22 +38,25 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
             continue;
         }
         failed.add_cost(report);
-        if (attempt == Attempt::Last && work.retry.may_mesh_help() && work.retry.has_given_up_all()) {
-            // What was no step for the one mesh may be one for the other.
-            parts = std::max(parts / shrink, 1);
-            shrink = 1;
-        } else if (work.retry.may_staying_help()) {
-            continue;
-        } else if (report.status == StepStatus::EnergyRise && work.prediction.has_history) {
-            restart(state);
-        } else if (work.retry.may_mesh_help()) {
-            continue;
-        } else if (shrink == kMostParts) {
-            return report;
-        } else {
-            shrink *= 2;
-            parts *= 2;
-            part = StepPart::Ordinary;
+        const bool is_shortest = attempt == Attempt::Last;
+        switch (work.retry.choose_next({report.status, work.prediction.has_history, is_shortest})) {
+            case NextAttempt::WholeWithoutEol:
+                parts = std::max(parts / shrink, 1);
+                shrink = 1;
+                break;
+            case NextAttempt::WithoutTurning:
+            case NextAttempt::OnNewMesh:
+                break;
+            case NextAttempt::WithoutHistory:
+                restart(state);
+                break;
+            case NextAttempt::Shorter:
+                shrink *= 2;
+                parts *= 2;
+                part = StepPart::Ordinary;
+                break;
+            case NextAttempt::None:
+                return report;
         }
     }
     return std::nullopt;

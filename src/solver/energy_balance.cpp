@@ -148,8 +148,8 @@ double compute_driven_work(const State& state, const Workspace& work)
 double energy_scale(const Workspace& work)
 {
     constexpr double kRoundOff = 1e-9;  // of the energies themselves, which are sums over all elements
-    const ClothEnergy& before = work.energy;
-    const ClothEnergy& after = work.solved_energy;
+    const ClothEnergy& before = work.energies.start;
+    const ClothEnergy& after = work.energies.solved;
     double exchanged = 0.0, size = 0.0;
     for (const auto& [a, b] : {std::pair(before.kinetic, after.kinetic),
                                std::pair(before.potential.gravity, after.potential.gravity),
@@ -164,7 +164,7 @@ double energy_scale(const Workspace& work)
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work)
 {
     double allowed = kRise * energy_scale(work);
-    double rise = work.solved_energy.sum() - work.energy.sum();
+    double rise = work.energies.solved.sum() - work.energies.start.sum();
     if (!(rise > allowed)) return 0.0;
     allowed += round_off_energy(scene, state, work.mesh.elements);
     const double driven = compute_driven_work(state, work);
@@ -179,7 +179,7 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
     // moves across itself is, and 2/9 of what is of third.
     constexpr double kFourthOrder = 9.0 / 4.0;
     const double least = kRise * energy_scale(work);
-    const Energies &before = work.energy.potential, &after = work.solved_energy.potential;
+    const Energies &before = work.energies.start.potential, &after = work.energies.solved.potential;
     const double gained = after.elastic() - before.elastic();
     if (!(gained > least)) return 0.0;
     const ClothVelocity& from = work.expansion;
@@ -200,12 +200,12 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
 
 void measure_start_energy(const Scene& scene, const State& state, Workspace& work)
 {
-    const bool is_known = work.known.world == state.mesh.world &&
-                          work.known.material == state.mesh.material &&
-                          work.known.velocity.world == state.velocity &&
-                          work.known.velocity.material == state.material_velocity;
-    work.energy =
-        is_known ? work.known_energy
+    const bool is_known = work.energies.known_at.world == state.mesh.world &&
+                          work.energies.known_at.material == state.mesh.material &&
+                          work.energies.known_at.velocity.world == state.velocity &&
+                          work.energies.known_at.velocity.material == state.material_velocity;
+    work.energies.start =
+        is_known ? work.energies.known
                  : compute_cloth_energy(
                        scene, work,
                        {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}});
@@ -218,18 +218,18 @@ void measure_proposal_energy(const Scene& scene, double dt, Workspace& work)
     double fastest = 0.0;
     for (const Vec3& v : push_velocity(work, dt)) fastest = std::max(fastest, v.squaredNorm());
     MovingCloth end = find_end(work.prediction, velocity_of(proposal));
-    if (fastest > kStill * kStill) work.solved_energy = compute_cloth_energy(scene, work, end);
+    if (fastest > kStill * kStill) work.energies.solved = compute_cloth_energy(scene, work, end);
     end.world = proposal.world;
-    work.proposed_energy = compute_cloth_energy(scene, work, end);
-    if (!(fastest > kStill * kStill)) work.solved_energy = work.proposed_energy;
+    work.energies.proposed = compute_cloth_energy(scene, work, end);
+    if (!(fastest > kStill * kStill)) work.energies.solved = work.energies.proposed;
 }
 
 bool does_push_out_strain(const Scene& scene, double dt, const Workspace& work)
 {
-    const Energies& before = work.solved_energy.potential;
-    const Energies& after = work.proposed_energy.potential;
+    const Energies& before = work.energies.solved.potential;
+    const Energies& after = work.energies.proposed.potential;
     const double cost = after.elastic() - before.elastic();
-    const double unseen = kRise * (work.solved_energy.kinetic + before.elastic());
+    const double unseen = kRise * (work.energies.solved.kinetic + before.elastic());
     if (!(cost > unseen)) return false;
     const double push = kinetic_energy(scene.material.density, work.mesh.elements, push_velocity(work, dt));
     return cost > push + unseen;

@@ -35,10 +35,10 @@ ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, cons
 /// the velocity in `work.solution`, with the forces that this has found. Negative where they are driven.
 double compute_driven_work(const State& state, const Workspace& work);
 
-/// `work.energy` at the step's start, as the last step left it where that is known.
+/// `work.energies.start` at the step's start, as the last step left it where that is known.
 void measure_start_energy(const Scene& scene, const State& state, Workspace& work);
 
-/// `work.solved_energy` and `work.proposed_energy` of a proposal after `dt` (s).
+/// `work.energies.solved` and `work.energies.proposed` of a proposal after `dt` (s).
 void measure_proposal_energy(const Scene& scene, double dt, Workspace& work);
 
 /// J, of the cloth of a weighed proposal: what was in motion at the step's start, or changed kind in it.

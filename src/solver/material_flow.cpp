@@ -6,12 +6,13 @@
 #include <utility>
 
 #include "solver/eol/eol_coordinates.h"
+#include "solver/model/eol_limits.h"
 
 namespace arris {
 
 bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
 {
-    constexpr double kLeast = 0.4;
+    constexpr double kLeast = 1.0 - kMostFaceTaken;
     work.overrun.clear();
     for (const EolCoordinates& eol : work.eol)
         for (const int f : work.mesh.stars.faces[eol.vertex]) {
@@ -55,7 +56,7 @@ int find_flow_parts(const Scene& scene, const State& state, double dt)
 {
     // Of a cell's edges: with the way cleared ahead, heights there are those of a cell or more, and steps
     // that take more are hardly ever made.
-    constexpr double kMostCells = 0.6;
+    constexpr double kMostCells = kMostFaceTaken;
     constexpr int kMostParts = 4;  // flow may be wild
     double most = 0.0;
     for (const EolVertex& eol : state.eol) {

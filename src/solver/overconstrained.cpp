@@ -59,7 +59,7 @@ std::vector<int> find_overpressed_vertices(const Workspace& work)
     constexpr double kWork = 0.1;  // of the energy at stake
     std::vector<int> overpressed;
     const double least = kWork * energy_scale(work);
-    if (!(work.solved_energy.sum() - work.energy.sum() > least)) return overpressed;
+    if (!(work.energies.solved.sum() - work.energies.start.sum() > least)) return overpressed;
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
     for (const EolCoordinates& eol : work.eol) {
         const Press press = sum_contacts(eol.vertex, multiplier, work);

@@ -43,10 +43,10 @@ void relinearise(const Scene& scene, bool is_measure, Workspace& work, StepRepor
 
 void take_least(Workspace& work)
 {
-    assert(work.least_at.world.size() == work.expansion.world.size());
-    work.expansion = work.least_at;
+    assert(work.least.at.world.size() == work.expansion.world.size());
+    work.expansion = work.least.at;
     work.has_system = false;
-    work.is_least_taken = true;
+    work.least.is_taken = true;
 }
 
 }  // namespace
@@ -56,12 +56,12 @@ bool enforce_energy_balance(const Scene& scene, const State& state, Attempt atte
 {
     const double rise = find_energy_rise(scene, state, work);
     report.energy_rise = rise;
-    const bool is_first = work.least_at.world.empty();
-    if (is_first || rise < work.least_rise) {
-        work.least_rise = rise;
-        work.least_at = work.expansion;
+    const bool is_first = work.least.at.world.empty();
+    if (is_first || rise < work.least.rise) {
+        work.least.rise = rise;
+        work.least.at = work.expansion;
     }
-    if (work.is_least_taken) {  // rows may have been added since
+    if (work.least.is_taken) {  // rows may have been added since
         if (rise > 0.0 && attempt == Attempt::Ordinary) report.status = StepStatus::EnergyRise;
         return false;
     }
@@ -72,7 +72,7 @@ bool enforce_energy_balance(const Scene& scene, const State& state, Attempt atte
     }
     if (!(rise > 0.0)) return false;
     // Where history is what rises, without it nothing may; else what was found first will do.
-    if (attempt == Attempt::Ordinary && (work.prediction.has_history || work.least_rise > 0.0)) {
+    if (attempt == Attempt::Ordinary && (work.prediction.has_history || work.least.rise > 0.0)) {
         report.status = StepStatus::EnergyRise;
         return false;
     }
@@ -82,8 +82,8 @@ bool enforce_energy_balance(const Scene& scene, const State& state, Attempt atte
 
 bool restore_least_rise(Workspace& work, StepReport& report)
 {
-    const bool was_good = !work.least_at.world.empty() && !(work.least_rise > 0.0);
-    if (!was_good || work.is_least_taken || report.status == StepStatus::EnergyRise) return false;
+    const bool was_good = !work.least.at.world.empty() && !(work.least.rise > 0.0);
+    if (!was_good || work.least.is_taken || report.status == StepStatus::EnergyRise) return false;
     take_least(work);
     return true;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "solver/attempts.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
 #include "solver/model/step_report.h"
+#include "solver/retry_policy.h"
 #include "solver/workspace.h"
 
 namespace arris {

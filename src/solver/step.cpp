@@ -5,14 +5,15 @@
 #include <cassert>
 #include <optional>
 
+#include "solver/commit.h"
 #include "solver/contact/constraints.h"
 #include "solver/contact/eol_contacts.h"
 #include "solver/energy_balance.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/eol/eol_features.h"
-#include "solver/feature_census.h"
 #include "solver/material_flow.h"
 #include "solver/mesh_change/step_mesh.h"
+#include "solver/model/eol_limits.h"
 #include "solver/model/stopwatch.h"
 #include "solver/overconstrained.h"
 #include "solver/relinearization.h"
@@ -32,8 +33,7 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
         work.expansion.world.assign(state.velocity.size(), Vec3::Zero());
         work.expansion.material.assign(state.velocity.size(), Vec2::Zero());
     }
-    work.is_least_taken = false;
-    work.least_at = {};
+    work.least = {};
     work.pin_targets = find_pin_targets(scene, state, end);
     work.obstacles =
         move_obstacles(scene, state, work.mesh.stars.topology.edges, work.prediction, work.pin_targets, end);
@@ -237,7 +237,6 @@ bool add_violations(const Scene& scene, const State& state, const Violations& vi
 bool solve_and_check(const Scene& scene, const Settings& settings, double end, const State& state,
                      Attempt attempt, Workspace& work, StepReport& report)
 {
-    constexpr double kGrowth = 0.1;  // m/s, of a gap on its way to the stand-off
     Stopwatch watch;
 
     // 4. A and b in the vertices' coordinates, in which contacts are bounds and rows.
@@ -266,7 +265,7 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
         propose(scene, 0.0, work);
         return linearise_nearer(work, report);
     }
-    const double growth = report.solves == 1 ? kGrowth * (end - state.time) : 0.0;
+    const double growth = report.solves == 1 ? kMendingSpeed * (end - state.time) : 0.0;
     const Violations violations = propose_and_check(scene, end - state.time, growth, work);
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
     if (is_done && !find_overpressed_vertices(work).empty()) {
@@ -287,106 +286,17 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     return is_again;
 }
 
-/// What each EOL vertex has to remember: which way is outward, and since when it does not press.
-void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoordinates>& eol,
-                const std::vector<double>& multiplier, std::vector<EolVertex>& vertices)
-{
-    for (std::size_t c = 0; c < contacts.size(); ++c) {
-        if (contacts[c].eol < 0) continue;
-        EolVertex& vertex = vertices[eol[contacts[c].eol].entry];
-        vertex.outward = contacts[c].in_frame.normal;
-        vertex.side = eol[contacts[c].eol].side;
-        vertex.idle = multiplier[c] > 0.0 ? 0 : vertex.idle + 1;
-    }
-}
-
-/// Swaps the new state in, or leaves the old one where the step failed.
-void commit(const Scene& scene, double end, Workspace& work, State& state, StepReport& report)
-{
-    if (report.status != StepStatus::Done) return;
-    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
-    const FeatureCensus census = take_census(scene, state, work, multiplier);
-    report.feature_rows = census.rows;
-    report.rows_by_cause = census.by_cause;
-    report.eol_pressing = census.eol;
-    state.active = active_contacts(state, work.contacts, multiplier);
-    count_idle(work.contacts, work.eol, multiplier, state.eol);
-    state.crossings += report.crossings;
-    report.contacts = static_cast<int>(state.active.size() -
-                                       std::count_if(state.active.begin(), state.active.end(), is_fold));
-    report.eol_vertices = static_cast<int>(state.eol.size());
-    state.previous_world.swap(state.mesh.world);
-    state.previous_velocity.swap(state.velocity);
-    state.mesh.world.swap(work.proposal.world);
-    state.velocity.swap(work.proposal.velocity);
-    state.previous_material.swap(state.mesh.material);
-    state.previous_material_velocity.swap(state.material_velocity);
-    state.mesh.material.swap(work.proposal.material);
-    state.material_velocity.swap(work.proposal.material_velocity);
-    state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // put back by hand: no history
-    state.time = end;
-    ++state.step;
-    follow_features(scene.obstacles, state);
-    work.known.world.clear();
-    if (report.rewound > 0) return;
-    work.known_energy = work.proposed_energy;
-    work.known = {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
-}
-
-/// What presses at the start, where there is no last step to tell: what does in a first step that is not
-/// kept.
-std::vector<ActiveContact> find_pressing(const Scene& scene, const Settings& settings, double end,
-                                         const State& state, Workspace& work, Attempt attempt)
-{
-    Scene rows_only = scene;
-    rows_only.eol.reset();
-    State trial = state;
-    step(rows_only, settings, end, trial, work, attempt);
-    return trial.active;
-}
-
-}  // namespace
-
-State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity)
-{
-    State state;
-    state.mesh = std::move(mesh);
-    const int n = state.mesh.vertex_count();
-    state.ids.resize(n);
-    for (int v = 0; v < n; ++v) state.ids[v] = static_cast<std::uint32_t>(v);
-    state.next_id = static_cast<std::uint32_t>(n);
-    state.velocity.assign(n, velocity);
-    state.previous_world.assign(n, Vec3::Zero());
-    state.previous_velocity.assign(n, Vec3::Zero());
-    state.material_velocity.assign(n, Vec2::Zero());
-    state.previous_material = state.mesh.material;
-    state.previous_material_velocity.assign(n, Vec2::Zero());
-    attach_pins(scene, state);
-    return state;
-}
-
-void prepare(const Scene& scene, const State& state, Workspace& work)
-{
-    if (update_mesh_cache(scene, state, work.mesh)) work.known.world.clear();
-}
-
-void restart(State& state)
-{
-    state.previous_dt = 0.0;
-}
-
-StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
-                Attempt attempt)
+/// One step, from the contacts in `state.active` on.
+StepReport make_step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
+                     Attempt attempt)
 {
     StepReport report;
     report.dt = end - state.time;
     Stopwatch watch;
-    if (scene.eol && state.step == 0 && state.active.empty())
-        state.active = find_pressing(scene, settings, end, state, work, attempt);
 
     // 1. EOL vertices on the features that press; elements of a mesh that changed.
     const StepMesh mesh = choose_step_mesh(scene, end, work.retry.flow(), state, work.mesh, report);
-    if (mesh.is_changed) work.known.world.clear();
+    if (mesh.is_changed) work.energies.known_at.world.clear();
     State& start = mesh.start;
     watch.lap();
 
@@ -418,6 +328,48 @@ StepReport step(const Scene& scene, const Settings& settings, double end, State&
     if (report.status == StepStatus::Done && &start != &state) std::swap(state, start);
     report.seconds.advance += watch.lap();
     return report;
+}
+
+}  // namespace
+
+State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity)
+{
+    State state;
+    state.mesh = std::move(mesh);
+    const int n = state.mesh.vertex_count();
+    state.ids.resize(n);
+    for (int v = 0; v < n; ++v) state.ids[v] = static_cast<std::uint32_t>(v);
+    state.next_id = static_cast<std::uint32_t>(n);
+    state.velocity.assign(n, velocity);
+    state.previous_world.assign(n, Vec3::Zero());
+    state.previous_velocity.assign(n, Vec3::Zero());
+    state.material_velocity.assign(n, Vec2::Zero());
+    state.previous_material = state.mesh.material;
+    state.previous_material_velocity.assign(n, Vec2::Zero());
+    attach_pins(scene, state);
+    return state;
+}
+
+void prepare(const Scene& scene, const State& state, Workspace& work)
+{
+    if (update_mesh_cache(scene, state, work.mesh)) work.energies.known_at.world.clear();
+}
+
+void restart(State& state)
+{
+    state.previous_dt = 0.0;
+}
+
+StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
+                Attempt attempt)
+{
+    // At the start no last step tells which features press: a trial step does, which is not kept.
+    if (scene.eol && state.step == 0 && state.active.empty()) {
+        State trial = state;
+        make_step(scene, settings, end, trial, work, attempt);
+        state.active = std::move(trial.active);
+    }
+    return make_step(scene, settings, end, state, work, attempt);
 }
 
 }  // namespace arris

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "physics/energies.h"
-#include "solver/attempts.h"
 #include "solver/contact/contacts.h"
 #include "solver/contact/proposal.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/mesh_change/mesh_cache.h"
+#include "solver/retry_policy.h"
 #include "solver/velocity_solve/velocity_solve.h"
 
 namespace arris {
@@ -19,6 +19,22 @@ struct ClothEnergy {
     Energies potential;
 
     double sum() const { return kinetic + potential.sum(); }
+};
+
+/// The cloth's energy during one step, as `energy_balance` measures it.
+struct StepEnergies {
+    ClothEnergy start;
+    ClothEnergy solved;    ///< of the proposal before anything was moved out to its stand-off
+    ClothEnergy proposed;  ///< and after
+    ClothEnergy known;     ///< of `known_at`
+    MovingCloth known_at;  ///< what the last commit left; empty where the mesh has changed since
+};
+
+/// The linearisation of this step that has raised the energy least, so far.
+struct LeastRise {
+    double rise = 0.0;      ///< J
+    ClothVelocity at;       ///< its v^; empty before the first one
+    bool is_taken = false;  ///< the step takes it, whatever it is
 };
 
 /// Caches and scratch of the step, grouped by the phase that writes them. Clearing it changes no result.
@@ -48,15 +64,8 @@ struct Workspace {
     VelocitySolution solution;
     Proposal proposal;
 
-    // find_contacts, measure_proposal_energy, enforce_energy_balance
-    ClothEnergy energy;           ///< at the step's start
-    ClothEnergy solved_energy;    ///< of the proposal before anything was moved out to its stand-off
-    ClothEnergy proposed_energy;  ///< and after
-    double least_rise = 0.0;      ///< J, of this step's linearisations so far
-    ClothVelocity least_at;       ///< v^ of that one
-    bool is_least_taken = false;  ///< whatever it is
-    ClothEnergy known_energy;     ///< of `known`, which the last commit left
-    MovingCloth known;
+    StepEnergies energies;
+    LeastRise least;
 };
 
 }  // namespace arris

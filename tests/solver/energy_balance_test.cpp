@@ -237,8 +237,8 @@ TEST(UnforeseenEnergy, IsTheStretchOfWhatMovesAcrossItself)
     for (std::size_t v = 0; v < one.before.velocity.size(); ++v)
         one.work.proposal.velocity[v] = Vec3(0, 0, one.before.mesh.material[v].x() > 0.25 ? -1.0 : 0.0);
     one.weigh();
-    const double stretch = one.work.solved_energy.potential.stretch;
-    EXPECT_GT(stretch, 0.05 * one.work.solved_energy.kinetic);
+    const double stretch = one.work.energies.solved.potential.stretch;
+    EXPECT_GT(stretch, 0.05 * one.work.energies.solved.kinetic);
     EXPECT_NEAR(find_unforeseen_energy(one.scene, one.work) / stretch, 1.0, 0.02);
 
     one.work.expansion.world = one.work.proposal.velocity;  // from there nothing is left to see
@@ -259,8 +259,8 @@ TEST(UnforeseenEnergy, IsAllThatIsGainedWhereTheExpansionIsStrainedFarMore)
             one.work.expansion.world[v] = Vec3(0.1 * times * x, 0, 0);
         }
         one.weigh();
-        const double stretch = one.work.solved_energy.potential.stretch;
-        EXPECT_GT(stretch, 0.05 * one.work.solved_energy.kinetic);
+        const double stretch = one.work.energies.solved.potential.stretch;
+        EXPECT_GT(stretch, 0.05 * one.work.energies.solved.kinetic);
         const double expected = times > 2.5 ? stretch : 0.0;
         EXPECT_NEAR(find_unforeseen_energy(one.scene, one.work), expected, 1e-9 * stretch) << times;
     }
@@ -274,7 +274,7 @@ TEST(UnforeseenEnergy, IsNoneOfAStretchInThePlane)
     for (std::size_t v = 0; v < one.before.velocity.size(); ++v)
         one.work.proposal.velocity[v] = Vec3(0.1 * one.before.mesh.material[v].x(), 0, 0);
     one.weigh();
-    EXPECT_GT(one.work.solved_energy.potential.stretch, one.work.solved_energy.kinetic);
+    EXPECT_GT(one.work.energies.solved.potential.stretch, one.work.energies.solved.kinetic);
     EXPECT_EQ(find_unforeseen_energy(one.scene, one.work), 0.0);
 }
 

@@ -36,8 +36,8 @@ Workspace make_vise(double angle, bool is_together)
     work.solution.row_multipliers = Eigen::VectorXd::Ones(2);
     const FeatureFrame frame{Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), 1.0};
     work.eol = {{7, 0, frame, Vec3::Zero(), Mat3::Identity(), Mat23::Zero(), 1, Vec3::UnitX()}};
-    work.energy.kinetic = 1e-3;
-    work.solved_energy.kinetic = 0.2;
+    work.energies.start.kinetic = 1e-3;
+    work.energies.solved.kinetic = 0.2;
     return work;
 }
 
@@ -47,7 +47,7 @@ TEST(SqueezedVertices, AreThoseWhoseContactsPushAgainstEachOther)
     EXPECT_TRUE(find_overpressed_vertices(make_vise(90.0, false)).empty()) << "a groove";
     EXPECT_TRUE(find_overpressed_vertices(make_vise(170.0, true)).empty()) << "carried by both";
     Workspace resting = make_vise(170.0, false);
-    resting.solved_energy.kinetic = resting.energy.kinetic;
+    resting.energies.solved.kinetic = resting.energies.start.kinetic;
     EXPECT_TRUE(find_overpressed_vertices(resting).empty()) << "nothing is gained";
     Workspace ordinary = make_vise(170.0, false);
     ordinary.eol.clear();

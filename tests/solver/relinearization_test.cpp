@@ -30,7 +30,7 @@ struct Proposed {
         state = make_state(scene, make_cloth_grid(grid), Vec3::Zero());
         EXPECT_EQ(step(scene, settings, kStep, state, work).status, StepStatus::Done);
         report.status = StepStatus::Done;
-        work.least_at = {};  // as a step begins
+        work.least.at = {};  // as a step begins
         work.proposal.velocity.assign(state.velocity.size(), velocity);
         work.proposal.material_velocity.assign(state.velocity.size(), Vec2::Zero());
         work.proposal.world =
@@ -59,7 +59,7 @@ TEST(KeepEnergy, SolvesAgainAtWhatWasFoundThenFailsOrTakesTheLeast)
 
     Proposed resort(kDriven);
     EXPECT_TRUE(resort.keep(Attempt::Last, false));
-    EXPECT_TRUE(resort.work.is_least_taken);
+    EXPECT_TRUE(resort.work.least.is_taken);
     EXPECT_FALSE(resort.keep(Attempt::Last, false)) << "whatever it is";
     EXPECT_EQ(resort.report.status, StepStatus::Done);
     EXPECT_GT(resort.report.energy_rise, 0.0);
@@ -70,17 +70,17 @@ TEST(KeepEnergy, TheLeastIsOfThisStepAlsoWhereItIsNotTheFirstLinearisation)
 {
     Proposed proposed(kDriven);
     proposed.report.relinearisations = 1;
-    proposed.work.least_rise = 0.0;  // as an earlier step has left it
+    proposed.work.least.rise = 0.0;  // as an earlier step has left it
     const ClothVelocity expansion = proposed.work.expansion;
     EXPECT_TRUE(proposed.keep(Attempt::Last, false));
     EXPECT_EQ(proposed.work.expansion.world, expansion.world);
-    EXPECT_GT(proposed.work.least_rise, 0.0);
+    EXPECT_GT(proposed.work.least.rise, 0.0);
 }
 
 TEST(KeepEnergy, WhatWasTakenAndRisesAfterAllFailsAnOrdinaryAttempt)
 {
     Proposed proposed(kDriven);
-    proposed.work.is_least_taken = true;
+    proposed.work.least.is_taken = true;
     EXPECT_FALSE(proposed.keep(Attempt::Ordinary, true));
     EXPECT_EQ(proposed.report.status, StepStatus::EnergyRise);
 }

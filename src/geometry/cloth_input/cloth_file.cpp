@@ -23,12 +23,12 @@
 #include "geometry/cloth_input/chart_overlap.h"
 #include "geometry/cloth_input/obj_outline.h"
 #include "geometry/input_error.h"
+#include "geometry/input_limits.h"
 
 namespace arris {
 namespace {
 
 // Cloth farther out or larger than this is in the wrong unit.
-constexpr double kLargestCoordinate = 1e6;  // m
 
 // A mesh is flat within this share of its size: files are often written in single precision.
 constexpr double kFlat = 1e-6;

@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "geometry/input_error.h"
+#include "geometry/input_limits.h"
 #include "geometry/obstacle_input/import_log.h"
 #include "geometry/obstacle_input/mesh_file_check.h"
 #include "geometry/obstacle_input/mesh_folder_io.h"
@@ -40,7 +41,6 @@ namespace {
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{2} << 30;
 constexpr std::size_t kMostFaces = 10'000'000;
 constexpr std::size_t kMostNodes = 1'000'000;
-constexpr double kLargestCoordinate = 1e6;  // m, as everywhere: what is farther out is in the wrong unit
 
 // Single precision moves points by 6e-8 of their distance from the origin: beyond this ratio by more than
 // 6e-4 of the mesh's size.

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "geometry/input_error.h"
+#include "geometry/input_limits.h"
 #include "geometry/obstacle/obstacle_topology.h"
 
 namespace arris {
@@ -16,7 +17,6 @@ constexpr std::string_view kMeshMark = "arris-obstacle-1";
 constexpr std::string_view kRefusalMark = "arris-refusal--1";
 constexpr std::size_t kLongestLine = 500;
 constexpr std::size_t kMostLines = 1000;
-constexpr double kLargestCoordinate = 1e6;  // m
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && std::is_trivially_copyable_v<Face>);
 

@@ -9,12 +9,12 @@
 #include <numeric>
 
 #include "geometry/input_error.h"
+#include "geometry/input_limits.h"
 
 namespace arris {
 namespace {
 
 // What is larger or farther out is in the wrong unit.
-constexpr double kLargestCoordinate = 1e6;  // m
 constexpr int kMostTeeth = 10000;
 
 // A flat valley narrower than this share of the pitch is the rounding of tan(): no valley was meant.

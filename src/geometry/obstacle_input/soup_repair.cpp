@@ -12,6 +12,7 @@
 
 #include "geometry/cgal.h"
 #include "geometry/input_error.h"
+#include "geometry/input_limits.h"
 #include "geometry/obstacle/obstacle_topology.h"
 #include "geometry/obstacle_input/shell_orientation.h"
 #include "geometry/obstacle_input/soup_weld.h"
@@ -25,7 +26,6 @@ using SurfaceMesh = CGAL::Surface_mesh<Point3>;
 using Polygon = std::array<std::size_t, 3>;
 
 // What is larger or farther out is in the wrong unit.
-constexpr double kLargestCoordinate = 1e6;  // m
 
 std::array<int, 2> edge_of(const Face& face, int k)
 {

@@ -124,11 +124,6 @@ PatchFace ClothSurgery::patch_face(const IdFace& face) const
 
 // --- what is not geometry
 
-void ClothSurgery::set_world(VertexId v, const Vec3& position)
-{
-    implementation_->mesh.world(v) = position;
-}
-
 void ClothSurgery::set_role(VertexId v, TraceRole role, int tag)
 {
     implementation_->mesh.set_role(v, role, tag);

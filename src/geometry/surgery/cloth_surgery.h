@@ -154,7 +154,6 @@ class ClothSurgery {
 
     // --- what is not geometry: never refused
 
-    void set_world(VertexId v, const Vec3& position);
     void set_role(VertexId v, TraceRole role, int tag);
     /// The edge must exist and, for a tag, join two vertices that have a role.
     void set_edge_tag(VertexId a, VertexId b, int tag);

@@ -30,13 +30,12 @@
 #include <tuple>
 
 #include "geometry/cgal.h"
+#include "geometry/cloth/mesh_limits.h"
 #include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
 
-constexpr double kShort = 0.5;       // of the target length
-constexpr double kLong = 2.0;        // four times that, so that a split never makes a short edge
 constexpr double kFlipAngle = 30.0;  // degrees
 constexpr double kKeepAngle = 10.0;  // degrees: a merge may not leave thinner faces than it found, below this
 constexpr double kSplitAngle = 0.5;  // of the least angle before: what a split may leave for the next round
@@ -119,12 +118,12 @@ class Cleanup {
 
     bool is_short(const Edge& e) const
     {
-        return length(e) < kShort * target_.longest && relative_length(e) < kShort;
+        return length(e) < kShortEdge * target_.longest && relative_length(e) < kShortEdge;
     }
 
     bool is_long(const Edge& e) const
     {
-        return length(e) > kLong * target_.shortest && relative_length(e) > kLong;
+        return length(e) > kLongEdge * target_.shortest && relative_length(e) > kLongEdge;
     }
 
     bool is_thin(const PatchFace& face, double angle) const
@@ -158,7 +157,7 @@ class Cleanup {
 
     bool is_too_long(const SurgeryEvent& event) const
     {
-        const double allowed = kLong * target_.length(event.changes[0].new_material);
+        const double allowed = kLongEdge * target_.length(event.changes[0].new_material);
         return longest_edge(event.after) > std::max(allowed, longest_edge(event.before));
     }
 
@@ -186,7 +185,7 @@ class Cleanup {
     // is, and sometimes (two vertices beside a corner of the cloth) it takes two merges to be rid of them.
     bool merge_short(const Edge& e)
     {
-        const double floor = kKeepAngle * std::min(1.0, relative_length(e) / kShort);
+        const double floor = kKeepAngle * std::min(1.0, relative_length(e) / kShortEdge);
         return merge(e, [floor](const SurgeryEvent& event, double angle) {
             return angle >= std::min(floor, least_angle(event.before));
         });

@@ -18,13 +18,13 @@
 #include <set>
 #include <tuple>
 
+#include "geometry/cloth/mesh_limits.h"
 #include "geometry/surgery/material_walk.h"
 #include "geometry/surgery/vertex_table.h"
 
 namespace arris {
 namespace {
 
-constexpr double kClear = 0.3;       // of the target length
 constexpr double kSoundAngle = 3.0;  // degrees: preferred are ways that leave no thinner face
 constexpr double kLeastAngle = 0.1;  // degrees: where rounding decides which side up a face is
 constexpr int kInstants = 4;         // of the way, at which faces are looked at: corners go straight
@@ -312,9 +312,9 @@ bool turns_over(const PatchFace& face, const TraceWays& ways)
     return !(least_area(face, ways_of(face, ways)) > 0.0);
 }
 
-// In stages of at most kClear of the target length, so that what stands nearest goes first: vertices of one
-// cell after the other can be merged into the trace, but not those behind others. Then up to kClear where the
-// way is shorter: that is room for what comes, which another trace may take, too.
+// In stages of at most kCrowded of the target length, so that what stands nearest goes first: vertices of one
+// cell after the other can be merged into the trace, but not those behind others. Then up to kCrowded where
+// the way is shorter: that is room for what comes, which another trace may take, too.
 ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
                             const std::vector<TraceAdvance>& advances)
 {
@@ -329,7 +329,7 @@ ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
     for (auto at = ahead.begin(); at != ahead.end();) {
         const auto& [v, way] = *at;
         const double length = way.norm();
-        const double least = kClear * target.length(surgery.material(v));
+        const double least = kCrowded * target.length(surgery.material(v));
         if (length > kResting * least) room[v] = find_room(surgery, v, way, least / length);
         stages = std::max(stages, std::ceil(length / least));
         at = length > 0.0 ? std::next(at) : ahead.erase(at);

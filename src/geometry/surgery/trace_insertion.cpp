@@ -21,13 +21,13 @@
 #include <utility>
 
 #include "geometry/cgal.h"
+#include "geometry/cloth/mesh_limits.h"
 #include "geometry/surgery/material_location.h"
 #include "geometry/surgery/material_walk.h"
 
 namespace arris {
 namespace {
 
-constexpr double kSnap = 0.3;            // of the target length: a vertex nearer to a trace moves onto it
 constexpr double kOnEdge = 1e-9;         // of the target length: a point nearer to an edge is on it
 constexpr double kLeastFraction = 0.05;  // of an edge, from an end that cannot give way
 constexpr double kTraceFraction = 1e-3;  // the same if that end is on another trace
@@ -170,7 +170,7 @@ class TraceWalk {
             const RingHit hit = first_hit(surgery_, current, surgery_.material(end_));
             if (hit.p == kNoVertex) return Verdict::Border;
             if (hit.q == kNoVertex) return take(hit.p);
-            if (snap_end(current, hit, kSnap)) return Verdict::Done;
+            if (snap_end(current, hit, kCrowded)) return Verdict::Done;
             if (surgery_.apex(hit.q, hit.p) == end_ && flip(hit)) return Verdict::Done;
             const Verdict crossed = cross(current, hit);
             if (crossed != Verdict::Quality) return crossed;
@@ -186,7 +186,7 @@ class TraceWalk {
         for (const VertexId v : {hit.p, hit.q}) {
             const Vec2 X = surgery_.material(v);
             const double apart = (X - surgery_.material(current)).norm();
-            if (surgery_.role(v) != TraceRole::Free || !(apart <= kSnap * target_.length(X))) continue;
+            if (surgery_.role(v) != TraceRole::Free || !(apart <= kCrowded * target_.length(X))) continue;
             const SurgeryProposal proposal = surgery_.propose_collapse(v, current);
             if (!proposal.is_legal()) continue;
             if (least_angle(proposal.event.after) < std::min(kSnapAngle, least_angle(proposal.event.before)))
@@ -216,7 +216,7 @@ class TraceWalk {
             std::swap(ends[0], ends[1]);
         for (const VertexId v : ends) {
             const Vec2 X = surgery_.material(v);
-            const double reach = kSnap * target_.length(X);
+            const double reach = kCrowded * target_.length(X);
             const double along = line.along(X) * line.length();
             const double apart = clearance * target_.length(X);
             const bool is_clear = along > apart && line.length() - along > apart;
@@ -294,7 +294,7 @@ TraceInsertion insert_edge_crossing(ClothSurgery& surgery, const MeshTarget& tar
     if (!surgery.has_edge(a, b)) return {Verdict::Missing, kNoVertex};
     if (!(s >= 0.0 && s <= 1.0)) return {Verdict::Argument, kNoVertex};
     const Vec2 X = surgery.material(a) + s * (surgery.material(b) - surgery.material(a));
-    const double reach = kSnap * target.length(X);
+    const double reach = kCrowded * target.length(X);
     std::array<VertexId, 2> ends = {a, b};
     if (s > 0.5) std::swap(ends[0], ends[1]);
     for (const VertexId v : ends) {
@@ -334,7 +334,7 @@ TraceInsertion insert_face_point(ClothSurgery& surgery, const MeshTarget& target
     });
     for (const int k : order) {
         const VertexId v = face[k];
-        if (!((corners[k] - X).norm() <= kSnap * target.length(X))) break;
+        if (!((corners[k] - X).norm() <= kCrowded * target.length(X))) break;
         if (is_like(surgery, v, made)) return {Verdict::Done, v};
         if (surgery.is_border(v)) continue;
         const Verdict snapped = snap(surgery, v, X);

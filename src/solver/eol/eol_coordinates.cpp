@@ -12,12 +12,13 @@
 #include "solver/eol/eol_features.h"
 #include "solver/eol/free_fold.h"
 #include "solver/eol/wire_fold.h"
+#include "solver/model/eol_limits.h"
 
 namespace arris {
 
 namespace {
 
-const double kSin20 = std::sin(20.0 * M_PI / 180.0);
+const double kSinLeastCrossing = std::sin(kLeastCrossing * M_PI / 180.0);
 const double kCos10 = std::cos(10.0 * M_PI / 180.0);
 const double kSin10 = std::sin(10.0 * M_PI / 180.0);
 
@@ -141,7 +142,6 @@ ArrivingCloth find_arriving(const Sides& sides, const Vec2& trace, const Vec2& f
 /// Not where it has left the point: carried across cloth that flies it would do work on that.
 void turn_with_cone(const Star& star, double thickness, double dt, FeatureFrame& frame, Vec3& place)
 {
-    constexpr double kSpeed = 0.1;  // m/s, and
     constexpr double kShare = 0.5;  // of what is missing, a step: the cone turns with cloth that shakes
     const double height = (place - frame.point).norm();
     if (!(height > 0.0)) return;
@@ -151,7 +151,7 @@ void turn_with_cone(const Star& star, double thickness, double dt, FeatureFrame&
     for (const StarFace& face : star.faces) sectors.push_back(face.sector);
     const Vec3 wanted = -find_cone_axis(sectors, -now);
     const double angle = std::atan2(now.cross(wanted).norm(), now.dot(wanted));
-    const double share = std::min(kShare, kSpeed * dt / (height * angle));
+    const double share = std::min(kShare, kMendingSpeed * dt / (height * angle));
     const auto turn = Eigen::Quaterniond::FromTwoVectors(now, wanted);
     frame.outward = Eigen::Quaterniond::Identity().slerp(angle > 0.0 ? share : 0.0, turn) * now;
     place = frame.point + height * frame.outward;
@@ -192,7 +192,7 @@ bool leads_along(const Star& star, const Vec2& border, const Vec2& trace, const 
         across += face.area * (way - part * tangent).norm();
     }
     const double sine_in_material = std::abs(border.x() * trace.y() - border.y() * trace.x());
-    return sine_in_material < kSin20 || across < kSin20 * std::hypot(along, across);
+    return sine_in_material < kSinLeastCrossing || across < kSinLeastCrossing * std::hypot(along, across);
 }
 
 EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)

@@ -7,12 +7,10 @@
 
 #include "geometry/obstacle/feature_path.h"
 #include "solver/eol/cloth_stars.h"
+#include "solver/model/eol_limits.h"
 #include "solver/model/state.h"
 
 namespace arris {
-
-/// Thicknesses from a feature, within which cloth lies on it: the mitre and a little.
-inline constexpr double kOnFeature = 2.5;
 
 /// The point of the obstacle's mesh at which a fixed vertex is held; -1 of one that slides.
 int fixed_point(const Obstacle& obstacle, const EolVertex& eol);

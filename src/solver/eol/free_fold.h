@@ -15,12 +15,9 @@
 #pragma once
 
 #include "geometry/obstacle/feature_frame.h"
+#include "solver/model/eol_limits.h"
 
 namespace arris {
-
-/// m/s, of material over an edge: what flows as fast flies over it. What is slower and off it, as stiff cloth
-/// that shakes or hangs between corners, comes back.
-inline constexpr double kFreeFlow = 1.0;
 
 /// Cloth that comes to a fold, in the obstacle's frame.
 struct ArrivingCloth {

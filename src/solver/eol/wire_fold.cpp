@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include "solver/model/eol_limits.h"
 
 namespace arris {
 
@@ -24,14 +25,13 @@ double angle_behind(const FeatureFrame& frame, const Vec3& place)
 Vec3 turn_outward(const FeatureFrame& wanted, const Vec3& place, const std::vector<Vec3>& beside, double dt)
 {
     constexpr double kRoundOff = 1e-13;
-    constexpr double kSpeed = 0.1;  // m/s
     constexpr double kShare = 0.5;  // of what is missing, a step: outward turns with cloth that shakes
     const Vec3& t = wanted.tangent;
     const Vec3 from = place - wanted.point - t.dot(place - wanted.point) * t;
     if (!(from.norm() > kRoundOff * place.norm())) return wanted.outward;
     const Vec3 outward = from.normalized();
     double turn = kShare * std::atan2(t.dot(outward.cross(wanted.outward)), outward.dot(wanted.outward));
-    turn = std::clamp(turn, -kSpeed * dt / from.norm(), kSpeed * dt / from.norm());
+    turn = std::clamp(turn, -kMendingSpeed * dt / from.norm(), kMendingSpeed * dt / from.norm());
     for (const Vec3& neighbour : beside) {
         const double angle = angle_behind({wanted.point, t, outward, 1.0}, neighbour);
         const double room = kShare * std::max(std::abs(angle) - kLeastAngle, 0.0);

@@ -15,6 +15,7 @@
 #include "solver/model/row_cause.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
+#include "solver/sites/eol_decision.h"
 #include "solver/sites/feature_sites.h"
 
 namespace arris {
@@ -33,8 +34,8 @@ struct ConformedMesh {
 
 /// What features ask of the mesh, whatever may strain it.
 struct FeatureChanges {
-    std::vector<VertexId> released;  ///< EOL vertices that go, in the order of the state's
-    std::vector<FeatureSite> sites;  ///< where there may be new ones
+    std::vector<EolRelease> released;  ///< in the order of the state's EOL vertices
+    std::vector<FeatureSite> sites;    ///< where there may be new ones
     bool empty() const { return released.empty() && sites.empty(); }
 };
 

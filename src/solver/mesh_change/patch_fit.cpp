@@ -45,12 +45,7 @@ class PatchFitter {
             report.strain = std::max(report.strain, strain);
             if (report.strain > most_strain) return report;
         }
-        for (std::size_t i = 0; i < patches.size(); ++i) {
-            const std::optional<VelocityFit> fit = fit_patch(patches[i], fields[i]);
-            if (!fit) continue;
-            ++report.patches;
-            report.energy_gain += fit->energy_gain;
-        }
+        for (std::size_t i = 0; i < patches.size(); ++i) fit_patch(patches[i], fields[i]);
         return report;
     }
 
@@ -164,7 +159,7 @@ class PatchFitter {
         return strain(cell);
     }
 
-    std::optional<VelocityFit> fit_patch(const ChangedPatch& changed, const VelocityField& old)
+    void fit_patch(const ChangedPatch& changed, const VelocityField& old)
     {
         FitPatch patch;
         local_.resize(after_.ids.size());
@@ -177,12 +172,11 @@ class PatchFitter {
             patch.faces.push_back({local_[face[0]], local_[face[1]], local_[face[2]]});
         }
         const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch);
-        if (!fit) return fit;
+        if (!fit) return;
         for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
             after_.velocity[changed.vertices[i]] = fit->velocity[i];
             after_.material_velocity[changed.vertices[i]] = fit->material_velocity[i];
         }
-        return fit;
     }
 
     void add_vertex(int v, bool is_inside, FitPatch& patch)

@@ -11,8 +11,6 @@
 namespace arris {
 
 struct TransferReport {
-    double energy_gain = 0.0;  ///< kinetic, J
-    int patches = 0;           ///< on which velocity was fitted
     /// Of patches that could not give way to what strains them now: the most that elastic energy is above
     /// what it was, as a share of what moves the patch.
     double strain = 0.0;

@@ -11,15 +11,11 @@
 #include "geometry/closest_point.h"
 #include "geometry/obstacle/feature_path.h"
 #include "solver/eol/eol_features.h"
+#include "solver/model/eol_limits.h"
 
 namespace arris {
 
 namespace {
-
-// Thicknesses: nearer to its turn a chord is as good. Less than one: beside a fold's top its faces pass the
-// wire nearer than that, and a turn that presses through them blocks what slides.
-constexpr double kMissed = 0.3;
-constexpr double kLongest = 2.0;  // target lengths between neighbours along a trace
 
 /// On a wire: an EOL vertex or a site.
 struct Place {
@@ -127,9 +123,9 @@ class BendFinder {
                                        double length) const
     {
         const double cell = scene_.eol->length(p.material);
-        if (!((p.material - q.material).norm() < kLongest * cell)) return std::nullopt;
+        if (!((p.material - q.material).norm() < kLongEdge * cell)) return std::nullopt;
         const Turn* worst = nullptr;
-        double most = kMissed * scene_.material.thickness;
+        double most = kMissedByChord * scene_.material.thickness;
         for (const Turn& bend : bends)
             for (const double along : {bend.along, bend.along + length}) {
                 if (!(along > p.along && along < q.along) || bend.point == p.bend || bend.point == q.bend ||
@@ -189,7 +185,7 @@ bool locks_at_bend(const Scene& scene, const Obstacle& obstacle, const FeatureBe
                    const Vec2& material)
 {
     const double half_cell = 0.5 * scene.eol->length(material);
-    return missed_by_chord(obstacle, bend, half_cell) > kMissed * scene.material.thickness;
+    return missed_by_chord(obstacle, bend, half_cell) > kMissedByChord * scene.material.thickness;
 }
 
 FeatureSite make_bend_site(const State& state, const ClothStars& stars, std::int32_t o,

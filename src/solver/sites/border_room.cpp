@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "solver/eol/eol_features.h"
+#include "solver/model/eol_limits.h"
 
 namespace arris {
 
@@ -59,10 +60,10 @@ double room_to_border(const Scene& scene, const State& state, const ClothStars& 
 bool is_along_border(const Scene& scene, const State& state, const ClothStars& stars,
                      const std::array<int, 2>& edge, const EolVertex& eol)
 {
-    const double kCos20 = std::cos(20.0 * M_PI / 180.0);
+    const double most = std::cos(kLeastCrossing * M_PI / 180.0);
     const auto [from, to] = edge[0] == edge[1] ? stars.border_neighbours[edge[0]] : edge;
     const Vec3 border = (state.mesh.world[to] - state.mesh.world[from]).stableNormalized();
-    return std::abs(border.dot(tangent_of(scene, state, eol))) > kCos20;
+    return std::abs(border.dot(tangent_of(scene, state, eol))) > most;
 }
 
 }  // namespace arris

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "geometry/obstacle/feature_path.h"
+#include "solver/model/eol_limits.h"
 
 namespace arris {
 
@@ -121,8 +122,7 @@ std::optional<EolVertex> TraceMesh::like_neighbour(VertexId v, int tag) const
 
 int TraceMesh::side_beside(int tag, const Vec2& material) const
 {
-    constexpr double kBeside = 2.0;  // target lengths
-    double least = kBeside * target_.length(material);
+    double least = kLongEdge * target_.length(material);
     int side = 0;
     for (const EolVertex& e : eol_) {
         if (e.side == 0 || !is_on_trace(e.vertex_id) || tags_.tag(e) != tag) continue;

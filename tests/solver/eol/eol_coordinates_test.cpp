@@ -182,7 +182,7 @@ TEST(EolCoordinates, WhereAWireTurnsAreOutwardAndFlowBothWays)
         ASSERT_TRUE(turn);
         EolVertex& eol = cloth.state.eol[cloth.add_eol(v, false, turn->feature)];
         eol.outward = Vec3::UnitZ();
-        eol.on.end = turn->end;
+        eol.on = FeatureId::bend(eol.on.obstacle, eol.on.index, turn->end);
         const EolPlacing placing = cloth.place(v);
         ASSERT_TRUE(placing.coordinates) << fold;
         const EolCoordinates& at = *placing.coordinates;

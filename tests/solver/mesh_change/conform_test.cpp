@@ -256,7 +256,7 @@ TEST(Conform, ATurnThatPressesTakesTheVertexThatSlidesBesideIt)
     const double y = 0.01;
     EolCloth cloth = lying_on(make_turning(y, 15.0), 10.0);
     take(cloth);
-    for (EolVertex& e : cloth.state.eol) e.on.end = -1;
+    for (EolVertex& e : cloth.state.eol) e.on = FeatureId::edge(e.on.obstacle, e.on.index);
     const std::size_t count = cloth.state.eol.size();
     cloth.state.active.clear();
     for (Vec3& x : cloth.state.mesh.world) x.y() += 0.01;  // it has slid along

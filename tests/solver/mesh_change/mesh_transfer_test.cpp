@@ -68,15 +68,17 @@ ConformedMesh conformed(const ClothSurgery& surgery, std::vector<EolVertex> eol)
     return {surgery.result(), surgery.events(), std::move(eol), {}};
 }
 
-State carry(const EolCloth& cloth, const ConformedMesh& mesh, TransferReport* report = nullptr)
+/// Kinetic, J.
+double energy_gain(const EolCloth& cloth, const State& after)
+{
+    return kinetic_energy_of(cloth.scene, after) - kinetic_energy_of(cloth.scene, cloth.state);
+}
+
+State carry(const EolCloth& cloth, const ConformedMesh& mesh)
 {
     TransferReport made;
     State after =
         transfer(cloth.scene, cloth.state, cloth.stars(), mesh, testing::stars_of(mesh.surgery.mesh), made);
-    EXPECT_NEAR(made.energy_gain,
-                kinetic_energy_of(cloth.scene, after) - kinetic_energy_of(cloth.scene, cloth.state),
-                1e-9 * (kinetic_energy_of(cloth.scene, cloth.state) + 1e-6));
-    if (report != nullptr) *report = made;
     return after;
 }
 
@@ -129,10 +131,7 @@ bool is_same_vertex(const State& a, int i, const State& b, int j)
 TEST(MeshTransfer, NothingDoneChangesNoBit)
 {
     const EolCloth cloth = free_cloth(1, 120.0, 0.01);
-    TransferReport report;
-    const State after = carry(cloth, conformed(operate(cloth.state), {}), &report);
-    EXPECT_EQ(report.patches, 0);
-    EXPECT_EQ(report.energy_gain, 0.0);
+    const State after = carry(cloth, conformed(operate(cloth.state), {}));
     ASSERT_EQ(after.ids, cloth.state.ids);
     for (int v = 0; v < after.mesh.vertex_count(); ++v)
         EXPECT_TRUE(is_same_vertex(after, v, cloth.state, v)) << v;
@@ -152,12 +151,10 @@ TEST(MeshTransfer, ASplitLeavesTheFieldAsItIsEverywhere)
                                              : surgery.propose_face_split(face, Vec3(0.3, 0.3, 0.4))),
                       Verdict::Done);
         }
-        TransferReport report;
-        const State after = carry(cloth, conformed(surgery, {}), &report);
+        const State after = carry(cloth, conformed(surgery, {}));
         ASSERT_EQ(after.mesh.vertex_count(), 87);
-        EXPECT_GT(report.patches, 0);
         EXPECT_LT(field_difference(cloth.state, after), kRoundOff);
-        EXPECT_LT(std::abs(report.energy_gain), kRoundOff * kinetic_energy_of(cloth.scene, after));
+        EXPECT_LT(std::abs(energy_gain(cloth, after)), kRoundOff * kinetic_energy_of(cloth.scene, after));
         for (std::size_t v = 0; v < after.ids.size(); ++v) {
             EXPECT_TRUE(after.material_velocity[v].isZero());
             EXPECT_EQ(after.previous_material[v], after.mesh.material[v]);
@@ -204,11 +201,9 @@ TEST(MeshTransfer, AVertexMadeOnATraceFlowsLikeItsNeighbours)
     const VertexId made = split.event.changes[0].vertex;
     std::vector<EolVertex> eol = cloth.state.eol;
     eol.push_back({made, FeatureId::edge(0, eol[0].on.index), Vec3::UnitZ(), 0});
-    TransferReport report;
-    const State after = carry(cloth, conformed(surgery, eol), &report);
+    const State after = carry(cloth, conformed(surgery, eol));
     const int v = after.index_of(made);
     ASSERT_GE(v, 0);
-    EXPECT_EQ(report.patches, 1);
     EXPECT_LT(after.velocity[v].norm(), kRoundOff);
     EXPECT_LT((after.material_velocity[v] - Vec2(-speed, 0)).norm(), kRoundOff);
     EXPECT_LT((after.previous_world[v] - after.mesh.world[v]).norm(), kRoundOff);
@@ -278,14 +273,11 @@ TEST(MeshTransfer, FlatClothInUniformMotionKeepsItWhereAVertexBecomesEol)
         const int v = cloth.vertex_at(0.2, 0.2);
         const VertexId id = cloth.state.ids[v];
         surgery.set_role(id, TraceRole::OnTrace, 0);
-        TransferReport report;
-        const State after =
-            carry(cloth,
-                  conformed(surgery, {{id, FeatureId::edge(0, testing::tip_of(cloth.scene.obstacles[0])),
-                                       Vec3::UnitZ(), 0}}),
-                  &report);
+        const State after = carry(
+            cloth, conformed(surgery, {{id, FeatureId::edge(0, testing::tip_of(cloth.scene.obstacles[0])),
+                                        Vec3::UnitZ(), 0}}));
         EXPECT_LT(field_difference(cloth.state, after), kRoundOff);
-        EXPECT_LT(std::abs(report.energy_gain), kRoundOff);
+        EXPECT_LT(std::abs(energy_gain(cloth, after)), kRoundOff);
         EXPECT_NEAR(after.velocity[v].x(), motion.velocity.x(), kRoundOff) << "it stays over the ridge";
         EXPECT_GT(after.material_velocity[v].norm(), 1e-3) << "and the material flows";
         EXPECT_EQ(after.previous_velocity[v], after.velocity[v]);
@@ -336,13 +328,12 @@ TEST(MeshTransfer, AReleasedVertexIsOfTheMaterialAgain)
     const VertexId gone = eol[4].vertex_id;
     surgery.release_vertex(gone);
     eol.erase(eol.begin() + 4);
-    TransferReport report;
-    const State released = carry(folded, conformed(surgery, eol), &report);
+    const State released = carry(folded, conformed(surgery, eol));
     EXPECT_TRUE(released.material_velocity[released.index_of(gone)].isZero());
     EXPECT_LT((momentum_of(folded.scene, released) - momentum_of(folded.scene, folded.state)).norm(),
               kRoundOff * momentum_of(folded.scene, released).norm() + 1e-15);
-    EXPECT_LE(report.energy_gain, 1e-9 * kinetic_energy_of(folded.scene, folded.state));
-    EXPECT_LT(report.energy_gain, -1e-6) << "what two sides of a fold did, one velocity cannot";
+    EXPECT_LE(energy_gain(folded, released), 1e-9 * kinetic_energy_of(folded.scene, folded.state));
+    EXPECT_LT(energy_gain(folded, released), -1e-6) << "what two sides of a fold did, one velocity cannot";
 }
 
 TEST(MeshTransfer, WhatCanHaveNoCoordinatesAnyMoreIsOfTheMaterialThoughItsEntryIsLeft)
@@ -377,12 +368,13 @@ TEST(MeshTransfer, FitsNothingWhereAPatchIsStrainedByMoreThanItMay)
     }
     const ConformedMesh mesh = conformed(surgery, {});
     constexpr double kAny = std::numeric_limits<double>::infinity();
-    for (const auto& [most_strain, patches] : {std::pair{kAny, 2}, {0.01, 0}}) {
+    for (const auto& [most_strain, strained] : {std::pair{kAny, 2u}, {0.01, 1u}}) {
         TransferReport report;
         transfer(cloth.scene, cloth.state, cloth.stars(), mesh, testing::stars_of(mesh.surgery.mesh), report,
                  most_strain);
         EXPECT_GT(report.strain, 0.01);
-        EXPECT_EQ(report.patches, patches);
+        EXPECT_EQ(report.strained.size(), strained)
+            << "nothing is looked at after the first that is too much";
     }
 }
 
@@ -393,10 +385,8 @@ TEST(MeshTransfer, FarFromThePatchNoBitChanges)
     const int near = cloth.vertex_at(0.05, 0.05);
     const VertexId v = cloth.state.ids[near];
     ASSERT_EQ(surgery.commit(surgery.propose_collapse(v, surgery.ring(v).vertices[0])), Verdict::Done);
-    TransferReport report;
-    const State after = carry(cloth, conformed(surgery, {}), &report);
+    const State after = carry(cloth, conformed(surgery, {}));
     ASSERT_EQ(after.index_of(v), -1);
-    EXPECT_EQ(report.patches, 1);
     int changed = 0, far = 0;
     for (int i = 0; i < after.mesh.vertex_count(); ++i) {
         const bool is_same = is_same_vertex(after, i, cloth.state, cloth.state.index_of(after.ids[i]));
@@ -437,11 +427,10 @@ TEST(MeshTransfer, MomentumOfFreeClothIsKeptAndEnergyNeverRises)
             if (proposal.is_legal() && surgery.commit(proposal) == Verdict::Done) ++done;
         }
         ASSERT_GT(done, 1);
-        TransferReport report;
-        const State after = carry(cloth, conformed(surgery, {}), &report);
+        const State after = carry(cloth, conformed(surgery, {}));
         const double energy = kinetic_energy_of(cloth.scene, cloth.state);
         const Vec3 momentum = momentum_of(cloth.scene, cloth.state);
-        worst_gain = std::max(worst_gain, report.energy_gain / energy);
+        worst_gain = std::max(worst_gain, energy_gain(cloth, after) / energy);
         const double scale = std::sqrt(2.0 * energy * cloth.scene.material.density * 0.16);
         worst_momentum =
             std::max(worst_momentum, (momentum_of(cloth.scene, after) - momentum).norm() / scale);

@@ -156,7 +156,6 @@ TEST(StepMesh, OfPatchesThatStayStrainedTheVerticesAreKnown)
     TransferReport report;
     transfer(cloth.scene, cloth.state, cloth.stars(), *giving.mesh,
              testing::stars_of(giving.mesh->surgery.mesh), report);
-    EXPECT_GT(report.patches, 1);
     EXPECT_GT(report.strain, kPatchStrain);
     ASSERT_EQ(report.strained.size(), 1u) << "the cloth gives way at the lower pleat";
     const std::vector<VertexId>& patch = report.strained[0];

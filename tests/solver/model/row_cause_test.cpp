@@ -10,7 +10,7 @@
 
 #include "solver/eol/eol_coordinates.h"
 #include "solver/mesh_change/conform.h"
-#include "solver/sites/eol_release.h"
+#include "solver/sites/eol_decision.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/sites/site_admission.h"
+#include "solver/sites/eol_decision.h"
 
 #include <gtest/gtest.h>
 
@@ -17,10 +17,10 @@ bool may_be_at(const Vec3& off)
     const int entry = cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
     const ClothStars stars = cloth.stars();
     const TraceMesh trace(cloth.scene, cloth.state, stars, {});
-    return SiteAdmission(cloth.scene, cloth.state, stars, trace, 0.02).is_in_plane(cloth.state.eol[entry]);
+    return EolAdmission(cloth.scene, cloth.state, stars, trace, 0.02).is_in_plane(cloth.state.eol[entry]);
 }
 
-TEST(SiteAdmission, OnAnEdgeOnlyInThePlaneInWhichAVertexMayMove)
+TEST(EolAdmission, OnAnEdgeOnlyInThePlaneInWhichAVertexMayMove)
 {
     constexpr double kNear = 2.0 * testing::kThickness;
     EXPECT_TRUE(may_be_at(Vec3(0.0, 0.0, kNear)));
@@ -30,7 +30,7 @@ TEST(SiteAdmission, OnAnEdgeOnlyInThePlaneInWhichAVertexMayMove)
 
 // A fold that has left goes on beyond both faces. A vertex beside one of them is of no fold: held to the
 // edge there it holds the cloth around it, as a pleat at a table's corner, which then caught on it.
-TEST(SiteAdmission, OfWhatHasLeftAnEdgeOnlyBeyondBothItsFaces)
+TEST(EolAdmission, OfWhatHasLeftAnEdgeOnlyBeyondBothItsFaces)
 {
     constexpr double kFar = 20.0 * testing::kThickness;
     for (const double side : {-1.0, 1.0}) {

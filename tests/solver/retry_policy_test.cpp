@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/attempts.h"
+#include "solver/retry_policy.h"
 
 #include <gtest/gtest.h>
 
@@ -30,22 +30,22 @@ TEST(RetryPolicy, WhatOverrunsIsClearedThenShortenedThenGivenUpOneByOneThenAll)
         failed.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, {overrun});
     };
     fail();
-    EXPECT_TRUE(failed.may_mesh_help());
+    EXPECT_TRUE(failed.has_new_mesh());
     EXPECT_EQ(failed.flow().flow.at(2), Vec2(1.0, 0.0));
     EXPECT_TRUE(failed.flow().given_up.empty());
     fail();
-    EXPECT_FALSE(failed.may_mesh_help());  // a shorter step first
+    EXPECT_FALSE(failed.has_new_mesh());  // a shorter step first
     EXPECT_TRUE(failed.flow().given_up.empty());
     for (int k = 3; k <= RetryPolicy::kMostOverruns; ++k) {
         fail();
-        EXPECT_TRUE(failed.may_mesh_help());
+        EXPECT_TRUE(failed.has_new_mesh());
         EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{2}));
     }
     fail();
-    EXPECT_TRUE(failed.may_mesh_help());
+    EXPECT_TRUE(failed.has_new_mesh());
     EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{1, 2, 3}));
     fail();
-    EXPECT_FALSE(failed.may_mesh_help());  // bounded, whatever goes on to fail
+    EXPECT_FALSE(failed.has_new_mesh());  // bounded, whatever goes on to fail
 }
 
 TEST(RetryPolicy, WhatIsNewIsGivenUpByItsPlace)
@@ -58,17 +58,17 @@ TEST(RetryPolicy, WhatIsNewIsGivenUpByItsPlace)
         failed.note(with(StepStatus::Overrun), attempt, state, start, {{{3, {1.0, 0.0}}}});
     };
     fail(Attempt::Ordinary);
-    EXPECT_FALSE(failed.may_mesh_help()) << "the same attempt again is of no use";
+    EXPECT_FALSE(failed.has_new_mesh()) << "the same attempt again is of no use";
     EXPECT_TRUE(failed.flow().empty());
     fail(Attempt::Ordinary);
-    EXPECT_TRUE(failed.may_mesh_help());
+    EXPECT_TRUE(failed.has_new_mesh());
     EXPECT_FALSE(failed.has_given_up_all());
     EXPECT_EQ(failed.flow().made_at, (std::vector<Vec2>{{3.0, 0.0}}));
     EXPECT_TRUE(failed.flow().given_up.empty()) << "the next attempt's vertex may have another id";
 
     failed.forget();
     fail(Attempt::Last);
-    EXPECT_TRUE(failed.may_mesh_help());
+    EXPECT_TRUE(failed.has_new_mesh());
     EXPECT_EQ(failed.flow().made_at.size(), 1u) << "there is no shorter step";
 }
 
@@ -78,18 +78,18 @@ TEST(RetryPolicy, WhereNoShorterStepIsLeftAnotherMeshIsTried)
     RetryPolicy failed;
     for (int k = 0; k <= RetryPolicy::kMostOverruns; ++k) {
         failed.note(with(StepStatus::Overrun), Attempt::Last, state, state, {{{1, {1.0, 0.0}}}});
-        EXPECT_TRUE(failed.may_mesh_help()) << k;
+        EXPECT_TRUE(failed.has_new_mesh()) << k;
     }
     EXPECT_EQ(failed.flow().given_up.size(), 2u);
     for (const StepStatus status :
          {StepStatus::NotConverged, StepStatus::NotFinite, StepStatus::Penetration, StepStatus::Infeasible}) {
         RetryPolicy other;
         other.note(with(status), Attempt::Last, state, state, {});
-        EXPECT_TRUE(other.may_mesh_help());
+        EXPECT_TRUE(other.has_new_mesh());
         EXPECT_EQ(other.flow().given_up.size(), 2u);
         const State none = state_with_eol({});
         other.note(with(status), Attempt::Last, none, none, {});
-        EXPECT_FALSE(other.may_mesh_help());  // all are gone, and it still fails
+        EXPECT_FALSE(other.has_new_mesh());  // all are gone, and it still fails
     }
 }
 
@@ -116,14 +116,14 @@ TEST(RetryPolicy, WhatContactsPinchIsGivenUpBeforeAShorterStepIsTried)
     RetryPolicy failed;
     for (int k = 0; k < RetryPolicy::kMostOverconstrained; ++k) {
         failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {{}, {2}});
-        EXPECT_TRUE(failed.may_mesh_help()) << k;
+        EXPECT_TRUE(failed.has_new_mesh()) << k;
         EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{2}));
     }
     failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {{}, {2}});
-    EXPECT_FALSE(failed.may_mesh_help());  // bounded
+    EXPECT_FALSE(failed.has_new_mesh());  // bounded
     failed.forget();
     failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {});
-    EXPECT_FALSE(failed.may_mesh_help());  // rows alone: no mesh is better
+    EXPECT_FALSE(failed.has_new_mesh());  // rows alone: no mesh is better
     EXPECT_TRUE(failed.flow().given_up.empty());
 }
 
@@ -132,7 +132,7 @@ TEST(RetryPolicy, OfStateAndOfWhatConformMadeOfItAllAreGivenUp)
     const State state = state_with_eol({1, 2}), start = state_with_eol({2, 4});
     RetryPolicy failed;
     failed.note(with(StepStatus::NotConverged), Attempt::Ordinary, state, start, {});
-    EXPECT_FALSE(failed.may_mesh_help());
+    EXPECT_FALSE(failed.has_new_mesh());
     EXPECT_TRUE(failed.flow().empty());
     failed.note(with(StepStatus::NotFinite), Attempt::Ordinary, state, start, {});
     EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{1, 2, 4}));
@@ -144,7 +144,7 @@ TEST(RetryPolicy, AStepThatIsDoneForgets)
     RetryPolicy failed;
     failed.note(with(StepStatus::Overrun), Attempt::Last, state, state, {{{1, {1.0, 0.0}}}});
     failed.note(with(StepStatus::Done), Attempt::Last, state, state, {});
-    EXPECT_FALSE(failed.may_mesh_help());
+    EXPECT_FALSE(failed.has_new_mesh());
     EXPECT_TRUE(failed.flow().empty());
 }
 
@@ -159,19 +159,75 @@ TEST(RetryPolicy, WhereTurningRaisesTheEnergyVerticesStay)
     RetryPolicy failed;
     EXPECT_TRUE(failed.may_turn());
     fail(failed, StepStatus::EnergyRise, false);
-    EXPECT_FALSE(failed.may_staying_help());
+    EXPECT_FALSE(failed.has_stopped_turning());
     EXPECT_TRUE(failed.may_turn());
     fail(failed, StepStatus::EnergyRise, true);
-    EXPECT_TRUE(failed.may_staying_help());
+    EXPECT_TRUE(failed.has_stopped_turning());
     EXPECT_FALSE(failed.may_turn());
     fail(failed, StepStatus::EnergyRise, false);
-    EXPECT_FALSE(failed.may_staying_help());  // once
+    EXPECT_FALSE(failed.has_stopped_turning());  // once
     fail(failed, StepStatus::Done, false);
     EXPECT_FALSE(failed.may_turn());  // nor in the rest of it
     failed.forget();
     EXPECT_TRUE(failed.may_turn());
     fail(failed, StepStatus::NotConverged, true);
     EXPECT_TRUE(failed.may_turn());
+}
+
+TEST(RetryPolicy, TakesTheFirstRungThatApplies)
+{
+    const State state = state_with_eol({1});
+    const auto next = [](const RetryPolicy& policy, StepStatus status, bool has_history, bool is_shortest) {
+        return policy.choose_next({status, has_history, is_shortest});
+    };
+    RetryPolicy plain;
+    plain.note(with(StepStatus::EnergyRise), Attempt::Ordinary, state, state, {});
+    EXPECT_EQ(next(plain, StepStatus::EnergyRise, true, false), NextAttempt::WithoutHistory);
+    EXPECT_EQ(next(plain, StepStatus::EnergyRise, false, false), NextAttempt::Shorter);
+    EXPECT_EQ(next(plain, StepStatus::Penetration, true, false), NextAttempt::Shorter);
+    EXPECT_EQ(next(plain, StepStatus::Penetration, true, true), NextAttempt::None);
+
+    RetryPolicy turned;
+    turned.note(with(StepStatus::EnergyRise), Attempt::Ordinary, state, state, {{}, {}, true});
+    EXPECT_EQ(next(turned, StepStatus::EnergyRise, true, false), NextAttempt::WithoutTurning);
+
+    RetryPolicy overrun;
+    overrun.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, {{{1, {1.0, 0.0}}}});
+    EXPECT_EQ(next(overrun, StepStatus::Overrun, true, false), NextAttempt::OnNewMesh);
+    overrun.note(with(StepStatus::Overrun), Attempt::Ordinary, state, state, {{{1, {1.0, 0.0}}}});
+    EXPECT_EQ(next(overrun, StepStatus::Overrun, true, false), NextAttempt::Shorter);
+
+    RetryPolicy last;
+    last.note(with(StepStatus::NotConverged), Attempt::Last, state, state, {});
+    EXPECT_EQ(next(last, StepStatus::NotConverged, true, true), NextAttempt::WholeWithoutEol);
+    const State none = state_with_eol({});
+    last.note(with(StepStatus::NotConverged), Attempt::Last, none, none, {});
+    EXPECT_EQ(next(last, StepStatus::NotConverged, true, true), NextAttempt::None);
+}
+
+// Whatever a step fails on, again and again, its attempts come to an end.
+TEST(RetryPolicy, ComesToAnEnd)
+{
+    for (const StepStatus status :
+         {StepStatus::Overrun, StepStatus::Infeasible, StepStatus::Penetration, StepStatus::EnergyRise,
+          StepStatus::NotConverged, StepStatus::NotFinite}) {
+        RetryPolicy policy;
+        int shrink = 1, attempts = 0;
+        bool has_history = true;
+        for (NextAttempt next = NextAttempt::Shorter; next != NextAttempt::None && attempts < 1000;
+             ++attempts) {
+            const bool is_last = shrink == RetryPolicy::kMostParts;
+            const State state = state_with_eol(policy.has_given_up_all() ? std::vector<std::uint32_t>()
+                                                                         : std::vector<std::uint32_t>{1, 2});
+            policy.note(with(status), is_last ? Attempt::Last : Attempt::Ordinary, state, state,
+                        state.eol.empty() ? Failure() : Failure{{{1, {1.0, 0.0}}}, {2}, true});
+            next = policy.choose_next({status, has_history, is_last});
+            if (next == NextAttempt::Shorter) shrink *= 2;
+            if (next == NextAttempt::WholeWithoutEol) shrink = 1;
+            if (next == NextAttempt::WithoutHistory) has_history = false;
+        }
+        EXPECT_LT(attempts, 100) << static_cast<int>(status);
+    }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/sites/eol_release.h"
+#include "solver/sites/eol_decision.h"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ struct FlowingCloth {
     bool can_be_let_go() const { return hold() != EolRetention::Firm; }
 };
 
-TEST(EolRelease, OfAFoldWaitsWhetherMaterialFlowsOrNot)
+TEST(EolRetention, OfAFoldWaitsWhetherMaterialFlowsOrNot)
 {
     for (const double speed : {kSpeed, 0.0}) {
         for (const double fold : {60.0, 90.0, 120.0, 165.0, 173.0})
@@ -68,7 +68,7 @@ TEST(EolRelease, OfAFoldWaitsWhetherMaterialFlowsOrNot)
     }
 }
 
-TEST(EolRelease, OfFlatClothWaitsForThreeStepsWithoutPressing)
+TEST(EolRetention, OfFlatClothWaitsForThreeStepsWithoutPressing)
 {
     FlowingCloth flat(180.0);
     EXPECT_TRUE(flat.can_be_let_go());
@@ -76,14 +76,14 @@ TEST(EolRelease, OfFlatClothWaitsForThreeStepsWithoutPressing)
     EXPECT_FALSE(flat.can_be_let_go()) << "it may press again at once";
 }
 
-TEST(EolRelease, WhileItPressesNeverIs)
+TEST(EolRetention, WhileItPressesNeverIs)
 {
     FlowingCloth flat(180.0);
     flat.set_idle(0);
     EXPECT_FALSE(flat.can_be_let_go());
 }
 
-TEST(EolRelease, ComesAtTheLatestACellFromTheFeatureHoweverFastItFlows)
+TEST(EolRetention, ComesAtTheLatestACellFromTheFeatureHoweverFastItFlows)
 {
     for (const double speed : {kSpeed, 0.1, 0.0})
         for (const auto& [share, is_far] : {std::pair{0.95, false}, {1.05, true}}) {
@@ -95,7 +95,7 @@ TEST(EolRelease, ComesAtTheLatestACellFromTheFeatureHoweverFastItFlows)
 }
 
 // What flows fast over a flat fold comes to it along neither face of the ridge.
-TEST(EolRelease, ComesBeforeThatWhereAFastFoldIsLedOtherwiseThanItsClothComes)
+TEST(EolRetention, ComesBeforeThatWhereAFastFoldIsLedOtherwiseThanItsClothComes)
 {
     for (const auto& [fold, speed, is_astray] :
          {std::tuple{150.0, kSpeed, true}, {150.0, 0.1, false}, {90.0, kSpeed, false}})
@@ -107,7 +107,7 @@ TEST(EolRelease, ComesBeforeThatWhereAFastFoldIsLedOtherwiseThanItsClothComes)
         }
 }
 
-TEST(EolRelease, OfATentThatIsOffItsNailComesWhereTheNailPressesOnAnotherFace)
+TEST(EolRetention, OfATentThatIsOffItsNailComesWhereTheNailPressesOnAnotherFace)
 {
     for (const double height : {2.0, 3.0})  // thicknesses
         for (const bool is_pressing : {false, true}) {
@@ -132,7 +132,7 @@ TEST(EolRelease, OfATentThatIsOffItsNailComesWhereTheNailPressesOnAnotherFace)
         }
 }
 
-TEST(EolRelease, OfATentThatIsOffACornerComesWhereThatPressesOnAnotherFace)
+TEST(EolRetention, OfATentThatIsOffACornerComesWhereThatPressesOnAnotherFace)
 {
     for (const bool is_pressing : {false, true}) {
         EolCloth cloth(testing::make_ridge(60.0, 0.1), testing::make_draped({8, 0.0, 180.0}));
@@ -180,7 +180,7 @@ std::string retain_between_of(const std::string& along)
     return found;
 }
 
-TEST(EolRelease, LeavesNoHolesInATrace)
+TEST(EolRetention, LeavesNoHolesInATrace)
 {
     EXPECT_EQ(retain_between_of("FLFLLLFFF"), "FFFFFFFFF");
     EXPECT_EQ(retain_between_of("LLFLLFNLL"), "NNFFFFNNN");
@@ -188,7 +188,7 @@ TEST(EolRelease, LeavesNoHolesInATrace)
     EXPECT_EQ(retain_between_of("LLLLLLLLL"), "NNNNNNNNN");
 }
 
-TEST(EolRelease, HoldsNothingBetweenThatIsOffTheFeature)
+TEST(EolRetention, HoldsNothingBetweenThatIsOffTheFeature)
 {
     FlowingCloth still(180.0, 0.0);
     EXPECT_EQ(still.hold(), EolRetention::Loose);

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/commit.h"
+
+#include <algorithm>
+
+#include "solver/contact/constraints.h"
+#include "solver/eol/eol_features.h"
+#include "solver/feature_census.h"
+
+namespace arris {
+
+namespace {
+
+/// What each EOL vertex has to remember: which way is outward, and since when it does not press.
+void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoordinates>& eol,
+                const std::vector<double>& multiplier, std::vector<EolVertex>& vertices)
+{
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+        if (contacts[c].eol < 0) continue;
+        EolVertex& vertex = vertices[eol[contacts[c].eol].entry];
+        vertex.outward = contacts[c].in_frame.normal;
+        vertex.side = eol[contacts[c].eol].side;
+        vertex.idle = multiplier[c] > 0.0 ? 0 : vertex.idle + 1;
+    }
+}
+
+}  // namespace
+
+void commit(const Scene& scene, double end, Workspace& work, State& state, StepReport& report)
+{
+    if (report.status != StepStatus::Done) return;
+    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
+    const FeatureCensus census = take_census(scene, state, work, multiplier);
+    report.feature_rows = census.rows;
+    report.rows_by_cause = census.by_cause;
+    report.eol_pressing = census.eol;
+    state.active = active_contacts(state, work.contacts, multiplier);
+    count_idle(work.contacts, work.eol, multiplier, state.eol);
+    state.crossings += report.crossings;
+    report.contacts = static_cast<int>(state.active.size() -
+                                       std::count_if(state.active.begin(), state.active.end(), is_fold));
+    report.eol_vertices = static_cast<int>(state.eol.size());
+    state.previous_world.swap(state.mesh.world);
+    state.previous_velocity.swap(state.velocity);
+    state.mesh.world.swap(work.proposal.world);
+    state.velocity.swap(work.proposal.velocity);
+    state.previous_material.swap(state.mesh.material);
+    state.previous_material_velocity.swap(state.material_velocity);
+    state.mesh.material.swap(work.proposal.material);
+    state.material_velocity.swap(work.proposal.material_velocity);
+    state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // put back by hand: no history
+    state.time = end;
+    ++state.step;
+    follow_features(scene.obstacles, state);
+    work.energies.known_at.world.clear();
+    if (report.rewound > 0) return;
+    work.energies.known = work.energies.proposed;
+    work.energies.known_at = {
+        state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
+}
+
+}  // namespace arris

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/mesh_change/site_insertion.h"
+
+#include "solver/sites/feature_flow.h"
+
+namespace arris {
+
+SiteInsertion::SiteInsertion(const Scene& scene, const State& state, const ClothStars& stars, double soon,
+                             TraceMesh& trace, const EolAdmission& admission, WayClearing& ways,
+                             RefusedContacts& refused)
+    : scene_(scene),
+      state_(state),
+      stars_(stars),
+      soon_(soon),
+      trace_(trace),
+      admission_(admission),
+      ways_(ways),
+      refused_(refused)
+{
+}
+
+std::optional<RowCause> SiteInsertion::try_insert(const FeatureSite& site)
+{
+    const int v = state_.index_of(site.near);
+    const Vec2 flow = find_feature_flow(scene_, state_, stars_, site);
+    if (const std::optional<RowCause> cause = admission_.find_refusal(site, v, flow)) return cause;
+    if (site.on.is_bend()) {
+        const std::optional<VertexId> beside = find_beside(site);
+        if (beside && trace_.surgery().role(*beside) == TraceRole::Node) return RowCause::BesideEol;
+        if (beside && lock_at_bend(*beside, site)) return std::nullopt;
+    }
+    return insert_vertex(site, flow);
+}
+
+std::optional<RowCause> SiteInsertion::insert_vertex(const FeatureSite& site, const Vec2& flow)
+{
+    ClothSurgery& surgery = trace_.surgery();
+    const TraceVertex wanted{site.on.is_fixed() ? TraceRole::Node : TraceRole::OnTrace,
+                             trace_.tags().tag(site.on), soon_ * flow};
+    const VertexId near = surgery.has_vertex(site.near) ? site.near : trace_.nearest_to(site.material);
+    const TraceInsertion made = make_vertex(site.material, near, wanted);
+    if (made.verdict != Verdict::Done)
+        return made.verdict == Verdict::Guard ? RowCause::Guard : RowCause::Quality;
+    if (trace_.find(made.vertex)) {
+        const bool has_slid = site.is_in_face() && slide_to(made.vertex, site);
+        return has_slid ? std::nullopt : std::optional(RowCause::BesideEol);
+    }
+    EolVertex vertex{made.vertex, site.on, site.outward, 0};
+    vertex.side = trace_.side_beside(wanted.tag, site.material);
+    if (const std::optional<RowCause> cause = admission_.refuse_inserted(vertex)) {
+        surgery.release_vertex(made.vertex);
+        ways_.erase_coming(made.vertex);
+        return cause;
+    }
+    trace_.add(vertex, flow);
+    if (site.contact >= 0) refused_.note_inserted(made.vertex, site.contact);
+    ++inserted_;
+    return std::nullopt;
+}
+
+TraceInsertion SiteInsertion::make_vertex(const Vec2& material, VertexId near, const TraceVertex& wanted)
+{
+    making_ = &wanted;
+    const TraceInsertion made = insert_trace_point(trace_.surgery(), *scene_.eol, material, near, wanted);
+    ways_.erase_coming(proposed_);  // proposed last, which need not be the one that was made
+    if (made.verdict == Verdict::Done && !trace_.find(made.vertex)) ways_.add_coming(made.vertex, wanted.way);
+    making_ = nullptr;
+    proposed_ = kNoVertex;
+    return made;
+}
+
+void SiteInsertion::note_proposal(const SurgeryEvent& event)
+{
+    if (!making_ || event.changes.empty()) return;
+    ways_.erase_coming(proposed_);
+    proposed_ = event.changes[0].vertex;
+    ways_.add_coming(proposed_, making_->way);
+}
+
+/// The vertex of its trace that is in a bend's way: a fixed one nearer than kFixedBeside, else the nearest
+/// sliding one within kSlidingBeside, where clean-up would merge the two.
+std::optional<VertexId> SiteInsertion::find_beside(const FeatureSite& bend) const
+{
+    const ClothSurgery& surgery = trace_.surgery();
+    const int tag = trace_.tags().tag(bend.on);
+    const double h = scene_.eol->length(bend.material);
+    double least = kSlidingBeside * h;
+    std::optional<VertexId> nearest;
+    for (const EolVertex& e : trace_.eol()) {
+        if (!trace_.is_on_trace(e.vertex_id) || surgery.tag(e.vertex_id) != tag) continue;
+        const double distance = (surgery.material(e.vertex_id) - bend.material).norm();
+        const bool is_fixed = surgery.role(e.vertex_id) == TraceRole::Node;
+        if (is_fixed && distance < kFixedBeside * h) return e.vertex_id;
+        if (is_fixed || !(distance < least)) continue;
+        nearest = e.vertex_id;
+        least = distance;
+    }
+    return nearest;
+}
+
+/// Moves a sliding vertex to the bend of a rim that presses beside it.
+bool SiteInsertion::slide_to(VertexId v, const FeatureSite& bend)
+{
+    ClothSurgery& surgery = trace_.surgery();
+    if (trace_.find(v)->on.is_fixed() ||
+        surgery.commit(surgery.propose_moves({{v, bend.material}})) != Verdict::Done)
+        return false;
+    trace_.slide(v, bend.on.index);
+    return true;
+}
+
+/// Moves a sliding vertex to the bend of a wire, and fixes it there.
+bool SiteInsertion::lock_at_bend(VertexId v, const FeatureSite& bend)
+{
+    ClothSurgery& surgery = trace_.surgery();
+    if (surgery.commit(surgery.propose_moves({{v, bend.material}})) != Verdict::Done) return false;
+    trace_.lock(v, bend.on);
+    ++inserted_;
+    return true;
+}
+
+}  // namespace arris

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/mesh_change/way_clearing.h"
+
+#include <algorithm>
+
+#include "geometry/obstacle/feature_nodes.h"
+#include "geometry/surgery/material_walk.h"
+#include "solver/eol/eol_features.h"
+#include "solver/model/eol_limits.h"
+
+namespace arris {
+
+void WayClearing::expect_flow(VertexId v, const Vec2& failed)
+{
+    if (!trace_.is_on_trace(v)) return;
+    const double cell = scene_.eol->length(trace_.surgery().material(v)) / soon_;
+    const double most = std::max(2.0 * trace_.flow(v).norm(), cell);
+    trace_.set_flow(v, failed * std::min(1.0, most / failed.norm()));
+}
+
+/// Steps of its flow that must be clear ahead of a vertex, without which it is released.
+double WayClearing::least_steps(const EolVertex& eol) const
+{
+    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
+    if (eol.on.is_corner()) return is_tip(obstacle, eol.on.index) ? kTipSteps : kClearSteps;
+    return is_on_convex_edge(obstacle, eol) ? kClearSteps : kWireSteps;
+}
+
+TraceAdvance WayClearing::advance_of(const EolVertex& eol) const
+{
+    return {eol.vertex_id, soon_ * trace_.flow(eol.vertex_id), least_steps(eol) / kClearSteps};
+}
+
+bool WayClearing::leads_off_cloth(const EolVertex& eol) const
+{
+    const TraceAdvance advance = advance_of(eol);
+    return leads_off(trace_.surgery(), eol.vertex_id, advance.least * advance.ahead);
+}
+
+std::vector<TraceAdvance> WayClearing::find_advances() const
+{
+    std::vector<TraceAdvance> advances;
+    for (const EolVertex& eol : trace_.eol())
+        if (trace_.is_on_trace(eol.vertex_id)) advances.push_back(advance_of(eol));
+    return advances;
+}
+
+ClearanceReport WayClearing::clear(const std::vector<TraceAdvance>& advances)
+{
+    guard_.set_clearing(true);
+    ClearanceReport cleared = clear_ahead(trace_.surgery(), *scene_.eol, advances);
+    guard_.set_clearing(false);
+    ways_ = cleared.ways;
+    needed_ = cleared.needed;
+    return cleared;
+}
+
+void WayClearing::forget_released()
+{
+    const auto is_gone = [this](const auto& of) { return !trace_.is_on_trace(of.first); };
+    std::erase_if(ways_, is_gone);
+    std::erase_if(needed_, is_gone);
+}
+
+bool WayClearing::keeps_way(const SurgeryEvent& event) const
+{
+    const auto is_in_way = [&](const PatchFace& face) { return stands_in_way(face); };
+    return kept_->empty() || std::none_of(event.after.begin(), event.after.end(), is_in_way) ||
+           std::any_of(event.before.begin(), event.before.end(), is_in_way);
+}
+
+/// A vertex that is being inserted is in the way only where it is so as it goes its own way, too: beside
+/// others on its obstacle it goes with them.
+bool WayClearing::stands_in_way(const PatchFace& face) const
+{
+    if (!turns_over(face, *kept_)) return false;
+    TraceWays together;
+    for (const VertexId v : face.vertices)
+        for (const TraceWays* ways : {&coming_, kept_})
+            if (const auto at = ways->find(v); at != ways->end()) together[v] = at->second;
+    return turns_over(face, together);
+}
+
+}  // namespace arris

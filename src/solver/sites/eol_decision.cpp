@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/sites/eol_decision.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/obstacle/feature_frame.h"
+#include "geometry/obstacle/feature_nodes.h"
+#include "geometry/obstacle/feature_path.h"
+#include "solver/eol/eol_features.h"
+#include "solver/eol/free_fold.h"
+#include "solver/sites/border_room.h"
+
+namespace arris {
+
+namespace {
+
+double room_wanted(const BorderRoom& room, const FeatureId& on)
+{
+    return on.is_fixed() ? room.fixed : room.sliding;
+}
+
+/// Whether what presses at a site of an edge is flat on a face beside it.
+bool is_along_face(const Obstacle& obstacle, const FeatureSite& site)
+{
+    const auto& normals = obstacle.features().edges[site.on.index].normals;
+    return std::any_of(normals.begin(), normals.end(),
+                       [&](const Vec3& n) { return n.dot(site.outward) > kFlat; });
+}
+
+/// Whether the cloth turns at the vertex.
+bool is_folded(const State& state, std::span<const int> faces)
+{
+    std::vector<Vec3> normals;
+    Vec3 mean = Vec3::Zero();
+    for (const int f : faces) {
+        const auto& [a, b, c] = state.mesh.faces[f];
+        const std::vector<Vec3>& x = state.mesh.world;
+        normals.push_back((x[b] - x[a]).cross(x[c] - x[a]).normalized());
+        mean += normals.back();
+    }
+    mean.normalize();
+    return !std::all_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(mean) > kFlat; });
+}
+
+/// Whether an EOL vertex is of a corner which presses on a face of the cloth: it holds one vertex, and is
+/// where that face is.
+bool is_corner_under_face(const Scene& scene, const State& state, const EolVertex& eol)
+{
+    const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
+    if (!eol.on.is_corner()) return false;
+    const int point = obstacle.features().corners[eol.on.index].point;
+    return std::any_of(state.active.begin(), state.active.end(), [&](const ActiveContact& contact) {
+        return contact.obstacle == eol.on.obstacle && contact.kind == ContactKind::Triangle &&
+               contact.element == point;
+    });
+}
+
+/// Whether an EOL vertex that has left its edge or wire, through which material flows fast, is led otherwise
+/// than what comes to it: it then bends that, with every step. Along a face it is not (free_fold.h).
+bool is_led_astray(const Scene& scene, const State& state, const EolVertex& eol, const EolCoordinates& at,
+                   const Vec3& place)
+{
+    constexpr double kAlongFace = 0.15;  // sine
+    if (eol.on.is_corner() || !has_left_feature(at.frame.point, place, scene.material.thickness) ||
+        !(state.material_velocity[at.vertex].norm() > 0.5 * kFreeFlow))
+        return false;
+    const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
+    if (!is_on_convex_edge(obstacle, eol)) return true;
+    const std::array<Vec3, 2>& normals = obstacle.features().edges[eol.on.index].normals;
+    return std::none_of(normals.begin(), normals.end(), [&](const Vec3& normal) {
+        return std::abs(normal.dot(at.frame.outward)) < kAlongFace;
+    });
+}
+
+/// Whether an EOL vertex is still on the polyline that it is on: not at its end.
+bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3& place)
+{
+    return vertex.on.is_corner() || !is_past_end(obstacle, vertex.on.index, place);
+}
+
+/// Whether an EOL vertex has come so near to the cloth's border that it is released.
+bool is_at_border(const Scene& scene, const State& state, const ClothStars& stars, const EolVertex& eol)
+{
+    const int v = state.index_of(eol.vertex_id);
+    const Vec2& X = state.mesh.material[v];
+    const double wanted = eol.on.is_corner() ? kRoomToStay.fixed : kRoomToStay.sliding;
+    const double room = room_to_border(scene, state, stars, X, v, stars.border_neighbours[v][0] >= 0, eol);
+    return !(room > wanted * scene.eol->longest) && !(room > wanted * scene.eol->length(X));
+}
+
+}  // namespace
+
+std::optional<RowCause> EolAdmission::find_refusal(const FeatureSite& site, int v, const Vec2& flow) const
+{
+    if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
+    if (is_beside_other(site)) return RowCause::OtherFeature;
+    if (const std::optional<RowCause> fold = find_fold_cause(site)) return fold;
+    if ((site.on.is_fixed()) && has_vertex_on(site)) return RowCause::BesideEol;
+    return std::nullopt;
+}
+
+/// Why the cloth's border leaves no room for a vertex; nothing where it does.
+std::optional<RowCause> EolAdmission::find_border_cause(const FeatureSite& site, int v,
+                                                        const Vec2& flow) const
+{
+    const double h = scene_.eol->length(site.material);
+    const EolVertex eol{site.near, site.on, site.outward, 0};
+    if (site.is_on_border && site.on.is_bend()) return RowCause::NearBorder;
+    if (site.is_on_border && !site.on.is_corner() && is_along_border(scene_, state_, stars_, site.edge, eol))
+        return RowCause::AlongBorder;
+    const auto room_at = [&](const Vec2& X) {
+        return room_to_border(scene_, state_, stars_, X, v, site.is_on_border, eol);
+    };
+    const double room = room_at(site.material);
+    if (room < room_wanted(kRoomToEnter, eol.on) * h) return RowCause::NearBorder;
+    // What comes fast would have to go at once.
+    constexpr double kAside = 1e-3;  // of the target length: to see how fast the room closes
+    const Vec2 aside = kAside * h * flow.stableNormalized();
+    const double closing = (room - room_at(site.material + aside)) / (kAside * h) * flow.norm();
+    if (room < soon_ * closing) return RowCause::BorderAhead;
+    return std::nullopt;
+}
+
+/// Of edges nearer to each other than the cloth is thick one has a trace: between two there is no room.
+bool EolAdmission::is_beside_other(const FeatureSite& site) const
+{
+    if (site.on.is_corner()) return false;
+    const Obstacle& obstacle = scene_.obstacles[site.on.obstacle];
+    const std::vector<FeatureEdge>& edges = obstacle.features().edges;
+    const double h = scene_.eol->length(site.material);
+    return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
+        if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
+            edges[e.on.index].polyline == edges[site.on.index].polyline ||
+            !((trace_.surgery().material(e.vertex_id) - site.material).norm() < 1.5 * h))
+            return false;
+        const Vec3 there = place_on_feature(obstacle, e.on.index, trace_.placed(e).place).point;
+        const Vec3 here = place_on_feature(obstacle, site.on.index, there).point;
+        return (there - here).norm() < scene_.material.thickness;
+    });
+}
+
+/// Whether an EOL vertex is of a fold that has left its edge.
+bool EolAdmission::has_left(const EolVertex& eol) const
+{
+    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
+    if (!is_on_convex_edge(obstacle, eol)) return false;
+    const Vec3 place = trace_.placed(eol).place;
+    return has_left_feature(place_on_feature(obstacle, eol.on.index, place).point, place,
+                            scene_.material.thickness);
+}
+
+/// Where a site on an edge of the cloth is.
+Vec3 EolAdmission::world_at(const FeatureSite& site) const
+{
+    const auto& [a, b] = site.edge;
+    if (a < 0) return state_.mesh.world[state_.index_of(site.near)];
+    const std::vector<Vec2>& X = state_.mesh.material;
+    const double length = (X[b] - X[a]).norm();
+    const double s = length > 0.0 ? (site.material - X[a]).norm() / length : 0.0;
+    return (1.0 - s) * state_.mesh.world[a] + s * state_.mesh.world[b];
+}
+
+/// Where a fold has left an edge, what follows it over the edge, as much material away as the fold is from
+/// the edge, is mostly flat. Where it is not it gets a trace of its own, as soon as there is room for two.
+/// What is in one line with the fold is of its trace, where some of it has come back.
+std::optional<RowCause> EolAdmission::find_fold_cause(const FeatureSite& site) const
+{
+    constexpr double kRoom = 1.0;  // target lengths: at less two traces are not told apart
+    if (site.on.is_corner()) return std::nullopt;
+    const std::optional<double> way = find_free_fold(site);
+    if (!way) return std::nullopt;
+    const bool is_between = site.contact < 0;  // and presses nowhere itself
+    if (is_between || is_along_face(scene_.obstacles[site.on.obstacle], site)) return RowCause::FlatBehind;
+    return *way < kRoom * scene_.eol->length(site.material) ? std::optional(RowCause::BesideEol)
+                                                            : std::nullopt;
+}
+
+/// How far the fold that a site follows is from the edge, m: the least, if there are several.
+std::optional<double> EolAdmission::find_free_fold(const FeatureSite& site) const
+{
+    const Obstacle& obstacle = scene_.obstacles[site.on.obstacle];
+    const std::vector<FeatureEdge>& edges = obstacle.features().edges;
+    const Vec3 here = obstacle.at(state_.time).inverse(world_at(site));
+    const auto [from, to] = feature_segment(obstacle, site.on.index);
+    const double h = scene_.eol->length(site.material);
+    std::optional<double> least;
+    for (const EolVertex& e : trace_.eol()) {
+        if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
+            edges[e.on.index].polyline != edges[site.on.index].polyline || !has_left(e))
+            continue;
+        constexpr double kShare = 0.5;                // of the fold's way from the edge
+        constexpr double kSoon = 0.05;                // s, in which it flows through the fold
+        constexpr double kNear = 2.0 * kFlyingCells;  // cells: how far a fold is held, and its first steps
+        const Vec3 off = trace_.placed(e).place - here;
+        const double along = std::abs((to - from).normalized().dot(off));
+        const double way = (trace_.surgery().material(e.vertex_id) - site.material).norm();
+        const double across = std::sqrt(std::max(way * way - along * along, 0.0));
+        const double left = std::sqrt(std::max(off.squaredNorm() - along * along, 0.0));
+        const double reach = std::min(kNear * h, kSoon * trace_.flow(e.vertex_id).norm());
+        if (way < reach && along < h && across > kShare * left) least = std::min(least.value_or(left), left);
+    }
+    return least;
+}
+
+std::optional<RowCause> EolAdmission::refuse_inserted(const EolVertex& eol) const
+{
+    return is_in_plane(eol) && is_on_side(eol) ? std::nullopt : std::optional(RowCause::OffPlane);
+}
+
+bool EolAdmission::is_in_plane(const EolVertex& eol) const
+{
+    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
+    const Vec3 place = trace_.placed(eol).place;
+    if (eol.on.is_corner()) return true;
+    const FeatureEdge& edge = obstacle.features().edges[eol.on.index];
+    const Vec3 off = place - place_on_feature(obstacle, eol.on.index, place).point;
+    if (edge.kind != FeatureKind::Convex) return off.norm() <= kOnFeature * scene_.material.thickness;
+    if (has_left(eol))  // and may be anywhere beyond both faces
+        return std::all_of(edge.normals.begin(), edge.normals.end(), [&](const Vec3& normal) {
+            return normal.dot(off) >= -kOffPlane * scene_.material.thickness;
+        });
+    const std::optional<FeatureFrame> frame =
+        find_edge_frame(obstacle, eol.on.index, place, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+    const Vec3 across = frame->tangent.cross(frame->outward);
+    return std::abs(across.dot(place - frame->point)) <= kOffPlane * scene_.material.thickness;
+}
+
+bool EolAdmission::is_on_side(const EolVertex& eol) const
+{
+    constexpr double kAlong = 0.5;  // cosine
+    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
+    if (eol.on.is_corner() || obstacle.features().edges[eol.on.index].kind == FeatureKind::Convex)
+        return true;
+    const Vec3 place = trace_.placed(eol).place;
+    const Vec3 from = place - place_on_feature(obstacle, eol.on.index, place).point;
+    return from.dot(eol.outward) >= kAlong * from.norm();
+}
+
+/// A corner or turn holds one vertex of a cloth that lies over it.
+bool EolAdmission::has_vertex_on(const FeatureSite& site) const
+{
+    const double h = scene_.eol->length(site.material);
+    return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
+        return e.on.is_fixed() && e.on == site.on && trace_.is_on_trace(e.vertex_id) &&
+               (trace_.surgery().material(e.vertex_id) - site.material).norm() < h;
+    });
+}
+
+EolRetention decide_retention(const Scene& scene, const State& state, const ClothStars& stars, int entry,
+                              const EolCoordinates& at, const Vec3& place)
+{
+    const EolVertex& eol = state.eol[entry];
+    if (eol.idle < kIdleSteps) return EolRetention::Firm;
+    const double gap = (place - at.frame.point).norm();
+    const double cells = is_led_astray(scene, state, eol, at, place) ? kAstrayCells : kFlyingCells;
+    if (gap > cells * scene.eol->shortest && gap > cells * scene.eol->length(state.mesh.material[at.vertex]))
+        return EolRetention::None;
+    const bool has_left = gap > kOnFeature * scene.material.thickness;
+    if (has_left && is_corner_under_face(scene, state, eol)) return EolRetention::None;
+    if (is_folded(state, stars.faces[at.vertex])) return EolRetention::Firm;
+    return has_left ? EolRetention::None : EolRetention::Loose;
+}
+
+void retain_between(const Scene& scene, const State& state, const ClothStars& stars,
+                    std::vector<EolRetention>& retained)
+{
+    if (std::find(retained.begin(), retained.end(), EolRetention::Loose) == retained.end()) return;
+    std::vector<std::vector<int>> beside(retained.size());
+    for (const auto& [a, b] : find_trace_edges(scene.obstacles, state, stars)) {
+        if (retained[a] == EolRetention::None || retained[b] == EolRetention::None) continue;
+        beside[a].push_back(b);
+        beside[b].push_back(a);
+    }
+    // What is left when loose ends are cut off, again and again, lies between.
+    std::vector<int> open;
+    for (std::size_t entry = 0; entry < retained.size(); ++entry) open.push_back(static_cast<int>(entry));
+    while (!open.empty()) {
+        const int at = open.back();
+        open.pop_back();
+        if (retained[at] != EolRetention::Loose || beside[at].size() > 1) continue;
+        retained[at] = EolRetention::None;
+        for (const int next : beside[at]) {
+            std::erase(beside[next], at);
+            open.push_back(next);
+        }
+    }
+    for (EolRetention& retention : retained)
+        if (retention == EolRetention::Loose) retention = EolRetention::Firm;
+}
+
+std::vector<EolRelease> find_releases(const Scene& scene, const State& state, const ClothStars& stars)
+{
+    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
+    std::vector<EolRetention> retained(state.eol.size(), EolRetention::None);
+    std::vector<RowCause> causes(state.eol.size(), RowCause::Released);
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
+        const EolVertex& eol = state.eol[entry];
+        const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
+        const Vec3 place = obstacle.at(state.time).inverse(state.mesh.world[state.index_of(eol.vertex_id)]);
+        const EolPlacing placing = placer.place(entry);
+        if (!placing.coordinates)
+            causes[entry] = placing.refusal;
+        else if (is_at_border(scene, state, stars, eol))
+            causes[entry] = RowCause::NearBorder;
+        else if (is_on_feature(obstacle, eol, place))
+            retained[entry] = decide_retention(scene, state, stars, entry, *placing.coordinates, place);
+    }
+    retain_between(scene, state, stars, retained);
+    std::vector<EolRelease> released;
+    for (std::size_t entry = 0; entry < retained.size(); ++entry)
+        if (retained[entry] != EolRetention::Firm)
+            released.push_back({state.eol[entry].vertex_id, causes[entry]});
+    return released;
+}
+
+}  // namespace arris
