@@ -56,10 +56,10 @@ void describe_cloth(const RunConfig& config, const EdgeLengths& edges, Lines& li
     lines.push_back(fmt::format("cloth: {} of material, {:.6g} m^2, {:.4g} kg; {} vertices, {} faces",
                                 extent(cloth.material), area, material.density * area, cloth.vertex_count(),
                                 cloth.face_count()));
-    lines.push_back(fmt::format(
-        "  edges of the mesh: {:.4g} m in the mean, {:.4g} to {:.4g} m; least angle {:.3g} degrees",
-        edges.mean, edges.least, edges.greatest, least_material_angle(cloth)));
-    lines.push_back(fmt::format("  placed within {} of the world", extent(cloth.world)));
+    lines.push_back(
+        fmt::format("  mesh edges: mean {:.4g} m, from {:.4g} to {:.4g} m; least angle {:.3g} degrees",
+                    edges.mean, edges.least, edges.greatest, least_material_angle(cloth)));
+    lines.push_back(fmt::format("  initial extent: {}", extent(cloth.world)));
     lines.push_back(fmt::format(
         "  {}: density {:g} kg/m^2, membrane {:g} N/m, Poisson ratio {:g}, bending {:g} J, damping {:g} s, "
         "thickness {:g} m",
@@ -80,7 +80,7 @@ void describe_effects(const RunConfig& config, Lines& lines)
 
 std::string pin_motion(const Scene& scene, const Pin& pin)
 {
-    if (pin.follows) return "rides on " + scene.obstacles[static_cast<std::size_t>(*pin.follows)].name();
+    if (pin.follows) return "moves with " + scene.obstacles[static_cast<std::size_t>(*pin.follows)].name();
     if (!pin.motion.keyframes.empty()) return counted(pin.motion.keyframes.size(), "keyframe", "keyframes");
     return pin.motion.is_moving() ? "moving" : "at rest";
 }
@@ -125,7 +125,7 @@ Box3 bounds_at(const Obstacle& obstacle, double time)
     return box;
 }
 
-/// Of each line of sharp edges, m.
+/// Length of each polyline of sharp edges, m.
 std::vector<double> line_lengths(const Obstacle& obstacle)
 {
     const ObstacleFeatures& features = obstacle.features();
@@ -140,7 +140,7 @@ std::vector<double> line_lengths(const Obstacle& obstacle)
     return lengths;
 }
 
-/// Features against `cell`, the cloth's mean edge (m).
+/// Describes the features, with lengths relative to `cell`, the cloth's mean edge (m).
 std::string features_in_words(const Obstacle& obstacle, double cell)
 {
     const ObstacleFeatures& features = obstacle.features();
@@ -149,7 +149,7 @@ std::string features_in_words(const Obstacle& obstacle, double cell)
     if (!lengths.empty()) {
         const double least = *std::min_element(lengths.begin(), lengths.end());
         parts.push_back(fmt::format(
-            "{} in {}, {:.6g} m, the shortest {:.4g} m: {:.3g} of the cloth's mean edge",
+            "{} in {}, {:.6g} m in all, the shortest line {:.4g} m, {:.3g} times the cloth's mean edge",
             counted(features.edges.size(), "edge", "edges"), counted(lengths.size(), "line", "lines"),
             std::accumulate(lengths.begin(), lengths.end(), 0.0), least, least / cell));
     }
@@ -167,15 +167,15 @@ std::string motion_in_words(const RigidMotion& motion)
                            motion.is_moving() ? "" : ", at rest");
     if (!motion.is_moving()) return "at rest";
     std::string words = "moves";
-    if (motion.velocity.squaredNorm() > 0.0) words += fmt::format(" with {} m/s", in_words(motion.velocity));
+    if (motion.velocity.squaredNorm() > 0.0) words += fmt::format(" at {} m/s", in_words(motion.velocity));
     if (motion.angular_velocity.squaredNorm() > 0.0)
-        words += fmt::format(" turning with {} rad/s about {}", in_words(motion.angular_velocity),
+        words += fmt::format(" rotating at {} rad/s about {}", in_words(motion.angular_velocity),
                              in_words(motion.pivot));
     words += fmt::format(" from {:g} s", motion.start);
     return std::isfinite(motion.stop) ? words + fmt::format(" to {:g} s", motion.stop) : words + " on";
 }
 
-/// Whether EOL vertices may lie on a wire.
+/// Whether EOL vertices can lie on a wire.
 bool has_eol_wires(const Scene& scene)
 {
     return scene.eol &&
@@ -192,7 +192,7 @@ void describe_obstacles(const RunConfig& config, const EdgeLengths& edges, Lines
         lines.push_back(fmt::format("obstacle {}: {}, {}", obstacle.name(),
                                     shape_in_words(config.as_run["obstacle"][i]),
                                     elements_in_words(obstacle)));
-        lines.push_back(fmt::format("  {:.6g} x {:.6g} x {:.6g} m, from {} to {} of the world at time 0",
+        lines.push_back(fmt::format("  extent at time 0: {:.6g} x {:.6g} x {:.6g} m, from {} to {}",
                                     sizes.x(), sizes.y(), sizes.z(), in_words(Vec3(bounds.min())),
                                     in_words(Vec3(bounds.max()))));
         lines.push_back("  " + features_in_words(obstacle, edges.mean));
@@ -200,9 +200,10 @@ void describe_obstacles(const RunConfig& config, const EdgeLengths& edges, Lines
     }
     if (has_eol_wires(config.scene))
         lines.push_back(
-            "known limit: the two sides of a cloth folded over a wire do not swing past the plane behind "
-            "it (docs/method.md, Wires)");
-    for (std::size_t i = 1; i < config.intersections.size(); ++i)  // the first is the error
+            "known limit: where cloth is folded over a wire, its two sides do not cross the fold plane "
+            "behind the wire (docs/method.md, Wires)");
+    for (std::size_t i = 1; i < config.intersections.size();
+         ++i)  // the caller throws the first one as an error
         lines.push_back("intersection: " + config.intersections[i]);
     if (!config.scene.obstacles.empty() && config.intersections.empty())
         lines.push_back("the cloth is clear of all obstacles at time 0");

@@ -8,10 +8,10 @@
 
 namespace arris {
 
-/// What `arris check` says of a scene, one line an entry, fit for a terminal: sizes, the mesh's edges,
-/// material, obstacles with their sharp features against these edges and what intersects them at time 0,
-/// effects and why, what pins, pulls and probes meet, steps, frames, expected memory and disk, warnings.
-/// Writes nothing.
+/// The output of `arris check`, one printable line per entry: size and material of the cloth, edges of its
+/// mesh, obstacles with their sharp features relative to these edges and intersections at time 0, effects
+/// with reasons, vertices of pins and pulls, faces of probes, steps, frames, expected memory and disk space,
+/// notes and warnings.
 std::vector<std::string> describe_scene(const RunConfig& config);
 
 }  // namespace arris

@@ -33,7 +33,7 @@ int exit_status(RunStatus status)
     }
 }
 
-/// One line for arguments that cannot be, as for every other bad input.
+/// Prints one line for invalid arguments, as for every other invalid input.
 int tell_parse_error(const CLI::App& app, const CLI::ParseError& error)
 {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
@@ -41,14 +41,103 @@ int tell_parse_error(const CLI::App& app, const CLI::ParseError& error)
     const bool is_missing = error.get_name() == "RequiredError";
     if (is_missing && app.get_subcommands().empty()) {
         const std::vector<std::string> words = app.remaining();
-        line = words.empty() ? "a command is missing" : words.front() + ": is no command";
+        line = words.empty() ? "a command is missing" : words.front() + ": is not a command";
         line += "; allowed: run, resume, check, export, docs";
     }
     if (is_missing && app.got_subcommand("docs")) line += "; allowed: scene, schema";
     for (char& c : line)
         if (c == '\n') c = ' ';
-    fmt::print(stderr, "arris: {} (arris --help tells more)\n", printable(line));
+    fmt::print(stderr, "arris: {} (see arris --help)\n", printable(line));
     return 2;
+}
+
+struct CheckRequest {
+    std::string scene;
+    std::vector<std::string> overrides;
+};
+
+struct ExportRequest {
+    std::string directory;
+    std::vector<std::string> formats;
+};
+
+// Each adds a command, whose arguments are parsed into the request, and returns it.
+
+CLI::App* add_run(CLI::App& app, RunRequest& request)
+{
+    CLI::App* command = app.add_subcommand("run", "Simulate a scene");
+    command->add_option("scene", request.scene, "Scene file (TOML)")->required();
+    command->add_option("-o,--output", request.directory, "Folder for the results; default out/<scene>");
+    command->add_flag("--overwrite", request.is_overwriting, "Replace the run in the folder");
+    command->add_option("--set", request.overrides, "Set a dotted scene key; VALUE is TOML; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+    command->add_option("--threads", request.threads, "Number of threads; default: all that the machine has")
+        ->check(CLI::Range(1, 1024));
+    command->add_flag("--quiet", request.is_quiet, "Print only warnings and errors");
+    return command;
+}
+
+CLI::App* add_resume(CLI::App& app, ResumeRequest& request)
+{
+    CLI::App* command = app.add_subcommand("resume", "Continue a run from its last checkpoint");
+    command->add_option("dir", request.directory, "Folder of the run")->required();
+    CLI::Option* until_option =
+        command->add_option("--until", request.until, "End at this time (s) instead of the scene's duration");
+    command->add_option("--threads", request.threads, "Number of threads; default: all that the machine has")
+        ->check(CLI::Range(1, 1024));
+    command->add_flag("--quiet", request.is_quiet, "Print only warnings and errors");
+    return command;
+}
+
+CLI::App* add_check(CLI::App& app, CheckRequest& request)
+{
+    CLI::App* command =
+        app.add_subcommand("check", "Load a scene and print what would be simulated; write nothing");
+    command->add_option("scene", request.scene, "Scene file (TOML)")->required();
+    command->add_option("--set", request.overrides, "As for run")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+    return command;
+}
+
+CLI::App* add_export(CLI::App& app, ExportRequest& request)
+{
+    CLI::App* command = app.add_subcommand("export", "Export a run's frames to other formats");
+    command->add_option("dir", request.directory, "Folder of the run")->required();
+    command->add_option("--formats", request.formats, "obj,usd,viewer")
+        ->required()
+        ->delimiter(',')
+        ->type_name("FORMAT,...");
+    return command;
+}
+
+void add_docs(CLI::App& app, std::string& topic)
+{
+    CLI::App* command = app.add_subcommand("docs", "Print the reference of scene keys");
+    command->add_option("topic", topic, "scene (Markdown) or schema (JSON schema for editors)")
+        ->required()
+        ->check(CLI::IsMember({"scene", "schema"}));
+}
+
+int check(const CheckRequest& request)
+{
+    LoadOptions options;
+    options.tells_intersections = true;
+    const RunConfig config = load_scene(request.scene, request.overrides, options);
+    for (const std::string& line : describe_scene(config)) fmt::print("{}\n", line);
+    std::fflush(stdout);  // so that it precedes the error on standard error
+    if (!config.intersections.empty()) throw InputError(config.intersections.front());
+    return 0;
+}
+
+int export_formats(const ExportRequest& request)
+{
+    require_known_formats(request.formats);
+    export_frames(request.directory, request.formats, read_export_options(request.directory));
+    for (const std::string& format : request.formats)
+        fmt::print("{:<7} {}\n", format, printable(exported_path(request.directory, format)));
+    return 0;
 }
 
 }  // namespace
@@ -60,52 +149,15 @@ int run_command_line(int argc, char** argv)
     app.require_subcommand(1);
 
     RunRequest run_request;
-    CLI::App* run_command = app.add_subcommand("run", "Simulate a scene");
-    run_command->add_option("scene", run_request.scene, "Scene file (TOML)")->required();
-    run_command->add_option("-o,--output", run_request.directory,
-                            "Folder for the results; default out/<scene>");
-    run_command->add_flag("--overwrite", run_request.is_overwriting, "Replace the run that the folder holds");
-    run_command
-        ->add_option("--set", run_request.overrides, "Any dotted scene key, VALUE as TOML; once for each key")
-        ->allow_extra_args(false)
-        ->type_name("KEY=VALUE");
-    run_command->add_option("--threads", run_request.threads, "Default: as many as the machine has")
-        ->check(CLI::Range(1, 1024));
-    run_command->add_flag("--quiet", run_request.is_quiet, "Say nothing but warnings and errors");
-
     ResumeRequest resume_request;
-    double until = 0.0;
-    CLI::App* resume_command = app.add_subcommand("resume", "Go on from a run's last checkpoint");
-    resume_command->add_option("dir", resume_request.directory, "Folder of the run")->required();
-    CLI::Option* until_option = resume_command->add_option("--until", until, "End at this time (s) instead");
-    resume_command->add_option("--threads", resume_request.threads, "Default: as many as the machine has")
-        ->check(CLI::Range(1, 1024));
-    resume_command->add_flag("--quiet", resume_request.is_quiet, "Say nothing but warnings and errors");
-
-    std::string check_scene;
-    std::vector<std::string> check_overrides;
-    CLI::App* check_command =
-        app.add_subcommand("check", "Load a scene, say what it would simulate, write nothing");
-    check_command->add_option("scene", check_scene, "Scene file (TOML)")->required();
-    check_command->add_option("--set", check_overrides, "As for run")
-        ->allow_extra_args(false)
-        ->type_name("KEY=VALUE");
-
-    std::string export_directory;
-    std::vector<std::string> export_formats;
-    CLI::App* export_command = app.add_subcommand("export", "Make further formats from a run's frames");
-    export_command->add_option("dir", export_directory, "Folder of the run")->required();
-    export_command->add_option("--formats", export_formats, "obj,usd,viewer")
-        ->required()
-        ->delimiter(',')
-        ->type_name("FORMAT,...");
-
+    CheckRequest check_request;
+    ExportRequest export_request;
     std::string topic;
-    CLI::App* docs_command = app.add_subcommand("docs", "Print the reference of scene keys");
-    docs_command->add_option("topic", topic, "scene (Markdown) or schema (JSON schema for editors)")
-        ->required()
-        ->check(CLI::IsMember({"scene", "schema"}));
-
+    const CLI::App* run_command = add_run(app, run_request);
+    const CLI::App* resume_command = add_resume(app, resume_request);
+    const CLI::App* check_command = add_check(app, check_request);
+    const CLI::App* export_command = add_export(app, export_request);
+    add_docs(app, topic);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -113,26 +165,9 @@ int run_command_line(int argc, char** argv)
     }
 
     if (*run_command) return exit_status(run(run_request));
-    if (*resume_command) {
-        if (*until_option) resume_request.until = until;
-        return exit_status(resume(resume_request));
-    }
-    if (*check_command) {
-        LoadOptions options;
-        options.tells_intersections = true;
-        const RunConfig config = load_scene(check_scene, check_overrides, options);
-        for (const std::string& line : describe_scene(config)) fmt::print("{}\n", line);
-        std::fflush(stdout);  // before what follows on standard error
-        if (!config.intersections.empty()) throw InputError(config.intersections.front());
-        return 0;
-    }
-    if (*export_command) {
-        require_known_formats(export_formats);
-        export_frames(export_directory, export_formats, read_export_options(export_directory));
-        for (const std::string& format : export_formats)
-            fmt::print("{:<7} {}\n", format, printable(exported_path(export_directory, format)));
-        return 0;
-    }
+    if (*resume_command) return exit_status(resume(resume_request));
+    if (*check_command) return check(check_request);
+    if (*export_command) return export_formats(export_request);
     fmt::print("{}", topic == "scene" ? scene_markdown() : scene_schema());
     return 0;
 }

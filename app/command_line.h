@@ -3,8 +3,8 @@
 
 namespace arris {
 
-/// Parses the arguments and does what they say. Returns the exit status: 0 done, 1 the run stopped before its
-/// end, 2 arguments that cannot be, 130 interrupted. Throws what the commands throw.
+/// Parses the arguments and runs the command. Returns the exit status: 0 done, 1 the run stopped before its
+/// end, 2 invalid arguments, 130 interrupted. Throws what the commands throw.
 int run_command_line(int argc, char** argv);
 
 }  // namespace arris

@@ -16,16 +16,17 @@
 
 int main(int argc, char** argv)
 {
-    // A closed pipe and a file that may not grow are errors of a write, not reasons to vanish.
+    // A closed pipe or a file-size limit must make write() fail, not kill the process.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
-    // Not a command for people: the program starts itself with it to read a mesh file at arm's length. It
-    // ends without tidying up: what the import library has left behind of a broken file is nobody's business.
+    // Internal command: the program starts itself with it to read an untrusted mesh file in a separate
+    // process. It ends without running destructors: after a broken file those of the import library are not
+    // safe.
     if (argc > 1 && std::strcmp(argv[1], "import-obstacle") == 0)
         std::_Exit(arris::import_obstacle_command(argc - 2, argv + 2));
     try {
         const int status = arris::run_command_line(argc, argv);
-        // Output that went nowhere was not given.
+        // Lost output, such as a full disk, is an error.
         if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
             fmt::print(stderr, "arris: standard output: {}\n", std::strerror(errno));
             return 1;
@@ -35,7 +36,7 @@ int main(int argc, char** argv)
         fmt::print(stderr, "arris: {}\n", arris::printable(error.what()));
         return 2;
     } catch (const std::exception& error) {
-        // A disk that refuses, memory that is not there: not the input's fault.
+        // A failure that is not the input's fault, such as a full disk or too little memory.
         fmt::print(stderr, "arris: {}\n", arris::printable(arris::error_line(error)));
         return 1;
     }

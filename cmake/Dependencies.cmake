@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Every dependency is a Debian package. Where one is missing the message names it.
+# Finds the dependencies. All are Debian packages; the error message names a missing one.
 
 function(arris_missing what package)
   message(FATAL_ERROR "${what} was not found. On Debian: apt-get install ${package}")
@@ -12,7 +12,7 @@ macro(arris_find_package name package)
   endif()
 endmacro()
 
-# A library without a CMake package: header and library become the imported target `target`.
+# Makes an imported target `target` from the header and library of a library without a CMake package.
 function(arris_find_library target header library package)
   cmake_parse_arguments(ARG "" "" "SUFFIXES" ${ARGN})
   string(MAKE_C_IDENTIFIER "${target}" id)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Puts a file's bytes into a target, whatever is in them and however many they are: the assembler's .incbin
-# copies them, which takes no time and knows no limit on string literals (g++ and clang on Linux).
+# Embeds a file of any content and size in a target. The assembler's .incbin copies the bytes, which is fast and has no
+# limit on string literals (g++ and clang on Linux).
 #
 #   arris_embed(arris_app report_template report_template.html)
 #
 # makes `#include "embedded/report_template.h"` declare `std::string_view arris::embedded::report_template()`.
-# The file may also be one that the build makes in this directory (OUTPUT of a custom command).
+# The file may also be made by the build in this directory (OUTPUT of a custom command).
 function(arris_embed target name file)
   get_filename_component(ARRIS_EMBED_FILE ${file} ABSOLUTE)
   set(ARRIS_EMBED_NAME ${name})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What every target of the project is compiled with, in one INTERFACE target.
+# Compile options of every target, in one INTERFACE target.
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -12,7 +12,7 @@ endif()
 find_program(CCACHE_PROGRAM ccache)
 mark_as_advanced(CCACHE_PROGRAM)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # With a precompiled header ccache must not compare its time stamps.
+  # ccache needs this sloppiness to cache files that use a precompiled header.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
 endif()
 
@@ -20,9 +20,9 @@ add_library(arris_options INTERFACE)
 target_compile_options(arris_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   -Wno-restrict       # false alarms on std::string in GCC 12 (bug 105651)
-  -ffp-contract=off   # results do not depend on whether the machine has fused multiply-add
+  -ffp-contract=off   # makes results independent of fused multiply-add
   -frounding-math)    # CGAL's interval arithmetic changes the rounding mode
-# One thread a matrix: the project parallelises over elements, and results must not depend on the number of threads.
+# Eigen uses one thread: the project parallelises over elements, and results must not depend on the number of threads.
 target_compile_definitions(arris_options INTERFACE EIGEN_DONT_PARALLELIZE)
 if(ARRIS_WERROR)
   target_compile_options(arris_options INTERFACE -Werror)
@@ -32,7 +32,7 @@ if(ARRIS_SANITIZE)
   target_link_options(arris_options INTERFACE -fsanitize=${ARRIS_SANITIZE})
 endif()
 
-# The headers that are slow to parse and in nearly every file.
+# Precompiles headers that are slow to parse and used in nearly every file.
 function(arris_precompile target)
   target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> <algorithm> <string>
                             <vector> <fmt/format.h>)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bundles the page into one file: node build.mjs OUTPUT. The same sources make the same bytes.
+// Bundles the page into one file: node build.mjs OUTPUT. Equal sources give equal bytes.
 
 import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";

@@ -18,7 +18,7 @@
 namespace arris {
 namespace {
 
-/// What the formats are made from.
+/// Input of all formats.
 struct Source {
     const std::string& run_dir;
     std::int64_t frame_count;
@@ -53,11 +53,11 @@ void export_viewer(const Source& run)
     write_viewer(run.run_dir, viewer, run.obstacles);
 }
 
-/// A format's name and what makes it; one that is planned has no function yet.
+/// A format and the function that makes it; null if the format is not built yet.
 struct Format {
     const char* name;
     void (*make)(const Source&);
-    const char* place;  ///< in the run's folder
+    const char* place;  ///< relative to the run's folder
 };
 
 constexpr Format kFormats[] = {
@@ -99,7 +99,8 @@ void export_frames(const std::string& run_dir, const std::vector<std::string>& f
 {
     require_known_formats(formats);
     const std::int64_t frame_count = count_frames(run_dir);
-    if (frame_count == 0) throw InputError(frames_directory(run_dir) + ": no frames (cloth_00000.ply, ...)");
+    if (frame_count == 0)
+        throw InputError(frames_directory(run_dir) + ": has no frames (cloth_00000.ply, ...)");
     const Source source{run_dir, frame_count, options, read_obstacles(run_dir)};
     for (const std::string& name : formats) find_format(name).make(source);
 }

@@ -6,21 +6,21 @@
 
 namespace arris {
 
-/// What the formats made from frames need to know about their run.
+/// Properties of the run that exported formats need.
 struct ExportOptions {
     std::string title;
     double frames_per_second = 24.0;  ///< > 0
 };
 
-/// Where a format's files are: a file, or the folder of one a frame.
+/// Path of a format's file, or a pattern where there is one file per frame.
 std::string exported_path(const std::string& run_dir, const std::string& format);
 
-/// InputError, naming the format and what is allowed, unless every one can be made by export_frames.
+/// Throws InputError naming the format and the allowed ones unless export_frames supports all of them.
 void require_known_formats(const std::vector<std::string>& formats);
 
-/// Makes "obj", "usd", "viewer" from the frames in run_dir/frames and the obstacles in run_dir/obstacles,
-/// each whole or absent. InputError for an unknown format, a run without frames or a bad frame file;
-/// std::system_error where the disk refuses.
+/// Makes the formats "obj", "usd", "viewer" from the frames in run_dir/frames and the obstacles in
+/// run_dir/obstacles; each file is written atomically. Throws InputError for an unknown format, a run without
+/// frames or an invalid frame file, std::system_error if writing fails.
 void export_frames(const std::string& run_dir, const std::vector<std::string>& formats,
                    const ExportOptions& options);
 

@@ -14,8 +14,8 @@ void write_obj(const std::string& path, const Frame& frame)
     fmt::memory_buffer text;
     const auto out = std::back_inserter(text);
     fmt::format_to(out,
-                   "# Arris: m, z is up; vt: material coordinates; l: edges that a sharp feature holds, or "
-                   "has until a fold flew off it\no cloth\n");
+                   "# Arris: m, z is up; vt: material coordinates; l: edges on a sharp feature, or on a fold "
+                   "that has just left it\no cloth\n");
     for (const Vec3& x : frame.world) fmt::format_to(out, "v {} {} {}\n", x[0], x[1], x[2]);
     for (const Vec2& X : frame.material) fmt::format_to(out, "vt {} {}\n", X[0], X[1]);
     for (const Face& face : frame.faces)

@@ -8,13 +8,13 @@
 
 namespace arris {
 
-/// The cloth of one frame as Wavefront OBJ: `v` world positions and `vt` material coordinates, both in metres
-/// and one a vertex, `f` triangles as v/vt, `l` EOL edges. Numbers read back to the same double. Whole or
-/// absent; throws std::system_error naming the path where the disk refuses.
+/// Writes the cloth of one frame as Wavefront OBJ, atomically: `v` world positions and `vt` material
+/// coordinates, both in metres and one per vertex; `f` triangles as v/vt; `l` EOL edges. Numbers read back to
+/// the same double. Throws std::system_error naming the path if writing fails.
 void write_obj(const std::string& path, const Frame& frame);
 
-/// An obstacle where `placement` (of its frame, in the world) has it: `v` world positions in metres, `f`
-/// triangles, `l` wires' segments, `p` lone points. Otherwise as above.
+/// Writes an obstacle whose frame has the given placement in the world: `v` world positions in metres, `f`
+/// triangles, `l` segments of wires, `p` lone points. Otherwise as for the cloth.
 void write_obj(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement);
 
 }  // namespace arris

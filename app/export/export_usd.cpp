@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// USD wants all samples of one attribute together, while frames come one by one. A run of a million frames
-// does not fit into memory, so the frame files are read once for each attribute and written straight through.
+// USD stores all samples of one attribute together, while frames come one by one. A run of a million frames
+// does not fit into memory, so the frame files are read once per attribute and samples are written at once.
 //
 // USD interpolates arrays of floats linearly between the samples on either side, and holds arrays of ints. So
 // faces need a sample only where they change, but float attributes that change at all are sampled at every
@@ -22,12 +22,12 @@
 namespace arris {
 namespace {
 
-/// Which frames need a sample of what, found in a first pass.
+/// Frames that need a sample of each attribute, found in a first pass.
 struct Changes {
     std::vector<std::size_t>
         face_counts;  ///< frames whose face count differs from the frame before; 0 is always there
-    std::vector<std::size_t> faces;   ///< the same of the faces
-    bool is_material_moving = false;  ///< material coordinates change at all
+    std::vector<std::size_t> faces;   ///< frames whose faces differ from the frame before; 0 is always there
+    bool is_material_moving = false;  ///< whether material coordinates ever change
 };
 
 Changes find_changes(const std::vector<std::string>& frame_paths)
@@ -127,8 +127,8 @@ void put_extent(fmt::memory_buffer& out, const Frame& frame)
 
 using PutSample = std::function<void(fmt::memory_buffer&, const Frame&)>;
 
-/// One attribute of the mesh: `declaration` is its type and name, `samples` the frames that have a value of
-/// their own.
+/// One attribute of the mesh: `declaration` is its type and name, `samples` the frames at which it is
+/// written.
 struct Attribute {
     std::string declaration;
     std::vector<std::size_t> samples;
@@ -136,8 +136,8 @@ struct Attribute {
     std::string metadata = "";
 };
 
-// One value for all time is written as the default, not as a sample. Metadata stand at a declaration of their
-// own.
+// A value that is constant in time is written as the default, not as a sample. Metadata need a declaration of
+// their own.
 void write_attribute(AtomicFile& file, const std::vector<std::string>& frame_paths,
                      const Attribute& attribute)
 {
@@ -207,7 +207,7 @@ std::string stage_header(std::size_t frame_count, const UsdOptions& options)
 
 constexpr double kDrawnWidth = 0.002;  // m, of wires and points
 
-/// USD multiplies rows from the left: the transposed of ours.
+/// USD multiplies row vectors from the left, so the matrix is transposed.
 void put(fmt::memory_buffer& out, const Placement& placement)
 {
     for (int column = 0; column < 3; ++column) {
@@ -227,7 +227,7 @@ void put_line(fmt::memory_buffer& out, std::string_view declaration, const Items
     put(out, std::string_view("\n"));
 }
 
-/// A prim's points, and the box around them.
+/// Writes a prim's points and their bounding box.
 void put_points(fmt::memory_buffer& out, const std::vector<Vec3>& points)
 {
     Vec3 least = points.front(), greatest = least;

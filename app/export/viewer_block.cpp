@@ -10,8 +10,7 @@
 namespace arris {
 namespace {
 
-/// An unsigned number for a signed difference, small where that is small: 0, -1, 1, -2, ... become 0, 1, 2,
-/// 3, ...
+/// Zigzag code of a signed difference: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
 std::uint32_t zigzag(std::int32_t difference)
 {
     return (static_cast<std::uint32_t>(difference) << 1) ^ static_cast<std::uint32_t>(difference >> 31);
@@ -26,7 +25,7 @@ Bytes deflated(const Bytes& raw)
     if (compress2(result.data(), &size, raw.data(), raw.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
         throw std::runtime_error("viewer.html: zlib ran out of memory");
     result.resize(size);
-    result.shrink_to_fit();  // many are kept: their size is what counts, not its bound
+    result.shrink_to_fit();  // many blocks are kept, so do not keep the capacity of the upper bound
     return result;
 }
 

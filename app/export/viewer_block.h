@@ -10,20 +10,20 @@
 
 namespace arris {
 
-// How a block of data in the viewer's page is packed (viewer/README.md).
+// Packing of a block of data in the viewer's page (viewer/README.md).
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// zlib. std::runtime_error where there is no memory for it.
+/// Compresses with zlib. Throws std::runtime_error if there is too little memory.
 Bytes deflated(const Bytes& raw);
 
-/// Differences of successive numbers modulo 65536, first the high bytes of all, then the low ones.
+/// Appends differences of successive numbers modulo 65536: first all high bytes, then all low bytes.
 void append_planes(const std::vector<std::uint16_t>& numbers, Bytes& out);
 
-/// Numbers of 32 bits: first the highest byte of all, then the next, ...
+/// Appends 32-bit numbers: first the highest byte of all numbers, then the next byte, ...
 void append_planes(const std::vector<std::uint32_t>& numbers, Bytes& out);
 
-/// Indices of triangles, pairs and points, each as the difference to the one before, zigzag, 32 bits.
+/// Appends indices of triangles, pairs and points as 32-bit zigzag differences to the previous index.
 void append_indices(const std::vector<Face>& faces, const std::vector<std::array<int, 2>>& pairs,
                     const std::vector<int>& points, Bytes& out);
 

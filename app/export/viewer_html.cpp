@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page is the template of viewer/dist with two kinds of inert script elements put in: one JSON element
-// that lists the frames, and one element a block of data (base64 of zlib), which the page decodes when it
-// shows it.
+// The page is the template of viewer/dist with inserted script elements that the browser does not execute:
+// one JSON element that lists the frames, and one element per block of data (base64 of zlib), which the page
+// decodes when the block is shown.
 //
 //     frame      x y z of every vertex | strain of every face | contact of every vertex, one bit
 //     topology   vertices of every face | vertices of every EOL edge | EOL vertices on corners and points
-//     mesh       of an obstacle: x y z of every point | points of every face, wire segment | lone points
+//     mesh       per obstacle: x y z of every point | points of every face, wire segment | lone points
 //
-// A topology is stored where it changes. Numbers are differences to their predecessor, first all high bytes,
-// then all low ones: a mix of the two hardly deflates (positions of 10k vertices with wrinkles of 0.1 mm: 31
-// instead of 58 kB; smooth ones 10 instead of 56).
+// A topology is stored where it changes. Numbers are stored as differences to their predecessor, first all
+// high bytes, then all low bytes: interleaved bytes hardly deflate (positions of 10k vertices with wrinkles
+// of 0.1 mm take 31 instead of 58 kB; smooth positions 10 instead of 56 kB).
 #include "app/export/viewer_html.h"
 
 #include <algorithm>
@@ -37,11 +37,12 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::string_view kDataMarker = "<!-- ARRIS-DATA -->";
-constexpr double kLevels = 65535.0;        // of a 16-bit number
-constexpr double kLargestNumber = 1e18;    // the page squares numbers in single precision, up to 3e38
-constexpr double kTypicalQuantile = 0.99;  // of a frame's strains: a few slivers do not wash out the colours
+constexpr double kLevels = 65535.0;      // steps of a 16-bit number
+constexpr double kLargestNumber = 1e18;  // the page squares numbers in single precision, up to 3e38
+constexpr double kTypicalQuantile =
+    0.99;  // of a frame's strains, so that a few thin faces do not determine the colour range
 
-/// What stays the same from frame to frame until the mesh changes.
+/// Data that is constant from frame to frame until the mesh changes.
 struct Topology {
     std::size_t vertices = 0;
     std::vector<Face> faces;
@@ -56,10 +57,10 @@ struct TopologyBlock {
     Bytes data;
 };
 
-/// An obstacle, in its own frame about `centre`.
+/// The mesh of an obstacle, in the obstacle's frame relative to `centre`.
 struct MeshBlock {
     const ObstacleRecord* obstacle;
-    Vec3 centre, size;  // of its bounding box, m
+    Vec3 centre, size;  // centre and size of the bounding box, m
     Bytes data;
 };
 
@@ -71,16 +72,16 @@ struct FrameBlock {
     Bytes data;
 };
 
-/// What the page is made of: blocks that stay below a number of bytes, by leaving out frames if need be.
+/// The blocks of the page. Frames are left out to keep their total size below a limit.
 struct Blocks {
     std::map<int, TopologyBlock> topologies;
     int newest_topology = -1;
     std::vector<FrameBlock> frames;
     std::vector<MeshBlock> meshes;
-    std::vector<std::string> left_out;  ///< obstacles for which there is no room
+    std::vector<std::string> left_out;  ///< names of obstacles that do not fit
     std::int64_t stride = 1;
     std::size_t mesh_bytes = 0;
-    std::size_t bytes = 0;  ///< of all blocks
+    std::size_t bytes = 0;  ///< total size of all blocks
     double least_strain = std::numeric_limits<double>::infinity();
     double greatest_strain = -std::numeric_limits<double>::infinity();
     double typical_strain = 0.0;
@@ -114,7 +115,7 @@ MeshBlock make_mesh_block(const ObstacleRecord& obstacle)
     return block;
 }
 
-/// Those that fit into half of `most_bytes`, in their order.
+/// Stores the obstacles that fit into half of `most_bytes`, in their order.
 void store_meshes(const std::vector<ObstacleRecord>& obstacles, std::size_t most_bytes, Blocks& blocks)
 {
     for (const ObstacleRecord& obstacle : obstacles) {
@@ -129,7 +130,7 @@ void store_meshes(const std::vector<ObstacleRecord>& obstacles, std::size_t most
     blocks.bytes = blocks.mesh_bytes;
 }
 
-/// `value` on a scale of 65536 steps from `least` to `least + range`; 0 where the range is.
+/// Quantises `value` to 65536 levels from `least` to `least + range`; 0 if `range` is 0.
 std::uint16_t quantised(double value, double least, double range)
 {
     if (!(range > 0.0)) return 0;
@@ -193,8 +194,8 @@ double typical_strain(std::vector<double> strains)
     return strains[static_cast<std::size_t>(rank)];
 }
 
-/// Leaves out every second of the frames kept so far, never the run's last, and the topologies only those
-/// used.
+/// Removes every second of the frames kept so far, except the run's last, and the topologies that are then
+/// unused.
 void thin(std::int64_t last, Blocks& blocks)
 {
     blocks.stride *= 2;
@@ -211,10 +212,10 @@ void thin(std::int64_t last, Blocks& blocks)
     for (const auto& [id, topology] : blocks.topologies) blocks.bytes += topology.data.size();
 }
 
-/// Stores the frame's topology unless it is that of the frame before, `current`, which becomes this one.
+/// Stores the frame's topology unless it equals `current`, that of the previous frame; updates `current`.
 void store_topology(const Frame& frame, Topology& current, Blocks& blocks)
 {
-    // One that thinning threw out is stored again where a later frame has it.
+    // A topology that thin() has removed is stored again where a later frame has it.
     Topology topology = topology_of(frame);
     if (topology == current && blocks.topologies.contains(blocks.newest_topology)) return;
     TopologyBlock block{topology.vertices, topology.faces.size(), topology.eol_edges.size(),
@@ -234,16 +235,16 @@ void store_frame(const Frame& frame, std::int64_t index, Blocks& blocks)
     blocks.frames.push_back(std::move(block));
 }
 
-/// Refuses what the page's single precision cannot hold.
+/// Refuses numbers that the page's single precision cannot hold.
 void check_magnitudes(const Frame& frame, const std::string& path)
 {
-    if (frame.faces.empty()) throw InputError(path + ": no faces to show");
+    if (frame.faces.empty()) throw InputError(path + ": has no faces to show");
     for (const Vec3& x : frame.world)
         if (x.cwiseAbs().maxCoeff() > kLargestNumber)
-            throw InputError(path + ": a vertex further away than a page can show");
+            throw InputError(path + ": a vertex is farther away than the viewer can show");
     for (const double strain : frame.strain)
         if (std::abs(strain) > kLargestNumber)
-            throw InputError(path + ": a strain larger than a page can show");
+            throw InputError(path + ": a strain is larger than the viewer can show");
 }
 
 /// Reads the run's frames one by one.
@@ -251,7 +252,8 @@ Blocks pack_run(const std::string& run_directory, std::size_t most_bytes,
                 const std::vector<ObstacleRecord>& obstacles)
 {
     const std::int64_t last = count_frames(run_directory) - 1;
-    if (last < 0) throw InputError(frames_directory(run_directory) + ": no frames (cloth_00000.ply, ...)");
+    if (last < 0)
+        throw InputError(frames_directory(run_directory) + ": has no frames (cloth_00000.ply, ...)");
 
     Blocks blocks;
     store_meshes(obstacles, most_bytes, blocks);
@@ -273,7 +275,7 @@ ordered_json vector_json(const Vec3& v)
     return {v.x(), v.y(), v.z()};
 }
 
-/// Rows of the 3 x 4 matrix that takes a point of the obstacle's block to the world at `time`.
+/// Rows of the 3 x 4 matrix that maps a point of the obstacle's block to the world at `time`.
 ordered_json placement_json(const MeshBlock& mesh, double time)
 {
     const Placement placement = mesh.obstacle->at(time);
@@ -286,7 +288,7 @@ ordered_json placement_json(const MeshBlock& mesh, double time)
     return rows;
 }
 
-/// The obstacles; one that never moves has one placement, others one for each frame in the page.
+/// The obstacles. A moving obstacle has one placement per frame of the page, any other a single one.
 ordered_json meshes_json(const Blocks& blocks, double frames_per_second)
 {
     ordered_json result = ordered_json::array();
@@ -308,7 +310,7 @@ ordered_json meshes_json(const Blocks& blocks, double frames_per_second)
     return result;
 }
 
-/// What viewer/src/run.js reads first. Keys it does not know it leaves alone.
+/// The metadata, which viewer/src/run.js reads first. It ignores unknown keys.
 ordered_json meta(const Blocks& blocks, const ViewerOptions& options)
 {
     ordered_json result = {{"format", 1},
@@ -339,7 +341,7 @@ ordered_json meta(const Blocks& blocks, const ViewerOptions& options)
     return result;
 }
 
-/// JSON that no HTML parser takes for markup: `<` occurs in strings only, where \u003c means the same.
+/// JSON without HTML markup: `<` occurs only in strings, where \u003c is equivalent.
 std::string inert_json(const ordered_json& json)
 {
     std::string result;

@@ -27,14 +27,15 @@ bool is_still_named(int descriptor, const std::string& path)
            opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
-// File systems without locks (some network ones) go on without: only a lock that somebody holds is an error.
+// Some network file systems have no locks. So a failed lock is an error only if another process holds it.
 bool is_locked_by_another(int descriptor)
 {
     return flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
-// Not emptied before it is ours: between opening and locking, another process may have renamed it to its
-// final name. Then what we hold is a finished file, and we open anew.
+// The file is truncated only after the lock is held and the name checked: between opening and locking,
+// another process may have renamed it to its final name. Then the descriptor is a finished file, and we open
+// again.
 int open_temporary(const std::string& path)
 {
     for (int attempt = 0; attempt < 100; ++attempt) {
@@ -89,8 +90,8 @@ void AtomicFile::flush()
 void AtomicFile::commit()
 {
     flush();
-    // Renamed while the lock is held. Network file systems report a full disk only on closing, so close a
-    // copy first.
+    // Rename while the lock is held. Network file systems report a full disk only on closing, so close a copy
+    // of the descriptor first.
     const int copy = dup(descriptor_);
     if (copy < 0 || close(copy) != 0) fail("cannot write", path_);
     if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot create", path_);

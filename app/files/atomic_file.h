@@ -6,11 +6,11 @@
 
 namespace arris {
 
-/// A file that appears under its name whole or not at all: it is written as `<path>.tmp` and renamed by
-/// commit(). Without a commit the temporary is removed and what stood under the name before stays. A
-/// temporary left by a killed process is overwritten; one that another process is writing is an error. This
-/// guards against a process that stops anywhere, not against a machine that loses power (nothing is synced).
-/// All members throw std::system_error naming the path and the system's reason.
+/// A file that appears under its name complete or not at all: `<path>.tmp` is written, and commit() renames
+/// it. Without commit() the temporary file is removed and the previous file stays. A temporary file of a
+/// killed process is overwritten; a temporary file that another process is writing is an error. Safe against
+/// a killed process, not against a power failure (nothing is synced). All members throw std::system_error
+/// naming the path and the system's reason.
 class AtomicFile {
   public:
     explicit AtomicFile(const std::string& path);
@@ -29,10 +29,10 @@ class AtomicFile {
     int descriptor_ = -1;
 };
 
-/// The same for contents that are in memory already.
+/// Writes a whole AtomicFile at once.
 void write_atomically(const std::string& path, std::string_view bytes);
 
-/// Writes all of `bytes` to an open file, however many calls the system needs; throws as above.
+/// Writes all of `bytes` to an open file, in as many calls as needed. Throws as AtomicFile does.
 void write_fully(int descriptor, std::string_view bytes, const std::string& path);
 
 }  // namespace arris

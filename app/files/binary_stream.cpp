@@ -86,7 +86,7 @@ std::string read_sealed(const std::string& path, const FileKind& kind)
                               kind.version));
     std::string body = file.text();
     if (file.number<std::uint32_t>() != checksum(body)) file.fail("is damaged: its checksum differs");
-    if (!file.is_at_end()) file.fail("is damaged: it is longer than it says");
+    if (!file.is_at_end()) file.fail("is damaged: it is longer than its counts say");
     return body;
 }
 

@@ -15,8 +15,8 @@ namespace arris {
 
 static_assert(std::endian::native == std::endian::little, "numbers are stored as they are in memory");
 
-/// Appends numbers, texts and arrays to a string of bytes, little-endian; texts and arrays are a 64-bit count
-/// and their elements.
+/// Appends numbers, texts and arrays to a string of bytes, little-endian. A text or array is a 64-bit count
+/// followed by the elements.
 class BinaryWriter {
   public:
     template <typename Number>
@@ -40,11 +40,11 @@ class BinaryWriter {
     std::string bytes_;
 };
 
-/// Reads what a BinaryWriter wrote, from `path`. Untrusted input: lengths are checked before anything is
-/// allocated; InputError naming the file where they cannot be.
+/// Reads bytes of a BinaryWriter from the file `path`. The bytes are untrusted: lengths are checked before
+/// memory is allocated. Throws InputError naming the file where a length is too large.
 class BinaryReader {
   public:
-    /// Neither is copied: `bytes` must outlive the reader.
+    /// `bytes` are not copied and must outlive the reader.
     BinaryReader(std::string_view bytes, const std::string& path) : left_(bytes), path_(path) {}
 
     template <typename Number>
@@ -57,7 +57,7 @@ class BinaryReader {
     }
     std::string text() { return std::string(take(number<std::uint64_t>())); }
 
-    /// `item_size`: bytes of the smallest item that `read` reads.
+    /// `item_size`: bytes of the smallest item that `read` consumes.
     template <typename Item, typename Read>
     std::vector<Item> list(std::size_t item_size, const Read& read)
     {
@@ -79,20 +79,20 @@ class BinaryReader {
     std::string path_;
 };
 
-/// What a file of this program calls itself.
+/// Identification of a kind of binary file of this program, with its error messages.
 struct FileKind {
     std::string_view magic;    ///< its first bytes
-    std::string_view version;  ///< another one is refused
+    std::string_view version;  ///< a file of another version is refused
     std::string_view missing;  ///< "there is no checkpoint to resume from"
     std::string_view other;    ///< "is not a checkpoint of arris"
 };
 
-/// Magic, version, body, CRC-32 of the body. Replaced atomically; std::system_error naming the path where the
-/// disk refuses.
+/// Writes magic, version, body and CRC-32 of the body, atomically. Throws std::system_error naming the path
+/// if writing fails.
 void write_sealed(const std::string& path, const FileKind& kind, const std::string& body);
 
-/// The body of such a file. InputError naming the file where it is missing, not of this kind, of another
-/// version (named), or damaged.
+/// Returns the body of a file of write_sealed. Throws InputError naming the file if it is missing, of another
+/// kind or version, or damaged.
 std::string read_sealed(const std::string& path, const FileKind& kind);
 
 }  // namespace arris

@@ -46,7 +46,7 @@ struct StepColumn {
     std::string (*cell)(const StepRow&);
 };
 
-// Order and names are fixed by the format; new columns go to the end.
+// The format fixes order and names; append new columns at the end.
 const StepColumn kStepColumns[] = {
     {"step", [](const StepRow& row) { return cell(row.step); }},
     {"time", [](const StepRow& row) { return cell(row.time); }},
@@ -84,7 +84,7 @@ const StepColumn kStepColumns[] = {
     {"yielded", [](const StepRow& row) { return cell(row.yielded); }},
     {"energy_rise", [](const StepRow& row) { return cell(row.energy_rise); }},
     {"eol_pressing", [](const StepRow& row) { return cell(row.eol_pressing); }},
-};  // and rows_<cause> for each
+};  // followed by rows_<cause> for each cause
 
 std::string join(const std::vector<std::string>& cells)
 {
@@ -102,7 +102,7 @@ std::vector<std::string_view> split(std::string_view line)
     }
 }
 
-// A line is whole only with its end; getline alone would also return a torn one.
+// A line is complete only with its line feed; getline alone would also return an incomplete last line.
 bool read_whole_line(std::istream& in, std::string& line)
 {
     return std::getline(in, line) && !in.eof();
@@ -124,9 +124,9 @@ void require_same_header(const std::string& path, const std::string& header)
     std::string line;
     if (!in) throw InputError(path + ": cannot be opened");
     if (!read_whole_line(in, line) || line != header)
-        throw InputError(path + ": its columns are not those that this scene writes");
+        throw InputError(path + ": its columns differ from the columns of this scene");
     in.seekg(-1, std::ios::end);
-    if (in.get() != '\n') throw InputError(path + ": its last line is torn");
+    if (in.get() != '\n') throw InputError(path + ": its last line is incomplete");
 }
 
 }  // namespace
@@ -210,14 +210,13 @@ void truncate_csv(const std::string& path, std::int64_t rows)
     std::ifstream in(path, std::ios::binary);
     if (!in)
         throw InputError(
-            fmt::format("{}: cannot be opened: {}; a run goes on only with all it has written, arris run "
-                        "makes it anew",
+            fmt::format("{}: cannot be opened: {}; resume needs this file, arris run starts the run again",
                         path, std::generic_category().message(errno)));
     std::string line;
     std::uint64_t bytes = 0;
     for (std::int64_t whole = 0; whole <= rows; ++whole) {
         if (!read_whole_line(in, line))
-            throw InputError(fmt::format("{}: {} whole rows, where the run had written {}", path,
+            throw InputError(fmt::format("{}: has {} complete rows, but the run had written {}", path,
                                          std::max<std::int64_t>(whole - 1, 0), rows));
         bytes += line.size() + 1;
     }

@@ -13,7 +13,7 @@
 
 namespace arris {
 
-/// One row of steps.csv. What is absent (std::nullopt) becomes an empty cell.
+/// One row of steps.csv. An absent value (std::nullopt) becomes an empty cell.
 struct StepRow {
     std::int64_t step = 0;  ///< 0 is the initial state
     double time = 0.0;      ///< s, at the step's end
@@ -25,45 +25,45 @@ struct StepRow {
     std::optional<double> gravity_energy, stretch_energy, bending_energy;
     double material_area = 0.0;    ///< m^2
     double max_penetration = 0.0;  ///< m
-    std::int64_t crossings = 0;    ///< so far
+    std::int64_t crossings = 0;    ///< since the start
     double min_angle = 0.0;        ///< degrees, material space
     double kkt_residual = 0.0;
     std::int64_t factorisations = 0, nlopt_evaluations = 0;
-    PhaseSeconds seconds;                 ///< wall
-    double cpu_seconds = 0.0;             ///< of the process in this step, output included
+    PhaseSeconds seconds;                 ///< wall time
+    double cpu_seconds = 0.0;             ///< CPU time of the process in this step, output included
     bool is_halved = false;               ///< shorter than planned
     std::int64_t solves = 0;              ///< velocity solves: more than one where the check found violations
-    std::optional<std::int64_t> rewound;  ///< vertices put back on their way, so that nothing is passed
+    std::optional<std::int64_t> rewound;  ///< vertices rewound so that no obstacle is crossed
     std::optional<std::int64_t> yielded;  ///< contacts that could not keep their stand-off
-    std::optional<double> energy_rise;    ///< J, pushed in by a step that nothing mended; 0 else
+    std::optional<double> energy_rise;    ///< J, energy rise of a step that no retry could remove; else 0
     std::optional<std::int64_t> eol_pressing;
-    std::optional<RowCounts> rows_by_cause;  ///< of `feature_rows`, a column each: rows_<cause>
+    std::optional<RowCounts> rows_by_cause;  ///< `feature_rows` by cause, columns rows_<cause>
 };
 
-/// A material point at one time: m, m/s.
+/// World position (m) and velocity (m/s) of a material point at one time.
 struct ProbeSample {
     Vec3 position = Vec3::Zero();
     Vec3 velocity = Vec3::Zero();
 };
 
-/// The column of the feature rows of a cause.
+/// Name of the column of feature rows with this cause: rows_<cause>.
 std::string rows_column(RowCause cause);
 
-/// Header and rows, without the line's end. Numbers read back to the same double.
+/// Header and rows, without a line end. Numbers read back to the same double.
 std::string step_header();
 std::string format_row(const StepRow& row);
 std::string probe_header(const std::vector<std::string>& probe_names);
 std::string format_row(double time, const std::vector<ProbeSample>& probes);
 
-/// Appends lines to a CSV file. A line reaches the system in one write(), so that a killed process leaves at
-/// most one torn line, the last. Throws std::system_error naming the path where the disk refuses.
+/// Appends lines to a CSV file, each in one write(), so that a killed process leaves at most one incomplete
+/// line, the last. Throws std::system_error naming the path if writing fails.
 class CsvWriter {
   public:
-    /// A new file with this header, replacing what was there.
+    /// Creates a file with this header, replacing any previous one.
     static CsvWriter create(const std::string& path, const std::string& header);
 
-    /// Goes on with a file that truncate_csv cut; InputError unless it has this header and ends with a whole
-    /// line.
+    /// Continues a file that truncate_csv has cut. Throws InputError unless it has this header and ends with
+    /// a complete line.
     static CsvWriter append_to(const std::string& path, const std::string& header);
 
     CsvWriter(CsvWriter&& other) noexcept;
@@ -79,24 +79,24 @@ class CsvWriter {
     int descriptor_ = -1;
 };
 
-/// Cuts a file back to its header and `rows` whole lines, whatever follows them. InputError if there are
-/// fewer.
+/// Truncates a file to its header and the first `rows` rows. Throws InputError if there are fewer complete
+/// rows.
 void truncate_csv(const std::string& path, std::int64_t rows);
 
-/// Reads a table of numbers row by row, in constant memory. A torn last line is left out.
+/// Reads a table of numbers row by row, in constant memory. An incomplete last line is ignored.
 class CsvReader {
   public:
-    /// InputError if the file cannot be opened or has no header.
+    /// Throws InputError if the file cannot be opened or has no header.
     explicit CsvReader(const std::string& path);
 
     const std::vector<std::string>& names() const { return names_; }
 
-    /// Which cell has this name; InputError naming the file if none has.
+    /// Index of the column with this name. Throws InputError naming the file if there is none.
     std::size_t column(std::string_view name) const;
     bool has_column(std::string_view name) const;
 
-    /// The next row, NaN for an empty cell; false at the end. InputError naming the line for a cell that is
-    /// not a number or a row of another length than the header.
+    /// Reads the next row, with NaN for an empty cell; false at the end. Throws InputError naming the line if
+    /// a cell is not a number or the row's length differs from the header's.
     bool next(std::vector<double>& cells);
 
   private:
@@ -116,7 +116,7 @@ struct CsvTable {
 
     std::size_t row_count() const { return columns.empty() ? 0 : columns.front().size(); }
 
-    /// InputError naming the file if it has no such column.
+    /// Throws InputError naming the file if it has no such column.
     const std::vector<double>& column(std::string_view name) const;
 };
 

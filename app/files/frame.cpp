@@ -35,7 +35,7 @@ struct Counts {
     }
 };
 
-// The only place that knows the header: the reader compares with it.
+// The only definition of the header: the reader compares the file with it.
 std::string header(const Counts& counts)
 {
     std::string text = "ply\nformat binary_little_endian 1.0\n";
@@ -92,7 +92,7 @@ void put_face(std::string& bytes, const Frame& frame, std::size_t i)
            frame.bending_energy.size() == m;
 }
 
-// Takes values from a body whose length was checked against the header.
+// Reads values from a body whose length has been checked against the header.
 class BodyReader {
   public:
     BodyReader(const std::string& path, const std::string& bytes) : path_(path), at_(bytes.data()) {}
@@ -199,22 +199,23 @@ std::uint64_t find_count(const std::string& path, const std::string& text, const
         std::from_chars(text.data() + at + key.size(), end, count).ec != std::errc() ||
         count > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))
         throw InputError(
-            fmt::format("{}: not a frame: no count of its {} elements that makes sense", path, element));
+            fmt::format("{}: is not a frame: its count of {} elements is missing or invalid", path, element));
     return count;
 }
 
-// Returns the counts and leaves the stream at the body. Only the header that write_frame makes is accepted.
+// Returns the counts and leaves the stream at the body. Accepts only the header of write_frame.
 Counts read_header(const std::string& path, std::istream& in)
 {
     std::string text(kMaxHeaderBytes, '\0');
     in.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(in.gcount()));
-    if (!text.starts_with("ply\n")) throw InputError(path + ": not a frame: it does not begin with \"ply\"");
+    if (!text.starts_with("ply\n"))
+        throw InputError(path + ": is not a frame: it does not begin with \"ply\"");
     const Counts counts = {find_count(path, text, "vertex"), find_count(path, text, "face"),
                            find_count(path, text, "edge")};
     const std::string expected = header(counts);
     if (!text.starts_with(expected))
-        throw InputError(path + ": not a frame: its header is not the one that `arris run` writes");
+        throw InputError(path + ": is not a frame: its header differs from that of `arris run`");
     in.clear();
     in.seekg(static_cast<std::streamoff>(expected.size()));
     return counts;
@@ -225,7 +226,8 @@ std::string read_body(const std::string& path, std::istream& in, const Counts& c
 {
     const std::uint64_t promised = header(counts).size() + counts.body_bytes();
     if (promised != file_bytes)
-        throw InputError(fmt::format("{}: {} bytes, but its header promises {}", path, file_bytes, promised));
+        throw InputError(
+            fmt::format("{}: has {} bytes, but its header implies {}", path, file_bytes, promised));
     std::string body(counts.body_bytes(), '\0');
     in.read(body.data(), static_cast<std::streamsize>(body.size()));
     if (in.gcount() != static_cast<std::streamsize>(body.size())) throw InputError(path + ": cannot be read");
@@ -236,7 +238,7 @@ std::string read_body(const std::string& path, std::istream& in, const Counts& c
 
 void write_frame(const std::string& path, const Frame& frame)
 {
-    assert(has_matching_sizes(frame) && "a frame's arrays have one entry a vertex or a face");
+    assert(has_matching_sizes(frame) && "a frame's arrays have one entry per vertex or per face");
     const Counts counts = {frame.world.size(), frame.faces.size(), frame.eol_edges.size()};
     std::string bytes = header(counts);
     bytes.reserve(bytes.size() + counts.body_bytes());
@@ -250,7 +252,8 @@ void write_frame(const std::string& path, const Frame& frame)
 Frame read_frame(const std::string& path)
 {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) throw InputError(path + ": no such frame file");
+    if (!std::filesystem::is_regular_file(path, error))
+        throw InputError(path + ": does not exist or is not a file");
     const std::uint64_t file_bytes = std::filesystem::file_size(path, error);
     std::ifstream in(path, std::ios::binary);
     if (error || !in) throw InputError(path + ": cannot be opened");

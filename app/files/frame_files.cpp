@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Only names that frame_file makes: of "cloth_7.ply" and "cloth_000007.ply" there is no frame 7.
+// Accepts only names of the form that frame_file makes, so not "cloth_7.ply" or "cloth_000007.ply".
 std::optional<std::int64_t> frame_number(const std::string& name)
 {
     constexpr std::string_view kPrefix = "cloth_", kSuffix = ".ply";
@@ -51,11 +51,11 @@ std::int64_t count_frames(const std::string& run_dir)
         ++count;
         last = std::max(last, *number);
     }
-    // As many as the last one's number asks for, and no two of one number: all are there.
+    // Numbers are unique, so last + 1 of them means that none is missing.
     if (count == last + 1) return count;
     std::int64_t missing = 0;
     while (fs::exists(frame_file(run_dir, missing, "ply"))) ++missing;
-    throw InputError(frame_file(run_dir, missing, "ply") + ": missing, though later frames are there");
+    throw InputError(frame_file(run_dir, missing, "ply") + ": is missing, but later frames exist");
 }
 
 }  // namespace arris

@@ -6,16 +6,16 @@
 
 namespace arris {
 
-/// Where a run keeps its frames: <run_dir>/frames.
+/// The folder of a run's frames: <run_dir>/frames.
 std::string frames_directory(const std::string& run_dir);
 
-/// <run_dir>/frames/cloth_%05d.<extension>; more digits where five do not do. `name`: of an obstacle, instead
-/// of the cloth.
+/// <run_dir>/frames/<name>_%05d.<extension>, with more digits where five do not suffice. `name`: "cloth" or
+/// the name of an obstacle.
 std::string frame_file(const std::string& run_dir, std::int64_t index, const std::string& extension,
                        const std::string& name = "cloth");
 
-/// How many frames (cloth_%05d.ply) a run has; 0 if none. InputError naming the file if one is missing
-/// between.
+/// Number of frames (cloth_%05d.ply) of a run. Throws InputError naming a frame that is missing before a
+/// later one.
 std::int64_t count_frames(const std::string& run_dir);
 
 }  // namespace arris

@@ -7,7 +7,7 @@
 namespace arris {
 namespace {
 
-constexpr std::size_t kMaxBuckets = 500;  // two samples each; even, so that all merge in pairs
+constexpr std::size_t kMaxBuckets = 500;  // of two samples each; even, so that all buckets merge in pairs
 
 }  // namespace
 

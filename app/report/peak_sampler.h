@@ -13,14 +13,14 @@ struct Sample {
     std::vector<double> values;
 };
 
-/// Thins a stream of any length to at most 1000 samples for a plot, in constant memory, so that its peaks
-/// survive: of equal runs of successive samples the one with the least and the one with the greatest sum are
-/// kept. Samples with a value that is not finite are left out.
+/// Thins a stream of any length to at most 1000 samples for a plot, in constant memory, and keeps its peaks:
+/// the stream is divided into equal runs of successive samples, and each run keeps the samples with the least
+/// and the greatest sum. Samples with a value that is not finite are ignored.
 class PeakSampler {
   public:
     void add(const Sample& sample);
 
-    /// What is kept, in the order it came in.
+    /// The samples kept, in the order of the stream.
     std::vector<Sample> samples() const;
 
   private:

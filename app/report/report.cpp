@@ -21,19 +21,20 @@ struct Phase {
 };
 
 constexpr Phase kPhases[] = {
-    {"move", &PhaseSeconds::move, "obstacles and pins go to where they are at the step's end"},
-    {"contacts", &PhaseSeconds::contacts, "finds where the cloth meets obstacles"},
-    {"conform", &PhaseSeconds::conform, "puts vertices on sharp features and mends the mesh around them"},
-    {"transfer", &PhaseSeconds::transfer, "carries velocities over to the mesh that conform has made"},
-    {"assemble", &PhaseSeconds::assemble, "forces and the matrix"},
+    {"move", &PhaseSeconds::move, "moves obstacles and pins to the end of the step"},
+    {"contacts", &PhaseSeconds::contacts, "finds contacts between cloth and obstacles"},
+    {"conform", &PhaseSeconds::conform,
+     "places vertices on sharp features and cleans up the mesh around them"},
+    {"transfer", &PhaseSeconds::transfer, "carries velocities over to the changed mesh"},
+    {"assemble", &PhaseSeconds::assemble, "assembles forces and the matrix"},
     {"factorise", &PhaseSeconds::factorise, "factorises the matrix"},
-    {"solve", &PhaseSeconds::solve, "the velocity under the contacts"},
-    {"check", &PhaseSeconds::check, "proves that the whole step passes through nothing"},
-    {"advance", &PhaseSeconds::advance, "takes the step over; loading the scene"},
-    {"output", &PhaseSeconds::output, "frames, tables, viewer and other formats"},
+    {"solve", &PhaseSeconds::solve, "finds the velocity that meets the contact conditions"},
+    {"check", &PhaseSeconds::check, "proves that the motion passes through no obstacle"},
+    {"advance", &PhaseSeconds::advance, "commits the step; includes loading the scene"},
+    {"output", &PhaseSeconds::output, "writes frames, tables, viewer and other formats"},
 };
 
-// A value that is not finite must not vanish behind `<`, which is false for it.
+// Not std::max, so that NaN is kept: every comparison with NaN is false.
 double greatest(double so_far, double value)
 {
     return value <= so_far ? so_far : value;
@@ -41,7 +42,7 @@ double greatest(double so_far, double value)
 
 std::int64_t to_count(double cell, const std::string& path)
 {
-    constexpr double kGreatestExact = 9007199254740992.0;  // 2^53: whole numbers above it are not all doubles
+    constexpr double kGreatestExact = 9007199254740992.0;  // 2^53: larger integers are not all doubles
     if (!(cell >= 0.0 && cell <= kGreatestExact))
         throw InputError(path + ": a count is not a number from 0 to 2^53");
     return static_cast<std::int64_t>(cell);
@@ -169,7 +170,7 @@ void write_report_json(const std::string& path, const RunReport& report)
 {
     constexpr int kIndent = 2;
     constexpr bool kEscapeNonAscii = false;
-    // Text that is not UTF-8 (a file's name in a message) must not cost the run its report.
+    // Text that is not UTF-8, such as a file name in a message, must not prevent the report.
     const auto replace = nlohmann::ordered_json::error_handler_t::replace;
     write_atomically(path, to_json(report).dump(kIndent, ' ', kEscapeNonAscii, replace) + "\n");
 }

@@ -14,25 +14,25 @@ namespace arris {
 
 enum class RunStatus { Finished, Interrupted, Infeasible, NotConverged, Penetration, NotFinite, IoError };
 
-/// As written in report.json: finished, interrupted, infeasible, not_converged, penetration, not_finite,
+/// The name in report.json: finished, interrupted, infeasible, not_converged, penetration, not_finite,
 /// io_error.
 std::string to_string(RunStatus status);
 
-/// Contacts that pressed on sharp features, over all steps of a run with EOL vertices.
+/// Numbers of contacts that pressed on sharp features, summed over all steps of a run with EOL vertices.
 struct FeatureTotals {
     std::int64_t eol = 0;                             ///< as EOL vertices
     std::array<std::int64_t, kRowCauses> by_cause{};  ///< as rows
 
-    /// Of the contacts that pressed on two steps in a row and are not excluded (`is_excluded`): how many were
-    /// EOL. Nothing where there were none.
+    /// Share of EOL vertices among EOL vertices and the rows whose cause counts (`counts_in_share`). Nothing
+    /// if there are none.
     std::optional<double> eol_share() const;
 };
 
-/// What a run's steps.csv adds up to, a resumed run's from its beginning.
+/// Totals of a run's steps.csv; for a resumed run from time 0.
 struct StepTotals {
     std::int64_t steps = 0;          ///< accepted
     double simulated_seconds = 0.0;  ///< time of the last row
-    double wall_seconds = 0.0;       ///< all phases
+    double wall_seconds = 0.0;       ///< sum of all phases
     double cpu_seconds = 0.0;
     PhaseSeconds phases;
     double max_penetration = 0.0;  ///< m
@@ -42,10 +42,11 @@ struct StepTotals {
     std::optional<FeatureTotals> features;
 };
 
-/// Reads steps.csv in constant memory; a torn last line is left out. InputError if it is not one.
+/// Reads steps.csv in constant memory, without an incomplete last line. Throws InputError if the file is
+/// invalid.
 StepTotals sum_steps(const std::string& steps_csv);
 
-/// The phases in the order of a step, with the names that report.json gives them, and what is done in them.
+/// The phases in the order of a step, with their names in report.json and a description.
 struct NamedSeconds {
     const char* name;
     double seconds;
@@ -53,26 +54,26 @@ struct NamedSeconds {
 };
 std::vector<NamedSeconds> list_phases(const PhaseSeconds& phases);
 
-/// What a run says about itself at its end, however it ended.
+/// The report of a run, whatever its ending.
 struct RunReport {
     RunStatus status = RunStatus::Finished;
     std::string message;  ///< why it stopped; empty if finished
     StepTotals totals;
     std::int64_t peak_memory_bytes = 0;
     std::vector<std::string>
-        effects;  ///< of: bending damping gravity wind pull pin obstacle eol remesh friction
+        effects;  ///< a subset of: bending damping gravity wind pull pin obstacle eol remesh friction
     std::vector<std::string> warnings;
-    nlohmann::ordered_json scene = nlohmann::ordered_json::object();  ///< as run, every default written out
+    nlohmann::ordered_json scene = nlohmann::ordered_json::object();  ///< with every default filled in
     std::string version;
     int threads = 1;
 };
 
 nlohmann::ordered_json to_json(const RunReport& report);
 
-/// report.json, replaced atomically. Throws std::system_error naming the path where the disk refuses.
+/// Writes report.json atomically. Throws std::system_error naming the path if writing fails.
 void write_report_json(const std::string& path, const RunReport& report);
 
-/// Of this process so far: greatest resident memory, and CPU seconds of all threads.
+/// Peak resident memory of this process, and CPU time of all its threads, so far.
 std::int64_t peak_memory_bytes();
 double process_cpu_seconds();
 

@@ -18,40 +18,44 @@ const char* explain(RowCause cause)
 {
     switch (cause) {
         case RowCause::New:
-            return "has just come: a contact is a row for its first step";
+            return "the contact is new: every contact is a row in its first step";
         case RowCause::NotCrossing:
-            return "the cloth does not pass over its feature there, so that a vertex has no place";
+            return "the cloth does not pass over the feature there, so there is no place for an EOL vertex";
         case RowCause::AtEol:
-            return "is the contact of an EOL vertex, seen on what is beside it";
+            return "repeats the contact of an EOL vertex on an edge or face beside that vertex";
         case RowCause::BesideEol:
-            return "an EOL vertex has its place already, but the cloth touches the feature beside it";
+            return "its place is taken by an EOL vertex of the feature, but the cloth touches the feature "
+                   "elsewhere";
         case RowCause::FlatBehind:
-            return "follows, flat on a face beside its feature, a fold that has flown off that";
+            return "the cloth lies flat on a face beside the feature, behind a fold that has left the "
+                   "feature";
         case RowCause::NearBorder:
-            return "is so near the cloth's border that a vertex would slide off it at once";
+            return "the cloth's border is so near that it would slide past an EOL vertex at once";
         case RowCause::BorderAhead:
-            return "slides so fast towards the cloth's border that it would be there in a few steps";
+            return "the cloth's border moves towards the contact and would reach it within a few steps";
         case RowCause::Guard:
-            return "the mesh it needs would strain the cloth, or an obstacle is in the way";
+            return "the mesh change for an EOL vertex would strain the cloth or pass through an obstacle";
         case RowCause::Quality:
-            return "the mesh has no place for it: a corner, a pin, another feature's vertices, or faces too "
-                   "thin";
+            return "the mesh has no place for an EOL vertex: a corner, a pin, a vertex of another feature or "
+                   "a thin face is there";
         case RowCause::OffPlane:
-            return "the mesh could have a vertex only off the place where the cloth passes over the feature";
+            return "the mesh has a place for an EOL vertex only beside the line where the cloth passes over "
+                   "the feature";
         case RowCause::Blocked:
-            return "what is ahead of its vertices could not be cleared, or is beyond the cloth's border";
+            return "the path ahead of its EOL vertices could not be cleared, or leads beyond the cloth's "
+                   "border";
         case RowCause::GivenUp:
-            return "with EOL vertices there no such step could be made";
+            return "an attempt at the step with EOL vertices there failed";
         case RowCause::Released:
-            return "was an EOL vertex until this step";
+            return "the contact was an EOL vertex until this step";
         case RowCause::NoDirection:
-            return "there is no direction that leads away from its feature";
+            return "no direction leads away from the feature there";
         case RowCause::AlongBorder:
-            return "its feature runs along the cloth's border";
+            return "the feature runs along the cloth's border";
         case RowCause::EdgeOn:
-            return "the cloth stands on its feature on edge";
+            return "the cloth stands on the feature edge-on";
         case RowCause::ClothCorner:
-            return "is at a corner of the cloth";
+            return "the contact is at a corner of the cloth";
         case RowCause::OtherFeature:
             return "its vertex is on another feature of the same obstacle";
         case RowCause::OtherObstacle:
@@ -62,20 +66,19 @@ const char* explain(RowCause cause)
 
 std::string format_share(const std::optional<double>& share)
 {
-    return share ? fmt::format("{:.4g} %", 100.0 * *share) : "none pressed";
+    return share ? fmt::format("{:.4g} %", 100.0 * *share) : "no contacts";
 }
 
 std::string feature_rows_html(const FeatureTotals& features)
 {
-    std::string html =
-        feature_row("EOL vertex", features.eol,
-                    "the cloth has a vertex on the feature, and slides over it through that vertex");
+    std::string html = feature_row("EOL vertex", features.eol,
+                                   "the cloth slides over the feature through a vertex that lies on it");
     for (std::size_t k = 0; k < kRowCauses; ++k) {
         const auto cause = static_cast<RowCause>(k);
         if (features.by_cause[k] == 0) continue;
         html += feature_row(
             fmt::format("row: {}", to_string(cause)), features.by_cause[k],
-            std::string(explain(cause)) + (counts_in_share(cause) ? "" : " (left out of the share)"));
+            std::string(explain(cause)) + (counts_in_share(cause) ? "" : " (not counted in the EOL share)"));
     }
     return html;
 }

@@ -7,13 +7,13 @@
 
 namespace arris {
 
-/// Why a contact is a row of the velocity solve and no EOL vertex, for a reader who has not seen the method.
+/// Explains to a user why a contact is a row of the velocity solve and not an EOL vertex.
 const char* explain(RowCause cause);
 
-/// "98.3 %", whole where it is; "none pressed" where there is no share.
+/// "98.3 %", or "no contacts" if there is no share.
 std::string format_share(const std::optional<double>& share);
 
-/// What pressed on sharp features, a row of a table each that is not 0: EOL vertices, and rows by cause.
+/// Rows of an HTML table: the number of EOL vertices, and of rows by each cause that occurs.
 std::string feature_rows_html(const FeatureTotals& features);
 
 }  // namespace arris

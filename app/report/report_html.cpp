@@ -24,9 +24,9 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMaxProbePlots = 24;
-constexpr std::size_t kMaxSceneValue = 400;  // characters shown of one key's value
+constexpr std::size_t kMaxSceneValue = 400;  // bytes shown of one key's value
 
-// Replaces each {{name}} by its HTML, in one pass: what is put in is not searched again.
+// Replaces each {{name}} by its HTML in one pass, so that inserted text is not searched again.
 std::string fill_template(std::string_view page, const std::map<std::string_view, std::string>& parts)
 {
     std::string filled;
@@ -78,7 +78,7 @@ std::string status_html(const RunReport& report)
     return html;
 }
 
-/// A figure with its name, a short addition, and one line that says what it is.
+/// A figure of the report: its name, its value, a short note, and a one-line explanation.
 struct Fact {
     std::string_view name;
     std::string value, note;
@@ -100,18 +100,21 @@ std::vector<Fact> work_facts(const RunReport& report)
     const std::string halved =
         totals.halved_steps > 0 ? fmt::format("{} of them halved", totals.halved_steps) : "";
     const std::string a_step =
-        totals.steps > 0 ? format_seconds(totals.wall_seconds / static_cast<double>(totals.steps)) + " a step"
-                         : "";
+        totals.steps > 0
+            ? format_seconds(totals.wall_seconds / static_cast<double>(totals.steps)) + " per step"
+            : "";
     const std::string threads = fmt::format("{} thread{}", report.threads, report.threads == 1 ? "" : "s");
     return {
-        {"Simulated", fmt::format("{:.6g} s", totals.simulated_seconds), "", "Time in the scene, from 0 on."},
+        {"Simulated", fmt::format("{:.6g} s", totals.simulated_seconds), "",
+         "Simulated time since the start of the scene."},
         {"Steps", fmt::format("{}", totals.steps), halved,
-         totals.halved_steps > 0 ? "Accepted ones. Halved: shorter than planned, as the whole step was not "
-                                   "accepted or too much material would have flowed in it."
-                                 : "Accepted ones, all of them as long as planned."},
-        {"Wall time", format_seconds(totals.wall_seconds), a_step, "By the clock, files included."},
-        {"CPU time", format_seconds(totals.cpu_seconds), threads, "Of all threads together."},
-        {"Peak memory", format_bytes(report.peak_memory_bytes), "", "The most that was held at one time."},
+         totals.halved_steps > 0 ? "Accepted steps. A halved step is shorter than planned: the whole step "
+                                   "was not accepted, or too much material would have flowed in it."
+                                 : "Accepted steps, each as long as planned."},
+        {"Wall time", format_seconds(totals.wall_seconds), a_step,
+         "Elapsed time, writing of files included."},
+        {"CPU time", format_seconds(totals.cpu_seconds), threads, "Sum over all threads."},
+        {"Peak memory", format_bytes(report.peak_memory_bytes), "", "Largest memory in use at one time."},
     };
 }
 
@@ -119,23 +122,24 @@ std::vector<Fact> quality_facts(const RunReport& report, std::optional<double> t
 {
     const StepTotals& totals = report.totals;
     std::vector<Fact> facts;
-    // Without an obstacle there is nothing that the cloth could have passed through.
+    // Without an obstacle, penetration and crossings have no meaning.
     if (std::find(report.effects.begin(), report.effects.end(), "obstacle") != report.effects.end()) {
         facts.push_back({"Greatest penetration", fmt::format("{:.3g} m", totals.max_penetration), "",
-                         "Depth of the cloth in an obstacle, looked for anew at each frame: 0 is right.",
+                         "Largest depth of the cloth in an obstacle, measured at each frame; must be 0.",
                          totals.max_penetration > 0});
         facts.push_back({"Crossings", fmt::format("{}", totals.crossings), "",
-                         "How often anything has passed through an obstacle: 0 is right.",
+                         "Number of times the cloth has passed through an obstacle; must be 0.",
                          totals.crossings > 0});
     }
     if (totals.features)
         facts.push_back({"EOL share", format_share(totals.features->eol_share()), "",
-                         "Of the contacts that press on sharp features for a second step or longer: those "
-                         "that the cloth slides over by a vertex on the feature. The rest may snag."});
+                         "Share of EOL vertices among the contacts that press on sharp features for a second "
+                         "step or longer. Cloth slides over a feature through an EOL vertex; at the other "
+                         "contacts coarse cloth may snag."});
     facts.push_back({"Greatest KKT residual", fmt::format("{:.2e}", totals.max_kkt_residual),
                      tolerance ? fmt::format("{:.3g} allowed", *tolerance) : "",
-                     "By how much the worst velocity solve misses balance of forces and contact "
-                     "conditions, relative: 1e-15 is rounding.",
+                     "Largest relative error of a velocity solve in balance of forces and contact "
+                     "conditions; 1e-15 is rounding.",
                      tolerance && !(totals.max_kkt_residual <= *tolerance)});
     return facts;
 }
@@ -151,9 +155,10 @@ std::string facts_html(const RunReport& report, std::optional<double> tolerance)
 std::string features_html(const StepTotals& totals)
 {
     if (!totals.features) return "";
-    return "<section><h2>Contacts on sharp features</h2>\n<p class=\"why\">What pressed on the obstacles' "
-           "sharp edges, corners, wires and nails, counted once a step. An EOL vertex lets material flow "
-           "over the feature; a row only keeps the cloth off it. After each row why it is one.</p>\n"
+    return "<section><h2>Contacts on sharp features</h2>\n<p class=\"why\">Contacts that press on sharp "
+           "edges, corners, wires and nails of obstacles, counted once per step. An EOL vertex lets material "
+           "flow over the feature. A row of the velocity solve only keeps the cloth off the feature; the "
+           "table gives the reason for each row.</p>\n"
            "<table class=\"causes\"><tbody>\n" +
            feature_rows_html(*totals.features) + "</tbody></table></section>";
 }
@@ -210,14 +215,14 @@ std::string scene_value(const ordered_json& value)
     std::string text = value.is_string() ? value.get<std::string>()
                                          : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
     if (text.size() <= kMaxSceneValue) return escape_html(text);
-    // Not inside a character of several bytes.
+    // Do not cut inside a UTF-8 character.
     std::size_t end = kMaxSceneValue;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
     return escape_html(text.substr(0, end)) +
-           fmt::format(" … <i>({} characters; whole in report.json)</i>", text.size());
+           fmt::format(" … <i>({} characters; complete in report.json)</i>", text.size());
 }
 
-// Tables and arrays of tables row by row, under dotted keys as --set takes them. Scenes nest a few levels
+// Lists tables and arrays of tables row by row, with dotted keys as in --set. Recursion is only a few levels
 // deep.
 void append_scene_rows(const std::string& key, const ordered_json& value, std::string& html)
 {

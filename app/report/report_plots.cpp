@@ -15,7 +15,7 @@ namespace {
 /// When a plot is shown.
 enum class Shown { Always, IfChanging, IfPositive };
 
-/// A line of a plot: the sum of columns, absent ones left out.
+/// A line of a plot: the sum of its columns, empty cells omitted.
 struct Series {
     const char* name;
     std::vector<const char*> columns;
@@ -27,7 +27,7 @@ struct PlotSpec {
     const char* unit;
     PlotKind kind;
     Shown shown;
-    double scale;  ///< from the column's unit to the plot's
+    double scale;  ///< factor from the column's unit to the plot's
     const char* note;
     std::vector<Series> series;
 };
@@ -41,7 +41,8 @@ const std::vector<PlotSpec>& step_plots()
          kLines,
          Shown::Always,
          1.0,
-         "Of the whole cloth. The total falls, but where wind, pulls, pins or obstacles do work on it.",
+         "Energies of the whole cloth. The total rises only where wind, pulls, pins or obstacles do work on "
+         "the cloth.",
          {{"kinetic", {"kinetic_energy"}},
           {"gravity", {"gravity_energy"}},
           {"stretch", {"stretch_energy"}},
@@ -52,14 +53,14 @@ const std::vector<PlotSpec>& step_plots()
          kLines,
          Shown::Always,
          1.0,
-         "The same without gravity, which is mostly far larger.",
+         "Energies without gravity, which is usually far larger.",
          {{"kinetic", {"kinetic_energy"}}, {"stretch", {"stretch_energy"}}, {"bending", {"bending_energy"}}}},
         {"Wall time of a step by phase",
          "ms",
          PlotKind::Stacked,
          Shown::Always,
          1e3,
-         "What the phases are stands at \"Wall time by phase\".",
+         "Phases are explained under \"Wall time by phase\".",
          {{"move", {"move_s"}},
           {"contacts", {"contacts_s"}},
           {"conform", {"conform_s"}},
@@ -75,8 +76,8 @@ const std::vector<PlotSpec>& step_plots()
          kLines,
          Shown::IfPositive,
          1.0,
-         "What presses; EOL vertices, which lie on sharp features of obstacles; and the pressing contacts on "
-         "features that are rows of the velocity solve instead.",
+         "Constraints that press; EOL vertices, which lie on sharp features of obstacles; and pressing "
+         "contacts on features that are rows of the velocity solve.",
          {{"pressing constraints", {"contacts"}},
           {"EOL vertices", {"eol_vertices"}},
           {"feature rows", {"feature_rows"}}}},
@@ -85,67 +86,67 @@ const std::vector<PlotSpec>& step_plots()
          PlotKind::LogLines,
          Shown::Always,
          1.0,
-         "By how much its velocities miss balance of forces and contact conditions: 1e-15 is rounding; above "
-         "the tolerance a step is not accepted.",
+         "Relative error in balance of forces and contact conditions; 1e-15 is rounding. A step above the "
+         "tolerance is not accepted.",
          {{"residual", {"kkt_residual"}}}},
         {"Length of a step",
          "ms",
          kLines,
          Shown::Always,
          1e3,
-         "Shorter than planned where a step is halved: made in parts, as the whole of it was not accepted or "
-         "too much material would have flowed.",
+         "A halved step is shorter than planned: the whole step was not accepted, or too much material would "
+         "have flowed in it.",
          {{"dt", {"dt"}}}},
         {"Factorisations of the velocity solve",
-         "a step",
+         "per step",
          kLines,
          Shown::Always,
          1.0,
-         "Of its matrix: what a step costs most. One or two where little changes.",
+         "Factorisations of the matrix, the largest cost of a step; one or two where little changes.",
          {{"factorisations", {"factorisations"}}}},
         {"NLopt evaluations of the velocity solve",
-         "a step",
+         "per step",
          kLines,
          Shown::IfPositive,
          1.0,
-         "In its search for what presses; each is cheap.",
+         "Evaluations in the search for the active contacts; each is cheap.",
          {{"NLopt evaluations", {"nlopt_evaluations"}}}},
         {"Mesh",
          "",
          kLines,
          Shown::IfChanging,
          1.0,
-         "Vertices come and go where the cloth slides over sharp features.",
+         "Vertices are added and removed where the cloth slides over sharp features.",
          {{"vertices", {"vertices"}}, {"faces", {"faces"}}}},
         {"Least angle of the mesh",
          "degrees",
          kLines,
          Shown::IfChanging,
          1.0,
-         "Of its faces, in the material. Thinner ones come and go beside features that cloth slides over; "
-         "where "
-         "the mesh begins with less than 5 degrees, give it more even cells or faces.",
+         "Least angle of a face in the material. Thin faces come and go beside features that cloth slides "
+         "over. If the initial mesh has less than 5 degrees, use more even cells or faces.",
          {{"least angle", {"min_angle"}}}},
         {"Penetration",
          "m",
          kLines,
          Shown::IfPositive,
          1.0,
-         "Of the cloth into an obstacle: anything above 0 ends a run.",
+         "Depth of the cloth in an obstacle; a value above 0 ends the run.",
          {{"greatest depth", {"max_penetration"}}}},
         {"Crossings so far",
          "",
          kLines,
          Shown::IfPositive,
          1.0,
-         "How often something has passed through an obstacle: anything above 0 is a fault.",
+         "Number of times the cloth has passed through an obstacle; a value above 0 is an error of the "
+         "program.",
          {{"crossings", {"crossings"}}}},
     };
     return kSpecs;
 }
 
-/// A plot being made from rows. Lines are thinned one by one, stacked areas together, so that they still add
-/// up.
+/// Builds a plot from rows. Lines are thinned one by one; stacked areas are thinned together, so that they
+/// still add up.
 class PlotBuilder {
   public:
     PlotBuilder(const PlotSpec& spec, const CsvReader& reader) : spec_(spec)
@@ -206,11 +207,11 @@ class PlotBuilder {
     std::vector<PeakSampler> samplers_;
 };
 
-// Row 0 is the initial state: it has energies and counts, but no step was made.
+// Row 0 is the initial state: it has energies and counts, but no values of a step.
 bool concerns_steps_only(const PlotSpec& spec)
 {
     return std::string_view(spec.unit) == "ms" || spec.kind == PlotKind::LogLines ||
-           std::string_view(spec.unit) == "a step";
+           std::string_view(spec.unit) == "per step";
 }
 
 void add_tolerance(double tolerance, Plot& plot)
@@ -221,7 +222,7 @@ void add_tolerance(double tolerance, Plot& plot)
     plot.lines.push_back({"tolerance", {{begin, tolerance}, {end, tolerance}}, /*is_dashed=*/true});
 }
 
-// One with the same lines as another but gravity says nothing new.
+// Without gravity the second energy plot repeats the first one.
 bool repeats_energy_plot(const Plot& plot, const std::vector<Plot>& plots)
 {
     return plot.title == "Kinetic and elastic energy" &&
@@ -231,7 +232,7 @@ bool repeats_energy_plot(const Plot& plot, const std::vector<Plot>& plots)
 
 constexpr const char* kDirections[] = {"x", "y", "z"};
 
-// A probe's name, from the first of its columns.
+// Names of the probes, from the first column of each.
 std::vector<std::string> probe_names(const CsvReader& reader)
 {
     std::vector<std::string> names;
@@ -245,7 +246,7 @@ std::vector<std::string> probe_names(const CsvReader& reader)
 
 Plot make_probe_plot(const std::string& name, const PeakSampler* samplers)
 {
-    Plot plot{"Probe " + name, "m", PlotKind::Lines, {}, "Where this point of the material is."};
+    Plot plot{"Probe " + name, "m", PlotKind::Lines, {}, "World position of this material point."};
     for (std::size_t k = 0; k < 3; ++k) {
         PlotLine line{kDirections[k], {}};
         for (const Sample& sample : samplers[k].samples())

@@ -9,12 +9,12 @@
 
 namespace arris {
 
-/// The plots of steps.csv that have something to say: energies, seconds by phase, contacts, residuals, step
-/// length, and mesh size, angles and penetration where they change. `tolerance` is drawn beside the
+/// Plots of steps.csv: energies, seconds by phase, residuals, step length and factorisations; contacts and
+/// penetration if any are positive; mesh size and angles if they change. `tolerance` is drawn with the
 /// residuals.
 std::vector<Plot> plot_steps(const std::string& steps_csv, std::optional<double> tolerance);
 
-/// Position over time, a plot for each probe in probes.csv, at most `max_probes`.
+/// Plots of position over time, one per probe in probes.csv, at most `max_probes`.
 struct ProbePlots {
     std::vector<Plot> plots;
     std::size_t left_out = 0;  ///< probes beyond `max_probes`

@@ -13,10 +13,10 @@
 namespace arris {
 namespace {
 
-constexpr double kWidth = 640, kHeight = 250;  // of the drawing, in its own units; the page scales it
+constexpr double kWidth = 640, kHeight = 250;  // size of the drawing in its own units; the page scales it
 constexpr double kLeft = 66, kRight = 14, kTop = 10, kBottom = 40;
-constexpr double kGreatest = 1e300;  // larger values are drawn there: differences stay finite
-constexpr int kColours = 10;         // that the page's style sheet knows
+constexpr double kGreatest = 1e300;  // values are clamped to this, so that differences stay finite
+constexpr int kColours = 10;         // number of colours in the page's style sheet
 
 struct Range {
     double least = std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ struct Range {
     bool is_empty() const { return least > greatest; }
 };
 
-/// One direction of the drawing: values to drawing units, and where its ticks are.
+/// One axis: maps values to drawing units, and holds the ticks.
 struct Axis {
     Range range;
     std::vector<double> ticks;    ///< inside the range
@@ -43,12 +43,12 @@ struct Axis {
     }
 };
 
-// As many digits as tell neighbouring ticks apart.
+// As many digits as distinguish neighbouring ticks.
 std::string tick_label(const Axis& axis, double tick)
 {
     if (axis.is_log) return fmt::format("1e{:g}", tick);
     const double step = axis.ticks.size() < 2 ? std::abs(tick) : axis.ticks[1] - axis.ticks[0];
-    if (std::abs(tick) <= 1e-6 * step) return "0";  // 0 alone as well, where the step is 0
+    if (std::abs(tick) <= 1e-6 * step) return "0";  // also for a single tick at 0, where the step is 0
     const double greatest = std::max(std::abs(axis.ticks.front()), std::abs(axis.ticks.back()));
     constexpr double kLeastPlain = 1e-3, kGreatestPlain = 1e7;
     if (step >= kLeastPlain && greatest < kGreatestPlain)
@@ -62,7 +62,7 @@ double shown(double y, PlotKind kind)
     return kind == PlotKind::LogLines ? std::log10(y) : std::clamp(y, -kGreatest, kGreatest);
 }
 
-// Without what the axis cannot show; stacked lines become running sums.
+// Removes points that the axis cannot show, and turns stacked lines into running sums.
 std::vector<PlotLine> drawable_lines(const Plot& plot)
 {
     std::vector<PlotLine> lines = plot.lines;
@@ -87,14 +87,14 @@ Range range_of(const std::vector<PlotLine>& lines, std::size_t coordinate)
     return range;
 }
 
-// Zero is shown where it costs less than half of the axis.
+// Includes zero if that takes less than half of the axis.
 void include_near_zero(Range& range)
 {
     if (range.least > 0.0 && range.least < 0.5 * range.greatest) range.include(0.0);
 }
 
-// Time fills the width: the axis ends with the data, not at a tick; but for a range too small to have its
-// own.
+// The time axis ends with the data, not at a tick, so that the curve fills the width. Only a degenerate range
+// ends at ticks.
 Axis make_x_axis(const std::vector<PlotLine>& lines)
 {
     Range range = range_of(lines, 0);
@@ -196,7 +196,7 @@ std::string draw_svg(const Plot& plot)
     std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth,
                                   kHeight, escape_html(plot.title));
     svg += draw_y_grid(y);
-    // The areas from the top sum down, so that each covers all below it: none needs its lower edge.
+    // Draw from the largest sum down. Each area covers all below it, so only upper edges are needed.
     const bool is_stacked = plot.kind == PlotKind::Stacked;
     for (std::size_t i = 0; i < lines.size(); ++i)
         svg += is_stacked ? draw_area(lines[lines.size() - 1 - i], lines.size() - 1 - i, x, y)
@@ -223,7 +223,7 @@ std::string draw_legend(const Plot& plot)
 
 std::vector<double> round_ticks(double least, double greatest, int count)
 {
-    // A constant, or nearly: differences under this share of the value are rounding, not a plot.
+    // Differences below this share of the value are rounding; such a range counts as constant.
     constexpr double kLeastShare = 1e-9, kLeastRange = 1e-290;
     const double size = std::max(std::abs(least), std::abs(greatest));
     const double needed = std::max(kLeastShare * size, kLeastRange);
@@ -240,8 +240,8 @@ std::vector<double> round_ticks(double least, double greatest, int count)
                                  : multiple <= 5.0 ? 5.0
                                                    : 10.0);
 
-    // Multiples of the step, not sums: they do not drift.
-    constexpr double kSlack = 1e-6;  // of a step: a value that is a tick but for rounding is that tick
+    // Multiples of the step do not drift as sums would.
+    constexpr double kSlack = 1e-6;  // steps: a value this near to a tick is that tick
     const double first = std::floor(least / step + kSlack), last = std::ceil(greatest / step - kSlack);
     std::vector<double> ticks;
     for (double i = first; i <= last && std::ssize(ticks) < 4 * count; i += 1.0) ticks.push_back(i * step);

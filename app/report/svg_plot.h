@@ -16,26 +16,25 @@ struct PlotLine {
 
 enum class PlotKind {
     Lines,
-    LogLines,  ///< logarithmic y; values that are not positive are left out
+    LogLines,  ///< logarithmic y; values that are not positive are omitted
     Stacked,   ///< areas on top of one another; lines must have the same x, and y >= 0
 };
 
 struct Plot {
     std::string title;
-    std::string unit;  ///< of y; empty for counts
+    std::string unit;  ///< unit of y; empty for counts
     PlotKind kind = PlotKind::Lines;
     std::vector<PlotLine> lines;
-    std::string note = {};  ///< one line that says what is shown; may be empty
+    std::string note = {};  ///< one line of explanation; may be empty
     std::string x_label = "time (s)";
 };
 
 /// A <figure> with title, note, legend and an inline SVG, coloured by the page's CSS classes c0, c1, ...
-/// Names, notes and titles are escaped. A plot without a point says so.
+/// Names, notes and titles are escaped. A plot without points states that it is empty.
 std::string draw_plot(const Plot& plot);
 
-/// Round values (1, 2, 5 times a power of ten), about `count`, spanning [least, greatest]: the first is not
-/// above `least`, the last not below `greatest`, but for rounding. At least two, at most 4 `count`, whatever
-/// the numbers.
+/// About `count` ticks at multiples of 1, 2 or 5 times a power of ten that span [least, greatest]: apart from
+/// rounding, the first is at most `least` and the last at least `greatest`. Always 2 to 4 `count` ticks.
 std::vector<double> round_ticks(double least, double greatest, int count);
 
 }  // namespace arris

@@ -18,7 +18,7 @@ namespace arris {
 namespace {
 
 constexpr FileKind kKind = {"ARRIS checkpoint\n", kCheckpointVersion,
-                            "there is no checkpoint to resume from; arris run makes the run anew",
+                            "there is no checkpoint to resume from; arris run starts the run again",
                             "is not a checkpoint of arris"};
 
 void write_vectors(BinaryWriter& out, const std::vector<Vec2>& vectors)
@@ -137,7 +137,7 @@ State read_state(BinaryReader& in)
     return state;
 }
 
-/// What is wrong with contacts on vertices `ids`; empty if nothing.
+/// Describes the first invalid contact on vertices `ids`; empty if there is none.
 std::string find_defect(const std::vector<ActiveContact>& contacts, const std::vector<std::uint32_t>& ids)
 {
     const auto order = [](const ActiveContact& contact) {
@@ -145,36 +145,37 @@ std::string find_defect(const std::vector<ActiveContact>& contacts, const std::v
     };
     for (std::size_t k = 0; k < contacts.size(); ++k) {
         const ActiveContact& contact = contacts[k];
-        if (k > 0 && !(order(contacts[k - 1]) < order(contact))) return "contacts do not ascend";
+        if (k > 0 && !(order(contacts[k - 1]) < order(contact))) return "contacts are not in ascending order";
         if (!contact.normal.allFinite() || !std::isfinite(contact.multiplier))
             return fmt::format("contact {} is not finite", k);
         if (contact.kind < ContactKind::Vertex || contact.kind > ContactKind::Triangle)
-            return fmt::format("contact {} is of no kind", k);
+            return fmt::format("contact {} has an unknown kind", k);
         for (const std::uint32_t id : contact.vertex_ids)
             if (id != ActiveContact::kNoVertex && !std::binary_search(ids.begin(), ids.end(), id))
-                return fmt::format("contact {} is on no vertex", k);
+                return fmt::format("contact {} refers to an unknown vertex", k);
     }
     return {};
 }
 
-/// What is wrong with vertices on features; empty if nothing.
+/// Describes the first invalid EOL vertex; empty if there is none.
 std::string find_defect(const std::vector<EolVertex>& eol, const std::vector<std::uint32_t>& ids)
 {
     for (std::size_t k = 0; k < eol.size(); ++k) {
-        if (k > 0 && eol[k].vertex_id <= eol[k - 1].vertex_id) return "EOL vertices do not ascend";
+        if (k > 0 && eol[k].vertex_id <= eol[k - 1].vertex_id)
+            return "EOL vertices are not in ascending order";
         const FeatureId& on = eol[k].on;
         const bool is_kind = on.kind >= FeatureId::Kind::Edge && on.kind <= FeatureId::Kind::Bend;
         const bool is_end_sound = on.is_bend() ? on.end == 0 || on.end == 1 : on.end == -1;
         if (!eol[k].outward.allFinite() || eol[k].idle < 0 || std::abs(eol[k].side) > 1 || !is_kind ||
             !is_end_sound)
-            return fmt::format("EOL vertex {} cannot be", k);
+            return fmt::format("EOL vertex {} has an invalid value", k);
         if (!std::binary_search(ids.begin(), ids.end(), eol[k].vertex_id))
-            return fmt::format("EOL vertex {} is on no vertex", k);
+            return fmt::format("EOL vertex {} refers to an unknown vertex", k);
     }
     return {};
 }
 
-/// What no run could have written; empty if nothing.
+/// Describes the first invalid value; empty if there is none.
 std::string find_defect(const Checkpoint& checkpoint)
 {
     const State& state = checkpoint.state;
@@ -185,7 +186,7 @@ std::string find_defect(const Checkpoint& checkpoint)
         state.previous_material_velocity.size() != n)
         return "its arrays differ in length";
     for (std::size_t v = 1; v < n; ++v)
-        if (state.ids[v] <= state.ids[v - 1]) return "vertex ids do not ascend";
+        if (state.ids[v] <= state.ids[v - 1]) return "vertex ids are not in ascending order";
     for (std::size_t v = 0; v < n; ++v)
         if (!state.velocity[v].allFinite() || !state.previous_world[v].allFinite() ||
             !state.previous_velocity[v].allFinite() || !state.material_velocity[v].allFinite() ||
@@ -198,12 +199,12 @@ std::string find_defect(const Checkpoint& checkpoint)
         if (!anchor.origin.allFinite()) return fmt::format("anchor {} is not finite", k);
         if (k > 0 && std::pair(anchor.pin, anchor.vertex_id) <=
                          std::pair(state.anchors[k - 1].pin, state.anchors[k - 1].vertex_id))
-            return "anchors do not ascend";
+            return "anchors are not in ascending order";
     }
     if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) ||
         !std::isfinite(checkpoint.position.begin) || checkpoint.position.begin < 0.0 ||
         checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1 || state.crossings < 0)
-        return "its times or counts cannot be";
+        return "a time or a count is invalid";
     return validate(state.mesh);
 }
 
@@ -239,7 +240,7 @@ Checkpoint read_checkpoint(const std::string& path)
     checkpoint.position.done = in.number<std::int64_t>();
     checkpoint.frames = in.number<std::int64_t>();
     checkpoint.rows = in.number<std::int64_t>();
-    if (!in.is_at_end()) in.fail("is damaged: it is longer than it says");
+    if (!in.is_at_end()) in.fail("is damaged: it is longer than its counts say");
     if (const std::string defect = find_defect(checkpoint); !defect.empty()) in.fail("is damaged: " + defect);
     return checkpoint;
 }

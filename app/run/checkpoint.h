@@ -11,22 +11,23 @@
 
 namespace arris {
 
-/// All that `resume` needs. Holds no seconds, so that a resumed run's equals one run through to the byte.
+/// The input of `resume`. Contains no wall times, so that checkpoints of a resumed and an uninterrupted run
+/// are identical.
 struct Checkpoint {
     SceneSource source;
-    std::vector<std::string> warnings;  ///< of loading the scene
+    std::vector<std::string> warnings;  ///< from loading the scene
     State state;
     TimelinePosition position;
     std::int64_t frames = 0;  ///< written so far
     std::int64_t rows = 0;    ///< rows of steps.csv and probes.csv so far
 };
 
-/// Replaces the file atomically. std::system_error naming the path where the disk refuses.
+/// Replaces the file atomically. Throws std::system_error naming the path if writing fails.
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint);
 
-/// Untrusted input: InputError naming the file if it is not a checkpoint, of another version (named),
-/// truncated, damaged (a checksum), or holds a state that cannot be one. Lengths are checked before
-/// allocating.
+/// Reads a checkpoint. The file is untrusted: throws InputError naming it if it is not a checkpoint, of
+/// another version, truncated, damaged (checksum), or holds an invalid state. Lengths are checked before
+/// memory is allocated.
 Checkpoint read_checkpoint(const std::string& path);
 
 }  // namespace arris

@@ -3,8 +3,9 @@
 
 namespace arris {
 
-/// From here on the first Ctrl-C (or SIGTERM, SIGHUP) asks the run to stop at the end of its step and says
-/// so; a second one ends the process at once, as by default: the last checkpoint is there all the same.
+/// Installs signal handlers. The first Ctrl-C (or SIGTERM, SIGHUP) makes is_interrupted() true, so that the
+/// run stops after its step, and prints a message. A second signal ends the process at once; the last
+/// checkpoint remains.
 void watch_for_interrupt();
 
 bool is_interrupted();

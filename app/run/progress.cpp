@@ -52,7 +52,7 @@ void Progress::update(double time, const std::string& detail)
     last_drawn_ = now;
     constexpr int kWidth = 30;
     const int filled = static_cast<int>(kWidth * share);
-    // \x1b[K clears what a longer line left.
+    // \x1b[K clears the rest of a longer previous line.
     fmt::print("\r[{}{}] {:3.0f} %  t = {:.3f} s  {}  {} left\x1b[K", std::string(filled, '#'),
                std::string(kWidth - filled, '.'), 100.0 * share, time, detail, left);
     std::fflush(stdout);

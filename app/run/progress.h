@@ -6,17 +6,17 @@
 
 namespace arris {
 
-/// Tells on standard output how far a run is: a bar with the time left on a terminal, else a plain line each
-/// tenth.
+/// Prints the progress of a run on standard output: on a terminal a bar with the time left, else a plain line
+/// after each 10 %.
 class Progress {
   public:
-    /// `from` and `to` in simulated seconds. Says nothing at all where `is_quiet`.
+    /// `from` and `to` are simulated seconds. Prints nothing if `is_quiet`.
     Progress(double from, double to, bool is_quiet);
 
     /// `detail`: a few words on the step, such as "3281 vertices".
     void update(double time, const std::string& detail);
 
-    /// Leaves the terminal on a fresh line.
+    /// Ends the terminal line of the bar.
     void finish();
 
   private:

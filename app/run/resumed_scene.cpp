@@ -18,7 +18,7 @@
 namespace arris {
 namespace {
 
-/// A checkpoint is untrusted input: what it names must be in its scene.
+/// Checks indices of a checkpoint, which is untrusted, against the scene.
 void check_references(const std::string& directory, const State& state, const Scene& scene)
 {
     const auto is_sound = [](std::int64_t index, std::size_t count) {
@@ -32,7 +32,7 @@ void check_references(const std::string& directory, const State& state, const Sc
         const Obstacle& obstacle = scene.obstacles[static_cast<std::size_t>(contact.obstacle)];
         switch (contact.kind) {
             case ContactKind::Vertex:
-                return true;  // its element only serves to compare
+                return true;  // the element of a vertex contact is only compared, not used as an index
             case ContactKind::Edge:
                 return is_sound(contact.element, obstacle.topology().edges.size());
             case ContactKind::Triangle:
@@ -50,13 +50,13 @@ void check_references(const std::string& directory, const State& state, const Sc
     const bool has_obstacles = std::all_of(state.active.begin(), state.active.end(), is_there) &&
                                std::all_of(state.eol.begin(), state.eol.end(), is_on_feature);
     if (!has_pins || !has_obstacles)
-        throw InputError(fmt::format("{}: is damaged: it names {} that its scene has not",
+        throw InputError(fmt::format("{}: is damaged: it refers to {} that the scene does not have",
                                      printable(checkpoint_file(directory)),
                                      has_pins ? "parts of obstacles" : "pins"));
 }
 
-/// The cloth as the run began, which says how fine its mesh is to be. Without its frame the run's directory
-/// is refused later.
+/// The cloth at time 0, which determines the target length. If its frame is missing, the checkpoint's cloth
+/// is returned, and RunDirectory::reopen refuses the run later.
 ClothMesh read_first_cloth(const std::string& directory, const State& state)
 {
     const std::string path = frame_file(directory, 0, "ply");
@@ -83,8 +83,9 @@ RunConfig load_resumed(const std::string& directory, const std::optional<double>
     check_references(directory, checkpoint.state, config.scene);
     if (until) {
         if (!(*until > checkpoint.state.time) || !std::isfinite(*until))
-            throw InputError(fmt::format("--until {}: not a time after t = {} s, where the run has come to",
-                                         *until, checkpoint.state.time));
+            throw InputError(
+                fmt::format("--until {}: is not later than t = {} s, the time that the run has reached",
+                            *until, checkpoint.state.time));
         const double begin = checkpoint.position.begin;
         const double planned_end = Timeline(config).interval_end(begin);
         checkpoint.source.overrides.push_back(fmt::format("duration={}", *until));

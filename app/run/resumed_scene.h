@@ -9,8 +9,8 @@
 
 namespace arris {
 
-/// The scene of a checkpoint in `directory`, to end at `until` where that is given. What is left is planned
-/// anew where the new end changes the interval that the run stands in.
+/// Loads the scene of a checkpoint in `directory`, with the end `until` if given. If the new end changes the
+/// current interval of the timeline, the rest of the run is planned anew from the checkpoint's time.
 RunConfig load_resumed(const std::string& directory, const std::optional<double>& until,
                        Checkpoint& checkpoint);
 

@@ -41,16 +41,16 @@ namespace arris {
 
 namespace {
 
-/// A run under way: what the loop below works on.
+/// The state of a run in progress.
 struct Run {
     const RunConfig& config;
     const Timeline timeline;
     RunDirectory files;
-    Checkpoint at;  ///< as it would be written now
+    Checkpoint at;  ///< the current checkpoint
     Workspace work;
-    Audit audited;  ///< of the cloth as it is, where it is a frame
+    Audit audited;  ///< of the current cloth, if the time is that of a frame or the end
     double cpu_told = process_cpu_seconds();
-    std::optional<StepReport> opening;  ///< of the step that is being made, not told yet
+    std::optional<StepReport> opening;  ///< first part of the current step, not yet written as a row
 
     Run(const RunConfig& config_, RunDirectory files_, Checkpoint at_)
         : config(config_), timeline(config_), files(std::move(files_)), at(std::move(at_))
@@ -59,11 +59,11 @@ struct Run {
     }
 };
 
-/// Frame, probes and row of the state as it is. The row comes last: where it is there, all of its step is.
+/// Writes frame, probes and row of the current state. The row is last, so that a row implies the other two.
 void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is_halved)
 {
     const State& state = run.at.state;
-    prepare(run.config.scene, state, run.work);  // elements where material has flowed
+    prepare(run.config.scene, state, run.work);  // rebuilds elements where material has flowed
     const bool is_audited = run.timeline.frame_at(state.time) >= 0 || state.time >= run.config.duration;
     run.audited = is_audited ? audit(run.config.scene, state) : Audit();
     StepRow row = make_step_row(run.config, state, run.work, run.audited, report);
@@ -82,7 +82,7 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     ++run.at.rows;
 }
 
-/// One planned step, to its end, with a row for each of its parts but an opening's.
+/// Makes one planned step and writes a row for each part; an opening has no row of its own.
 std::optional<RunEnding> advance(Run& run)
 {
     State& state = run.at.state;
@@ -101,7 +101,7 @@ std::optional<RunEnding> advance(Run& run)
     const double end = run.timeline.next_end(run.at.position);
     if (const std::optional<StepReport> failed =
             advance(run.config.scene, run.config.settings, end, state, run.work, accept)) {
-        if (run.opening) {  // is all there is of its step
+        if (run.opening) {  // the rest of this step has failed
             Stopwatch watch;
             write_outputs(run, *std::exchange(run.opening, std::nullopt), watch, true);
         }
@@ -112,7 +112,7 @@ std::optional<RunEnding> advance(Run& run)
     return std::nullopt;
 }
 
-/// Steps until the end, an interrupt or a step that cannot be made. A checkpoint at each frame, every two
+/// Steps until the end, an interrupt or a failed step. Writes a checkpoint at each frame, after every two
 /// seconds of work and at the end.
 RunEnding simulate(Run& run, bool is_quiet)
 {
@@ -161,8 +161,8 @@ RunReport make_report(const Run& run, const RunEnding& ending, double export_sec
     return report;
 }
 
-/// What is made once, when the steps are over: formats of the frames, reports. A disk that refuses is told in
-/// the report where that can still be written.
+/// Writes exported formats and reports after the last step. A write error is reported in report.json if that
+/// can still be written.
 RunEnding write_results(const Run& run, RunEnding ending, int threads)
 {
     const std::string& dir = run.files.path();
@@ -171,7 +171,7 @@ RunEnding write_results(const Run& run, RunEnding ending, int threads)
         if (run.at.frames > 0 && !run.config.output.formats.empty())
             export_frames(dir, run.config.output.formats,
                           {run.config.title, run.config.output.frames_per_second});
-    } catch (const std::runtime_error& error) {  // the disk, or frames that a format cannot hold
+    } catch (const std::runtime_error& error) {  // write error, or frames that a format cannot represent
         ending = {RunStatus::IoError, error_line(error)};
     }
     const RunReport report = make_report(run, ending, watch.lap(), threads);
@@ -190,17 +190,17 @@ void tell_ending(const Run& run, const RunEnding& ending, bool is_quiet)
     if (std::filesystem::exists(std::filesystem::path(run.files.path()) / "viewer.html"))
         fmt::print("viewer  {}/viewer.html\n", dir);
     fmt::print("report  {}/report.html\n", dir);
-    if (ending.status == RunStatus::Interrupted) fmt::print("go on   arris resume {}\n", dir);
+    if (ending.status == RunStatus::Interrupted) fmt::print("resume  arris resume {}\n", dir);
 }
 
-/// From here on a run's end is told by its files, whatever it is.
+/// Runs and writes the results. From here on every ending, errors included, is recorded in the run's files.
 RunStatus run_to_the_end(Run& run, bool is_quiet, int threads)
 {
     watch_for_interrupt();
     RunEnding ending;
     try {
         ending = simulate(run, is_quiet);
-    } catch (const std::exception& error) {  // the disk, or memory for a factor that does not fit
+    } catch (const std::exception& error) {  // write error, or too little memory for a factorisation
         ending = {RunStatus::IoError, error_line(error)};
     }
     ending = write_results(run, ending, threads);
@@ -219,15 +219,15 @@ void tell_warnings(const RunConfig& config)
         fmt::print(stderr, "warning: {}\n", printable(warning));
 }
 
-/// Of a run that is resumed and has no step left to make.
+/// Says that a resumed run has no step left.
 void tell_is_over(const Run& run)
 {
     const std::string dir = printable(run.files.path());
-    fmt::print("nothing to do: the run has come to its end, t = {} s\n", run.at.state.time);
-    fmt::print("go on   arris resume {} --until T, T a later time in s\n", dir);
+    fmt::print("nothing to do: the run has reached its end, t = {} s\n", run.at.state.time);
+    fmt::print("resume  arris resume {} --until T, with T a later time in s\n", dir);
     fmt::print(
-        "        (with the same frames a second; for others run the scene anew: arris run SCENE "
-        "--set output.frames_per_second=N)\n");
+        "        (at the same frame rate; another rate needs a new run: arris run SCENE --set "
+        "output.frames_per_second=N)\n");
 }
 
 int thread_count(int asked)
@@ -246,7 +246,7 @@ RunStatus run(const RunRequest& request)
     start.source = read_scene_source(request.scene, request.overrides);
     const RunConfig config = load_scene(start.source);
     start.source.path =
-        std::filesystem::absolute(start.source.path).string();  // resume may be called from elsewhere
+        std::filesystem::absolute(start.source.path).string();  // resume may run in another working directory
     tell_warnings(config);
     const std::string directory =
         request.directory.empty() ? default_directory(request.scene) : request.directory;
@@ -256,7 +256,7 @@ RunStatus run(const RunRequest& request)
     start.state = make_state(config.scene, config.cloth, config.cloth_velocity);
     Run run(config, std::move(files), std::move(start));
     StepReport initial;
-    initial.seconds.advance = watch.lap();  // loading
+    initial.seconds.advance = watch.lap();  // time of loading
     write_outputs(run, initial, watch, false);
     run.files.write_checkpoint(run.at);
     return run_to_the_end(run, request.is_quiet, threads);

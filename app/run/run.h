@@ -25,9 +25,9 @@ struct ResumeRequest {
     int threads = 0;
 };
 
-/// Simulate a scene, or go on from a checkpoint; write all that SCENE promises. However a run ends, what was
-/// computed and a checkpoint are kept. Throw InputError for bad input, std::system_error where nothing can be
-/// written at all.
+/// Simulate a scene, or continue from a checkpoint, and write the files of docs/output.md. Whatever the
+/// ending, results so far and a checkpoint are kept. Throw InputError for invalid input, std::system_error if
+/// nothing can be written.
 RunStatus run(const RunRequest& request);
 RunStatus resume(const ResumeRequest& request);
 

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a run leaves besides its frames' folder.
+/// Files of a run besides the folder of frames.
 constexpr std::array kRunFiles = {"steps.csv",   "probes.csv", "report.json", "report.html",
                                   "viewer.html", "cloth.usda", "checkpoint",  "obstacles"};
 
@@ -42,11 +42,11 @@ std::vector<std::string> probe_names(const RunConfig& config)
 
 bool holds_run(const std::string& dir)
 {
-    std::error_code error;  // what cannot be looked at is told where it is to be used
+    std::error_code error;  // an inaccessible file is reported where it is used
     return fs::exists(checkpoint_file(dir), error) || fs::exists(steps_file(dir), error);
 }
 
-/// What a frame's file shows, and when: "table" and 7 of table_00007.obj.
+/// Object and index of a frame's file: "table" and 7 for table_00007.obj.
 struct FrameName {
     std::string_view subject;
     std::int64_t index;
@@ -54,7 +54,7 @@ struct FrameName {
 
 std::optional<FrameName> parse_frame_name(std::string_view name)
 {
-    const std::size_t digits = name.find_last_of('_') + 1;  // of npos 0
+    const std::size_t digits = name.find_last_of('_') + 1;  // 0 for npos
     std::int64_t index = -1;
     const char* end = name.data() + name.size();
     const auto [rest, error] = std::from_chars(name.data() + digits, end, index);
@@ -65,8 +65,8 @@ std::optional<FrameName> parse_frame_name(std::string_view name)
     return FrameName{name.substr(0, digits - 1), index};
 }
 
-/// Files of frames whose index is `first` or more, in every format, of the cloth and of `obstacles`; what
-/// else is there is the user's.
+/// Removes files of frames with an index of at least `first`, in every format, of the cloth and of
+/// `obstacles`. Other files belong to the user and stay.
 void remove_frames(const std::string& dir, std::int64_t first, const std::set<std::string>& obstacles)
 {
     if (!fs::is_directory(frames_directory(dir))) return;
@@ -79,18 +79,18 @@ void remove_frames(const std::string& dir, std::int64_t first, const std::set<st
     }
 }
 
-/// Names of the obstacles of the run that `dir` holds; none where they cannot be read.
+/// Names of the obstacles of the run in `dir`; empty if the file is unreadable.
 std::set<std::string> stored_names(const std::string& dir)
 {
     std::set<std::string> names;
     try {
         for (const ObstacleRecord& record : read_obstacles(dir)) names.insert(record.name);
-    } catch (const InputError&) {  // that run is to be removed: what is wrong with it does not matter
+    } catch (const InputError&) {  // the run is about to be removed, so its errors do not matter
     }
     return names;
 }
 
-/// Removes what an earlier run has left, and nothing else.
+/// Removes the files of an earlier run and no others.
 void remove_run(const std::string& dir)
 {
     remove_frames(dir, 0, stored_names(dir));
@@ -99,7 +99,7 @@ void remove_run(const std::string& dir)
         fs::remove(fs::path(dir) / name, error);
         if (error)
             throw InputError(
-                fmt::format("-o {}: its {} cannot be replaced: {}", printable(dir), name, error.message()));
+                fmt::format("-o {}: file {} cannot be replaced: {}", printable(dir), name, error.message()));
     }
 }
 
@@ -107,7 +107,8 @@ void make_folders(const std::string& path)
 {
     std::error_code error;
     fs::create_directories(frames_directory(path), error);
-    if (error) throw InputError(fmt::format("-o {}: cannot be made: {}", printable(path), error.message()));
+    if (error)
+        throw InputError(fmt::format("-o {}: cannot be created: {}", printable(path), error.message()));
 }
 
 }  // namespace
@@ -132,7 +133,7 @@ void require_run(const std::string& path)
     const fs::file_status status = fs::status(path, error);
     if (!fs::exists(status))
         throw InputError(fmt::format("{}: {}; {}", path.empty() ? "\"\"" : printable(path),
-                                     error ? error.message() : "is not there", kAllowed));
+                                     error ? error.message() : "does not exist", kAllowed));
     if (!fs::is_directory(status))
         throw InputError(fmt::format("{}: is not a folder; {}", printable(path), kAllowed));
     const bool has_report = fs::exists(fs::path(path) / "report.json", error);
@@ -147,7 +148,7 @@ FolderLock::FolderLock(const std::string& path)
     if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), path);
     if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
     close(descriptor_);
-    throw InputError(fmt::format("{}: another arris is running there", printable(path)));
+    throw InputError(fmt::format("{}: another arris process is using this folder", printable(path)));
 }
 
 FolderLock::FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
@@ -164,12 +165,13 @@ RunDirectory::RunDirectory(std::string path, FolderLock lock, CsvWriter steps, C
 
 RunDirectory RunDirectory::create(const std::string& path, bool is_overwriting, const RunConfig& config)
 {
-    std::error_code error;  // what cannot be looked at cannot be made either, and that says why
+    std::error_code error;  // ignored: make_folders fails with the reason
     if (fs::exists(path, error) && !fs::is_directory(path, error))
         throw InputError(fmt::format("-o {}: is not a folder", printable(path)));
     if (holds_run(path) && !is_overwriting)
         throw InputError(fmt::format(
-            "-o {}: holds a run already; --overwrite replaces it, another -o keeps it", printable(path)));
+            "-o {}: holds a run already; allowed: --overwrite, which replaces it, or another folder",
+            printable(path)));
     make_folders(path);
     FolderLock lock(path);
     if (holds_run(path)) remove_run(path);
@@ -184,11 +186,11 @@ RunDirectory RunDirectory::reopen(const std::string& path, const Checkpoint& che
 {
     FolderLock lock(path);
     if (const std::int64_t frames = count_frames(path); frames < checkpoint.frames)
-        throw InputError(fmt::format("{}: holds {} frames where its checkpoint tells of {}",
+        throw InputError(fmt::format("{}: holds {} frames, but the checkpoint counts {}",
                                      printable(frames_directory(path)), frames, checkpoint.frames));
     truncate_csv(steps_file(path), checkpoint.rows);
     truncate_csv(probes_file(path), checkpoint.rows);
-    sum_steps(steps_file(path));  // a damaged row is told now, not when the rest has been simulated
+    sum_steps(steps_file(path));  // reports a damaged row now, not after the rest has been simulated
     std::set<std::string> obstacles;
     for (const Obstacle& obstacle : config.scene.obstacles) obstacles.insert(obstacle.name());
     remove_frames(path, checkpoint.frames, obstacles);

@@ -13,8 +13,8 @@
 
 namespace arris {
 
-/// Keeps a second process from writing the same run, for as long as it lives. InputError where one does
-/// already.
+/// Locks a run's folder against other processes during its lifetime. Throws InputError if another process
+/// holds the lock.
 class FolderLock {
   public:
     explicit FolderLock(const std::string& path);
@@ -26,14 +26,14 @@ class FolderLock {
     int descriptor_;
 };
 
-/// The files of a run while it runs: CSVs, frames and the checkpoint.
+/// The files that a run writes while it runs: CSV files, frames and the checkpoint.
 class RunDirectory {
   public:
-    /// Makes `path` for a new run. InputError where it holds a run already, unless `is_overwriting`; then
-    /// what the earlier run left is removed, and nothing else.
+    /// Creates `path` for a new run. If it holds a run already: throws InputError, or with `is_overwriting`
+    /// removes the files of that run and no others.
     static RunDirectory create(const std::string& path, bool is_overwriting, const RunConfig& config);
 
-    /// Cuts the files of an earlier run back to its checkpoint.
+    /// Opens the files of a run after truncating them to its checkpoint.
     static RunDirectory reopen(const std::string& path, const Checkpoint& checkpoint,
                                const RunConfig& config);
 
@@ -55,7 +55,7 @@ class RunDirectory {
     CsvWriter steps_, probes_;
 };
 
-/// InputError, which says what is missing, unless `path` is the folder of a run.
+/// Throws InputError with the reason unless `path` is the folder of a run.
 void require_run(const std::string& path);
 
 /// <run_dir>/checkpoint, <run_dir>/steps.csv, <run_dir>/probes.csv

@@ -9,7 +9,7 @@
 namespace arris {
 namespace {
 
-/// A vertex by what a user can find it by; new ones of a step that was not taken by their number alone.
+/// Describes a vertex by id and place. A vertex that the failed step inserted has only its id.
 std::string name_vertex(const State& state, std::int64_t id)
 {
     const auto at = std::lower_bound(state.ids.begin(), state.ids.end(), id);
@@ -29,35 +29,32 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const State
     switch (report.status) {
         case StepStatus::NotFinite:
             return {RunStatus::NotFinite,
-                    fmt::format("a number that is not finite {}, also with 64 times smaller steps", place)};
+                    fmt::format("a value is not finite {}, even with 64 times smaller steps", place)};
         case StepStatus::Overrun:
-            return {RunStatus::NotConverged,
-                    fmt::format("material flows over a feature faster than the mesh can follow {}, also with "
-                                "64 times smaller steps",
-                                place)};
+            return {RunStatus::NotConverged, fmt::format("material flows over a feature faster than the mesh "
+                                                         "can follow {}, even with 64 times smaller steps",
+                                                         place)};
         case StepStatus::Infeasible:
             return {RunStatus::Infeasible,
-                    fmt::format(
-                        "nothing keeps {} out of the obstacles {}: a pin drives it into one, or two leave "
-                        "it no room",
-                        name_vertex(state, report.infeasible_vertex), place)};
+                    fmt::format("no velocity keeps {} out of the obstacles {}: a pin drives the vertex into "
+                                "an obstacle, or two obstacles leave it no room",
+                                name_vertex(state, report.infeasible_vertex), place)};
         case StepStatus::Penetration:
             return {RunStatus::Penetration,
-                    fmt::format("the cloth cannot be kept out of an obstacle {}, also with 64 times smaller "
-                                "steps",
-                                place)};
+                    fmt::format(
+                        "the cloth cannot be kept out of an obstacle {}, even with 64 times smaller steps",
+                        place)};
         default:
             if (!std::isfinite(report.kkt_residual))
-                return {
-                    RunStatus::NotConverged,
-                    fmt::format("the velocity's system cannot be factorised {}: stiffness and mass are too "
-                                "many orders of magnitude apart, also with 64 times smaller steps",
-                                place)};
-            return {
-                RunStatus::NotConverged,
-                fmt::format("the velocity solve reached a residual of {:.1e} where {:.1e} is asked {}, also "
-                            "with 64 times smaller steps",
-                            report.kkt_residual, tolerance, place)};
+                return {RunStatus::NotConverged,
+                        fmt::format(
+                            "the matrix of the velocity solve cannot be factorised {}, even with 64 times "
+                            "smaller steps: stiffness and mass differ by too many orders of magnitude",
+                            place)};
+            return {RunStatus::NotConverged,
+                    fmt::format("the velocity solve reached a residual of {:.1e}, above the tolerance "
+                                "{:.1e}, {}, even with 64 times smaller steps",
+                                report.kkt_residual, tolerance, place)};
     }
 }
 

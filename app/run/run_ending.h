@@ -11,17 +11,17 @@
 
 namespace arris {
 
-/// How a run ended, and in words why it ended before its time.
+/// Status of a run at its end, with the reason if it ended early.
 struct RunEnding {
     RunStatus status = RunStatus::Finished;
     std::string message;
 };
 
-/// The ending of a run whose next step from `state` has failed; `tolerance`: of the velocity solve, as asked.
+/// The ending of a run whose step from `state` has failed. `tolerance` is that of the velocity solve.
 RunEnding explain_ending(const StepReport& report, double tolerance, const State& state);
 
-/// The ending of a run whose audit has found the cloth inside an obstacle, which the check of every step
-/// should have prevented.
+/// The ending of a run whose audit has found cloth inside an obstacle. The check of every step excludes this,
+/// so the program has an error.
 RunEnding explain_ending(const Audit& audited, const Scene& scene, const State& state);
 
 }  // namespace arris

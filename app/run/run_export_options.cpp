@@ -18,10 +18,10 @@ nlohmann::ordered_json read_report(const std::string& path)
 {
     std::ifstream in(path);
     if (!in || !std::filesystem::is_regular_file(path))
-        throw InputError(path + ": is not there or cannot be read; allowed: the report of a run");
+        throw InputError(path + ": does not exist or cannot be read; allowed: the report of a run");
     nlohmann::ordered_json report = nlohmann::ordered_json::parse(in, nullptr, /*allow_exceptions=*/false);
     if (!report.is_object() || !report.contains("scene") || !report["scene"].is_object())
-        throw InputError(path + ": not a run's report: it has no scene");
+        throw InputError(path + ": is not the report of a run: it has no scene");
     return report;
 }
 
@@ -32,7 +32,7 @@ ExportOptions read_export_options(const std::string& run_dir)
     require_run(run_dir);
     const std::string path = run_dir + "/report.json";
     if (!std::filesystem::exists(path) && std::filesystem::exists(checkpoint_file(run_dir))) {
-        // A run that was killed before its first report.
+        // The run was killed before its first report.
         const Checkpoint checkpoint = read_checkpoint(checkpoint_file(run_dir));
         const std::vector<ObstacleRecord> obstacles = read_obstacles(run_dir);
         LoadOptions load;
@@ -48,7 +48,7 @@ ExportOptions read_export_options(const std::string& run_dir)
     if (scene.contains("title") && scene["title"].is_string()) options.title = scene["title"];
     const auto rate = nlohmann::ordered_json::json_pointer("/output/frames_per_second");
     if (!scene.contains(rate) || !scene[rate].is_number())
-        throw InputError(path + ": scene.output.frames_per_second is not there or not a number");
+        throw InputError(path + ": scene.output.frames_per_second is missing or not a number");
     options.frames_per_second = scene[rate];
     if (!(options.frames_per_second > 0.0) || !std::isfinite(options.frames_per_second))
         throw InputError(fmt::format("{}: scene.output.frames_per_second is {}: the run wrote no frames",

@@ -7,9 +7,8 @@
 
 namespace arris {
 
-/// Read from run_dir/report.json, or from the checkpoint of a run that was killed before it had one.
-/// InputError naming the file if run_dir holds no finished or stopped run, the report is not one, or the run
-/// was asked for no frames.
+/// Reads run_dir/report.json, or the checkpoint of a run that was killed before its first report. Throws
+/// InputError naming the file if run_dir holds no run, the report is invalid, or the run writes no frames.
 ExportOptions read_export_options(const std::string& run_dir);
 
 }  // namespace arris

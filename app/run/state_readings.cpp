@@ -44,7 +44,8 @@ Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, con
     frame.contact.assign(state.ids.size(), 0);
     for (const ActiveContact& contact : state.active)
         for (const std::uint32_t id : contact.vertex_ids) {
-            if (id == ActiveContact::kNoVertex || is_fold(contact)) continue;  // which is in mid-air
+            if (id == ActiveContact::kNoVertex || is_fold(contact))
+                continue;  // a fold plane is not an obstacle's surface
             frame.contact[state.index_of(id)] = 1;
         }
     frame.faces = state.mesh.faces;

@@ -11,11 +11,11 @@
 
 namespace arris {
 
-/// The state as a frame. `elements` are those of its mesh.
+/// Converts a state to a frame. `elements` belong to the state's mesh.
 Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, const ClothElements& elements,
                  const Terms& terms);
 
-/// Where the probes' material points are and how fast, in the order of `probes`.
+/// World positions and velocities of the probes' material points, in the order of `probes`.
 std::vector<ProbeSample> sample_probes(const std::vector<Probe>& probes, const State& state);
 
 }  // namespace arris

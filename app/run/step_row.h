@@ -10,13 +10,13 @@
 
 namespace arris {
 
-/// The row of steps.csv for the step that has led to `state`. `work` holds the elements of the state's mesh,
-/// `audited` the audit of the state, where there was one. Not set: the row's CPU seconds and `is_halved`.
+/// The row of steps.csv for the step that ended at `state`. `work` holds the elements of the state's mesh.
+/// `audited` is the audit of the state, or empty without an audit. CPU time and `is_halved` are left unset.
 StepRow make_step_row(const RunConfig& config, const State& state, const Workspace& work,
                       const Audit& audited, const StepReport& report);
 
-/// The report of a step that was made in two parts: where the second part has led, and what both have cost
-/// and lost.
+/// Joins the reports of a step's opening and rest: counts of the state from the rest; dt, energy rise, cost,
+/// yielded and rewound from both.
 StepReport join_parts(const StepReport& opening, StepReport rest);
 
 }  // namespace arris

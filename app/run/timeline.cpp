@@ -20,7 +20,7 @@ double Timeline::interval_end(double begin) const
     const auto jump = std::upper_bound(jumps_.begin(), jumps_.end(), begin);
     if (jump != jumps_.end()) end = std::min(end, *jump);
     if (frames_per_second_ > 0.0) {
-        // The first k / fps after `begin`; the floor may be one off by rounding.
+        // Find the first k / fps after `begin`. Rounding may make the floor one too small.
         double k = std::floor(begin * frames_per_second_);
         while (!(k / frames_per_second_ > begin)) k += 1.0;
         end = std::min(end, k / frames_per_second_);

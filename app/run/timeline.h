@@ -8,14 +8,14 @@
 
 namespace arris {
 
-/// Where a run stands in its plan: `done` steps of the interval that starts at `begin` (s).
+/// Position in the plan of a run: `done` steps of the interval that starts at `begin` (s).
 struct TimelinePosition {
     double begin = 0.0;
     std::int64_t done = 0;
 };
 
-/// The plan of a run's steps. Frame times, jumps of the input and the duration cut it into intervals, and
-/// each interval into ceil(length / step - 1e-9) equal steps, so that steps end exactly on all of these.
+/// The plan of a run's steps. Frame times, jumps of the input and the duration delimit intervals, so that
+/// steps end exactly at them. Each interval is divided into ceil(length / step - 1e-9) equal steps.
 class Timeline {
   public:
     explicit Timeline(const RunConfig& config);
@@ -29,13 +29,13 @@ class Timeline {
     /// Whether the input jumps at `time`.
     bool jumps_at(double time) const;
 
-    /// Index of the frame that is taken at `time`; -1 if none is.
+    /// Index of the frame at `time`; -1 if there is none.
     std::int64_t frame_at(double time) const;
 
-    /// Frames over the whole run, the one at time 0 included.
+    /// Number of frames of the whole run, including that at time 0.
     std::int64_t frame_count() const;
 
-    /// End of the interval that starts at `begin`: the next frame, jump or the duration.
+    /// End of the interval that starts at `begin`: the next frame or jump, or the duration.
     double interval_end(double begin) const;
 
   private:

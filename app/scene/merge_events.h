@@ -7,10 +7,10 @@
 
 namespace arris {
 
-/// Moves times of the scene that all but fall on a frame, on the end of the run or on each other (nearer than
-/// 1e-9 of the longest step) onto them, so that what wrote 0.30000000000000004 for 0.3 does not make a step
-/// of 5e-17 s. All that asks whether something acts at a time must see the moved ones, so this comes first.
-/// `motions`: of obstacles that are not in the scene yet.
+/// Merges times of the scene that nearly coincide with a frame, the end of the run or each other (nearer than
+/// 1e-9 of the longest step). Otherwise 0.30000000000000004 for 0.3 would cause a step of 5e-17 s. Call this
+/// before any test of whether an effect acts at a time. `motions`: motions of obstacles that are not yet in
+/// the scene.
 void merge_events(RunConfig& config, const std::vector<RigidMotion*>& motions = {});
 
 }  // namespace arris

@@ -15,9 +15,9 @@
 namespace arris {
 namespace {
 
-// Its own format, not the program's version: a later program may make further formats of an earlier run.
+// The format has a version of its own, so that a later version of the program can export an earlier run.
 constexpr FileKind kKind = {"ARRIS obstacles\n", "obstacles 1", "there are no obstacles",
-                            "is not the obstacles of a run of arris"};
+                            "is not an obstacles file of arris"};
 
 void write_placement(BinaryWriter& out, const Placement& placement)
 {
@@ -99,10 +99,10 @@ ObstacleMesh read_mesh(BinaryReader& in)
     return mesh;
 }
 
-/// What no run could have written; empty if nothing.
+/// Describes the first invalid value; empty if there is none.
 std::string find_defect(const ObstacleRecord& record)
 {
-    if (!is_scene_name(record.name)) return "a name is none";
+    if (!is_scene_name(record.name)) return "the name of an obstacle is invalid";
     const RigidMotion& motion = record.motion;
     bool is_sound = record.placement.rotation.allFinite() && record.placement.translation.allFinite() &&
                     motion.velocity.allFinite() && motion.angular_velocity.allFinite() &&
@@ -113,7 +113,7 @@ std::string find_defect(const ObstacleRecord& record)
         is_sound = is_sound && is_later && std::isfinite(key.time) && key.translate.allFinite() &&
                    key.rotate.coeffs().allFinite() && key.rotate.norm() > 0.5;
     }
-    if (!is_sound) return record.name + ": its motion cannot be";
+    if (!is_sound) return record.name + ": the motion is invalid";
     const std::string defect = validate(record.mesh);
     return defect.empty() ? defect : record.name + ": " + defect;
 }
@@ -152,11 +152,11 @@ std::vector<ObstacleRecord> read_obstacles(const std::string& run_dir)
         record.motion = read_motion(in);
         return record;
     });
-    if (!in.is_at_end()) in.fail("is damaged: it is longer than it says");
+    if (!in.is_at_end()) in.fail("is damaged: it is longer than its counts say");
     std::set<std::string> names = {"cloth"};
     for (const ObstacleRecord& record : records) {
         if (const std::string defect = find_defect(record); !defect.empty()) in.fail("is damaged: " + defect);
-        if (!names.insert(record.name).second) in.fail("is damaged: a name stands twice");
+        if (!names.insert(record.name).second) in.fail("is damaged: a name occurs twice");
     }
     return records;
 }

@@ -10,30 +10,29 @@
 
 namespace arris {
 
-/// An obstacle as a run keeps it, for exports and for going on: whatever becomes of the file it came from.
+/// An obstacle as stored in a run's folder. Export and resume read it, so the mesh file may change or vanish.
 struct ObstacleRecord {
     std::string name;
-    ObstacleMesh mesh;    ///< in its own frame, repaired and scaled
-    Placement placement;  ///< of that frame, before `motion`
+    ObstacleMesh mesh;    ///< in the obstacle's frame, repaired and scaled
+    Placement placement;  ///< of the obstacle's frame, before `motion`
     RigidMotion motion;
 
-    /// Maps its frame to the world at `time` (s).
+    /// Maps the obstacle's frame to the world at `time` (s).
     Placement at(double time) const { return motion.at(time) * placement; }
 };
 
 /// <run_dir>/obstacles
 std::string obstacles_file(const std::string& run_dir);
 
-/// Written once, when a run starts; replaced atomically. std::system_error naming the path where the disk
-/// refuses.
+/// Writes the file when a run starts, atomically. Throws std::system_error naming the path if that fails.
 void write_obstacles(const std::string& run_dir, const std::vector<ObstacleRecord>& obstacles);
 
-/// What write_obstacles wrote; empty where there is no such file: the run has no obstacles. Untrusted input:
-/// InputError naming the file where it is none, of another format, damaged, or holds what no obstacle can
-/// be. Lengths are checked before anything is allocated.
+/// Reads the file of write_obstacles; empty if the file does not exist, as for a run without obstacles. The
+/// file is untrusted: throws InputError naming it if it is of another kind or format, damaged, or holds an
+/// invalid obstacle. Lengths are checked before memory is allocated.
 std::vector<ObstacleRecord> read_obstacles(const std::string& run_dir);
 
-/// How many frames show where an obstacle was: all of `frame_count`, or the first alone if it never moves.
+/// Number of frames in which an obstacle is exported: `frame_count`, or at most 1 if it never moves.
 std::int64_t count_obstacle_frames(const ObstacleRecord& obstacle, std::int64_t frame_count);
 
 }  // namespace arris

@@ -18,11 +18,11 @@ struct Probe {
 };
 
 struct OutputOptions {
-    double frames_per_second = 24.0;  ///< 0: no frames
+    double frames_per_second = 24.0;  ///< 0 writes no frames
     std::vector<std::string> formats = {"viewer"};
 };
 
-/// A scene file, loaded and validated: all that `run` needs. Movable only, as its scene is.
+/// A loaded and validated scene file: the input of `run`. Movable only, because Scene is.
 struct RunConfig {
     std::string title;
     double duration = 0.0;  ///< s
@@ -31,42 +31,42 @@ struct RunConfig {
     OutputOptions output;
     std::vector<Probe> probes;
 
-    ClothMesh cloth;                             ///< placed and folded, before pins take hold
+    ClothMesh cloth;                             ///< placed and folded, before pins are attached
     Vec3 cloth_velocity = Vec3::Zero();          ///< m/s, initial
-    std::vector<Placement> obstacle_placements;  ///< of the scene's obstacles' frames, before their motions
-    std::vector<std::string> intersections;      ///< of the cloth with obstacles at time 0, a line each
+    std::vector<Placement> obstacle_placements;  ///< of the obstacles' frames, before their motions
+    std::vector<std::string> intersections;      ///< of the cloth with obstacles at time 0, one line each
 
     std::vector<std::string> warnings;
-    std::vector<std::string> notes;  ///< of obstacles' files: what is legitimate but good to know
-    nlohmann::ordered_json as_run;   ///< the scene with every default written out, by key
+    std::vector<std::string> notes;  ///< on obstacles' files: valid, but worth knowing
+    nlohmann::ordered_json as_run;   ///< the scene by key, with every default filled in
 };
 
-/// A scene file as it was read, so that a run can be resumed whatever became of the file.
+/// The text of a scene file and its overrides, stored so that a run can be resumed without the file.
 struct SceneSource {
     std::string path;                    ///< as given; paths in the scene are relative to its folder
     std::string text;                    ///< TOML
     std::vector<std::string> overrides;  ///< "KEY=VALUE"
 };
 
-/// Reads a scene file. Throws InputError in one line: missing, no regular file, larger than 16 MiB.
+/// Reads a scene file. Throws InputError if it is missing, not a regular file, or larger than 16 MiB.
 SceneSource read_scene_source(const std::string& path, const std::vector<std::string>& overrides);
 
-/// What load_scene takes from elsewhere than the scene.
+/// Inputs of load_scene besides the scene.
 struct LoadOptions {
-    /// Of a run that is resumed, whatever became of the files: its cloth at time 0, and its obstacles'
-    /// meshes. Nothing is then said of time 0, which is over.
+    /// For a resumed run: the cloth at time 0 and the meshes of the obstacles, as stored with the run. Checks
+    /// and warnings about time 0 are then omitted.
     const ClothMesh* cloth = nullptr;
     const std::vector<ObstacleRecord>* obstacles = nullptr;
-    std::string obstacles_file;  ///< that these are from
+    std::string obstacles_file;  ///< the file that `obstacles` comes from
 
-    /// Intersections with obstacles at time 0 are put into the config, instead of being an InputError.
+    /// Whether intersections with obstacles at time 0 are returned in the config, instead of an InputError.
     bool tells_intersections = false;
 
-    /// The command that imports a mesh file, in a process of its own: this program.
+    /// Program and arguments that import a mesh file in a separate process; by default this program.
     std::vector<std::string> importer = {"/proc/self/exe", "import-obstacle"};
 };
 
-/// Loads and validates a scene once, its overrides applied. Throws InputError.
+/// Loads and validates a scene with its overrides. Throws InputError.
 RunConfig load_scene(const SceneSource& source, const LoadOptions& options = {});
 inline RunConfig load_scene(const std::string& path, const std::vector<std::string>& overrides,
                             const LoadOptions& options = {})
@@ -74,7 +74,7 @@ inline RunConfig load_scene(const std::string& path, const std::vector<std::stri
     return load_scene(read_scene_source(path, overrides), options);
 }
 
-/// The obstacles of a run as they are stored with it.
+/// The obstacles of a run in the form in which the run stores them.
 std::vector<ObstacleRecord> record_obstacles(const RunConfig& config);
 
 }  // namespace arris

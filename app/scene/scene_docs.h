@@ -5,10 +5,10 @@
 
 namespace arris {
 
-/// docs/scene.md: every key of a scene file, generated from the table of keys.
+/// docs/scene.md: the reference of all keys of a scene file, generated from the table of keys.
 std::string scene_markdown();
 
-/// docs/scene.schema.json: the same as a JSON schema (draft 7), which editors check TOML files with.
+/// docs/scene.schema.json: all keys as a JSON schema (draft 7), with which editors check scene files.
 std::string scene_schema();
 
 }  // namespace arris

@@ -21,8 +21,8 @@ namespace arris {
 namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = 16 << 20;
-constexpr std::size_t kMaxShownCharacters = 60;  // of a value in an error
-constexpr std::size_t kMaxShownOverride = 120;   // of a KEY=VALUE in an error
+constexpr std::size_t kMaxShownCharacters = 60;  // of a value in an error message
+constexpr std::size_t kMaxShownOverride = 120;   // of KEY=VALUE in an error message
 
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
@@ -32,7 +32,7 @@ SceneValue to_scene_value(const toml::node& node, int source);
 
 void add_members(const toml::table& table, int source, SceneValue& value)
 {
-    // toml++ sorts members by name; errors should come in the order of the file.
+    // toml++ sorts members by name, but the first error to report is the first one in the file.
     std::vector<std::tuple<toml::source_index, toml::source_index, std::string, const toml::node*>> members;
     for (const auto& [key, node] : table)
         members.emplace_back(key.source().begin.line, key.source().begin.column, std::string(key.str()),
@@ -68,7 +68,7 @@ void set_content(const toml::node& node, int source, SceneValue& value)
     }
 }
 
-/// Whether a node stands behind a "key =", rather than under a [header].
+/// Whether a node is written after "key =", not under a [header].
 bool is_inline(const toml::node& node)
 {
     if (const toml::table* table = node.as_table()) return table->is_inline();
@@ -111,21 +111,21 @@ SceneValue parse_file(const std::string& path, std::string_view text)
 
 // ---- overrides
 
-constexpr std::string_view kOverrideKey = "x = ";  // what a VALUE is parsed behind
+constexpr std::string_view kOverrideKey = "x = ";  // makes an override's VALUE a TOML document
 
-/// The value of `text`, "x = VALUE"; empty where it is not TOML, or more than one value.
+/// The value of `text`, "x = VALUE". Nothing if it is not TOML or has more than one value.
 std::optional<SceneValue> parse_override(const std::string& text, int source)
 {
     try {
         const SceneValue table = to_scene_value(toml::parse(text), source);
         if (table.members.size() == 1 && table.members[0].first == "x") return table.members[0].second;
     } catch (const toml::parse_error&) {
-        return std::nullopt;  // the caller decides whether it is a bare word
+        return std::nullopt;  // the caller decides whether the value is an unquoted string
     }
     return std::nullopt;
 }
 
-/// A string that nobody quoted; not what was meant as an array, a table or a quoted string but misspelt.
+/// Whether `value` is an unquoted string, rather than a misspelt array, table or quoted string.
 bool is_bare_word(std::string_view value)
 {
     const bool is_control_free =
@@ -141,7 +141,7 @@ bool is_bare_word(std::string_view value)
         fmt::format("--set {}: {}; allowed: {}", printable(assignment, kMaxShownOverride), wrong, allowed));
 }
 
-/// An index written in digits; empty for anything else.
+/// Nothing if `text` is not an index in digits.
 std::optional<std::size_t> parse_index(std::string_view text)
 {
     std::size_t index = 0;
@@ -150,7 +150,7 @@ std::optional<std::size_t> parse_index(std::string_view text)
     return index;
 }
 
-/// Byte offset of a line and column, which toml++ counts in characters, from 1.
+/// Byte offset of a line and a column. toml++ counts both from 1, columns in characters.
 std::size_t byte_of_place(std::string_view text, int line, int column)
 {
     std::size_t byte = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
@@ -173,7 +173,7 @@ std::vector<std::string_view> split_key(std::string_view key)
     return parts;
 }
 
-/// Walks down a tree along an override's key, making the tables that are missing.
+/// Walks down the tree along an override's key and makes missing tables.
 class OverrideWalk {
   public:
     OverrideWalk(SceneValue& root, std::string_view assignment, int source)
@@ -233,7 +233,7 @@ class OverrideWalk {
                         child_names(name_));
     }
 
-    /// What the file has here must be of the kind the key asks for, else it cannot be entered.
+    /// Refuses an override below a value of another kind, which has no member or element to enter.
     void require(SceneValue::Kind kind) const
     {
         if (value_->kind == kind) return;
@@ -374,7 +374,7 @@ std::string SceneDocument::describe(std::string_view key) const
     const std::string place = near.source == 0
                                   ? fmt::format("{}:{}", printable(path_), near.line)
                                   : fmt::format("--set {}", printable(assignment, kMaxShownOverride));
-    if (assignment.starts_with(fmt::format("{}=", key))) return place;  // both are there already
+    if (assignment.starts_with(fmt::format("{}=", key))) return place;  // contains key and value
     const SceneValue* value = find(key);
     const std::string shown = printable(key, 2 * kMaxShownCharacters);
     if (!value || !value->is_shown) return fmt::format("{}: {}", place, shown);

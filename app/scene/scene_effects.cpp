@@ -22,7 +22,7 @@ SceneEffect obstacle_effect(const RunConfig& config)
 
 SceneEffect eol_effect(const RunConfig& config)
 {
-    if (config.scene.eol) return {"eol", true, "eol.enabled, and an obstacle has sharp features"};
+    if (config.scene.eol) return {"eol", true, "eol.enabled is true, and an obstacle has sharp features"};
     return {"eol", false,
             has_features(config.scene) ? "eol.enabled is false: contacts keep the cloth off sharp features"
                                        : "no obstacle has sharp features"};
@@ -33,7 +33,7 @@ SceneEffect by_table(const RunConfig& config, const std::string& table, bool is_
     const bool is_on = config.as_run.contains(table) && !config.as_run[table].empty();
     const std::string name = is_list ? fmt::format("[[{}]]", table) : fmt::format("[{}]", table);
     if (!is_on) return {table, false, "no " + name};
-    if (!is_list) return {table, true, name + " is there"};
+    if (!is_list) return {table, true, name + " is given"};
     return {table, true, fmt::format("{} {}", config.as_run[table].size(), name)};
 }
 
@@ -57,7 +57,8 @@ std::vector<SceneEffect> list_effects(const RunConfig& config)
         by_table(config, "pin", true),
         obstacle_effect(config),
         eol_effect(config),
-        {"remesh", false, "not in this version: the mesh changes near sharp features only, with eol"},
+        {"remesh", false,
+         "not in this version: the mesh changes only near sharp features, with EOL vertices"},
         {"friction", false, "not in this version: the cloth slides freely over obstacles"},
         {"self_contact", false, "not in this version: the cloth may pass through itself"},
     };

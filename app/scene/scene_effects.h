@@ -8,11 +8,11 @@
 
 namespace arris {
 
-/// An effect a scene can have, and why it is or is not simulated in this one.
+/// An effect, and why this scene does or does not simulate it.
 struct SceneEffect {
-    std::string name;  ///< as report.json has it
+    std::string name;  ///< as in report.json
     bool is_on = false;
-    std::string reason;  ///< "[gravity] is there"; "no [wind]"
+    std::string reason;  ///< "[gravity] is given"; "no [wind]"
 };
 
 /// All effects: bending, damping, gravity, wind, pull, pin, obstacle, eol, remesh, friction, self_contact.

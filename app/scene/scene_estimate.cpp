@@ -12,25 +12,26 @@
 namespace arris {
 namespace {
 
-constexpr double kStepTolerance = 1e-9;    // of a step: an interval longer by less takes no further step
-constexpr double kEventTolerance = 1e-12;  // of the time: events nearer than this are one
+constexpr double kStepTolerance = 1e-9;    // steps: a smaller excess of an interval takes no further step
+constexpr double kEventTolerance = 1e-12;  // relative to the time: nearer events count as one
 
-/// Bytes a vertex and a face take in one frame of a format, by the length of what is written for them.
+/// Bytes per vertex and per face in one frame of a format, from the length of the written values.
 struct FrameBytes {
     std::string_view format;
     double vertex, face;
 };
 constexpr std::array<FrameBytes, 3> kFormatBytes = {{
-    {"obj", 110.0, 30.0},   // text: a position and a texture coordinate of 17 digits; three index pairs
-    {"usd", 150.0, 8.0},    // text: positions and velocities of every frame, topology while it lasts
+    {"obj", 110.0, 30.0},   // text: position and texture coordinate, 17 digits each; three index pairs
+    {"usd", 150.0, 8.0},    // text: positions and velocities at every frame, topology where it changes
     {"viewer", 24.0, 2.0},  // quantised, base64
 }};
-constexpr FrameBytes kPlyBytes = {"ply", 94.0,
-                                  37.0};    // 11 doubles, an id, two flags; 13 for indices, three doubles
-constexpr double kRowBytes = 400.0;         // a row of steps.csv and probes.csv
-constexpr double kCheckpointBytes = 200.0;  // a vertex
+constexpr FrameBytes kPlyBytes = {
+    "ply", 94.0, 37.0};  // vertex: 11 doubles, an id, two flags; face: 13 bytes of indices, 3 doubles
+constexpr double kRowBytes = 400.0;         // per row of steps.csv and probes.csv together
+constexpr double kCheckpointBytes = 200.0;  // per vertex
 
-// Of an obstacle's triangle with its half of a point. Memory: mesh, topology, search trees.
+// Bytes per triangle of an obstacle and half a point (a closed mesh has half as many points as triangles), in
+// memory (mesh, topology, search trees), in the file `obstacles` and in one OBJ frame.
 constexpr double kObstacleElementBytes = 600.0;
 constexpr double kStoredElementBytes = 24.0;
 constexpr double kObjElementBytes = 50.0;
@@ -72,7 +73,7 @@ double count_steps(double duration, double step, double frames_per_second, const
     double steps = 0.0, time = 0.0, frame = 1.0;
     auto jump = jumps.begin();
     while (time < duration) {
-        // The next of frame, jump and end; everything within the tolerance of it is passed with it.
+        // Advance to the next frame, jump or end, and pass all events within the tolerance of it.
         double next = frame < frames ? std::min(duration, frame / frames_per_second) : duration;
         if (jump != jumps.end()) next = std::min(next, *jump);
         steps += steps_between(time, next);
@@ -98,8 +99,8 @@ void add_obstacles(const std::vector<Obstacle>& obstacles, SceneEstimate& estima
 void estimate_bytes(const std::vector<std::string>& formats, SceneEstimate& estimate)
 {
     // The Cholesky factor of a planar mesh under nested dissection has n log n entries. The constants are
-    // fitted to whole runs with bending (31, 73 and 377 MB at 2066, 7321 and 39481 vertices), and some 8 %
-    // above them.
+    // fitted to whole runs with bending (31, 73 and 377 MB at 2066, 7321 and 39481 vertices); the estimate is
+    // some 8 % above these measurements.
     constexpr double kProgramBytes = 2e7, kFactorBytes = 800.0, kSmallMeshBytes = 2300.0;
     const double n = estimate.vertices;
     const double vertex_bytes =
@@ -126,7 +127,7 @@ std::optional<Excess> find_memory_excess(const SceneEstimate& estimate, double a
     if (!(estimate.memory_bytes > available)) return std::nullopt;
     return Excess{fmt::format("the run would take about {} of memory for {:.0f} vertices",
                               human_bytes(estimate.memory_bytes), estimate.vertices),
-                  fmt::format("at most the {} this machine has", human_bytes(available))};
+                  fmt::format("at most the {} of this machine", human_bytes(available))};
 }
 
 double machine_memory_bytes()

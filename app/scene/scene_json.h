@@ -10,23 +10,23 @@
 
 namespace arris {
 
-// Values of a scene that complete_scene has checked, as plain types.
+// Conversions of values that complete_scene has checked.
 
 double to_double(const nlohmann::ordered_json& value);
 Vec2 to_vec2(const nlohmann::ordered_json& value);
 Vec3 to_vec3(const nlohmann::ordered_json& value);
 MaterialBox to_material_box(const nlohmann::ordered_json& value);
 
-/// Seconds, where null is never.
+/// Seconds; infinity for null, which means never.
 double to_time(const nlohmann::ordered_json& value);
 
-/// Of a table with `axis` and `degrees`.
+/// From a table with `axis` and `degrees`.
 Mat3 to_rotation(const nlohmann::ordered_json& rotate);
 
-/// Of an array of tables with `time`, `translate` and `rotate`.
+/// From an array of tables with `time`, `translate` and `rotate`.
 std::vector<Keyframe> to_keyframes(const nlohmann::ordered_json& keyframes);
 
-/// "m", "cm", "mm" or "in" in metres.
+/// Metres per unit "m", "cm", "mm" or "in".
 double metres_of(const std::string& unit);
 
 }  // namespace arris

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of all keys of a scene file: the one place to edit for a new key.
+// The table of all keys of a scene file. A new key is added here and nowhere else.
 #include <array>
 
 #include "app/scene/scene_keys.h"
@@ -7,7 +7,7 @@
 namespace arris {
 namespace {
 
-// Bounds no cloth comes near; they keep every product of two values finite.
+// Bounds far beyond any real cloth. They keep every product of two values finite.
 constexpr KeyRange kAnyNumber{-1e6, 1e6};
 constexpr KeyRange kPositive{0.0, 1e6, true};
 constexpr KeyRange kNotNegative{0.0, 1e6};
@@ -123,14 +123,14 @@ SceneKey boolean(std::string_view name, std::string_view fallback, std::string_v
     return {.name = name, .type = KeyType::Boolean, .fallback = fallback, .sentence = sentence};
 }
 
-/// Marks a key, and with it everything below, as belonging to a part that is not built yet.
+/// Marks a key and all keys below it as not built yet.
 SceneKey not_built(SceneKey key)
 {
     key.is_built = false;
     return key;
 }
 
-/// Marks single values of a key as not built yet.
+/// Marks the given values of a key as not built yet.
 SceneKey not_built(SceneKey key, std::string_view values)
 {
     key.unbuilt_choices = values;
@@ -140,15 +140,16 @@ SceneKey not_built(SceneKey key, std::string_view values)
 std::vector<SceneKey> make_scene_keys()
 {
     return {
-        text("title", KeyType::Text, kTitle, "(the scene file's name)", "What the run is called in reports."),
+        text("title", KeyType::Text, kTitle, "(the scene file's name)", "Title of the run in reports."),
         number("duration", "s", kPositive, kRequired, "Simulated time."),
 
-        table("time", "{}", "How time advances."),
+        table("time", "{}", "Time integration."),
         number("time.step", "s", kPositive, "0.005",
-               "The longest step; each interval between frames and events is divided into equal steps no "
-               "longer."),
-        choice("time.integrator", "bdf2|implicit_euler", R"("bdf2")",
-               "Second order (bdf2), or first order with more numerical damping (implicit_euler)."),
+               "Longest step. Each interval between frames and events is divided into equal steps, none "
+               "longer than this."),
+        choice(
+            "time.integrator", "bdf2|implicit_euler", R"("bdf2")",
+            "Integrator: second order (bdf2), or first order with more numerical damping (implicit_euler)."),
 
         table("cloth", "{}", "The cloth: a rectangle to be meshed, or a mesh from a file."),
         numbers("cloth.size", 2, "m", kSize, "",
@@ -159,138 +160,145 @@ std::vector<SceneKey> make_scene_keys()
          .count = 2,
          .sentence = "Cells along u and v; required without `file`."},
         choice("cloth.pattern", "diagonal|alternating|cross|unstructured", R"("cross")",
-               "How the cells are cut into triangles."),
+               "Pattern in which the cells are divided into triangles."),
         number("cloth.pattern_angle", "degrees", kAngle, "0.0",
-               "Turn of the pattern inside the rectangle, to which it is clipped."),
-        tables("cloth.folds", "Folds of the cloth at the start, bent isometrically one after the other."),
+               "Rotation of the mesh pattern in the material; the pattern is clipped to the rectangle."),
+        tables("cloth.folds", "Folds of the initial cloth, made one after the other without stretching it."),
         {.name = "cloth.folds[].line",
          .type = KeyType::Line,
          .unit = "m",
          .range = kAnyNumber,
          .fallback = kRequired,
-         .sentence = "Two material points; the line through them is cut into the mesh, and what lies right "
-                     "of it is turned."},
+         .sentence = "Two material points. The line through them becomes edges of the mesh, and the material "
+                     "to the right of the line is rotated about it."},
         number("cloth.folds[].degrees", "degrees", {-180.0, 180.0}, kRequired,
-               "How far the material right of the line is turned down about it."),
+               "Angle by which the material to the right of the line is rotated downward."),
         text("cloth.file", KeyType::Path, kPath, "",
-             "OBJ mesh used instead of a rectangle: its positions are the initial world positions, its UVs, "
-             "in metres, "
-             "the material coordinates (a flat mesh without UVs is its own chart)."),
+             "OBJ mesh used instead of a rectangle. Its positions are the initial world positions; its UVs, "
+             "in metres, are the material coordinates. A flat mesh without UVs takes the material "
+             "coordinates from its positions."),
         choice("cloth.units", kUnits, R"("m")", "Unit of the file's positions."),
-        choice("cloth.up", kAxes, R"("z")", "The file's upward axis, turned to +z."),
+        choice("cloth.up", kAxes, R"("z")", "Upward axis of the file, which is rotated to +z."),
         numbers("cloth.translate", 3, "m", kAnyNumber, kOrigin,
-                "World position = translate + rotate(scale * (u, v, 0)); of a file, of its positions."),
-        table("cloth.rotate", kIdentity, "Rotation of the cloth at the start."),
+                "World position = translate + rotate(scale * (u, v, 0)). For a file, its positions replace "
+                "(u, v, 0)."),
+        table("cloth.rotate", kIdentity, "Initial rotation of the cloth."),
         axis("cloth.rotate.axis"),
         number("cloth.rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
         number("cloth.scale", "", kPositive, "1.0",
-               "Scale of the world positions; the material keeps its size, so cloth scaled by other than 1 "
-               "starts strained."),
-        numbers("cloth.velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity of the whole cloth at the start."),
+               "Scale of the world positions. The material keeps its size, so a scale other than 1 makes the "
+               "cloth start strained."),
+        numbers("cloth.velocity", 3, "m/s", kAnyNumber, kOrigin, "Initial velocity of the whole cloth."),
 
-        table("cloth.material", "{}", "What the cloth is made of."),
+        table("cloth.material", "{}", "Material properties of the cloth."),
         choice("cloth.material.preset", "cotton|silk|wool|denim|leather|rubber", R"("cotton")",
-               "A material to start from; the keys below override it one by one."),
+               "Material preset; each key below overrides one of its values."),
         number("cloth.material.density", "kg/m^2", {0.0, 1e4, true}, "(the preset's)", "Mass per area."),
         number("cloth.material.youngs_modulus", "N/m", {0.0, 1e12, true}, "(the preset's)",
                "Membrane stiffness: tension per width at unit strain."),
         number("cloth.material.poisson_ratio", "", {0.0, 0.5}, "(the preset's)",
-               "How much the sheet narrows where it is stretched."),
+               "Poisson's ratio: lateral contraction per extension."),
         number("cloth.material.bending_stiffness", "J", kNotNegative, "(the preset's)",
-               "K of the hinge energy; 0 leaves bending out."),
+               "Bending stiffness, K of the hinge energy; 0 switches bending off."),
         number("cloth.material.damping", "s", {0.0, 1e3}, "0.0",
-               "Damping proportional to the elastic stiffness; 0 leaves damping out."),
+               "Damping proportional to the elastic stiffness; 0 switches damping off."),
         number("cloth.material.thickness", "m", {0.0, 1.0, true}, "0.001",
-               "The distance kept between the cloth's surface and obstacles."),
+               "Distance that contacts keep between the cloth's surface and obstacles."),
 
-        tables("pin", "Vertices that are held or moved; without one nothing holds the cloth."),
-        box("pin[].material", "Vertices whose material coordinates lie in this box are held (inclusive)."),
-        numbers("pin[].velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity at which the pin moves."),
+        tables("pin", "Pins hold or move vertices. Without a pin nothing holds the cloth."),
+        box("pin[].material",
+            "Box in the material, bounds included. The pin holds the vertices whose material coordinates lie "
+            "in the box."),
+        numbers("pin[].velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity of the pin."),
         numbers("pin[].angular_velocity", 3, "rad/s", kAnyNumber, kOrigin,
-                "Rotation of the pin about `pivot`, along its axis."),
+                "Angular velocity of the pin about `pivot`; its direction is the axis."),
         numbers("pin[].pivot", 3, "m", kAnyNumber, kOrigin,
-                "World point that `angular_velocity` turns about."),
+                "World point about which `angular_velocity` rotates."),
         tables("pin[].keyframes",
-               "The pin's motion as placements in time instead: x(t) = translate + R x(0); translation "
-               "linear, rotation "
-               "slerp by the shorter arc, constant outside."),
+               "Motion of the pin as placements in time, instead of velocities: x(t) = translate + R x(0). "
+               "Translations are interpolated linearly, rotations by slerp along the shorter arc; before the "
+               "first and after the last keyframe the placement is constant."),
         number("pin[].keyframes[].time", "s", kNotNegative, kRequired,
-               "When; later than the keyframe before."),
-        numbers("pin[].keyframes[].translate", 3, "m", kAnyNumber, kOrigin, "Translation then."),
-        table("pin[].keyframes[].rotate", kIdentity,
-              "Rotation then, about the world's origin; between keyframes by the shorter arc."),
+               "Time of the keyframe; later than the previous keyframe."),
+        numbers("pin[].keyframes[].translate", 3, "m", kAnyNumber, kOrigin, "Translation at this time."),
+        table("pin[].keyframes[].rotate", kIdentity, "Rotation at this time, about the world's origin."),
         axis("pin[].keyframes[].rotate.axis"),
         number("pin[].keyframes[].rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
         text("pin[].follow", KeyType::Name, {}, "",
-             "Name of an obstacle that the pin rides on instead: what it holds moves as if fixed to it."),
-        choices("pin[].directions", 1, kAxes, R"(["x", "y", "z"])", "Which world components are held."),
-        number("pin[].release", "s", kNotNegative, kNever, "When the pin lets go."),
+             "Name of an obstacle that moves the pin, instead of velocities or keyframes. The held vertices "
+             "move as if fixed to the obstacle."),
+        choices("pin[].directions", 1, kAxes, R"(["x", "y", "z"])",
+                "Components of the world position that the pin holds."),
+        number("pin[].release", "s", kNotNegative, kNever, "Time at which the pin releases its vertices."),
 
         table("gravity", "", "Switches gravity on."),
         numbers("gravity.acceleration", 3, "m/s^2", kAnyNumber, "[0.0, 0.0, -9.81]",
                 "Acceleration of free fall."),
 
         table("wind", "",
-              "Switches wind on: a force rho/2 drag A |w_n| w_n n on every face, w = wind - material "
-              "velocity."),
+              "Switches wind on: a force rho/2 drag A |w_n| w_n n on every face, with w = wind - material "
+              "velocity and w_n = w . n."),
         numbers("wind.velocity", 3, "m/s", kAnyNumber, kRequired, "Velocity of the air."),
         number("wind.air_density", "kg/m^3", kNotNegative, "1.2", "Density of the air."),
         number("wind.drag", "", kNotNegative, "1.0", "Drag coefficient of a face, on its world area."),
         table("wind.gust", "",
-              "Makes the wind vary: times 1 + amplitude sin(2 pi frequency t + phase(seed))."),
-        number("wind.gust.amplitude", "", kNotNegative, kRequired, "Share of the wind that varies."),
-        number("wind.gust.frequency", "Hz", kNotNegative, kRequired, "How often it varies."),
-        integer("wind.gust.seed", {0.0, 2147483647.0}, "0", "Chooses the phase."),
+              "Multiplies the wind's velocity by 1 + amplitude sin(2 pi frequency t + phase(seed))."),
+        number("wind.gust.amplitude", "", kNotNegative, kRequired,
+               "Amplitude of the variation, relative to the wind's velocity."),
+        number("wind.gust.frequency", "Hz", kNotNegative, kRequired, "Frequency of the variation."),
+        integer("wind.gust.seed", {0.0, 2147483647.0}, "0", "Seed that determines the phase."),
 
         tables("pull",
-               "A force spread over a material box: by area, by length where it is a line, on the nearest "
-               "vertex for a point."),
-        box("pull[].material", "The part of the cloth that is pulled (inclusive)."),
-        numbers("pull[].force", 3, "N", {-1e9, 1e9}, kRequired, "The force in all."),
-        number("pull[].start", "s", kNotNegative, "0.0", "When the force begins."),
-        number("pull[].stop", "s", kPositive, kNever, "When the force ends; later than `start`."),
+               "A force spread over a box of the material: by area; by length where the box is a line; on "
+               "the nearest vertex where the box is a point."),
+        box("pull[].material", "Box in the material, bounds included: the part of the cloth that is pulled."),
+        numbers("pull[].force", 3, "N", {-1e9, 1e9}, kRequired, "Total force of the pull."),
+        number("pull[].start", "s", kNotNegative, "0.0", "Time at which the force begins."),
+        number("pull[].stop", "s", kPositive, kNever, "Time at which the force ends; later than `start`."),
 
         not_built(table("friction", "", "Switches friction with obstacles on.")),
         number("friction.coefficient", "", {0.0, 100.0}, "0.3",
-               "Coulomb's coefficient; an obstacle's own overrides it."),
+               "Coefficient of Coulomb friction; an obstacle's own coefficient overrides it."),
 
         not_built(table("self_contact", "", "Switches contact of the cloth with itself on.")),
 
-        table("eol", "{}", "Eulerian-on-Lagrangian vertices on sharp features of obstacles."),
-        boolean(
-            "eol.enabled", "true",
-            "Whether vertices are put exactly on sharp features, with the material flowing through them."),
+        table("eol", "{}", "Eulerian-on-Lagrangian (EOL) vertices on sharp features of obstacles."),
+        boolean("eol.enabled", "true",
+                "Whether vertices of the cloth are placed exactly on sharp features, with material flowing "
+                "through them."),
 
         not_built(table("remesh", "",
-                        "Switches adaptive refinement on; without it the mesh changes only near features.")),
-        numbers("remesh.edge_length", 2, "m", kPositive, "[0.01, 0.1]", "Smallest and largest edge."),
-        number("remesh.angle", "degrees", {0.0, 180.0, true}, "10.0", "Turn allowed over one edge."),
+                        "Switches adaptive refinement on. Without it the mesh changes only near features.")),
+        numbers("remesh.edge_length", 2, "m", kPositive, "[0.01, 0.1]", "Smallest and largest edge length."),
+        number("remesh.angle", "degrees", {0.0, 180.0, true}, "10.0",
+               "Rotation of the surface allowed over one edge."),
         number("remesh.compression", "", {0.0, 1.0, true}, "0.005",
                "Compressive strain allowed over one edge."),
         number("remesh.velocity", "m/s", kPositive, "0.5", "Velocity difference allowed over one edge."),
-        number("remesh.aspect", "", {0.0, 0.8, true}, "0.2", "Least height of a face by its longest edge."),
+        number("remesh.aspect", "", {0.0, 0.8, true}, "0.2",
+               "Smallest height of a face relative to its longest edge."),
 
-        tables("obstacle", "A rigid obstacle: one of `file`, `box`, `points`, `wire`, `teeth`."),
+        tables("obstacle", "A rigid obstacle; its shape is one of `file`, `box`, `points`, `wire`, `teeth`."),
         text("obstacle[].name", KeyType::Name, {}, "(obstacle0, obstacle1, …)",
-             "What its frames are called; unique among obstacles and probes, not `cloth`."),
+             "Name of the obstacle and of its exported frames; unique among obstacles and probes, not "
+             "`cloth`."),
         text("obstacle[].file", KeyType::Path, kPath, "",
              "OBJ, STL, PLY, glTF/GLB, COLLADA, FBX, 3MF or 3DS mesh."),
         choice("obstacle[].units", kUnits, "(what the file declares, else m)", "Unit of the file."),
-        choice("obstacle[].up", kAxes, "(what the file declares, else z)", "The file's upward axis."),
-        numbers("obstacle[].box", 3, "m", kSize, "", "A box of these sizes, centred on its origin."),
+        choice("obstacle[].up", kAxes, "(what the file declares, else z)", "Upward axis of the file."),
+        numbers("obstacle[].box", 3, "m", kSize, "", "Side lengths of a box that is centred on its origin."),
         points("obstacle[].points", 1, "Nails: lone points."),
-        points("obstacle[].wire", 2, "A polyline."),
-        boolean("obstacle[].closed", "false", "Whether the `wire`'s end is joined to its beginning."),
+        points("obstacle[].wire", 2, "Wire: a polyline through these points."),
+        boolean("obstacle[].closed", "false", "Whether the end of the `wire` is joined to its beginning."),
         table("obstacle[].teeth", "",
-              "A row of prisms along x, their ridges along y, on a base: tips at z = height, valleys at z = "
-              "0, the "
-              "bottom at z = -height; centred in x and y."),
-        integer("obstacle[].teeth.count", {1.0, 1e4}, kRequired, "How many."),
+              "A row of prisms along x on a base, with ridges along y: ridges at z = height, valleys at z = "
+              "0, bottom at z = -height; centred in x and y."),
+        integer("obstacle[].teeth.count", {1.0, 1e4}, kRequired, "Number of prisms."),
         number("obstacle[].teeth.pitch", "m", kSize, kRequired,
-               "Distance from ridge to ridge; at least a ridge's width at its foot, 2 height tan(tip_degrees "
-               "/ 2)."),
+               "Distance between neighbouring ridges; at least the width of a prism at its foot, 2 height "
+               "tan(tip_degrees / 2)."),
         number("obstacle[].teeth.height", "m", kSize, kRequired, "Height of the ridges above the valleys."),
         number("obstacle[].teeth.width", "m", kSize, kRequired, "Length of the ridges."),
         number("obstacle[].teeth.tip_degrees", "degrees", {0.0, 179.0, true}, kRequired,
@@ -301,49 +309,54 @@ std::vector<SceneKey> make_scene_keys()
         axis("obstacle[].rotate.axis"),
         number("obstacle[].rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
-        number("obstacle[].scale", "", kPositive, "1.0", "Scale of the obstacle, about its origin."),
+        number("obstacle[].scale", "", kPositive, "1.0", "Scale of the obstacle about its origin."),
         number("obstacle[].feature_angle", "degrees", {0.0, 180.0, true}, "30.0",
-               "A convex edge whose faces turn by more (+ 1e-6) is sharp."),
+               "A convex edge is sharp if the normals of its two faces differ by more than this angle (plus "
+               "1e-6 degrees)."),
         table("obstacle[].motion", "",
-              "p(t) = pivot + velocity tau + R(angular_velocity tau)(p0 - pivot), tau = clamp(t - start, 0, "
-              "stop - start)."),
-        numbers("obstacle[].motion.velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity."),
+              "Rigid motion: p(t) = pivot + velocity tau + R(angular_velocity tau)(p0 - pivot), tau = "
+              "clamp(t - start, 0, stop - start)."),
+        numbers("obstacle[].motion.velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity of the obstacle."),
         numbers("obstacle[].motion.angular_velocity", 3, "rad/s", kAnyNumber, kOrigin,
-                "Rotation about `pivot`."),
-        numbers("obstacle[].motion.pivot", 3, "m", kAnyNumber, kOrigin, "World point that is turned about."),
-        number("obstacle[].motion.start", "s", kNotNegative, "0.0", "When the motion begins."),
-        number("obstacle[].motion.stop", "s", kPositive, kNever, "When the motion ends; later than `start`."),
-        tables(
-            "obstacle[].keyframes",
-            "Placements in time, instead of `motion`, `translate` and `rotate`: translation linear, rotation "
-            "slerp by the shorter arc, constant outside."),
+                "Angular velocity of the obstacle about `pivot`; its direction is the axis."),
+        numbers("obstacle[].motion.pivot", 3, "m", kAnyNumber, kOrigin,
+                "World point about which `angular_velocity` rotates."),
+        number("obstacle[].motion.start", "s", kNotNegative, "0.0", "Time at which the motion begins."),
+        number("obstacle[].motion.stop", "s", kPositive, kNever,
+               "Time at which the motion ends; later than `start`."),
+        tables("obstacle[].keyframes",
+               "Placements in time, instead of `motion`, `translate` and `rotate`. Translations are "
+               "interpolated linearly, rotations by slerp along the shorter arc; before the first and after "
+               "the last keyframe the placement is constant."),
         number("obstacle[].keyframes[].time", "s", kNotNegative, kRequired,
-               "When; later than the keyframe before."),
-        numbers("obstacle[].keyframes[].translate", 3, "m", kAnyNumber, kOrigin, "Translation then."),
-        table("obstacle[].keyframes[].rotate", kIdentity, "Rotation then."),
+               "Time of the keyframe; later than the previous keyframe."),
+        numbers("obstacle[].keyframes[].translate", 3, "m", kAnyNumber, kOrigin, "Translation at this time."),
+        table("obstacle[].keyframes[].rotate", kIdentity, "Rotation at this time."),
         axis("obstacle[].keyframes[].rotate.axis"),
         number("obstacle[].keyframes[].rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
-        not_built(number(
-            "obstacle[].friction", "", {0.0, 100.0}, "",
-            "Coulomb's coefficient of this obstacle; without [friction] it switches friction on for it.")),
+        not_built(number("obstacle[].friction", "", {0.0, 100.0}, "",
+                         "Coefficient of Coulomb friction of this obstacle. Without [friction] this key "
+                         "switches friction on for the obstacle.")),
 
-        tables("probe", "A material point whose path is written to probes.csv."),
+        tables("probe", "A material point whose position and velocity are written to probes.csv."),
         text("probe[].name", KeyType::Name, {}, kRequired,
-             "What its columns are called; unique among obstacles and probes, not `cloth`."),
+             "Name of the probe in the columns of probes.csv; unique among obstacles and probes, not "
+             "`cloth`."),
         numbers("probe[].material", 2, "m", kAnyNumber, kRequired, "The material point, u and v."),
 
-        table("solver", "{}", "Numbers of the solver."),
-        number("solver.tolerance", "", {1e-14, 1e-2}, "1e-9", "Greatest relative KKT residual accepted."),
+        table("solver", "{}", "Settings of the solver."),
+        number("solver.tolerance", "", {1e-14, 1e-2}, "1e-9",
+               "Largest relative KKT residual that is accepted."),
         not_built(choice("solver.kernel", "exact|fast", R"("exact")",
                          "Exact or plain floating-point geometric predicates."),
                   "fast"),
 
-        table("output", "{}", "What a run leaves behind."),
+        table("output", "{}", "Output of a run."),
         number("output.frames_per_second", "1/s", kNotNegative, "24.0",
-               "Frames a second of simulated time; 0: no frames."),
+               "Frames per second of simulated time; 0 writes no frames."),
         not_built(choices("output.formats", 0, "obj|usd|vtk|viewer|gltf|pc2", R"(["viewer"])",
-                          "Formats made from the frames, besides the PLY frames that are always written."),
+                          "Formats made from the frames. The PLY frames are always written."),
                   "vtk|gltf|pc2"),
     };
 }

@@ -9,7 +9,7 @@
 namespace arris {
 namespace {
 
-/// "cloth.folds[]" of "cloth.folds[].line"; "" of "title".
+/// "cloth.folds[]" for "cloth.folds[].line"; "" for "title".
 std::string_view parent_name(std::string_view name)
 {
     const std::size_t dot = name.rfind('.');
@@ -137,7 +137,7 @@ std::string allowed_values(const SceneKey& key)
 
 int edit_distance(std::string_view a, std::string_view b)
 {
-    // Three rows of the usual table: two back for swaps, one back, and the one being filled.
+    // Three rows of the dynamic-programming table: two back (for swaps), one back, and the current one.
     std::vector<int> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<int>(j);
     for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -155,7 +155,7 @@ int edit_distance(std::string_view a, std::string_view b)
 
 std::string closest_key(std::string_view parent, std::string_view leaf)
 {
-    constexpr std::size_t kLongestWord = 64;  // longer ones are near no key
+    constexpr std::size_t kLongestWord = 64;  // longer words resemble no key
     if (leaf.size() > kLongestWord) return {};
     const SceneKey* closest = nullptr;
     int closest_distance = std::max(1, static_cast<int>(leaf.size()) / 3) + 1;

@@ -7,7 +7,7 @@
 
 namespace arris {
 
-/// What a key's value must be. Integers are accepted where a number is expected, not the other way round.
+/// Type of a key's value. Integers are accepted where a number is expected, not the other way round.
 enum class KeyType {
     Table,   ///< [name], or an inline table
     Tables,  ///< [[name]], or an array of inline tables
@@ -27,33 +27,34 @@ enum class KeyType {
     Points     ///< an array of at least `count` points [x, y, z]
 };
 
-/// Allowed values of a number, or of every number of an array. Text: bounds count characters.
+/// Allowed values of a number, or of every number of an array. For a text, allowed numbers of characters.
 struct KeyRange {
     double least = 0.0;
     double greatest = 0.0;
     bool excludes_least = false;
 };
 
-/// One key of a scene file. This table is the one place that knows the keys: it validates scenes, fills in
-/// defaults, and docs/scene.md and docs/scene.schema.json are generated from it.
+/// One key of a scene file. The table of these (scene_key_table.cpp) is the only list of keys: validation,
+/// defaults, docs/scene.md and docs/scene.schema.json all come from it.
 struct SceneKey {
     std::string_view name;  ///< dotted; elements of arrays of tables as "pin[]"
     KeyType type = KeyType::Table;
     std::string_view unit = {};
     KeyRange range = {};
-    int count = 0;                  ///< of an array: how many
+    int count = 0;                  ///< entries of an array
     std::string_view choices = {};  ///< separated by '|'
-    /// "" absent unless written, "required", JSON text, or "(words)" where the value depends on other keys.
-    /// A table with the default "{}" is always there; one that is absent switches its effect off.
+    /// "": absent unless written; "required"; JSON text; or "(words)" where the default depends on other
+    /// keys. A table with the default "{}" always exists; the absence of any other table switches its effect
+    /// off.
     std::string_view fallback = {};
     std::string_view sentence = {};
-    bool is_built = true;                   ///< false: a key of a part that is not built yet in this version
-    std::string_view unbuilt_choices = {};  ///< values not built yet, separated by '|'; "true" of a Boolean
+    bool is_built = true;                   ///< false: the key is an error in this version
+    std::string_view unbuilt_choices = {};  ///< values not built yet, separated by '|'; "true" for a Boolean
 };
 
 inline constexpr std::string_view kRequired = "required";
 
-/// All keys, each after its parent, in the order of documents.
+/// All keys, each after its parent, in the order of docs/scene.md.
 const std::vector<SceneKey>& scene_keys();
 
 /// The key called `name` ("pin[].release"), or null. The root is "".
@@ -62,7 +63,7 @@ const SceneKey* find_scene_key(std::string_view name);
 /// The keys directly below `parent` ("" the root, "cloth", "pin[]").
 std::vector<const SceneKey*> child_keys(std::string_view parent);
 
-/// Their last components, "a, b, c", for a person who looks for one.
+/// Last components of the keys below `parent`, as "a, b, c", for error messages.
 std::string child_names(std::string_view parent);
 
 /// Last component: "release" of "pin[].release".
@@ -77,11 +78,11 @@ std::vector<std::string_view> split_choices(std::string_view choices);
 /// Whether `text` is [A-Za-z_][A-Za-z0-9_]{0,63}.
 bool is_scene_name(std::string_view text);
 
-/// What is allowed, in words: "a number > 0, <= 1e+06 (s)".
+/// Description of the allowed values: "a number > 0 and <= 1000000 (s)".
 std::string allowed_values(const SceneKey& key);
 
-/// The key a person who wrote `leaf` below `parent` probably meant, by edit distance among its siblings, else
-/// a key of that very name elsewhere; "" where nothing is near.
+/// Suggestion for the unknown key `leaf` below `parent`: the nearest key below `parent` by edit distance,
+/// else a key elsewhere whose last component is `leaf`; "" if there is neither.
 std::string closest_key(std::string_view parent, std::string_view leaf);
 
 /// Restricted Damerau-Levenshtein distance (insert, delete, replace, swap of neighbours) in bytes.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a scene file to a RunConfig, in the order in which mistakes are cheapest to find: each key by itself
-// (scene_values), rules between keys (scene_rules), how large the run would be (scene_estimate), and only
-// then the cloth, what pins, pulls and probes meet of it, and the obstacles.
+// Turns a scene file into a RunConfig. Cheap checks come first: each key by itself (scene_values), rules
+// between keys (scene_rules), the size of the run (scene_estimate). The cloth, its pins, pulls and probes,
+// and the obstacles follow.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// ---- JSON to plain types
+// ---- from JSON to the types of the solver
 
 RigidMotion to_pin_motion(const Json& pin)
 {
@@ -46,7 +46,7 @@ RigidMotion to_pin_motion(const Json& pin)
     return motion;
 }
 
-/// Index of the obstacle called `name`, which is there.
+/// Index of the obstacle called `name`, which must exist.
 int find_obstacle(const Json& obstacles, const Json& name)
 {
     int index = 0;
@@ -107,7 +107,7 @@ Settings to_settings(const Json& json)
     return settings;
 }
 
-// ---- how large
+// ---- size of the run
 
 [[noreturn]] void refuse_estimate(const SceneDocument& document, const std::string& key, double count,
                                   const std::string& what, double most)
@@ -126,7 +126,7 @@ void check_size(const SceneDocument& document, const RunConfig& config, SceneEst
         document.fail(cloth_key, excess->wrong, excess->allowed);
 }
 
-/// Jumps of the input, with those of obstacles that are not in the scene yet.
+/// Times at which the input jumps, including those of obstacles that are not yet in the scene.
 std::vector<double> all_jumps(const Scene& scene, const std::vector<ObstaclePlan>& plans)
 {
     std::vector<double> times = input_jumps(scene);
@@ -142,7 +142,7 @@ void check_length(const SceneDocument& document, const RunConfig& config,
                   const std::vector<ObstaclePlan>& plans)
 {
     SceneEstimate estimate;
-    // The key a person would change: the one that was written.
+    // Report the key if it is written, since that is what the user would change; else the duration.
     const auto written = [&](const std::string& key) { return document.find(key) ? key : "duration"; };
     const double fps = config.output.frames_per_second, step = config.settings.step;
     estimate.frames = count_frames(config.duration, fps);
@@ -174,7 +174,7 @@ ClothGrid to_grid(const Json& cloth)
     return grid;
 }
 
-/// Runs `build`; what it finds wrong with its input is the fault of `key`.
+/// Runs `build` and reports an InputError of it as an error of `key`.
 template <typename Build>
 auto blame(const SceneDocument& document, const std::string& key, const Build& build)
 {
@@ -233,7 +233,7 @@ ClothMesh make_cloth(const SceneDocument& document, RunConfig& config)
     return mesh;
 }
 
-// ---- what meets the cloth
+// ---- pins, pulls, probes and obstacles against the cloth
 
 [[noreturn]] void refuse_miss(const SceneDocument& document, const std::string& key, const ClothMesh& cloth,
                               std::string_view wrong)
@@ -249,7 +249,7 @@ ClothMesh make_cloth(const SceneDocument& document, RunConfig& config)
                     least.x(), least.y(), greatest.x(), greatest.y()));
 }
 
-/// Keyframes that have the cloth elsewhere at time 0 than where it is placed.
+/// Warns of keyframes that move the cloth from its placement at time 0.
 void warn_of_first_keyframes(const SceneDocument& document, RunConfig& config)
 {
     const double tolerance = 1e-12 * (1.0 + material_size(config.cloth.material));
@@ -266,7 +266,7 @@ void warn_of_first_keyframes(const SceneDocument& document, RunConfig& config)
         }
         if (moved > 0)
             config.warnings.push_back(
-                fmt::format("{}: moves {} vertices from where the cloth is placed, at time 0",
+                fmt::format("{}: moves {} vertices from their initial placement at time 0",
                             document.describe(fmt::format("pin.{}.keyframes", i)), moved));
     }
 }
@@ -288,13 +288,13 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
     }
     for (std::size_t i = 0; i < config.scene.pulls.size(); ++i)
         if (spread_over_box(cloth, config.scene.pulls[i].material).empty())
-            refuse_miss(document, fmt::format("pull.{}.material", i), cloth, "meets no cloth");
+            refuse_miss(document, fmt::format("pull.{}.material", i), cloth, "contains no cloth");
     for (std::size_t i = 0; i < config.probes.size(); ++i)
         if (locate(cloth, config.probes[i].material).face < 0)
-            refuse_miss(document, fmt::format("probe.{}.material", i), cloth, "meets no cloth");
+            refuse_miss(document, fmt::format("probe.{}.material", i), cloth, "is not on the cloth");
 }
 
-/// How the cloth stands to the obstacles at time 0.
+/// Checks that the cloth starts clear of the obstacles, and moves it out to its stand-off.
 void check_start(const SceneDocument& document, const LoadOptions& options, const StrainRange& placed,
                  RunConfig& config)
 {

@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kFarthest = 1e6;  // m: as for every length of a scene
+constexpr double kFarthest = 1e6;  // m, the bound of every length of a scene
 
 RigidMotion to_motion(const Json& obstacle)
 {
@@ -72,7 +72,7 @@ ObstacleMesh to_teeth(const Json& teeth)
                        to_double(teeth["width"]), to_double(teeth["tip_degrees"])});
 }
 
-/// The key that gives an obstacle its shape.
+/// The key that defines the obstacle's shape.
 std::string shape_of(const Json& obstacle)
 {
     for (const char* shape : {"file", "box", "points", "wire"})
@@ -95,7 +95,7 @@ ObstacleMesh make_mesh(const SceneDocument& document, const LoadOptions& options
     }
 }
 
-/// `scale` times the mesh about its origin; round-off must not make of a small thing none.
+/// Scales the mesh about its origin. Refuses a mesh that rounding has made degenerate.
 void scale_mesh(const SceneDocument& document, const std::string& path, const std::string& shape_key,
                 double scale, ObstacleMesh& mesh)
 {
@@ -108,10 +108,10 @@ void scale_mesh(const SceneDocument& document, const std::string& path, const st
                           "a smaller scale");
     }
     if (const std::string defect = validate(mesh); !defect.empty())
-        document.fail(key, fmt::format("leaves no sound obstacle: {}", defect));
+        document.fail(key, fmt::format("makes the obstacle invalid: {}", defect));
 }
 
-/// The mesh that the run stored of the obstacle `plan`, the `index`-th.
+/// The mesh that the run has stored for the `index`-th obstacle, `plan`.
 ObstacleMesh stored_mesh(const SceneDocument& document, const LoadOptions& options, std::size_t index,
                          const ObstaclePlan& plan)
 {
@@ -140,15 +140,16 @@ void check_sizes(const SceneDocument& document, const RunConfig& config)
         document.fail("obstacle", excess->wrong, excess->allowed);
 }
 
-/// What to do about a cloth that starts in obstacle `i`.
+/// Advice for a cloth that starts in obstacle `i`.
 std::string remedy(const RunConfig& config, std::size_t i)
 {
     const auto is_from_file = [](const nlohmann::ordered_json& json) { return json.contains("file"); };
     const bool has_units = is_from_file(config.as_run["obstacle"][i]) || is_from_file(config.as_run["cloth"]);
     return fmt::format(
-        "move one of them ('translate') until they are at least {:g} m apart, the cloth's thickness{}",
+        "move the cloth or the obstacle ('translate') until they are at least {:g} m apart, the cloth's "
+        "thickness{}",
         config.scene.material.thickness,
-        has_units ? "; a file in other units than metres needs 'units', or 'up'" : "");
+        has_units ? "; a file that is not in metres with z up needs 'units' or 'up'" : "");
 }
 
 }  // namespace
@@ -169,8 +170,8 @@ std::vector<ObstaclePlan> plan_obstacles(const Json& scene)
     return plans;
 }
 
-/// A step sees only where an obstacle is at its ends: one that turns by more than a quarter between them
-/// would sweep past cloth unseen.
+/// Limits the rotation per step: contact search uses an obstacle's placement only at the ends of a step, and
+/// a faster rotation could miss cloth in between.
 void check_turn(const SceneDocument& document, const std::string& path, const Json& json, double step,
                 const RigidMotion& motion)
 {
@@ -178,8 +179,8 @@ void check_turn(const SceneDocument& document, const std::string& path, const Js
     const double turn = motion.fastest_turn() * step;
     if (!(turn > kMostTurn * (1.0 + 1e-9))) return;
     document.fail(path + (json.contains("keyframes") ? ".keyframes" : ".motion"),
-                  fmt::format("turns by {:.3g} rad in a step of {} s", turn, step),
-                  "at most a quarter turn (1.57 rad) in a step; a shorter time.step allows more");
+                  fmt::format("rotates by {:.3g} rad in a step of {} s", turn, step),
+                  "at most a quarter turn (1.57 rad) per step; a shorter time.step allows faster rotation");
 }
 
 void load_obstacles(const SceneDocument& document, const LoadOptions& options,
@@ -216,8 +217,7 @@ std::vector<std::string> find_intersections(const SceneDocument& document, const
             depth > 0.0 ? fmt::format("reaches {:.3g} m deep into", depth) : std::string("intersects");
         lines.push_back(fmt::format(
             "{}: at time 0 the cloth {} {}, at [{:.6g}, {:.6g}, {:.6g}] (m); allowed: cloth that starts "
-            "clear of "
-            "every obstacle: {}",
+            "clear of every obstacle; {}",
             document.describe(fmt::format("obstacle.{}", i)), how, config.scene.obstacles[i].name(),
             place.x(), place.y(), place.z(), remedy(config, i)));
     }
@@ -230,13 +230,14 @@ void keep_stand_off(const StrainRange& placed, RunConfig& config)
     if (moved == 0) return;
     const double thickness = config.scene.material.thickness;
     std::string line = fmt::format(
-        "the cloth starts nearer to obstacles than its thickness, {:g} m: {} of its vertices moved out to it",
+        "the cloth starts nearer to obstacles than its thickness, {:g} m: {} vertices are moved out to that "
+        "distance",
         thickness, moved);
     const StrainRange strain = measure_strain(config.cloth);
     if (strain.is_surprising() && !placed.is_surprising())
         line += fmt::format(
-            ", which strains it {}, its edges being {:.3g} m in the mean: make "
-            "cloth.material.thickness less, or start the cloth farther away ('translate')",
+            "; the cloth is then strained {} (mean edge {:.3g} m): reduce cloth.material.thickness, or start "
+            "the cloth farther away ('translate')",
             in_words(strain),
             measure_edges(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces)).mean);
     config.warnings.push_back(line);

@@ -11,29 +11,29 @@
 
 namespace arris {
 
-/// An obstacle but for its mesh: what is known before any file is read.
+/// An obstacle without its mesh: what the scene file alone determines.
 struct ObstaclePlan {
     std::string name;
-    Placement placement;  ///< of its frame, before `motion`
+    Placement placement;  ///< of the obstacle's frame, before `motion`
     RigidMotion motion;
     double feature_angle = 0.0;  ///< degrees
 };
 
-/// The obstacles of a scene that apply_scene_rules has settled, in their order.
+/// The obstacles of a scene after apply_scene_rules, in their order.
 std::vector<ObstaclePlan> plan_obstacles(const nlohmann::ordered_json& scene);
 
-/// Reads or makes the meshes of `config.as_run` (those of `options.obstacles` where these are given) and
-/// fills `config.scene.obstacles`, `config.obstacle_placements` and, with what was repaired,
+/// Reads or makes the meshes of the obstacles in `config.as_run`, or takes them from `options.obstacles` if
+/// given. Fills `config.scene.obstacles` and `config.obstacle_placements`, and adds repairs to
 /// `config.warnings`. Throws InputError naming the key.
 void load_obstacles(const SceneDocument& document, const LoadOptions& options,
                     std::vector<ObstaclePlan> plans, RunConfig& config);
 
-/// One line for each obstacle that the cloth, as pins have it at time 0, intersects: which, how deep and
-/// where.
+/// One line for each obstacle that the cloth intersects at time 0, with pins applied: its name, the depth and
+/// the place.
 std::vector<std::string> find_intersections(const SceneDocument& document, const RunConfig& config);
 
-/// Moves cloth that is clear of the obstacles but nearer than its thickness out to it, with a warning that
-/// counts, and that says what it strains a cloth by which is not so strained where it is `placed`.
+/// Moves vertices that are nearer to an obstacle than the thickness out to that distance. Adds a warning with
+/// their number, and with the resulting strain if that is large and the strain as `placed` is not.
 void keep_stand_off(const StrainRange& placed, RunConfig& config);
 
 }  // namespace arris

@@ -34,13 +34,13 @@ void fill_material(Json& material)
     fill("bending_stiffness", preset.bending_stiffness);
 }
 
-/// A cloth is a rectangle or a file.
+/// Requires either the keys of a rectangle or cloth.file.
 void settle_cloth_source(const SceneDocument& document, Json& cloth)
 {
     if (!cloth.contains("file")) {
         for (const std::string key : {"cloth.size", "cloth.resolution"})
             if (!document.find(key))
-                document.fail(key, "is required and missing (or else cloth.file)",
+                document.fail(key, "is required and missing, as there is no cloth.file",
                               allowed_values(*find_scene_key(key)));
         cloth.erase("units");
         cloth.erase("up");
@@ -54,7 +54,7 @@ void settle_cloth_source(const SceneDocument& document, Json& cloth)
     }
 }
 
-/// `chosen` stands in the place of `others`, which may not be written beside it.
+/// `chosen` excludes `others`: refuses them where written, else removes their defaults.
 void settle_choice(const SceneDocument& document, const std::string& path, const std::string& chosen,
                    std::initializer_list<const char*> others, std::string_view allowed, Json& table)
 {
@@ -71,12 +71,12 @@ void check_keyframes(const SceneDocument& document, const std::string& path, con
     for (std::size_t i = 1; i < keyframes.size(); ++i) {
         const double before = keyframes[i - 1]["time"].get<double>();
         if (!(keyframes[i]["time"].get<double>() > before))
-            document.fail(fmt::format("{}.{}.time", path, i), "is not later than the keyframe before",
+            document.fail(fmt::format("{}.{}.time", path, i), "is not later than the previous keyframe",
                           fmt::format("a number > {} (s)", before));
     }
 }
 
-/// A pin follows an obstacle of the scene.
+/// Refuses a pin that follows an unknown obstacle.
 void check_followed(const SceneDocument& document, const std::string& key, const Json& pin, const Json& scene)
 {
     std::string names;
@@ -86,12 +86,12 @@ void check_followed(const SceneDocument& document, const std::string& key, const
             names += (names.empty() ? "" : ", ") + obstacle["name"].get<std::string>();
         }
     }
-    document.fail(key, "is no obstacle",
+    document.fail(key, "is not an obstacle",
                   names.empty() ? "the name of an [[obstacle]]; this scene has none"
                                 : "the name of an obstacle: " + names);
 }
 
-/// A pin moves by velocities, by keyframes, or with an obstacle.
+/// Requires one way of moving a pin: velocities, keyframes, or an obstacle to follow.
 void settle_pin_motion(const SceneDocument& document, const std::string& path, const Json& scene, Json& pin)
 {
     if (pin.contains("follow")) {
@@ -106,7 +106,7 @@ void settle_pin_motion(const SceneDocument& document, const std::string& path, c
     }
 }
 
-/// An obstacle has one shape; keys of the other shapes have no value.
+/// Requires exactly one shape, and removes the keys that only other shapes have.
 void settle_shape(const SceneDocument& document, const std::string& path, Json& obstacle)
 {
     constexpr std::string_view kAllowed = "one of file, box, points, wire, teeth";
@@ -143,13 +143,13 @@ void settle_obstacle_motion(const SceneDocument& document, const std::string& pa
 
 void settle_obstacles(const SceneDocument& document, Json& obstacles)
 {
-    // Each costs a pass over the cloth a step.
+    // Each obstacle costs one pass over the cloth per step.
     constexpr std::size_t kMostObstacles = 1000;
     if (obstacles.size() > kMostObstacles)
         document.fail(
             fmt::format("obstacle.{}", kMostObstacles),
             fmt::format("is one of {} obstacles", obstacles.size()),
-            fmt::format("at most {}; one file, or one list of points, may hold many things", kMostObstacles));
+            fmt::format("at most {}; one file or one list of points may hold many objects", kMostObstacles));
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const std::string path = fmt::format("obstacle.{}", i);
         if (obstacles[i]["name"].is_null()) obstacles[i]["name"] = fmt::format("obstacle{}", i);
@@ -166,7 +166,7 @@ void check_pull_times(const SceneDocument& document, const std::string& path, co
                   fmt::format("a number > {} (s)", start));
 }
 
-/// Names of obstacles and probes are unique, and none is the cloth's.
+/// Requires unique names of obstacles and probes, none of them "cloth".
 void check_names(const SceneDocument& document, const Json& scene)
 {
     std::map<std::string, std::string> seen = {{"cloth", "the cloth"}};
@@ -178,11 +178,10 @@ void check_names(const SceneDocument& document, const Json& scene)
             const auto [other, is_new] = seen.emplace(name, path);
             if (is_new) continue;
             const bool is_default = document.find(path + ".name") == nullptr;
-            document.fail(
-                path + ".name",
-                fmt::format("{}is the name of {} already",
-                            is_default ? fmt::format("its default, {}, ", name) : "", other->second),
-                "a name of its own, not cloth");
+            document.fail(path + ".name",
+                          fmt::format("{}is already the name of {}",
+                                      is_default ? fmt::format("the default {} ", name) : "", other->second),
+                          "a unique name other than cloth");
         }
     }
 }

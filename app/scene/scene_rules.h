@@ -7,9 +7,9 @@
 
 namespace arris {
 
-/// The rules between keys, for a scene that complete_scene returned: fills in the defaults that depend on
-/// other keys (title, material, obstacles' names), refuses keys that contradict each other, and removes those
-/// that the others exclude (a cloth file's `pattern`). Throws InputError.
+/// Applies the rules between keys to a scene from complete_scene: fills in defaults that depend on other keys
+/// (title, material, names of obstacles), refuses keys that contradict each other, and removes keys that
+/// others exclude (`pattern` beside a cloth file). Throws InputError.
 void apply_scene_rules(const SceneDocument& document, nlohmann::ordered_json& scene);
 
 }  // namespace arris

@@ -21,7 +21,7 @@ std::string join(std::string_view path, std::string_view leaf)
     return path.empty() ? std::string(leaf) : fmt::format("{}.{}", path, leaf);
 }
 
-/// One value being checked against its key; `path` is where it stands, "pin.0.release".
+/// Checks one value against its key. `path` is the value's position in the scene, such as "pin.0.release".
 struct Check {
     const SceneDocument& document;
     const SceneKey& key;
@@ -64,7 +64,7 @@ struct Check {
         return value.items;
     }
 
-    /// An array of arrays. `example`: one that is right.
+    /// Requires an array of arrays. `example` is a correct value for the error message.
     const std::vector<SceneValue>& points(const SceneValue& value, std::string_view example) const
     {
         const auto is_array = [](const SceneValue& item) { return item.kind == Kind::Array; };
@@ -111,8 +111,8 @@ Json complete_choice(const Check& check, const SceneValue& value)
         check.fail(fmt::format("\"{}\" is not built yet in this version", value.text));
     if (!is_one_of(check.key.choices))
         check.fail(check.key.type == KeyType::Choice
-                       ? std::string("is none of the choices")
-                       : fmt::format("\"{}\" is none of the choices", printable(value.text, 60)));
+                       ? std::string("is not one of the choices")
+                       : fmt::format("\"{}\" is not one of the choices", printable(value.text, 60)));
     return value.text;
 }
 
@@ -130,7 +130,7 @@ Json complete_choices(const Check& check, const SceneValue& value)
 
 Json complete_axis(const Check& check, const SceneValue& value)
 {
-    constexpr double kShortestAxis = 1e-9;  // so that its direction survives squaring
+    constexpr double kShortestAxis = 1e-9;  // shorter vectors would lose their direction when squared
     Json result = check.point(value, check.key.count);
     const bool is_short = std::all_of(result.begin(), result.end(), [](const Json& component) {
         return std::abs(component.get<double>()) < kShortestAxis;
@@ -139,7 +139,7 @@ Json complete_axis(const Check& check, const SceneValue& value)
     return result;
 }
 
-/// A box or a line as it could be written; of a point that was meant as a box, the box.
+/// A correct box or line for the error message. Where a single point was written, the box of that point.
 std::string example_corners(const Check& check, const SceneValue& value)
 {
     if (check.key.type == KeyType::Line) return "[[0.5, 0], [0.5, 1]]";
@@ -239,7 +239,7 @@ Json complete_value(const Check& check, const SceneValue& value)
     return {};
 }
 
-/// A default: JSON, or null where it depends on other keys.
+/// The default of a key; null if it depends on other keys.
 Json default_value(const SceneDocument& document, const SceneKey& key, const std::string& path)
 {
     if (key.fallback == "{}") return complete_table(document, nullptr, key.name, path);
@@ -259,7 +259,7 @@ void refuse_unknown_keys(const SceneDocument& document, const SceneValue& table,
     }
 }
 
-/// `value` null: a table that is always there, and that nobody wrote.
+/// `value` is null for a table that always exists and is not written.
 Json complete_table(const SceneDocument& document, const SceneValue* value, std::string_view name,
                     const std::string& path)
 {

@@ -7,9 +7,9 @@
 
 namespace arris {
 
-/// The scene with every default written out, in the order of the table of keys: each value of `document`
-/// checked by itself (known, built, of the right type, finite, in range), each absent one filled in. What
-/// depends on several keys is load_scene's: there a default "(words)" stands as null, as does "never". Throws
+/// The scene with every default filled in, in the order of the table of keys. Each value of `document` is
+/// checked by itself: known, built, of the right type, finite, in range. Rules between keys are left to
+/// apply_scene_rules: a default that depends on other keys is null here, and so is a time "never". Throws
 /// InputError.
 nlohmann::ordered_json complete_scene(const SceneDocument& document);
 

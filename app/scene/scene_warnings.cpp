@@ -34,13 +34,13 @@ class Warnings {
             lines_.push_back(fmt::format("{}: has no effect: {}", document_.describe(key), why));
     }
 
-    /// `key` does what it says, and something surprising follows from it.
+    /// For a key that takes effect, but with a surprising result.
     void note(const std::string& key, const std::string& what)
     {
         lines_.push_back(fmt::format("{}: {}", document_.describe(key), what));
     }
 
-    /// Of the scene as a whole.
+    /// For the scene as a whole.
     void note(const std::string& what)
     {
         lines_.push_back(fmt::format("{}: {}", printable(document_.path()), what));
@@ -52,7 +52,7 @@ class Warnings {
     const SceneDocument& document_;
 };
 
-// Inputs, not results: a value that was written as 0 is exactly 0.
+// An exact test suffices: these are values of the scene file, where 0 is written as 0.
 bool is_zero(double value)
 {
     return !(value < 0.0) && !(value > 0.0);
@@ -76,21 +76,21 @@ void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings
     const bool overrides_all = std::all_of(kPresetKeys.begin(), kPresetKeys.end(), [&](const char* key) {
         return warnings.is_written(std::string("cloth.material.") + key);
     });
-    if (overrides_all) warnings.add("cloth.material.preset", "all its values are overridden");
+    if (overrides_all) warnings.add("cloth.material.preset", "keys override all values of the preset");
     constexpr double kStiffest = 1e6;  // N/m: ten times what sailcloth has
     if (material.youngs_modulus > kStiffest && warnings.is_written("cloth.material.youngs_modulus"))
         warnings.note("cloth.material.youngs_modulus",
-                      "is in N/m, a modulus in Pa times the cloth's own thickness in m");
+                      "exceeds that of any cloth: the unit is N/m, a modulus in Pa times the cloth's "
+                      "physical thickness in m");
     if (material.bending_stiffness > 0.0 && topology.hinges.empty())
         warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
-    if (config.scene.obstacles.empty())
-        warnings.add("cloth.material.thickness", "there is no obstacle to keep away from");
+    if (config.scene.obstacles.empty()) warnings.add("cloth.material.thickness", "the scene has no obstacle");
 }
 
-/// A cloth that is no cloth's size is mostly one in other units.
+/// Warns of a cloth of implausible size, mostly because the unit is wrong.
 void check_cloth_size(const RunConfig& config, Warnings& warnings)
 {
-    constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m: of its longer side
+    constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m, longer side
     Eigen::AlignedBox2d material;
     for (const Vec2& X : config.cloth.material) material.extend(X);
     const Vec2 sides = material.sizes();
@@ -98,26 +98,26 @@ void check_cloth_size(const RunConfig& config, Warnings& warnings)
     const bool is_from_file = warnings.is_written("cloth.file");
     warnings.note(
         is_from_file ? "cloth.file" : "cloth.size",
-        fmt::format("the cloth is {:.4g} x {:.4g} m: {}", sides.x(), sides.y(),
-                    is_from_file
-                        ? "a file in other units than metres needs 'units', such as \"mm\"; UVs, where "
-                          "it has them, are in metres whatever its units"
-                        : "sizes are in metres"));
+        fmt::format(
+            "the cloth is {:.4g} x {:.4g} m: {}", sides.x(), sides.y(),
+            is_from_file
+                ? "a file that is not in metres needs 'units', such as \"mm\"; UVs are always in metres"
+                : "sizes are in metres"));
 }
 
 void check_wind(const RunConfig& config, Warnings& warnings)
 {
     if (config.scene.gravity && is_zero(config.scene.gravity->acceleration))
-        warnings.add("gravity.acceleration", "it is zero");
+        warnings.add("gravity.acceleration", "the acceleration is zero");
     if (!config.scene.wind) return;
     const Wind& wind = *config.scene.wind;
     if (is_zero(wind.drag) || is_zero(wind.air_density))
-        warnings.add("wind", is_zero(wind.drag) ? "its drag is zero" : "its air_density is zero");
+        warnings.add("wind", is_zero(wind.drag) ? "wind.drag is zero" : "wind.air_density is zero");
     if (!wind.gust) return;
     if (is_zero(wind.velocity))
         warnings.add("wind.gust", "the wind's velocity is zero");
     else if (is_zero(wind.gust->amplitude))
-        warnings.add("wind.gust", "its amplitude is zero");
+        warnings.add("wind.gust", "the amplitude is zero");
 }
 
 void check_pulls(const RunConfig& config, Warnings& warnings)
@@ -125,11 +125,11 @@ void check_pulls(const RunConfig& config, Warnings& warnings)
     for (std::size_t i = 0; i < config.scene.pulls.size(); ++i) {
         const Pull& pull = config.scene.pulls[i];
         const std::string path = fmt::format("pull.{}", i);
-        if (is_zero(pull.force)) warnings.add(path + ".force", "it is zero");
+        if (is_zero(pull.force)) warnings.add(path + ".force", "the force is zero");
         if (pull.start >= config.duration)
             warnings.add(path + ".start", "the pull starts after the end of the run");
         else if (pull.stop >= config.duration)
-            warnings.add(path + ".stop", "the run ends before");
+            warnings.add(path + ".stop", "the run ends before that time");
     }
 }
 
@@ -138,14 +138,13 @@ void check_pin_motion(const RunConfig& config, const Pin& pin, const std::string
     for (int d = 0; d < 3; ++d)
         if (!pin.held[d] && !is_zero(pin.motion.velocity[d]))
             warnings.add(path + ".velocity", fmt::format("the pin does not hold {}", "xyz"[d]));
-    if (is_zero(pin.motion.angular_velocity))
-        warnings.add(path + ".pivot", "there is no angular_velocity about it");
-    // A keyframe counts as long as the one before it is in time.
+    if (is_zero(pin.motion.angular_velocity)) warnings.add(path + ".pivot", "there is no angular_velocity");
+    // A keyframe has an effect if the previous one precedes the end: the pin then moves towards it.
     const auto& keyframes = pin.motion.keyframes;
     for (std::size_t k = 1; k < keyframes.size(); ++k)
         if (keyframes[k - 1].time >= std::min(config.duration, pin.release))
             warnings.add(fmt::format("{}.keyframes.{}.time", path, k),
-                         "the one before is at the end of the run already");
+                         "the previous keyframe is not before the end of the run or the release");
 }
 
 bool is_moving(const Scene& scene, const Pin& pin)
@@ -158,23 +157,23 @@ void check_obstacle_motion(const RunConfig& config, const RigidMotion& motion, c
                            Warnings& warnings)
 {
     if (is_zero(motion.velocity) && is_zero(motion.angular_velocity))
-        warnings.add(path + ".motion", "it has no velocity");
+        warnings.add(path + ".motion", "the motion has no velocity");
     else if (is_zero(motion.angular_velocity))
-        warnings.add(path + ".motion.pivot", "there is no angular_velocity about it");
+        warnings.add(path + ".motion.pivot", "there is no angular_velocity");
     if (motion.start >= config.duration)
-        warnings.add(path + ".motion.start", "it starts after the end of the run");
+        warnings.add(path + ".motion.start", "the motion starts after the end of the run");
     else if (motion.stop >= config.duration)
-        warnings.add(path + ".motion.stop", "the run ends before");
+        warnings.add(path + ".motion.stop", "the run ends before that time");
     for (std::size_t k = 1; k < motion.keyframes.size(); ++k)
         if (motion.keyframes[k - 1].time >= config.duration)
             warnings.add(fmt::format("{}.keyframes.{}.time", path, k),
-                         "the one before is at the end of the run already");
+                         "the previous keyframe is not before the end of the run");
 }
 
-/// A file without units that is far larger or smaller than the cloth is mostly one in other units.
+/// Warns of a file without units that is far larger or smaller than the cloth: mostly it is not in metres.
 void check_units(const RunConfig& config, std::size_t i, Warnings& warnings)
 {
-    constexpr double kSurprising = 100.0;  // millimetres are a thousand
+    constexpr double kSurprising = 100.0;  // a file in millimetres is 1000 times too large
     const auto& json = config.as_run["obstacle"][i];
     if (!json.contains("file") || !json["units"].is_null()) return;
     const Obstacle& obstacle = config.scene.obstacles[i];
@@ -182,14 +181,13 @@ void check_units(const RunConfig& config, std::size_t i, Warnings& warnings)
     for (const Vec3& x : config.cloth.world) around_cloth.extend(x);
     const double size = obstacle.bounds().diagonal().norm(), cloth = around_cloth.diagonal().norm();
     if (size < kSurprising * cloth && cloth < kSurprising * size) return;
-    warnings.note(
-        fmt::format("obstacle.{}.file", i),
-        fmt::format("is {:.3g} m in size and the cloth {:.3g} m: 'units' or 'scale' say so where the "
-                    "file is not in metres",
-                    size, cloth));
+    warnings.note(fmt::format("obstacle.{}.file", i),
+                  fmt::format("the obstacle is {:.3g} m in size and the cloth {:.3g} m: a file that is not "
+                              "in metres needs 'units' or 'scale'",
+                              size, cloth));
 }
 
-/// A surface that closes but for a hole looks solid, and is none.
+/// Warns of a surface that is closed except for a hole: it looks solid, but is a sheet.
 void check_inside(const RunConfig& config, std::size_t i, Warnings& warnings)
 {
     const auto& json = config.as_run["obstacle"][i];
@@ -205,8 +203,8 @@ void check_inside(const RunConfig& config, std::size_t i, Warnings& warnings)
     const std::string which = count == 1 ? "a surface" : fmt::format("each of {} surfaces", count);
     warnings.note(
         fmt::format("obstacle.{}.file", i),
-        fmt::format("{} closes but for a hole ({} border edges{}) and so is a sheet that has no inside: "
-                    "cloth may come in by the hole; close the mesh where a solid is meant",
+        fmt::format("{} is closed except for a hole ({} border edges{}), and so is a sheet without an "
+                    "inside: cloth may enter through the hole; if a solid is meant, close the mesh",
                     which, border_edges, count == 1 ? "" : " in all"));
 }
 
@@ -220,7 +218,7 @@ void check_obstacles(const RunConfig& config, Warnings& warnings)
             warnings.add(path + ".units", "the obstacle is not from a file");
             warnings.add(path + ".up", "the obstacle is not from a file");
         }
-        if (!json.contains("wire")) warnings.add(path + ".closed", "the obstacle is no wire");
+        if (!json.contains("wire")) warnings.add(path + ".closed", "the obstacle is not a wire");
         if (obstacle.mesh().faces.empty()) warnings.add(path + ".feature_angle", "the obstacle has no faces");
         check_units(config, i, warnings);
         check_inside(config, i, warnings);
@@ -232,7 +230,7 @@ void check_obstacles(const RunConfig& config, Warnings& warnings)
 
 void check_pins(const RunConfig& config, Warnings& warnings)
 {
-    // Which pin held a vertex's direction last: where pins overlap, the last one moves it.
+    // The last pin so far that holds a component of a vertex. Where pins overlap, the last one moves it.
     std::map<std::pair<int, int>, std::size_t> holder;
     for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
         const Pin& pin = config.scene.pins[i];
@@ -241,7 +239,7 @@ void check_pins(const RunConfig& config, Warnings& warnings)
         if (is_zero(pin.release))
             warnings.add(path + ".release", "the pin is released before it holds anything");
         else if (pin.release >= config.duration)
-            warnings.add(path + ".release", "the run ends before");
+            warnings.add(path + ".release", "the run ends before that time");
 
         std::map<std::size_t, int> shared;
         for (const int v : vertices_in_box(config.cloth, pin.material))
@@ -256,7 +254,7 @@ void check_pins(const RunConfig& config, Warnings& warnings)
                 warnings.note(
                     path + ".material",
                     fmt::format(
-                        "holds {} vertex directions that pin.{} holds too; there pin.{} alone decides", count,
+                        "holds {} position components that pin.{} also holds; pin.{} alone moves them", count,
                         other, i));
     }
 }
@@ -265,26 +263,24 @@ void check_time(const RunConfig& config, Warnings& warnings)
 {
     const double fps = config.output.frames_per_second;
     if (is_zero(fps) && !config.output.formats.empty())
-        warnings.add("output.formats", "with frames_per_second = 0 there are no frames to make them from");
+        warnings.add("output.formats", "with frames_per_second = 0 there are no frames to export");
     const double longest = fps > 0.0 ? std::min(config.duration, 1.0 / fps) : config.duration;
     if (config.settings.step > longest * (1.0 + 1e-9))
-        warnings.note("time.step",
-                      fmt::format("acts as {:.6g} s: steps end on frames and on the duration", longest));
+        warnings.note(
+            "time.step",
+            fmt::format("is shortened to {:.6g} s: steps end at frames and at the duration", longest));
 }
 
-/// Greatest angle between neighbours that slerp can mean; what was written as more turns the other way, or
-/// not at all.
+/// Warns of neighbouring keyframes more than 180 degrees apart: slerp takes the shorter arc instead.
 void check_turns(const std::string& key, const nlohmann::ordered_json& keyframes, Warnings& warnings)
 {
     for (std::size_t k = 1; k < keyframes.size(); ++k) {
         const auto &from = keyframes[k - 1]["rotate"], &to = keyframes[k]["rotate"];
         const double turn = to["degrees"].get<double>() - from["degrees"].get<double>();
         if (from["axis"] != to["axis"] || !(std::abs(turn) > 180.0)) continue;
-        warnings.note(
-            key,
-            fmt::format("turns by {:.6g} degrees from {} to {}: it takes the shorter arc; write keyframes "
-                        "at most 180 degrees apart",
-                        turn, k - 1, k));
+        warnings.note(key, fmt::format("rotates by {:.6g} degrees from keyframe {} to {}, but rotations take "
+                                       "the shorter arc; write keyframes at most 180 degrees apart",
+                                       turn, k - 1, k));
     }
 }
 
@@ -299,17 +295,16 @@ void check_turns(const RunConfig& config, Warnings& warnings)
     }
 }
 
-/// A cloth that is placed far from its material's size is mostly one whose UVs are not in metres.
+/// Warns of a cloth that starts strongly strained, mostly because its UVs are not in metres.
 void check_strain(const StrainRange& placed, Warnings& warnings)
 {
     if (placed.is_surprising())
-        warnings.note("cloth",
-                      fmt::format("starts strained, {}: material coordinates are metres, and the cloth "
-                                  "will pull itself to their size",
-                                  in_words(placed)));
+        warnings.note("cloth", fmt::format("starts strained, {}: material coordinates are in metres, and the "
+                                           "cloth will contract or expand to their size",
+                                           in_words(placed)));
 }
 
-/// Faces that surgery hardly puts a feature's vertex into: it moves none where that would leave such.
+/// Warns of thin faces. Mesh surgery refuses operations that leave thin faces, so few EOL vertices fit in.
 void check_angles(const RunConfig& config, Warnings& warnings)
 {
     constexpr double kThin = 5.0;  // degrees
@@ -329,15 +324,15 @@ void check_angles(const RunConfig& config, Warnings& warnings)
     warnings.note(
         is_from_file ? "cloth.file" : "cloth.resolution",
         fmt::format(
-            "{} of {} faces have an angle below {:g} degrees, the least {:.2g} at [{:.6g}, {:.6g}] of the "
-            "material: sharp features hardly find a place for vertices in faces so thin; {}",
+            "{} of {} faces have an angle below {:g} degrees, the least {:.2g} degrees at [{:.6g}, {:.6g}] "
+            "(material): EOL vertices can hardly be placed in such thin faces; {}",
             thin, cloth.face_count(), kThin, least, X.x(), X.y(),
-            is_from_file ? "mesh the file anew with more even faces"
-                         : "cells with more even sides, or folds and a pattern_angle that cut off no "
-                           "slivers, have none"));
+            is_from_file
+                ? "remesh the file with more even faces"
+                : "use cells with more even sides, or folds and a pattern_angle that cut off no slivers"));
 }
 
-/// A stand-off as large as the cloth's cells is mostly one in other units.
+/// Warns of a thickness above the mean edge, mostly because the unit is wrong.
 void check_thickness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
 {
     if (config.scene.obstacles.empty()) return;
@@ -346,21 +341,22 @@ void check_thickness(const RunConfig& config, const MeshTopology& topology, Warn
     if (thickness > cell)
         warnings.note(
             "cloth.material.thickness",
-            fmt::format("is more than an edge of the cloth's mesh ({:.3g} m in the mean): it is the distance "
+            fmt::format("exceeds the mean edge of the cloth's mesh, {:.3g} m: the thickness is the distance "
                         "kept from obstacles, in metres, and should be well below that edge",
                         cell));
 }
 
-/// Where rows alone slide as well, EOL vertices cost time, and the bend that passes through them energy.
+/// Warns where the mesh resolves the bend of the cloth over a feature: EOL vertices then only cost time and
+/// energy.
 void check_bends(const RunConfig& config, Warnings& warnings)
 {
     if (!resolves_bends(config.scene, config.cloth)) return;
     const std::string stiffness = "cloth.material.bending_stiffness", preset = "cloth.material.preset";
     const double bending_stiffness = config.scene.material.bending_stiffness;
     const std::string what = fmt::format(
-        "edges of {:.3g} m in the mean resolve the bend that {:.3g} J make over a sharp feature: cloth "
-        "slides as well "
-        "without EOL vertices (eol.enabled = false), at less cost; see docs/accuracy.md, Stiff bends",
+        "the mean edge of {:.3g} m resolves the bend of cloth with a bending stiffness of {:.3g} J over a "
+        "sharp feature: without EOL vertices (eol.enabled = false) the cloth slides as well, at less cost; "
+        "see docs/accuracy.md, Stiff bends",
         config.scene.eol->mean_length, bending_stiffness);
     if (warnings.is_written(stiffness))
         warnings.note(stiffness, what);
@@ -374,8 +370,8 @@ void check_stillness(const RunConfig& config, const MeshTopology& topology, Warn
 {
     if (stays_still(config, topology))
         warnings.note(
-            "nothing moves the cloth: there is no [gravity], no wind or [[pull]] that acts, no pin or "
-            "obstacle that moves and no cloth.velocity, and it starts flat and unstrained");
+            "nothing moves the cloth: there is no [gravity], no acting wind or [[pull]], no moving pin or "
+            "obstacle and no cloth.velocity, and the cloth starts flat and unstrained");
 }
 
 }  // namespace

@@ -10,8 +10,9 @@
 
 namespace arris {
 
-/// One line for each key that is written, valid, and can have no effect in this scene, or one that surprises.
-/// `placed`: how the cloth is strained where the scene places it, before it keeps its stand-off.
+/// Warnings, one line each: written keys that are valid but have no effect in this scene, and keys with a
+/// surprising effect. `placed`: strain of the cloth as the scene places it, before it is moved out to its
+/// stand-off.
 std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config,
                                                const StrainRange& placed);
 

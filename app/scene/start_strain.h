@@ -7,11 +7,12 @@
 
 namespace arris {
 
-/// How far a cloth is from its material's size.
+/// Range of the initial strain of a cloth.
 struct StrainRange {
-    double least = 0.0, greatest = 0.0;  ///< principal stretches less 1, of any face; 0 between them
+    double least = 0.0,
+           greatest = 0.0;  ///< extremes of principal stretch - 1 over all faces; least <= 0 <= greatest
 
-    /// More than a tenth: more than was likely meant.
+    /// Whether a strain exceeds 10 %, which is probably a mistake in the scene.
     bool is_surprising() const;
 };
 

@@ -10,8 +10,8 @@
 namespace arris {
 namespace {
 
-constexpr double kUnstrained = 1e-5;  // what a file in single precision leaves in a cell of the cloth
-constexpr double kFlat = 1e-6;        // 1 - cosine of a hinge's angle: .08 degrees
+constexpr double kUnstrained = 1e-5;  // strain from rounding in a file in single precision
+constexpr double kFlat = 1e-6;        // 1 - cosine of a hinge's angle: 0.08 degrees
 
 bool is_nonzero(const Vec3& value)
 {
@@ -70,7 +70,7 @@ bool is_relaxed(const ClothMesh& cloth, const MeshTopology& topology)
 bool stays_still(const RunConfig& config, const MeshTopology& topology)
 {
     if (has_load(config) || has_moving_bodies(config) || is_nonzero(config.cloth_velocity)) return false;
-    // Pins may hold it elsewhere than it was put.
+    // Pins may move the cloth from its placement at time 0.
     const ClothMesh start = make_state(config.scene, config.cloth, config.cloth_velocity).mesh;
     return is_relaxed(start, topology);
 }

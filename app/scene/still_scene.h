@@ -6,8 +6,8 @@
 
 namespace arris {
 
-/// Whether nothing will ever move the cloth: no load acts, nothing that holds or meets it moves, it has no
-/// velocity, and it starts flat and unstrained.
+/// Whether nothing moves the cloth during the run: no load acts, no pin or obstacle moves, and the cloth
+/// starts flat, unstrained and without velocity.
 bool stays_still(const RunConfig& config, const MeshTopology& topology);
 
 }  // namespace arris

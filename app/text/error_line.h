@@ -6,8 +6,8 @@
 
 namespace arris {
 
-/// One line for a person: of an error of the file system the file and what is wrong, not the library's call
-/// that met it.
+/// The message of an error in one line. For an error of the file system: the file and the reason, without the
+/// name of the failed library call.
 std::string error_line(const std::exception& error);
 
 }  // namespace arris

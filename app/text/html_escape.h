@@ -6,9 +6,8 @@
 
 namespace arris {
 
-/// Text that an HTML parser takes for exactly this text, in an element or in a quoted attribute: markup
-/// characters become entities; control characters other than a line's end, which HTML has no way to write,
-/// become U+FFFD.
+/// Escapes `text` for an HTML element or a quoted attribute. Markup characters become entities. Control
+/// characters other than a line feed become U+FFFD, since HTML cannot represent them.
 std::string escape_html(std::string_view text);
 
 }  // namespace arris

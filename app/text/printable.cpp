@@ -10,7 +10,7 @@
 namespace arris {
 namespace {
 
-/// One character of UTF-8: its code point and length in bytes; length 0 where the bytes are not UTF-8.
+/// Code point and length in bytes of a UTF-8 character; length 0 if the bytes are not UTF-8.
 struct CodePoint {
     std::uint32_t value = 0;
     std::size_t length = 0;
@@ -28,7 +28,7 @@ CodePoint decode(std::string_view text)
         if ((byte(i) & 0xc0) != 0x80) return {};
         value = value << 6 | (byte(i) & 0x3fu);
     }
-    // Overlong forms, surrogates and what lies beyond Unicode.
+    // Reject overlong forms, surrogates and values beyond Unicode.
     constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
     const bool is_surrogate = value >= 0xd800 && value <= 0xdfff;
     if (value < kLeast[length] || value > 0x10ffff || is_surrogate) return {};

@@ -7,14 +7,14 @@
 
 namespace arris {
 
-/// `text` fit for one line of a terminal: control characters, line and paragraph separators and marks that
-/// turn the direction of writing become escapes (\n, \u001b), bytes that are not UTF-8 become \xNN.
+/// Makes `text` safe for one line of a terminal: control characters, line and paragraph separators and
+/// bidirectional marks become escapes (\n, \u001b); bytes that are not UTF-8 become \xNN.
 std::string printable(std::string_view text);
 
 /// printable(text), cut after `limit` characters with an ellipsis.
 std::string printable(std::string_view text, std::size_t limit);
 
-/// Offset of the first byte of `text` that is not UTF-8; npos where all of it is.
+/// Offset of the first byte of `text` that is not UTF-8; npos if all bytes are.
 std::size_t find_invalid_utf8(std::string_view text);
 
 }  // namespace arris

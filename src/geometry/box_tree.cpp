@@ -31,7 +31,7 @@ void BoxTree::build(int first, int last)
         nodes_[self].count = last - first;
         return;
     }
-    // Halves along the longest side; ties by index, so that the tree is a function of the boxes.
+    // Splits at the median along the longest side. Ties go by index, so the tree depends on the boxes alone.
     int axis = 0;
     centres.sizes().maxCoeff(&axis);
     const int middle = first + (last - first) / 2;

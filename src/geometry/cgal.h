@@ -5,8 +5,8 @@
 
 #include "geometry/vectors.h"
 
-// CGAL's names in one place. For .cpp files of the geometry layer only: slow to compile, and no other layer
-// sees CGAL.
+// CGAL's names in one place. Include only from .cpp files of the geometry layer: CGAL is slow to compile, and
+// no other layer uses it.
 namespace arris {
 
 /// Exact predicates, constructions in double.

@@ -8,7 +8,7 @@
 namespace arris {
 namespace {
 
-// Squared sine below which rounding may spoil the crossing of two lines, and the ends have their say as well.
+// Squared sine below which the crossing of two lines is inaccurate, so that segment ends are tried as well.
 constexpr double kNearlyParallel = 1e-6;
 
 PointOnTriangle on_edge(const Vec3& place, const std::array<Vec3, 3>& triangle, int edge)
@@ -34,7 +34,8 @@ PointOnTriangle on_edge(const Vec3& place, const std::array<Vec3, 3>& triangle, 
 PointOnTriangle closest_on_triangle(const Vec3& place, const std::array<Vec3, 3>& triangle,
                                     const Vec3& normal)
 {
-    // Twice the area towards each edge of the projection; an edge's share is the weight of the corner across.
+    // Twice the signed area between each edge and the projected point: the opposite corner's weight,
+    // unscaled.
     std::array<double, 3> side;
     for (int i = 0; i < 3; ++i)
         side[i] = normal.cross(triangle[(i + 1) % 3] - triangle[i]).dot(place - triangle[i]);
@@ -45,7 +46,7 @@ PointOnTriangle closest_on_triangle(const Vec3& place, const std::array<Vec3, 3>
         inside.weights = {side[1] / sum, side[2] / sum, side[0] / sum};
         return inside;
     }
-    // From outside only edges that face the place can be nearest.
+    // Outside the triangle, only edges that face `place` can hold the nearest point.
     PointOnTriangle best;
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 3; ++i) {
@@ -65,7 +66,7 @@ double closest_on_segment(const Vec3& place, const Vec3& a, const Vec3& b)
     const Vec3 along = b - a;
     const double squared_length = along.squaredNorm();
     if (!(squared_length > 0.0)) return 0.0;
-    // Measured from the nearer end, so that what is near an end is known as well as the end.
+    // Measured from the nearer end, so that near an end the parameter has that end's precision.
     const double t = along.dot(place - a) / squared_length;
     if (t <= 0.5) return std::max(t, 0.0);
     return std::clamp(1.0 + along.dot(place - b) / squared_length, 0.0, 1.0);

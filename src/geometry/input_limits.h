@@ -3,8 +3,8 @@
 
 namespace arris {
 
-/// The largest coordinate of an input, m: what is farther out is in the wrong unit, and products of two
-/// coordinates stay finite.
+/// Largest coordinate allowed in an input, m. Larger ones suggest a wrong unit. The bound also keeps products
+/// of two coordinates finite.
 inline constexpr double kLargestCoordinate = 1e6;
 
 }  // namespace arris

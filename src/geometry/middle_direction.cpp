@@ -8,7 +8,8 @@
 namespace arris {
 namespace {
 
-// Calls visit with every direction that is equally far from one, two or three of `directions`.
+// Calls `visit` with the candidates for the maximum: each direction, and each one equally far from two or
+// three of `directions`.
 template <typename Visit>
 void for_each_candidate(const std::vector<Vec3>& directions, const Visit& visit)
 {

@@ -8,11 +8,11 @@
 
 namespace arris {
 
-/// The least scalar product of `along` with one of `directions` (all unit vectors); 1 for none.
+/// Least scalar product of `along` with any of `directions` (all unit vectors); 1 if there are none.
 double least_part(const std::vector<Vec3>& directions, const Vec3& along);
 
-/// The unit vector whose least scalar product with unit `directions` is greatest, where that is positive:
-/// that of the point of their convex hull nearest to the origin.
+/// The unit vector that maximises the least scalar product with the unit vectors `directions`; nothing if
+/// that maximum is not positive. It points to the point of their convex hull nearest to the origin.
 std::optional<Vec3> find_middle(const std::vector<Vec3>& directions);
 
 }  // namespace arris

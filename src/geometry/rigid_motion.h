@@ -19,13 +19,13 @@ struct Placement {
     Placement inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
 };
 
-/// `second` after `first`.
+/// The placement that applies `first`, then `second`.
 inline Placement operator*(const Placement& second, const Placement& first)
 {
     return {second.rotation * first.rotation, second(first.translation)};
 }
 
-/// Where points of the world are in the frame that `placement` places.
+/// Converts world points to the frame that `placement` puts into the world.
 inline std::vector<Vec3> to_frame(const Placement& placement, const std::vector<Vec3>& world)
 {
     std::vector<Vec3> points;
@@ -43,9 +43,11 @@ struct Keyframe {
     Eigen::Quaterniond rotate = Eigen::Quaterniond::Identity();
 };
 
-/// How a rigid thing moves in time: p(t) = pivot + velocity tau + R(angular_velocity tau)(p(0) - pivot),
-/// tau = clamp(t - start, 0, stop - start); or, where there are keyframes, p(t) = translate(t) + R(t) p(0)
-/// with linear translation and slerp by the shorter arc between them, constant outside.
+/// Motion of a rigid body in time.
+/// Without keyframes: p(t) = pivot + velocity tau + R(angular_velocity tau)(p(0) - pivot),
+///     tau = clamp(t - start, 0, stop - start).
+/// With keyframes: p(t) = translate(t) + R(t) p(0). Between keyframes the translation is linear and the
+/// rotation is a slerp by the shorter arc. Outside the keyframes both are constant.
 struct RigidMotion {
     Vec3 velocity = Vec3::Zero();          ///< m/s
     Vec3 angular_velocity = Vec3::Zero();  ///< rad/s
@@ -54,13 +56,13 @@ struct RigidMotion {
     double stop = std::numeric_limits<double>::infinity();
     std::vector<Keyframe> keyframes;  ///< ascending in time
 
-    /// Maps a point's place at time 0 (keyframes: in its own frame) to its place at `time`.
+    /// Maps a point's place at time 0 (with keyframes: in the body's frame) to its place at `time`.
     Placement at(double time) const;
 
-    /// Velocity (m/s) just after `time` of the point that is at `place` (world) then.
+    /// Velocity (m/s) just after `time` of the body's point that is at `place` (world) at `time`.
     Vec3 velocity_after(double time, const Vec3& place) const;
 
-    /// Whether anything ever moves.
+    /// Whether the body moves at any time.
     bool is_moving() const;
 
     /// The greatest angular speed at any time, rad/s.

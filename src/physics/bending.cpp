@@ -12,8 +12,8 @@ namespace {
 
 struct Normals {
     Vec3 c, d;                  ///< unit, of faces (a, b, c) and (b, a, d)
-    double length_c, length_d;  ///< of the unnormalised ones: twice the areas
-    double softening;           ///< 1, less where a face is all but collapsed
+    double length_c, length_d;  ///< norms of the unnormalised normals: twice the areas
+    double softening;           ///< 1; less where a face has almost collapsed
 };
 
 std::optional<Normals> find_normals(const std::array<Vec3, 4>& x)
@@ -25,13 +25,14 @@ std::optional<Normals> find_normals(const std::array<Vec3, 4>& x)
     n.length_c = n.c.norm();
     n.length_d = n.d.norm();
 
-    constexpr double kCollapsed = 1e-12;  // of the squared size: the normal's direction is round-off below
+    constexpr double kCollapsed = 1e-12;  // relative to the squared size: below, the normal's direction is
+                                          // rounding
     const double squared_size = e.squaredNorm() + to_c.squaredNorm() + to_d.squaredNorm();
     if (!(n.length_c > kCollapsed * squared_size && n.length_d > kCollapsed * squared_size))
         return std::nullopt;
-    // grad theta grows as one over the altitude. Below this the true stiffness would drown the mass; ours
-    // stays, and the force fades to none where the face has collapsed. One factor for all corners, so that no
-    // torque is made.
+    // grad theta grows as one over the altitude. Below this ratio the true stiffness would dominate the mass.
+    // So it is held constant there, and the force fades to zero as the face collapses. One factor for all
+    // corners avoids a net torque.
     constexpr double kThin = 1e-4;
     n.softening = std::min({1.0, n.length_c / (kThin * squared_size), n.length_d / (kThin * squared_size)});
     n.c /= n.length_c;
@@ -52,7 +53,7 @@ struct Fold {
 
 Fold find_fold(const HingeElement& hinge, double sigma)
 {
-    // theta = 60 degrees: an edge's right angle within one cell is beyond it, shared by three it is not.
+    // theta = 60 degrees. A right angle within one cell exceeds this; spread over three cells it does not.
     constexpr double kCreased = 0.25;
     if (!hinge.is_crease()) return {sigma, 1.0};
     if (sigma >= kCreased) return {0.5 * kCreased, 0.0};
@@ -73,7 +74,7 @@ void Bending::add(const HingeState& hinge, HingeSystem& system) const
     const std::optional<Normals> n = find_normals(hinge.x);
     if (!n) return;
 
-    // grad theta: across the edge by the altitudes, on the edge by the lever rule.
+    // grad theta at c and d follows from the altitudes, at a and b from the lever rule.
     const Vec3 e = hinge.x[1] - hinge.x[0];
     const double length = e.norm();
     const double at_c = (hinge.x[2] - hinge.x[0]).dot(e) / (length * length);
@@ -87,8 +88,9 @@ void Bending::add(const HingeState& hinge, HingeSystem& system) const
     gradient[0] = -(1.0 - at_c) * gradient[2] - (1.0 - at_d) * gradient[3];
     gradient[1] = -at_c * gradient[2] - at_d * gradient[3];
 
-    // dV/dtheta = K w sin(theta/2) cos(theta/2) = K w sin(theta) / 2;  2 K w (cos(theta/2) / 2)^2 for the
-    // stiffness. Of a crease both by its slope, the part with its curvature, which is negative, left out.
+    // dV/dtheta = K w sin(theta/2) cos(theta/2) = K w sin(theta) / 2; the stiffness has the factor 2 K w
+    // (cos(theta/2) / 2)^2. A crease scales both by its slope. The part with a crease's curvature is negative
+    // and left out.
     const Fold fold = find_fold(hinge.element, squared_sine(*n));
     const double scale = stiffness_ * hinge.element.weight * fold.slope;
     const double sin_theta = n->c.cross(n->d).dot(e) / length;

@@ -8,12 +8,12 @@
 
 namespace arris {
 
-/// AMD of vertices, for Eigen's sparse Cholesky of small systems whose rows 3 v to 3 v + 2 are vertex v's.
-/// Two vertices are neighbours where any of their rows are.
+/// Approximate minimum degree (AMD) ordering of vertices, for Eigen's sparse Cholesky of small systems in
+/// which rows 3 v to 3 v + 2 belong to vertex v. Two vertices are neighbours if any of their rows are.
 struct BlockAmdOrdering {
     using PermutationType = Eigen::AMDOrdering<int>::PermutationType;
 
-    /// `symmetric`: both triangles.
+    /// `symmetric` must store both triangles.
     template <typename Matrix>
     void operator()(const Matrix& symmetric, PermutationType& order) const
     {

@@ -15,18 +15,18 @@ bool has_moved(const std::vector<char>& is_moved, std::span<const int> vertices)
     return std::any_of(vertices.begin(), vertices.end(), [&](int v) { return is_moved[v] != 0; });
 }
 
-/// Greedy: each element, in order, takes the least colour none of its vertices has.
+/// Greedy colouring: each element, in order, takes the lowest colour that none of its vertices has.
 template <typename Element>
 ElementColors color_elements(int vertex_count, const std::vector<Element>& elements)
 {
-    // Colours at each vertex, as many as it has elements so far: used[begin[v]] .. used[end[v] - 1].
+    // Colours used at each vertex so far: used[begin[v]] .. used[end[v] - 1].
     std::vector<int> begin(vertex_count + 1, 0);
     for (const Element& element : elements)
         for (const int v : element.vertices) ++begin[v + 1];
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     std::vector<int> end(begin.begin(), begin.end() - 1), used(begin.back());
     std::vector<int> color(elements.size());
-    std::vector<int> seen_by;  // last element that met this colour
+    std::vector<int> seen_by;  // for each colour, the last element that met it
     int color_count = 0;
     for (int e = 0; e < static_cast<int>(elements.size()); ++e) {
         for (const int v : elements[e].vertices)
@@ -41,7 +41,7 @@ ElementColors color_elements(int vertex_count, const std::vector<Element>& eleme
         for (const int v : elements[e].vertices) used[end[v]++] = free_color;
     }
 
-    // Counting sort by colour; within one, elements keep their order.
+    // Counting sort by colour; within a colour, elements keep their order.
     ElementColors colors;
     colors.start.assign(color_count + 1, 0);
     for (const int k : color) ++colors.start[k + 1];
@@ -62,7 +62,7 @@ FaceElement make_face_element(const std::vector<Vec2>& material, const Face& fac
     const double doubled = twice_area(a, b, c);
     assert(doubled > 0.0 && "material faces are counter-clockwise");
 
-    // grad N_a is perpendicular to the edge across from a, and its length is one over the altitude.
+    // grad N_a is perpendicular to the edge opposite a, and its length is one over the altitude.
     const auto gradient = [&](const Vec2& from, const Vec2& to) -> Vec2 {
         return Vec2(from.y() - to.y(), to.x() - from.x()) / doubled;
     };

@@ -8,7 +8,7 @@
 
 namespace arris {
 
-/// F = dx/dX of a triangle whose corners are at `X` in the material and at `x` in the world.
+/// F = dx/dX of a triangle with corners at `X` in the material and at `x` in the world.
 inline Mat32 deformation_gradient(const std::array<Vec2, 3>& X, const std::array<Vec3, 3>& x)
 {
     Mat2 DX;

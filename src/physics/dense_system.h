@@ -10,20 +10,20 @@
 
 namespace arris {
 
-/// A u = b of a few vertices of a cloth the rest of which is held and does not move; nothing flows, and no
-/// vertex has a basis of its own. The same numbers as LinearSystem's, without what a sparse pattern costs.
+/// A u = b for a few vertices of a cloth whose other vertices are held and do not move. No material flows,
+/// and no vertex has a basis of its own. Same numbers as LinearSystem, without the cost of a sparse pattern.
 class DenseSystem {
   public:
-    /// `places` tells of each vertex of the cloth which of the system's `count` it is, or -1.
+    /// `places` maps each vertex of the cloth to its index among the system's `count` vertices, or -1.
     DenseSystem(std::vector<int> places, int count);
 
     /// Sums all terms but loads at `at`.
     void assemble(const ClothElements& elements, const Terms& terms, const Linearization& at);
 
-    const Eigen::MatrixXd& matrix() const { return matrix_; }  ///< its lower triangle
+    const Eigen::MatrixXd& matrix() const { return matrix_; }  ///< lower triangle
     const Eigen::VectorXd& rhs() const { return rhs_; }
 
-    /// Adds to the diagonal block of one of the system's vertices.
+    /// Adds to the diagonal block of vertex `place` of the system.
     void add_to_vertex(int place, const Mat3& block) { matrix_.block<3, 3>(3 * place, 3 * place) += block; }
 
   private:

@@ -13,7 +13,7 @@ struct Gravity {
     Vec3 acceleration = Vec3(0.0, 0.0, -9.81);  ///< m/s^2
 };
 
-/// Wind times 1 + amplitude sin(2 pi frequency t + phase(seed)).
+/// Multiplies the wind by 1 + amplitude sin(2 pi frequency t + phase(seed)).
 struct Gust {
     double amplitude = 0.0;
     double frequency = 0.0;  ///< Hz
@@ -27,14 +27,14 @@ struct Wind {
     std::optional<Gust> gust;
 };
 
-/// A force spread over a material box between two times.
+/// A force spread over a box of material between two times.
 struct Pull {
     MaterialBox material;
-    Vec3 force = Vec3::Zero();  ///< N in all
+    Vec3 force = Vec3::Zero();  ///< N in total
     double start = 0.0;         ///< s
     double stop = std::numeric_limits<double>::infinity();
 
-    /// Whether the force acts on a step from `begin` to `end` (steps end on start and stop).
+    /// Whether the force acts on a step from `begin` to `end`. Steps end on `start` and `stop`.
     bool acts_between(double begin, double end) const { return begin >= start && end <= stop; }
 };
 

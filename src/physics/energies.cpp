@@ -19,7 +19,7 @@ double& energy_of(Energies& energies, EnergyKind kind)
     }
 }
 
-/// The impulse (N s) on a corner that moves with `velocity`: b - A v' of one term alone.
+/// The impulse b - A v' (N s) of one term on a corner, where vertices move with `velocity`.
 Vec3 impulse_on(int i, const FaceSystem& system, const FaceElement& face, const Linearization& at,
                 const std::vector<Vec3>& velocity)
 {

@@ -7,7 +7,7 @@
 
 namespace arris {
 
-/// Energies of the cloth at one moment, J. Where a kind has no term it is 0.
+/// Energies of the cloth at one moment, J; 0 for a kind without a term.
 struct Energies {
     double gravity = 0.0, stretch = 0.0, bending = 0.0;
 
@@ -18,14 +18,14 @@ struct Energies {
 Energies compute_energies(const ClothElements& elements, const Terms& terms,
                           const std::vector<Vec3>& position);
 
-/// Work, J, of what has no energy (pulls, wind) on cloth that goes by `displacement` (m) and has `velocity`
-/// (m/s) at the end: one entry a vertex. Forces are those linearised at `at`.
+/// Work, J, of forces without an energy (pulls, wind) on cloth that moves by `displacement` (m) and has
+/// `velocity` (m/s) at the end; one entry per vertex. The forces are linearised at `at`.
 double compute_load_work(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,
                          const Linearization& at, const std::vector<Vec3>& velocity,
                          const std::vector<Vec3>& displacement);
 
-/// What a frame stores of each face: greatest principal strain, energies in J (a hinge's bending is halved
-/// between its faces).
+/// Values of each face stored in a frame: greatest principal strain, and energies in J. Half of a hinge's
+/// bending energy goes to each of its faces.
 struct FaceReadings {
     std::vector<double> strain, stretch_energy, bending_energy;
 };

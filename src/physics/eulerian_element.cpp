@@ -5,7 +5,7 @@ namespace arris {
 
 namespace {
 
-/// Fdot = sum_j w_j b_j^T as material sees it: that of the extrapolated state.
+/// Fdot = sum_j w_j b_j^T in the extrapolated state.
 Mat32 deformation_rate(const FaceState& face, const ExtrapolatedState& state)
 {
     Mat32 rate = Mat32::Zero();
@@ -13,7 +13,7 @@ Mat32 deformation_rate(const FaceState& face, const ExtrapolatedState& state)
     for (int j = 0; j < 3; ++j) {
         const int v = face.element.vertices[j];
         w[j] = state.velocity[v] - face.F * state.material_velocity[v];
-        // From differences, as F: a translation, however fast, deforms nothing.
+        // Use differences, as for F: a translation, however fast, causes no deformation.
         if (j > 0) rate += (w[j] - w[0]) * face.element.gradients[j].transpose();
     }
     return rate;

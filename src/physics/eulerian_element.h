@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements with an EOL vertex (see linearization.h), in corner velocities until they are reduced. Each is
-// made at the material coordinates at which it is evaluated, with its own F in the corner matrices: elastic
-// ones at q^, inertia and loads at the extrapolated state. `at.flow` must be there.
+// Elements with an EOL vertex (see linearization.h), in corner velocities until they are reduced. Each
+// element is built at the material coordinates at which it is evaluated, and its corner matrices use its own
+// F there. Elastic elements are evaluated at q^, inertia and loads at the extrapolated state. `at.flow` must
+// be present.
 #pragma once
 
 #include <algorithm>
@@ -18,17 +19,17 @@ bool has_eulerian_vertex(const MaterialFlow& flow, const std::array<int, N>& ver
     return std::any_of(vertices.begin(), vertices.end(), [&](int v) { return flow.is_eulerian[v] != 0; });
 }
 
-/// A face's terms that are not elastic, with 2 Fdot V.
+/// A face's inertia and loads, with the convection term 2 Fdot V.
 FaceSystem eulerian_inertia_and_loads(const Face& face, const Terms& terms, const Linearization& at);
 
 /// A face's elastic terms.
 FaceSystem eulerian_elasticity(const Face& face, const Terms& terms, const Linearization& at);
 
-/// A hinge's terms. F at a corner is the mean of those of the hinge's faces there.
+/// A hinge's terms. F at a corner is the mean over the hinge's faces at that corner.
 HingeSystem eulerian_hinge(const HingeElement& hinge, const ClothElements& elements, const Terms& terms,
                            const Linearization& at);
 
-/// To its vertices' coordinates.
+/// Reduces an element to the coordinates of its vertices.
 template <int N>
 void reduce_eulerian(const std::array<int, N>& vertices, const Linearization& at, LocalSystem<N>& local)
 {

@@ -8,7 +8,7 @@ namespace arris {
 
 namespace {
 
-/// An element's A w' - b, at the corners that are EOL.
+/// Adds an element's A w' - b at its EOL corners.
 template <int N>
 void add_residual(const std::array<int, N>& vertices, const LocalSystem<N>& local, const Linearization& at,
                   const Eigen::VectorXd& u, std::vector<Vec3>& impulse)
@@ -31,7 +31,7 @@ void add_residual(const std::array<int, N>& vertices, const LocalSystem<N>& loca
     }
 }
 
-/// What loads vertices, where the material has flowed to.
+/// Subtracts loads on EOL vertices, evaluated at the extrapolated material coordinates.
 void subtract_loads(const ClothMesh& mesh, const Terms& terms, const Linearization& at,
                     std::vector<Vec3>& impulse)
 {

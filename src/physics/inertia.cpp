@@ -14,7 +14,7 @@ void Inertia::add(const FaceState& face, FaceSystem& system) const
 
 namespace {
 
-/// Each of the sums below takes the velocity of a face's corner from velocity_of(f, i).
+/// The sums below take the velocity of a face's corner from velocity_of(f, i).
 template <typename VelocityOf>
 double sum_kinetic_energy(double density, const ClothElements& elements, const VelocityOf& velocity_of)
 {

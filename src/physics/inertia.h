@@ -9,7 +9,7 @@
 namespace arris {
 
 /// Consistent inertia of linear triangles: m_ij = rho A / 12 (1 + delta_ij) between the corners' material
-/// velocities (the report's element matrix, section 2.3, once the corner matrices are applied).
+/// velocities. Corner matrices then reduce it to the coordinates of EOL vertices.
 class Inertia : public FaceTerm {
   public:
     explicit Inertia(double density) : density_(density) {}
@@ -19,7 +19,7 @@ class Inertia : public FaceTerm {
     double density_;  ///< areal, kg/m^2
 };
 
-/// Kinetic energy, J, of a cloth whose vertices move with `velocity` (m/s, one a vertex).
+/// Kinetic energy, J, of a cloth whose vertices move with `velocity` (m/s, one entry per vertex).
 double kinetic_energy(double density, const ClothElements& elements, const std::vector<Vec3>& velocity);
 
 /// Linear momentum, kg m/s.
@@ -29,23 +29,25 @@ Vec3 linear_momentum(double density, const ClothElements& elements, const std::v
 Vec3 angular_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& position,
                       const std::vector<Vec3>& velocity);
 
-/// How fast the material moves at the corners of each face, m/s.
+/// Velocity of the material at the corners of each face, m/s.
 using CornerVelocities = std::vector<std::array<Vec3, 3>>;
 
-/// w = v - F V, of a cloth through whose vertices material flows with `material_velocity` (m/s, one a vertex,
-/// 0 where none does). `elements` are those of the present material coordinates.
+/// Corner velocities w = v - F V of a cloth through whose vertices material flows with `material_velocity`
+/// (m/s, one entry per vertex, 0 where none flows). `elements` are those of the present material coordinates.
 CornerVelocities compute_corner_velocities(const ClothElements& elements, const std::vector<Vec3>& position,
                                            const std::vector<Vec3>& velocity,
                                            const std::vector<Vec2>& material_velocity);
 
-/// Energy and momenta of such a cloth: with no flow the same, to the bit, as from the vertices' velocities.
+/// Energy and momenta from corner velocities. Without flow they are bitwise those from the vertices'
+/// velocities.
 double kinetic_energy(double density, const ClothElements& elements, const CornerVelocities& velocity);
 Vec3 linear_momentum(double density, const ClothElements& elements, const CornerVelocities& velocity);
 Vec3 angular_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& position,
                       const CornerVelocities& velocity);
 
-/// One material velocity a vertex, m/s: where material flows (`material_velocity` is not zero) the mean of
-/// its corners' by area, as the two sides of a fold differ; elsewhere the vertex's own.
+/// One velocity of the material per vertex, m/s. Where material flows (`material_velocity` is not zero) this
+/// is the area-weighted mean over the vertex's corners, as the two sides of a fold differ. Elsewhere it is
+/// the vertex's own velocity.
 std::vector<Vec3> mean_corner_velocities(const ClothElements& elements, const CornerVelocities& corners,
                                          const std::vector<Vec3>& velocity,
                                          const std::vector<Vec2>& material_velocity);

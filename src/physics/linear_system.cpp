@@ -15,8 +15,8 @@ namespace arris {
 
 namespace {
 
-/// Applies `visit` to each of `count` elements, colour by colour, those of one colour in parallel; where they
-/// have none one after the other.
+/// Applies `visit` to each of `count` elements, colour by colour; elements of one colour in parallel. Without
+/// colours, one element after the other.
 template <typename Visit>
 void for_each_by_color(const ElementColors& colors, std::size_t count, const Visit& visit)
 {
@@ -35,7 +35,7 @@ void for_each_by_color(const ElementColors& colors, std::size_t count, const Vis
     }
 }
 
-/// Reduces to the vertices' coordinates where any corner has its own basis.
+/// Reduces an element to the coordinates of its vertices if any corner has a basis of its own.
 template <int N>
 void reduce(const std::array<int, N>& vertices, const Linearization& at, LocalSystem<N>& local)
 {
@@ -72,13 +72,19 @@ void LinearSystem::make_pattern(const ClothElements& elements)
 void LinearSystem::make_pattern(const ClothElements& elements, std::vector<int> places)
 {
     places_ = std::move(places);
-    // Neighbours below the diagonal, by column: below[first[j]] .. below[last[j] - 1].
+    make_columns(find_neighbours(elements));
+    find_element_blocks(elements);
+}
+
+LinearSystem::Neighbours LinearSystem::find_neighbours(const ClothElements& elements) const
+{
     const int n =
         places_.empty() ? elements.vertex_count : 1 + *std::max_element(places_.begin(), places_.end());
     const auto for_each_pair = [&](const auto& visit) {
         const auto visit_pairs = [&](auto vertices) {
             for (int& v : vertices) v = place_of(v);
-            if (*std::max_element(vertices.begin(), vertices.end()) < 0) return;  // in a patch most are held
+            if (*std::max_element(vertices.begin(), vertices.end()) < 0)
+                return;  // in a patch, most vertices are held
             for (const int i : vertices)
                 for (const int j : vertices)
                     if (i > j && j >= 0) visit(i, j);
@@ -86,25 +92,38 @@ void LinearSystem::make_pattern(const ClothElements& elements, std::vector<int> 
         for (const FaceElement& face : elements.faces) visit_pairs(face.vertices);
         for (const HingeElement& hinge : elements.hinges) visit_pairs(hinge.vertices);
     };
-    std::vector<int> first(n + 1, 0);
+    Neighbours neighbours;
+    std::vector<int>& first = neighbours.first;
+    first.assign(n + 1, 0);
     for_each_pair([&](int, int j) { ++first[j + 1]; });
     std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<int> last(first.begin(), first.end() - 1), below(first.back());
-    for_each_pair([&](int i, int j) { below[last[j]++] = i; });
+    neighbours.last.assign(first.begin(), first.end() - 1);
+    neighbours.below.resize(first.back());
+    for_each_pair([&](int i, int j) { neighbours.below[neighbours.last[j]++] = i; });
 
+    // A mesh edge is in up to seven elements: remove duplicates before sorting.
+    std::vector<int> last_in(n, -1);  // for each row, the last column that contained it
+    for (int j = 0; j < n; ++j) {
+        const auto begin = neighbours.below.begin() + first[j],
+                   end = neighbours.below.begin() + neighbours.last[j];
+        const auto comes_again = [&](int i) { return std::exchange(last_in[i], j) == j; };
+        const auto kept = std::remove_if(begin, end, comes_again);
+        std::sort(begin, kept);
+        neighbours.last[j] = static_cast<int>(kept - neighbours.below.begin());
+    }
+    return neighbours;
+}
+
+void LinearSystem::make_columns(const Neighbours& neighbours)
+{
+    const auto& [first, last, below] = neighbours;
+    const int n = static_cast<int>(last.size());
     column_height_.assign(n, 0);
-    std::vector<int> last_in(n, -1);  // of each row, the column that had it last
     Eigen::VectorXi heights(3 * n);
     for (int j = 0; j < n; ++j) {
-        // A mesh edge is in up to seven elements: each pair is kept once before they are sorted.
-        const auto begin = below.begin() + first[j], end = below.begin() + last[j];
-        const auto comes_again = [&](int i) { return std::exchange(last_in[i], j) == j; };
-        last[j] = static_cast<int>(std::remove_if(begin, end, comes_again) - below.begin());
-        std::sort(begin, below.begin() + last[j]);
         column_height_[j] = 3 * (1 + last[j] - first[j]);
         heights.segment<3>(3 * j).setConstant(column_height_[j]);
     }
-
     matrix_.resize(3 * n, 3 * n);
     matrix_.resizeNonZeros(heights.sum());
     int* outer = matrix_.outerIndexPtr();
@@ -119,7 +138,10 @@ void LinearSystem::make_pattern(const ClothElements& elements, std::vector<int> 
             outer[3 * j + c + 1] = entry;
         }
     rhs_.resize(3 * n);
+}
 
+void LinearSystem::find_element_blocks(const ClothElements& elements)
+{
     const auto find_blocks = [&](auto vertices, auto& blocks) {
         for (int& v : vertices) v = place_of(v);
         int k = 0;
@@ -184,7 +206,7 @@ void LinearSystem::scatter(const std::array<int, N>& vertices, const int* blocks
     }
 }
 
-/// Sums elements class by class; `add_eulerian` those with an EOL vertex.
+/// Sums elements colour by colour; those with an EOL vertex through `add_eulerian`.
 template <typename State, int N, typename Element, typename Blocks, typename ElementTerms,
           typename AddEulerian>
 void LinearSystem::add_elements(const ElementColors& colors, const std::vector<Element>& elements,
@@ -203,10 +225,10 @@ void LinearSystem::add_elements(const ElementColors& colors, const std::vector<E
     });
 }
 
-/// Loads go to vertices, not to elements. On an EOL vertex: sum_f G_f^T f_f = B^T f - E^T sum_f F_f^T f_f.
+/// Loads act on vertices, not on elements. On an EOL vertex: sum_f G_f^T f_f = B^T f - E^T sum_f F_f^T f_f.
 void LinearSystem::set_loads(const ClothMesh& mesh, const Terms& terms, const Linearization& at)
 {
-    // What lies in a box of material depends on where material has flowed to.
+    // Which faces lie in a box of material depends on where material has flowed.
     std::optional<ClothMesh> flowed;
     if (at.flow && !terms.loads.empty()) {
         flowed = mesh;

@@ -11,31 +11,41 @@
 
 namespace arris {
 
-/// A u = b of a step, three unknowns a vertex. `matrix` holds the lower triangle and whole 3x3 diagonal
-/// blocks; its pattern follows from the mesh alone, and where each element's blocks lie is looked up once a
-/// mesh.
+/// A u = b of a step, with three unknowns per vertex. `matrix` holds the lower triangle and whole 3x3
+/// diagonal blocks. Its pattern follows from the mesh alone; the positions of each element's blocks are found
+/// once per mesh.
 class LinearSystem {
   public:
-    /// The pattern of every pair of vertices that share a face or a hinge, values zero. O(n log n).
+    /// Creates the pattern, with values zero: every pair of vertices that share a face or a hinge. O(n log
+    /// n).
     void make_pattern(const ClothElements& elements);
 
-    /// The same where some vertices are held and have no unknowns: `places` (one a vertex) tells which of the
-    /// system's vertices it is, ascending, or -1. Then nothing may flow, and what is held does not move.
+    /// As above, where some vertices are held and have no unknowns. `places` (one entry per vertex,
+    /// ascending) maps each vertex to its index in the system, or to -1. No material may flow, and held
+    /// vertices do not move.
     void make_pattern(const ClothElements& elements, std::vector<int> places);
 
     /// Sums all terms at `at`; `mesh` and `elements` are those of the step's start. The result does not
-    /// depend on the number of threads. Elements with an EOL vertex (`at.flow`) are made anew, at the
-    /// material coordinates of q^ and of the extrapolated state; the others are summed as if there were none.
+    /// depend on the number of threads. Elements with an EOL vertex (`at.flow`) are rebuilt at the material
+    /// coordinates of q^ and of the extrapolated state. Other elements are summed as if no vertex were EOL.
     void assemble(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,
                   const Linearization& at);
 
     const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
     const Eigen::VectorXd& rhs() const { return rhs_; }
 
-    /// Adds to the diagonal block of one of the system's vertices.
+    /// Adds to the diagonal block of vertex `place` of the system.
     void add_to_vertex(int place, const Mat3& block);
 
   private:
+    /// Block rows below the diagonal of each block column: below[first[j]] .. below[last[j] - 1] ascend.
+    struct Neighbours {
+        std::vector<int> first, last, below;
+    };
+
+    Neighbours find_neighbours(const ClothElements& elements) const;
+    void make_columns(const Neighbours& neighbours);
+    void find_element_blocks(const ClothElements& elements);
     int place_of(int v) const { return places_.empty() ? v : places_[v]; }
     int find_block(int row, int column) const;
     template <int N>
@@ -49,11 +59,12 @@ class LinearSystem {
 
     Eigen::SparseMatrix<double> matrix_;
     Eigen::VectorXd rhs_;
-    std::vector<int> places_;                       ///< of each vertex; empty where all are their own
+    std::vector<int> places_;                       ///< index in the system of each vertex; empty where all
+                                                    ///< vertices have unknowns
     std::vector<int> column_height_;                ///< entries in each column of a vertex
-    std::vector<std::array<int, 3>> face_blocks_;   ///< first entry of blocks (1,0), (2,0), (2,1);
-                                                    ///< -1 where one of both is held
-    std::vector<std::array<int, 6>> hinge_blocks_;  ///< ... (1,0), (2,0), (2,1), (3,0), (3,1), (3,2)
+    std::vector<std::array<int, 3>> face_blocks_;   ///< first entry of blocks (1,0), (2,0), (2,1); -1 where
+                                                    ///< either vertex is held
+    std::vector<std::array<int, 6>> hinge_blocks_;  ///< blocks (1,0), (2,0), (2,1), (3,0), (3,1), (3,2)
 };
 
 }  // namespace arris

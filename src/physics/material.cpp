@@ -6,9 +6,9 @@
 namespace arris {
 
 // Starting points, not measurements: cloth of one name varies by more than a factor of two. The bending
-// stiffness K is that of the hinge energy; the plate it stands for has a bending rigidity of about 1.5 K on
-// equilateral triangles. Fields: density, youngs_modulus, poisson_ratio, bending_stiffness; damping and
-// thickness belong to no fabric.
+// stiffness K is that of the hinge energy. A plate with a bending rigidity of about 1.5 K corresponds to it
+// on equilateral triangles. Fields: density, youngs_modulus, poisson_ratio, bending_stiffness. Damping and
+// thickness are independent of the fabric.
 const std::array<MaterialPreset, 6> kMaterialPresets = {{
     {"cotton",
      {0.15, 500.0, 0.3, 1e-5},

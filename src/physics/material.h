@@ -7,7 +7,7 @@
 
 namespace arris {
 
-/// What the cloth is made of. All values are those of a sheet, so areal where a solid's would be volumetric.
+/// The cloth's material. All values are those of a sheet: areal where a solid's would be volumetric.
 struct Material {
     double density = 0.0;         ///< areal, kg/m^2
     double youngs_modulus = 0.0;  ///< membrane, N/m
@@ -20,13 +20,13 @@ struct Material {
 struct MaterialPreset {
     std::string_view name;
     Material material;
-    std::string_view source;  ///< where the values are from, one sentence
+    std::string_view source;  ///< one sentence on where the values are from
 };
 
-/// cotton, silk, wool, denim, leather, rubber.
+/// Presets cotton, silk, wool, denim, leather, rubber.
 extern const std::array<MaterialPreset, 6> kMaterialPresets;
 
-/// Empty where no preset has that name.
+/// Returns nothing if no preset has that name.
 std::optional<Material> find_material_preset(std::string_view name);
 
 }  // namespace arris

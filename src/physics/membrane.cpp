@@ -9,23 +9,23 @@ namespace arris {
 
 namespace {
 
-/// What the energy depends on: see the class comment for the symbols.
+/// Quantities that determine the energy; symbols as in the class comment.
 struct Invariants {
     Vec3 cross;      ///< f1 x f2
-    double J;        ///< its length
+    double J;        ///< f1 x f2|
     double squared;  ///< |F|^2
     double S;        ///< s1 + s2
     double S_minus_2;
     double squared_difference;  ///< (s1 - s2)^2
 };
 
-/// What force and stiffness need besides.
+/// Further quantities that force and stiffness need.
 struct Stretch : Invariants {
     Vec3 n;   ///< unit normal
     Mat32 R;  ///< rotation part of F
 };
 
-/// A unit vector perpendicular to `v`; any where v is zero.
+/// A unit vector perpendicular to `v`; an arbitrary one if v is zero.
 Vec3 any_perpendicular(const Vec3& v)
 {
     int least = 0;
@@ -45,7 +45,7 @@ Invariants find_invariants(const Mat32& F)
     s.S = std::sqrt(s.squared + 2.0 * s.J);
     s.S_minus_2 = (s.squared + 2.0 * s.J - 4.0) / (s.S + 2.0);  // S - 2 = (S^2 - 4) / (S + 2)
 
-    // s1^2 - s2^2 is the difference of the eigenvalues of F^T F, so (s1 - s2)^2 is that over S, squared.
+    // s1^2 - s2^2 is the difference of the eigenvalues of F^T F; divided by S and squared it is (s1 - s2)^2.
     const double half_difference = 0.5 * (f1.squaredNorm() - f2.squaredNorm());
     const double off = f1.dot(f2);
     s.squared_difference =
@@ -57,9 +57,9 @@ Stretch decompose(const Mat32& F)
 {
     const Vec3 f1 = F.col(0), f2 = F.col(1);
     Stretch s{find_invariants(F), {}, {}};
-    // A face collapsed to a line or a point has no normal: any one across it serves, as every choice gives
-    // the same energy and a limit of the force.
-    constexpr double kCollapsed = 1e-14;  // of |F|^2: the direction of f1 x f2 is round-off below
+    // A face collapsed to a line or a point has no normal. Any normal across it serves: each gives the same
+    // energy and a limit of the force.
+    constexpr double kCollapsed = 1e-14;  // relative to |F|^2: below, the direction of f1 x f2 is rounding
     s.n = s.J > kCollapsed * s.squared ? Vec3(s.cross / s.J)
                                        : any_perpendicular(f1.squaredNorm() > f2.squaredNorm() ? f1 : f2);
     s.R.col(0) = f1 + f2.cross(s.n);
@@ -71,8 +71,9 @@ Stretch decompose(const Mat32& F)
     return s;
 }
 
-/// W of P = F W with its negative eigenvalues set to zero: the stiffness against turning out of the plane.
-/// W = sum_i (2 mu (s_i - 1) + lambda (S - 2)) / s_i v_i v_i^T, v_i, s_i the eigenpairs of the stretch R^T F.
+/// W of P = F W, with negative eigenvalues set to zero: the stiffness against rotation out of the plane. W =
+/// sum_i (2 mu (s_i - 1) + lambda (S - 2)) / s_i v_i v_i^T, with v_i, s_i the eigenpairs of the stretch R^T
+/// F.
 Mat2 out_of_plane_stiffness(const Mat32& F, const Stretch& s, double mu, double lambda)
 {
     const Mat2 U = s.R.transpose() * F;
@@ -80,7 +81,8 @@ Mat2 out_of_plane_stiffness(const Mat32& F, const Stretch& s, double mu, double 
     const double half = 0.5 * (U(0, 0) - U(1, 1));
     const double off = 0.5 * (U(0, 1) + U(1, 0));
     const double radius = std::hypot(half, off);
-    constexpr double kLeastStretch = 1e-3;  // below, the true stiffness grows without limit; ours stays here
+    constexpr double kLeastStretch = 1e-3;  // below, the true stiffness grows without limit; this value is
+                                            // used
     const auto stiffness = [&](double s_i) {
         const double force = 2.0 * mu * (s_i - 1.0) + lambda * s.S_minus_2;
         return std::max(force, 0.0) / std::max(s_i, kLeastStretch);
@@ -128,8 +130,8 @@ void Membrane::add(const FaceState& face, FaceSystem& system) const
             system.add_material_force(i, area * (face.F.transpose() * (P * b[i])) - V * b[i]);
     }
 
-    // dP in the plane: 2 mu dF + lambda R <R, dF> + k T <T, dF>, T = R [0 -1; 1 0], |T|^2 = 2; the twist's
-    // eigenvalue 2 mu + 2 k must not be negative.
+    // dP in the plane: 2 mu dF + lambda R <R, dF> + k T <T, dF>, T = R [0 -1; 1 0], |T|^2 = 2. The eigenvalue
+    // of the twist, 2 mu + 2 k, must not be negative.
     const double k = s.S > 0.0 ? std::max((lambda_ * s.S_minus_2 - 2.0 * mu_) / s.S, -mu_) : -mu_;
     const Mat2 W = out_of_plane_stiffness(face.F, s, mu_, lambda_);
     const Mat3 normal = s.n * s.n.transpose();

@@ -5,24 +5,23 @@
 
 namespace arris {
 
-/// In-plane elasticity: V = A (mu |Fbar - R|^2 + lambda/2 tr^2(R^T Fbar - I)), Fbar = P F the deformation
-/// gradient in the face's plane and R its rotation (the report, section 2.5). In plane stress mu = E / (2 (1
-/// + nu)), lambda = E nu / (1 - nu^2): a strip pulled by the strain e answers with E e per width, to first
+/// In-plane elasticity: V = A (mu |Fbar - R|^2 + lambda/2 tr^2(R^T Fbar - I)). Here Fbar = P F is the
+/// deformation gradient in the face's plane and R its rotation. In plane stress mu = E / (2 (1 + nu)),
+/// lambda = E nu / (1 - nu^2): a strip stretched by the strain e has the tension E e per width, to first
 /// order.
 ///
-/// Written without a decomposition. Fbar has F's singular values s1, s2; with J = s1 s2 = |f1 x f2| (f1, f2
-/// the columns of F) and S = s1 + s2 = sqrt(|F|^2 + 2 J):
+/// The code needs no decomposition. Fbar has F's singular values s1, s2. With f1, f2 the columns of F,
+/// J = s1 s2 = |f1 x f2| and S = s1 + s2 = sqrt(|F|^2 + 2 J):
 ///   V/A = mu sum (s_i - 1)^2 + lambda/2 (S - 2)^2
-///   P = dV/dF / A = 2 mu (F - R) + lambda (S - 2) R,   R = (F + [f2 x n, n x f1]) / S   (3x2, orthonormal
-///   columns)
-/// The Hessian's eigenvalues are known: in the plane 2 mu (flip), 2 mu and 2 mu + 2 lambda (scaling) and
-/// 2 (mu + lambda) (S - 2) / S (twist); out of it those of the 2x2 matrix W with P = F W. The last three can
-/// be negative under compression and are then set to zero, so that the stiffness is positive semi-definite,
-/// always.
+///   P = dV/dF / A = 2 mu (F - R) + lambda (S - 2) R
+///   R = (F + [f2 x n, n x f1]) / S   (3x2, orthonormal columns, n the unit normal)
+/// The Hessian's eigenvalues in the plane are 2 mu (flip), 2 mu and 2 mu + 2 lambda (scaling) and 2 (mu +
+/// lambda) (S - 2) / S (twist). Out of the plane they are those of the 2x2 matrix W with P = F W. Twist and W
+/// can become negative under compression. Negative values are set to zero, so the stiffness is always
+/// positive semi-definite.
 ///
-/// Where material flows (X of a corner moves at fixed x): dA = A b_i . dX_i and dF = -F dX_i b_i^T, so
-/// -dV/dX_i = F^T (A P b_i) - V b_i: beside what the force on x does, the energy of the material that is let
-/// into the face.
+/// Where material flows (X of a corner moves at fixed x), dA = A b_i . dX_i and dF = -F dX_i b_i^T. So
+/// -dV/dX_i = F^T (A P b_i) - V b_i. The second term is the energy of the material that enters the face.
 class Membrane : public FaceTerm {
   public:
     Membrane(double youngs_modulus, double poisson_ratio);

@@ -9,11 +9,11 @@ namespace arris {
 
 namespace {
 
-/// A crease from a to b where it is extrapolated to, with faces c on its left and d on its right.
+/// A crease from a to b at the extrapolated state, with face c on its left and face d on its right.
 struct Crease {
     std::array<int, 2> vertices;
     Mat32 F_c, F_d;
-    Vec2 across;  ///< to the right in the material, as long as the crease, m
+    Vec2 across;  ///< m, to the right in the material, as long as the crease
 };
 
 Crease find_crease(const HingeElement& hinge, const ClothElements& elements, const ExtrapolatedState& there)
@@ -27,8 +27,8 @@ Crease find_crease(const HingeElement& hinge, const ClothElements& elements, con
     return {{a, b}, deformation(hinge.faces[0]), deformation(hinge.faces[1]), {along.y(), -along.x()}};
 }
 
-/// The integral over the crease of N_i (V . n) (w_c - w_d), m^3/s^2, for both ends: all three are linear
-/// along it, and the integrals of N_i^3 and N_i^2 N_j are 1/4 and 1/12.
+/// Integral over the crease of N_i (V . n) (w_c - w_d), m^3/s^2, for both ends i. All three factors are
+/// linear along the crease; the mean values of N_i^3 and N_i^2 N_j are 1/4 and 1/12.
 std::array<Vec3, 2> turned_flow(const Crease& crease, const std::vector<Vec2>& material_velocity)
 {
     std::array<double, 2> passing;

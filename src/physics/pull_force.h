@@ -5,7 +5,8 @@
 
 namespace arris {
 
-/// A force spread over a material box while it acts. The same in every step, so it has no stiffness.
+/// A force spread over a box of material while it acts. It does not depend on the cloth's state, so it has no
+/// stiffness.
 class PullForce : public LoadTerm {
   public:
     explicit PullForce(const Pull& pull) : pull_(pull) {}

@@ -16,40 +16,41 @@
 namespace arris {
 
 /// One element's part of the linear system, in the corner velocities of its N corners (see linearization.h).
-/// A term adds its force, mass, stiffness and viscosity; the right-hand side that goes with each is kept up
-/// here, once for all.
+/// A term adds its force, mass, stiffness and viscosity. This class adds the matching right-hand sides, once
+/// for all terms.
 template <int N>
 class LocalSystem {
   public:
-    /// Of an element through whose vertices no material flows: corner velocities are the vertices'.
+    /// For an element without flow of material: corner velocities are those of the vertices.
     LocalSystem(const Linearization& at, const std::array<int, N>& vertices);
 
-    /// Of an element with an EOL vertex; `at.flow` must be there. `deformation` is F at each corner.
+    /// For an element with an EOL vertex; `at.flow` must be present. `deformation` is F at each corner.
     LocalSystem(const Linearization& at, const std::array<int, N>& vertices,
                 const std::array<Mat32, N>& deformation);
 
     double time() const { return time_; }
     bool is_eulerian() const { return is_eulerian_; }
-    const Vec3& v_last(int i) const { return v_last_[i]; }  ///< m/s, of the material at corner i
+    const Vec3& v_last(int i) const { return v_last_[i]; }  ///< m/s, velocity of the material at corner i
 
-    /// Adds 2 Fdot V, m/s^2, of corner i to what inertia must provide; before any mass.
+    /// Adds the convective acceleration 2 Fdot V, m/s^2, at corner i; call before adding any mass.
     void add_convection(int i, const Vec3& acceleration) { mass_rhs_[i] += gamma_ * acceleration; }
 
-    void add_force(int i, const Vec3& force);                   ///< N, a load on the material
+    void add_force(int i, const Vec3& force);                   ///< N, load on the material
     void add_elastic_force(int i, const Vec3& force);           ///< N, -dV/dx_i at fixed X
-    void add_material_force(int i, const Vec2& force);          ///< N, -dV/dX_i at fixed x; if is_eulerian()
-    void add_mass(int i, int j, double mass);                   ///< kg; i >= j, the other half is implied
+    void add_material_force(int i, const Vec2& force);          ///< N, -dV/dX_i at fixed x; only if
+                                                                ///< is_eulerian()
+    void add_mass(int i, int j, double mass);                   ///< kg; i >= j, symmetric
     void add_stiffness(int i, int j, const Mat3& minus_df_dx);  ///< N/m; i >= j
     void add_viscosity(int i, int j, const Mat3& minus_df_dv);  ///< N s/m; i >= j
 
     const Mat3& matrix(int i, int j) const { return matrix_[i * (i + 1) / 2 + j]; }  ///< i >= j
     const Vec3& rhs(int i) const { return rhs_[i]; }
-    const Mat32& deformation(int i) const { return deformation_[i]; }  ///< F there, if is_eulerian()
+    const Mat32& deformation(int i) const { return deformation_[i]; }  ///< F there; only if is_eulerian()
 
     /// Maps to the reduced coordinates: block -> G_i^T block G_j, rhs -> G_i^T rhs.
     void reduce(const std::array<const Mat3*, N>& corner_matrices);
 
-    /// The same for an element with an EOL vertex: G_i = basis_i - F_i material_basis_i.
+    /// As above for an element with an EOL vertex: G_i = basis_i - F_i material_basis_i.
     void reduce_eulerian(const std::array<const Mat3*, N>& bases,
                          const std::array<const Mat23*, N>& material_bases);
 
@@ -61,7 +62,7 @@ class LocalSystem {
     std::array<Mat3, N*(N + 1) / 2> matrix_;
     std::array<Vec3, N> rhs_;
 
-    // Only where is_eulerian_; `material_rhs_` is what V's virtual velocity finds besides G^T rhs_.
+    // Only if is_eulerian_. `material_rhs_` is the part of the right-hand side for E that is not in G^T rhs_.
     bool is_eulerian_ = false;
     std::array<Mat32, N> deformation_;
     std::array<Vec2, N> material_rhs_;
@@ -70,7 +71,7 @@ class LocalSystem {
 using FaceSystem = LocalSystem<3>;
 using HingeSystem = LocalSystem<4>;
 
-/// A face where it is now.
+/// A face at its present positions.
 struct FaceState {
     const FaceElement& element;
     std::array<Vec3, 3> x;  ///< m
@@ -79,32 +80,33 @@ struct FaceState {
     FaceState(const FaceElement& face, const std::vector<Vec3>& position);
 };
 
-/// A hinge where it is now.
+/// A hinge at its present positions.
 struct HingeState {
     const HingeElement& element;
     std::array<Vec3, 4> x;                                ///< m
-    std::optional<std::array<Vec2, 4>> weight_gradients;  ///< 1/m, where the hinge has an EOL vertex
+    std::optional<std::array<Vec2, 4>> weight_gradients;  ///< 1/m, if the hinge has an EOL vertex
 
     HingeState(const HingeElement& hinge, const std::vector<Vec3>& position);
 };
 
-/// What kind of energy a term's is: the columns of steps.csv.
+/// Kind of a term's energy: the columns of steps.csv.
 enum class EnergyKind { None, Gravity, Stretch, Bending };
 
 /// An effect with a contribution from each face. Stiffness and viscosity must be positive semi-definite.
 class FaceTerm {
   public:
     virtual ~FaceTerm() = default;
-    /// Whether its force is -dV of an energy of the face's shape (add_elastic_force, add_material_force), so
-    /// that a face with an EOL corner has it at q^; inertia and loads are taken where it is extrapolated to.
+    /// Whether the force is -dV of an energy of the face's shape (add_elastic_force, add_material_force).
+    /// Elastic terms of a face with an EOL corner are evaluated at q^, inertia and loads at the extrapolated
+    /// state.
     virtual bool is_elastic() const { return false; }
     virtual EnergyKind energy_kind() const { return EnergyKind::None; }
     virtual double energy(const FaceState&) const { return 0.0; }  ///< J
-    virtual bool is_drive() const { return false; }  ///< without an energy, but may do work on the cloth
+    virtual bool is_drive() const { return false; }  ///< has no energy, but may do work on the cloth
     virtual void add(const FaceState& face, FaceSystem& system) const = 0;
 };
 
-/// An effect with a contribution from each hinge, elastic: add_elastic_force, add_material_force.
+/// An elastic effect with a contribution from each hinge: add_elastic_force, add_material_force.
 class HingeTerm {
   public:
     virtual ~HingeTerm() = default;
@@ -113,7 +115,7 @@ class HingeTerm {
     virtual void add(const HingeState& hinge, HingeSystem& system) const = 0;
 };
 
-/// Of one element, FaceState or HingeState, through whose vertices no material flows.
+/// Sums the terms of one element (FaceState or HingeState) without flow of material.
 template <int N, typename State, typename ElementTerms>
 LocalSystem<N> sum_terms(const State& state, const ElementTerms& terms, const Linearization& at)
 {
@@ -132,21 +134,21 @@ struct CornerLoad {
 class LoadTerm {
   public:
     virtual ~LoadTerm() = default;
-    /// Adds to `force` (N, one a vertex) what acts on `mesh` during the step at `at`.
+    /// Adds to `force` (N, one entry per vertex) the load on `mesh` during the step at `at`.
     virtual void add(const ClothMesh& mesh, const Linearization& at, std::vector<Vec3>& force) const = 0;
-    /// The same load by faces: which of them a force on an EOL vertex pulls at decides how material flows.
+    /// The load by faces. The faces on which a load at an EOL vertex acts decide how material flows.
     virtual std::vector<CornerLoad> corner_loads(const ClothMesh& mesh, const Linearization& at) const = 0;
 };
 
-/// The effects of a scene, made at load. What is absent is not in a list.
+/// The effects of a scene, made when the scene is loaded. Absent effects are in no list.
 struct Terms {
     std::vector<std::unique_ptr<const FaceTerm>> faces;
     std::vector<std::unique_ptr<const HingeTerm>> hinges;
     std::vector<std::unique_ptr<const LoadTerm>> loads;
-    double density = 0.0;  ///< areal, kg/m^2, of the inertia among `faces`
+    double density = 0.0;  ///< areal, kg/m^2, as used by the inertia in `faces`
 };
 
-/// Inertia and membrane always; the others where their effect is there. Adding a term is one file and one
+/// Always inertia and membrane; other terms if their effect is present. A new term takes one file and one
 /// line here.
 Terms make_terms(const Material& material, const std::optional<Gravity>& gravity,
                  const std::optional<Wind>& wind, const std::vector<Pull>& pulls);

@@ -21,7 +21,7 @@ double cross(const Vec2& a, const Vec2& b)
     return a.x() * b.y() - a.y() * b.x();
 }
 
-/// A convex polygon of up to nine corners: two triangles overlap in at most six, rounding may add a few.
+/// A convex polygon of up to nine corners. Two triangles overlap in at most six; rounding may add a few.
 struct Polygon {
     std::array<Vec2, 12> corners;
     int count = 0;
@@ -37,7 +37,7 @@ struct Polygon {
     }
 };
 
-/// What of the polygon lies left of the line from a to b.
+/// The part of the polygon to the left of the line from a to b.
 Polygon clip(const Polygon& polygon, const Vec2& a, const Vec2& b)
 {
     Polygon kept;
@@ -86,7 +86,7 @@ struct Box2 {
     }
 };
 
-/// The old field, its triangles in the order of their boxes' lower ends along the patch's longer side.
+/// The old field. Its triangles are sorted by the lower ends of their boxes along the patch's longer side.
 class OldField {
   public:
     explicit OldField(const VelocityField& field) : field_(field)
@@ -107,7 +107,7 @@ class OldField {
         std::sort(order_.begin(), order_.end(), [this](int a, int b) { return low(a) < low(b); });
     }
 
-    /// The one that the triangle is, and which of its corners is the triangle's first.
+    /// The old triangle equal to `triangle`, and which of its corners is the first of `triangle`.
     std::optional<std::pair<int, int>> find_same(const std::array<Vec2, 3>& triangle) const
     {
         const double at = Box2(triangle).low[axis_];
@@ -121,12 +121,12 @@ class OldField {
         return {};
     }
 
-    /// Those whose boxes touch the triangle's, ascending.
+    /// Old triangles whose boxes touch the triangle's box, ascending.
     std::vector<int> find_near(const std::array<Vec2, 3>& triangle) const
     {
         const Box2 box(triangle);
         std::vector<int> found;
-        // Twice the widest: never too few by rounding.
+        // Twice the widest box, so that rounding loses none.
         for (auto t = first_from(box.low[axis_] - 2.0 * widest_);
              t != order_.end() && low(*t) <= box.high[axis_]; ++t)
             if (box.touches(boxes_[*t])) found.push_back(*t);
@@ -149,17 +149,17 @@ class OldField {
     std::vector<Box2> boxes_;
     std::vector<int> order_;
     int axis_ = 0;
-    double widest_ = 0.0;  ///< m, of the boxes along the axis
+    double widest_ = 0.0;  ///< m, largest width of a box along the axis
 };
 
-/// Adds integrals over part of a triangle of its shape functions times the velocity of an old one there,
-/// times density.
+/// Adds density times the integrals, over part of a triangle, of its shape functions times the velocity of an
+/// old triangle there.
 void add_integrals(double density, const std::array<Vec2, 3>& triangle, const Polygon& part,
                    const std::array<Vec2, 3>& old, const std::array<Vec3, 3>& old_velocity,
                    std::array<Vec3, 3>& sums)
 {
     for (int k = 2; k < part.count; ++k) {
-        // Products of linear functions: the three middles of the sides are exact.
+        // Products of linear functions: the midpoints of the three sides integrate them exactly.
         const Vec2 &p = part.corners[0], &q = part.corners[k - 1], &r = part.corners[k];
         const double weight = density * 0.5 * cross(q - p, r - p) / 3.0;
         for (const Vec2& middle : {Vec2(0.5 * (p + q)), Vec2(0.5 * (q + r)), Vec2(0.5 * (r + p))}) {
@@ -175,17 +175,18 @@ double area_of(const std::array<Vec2, 3>& triangle)
     return 0.5 * cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
 }
 
-/// Of a triangle whose corners have these velocities: sum_j m_ij v_j,  m_ij = mass / 12 (1 + delta_ij).
+/// Mass times velocity of a triangle with these corner velocities: sum_j m_ij v_j, m_ij = mass / 12 (1 +
+/// delta_ij).
 std::array<Vec3, 3> times_mass(double mass, const std::array<Vec3, 3>& v)
 {
     const Vec3 sum = v[0] + v[1] + v[2];
     return {mass / 12.0 * (sum + v[0]), mass / 12.0 * (sum + v[1]), mass / 12.0 * (sum + v[2])};
 }
 
-/// The integrals over all of a new triangle.
+/// The integrals over a whole new triangle.
 std::array<Vec3, 3> integrate_old(double density, const OldField& old, const std::array<Vec2, 3>& triangle)
 {
-    if (const auto same = old.find_same(triangle)) {  // most are there as they were
+    if (const auto same = old.find_same(triangle)) {  // most triangles are unchanged
         const auto [t, k] = *same;
         const std::array<Vec3, 3>& v = old.velocity(t);
         return times_mass(density * area_of(triangle), {v[k], v[(k + 1) % 3], v[(k + 2) % 3]});
@@ -220,8 +221,8 @@ NewFace make_face(double density, const FitPatch& patch, const Face& face)
     return made;
 }
 
-/// The normal equations M u + C^T lambda = r, C u = p: M is the mass of the free coordinates, C u their
-/// momentum. M is sparse and positive definite; three solves more eliminate the multipliers.
+/// The normal equations M u + C^T lambda = r, C u = p. M is the mass matrix of the free coordinates, C u
+/// their momentum. M is sparse and positive definite; three further solves eliminate the multipliers.
 class NormalEquations {
   public:
     NormalEquations(const FitPatch& patch) : patch_(patch), slot_(patch.material.size(), -1)
@@ -237,7 +238,7 @@ class NormalEquations {
     void add(const Face& vertices, const NewFace& face, const std::array<Vec3, 3>& old)
     {
         std::array<Mat3, 3> G;
-        std::array<Vec3, 3> known;  // corner velocity but for the unknowns
+        std::array<Vec3, 3> known;  // known part of the corner velocities
         for (int i = 0; i < 3; ++i) {
             const int v = vertices[i];
             G[i] = patch_.basis[v] - face.F * patch_.material_basis[v];
@@ -257,7 +258,7 @@ class NormalEquations {
         }
     }
 
-    /// u of each vertex, zero where it is not free.
+    /// u of each vertex, zero where the vertex is not free.
     std::optional<std::vector<Vec3>> solve() const
     {
         Eigen::SparseMatrix<double> mass(rhs_.size(), rhs_.size());
@@ -267,7 +268,7 @@ class NormalEquations {
         const Eigen::Matrix<double, Eigen::Dynamic, 3> of_unit = factor.solve(carried_.transpose());
         const Eigen::PartialPivLU<Mat3> schur(carried_ * of_unit);
 
-        // The second round takes what rounding left.
+        // The second round corrects the rounding of the first.
         Eigen::VectorXd u = Eigen::VectorXd::Zero(rhs_.size()), left = rhs_;
         Vec3 multiplier = Vec3::Zero(), missing = momentum_;
         for (int round = 0; round < 2; ++round) {
@@ -291,8 +292,8 @@ class NormalEquations {
   private:
     static double weight(const NewFace& face, int i, int j) { return face.mass / (i == j ? 6.0 : 12.0); }
 
-    /// Of what is not zero: coordinates of vertices that are of the material have nothing to do with each
-    /// other (their blocks are multiples of the identity, to the bit), and factors keep them apart.
+    /// Adds only nonzero entries. Blocks between Lagrangian vertices are multiples of the identity, to the
+    /// bit. So their x, y and z are uncoupled, and the factor stays sparse.
     void add_block(int row, int column, const Mat3& block)
     {
         for (int c = 0; c < 3; ++c)

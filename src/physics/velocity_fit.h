@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The velocity of a patch of cloth whose mesh was changed: of all fields that the new mesh can carry, the one
-// nearest to the old in the norm of kinetic energy that has the same linear momentum.
+// Fits a velocity to a patch of cloth whose mesh was changed. The fit has the old field's linear momentum. Of
+// all such fields on the new mesh, it is nearest to the old field in the norm of kinetic energy.
 #pragma once
 
 #include <array>
@@ -11,23 +11,23 @@
 
 namespace arris {
 
-/// Material velocity on the triangles of a patch before its mesh was changed, linear on each. It may jump
-/// between them, as it does where material flows over a fold.
+/// Velocity of the material on the triangles of a patch before its mesh was changed, linear on each triangle.
+/// It may jump between triangles, as where material flows over a fold.
 struct VelocityField {
     std::vector<std::array<Vec2, 3>> triangles;  ///< X of the corners, m, counter-clockwise
     std::vector<std::array<Vec3, 3>> velocity;   ///< m/s, of the corners
 };
-/// Kinetic, J; `density`: kg/m^2.
+/// Kinetic energy, J; `density` is areal, kg/m^2.
 double compute_kinetic_energy(double density, const VelocityField& field);
 
-/// The patch after the change: as VelocityField's triangles it covers the same part of the cloth.
+/// The patch after the change. It covers the same part of the material as VelocityField's triangles.
 struct FitPatch {
-    std::vector<Face> faces;  ///< of the vertices below
+    std::vector<Face> faces;  ///< indices of the vertices below
     std::vector<Vec2> material;
     std::vector<Vec3> world;
 
-    // Velocity xdot = drift + basis u, Xdot = material_basis u; where `is_free` is 0 it stays xdot = drift,
-    // Xdot = material_drift.
+    // Velocity xdot = drift + basis u, Xdot = material_basis u. Where `is_free` is 0, xdot = drift and Xdot =
+    // material_drift.
     std::vector<char> is_free;
     std::vector<Vec3> drift;
     std::vector<Vec2> material_drift;
@@ -38,13 +38,13 @@ struct FitPatch {
 struct VelocityFit {
     std::vector<Vec3> velocity;           ///< xdot, m/s
     std::vector<Vec2> material_velocity;  ///< Xdot, m/s
-    double energy_gain = 0.0;             ///< kinetic, J: after minus before
+    double energy_gain = 0.0;             ///< kinetic, J, after minus before
 };
 
-/// Minimises the integral of density / 2 |new - old|^2 over the patch under equality of linear momentum.
-/// `density` is areal, kg/m^2. Nothing where no vertex is free or the system is singular (a patch folded so
-/// that a vertex's coordinates move no material). Exact integrals over the overlay of both meshes; cost is
-/// near linear in face count plus a sparse factorisation.
+/// Minimises the integral of density / 2 |new - old|^2 over the patch, subject to equal linear momentum.
+/// `density` is areal, kg/m^2. Returns nothing where no vertex is free or the system is singular (a patch
+/// folded so that a vertex's coordinates move no material). Integrals over the overlay of both meshes are
+/// exact. The cost is near linear in face count, plus a sparse factorisation.
 std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old, const FitPatch& patch);
 
 }  // namespace arris

@@ -28,7 +28,7 @@ void WindForce::add(const FaceState& face, FaceSystem& system) const
 {
     const Vec3 doubled = (face.x[1] - face.x[0]).cross(face.x[2] - face.x[0]);
     const double twice_world_area = doubled.norm();
-    if (!(twice_world_area > 0.0)) return;  // a face seen edge-on by every wind
+    if (!(twice_world_area > 0.0)) return;  // no wind acts on a face without area
     const Vec3 n = doubled / twice_world_area;
 
     const Vec3 material = (system.v_last(0) + system.v_last(1) + system.v_last(2)) / 3.0;

@@ -15,14 +15,14 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
 {
     constexpr int kStartParts = 3;
     const double planned = end - state.time;
-    int shrink = 1;                                      // how much shorter parts have become
-    int parts = find_flow_parts(scene, state, planned);  // how many are left
+    int shrink = 1;                                      // factor by which parts have become shorter
+    int parts = find_flow_parts(scene, state, planned);  // parts left until `end`
     StepPart part = StepPart::Ordinary;
     if (settings.integrator == Integrator::Bdf2 && !has_past(state, planned) && parts == 1) {
         part = StepPart::Opening;
         parts = kStartParts;
     }
-    StepReport failed;  // attempts since the last part that was made: what they cost
+    StepReport failed;  // cost of the attempts since the last accepted part
     work.retry.forget();
     while (state.time < end) {
         const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;

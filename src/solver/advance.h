@@ -12,16 +12,17 @@
 
 namespace arris {
 
-/// Called when a part of a step has been made; its report counts the attempts that failed before it, too.
-/// False: stop here.
+/// Called for each accepted part of a step. The report's costs include the failed attempts before that part.
+/// `is_halved`: an ordinary part, shorter than the planned step. Returning false stops `advance`.
 using AcceptPart = std::function<bool(const StepReport& report, bool is_halved)>;
 
-/// Advances `state` to `end` (s) in one step, or, where material flows too fast for one, in as many parts as
-/// `find_flow_parts` says. BDF2 that has no past makes a third of a step first and then the rest: half of its
-/// error in a second of sliding would else be that of one implicit Euler step. Where that fails because
-/// energy would rise, it is tried without history; where it fails otherwise, the rest of it is made in twice
-/// as many equal parts, at most six times, the last of them with the last resort. Returns the report of what
-/// failed even so; `state` is then where the last accepted part left it.
+/// Advances `state` to `end` (s): in one step, or in `find_flow_parts` equal parts where material flows too
+/// fast for one. A BDF2 step without history is made in two parts, a third of the step and the rest. As one
+/// implicit Euler step it would cause half of BDF2's error in a second of sliding. RetryPolicy
+/// (retry_policy.h) decides what follows a failed attempt. The rest of the step may be made in twice as many
+/// equal parts, at most six times. The shortest parts may take last resorts (Attempt::Last). Returns the
+/// report of the attempt after which none was left; `state` is then at the last accepted part. Returns
+/// nothing where `end` was reached or `accept` stopped.
 std::optional<StepReport> advance(const Scene& scene, const Settings& settings, double end, State& state,
                                   Workspace& work, const AcceptPart& accept);
 

@@ -11,7 +11,7 @@ namespace arris {
 
 namespace {
 
-/// What each EOL vertex has to remember: which way is outward, and since when it does not press.
+/// Stores at each EOL vertex its outward direction, its side and the number of steps without pressing.
 void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoordinates>& eol,
                 const std::vector<double>& multiplier, std::vector<EolVertex>& vertices)
 {
@@ -48,7 +48,7 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     state.previous_material_velocity.swap(state.material_velocity);
     state.mesh.material.swap(work.proposal.material);
     state.material_velocity.swap(work.proposal.material_velocity);
-    state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // put back by hand: no history
+    state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // a rewound path is no history
     state.time = end;
     ++state.step;
     follow_features(scene.obstacles, state);

@@ -8,8 +8,8 @@
 
 namespace arris {
 
-/// Swaps the accepted proposal in `work` into `state`, at `end` (s), and reports what presses. Where the step
-/// has failed the state stays as it was.
+/// Swaps the accepted proposal in `work` into `state`, whose time becomes `end` (s), and reports which
+/// contacts press. A failed step leaves the state unchanged.
 void commit(const Scene& scene, double end, Workspace& work, State& state, StepReport& report);
 
 }  // namespace arris

@@ -15,15 +15,16 @@ namespace arris {
 
 namespace {
 
-// What a step may add, or find that it did not foresee, of what there was in motion and what changed kind.
-// Quiet BDF2 stays below 1e-3 of it; where the linearisation fails it is from a few per cent to nearly all.
+// Tolerance on the energy rise and on unforeseen energy of a step, as a share of `energy_scale`. Quiet BDF2
+// stays below 1e-3; where the linearisation fails, the share is a few per cent to nearly 100 %.
 constexpr double kRise = 0.003;
 
-// Forces at a step's end stand for their mean over it: what the work of those that ebb away after a jerk is
-// short of, measured at 6 %.
+// Tolerance on the driven work, as a share of that work. Forces at a step's end stand for their mean over the
+// step. After a jerk forces ebb away, and the work comes out too small: by 6 % where measured.
 constexpr double kDriven = 0.25;
 
-/// A u - b is the impulse of all constraints; without the rows' it is the pins' along their coordinates.
+/// Work of pins, J. A u - b is the impulse of all constraints. Without the impulses of rows, the pins'
+/// impulses remain along the pinned coordinates.
 double work_of_pins(const State& state, const Workspace& work)
 {
     if (work.pin_targets.empty()) return 0.0;
@@ -44,8 +45,8 @@ double work_of_pins(const State& state, const Workspace& work)
     return sum / work.prediction.gamma;
 }
 
-/// Contacts push along their normals on what moves with the obstacle where the cloth is: the plane that keeps
-/// a fold's sides apart is far from its wire there.
+/// Work of contacts, J, without the bounds of EOL vertices. A contact pushes along its normal, and its
+/// obstacle's motion is taken at the cloth's point: a fold plane is far from its wire there.
 double work_of_rows(const std::vector<double>& multiplier, const Workspace& work)
 {
     double sum = 0.0;
@@ -57,9 +58,10 @@ double work_of_rows(const std::vector<double>& multiplier, const Workspace& work
     return sum / work.prediction.gamma;
 }
 
-/// What goes with a feature does so by all that holds it there, also across, where material flows: cloth that
-/// leaves to one side pulls at it. What rows do there is theirs; a vertex that goes round a wire with the
-/// cloth is driven by nothing.
+/// Work of features on their EOL vertices, J. A moving feature carries a vertex with the whole impulse that
+/// holds the vertex there. This includes the direction across the feature, in which material flows: cloth
+/// that leaves to one side pulls at the feature. Impulses of other contacts count in `work_of_rows`. Going
+/// round a wire with the cloth counts as no work: nothing drives that motion.
 double work_of_features(const State& state, const std::vector<double>& multiplier, const Workspace& work)
 {
     std::vector<Vec3> impulse = compute_feature_impulses(state.mesh, work.mesh.elements, work.mesh.terms,
@@ -101,7 +103,7 @@ ClothElements elements_at(const Workspace& work, const std::vector<Vec2>& materi
     return elements;
 }
 
-/// How fast, m/s, the proposal's positions were moved from where its velocity leads.
+/// Velocity, m/s, of the push from the positions to which the proposal's velocity leads to its own positions.
 std::vector<Vec3> push_velocity(const Workspace& work, double dt)
 {
     std::vector<Vec3> velocity = work.proposal.world;
@@ -110,10 +112,10 @@ std::vector<Vec3> push_velocity(const Workspace& work, double dt)
     return velocity;
 }
 
-/// Elastic energy, J, of strains that are only round-off of positions so far from the origin.
+/// Elastic energy, J, of strains due to round-off alone, for positions as far from the origin as the cloth's.
 double round_off_energy(const Scene& scene, const State& state, const ClothElements& elements)
 {
-    constexpr double kRoundOff = 1e-15;  // of a coordinate, some units in the last place
+    constexpr double kRoundOff = 1e-15;  // relative to a coordinate: some units in the last place
     double area = 0.0, far = 0.0;
     for (const FaceElement& face : elements.faces) area += face.area;
     for (const Vec3& x : state.mesh.world) far = std::max(far, x.cwiseAbs().maxCoeff());
@@ -147,7 +149,7 @@ double compute_driven_work(const State& state, const Workspace& work)
 
 double energy_scale(const Workspace& work)
 {
-    constexpr double kRoundOff = 1e-9;  // of the energies themselves, which are sums over all elements
+    constexpr double kRoundOff = 1e-9;  // relative to the energies, which are sums over elements
     const ClothEnergy& before = work.energies.start;
     const ClothEnergy& after = work.energies.solved;
     double exchanged = 0.0, size = 0.0;
@@ -175,8 +177,8 @@ double find_energy_rise(const Scene& scene, const State& state, const Workspace&
 
 double find_unforeseen_energy(const Scene& scene, const Workspace& work)
 {
-    // A third difference over thirds of the way is 4/9 of what is of fourth order, as the stretch of what
-    // moves across itself is, and 2/9 of what is of third.
+    // A third difference over thirds of the way is 4/9 of a fourth-order term and 2/9 of a third-order term.
+    // The stretch of cloth that moves across itself is of fourth order.
     constexpr double kFourthOrder = 9.0 / 4.0;
     const double least = kRise * energy_scale(work);
     const Energies &before = work.energies.start.potential, &after = work.energies.solved.potential;
@@ -188,7 +190,7 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
         return compute_cloth_energy(scene, work, find_end(work.prediction, velocity)).potential;
     };
     const Energies at_expansion = potential_at(from);
-    // Ringing cloth, which goes farther at v^ than it does, has up to three times as much there.
+    // Oscillating cloth overshoots at v^ and has up to three times its elastic energy there.
     constexpr double kFarMore = 5.0;
     if (at_expansion.elastic() > kFarMore * (after.elastic() + before.elastic()) + least) return gained;
     const double third = after.sum() - at_expansion.sum() +
@@ -213,7 +215,7 @@ void measure_start_energy(const Scene& scene, const State& state, Workspace& wor
 
 void measure_proposal_energy(const Scene& scene, double dt, Workspace& work)
 {
-    constexpr double kStill = 1e-6;  // m/s: round-off, of pins and what is mended, is slower
+    constexpr double kStill = 1e-6;  // m/s: above round-off of pins and restored stand-offs
     const Proposal& proposal = work.proposal;
     double fastest = 0.0;
     for (const Vec3& v : push_velocity(work, dt)) fastest = std::max(fastest, v.squaredNorm());

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A step's velocity solves equations that are linear around q^. Where contact or a pin stops what q^ had
-// extrapolated freely, stiff cloth at q' has an energy that these equations know nothing of. Here is how that
-// is seen.
+// Energy balance of a step. The velocity solves equations that are linear around q^. Contact or a pin may
+// stop cloth that q^ had extrapolated freely. Stiff cloth at q' then has a strain energy that the linear
+// equations miss. The functions here detect such energy.
 //
-// Implicit Euler at a solution of the equations themselves, f with potential V, R the forces of pins and
-// contacts:
+// The nonlinear equations themselves, with forces f of a potential V and forces R of pins and contacts, have
+// for implicit Euler
 //
 //   M (v' - v_k) = h (f(q') + R),  q' - q_k = h v'
 //   T' - T_k = (q' - q_k) . (f(q') + R) - 1/2 |v' - v_k|_M^2
 //   V' - V_k <= -(q' - q_k) . f(q')                           V convex
 //
-// so T + V rises by no more than the work of R, and of what has no potential, over the step, and of R only
-// what moves with its own motion counts: a fixed pin does none, and a contact that closes takes some. Cloth's
-// V is not convex under compression, and BDF2's energy is monotone only in a norm of two steps; but both
-// damp, and what they leave is far below kRise.
+// So in a step T + V rises by no more than the work of R and of forces without potential. R does work only as
+// pins and obstacles move: a fixed pin does none, and a contact that closes takes energy. V of cloth is not
+// convex under compression, and BDF2's energy is monotone only in a norm over two steps. But both integrators
+// damp; the energy that remains is far below kRise.
 //
-// Where contact takes energy out, too much strain does not show in that sum, but throws the cloth in the next
-// step: stiff cloth that falls flat on an edge is stopped beside it, and a cell across which it goes on by d
-// is stretched by d^2 / 2. That is seen as what is unforeseen.
+// Where contact takes energy out, that sum hides excess strain, which throws the cloth in the next step.
+// Stiff cloth that falls flat on an edge is stopped there. A cell of which one side goes on by d is then
+// stretched by d^2 / 2. `find_unforeseen_energy` detects such strain.
 #pragma once
 
 #include <vector>
@@ -28,37 +28,41 @@
 
 namespace arris {
 
-/// Of a cloth with the workspace's faces. Where material flows, elements are taken where it is.
+/// Energy of a cloth that has the workspace's faces. Faces at EOL vertices have the material of `cloth`.
 ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, const MovingCloth& cloth);
 
-/// Work, J, that moving pins, moving obstacles, pulls and wind do on the cloth in the step from `state` to
-/// the velocity in `work.solution`, with the forces that this has found. Negative where they are driven.
+/// Work, J, that moving pins, moving obstacles, pulls and wind do on the cloth in the step from `state`.
+/// Forces and motion follow from the velocity in `work.solution`. Negative where the cloth drives them.
 double compute_driven_work(const State& state, const Workspace& work);
 
-/// `work.energies.start` at the step's start, as the last step left it where that is known.
+/// Sets `work.energies.start`, the energy at the step's start. Reuses the energy of the last commit where the
+/// cloth is unchanged.
 void measure_start_energy(const Scene& scene, const State& state, Workspace& work);
 
-/// `work.energies.solved` and `work.energies.proposed` of a proposal after `dt` (s).
+/// Sets `work.energies.solved` and `work.energies.proposed` for the proposal in `work`, after `dt` (s).
 void measure_proposal_energy(const Scene& scene, double dt, Workspace& work);
 
-/// J, of the cloth of a weighed proposal: what was in motion at the step's start, or changed kind in it.
+/// Scale of a step's energies, J: kinetic energy at the start, plus the changes of each kind of energy in the
+/// step. Tolerances on energy are shares of this scale. Call measure_proposal_energy first.
 double energy_scale(const Workspace& work);
 
-/// By how much, J, the proposal in `work`, before anything was moved out to its stand-off, raises the cloth's
-/// energy beyond the work that drives it, where that is more than a step may; else 0. Weigh it first.
+/// Rise, J, of the cloth's energy in the proposal beyond the work that drives the cloth, before cloth is
+/// pushed out to its stand-off. 0 where the rise is within the tolerance of a step. Call
+/// measure_proposal_energy first.
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work);
 
-/// Elastic energy, J, that the proposal has gained and that equations linear around `work.expansion` do not
-/// see, as it is of higher than second order in the way from there: about as much, where that is more than a
-/// share of what was in motion or changed kind; else 0. All of the gain where the cloth is strained far more
-/// there: flattened history beside what goes on strains it. Weigh it first.
+/// Elastic energy, J, that the proposal has gained and that equations linear around `work.expansion` miss:
+/// the terms above second order in the motion from there. An estimate, and 0 where it is below a share of
+/// `energy_scale`. If the cloth is strained far more at `work.expansion`, all of the gain counts: there,
+/// flattened history strains the cloth beside it. Call measure_proposal_energy first.
 double find_unforeseen_energy(const Scene& scene, const Workspace& work);
 
-/// Whether moving the proposal's positions out to their stand-off in `dt` (s) has cost more elastic energy
-/// than a push at that speed could give, and a share of what there is. Weigh it first.
+/// Whether pushing cloth out to its stand-off in `dt` (s) strains it. The push then costs more elastic energy
+/// than the kinetic energy of its speed plus a share of the cloth's energy. Call measure_proposal_energy
+/// first.
 bool does_push_out_strain(const Scene& scene, double dt, const Workspace& work);
 
-/// 1/2 |v - v~|_M^2 + V(q~ + gamma v), J: what the step minimises, but for wind, pulls and damping.
+/// 1/2 |v - v~|_M^2 + V(q~ + gamma v), J: the step's objective without wind, pulls and damping.
 double compute_step_objective(const Scene& scene, const Workspace& work, const ClothVelocity& velocity);
 
 }  // namespace arris

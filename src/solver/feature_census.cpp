@@ -16,8 +16,8 @@ namespace arris {
 
 namespace {
 
-constexpr double kTouching = 1e-6;  // thicknesses: the contact's point is the closest of the obstacle
-constexpr double kAtEnd = 0.95;     // weight of an edge's end: no vertex is put nearer to another
+constexpr double kTouching = 1e-6;  // thicknesses: the contact's point lies on the obstacle
+constexpr double kAtEnd = 0.95;     // weight of an edge's end: no vertex is inserted nearer to it
 
 bool is_plane_of_face(const Obstacle& obstacle, const ObstacleContact& contact)
 {
@@ -49,7 +49,8 @@ class Census {
     }
 
   private:
-    /// One that has no coordinates in this step, or that touches something else besides.
+    /// Cause for a contact of an EOL vertex: the vertex has no coordinates in this step, or the contact is
+    /// with another feature or obstacle.
     RowCause of_eol_vertex(int entry, const Contact& contact) const
     {
         if (const std::optional<RowCause> refusal = find_refusal(entry)) return *refusal;
@@ -58,11 +59,11 @@ class Census {
                                                                  : RowCause::OtherObstacle;
     }
 
-    /// What EOL vertices a contact has beside it, on the feature that it touches.
+    /// EOL vertices beside a contact, on the feature that the contact touches.
     struct Beside {
         bool is_any = false;
-        bool is_at = false;               ///< its place is that of one of them, or between two
-        std::optional<RowCause> refusal;  ///< of that one, where it has no coordinates in this step
+        bool is_at = false;               ///< the contact is at one of them, or between two
+        std::optional<RowCause> refusal;  ///< why that vertex has no coordinates in this step, if so
     };
 
     Beside find_beside(const Contact& contact) const
@@ -79,8 +80,9 @@ class Census {
         return is_on_trace(contact) ? Beside{true, true, {}} : beside;
     }
 
-    /// Whether an EOL vertex is on the feature that a contact touches: at an end of the cloth's edge on the
-    /// same polyline or its corner, or on the same corner.
+    /// Whether an EOL vertex is on the feature that a contact touches. For a cloth edge: the vertex is an end
+    /// of that edge, on the feature's polyline or a corner of it. For a cloth face: the vertex is on the
+    /// corner touched.
     bool is_of(const Contact& contact, const EolVertex& eol) const
     {
         if (eol.on.obstacle != contact.obstacle) return false;
@@ -105,9 +107,9 @@ class Census {
         return distance_to_corner(obstacle, {feature, 0.5}, eol.on.index, kAnywhere).has_value();
     }
 
-    /// Whether a contact is of the trace's own edge: the cloth's edge is that, or its face has that and
-    /// touches a vertex of the obstacle's mesh there, in the middle of a convex edge: on a rim that bends
-    /// a chord of it passes by what is between its ends.
+    /// Whether a contact belongs to an edge of the trace. Either the contact's cloth edge is a trace edge. Or
+    /// its cloth face has a trace edge and touches a vertex of the obstacle's mesh there, within a convex
+    /// edge. On a rim that bends, a chord of the cloth passes by such vertices.
     bool is_on_trace(const Contact& contact) const
     {
         const ObstacleContact& local = contact.in_frame;
@@ -135,7 +137,8 @@ class Census {
         return false;
     }
 
-    /// Whether what is touched is a stand-off or so from the edge between two corners of the cloth's face.
+    /// Whether the touched point is within kOnFeature thicknesses of the edge between corners i and j of the
+    /// face.
     bool is_near(const Contact& contact, int i, int j) const
     {
         const ObstacleContact& local = contact.in_frame;
@@ -145,7 +148,7 @@ class Census {
         return (local.point - a - s * (b - a)).norm() <= kOnFeature * scene_.material.thickness;
     }
 
-    /// Whether the cloth touches at that vertex, as far as can be told (row_cause.h).
+    /// Whether a contact lies at that vertex of the cloth, by the rule in row_cause.h.
     bool is_at(const Contact& contact, int vertex) const
     {
         const ObstacleContact& local = contact.in_frame;

@@ -10,20 +10,20 @@
 
 namespace arris {
 
-/// What presses on sharp edges, corners, wires and points at a step's end.
+/// Counts of the contacts that press on sharp edges, corners, wires and points at a step's end.
 struct FeatureCensus {
-    int eol = 0;           ///< EOL vertices
-    int rows = 0;          ///< other contacts, also of vertices that touch a feature
-    RowCounts by_cause{};  ///< of these rows, where the scene has EOL vertices; else zero
+    int eol = 0;           ///< EOL vertices that press
+    int rows = 0;          ///< other pressing contacts, also of single vertices
+    RowCounts by_cause{};  ///< `rows` by cause; zero in a scene without EOL vertices
 };
 
-/// Of a solved step from `state`, before it is committed; `multiplier` is of each of the workspace's
-/// contacts.
+/// Counts for a solved step from `state`, before its commit. `multiplier` has one entry a contact of the
+/// workspace (N s).
 FeatureCensus take_census(const Scene& scene, const State& state, const Workspace& work,
                           const std::vector<double>& multiplier);
 
-/// Whether a contact touches a sharp feature: its point is on one (edges and faces of the cloth touch a
-/// smooth obstacle's edges and vertices, too), and the plane of a vertex's contact is none of a face.
+/// Whether a contact touches a sharp feature. Its point must lie on one, as cloth edges and faces also touch
+/// edges and vertices of a smooth obstacle. The plane of a vertex's contact must not be that of a face.
 bool touches_feature(const Obstacle& obstacle, const ObstacleContact& contact, double thickness);
 
 }  // namespace arris

@@ -27,16 +27,16 @@ bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
 
 namespace {
 
-/// Vertices that would leave faces too little material go back on their way from the step's start, in the
-/// world as in the material, and with their velocity. Which, ascending.
+/// Takes vertices that would leave faces too little material back towards their start in the step: in the
+/// world, in the material and in velocity. Returns these vertices.
 std::set<int> shorten(const State& state, Workspace& work, MovingCloth& cloth)
 {
-    constexpr int kHalvings = 4;  // then they stay where they are, which is always enough
+    constexpr int kHalvings = 4;  // afterwards they stay at the start, where material is always left
     const auto go_back = [](double share, const auto& from, auto& to) { to = from + share * (to - from); };
     std::set<int> shortened;
     for (int round = 0; round <= kHalvings && !has_material_left(cloth.material, work); ++round) {
         const double share = round < kHalvings ? 0.5 : 0.0;
-        std::set<int> vertices;  // once each: they are named for every face
+        std::set<int> vertices;  // each once: `overrun` has a vertex for every face
         for (const Overrun& overrun : work.overrun) vertices.insert(overrun.vertex);
         for (const int v : vertices) {
             go_back(share, state.mesh.world[v], cloth.world[v]);
@@ -54,10 +54,10 @@ std::set<int> shorten(const State& state, Workspace& work, MovingCloth& cloth)
 
 int find_flow_parts(const Scene& scene, const State& state, double dt)
 {
-    // Of a cell's edges: with the way cleared ahead, heights there are those of a cell or more, and steps
-    // that take more are hardly ever made.
+    // Cells that a part may take. Faces ahead of a vertex with a cleared way are at least a cell high, so
+    // steps that take more rarely succeed.
     constexpr double kMostCells = kMostFaceTaken;
-    constexpr int kMostParts = 4;  // flow may be wild
+    constexpr int kMostParts = 4;  // a bound, as the flow of a single vertex may be far too large
     double most = 0.0;
     for (const EolVertex& eol : state.eol) {
         const int v = state.index_of(eol.vertex_id);

@@ -12,11 +12,11 @@ namespace arris {
 
 namespace {
 
-/// What all contacts of one EOL vertex do.
+/// Sums over all contacts of one EOL vertex.
 struct Press {
     double impulse = 0.0;  ///< N s, sum of magnitudes
     Vec3 net = Vec3::Zero();
-    double work = 0.0;  ///< J, of the obstacles' motion
+    double work = 0.0;  ///< J, done by the obstacles' motion
 };
 
 Press sum_contacts(int vertex, const std::vector<double>& multiplier, const Workspace& work)
@@ -37,7 +37,7 @@ Press sum_contacts(int vertex, const std::vector<double>& multiplier, const Work
     return sum;
 }
 
-/// In contacts that no velocity meets.
+/// EOL vertices in contacts that no velocity meets.
 std::vector<int> find_unmet_vertices(const State& state, const Workspace& work)
 {
     std::vector<int> unmet;
@@ -54,9 +54,9 @@ std::vector<int> find_unmet_vertices(const State& state, const Workspace& work)
 
 std::vector<int> find_overpressed_vertices(const Workspace& work)
 {
-    constexpr double kInVain =
-        2.0;                       // of impulses that add up: faces of a groove of 60 degrees, or one across
-    constexpr double kWork = 0.1;  // of the energy at stake
+    // Sum of impulses over the part that moves the vertex: 2 in a groove of 60 degrees.
+    constexpr double kInVain = 2.0;
+    constexpr double kWork = 0.1;  // share of the energy scale
     std::vector<int> overpressed;
     const double least = kWork * energy_scale(work);
     if (!(work.energies.solved.sum() - work.energies.start.sum() > least)) return overpressed;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An EOL vertex moves in a plane or on a line only. What presses on it from two sides, one of which comes
-// nearer, may then be impossible to meet, or drive it out along a wedge however fast that is: an ordinary
-// vertex gives way. So it has to become one.
+// EOL vertices and fold planes that are pressed from both sides. An EOL vertex moves only in a plane or on a
+// line. Between contacts that approach each other no velocity may meet both, or the vertex is driven out of
+// their wedge at any speed. An ordinary vertex gives way, so an overconstrained EOL vertex becomes ordinary
+// for the step.
 #pragma once
 
 #include <vector>
@@ -12,16 +13,17 @@
 
 namespace arris {
 
-/// EOL vertices whose contacts push against each other or against what holds the vertex to its feature, most
-/// of their impulses in vain, and do work, J, on them all the same: more than a tenth of the energy at stake
-/// in a step in which the cloth gains as much. The proposal in `work` is weighed.
+/// EOL vertices whose contacts push against each other, or against the feature that holds the vertex: most of
+/// their impulse cancels. These contacts also do work on the vertex, of more than 10 % of the energy scale.
+/// The cloth's energy must rise by more than 10 % of that scale, too. Call measure_proposal_energy first.
 std::vector<int> find_overpressed_vertices(const Workspace& work);
 
-/// Contacts (indices) of folds' planes that press cloth against another obstacle: nothing is there that would
-/// crush it.
+/// Contacts (indices) of fold planes that press cloth against another obstacle. A fold plane is no surface,
+/// so it can yield.
 std::vector<int> find_overconstraining_folds(const Workspace& work);
 
-/// Those of an infeasible step: in contacts that no velocity meets, or squeezed.
+/// Overconstrained EOL vertices of an infeasible step: vertices in contacts that no velocity meets, or else
+/// the result of `find_overpressed_vertices`. Empty if the status is not Infeasible.
 std::vector<int> find_overconstrained_vertices(const State& state, const Workspace& work,
                                                const StepReport& report);
 

@@ -13,9 +13,9 @@ namespace arris {
 
 namespace {
 
-constexpr int kMostRelinearisations = 4;  // one does nearly always, three have where they help at all
+constexpr int kMostRelinearisations = 4;  // one nearly always suffices; where any help, three do
 
-/// v^ goes there; contacts that press now do so in the next solve, too.
+/// Sets v^ to `next`, and marks the contacts that press now for the next solve.
 void expand_at(ClothVelocity next, Workspace& work, StepReport& report)
 {
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
@@ -25,11 +25,11 @@ void expand_at(ClothVelocity next, Workspace& work, StepReport& report)
     ++report.relinearisations;
 }
 
-/// v^ goes to the velocity found, or part of the way where that has more of what the step minimises than v^
-/// has, if this is a measure.
+/// Moves v^ to the velocity found. If `is_measure`, v^ goes only part of the way where the step's objective
+/// would grow.
 void relinearise(const Scene& scene, bool is_measure, Workspace& work, StepReport& report)
 {
-    constexpr double kShortest = 0.1;  // wind and pulls are not in the objective: never stay
+    constexpr double kShortest = 0.1;  // some way always: the objective lacks wind and pulls
     ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
     if (is_measure) {
         const double now = compute_step_objective(scene, work, work.expansion);
@@ -61,17 +61,19 @@ bool enforce_energy_balance(const Scene& scene, const State& state, Attempt atte
         work.least.rise = rise;
         work.least.at = work.expansion;
     }
-    if (work.least.is_taken) {  // rows may have been added since
+    if (work.least.is_taken) {  // rows added since may have raised the energy
         if (rise > 0.0 && attempt == Attempt::Ordinary) report.status = StepStatus::EnergyRise;
         return false;
     }
     const bool may_again = report.relinearisations < kMostRelinearisations && may_solve_again;
     if (may_again && (rise > 0.0 || find_unforeseen_energy(scene, work) > 0.0)) {
-        relinearise(scene, !is_first, work, report);  // the first v^ keeps no contact: no measure
+        relinearise(scene, !is_first, work,
+                    report);  // the first v^ ignores contacts, so its objective is no measure
         return true;
     }
     if (!(rise > 0.0)) return false;
-    // Where history is what rises, without it nothing may; else what was found first will do.
+    // Fail where another attempt may do better: there is history to drop, or every linearization raised the
+    // energy. Else take the linearization with the least rise.
     if (attempt == Attempt::Ordinary && (work.prediction.has_history || work.least.rise > 0.0)) {
         report.status = StepStatus::EnergyRise;
         return false;

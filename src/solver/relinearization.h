@@ -9,20 +9,22 @@
 
 namespace arris {
 
-/// Whether the weighed proposal pushes energy in, or has much that the equations did not foresee: then the
-/// forces are to be linearised again, at the velocity found (`work.expansion`), and true means solve again.
-/// Where that is no way out, `report.status` says so; with the last attempt the least that there was is
-/// taken.
+/// Checks two energies of the proposal: the rise beyond the work that drives the cloth, and the elastic
+/// energy that the linear equations miss. If either is too large, relinearises at the velocity found (sets
+/// `work.expansion`) and returns true: solve again. Where no relinearisation is left, `report.status` becomes
+/// EnergyRise, or the linearization with the least rise is taken. The last attempt always takes that
+/// linearization. Call measure_proposal_energy first.
 bool enforce_energy_balance(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
                             Workspace& work, StepReport& report);
 
-/// Where a step has failed after all, but had a velocity that raised no energy before its forces were
-/// linearised again: true where it is to be solved for once more.
+/// Returns a failed step to a linearization that raised no energy, if the step had one. True where the
+/// velocity is to be solved once more.
 bool restore_least_rise(Workspace& work, StepReport& report);
 
-/// Where the velocity solved, of which `work.proposal` has all, would take more material than there is: the
-/// forces are to be linearised again as far on the way to it as there is, and true means solve again. What q^
-/// took through a feature that stops it is cloth stretched over that, which seems to pull its material along.
+/// For a solved velocity (in `work.proposal`) that would take more material than faces can give. Relinearises
+/// as far on the way to that velocity as material allows, and returns true: solve again. False where less
+/// than a tenth of the way is possible. Such a flow is often no real one. Where a feature stops cloth that q^
+/// took through it, the cloth at q^ is stretched over the feature and seems to pull material along.
 bool linearise_nearer(Workspace& work, StepReport& report);
 
 }  // namespace arris

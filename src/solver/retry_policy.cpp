@@ -7,34 +7,34 @@ namespace arris {
 
 namespace {
 
-/// The number of the overrun from which on a shorter step is tried, and from which on EOL vertices are
-/// demoted.
+/// Number of the overrun after which the step is made shorter, and of the first one that demotes EOL
+/// vertices.
 constexpr int kShortens = 2, kDemotes = 3;
 
-/// One way to go on after a failed attempt, and when it is taken.
+/// One kind of next attempt, and its condition.
 struct Rung {
     NextAttempt next;
     bool (*applies)(const RetryPolicy& policy, const FailedStep& failed);
 };
 
-/// The first rung that applies is taken. Bounds: a policy gives up all EOL vertices once; turning stops once;
-/// an attempt without history has none to drop; new meshes are bounded by kMostOverruns + 1 overruns and
-/// kMostOverconstrained demotions; parts by kMostParts.
+/// The first rung that applies is chosen. Each is bounded: all EOL vertices are given up once, going round
+/// wires and tips stops once, and history is dropped once. New meshes are bounded by kMostOverruns + 1
+/// overruns and kMostOverconstrained demotions, parts by kMostParts.
 constexpr Rung kRungs[] = {
-    // What was no step of the shortest length with EOL vertices may be one of the planned length without.
+    // Without EOL vertices the whole step may succeed, even where the shortest failed with them.
     {NextAttempt::WholeWithoutEol,
      [](const RetryPolicy& policy, const FailedStep& failed) {
          return failed.is_shortest && policy.has_new_mesh() && policy.has_given_up_all();
      }},
-    // Going round a wire is no part of the equations: where energy has risen by it, it is left out.
+    // Going round a wire is not part of the equations of motion, so it may have raised the energy.
     {NextAttempt::WithoutTurning,
      [](const RetryPolicy& policy, const FailedStep&) { return policy.has_stopped_turning(); }},
-    // Implicit Euler's objective bounds the energy; BDF2's history is what may raise it.
+    // Implicit Euler's objective bounds the energy; BDF2's history may raise it.
     {NextAttempt::WithoutHistory,
      [](const RetryPolicy&, const FailedStep& failed) {
          return failed.status == StepStatus::EnergyRise && failed.has_history;
      }},
-    // The way of what overran is cleared; overconstrained vertices become ordinary ones.
+    // The new mesh has room ahead of vertices that overran, and no overconstrained EOL vertices.
     {NextAttempt::OnNewMesh,
      [](const RetryPolicy& policy, const FailedStep&) { return policy.has_new_mesh(); }},
     {NextAttempt::Shorter, [](const RetryPolicy&, const FailedStep& failed) { return !failed.is_shortest; }},
@@ -80,10 +80,10 @@ void RetryPolicy::note_overrun(bool is_last, const State& state, const State& st
     const bool is_all_new =
         std::none_of(failure.overrun.begin(), failure.overrun.end(),
                      [&](const Overrun& at) { return state.eol_entry(start.ids[at.vertex]) >= 0; });
-    // The next attempt cannot clear a way for vertices that it inserts itself: it would be this one again.
+    // The next attempt cannot clear a way for vertices that it inserts itself: it would fail like this one.
     if (is_all_new) overruns_ = std::max(overruns_, is_last ? kDemotes : kShortens);
     for (const auto& [v, flow] : failure.overrun) {
-        // The next attempt inserts a new vertex anew, under another id: the place identifies it.
+        // The next attempt inserts such a vertex under another id, so its place identifies it.
         if (state.eol_entry(start.ids[v]) < 0) {
             if (overruns_ >= kDemotes) flow_.made_at.push_back(start.mesh.material[v]);
             continue;
@@ -96,7 +96,7 @@ void RetryPolicy::note_overrun(bool is_last, const State& state, const State& st
 
 void RetryPolicy::note_overconstrained(bool is_last, const State& start, const Failure& failure)
 {
-    // A shorter step would find these vertices in the same place: they become ordinary ones first.
+    // A shorter step would find these vertices at the same places, so they are demoted first.
     const bool is_demoted = !failure.overconstrained.empty() && overconstrained_++ < kMostOverconstrained;
     if (is_demoted)
         for (const int v : failure.overconstrained) flow_.given_up.insert(start.ids[v]);

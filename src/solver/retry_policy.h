@@ -9,67 +9,68 @@
 
 namespace arris {
 
-/// How far an attempt at a step may go when its solves and checks do not come to an end.
+/// Whether an attempt at a step may take last resorts where its solves and checks do not succeed.
 enum class Attempt {
-    Ordinary,  ///< it fails: another attempt may do
-    Last       ///< on a mesh without EOL vertices it takes last resorts: `rewind`, and energy that was gained
+    Ordinary,  ///< it fails instead: another attempt may succeed
+    Last       ///< on a mesh without EOL vertices, it may rewind cloth and accept an energy rise
 };
 
-/// An EOL vertex over which more material would flow than the mesh has.
+/// An EOL vertex through which more material would flow in the step than the faces beside it can give.
 struct Overrun {
     int vertex;
     Vec2 flow;  ///< m/s
 };
 
-/// What one attempt has failed on, besides its status.
+/// Causes of a failed attempt, besides its status.
 struct Failure {
     std::vector<Overrun> overrun = {};
     std::vector<int> overconstrained = {};  ///< EOL vertices whose contacts their coordinates cannot meet
-    bool has_turned = false;                ///< EOL vertices have gone round wires or tips with the cloth
+    bool has_turned = false;                ///< an EOL vertex has gone round its wire or tip with the cloth
 };
 
-/// What follows a failed attempt.
+/// The attempt that follows a failed one.
 enum class NextAttempt {
-    WholeWithoutEol,  ///< the step as long as planned, on a mesh without EOL vertices
-    WithoutTurning,   ///< the same step; EOL vertices stay where they are on wires and tips
-    WithoutHistory,   ///< the same step by implicit Euler
-    OnNewMesh,        ///< the same step on a mesh that takes account of what has failed
+    WholeWithoutEol,  ///< the whole planned step, on a mesh without EOL vertices
+    WithoutTurning,   ///< the failed step, without going round wires and tips
+    WithoutHistory,   ///< the failed step, by implicit Euler
+    OnNewMesh,        ///< the failed step, on a mesh that avoids the recorded failures
     Shorter,          ///< the rest of the step in twice as many parts
-    None              ///< nothing is left: the step has failed
+    None              ///< no attempt is left: the step has failed
 };
 
-/// What `RetryPolicy::choose_next` has to know of a failed attempt.
+/// A failed attempt, as input of `RetryPolicy::choose_next`.
 struct FailedStep {
     StepStatus status;
-    bool has_history;  ///< the attempt was BDF2
+    bool has_history;  ///< the attempt used BDF2
     bool is_shortest;  ///< no shorter step is tried
 };
 
-/// Remembers what the attempts at one planned step have failed on, and decides what is tried next. The order
-/// is the table of rungs in retry_policy.cpp; each rung has a bound, so that every step comes to an end.
+/// Records why attempts at one planned step failed, and decides the next attempt. The decisions are the table
+/// of rungs in retry_policy.cpp, in that order. Each rung is bounded, so that every step ends.
 class RetryPolicy {
   public:
-    static constexpr int kMostOverruns = 5;         ///< attempts that overran, before all EOL vertices go
-    static constexpr int kMostOverconstrained = 3;  ///< attempts that demoted overconstrained vertices
-    static constexpr int kMostParts = 64;           ///< of a planned step: its last attempt is that short
+    static constexpr int kMostOverruns = 5;         ///< overruns before all EOL vertices are given up
+    static constexpr int kMostOverconstrained = 3;  ///< attempts that demote overconstrained vertices
+    static constexpr int kMostParts = 64;           ///< shortest part of a planned step: 1/64
 
-    /// Notes an attempt from `start`, which is `state` or the same cloth on the step's mesh. An attempt that
-    /// is done forgets all failures but two, which hold until `forget`: that all EOL vertices were demoted,
-    /// and that vertices do not turn.
+    /// Records an attempt that started from `start`: `state` itself, or its cloth on the step's mesh. A
+    /// successful attempt clears the record. Two decisions hold until `forget`: to give up all EOL vertices,
+    /// and not to go round wires and tips.
     void note(const StepReport& report, Attempt attempt, const State& state, const State& start,
               const Failure& failure);
     void forget() { *this = RetryPolicy(); }
 
-    /// What follows the attempt that was noted last.
+    /// The attempt that follows the one recorded last.
     NextAttempt choose_next(const FailedStep& failed) const;
 
-    /// Whether the next attempt gets another mesh than the last one.
+    /// Whether the next attempt gets a different mesh.
     bool has_new_mesh() const { return has_new_mesh_; }
-    /// Whether EOL vertices turned round wires or tips in the last attempt, and will not in the next.
+    /// Whether EOL vertices went round wires or tips in the last attempt, and no longer do so from the next
+    /// on.
     bool has_stopped_turning() const { return has_stopped_turning_; }
     /// Whether EOL vertices may go round wires and tips with the cloth.
     bool may_turn() const { return !is_staying_; }
-    /// Whether the mesh is to have no EOL vertices.
+    /// Whether all EOL vertices are given up, so that the mesh gets none.
     bool has_given_up_all() const { return has_given_up_all_; }
 
     const FailedFlow& flow() const { return flow_; }
@@ -80,7 +81,7 @@ class RetryPolicy {
 
     int overruns_ = 0;
     int overconstrained_ = 0;
-    int unsolved_ = 0;  ///< attempts whose velocity could not be solved for
+    int unsolved_ = 0;  ///< attempts whose velocity solve failed
     bool has_new_mesh_ = false, has_stopped_turning_ = false;
     bool is_staying_ = false, has_given_up_all_ = false;
     FailedFlow flow_;

@@ -1,4 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One time step, from `state.time` to `end`. `make_step` makes it in seven stages:
+//
+//   stage                 result                                       code, in src/solver
+//   1. choose_step_mesh   mesh with EOL vertices on pressing features  mesh_change/step_mesh
+//   2. move               predicted cloth, pins and obstacles at end   model/time_integration
+//   3. find_contacts      contacts that the cloth may meet             contact/contacts, contact/eol_contacts
+//   4. assemble           A, b; contacts as bounds or rows             contact/constraints, material_flow
+//   5. solve_velocity     velocity, with its certificate               velocity_solve/velocity_solve
+//   6. propose_and_check  new positions, whole path checked            contact/proposal, energy_balance
+//   7. commit             the proposal becomes the new state           commit
+//
+// Stages 4 to 6 (`solve_and_check`) repeat until the proposal is clean: violations become rows, and forces
+// may be linearised again (relinearization.h). Only stage 7 changes the state. `advance` (advance.h) calls
+// `step` and decides, with RetryPolicy, what follows a failed step. docs/method.md derives the equations and
+// explains their symbols; docs/glossary.md lists the words.
 #include "solver/step.h"
 
 #include <algorithm>
@@ -22,9 +37,11 @@ namespace arris {
 
 namespace {
 
-constexpr int kMostSolves = 12;  // of one step
+/// Velocity solves of one step. Returning to the linearization with the least energy rise may add one more.
+constexpr int kMostSolves = 12;
 
-/// Where the integrator starts from, and where pins and obstacles will be.
+/// Stage 2: predicts the cloth from its history (q~, v~), and places pins and obstacles at `end`. Forces are
+/// first linearised at the velocity of the last step, or at q~ without history.
 void move(const Scene& scene, const Settings& settings, double end, const State& state, Workspace& work)
 {
     work.prediction = predict(state, settings.integrator, end - state.time);
@@ -39,10 +56,12 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
         move_obstacles(scene, state, work.mesh.stars.topology.edges, work.prediction, work.pin_targets, end);
 }
 
-/// What the cloth may touch; history that runs into it is flattened. False where it would be crushed.
+/// Stage 3: collects the contacts that the cloth may meet, and flattens history that runs into an obstacle.
+/// False where a vertex has no room between two obstacles.
 bool find_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
 {
     work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
+    // An EOL vertex has one bound of its own instead of contacts with its feature.
     work.eol.clear();
     if (!state.eol.empty()) {
         const double turning = work.retry.may_turn() ? work.prediction.gamma : 0.0;
@@ -61,8 +80,9 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
     return false;
 }
 
-/// Each vertex's coordinates, in which pins are known and contacts are bounds or rows; A, b in them.
-/// False where material would have flowed further than the mesh allows.
+/// Stage 4: gives each vertex coordinates in which pins are known and contacts are bounds or rows. Assembles
+/// A and b in these coordinates. Does nothing where only rows were added since the last solve. False where a
+/// step would take more material from a face than the mesh allows.
 bool assemble(const Scene& scene, double end, const State& state, Workspace& work)
 {
     if (work.has_system) return true;
@@ -83,7 +103,8 @@ bool assemble(const Scene& scene, double end, const State& state, Workspace& wor
     return true;
 }
 
-/// Minimises 1/2 u^T A u - b^T u over bounds and rows.
+/// Stage 5: minimises 1/2 u^T A u - b^T u under bounds and rows. Where only rows were added, the solve
+/// resumes on the existing factorisation.
 void solve_velocity(const Settings& settings, Workspace& work, StepReport& report)
 {
     work.problem.matrix = &work.mesh.system.matrix();
@@ -94,7 +115,7 @@ void solve_velocity(const Settings& settings, Workspace& work, StepReport& repor
     ++report.solves;
     report.factorisations += work.solution.factorisations;
     report.nlopt_evaluations += work.solution.nlopt_evaluations;
-    report.kkt_residual = work.solution.kkt_residual;  // of the solve whose velocity is taken
+    report.kkt_residual = work.solution.kkt_residual;  // of the last solve, whose velocity is used
     report.seconds.factorise += work.solution.factorise_seconds;
     report.seconds.solve += work.solution.solve_seconds;
     switch (work.solution.status) {
@@ -113,8 +134,8 @@ void solve_velocity(const Settings& settings, Workspace& work, StepReport& repor
     }
 }
 
-/// q' = q~ + gamma v'. Where the cloth is nearer to an obstacle than its stand-off, it is moved out by up
-/// to `growth` (m).
+/// Stage 6, first half: q' = q~ + gamma v'. Cloth nearer to an obstacle than its stand-off moves out by up to
+/// `growth` (m), in position only.
 void propose(const Scene& scene, double growth, Workspace& work)
 {
     const std::size_t n = work.prediction.position.size();
@@ -130,7 +151,8 @@ void propose(const Scene& scene, double growth, Workspace& work)
                       work.proposal);
 }
 
-/// A contact that nothing could meet: the vertex to name, one that a pin holds where there is one.
+/// Id of a vertex whose contact no velocity can meet, a pinned one if there is any; -1 without such a
+/// contact.
 std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
 {
     const auto is_held = [&](int v) {
@@ -148,8 +170,9 @@ std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
     return named;
 }
 
-/// Contacts that cannot be met together keep less, in a new system; false where none can. The impulses of
-/// a solution that meets them as well as it can are no contact forces: it is not used.
+/// Lets contacts that cannot be met together keep less than their stand-off, in a new system. False where
+/// none can yield. The velocity found is then discarded: impulses of rows that cannot be met are no contact
+/// forces.
 bool yield_infeasible(const Scene& scene, Workspace& work)
 {
     bool is_changed = false;
@@ -164,8 +187,8 @@ bool yield_infeasible(const Scene& scene, Workspace& work)
     return is_changed;
 }
 
-/// Planes behind folds that press cloth against an obstacle keep nothing, in a new system; false where none
-/// do.
+/// Lets fold planes at wires yield where they press cloth against another obstacle, in a new system. False
+/// where none does so.
 bool yield_folds(const Scene& scene, Workspace& work)
 {
     bool is_changed = false;
@@ -176,7 +199,7 @@ bool yield_folds(const Scene& scene, Workspace& work)
     return is_changed;
 }
 
-/// Whether an EOL vertex goes round its wire or tip.
+/// Whether an EOL vertex has gone round its wire or tip with the cloth.
 bool has_turned(const Workspace& work, const State& state)
 {
     return std::any_of(work.eol.begin(), work.eol.end(), [&](const EolCoordinates& eol) {
@@ -185,7 +208,8 @@ bool has_turned(const Workspace& work, const State& state)
     });
 }
 
-/// Rounds have run out, or the check names nothing that a row could mend.
+/// Ends a step without a clean proposal: solves have run out, or no row could remove the violations. The step
+/// fails. Only the last attempt moves cloth back on its path instead (`rewind`).
 void fail_or_rewind(const Scene& scene, double end, const State& state, Attempt attempt, Workspace& work,
                     StepReport& report)
 {
@@ -201,8 +225,8 @@ void fail_or_rewind(const Scene& scene, double end, const State& state, Attempt 
     report.status = StepStatus::Done;
 }
 
-/// The proposal of a certified velocity, checked. Where only moving cloth out to its stand-off would pass
-/// something, or strains stiff cloth, it is not moved.
+/// Stage 6: makes the proposal and checks its whole path. Cloth is not pushed out to its stand-off where the
+/// push would strain stiff cloth, or where the pushed proposal is not clean.
 Violations propose_and_check(const Scene& scene, double dt, double growth, Workspace& work)
 {
     const auto propose_measured = [&](double by) {
@@ -217,8 +241,8 @@ Violations propose_and_check(const Scene& scene, double dt, double growth, Works
     return check_proposal(scene, work.proposal, work.prediction, work.obstacles);
 }
 
-/// What the check has found becomes rows of the same system, or of a new one where history ran into it.
-/// False where it names nothing that a row could mend.
+/// Adds the violations as rows: to the existing system, or to a new one where they change history or the room
+/// that contacts share. False where the check names no contact.
 bool add_violations(const Scene& scene, const State& state, const Violations& violations, Workspace& work)
 {
     if (violations.contacts.empty()) return false;
@@ -233,21 +257,21 @@ bool add_violations(const Scene& scene, const State& state, const Violations& vi
     return true;
 }
 
-/// Steps 4 to 6 once; true where the velocity is to be solved again.
+/// Stages 4 to 6 once. True where the velocity is to be solved again.
 bool solve_and_check(const Scene& scene, const Settings& settings, double end, const State& state,
                      Attempt attempt, Workspace& work, StepReport& report)
 {
     Stopwatch watch;
 
-    // 4. A and b in the vertices' coordinates, in which contacts are bounds and rows.
+    // 4. A and b in coordinates of the vertices, in which contacts are bounds or rows.
     if (!assemble(scene, end, state, work)) {
         report.status = StepStatus::Overrun;
         return false;
     }
     report.seconds.assemble += watch.lap();
 
-    // 5. The constrained velocity, with its certificate. What cannot be met together yields, and folds to
-    // what is there.
+    // 5. The constrained velocity, with its certificate. Contacts that cannot be met together yield, and fold
+    // planes yield to other obstacles.
     solve_velocity(settings, work, report);
     watch.lap();
     if (report.status == StepStatus::Infeasible && report.solves < kMostSolves &&
@@ -257,7 +281,7 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
         return true;
     if (report.status != StepStatus::Done && report.status != StepStatus::Infeasible) return false;
 
-    // 6. q' = q~ + gamma v', not committed, and the exact check of the whole way.
+    // 6. The proposal q' = q~ + gamma v'. Where too much material would flow, forces are linearised nearer.
     if (!propose_flow(work)) {
         const bool may_solve_again = report.status == StepStatus::Done && report.solves < kMostSolves;
         report.status = StepStatus::Overrun;
@@ -265,8 +289,10 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
         propose(scene, 0.0, work);
         return linearise_nearer(work, report);
     }
+    // The exact check of the whole path. Only the first solve pushes cloth out to its stand-off.
     const double growth = report.solves == 1 ? kMendingSpeed * (end - state.time) : 0.0;
     const Violations violations = propose_and_check(scene, end - state.time, growth, work);
+    // A clean proposal may still be refused: EOL vertices pressed from both sides, or too much energy.
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
     if (is_done && !find_overpressed_vertices(work).empty()) {
         report.status = StepStatus::Infeasible;
@@ -275,6 +301,8 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     }
     if (is_done && enforce_energy_balance(scene, state, attempt, report.solves < kMostSolves, work, report))
         return true;
+    // Violations become rows of the next solve. Otherwise the step fails, or is rewound if its velocity is
+    // certified.
     const bool is_again = !is_done && report.status == StepStatus::Done && report.solves < kMostSolves &&
                           add_violations(scene, state, violations, work);
     const bool is_certified = report.kkt_residual <= settings.tolerance;
@@ -286,7 +314,8 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     return is_again;
 }
 
-/// One step, from the contacts in `state.active` on.
+/// One step in seven stages. `state.active`, the contacts that pressed at the end of the last step, tells
+/// which features press and is the first guess of the active set.
 StepReport make_step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
                      Attempt attempt)
 {
@@ -294,36 +323,38 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
     report.dt = end - state.time;
     Stopwatch watch;
 
-    // 1. EOL vertices on the features that press; elements of a mesh that changed.
+    // 1. The mesh, with EOL vertices on the features that press; new elements where the mesh has changed.
     const StepMesh mesh = choose_step_mesh(scene, end, work.retry.flow(), state, work.mesh, report);
     if (mesh.is_changed) work.energies.known_at.world.clear();
     State& start = mesh.start;
     watch.lap();
 
-    // 2. q~ and v~ of the integrator; where pins and obstacles will be.
+    // 2. The integrator's q~ and v~; pins and obstacles at `end`.
     move(scene, settings, end, start, work);
     report.seconds.move += watch.lap();
 
-    // 3. What the cloth may touch: vertices, edges and faces; nothing can move where it has no room.
+    // 3. Contacts of vertices, edges and faces. A vertex without room fails the step.
     if (!find_contacts(scene, start, work, report)) {
         work.retry.note(report, attempt, state, start, {});
         return report;
     }
     report.seconds.contacts += watch.lap();
 
-    // 4 - 6. Solve, propose, check: what the check finds becomes rows, in bounded rounds. Where there are EOL
-    // vertices, to do without them comes before the last resorts.
+    // 4 - 6. Solve, propose and check, in bounded rounds: violations become rows. A mesh with EOL vertices
+    // takes no last resorts, as RetryPolicy first tries a mesh without any. A step that fails after its
+    // forces were linearised again may return to an earlier linearization that raised no energy.
     const Attempt resort = start.eol.empty() ? attempt : Attempt::Ordinary;
     do {
         while (solve_and_check(scene, settings, end, start, resort, work, report)) continue;
     } while (report.status != StepStatus::Done && restore_least_rise(work, report));
     watch.lap();
 
+    // Record why the attempt failed, for the next one.
     work.retry.note(
         report, attempt, state, start,
         {work.overrun, find_overconstrained_vertices(start, work, report), has_turned(work, start)});
 
-    // 7. Swapped in, or the state stays as it was.
+    // 7. The proposal becomes the state. A failed step leaves the state as it was.
     commit(scene, end, work, start, report);
     if (report.status == StepStatus::Done && &start != &state) std::swap(state, start);
     report.seconds.advance += watch.lap();
@@ -363,7 +394,8 @@ void restart(State& state)
 StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
                 Attempt attempt)
 {
-    // At the start no last step tells which features press: a trial step does, which is not kept.
+    // At time 0 no earlier step has found which features press. A trial step finds them; its state is
+    // discarded.
     if (scene.eol && state.step == 0 && state.active.empty()) {
         State trial = state;
         make_step(scene, settings, end, trial, work, attempt);

@@ -10,19 +10,20 @@
 
 namespace arris {
 
-/// The state at time 0: cloth at rest in `mesh` but for `velocity` (m/s); pinned vertices move with their
-/// pins.
+/// The state at time 0: the cloth lies as in `mesh` and moves at `velocity` (m/s); pinned vertices move with
+/// their pins.
 State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity);
 
-/// Advances `state` to `end` (s, after its time). Where the report's status is not Done, the state is as it
-/// was. Call `restart` first where the input jumps at the step's start.
+/// Advances `state` to `end` (s, after its time). Leaves the state unchanged unless the report's status is
+/// Done. (At time 0, `state.active` may be set even so.) Call `restart` first where the input jumps at the
+/// step's start.
 StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
                 Attempt attempt = Attempt::Ordinary);
 
-/// Rebuilds terms and elements in `work` where they are not those of the state's mesh.
+/// Rebuilds terms and elements in `work` where they do not belong to the state's mesh.
 void prepare(const Scene& scene, const State& state, Workspace& work);
 
-/// Drops the integrator's history, so that the next step is implicit Euler: for a jump of the input.
+/// Drops the integrator's history, so that the next step is implicit Euler. For a jump of the input.
 void restart(State& state);
 
 }  // namespace arris

@@ -13,7 +13,7 @@
 
 namespace arris {
 
-/// What the cloth has at one moment, J.
+/// Energy of the cloth at one moment, J.
 struct ClothEnergy {
     double kinetic = 0.0;
     Energies potential;
@@ -24,17 +24,17 @@ struct ClothEnergy {
 /// The cloth's energy during one step, as `energy_balance` measures it.
 struct StepEnergies {
     ClothEnergy start;
-    ClothEnergy solved;    ///< of the proposal before anything was moved out to its stand-off
-    ClothEnergy proposed;  ///< and after
-    ClothEnergy known;     ///< of `known_at`
-    MovingCloth known_at;  ///< what the last commit left; empty where the mesh has changed since
+    ClothEnergy solved;    ///< of the proposal before cloth is pushed out to its stand-off
+    ClothEnergy proposed;  ///< of the proposal after cloth is pushed out
+    ClothEnergy known;     ///< energy of `known_at`
+    MovingCloth known_at;  ///< cloth at the last commit; empty if the mesh has changed since
 };
 
-/// The linearisation of this step that has raised the energy least, so far.
+/// Among this step's linearizations, the one with the least energy rise so far.
 struct LeastRise {
     double rise = 0.0;      ///< J
-    ClothVelocity at;       ///< its v^; empty before the first one
-    bool is_taken = false;  ///< the step takes it, whatever it is
+    ClothVelocity at;       ///< v^ of that linearization; empty before the first solve
+    bool is_taken = false;  ///< the step has returned to `at` and relinearises no more
 };
 
 /// Caches and scratch of the step, grouped by the phase that writes them. Clearing it changes no result.
@@ -43,7 +43,7 @@ struct Workspace {
 
     // retries of the step
     std::vector<Overrun> overrun;
-    RetryPolicy retry;  ///< at this step
+    RetryPolicy retry;  ///< failed attempts at this step
 
     // move
     Prediction prediction;
@@ -54,10 +54,10 @@ struct Workspace {
     std::vector<Contact> contacts;
     std::vector<EolCoordinates> eol;
     Linearization linearization;
-    ClothVelocity expansion;  ///< v^
+    ClothVelocity expansion;  ///< v^: q^ = q~ + gamma v^ is where forces are linearised
     VelocityProblem problem;
     int yielded = 0;
-    bool has_system = false;  ///< of this step's prediction; rows may have been added since
+    bool has_system = false;  ///< `problem` belongs to this step's prediction; rows may have been added since
 
     // solve_velocity, propose
     VelocitySolver solver;

@@ -31,10 +31,10 @@ TEST(Check, DescribesTheScene)
                             "[output]\nframes_per_second = 0\n"));
     EXPECT_EQ(lines[0], "title: a\\u001b[31mb");
     EXPECT_EQ(lines[1], "cloth: 2 x 0.5 m of material, 1 m^2, 0.15 kg; 23 vertices, 32 faces");
-    EXPECT_EQ(lines[2], "  edges of the mesh: 0.323 m in the mean, 0.25 to 0.5 m; least angle 26.6 degrees");
-    EXPECT_EQ(lines[3], "  placed within 0.5 x 2 x 0 m of the world");
+    EXPECT_EQ(lines[2], "  mesh edges: mean 0.323 m, from 0.25 to 0.5 m; least angle 26.6 degrees");
+    EXPECT_EQ(lines[3], "  initial extent: 0.5 x 2 x 0 m");
     EXPECT_THAT(lines[4], HasSubstr("cotton: density 0.15 kg/m^2, membrane 500 N/m"));
-    EXPECT_THAT(lines, Contains("  gravity: [gravity] is there"));
+    EXPECT_THAT(lines, Contains("  gravity: [gravity] is given"));
     EXPECT_THAT(lines, Contains("  wind: no [wind]"));
     EXPECT_THAT(lines, Contains(HasSubstr("  friction: not in this version: ")));
     EXPECT_THAT(lines, Contains(HasSubstr("  remesh: not in this version: ")));
@@ -78,10 +78,10 @@ TEST(Check, DescribesObstaclesWithTheirFeaturesAndMotion)
                             "0, 1] } ]\n"));
     EXPECT_THAT(lines, Contains("obstacle table: box, 12 triangles in 1 closed surface"));
     EXPECT_THAT(lines,
-                Contains("  1 x 2 x 0.5 m, from [-0.5, -1, 4.75] to [0.5, 1, 5.25] of the world at time 0"));
-    EXPECT_THAT(lines, Contains("  sharp features: 12 edges in 12 lines, 14 m, the shortest 0.5 m: 1.55 "
-                                "of the cloth's mean edge; 8 corners or points"));
-    EXPECT_THAT(lines, Contains("  moves with [0, 0, 1] m/s from 0.5 s on"));
+                Contains("  extent at time 0: 1 x 2 x 0.5 m, from [-0.5, -1, 4.75] to [0.5, 1, 5.25]"));
+    EXPECT_THAT(lines, Contains("  sharp features: 12 edges in 12 lines, 14 m in all, the shortest line 0.5 "
+                                "m, 1.55 times the cloth's mean edge; 8 corners or points"));
+    EXPECT_THAT(lines, Contains("  moves at [0, 0, 1] m/s from 0.5 s on"));
     EXPECT_THAT(lines, Contains("obstacle obstacle1: points, 2 lone points"));
     EXPECT_THAT(lines, Contains("  sharp features: 2 corners or points"));
     EXPECT_THAT(lines, Contains("  at rest"));
@@ -89,14 +89,14 @@ TEST(Check, DescribesObstaclesWithTheirFeaturesAndMotion)
     EXPECT_THAT(lines, Contains("  2 keyframes from 0 s to 0.5 s"));
     EXPECT_THAT(lines, Contains("the cloth is clear of all obstacles at time 0"));
     EXPECT_THAT(lines, Contains("  obstacle: table, obstacle1, obstacle2"));
-    EXPECT_THAT(lines, Contains(HasSubstr("  eol: eol.enabled, and an obstacle has sharp features")));
+    EXPECT_THAT(lines, Contains(HasSubstr("  eol: eol.enabled is true, and an obstacle has sharp features")));
 }
 
 TEST(Check, SaysTheLimitOfFoldsOverAWire)
 {
     const std::string nail = "[[obstacle]]\npoints = [[0, 0, 9]]\n";
     const std::string wire = "[[obstacle]]\nwire = [[0, 0, 9], [3, 0, 9]]\n";
-    const auto limit = HasSubstr("known limit: the two sides of a cloth folded over a wire");
+    const auto limit = HasSubstr("known limit: where cloth is folded over a wire");
     EXPECT_THAT(describe_scene(load(wire + nail + wire)), Contains(limit).Times(1));
     EXPECT_THAT(describe_scene(load(nail)), Not(Contains(limit)));
     EXPECT_THAT(describe_scene(load(wire + "[eol]\nenabled = false\n")), Not(Contains(limit)));
@@ -107,7 +107,7 @@ TEST(Check, SaysWhatAPinRidesOn)
     const auto lines = describe_scene(
         load("[[obstacle]]\nname = \"rod\"\nwire = [[0, 0, 9], [3, 0, 9]]\n[[pin]]\nmaterial = [[0, 0], [0, "
              "0.5]]\nfollow = \"rod\"\n"));
-    EXPECT_THAT(lines, Contains("pin.0: 3 vertices in [[0, 0], [0, 0.5]], rides on rod"));
+    EXPECT_THAT(lines, Contains("pin.0: 3 vertices in [[0, 0], [0, 0.5]], moves with rod"));
 }
 
 }  // namespace

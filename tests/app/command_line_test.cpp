@@ -59,11 +59,10 @@ TEST(CommandLine, WhatIsNoCommandIsToldWithWhatWouldBeOne)
         program.wait();
         return program.err();
     };
-    const std::string kAllowed = "; allowed: run, resume, check, export, docs (arris --help tells more)\n";
+    const std::string kAllowed = "; allowed: run, resume, check, export, docs (see arris --help)\n";
     EXPECT_EQ(line_of({}), "arris: a command is missing" + kAllowed);
-    EXPECT_EQ(line_of({"fly", "high"}), "arris: fly: is no command" + kAllowed);
-    EXPECT_EQ(line_of({"docs"}),
-              "arris: topic is required; allowed: scene, schema (arris --help tells more)\n");
+    EXPECT_EQ(line_of({"fly", "high"}), "arris: fly: is not a command" + kAllowed);
+    EXPECT_EQ(line_of({"docs"}), "arris: topic is required; allowed: scene, schema (see arris --help)\n");
 }
 
 TEST(CommandLine, WhatIsNoRunIsToldWithWhatWouldBeOne)
@@ -100,12 +99,12 @@ TEST(CommandLine, WhatIsNoRunIsToldWithWhatWouldBeOne)
     }
     EXPECT_EQ(
         line_of({"export", full, "--formats", "obj"}),
-        "arris: " + full + "/report.json: is not there or cannot be read; allowed: the report of a run\n");
+        "arris: " + full + "/report.json: does not exist or cannot be read; allowed: the report of a run\n");
     EXPECT_EQ(line_of({"resume", full}),
               "arris: " + full +
-                  "/checkpoint: there is no checkpoint to resume from; arris run makes the run anew\n");
+                  "/checkpoint: there is no checkpoint to resume from; arris run starts the run again\n");
     EXPECT_EQ(line_of({"run", scene, "-o", name}),
-              "arris: -o " + name + ": cannot be made: File name too long\n");
+              "arris: -o " + name + ": cannot be created: File name too long\n");
     std::filesystem::create_directories(folder / "kept/viewer.html/in_it");
     write_bytes(folder / "kept/steps.csv", "");
     EXPECT_EQ(

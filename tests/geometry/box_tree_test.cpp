@@ -25,8 +25,8 @@ std::vector<int> touching(const std::vector<Box>& boxes, const Box& query)
 TEST(BoxTree, FindsWhatBruteForceFinds)
 {
     std::mt19937 engine(1);
-    std::uniform_int_distribution<int> cell(0,
-                                            12);  // boxes that touch exactly, lie in each other, have no size
+    // Boxes touch exactly, contain each other, or have no size.
+    std::uniform_int_distribution<int> cell(0, 12);
     const auto any_box = [&] {
         const Vec3 a(cell(engine), cell(engine), cell(engine)), b(cell(engine), cell(engine), cell(engine));
         return Box(a.cwiseMin(b), cell(engine) < 6 ? Vec3(a.cwiseMin(b)) : Vec3(a.cwiseMax(b)));
@@ -34,7 +34,7 @@ TEST(BoxTree, FindsWhatBruteForceFinds)
     for (const int count : {0, 1, 2, 5, 64, 1000}) {
         std::vector<Box> boxes;
         for (int i = 0; i < count; ++i) boxes.push_back(any_box());
-        if (count > 100) boxes.resize(2 * count, boxes[0]);  // many of the same
+        if (count > 100) boxes.resize(2 * count, boxes[0]);  // many equal boxes
         const BoxTree tree(boxes);
         std::vector<int> found = {-1};
         for (int k = 0; k < 200; ++k) {

@@ -11,7 +11,7 @@
 namespace arris {
 namespace {
 
-// Scalar products of differences, relative to the greatest distance squared.
+// Tolerance for scalar products of differences, relative to the greatest distance squared.
 constexpr double kOptimality = 1e-13;
 
 class Random {
@@ -24,7 +24,8 @@ class Random {
     std::uniform_real_distribution<double> uniform_{-1.0, 1.0};
 };
 
-// The nearest point q of a convex set to y is in the set, and (y - q) . (p - q) <= 0 for all its points p.
+// The nearest point q of a convex set to y is in the set and satisfies (y - q) . (p - q) <= 0 for all points
+// p of the set.
 void expect_nearest(const Vec3& y, const Vec3& q, const std::vector<Vec3>& corners, double slack)
 {
     double scale = 0.0;
@@ -74,9 +75,9 @@ TEST(ClosestOnTriangle, IsOptimalOnSliversAndFarAway)
     for (int k = 0; k < 5000; ++k) {
         const Vec3 a = random.vector(1.0), b = random.vector(1.0);
         const std::array<Vec3, 3> sliver = {a, b, 0.5 * (a + b) + random.vector(1e-6)};
-        expect_on_triangle(random.vector(1.0), sliver, 1e-9);  // its normal is good to 1e-10
+        expect_on_triangle(random.vector(1.0), sliver, 1e-9);  // the sliver's normal is accurate to 1e-10
         const Vec3 far(1e6, -1e6, 1e6);
-        // Coordinates have 1e-10.
+        // Coordinates are accurate to 1e-10.
         expect_on_triangle(far + random.vector(2.0), {far + a, far + b, far + random.vector(1.0)}, 1e-9);
     }
 }
@@ -108,10 +109,10 @@ TEST(ClosestBetweenSegments, IsOptimal)
         expect_between(a, {random.vector(size), random.vector(size)}, kOptimality);
         expect_between(a, {a[1], random.vector(size)}, kOptimality);
         expect_between(a, a, kOptimality);
-        const Vec3 shift = random.vector(size);  // nearly parallel, to 1e-2 .. 1e-14
+        const Vec3 shift = random.vector(size);  // deviation from parallel, 1e-2 .. 1e-14
         const Vec3 bend = random.vector(size * std::pow(10.0, -8.0 + 6.0 * random.number()));
         expect_between(a, {a[0] + shift, a[1] + shift + bend}, 1e-10);
-        expect_between(a, {a[0] + shift, a[0] + shift}, kOptimality);  // without length
+        expect_between(a, {a[0] + shift, a[0] + shift}, kOptimality);  // segments of length 0
     }
 }
 

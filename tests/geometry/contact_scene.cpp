@@ -21,7 +21,8 @@ Vec3 on_segment(const Vec3& y, const Vec3& a, const Vec3& b)
     return a + t * (b - a);
 }
 
-// By the regions of Ericson 2004, "Real-Time Collision Detection", 5.1.5: another way than the code's.
+// Uses the regions of Ericson 2004, "Real-Time Collision Detection", 5.1.5, which differs from the code's
+// algorithm.
 Vec3 on_triangle(const Vec3& y, const Triangle& t)
 {
     std::vector<Vec3> candidates = {on_segment(y, t[0], t[1]), on_segment(y, t[1], t[2]),
@@ -100,7 +101,7 @@ bool is_local_minimum(const ObstacleMesh& mesh, const Vec3& point, const Vec3& p
 {
     const Vec3 direction = (place - point).normalized();
     const double near = 1e-9 * (mesh.points[0] - point).norm() + 1e-13 * point.norm();
-    // The nearest point q of a convex set to y: (y - q) . (p - q) <= 0 for all p of it.
+    // The nearest point q of a convex set to y satisfies (y - q) . (p - q) <= 0 for all points p of the set.
     const auto leads_nearer = [&](const Vec3& p) {
         const Vec3 away = p - point;
         return away.norm() > near && direction.dot(away.normalized()) > tolerance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An importer process that behaves, or misbehaves as its first argument says.
+// An importer process that behaves or misbehaves as its first argument says.
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -24,7 +24,8 @@ void reply(const std::string& bytes)
 
 void use_memory()
 {
-    // Touched page by page; address sanitizers ignore limits on memory, so there it stops by itself.
+    // Writes to each page. Under address sanitizers memory limits have no effect, so this mode stops by
+    // itself.
     std::vector<std::string> blocks;
     for (int k = 0; k < 4096; ++k) blocks.emplace_back(std::size_t{1} << 20, 'x');
     reply(arris::encode_refusal("it got 4 GiB"));
@@ -37,7 +38,7 @@ void flood()
         if (::write(arris::kReplyDescriptor, block.data(), block.size()) < 0) std::_Exit(9);
 }
 
-// What descriptors and standard files the child has.
+// Reports the child's descriptors and standard files.
 void tell_descriptors()
 {
     std::string open;
@@ -48,7 +49,7 @@ void tell_descriptors()
     reply(arris::encode_refusal("descriptors" + open + (is_at_end ? ", no input" : ", input")));
 }
 
-// A mesh whose parts are wrong in ways that only a check of the reply finds.
+// A mesh with errors that only a check of the reply finds.
 void reply_wrong_mesh(const std::string& how)
 {
     arris::ObstacleFile file;
@@ -76,11 +77,11 @@ int main(int argc, char** argv)
     if (mode == "sleep") ::sleep(1000);
     if (mode == "spin")
         for (;;) ::getppid();
-    if (mode == "linger") {  // says it is done, and is not
+    if (mode == "linger") {  // replies, but does not exit
         ::close(arris::kReplyDescriptor);
         ::sleep(1000);
     }
-    if (mode == "orphan" && ::fork() == 0) ::sleep(1000);  // leaves one behind that holds the pipe
+    if (mode == "orphan" && ::fork() == 0) ::sleep(1000);  // leaves a child process that holds the pipe
     if (mode == "memory") use_memory();
     if (mode == "flood") flood();
     if (mode == "garbage") reply("a mesh, I promise");

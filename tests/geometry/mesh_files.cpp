@@ -57,12 +57,12 @@ std::uint32_t crc32(const std::string& bytes)
     return ~crc;
 }
 
-// Stored, not packed.
+// The archive stores files uncompressed.
 std::string zip(const std::vector<std::pair<std::string, std::string>>& files)
 {
     std::string bytes, directory;
     for (const auto& [name, content] : files) {
-        std::string about;                 // what both headers say alike
+        std::string about;                 // fields that both headers share
         append(about, std::uint16_t{20});  // version
         append(about, std::uint64_t{0});   // flags, method 0 (stored), time and date
         append(about, crc32(content));

@@ -9,7 +9,7 @@
 
 #include "geometry/obstacle/obstacle_mesh.h"
 
-// Mesh files as bytes, of triangles, written from the formats' descriptions.
+// Mesh files of triangles as bytes, written from the formats' descriptions.
 namespace arris::mesh_files {
 
 std::string obj(const ObstacleMesh& mesh);
@@ -21,20 +21,21 @@ std::string binary_ply(const ObstacleMesh& mesh, bool is_big_endian = false);
 /// Little-endian buffer of a glTF mesh: float positions, then uint16 indices.
 std::string gltf_buffer(const ObstacleMesh& mesh);
 
-/// JSON of a glTF 2 file; `uri` of its buffer (empty: none, as in GLB); `node` are further members of its
+/// JSON of a glTF 2 file. `uri` names its buffer (empty: none, as in GLB). `node` has further members of its
 /// node, such as ",\"scale\":[-1,1,1]".
 std::string gltf_json(const ObstacleMesh& mesh, const std::string& uri, const std::string& node = "");
 std::string glb(const ObstacleMesh& mesh, const std::string& node = "");
 
-/// `asset` are the lines for unit and up axis; `matrix` a row-major placement of its node, or empty.
+/// A COLLADA file. `asset` has the lines for unit and up axis; `matrix` is a row-major placement of its node,
+/// or empty.
 std::string dae(const ObstacleMesh& mesh, const std::string& asset, const std::string& matrix = "");
 
-/// Text form, version 7400, with these global settings.
+/// An FBX file in text form, version 7400, with these global settings.
 std::string fbx(const ObstacleMesh& mesh, int up_axis, double centimetres_per_unit);
 
 std::string three_ds(const ObstacleMesh& mesh);
 
-/// An uncompressed archive; `attributes` of its model, such as " unit=\"inch\"".
+/// A 3MF file as an uncompressed archive; `attributes` of its model, such as " unit=\"inch\"".
 std::string three_mf(const ObstacleMesh& mesh, const std::string& attributes);
 
 }  // namespace arris::mesh_files

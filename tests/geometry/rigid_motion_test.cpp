@@ -71,7 +71,8 @@ TEST(RigidMotion, TurnsAboutItsPivotWhileItMoves)
     motion.pivot = Vec3(1, 1, 0);
     motion.start = 0.5;
     motion.stop = 1.0;
-    // Half a second at pi rad/s: a quarter turn about (1, 1) carries (2, 1) to (1, 2); then the velocity.
+    // Half a second at pi rad/s: a quarter turn about (1, 1) moves (2, 1) to (1, 2), plus the motion by the
+    // velocity.
     EXPECT_LT((motion.at(1.0)(Vec3(2, 1, 0)) - Vec3(1.5, 2, 1)).norm(), kRounding);
     EXPECT_EQ(motion.at(0.5)(Vec3(2, 1, 0)), Vec3(2, 1, 0));
     EXPECT_EQ(motion.at(-3.0)(Vec3(2, 1, 0)), Vec3(2, 1, 0));
@@ -158,7 +159,7 @@ TEST(Keyframes, TakeTheShorterArc)
     motion.keyframes = {key(0, Vec3::Zero(), 0), key(1, Vec3::Zero(), 350)};
     const Eigen::AngleAxisd halfway(-5.0 * kPi / 180.0, Vec3::UnitZ());
     EXPECT_LT((motion.at(0.5).rotation - halfway.toRotationMatrix()).norm(), 1e-13);
-    motion.keyframes[1].rotate.coeffs() *= -3.0;  // the same rotation
+    motion.keyframes[1].rotate.coeffs() *= -3.0;  // a scaled quaternion of this rotation
     EXPECT_LT((motion.at(0.5).rotation - halfway.toRotationMatrix()).norm(), 1e-13);
 }
 

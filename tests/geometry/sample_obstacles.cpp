@@ -73,7 +73,8 @@ ObstacleMesh cone(int sides, double radius)
 
 ObstacleMesh teeth(int count)
 {
-    // Along x at z = 0: valley, tip, valley, ...; back along the slab's under side.
+    // The profile along x starts at z = 0 with valley, tip, valley, ...; it returns along the slab's under
+    // side.
     std::vector<Vec2> polygon;
     for (int i = 0; i <= count; ++i) polygon.emplace_back(2.0 * i, -1.0);
     for (int i = count; i >= 0; --i) {

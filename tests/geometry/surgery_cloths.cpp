@@ -15,7 +15,7 @@
 namespace arris {
 namespace {
 
-// The border's length changes only by the rounding of split points; a corner cut off changes it by more.
+// Split points change the border's length only by rounding; cutting off a corner changes it more.
 constexpr double kBorderTolerance = 1e-11;
 constexpr double kAreaTolerance = 1e-12;
 
@@ -32,7 +32,7 @@ double border_length(const ClothMesh& mesh)
     return length;
 }
 
-// Area about the first vertex: no cancellation far from the origin.
+// The area is summed about the first vertex, which avoids cancellation far from the origin.
 double area(ClothMesh mesh)
 {
     const Vec2 origin = mesh.material[0];

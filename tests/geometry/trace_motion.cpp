@@ -10,7 +10,7 @@
 namespace arris {
 namespace {
 
-constexpr double kClear = 0.3;  // of the target length
+constexpr double kClear = 0.3;  // cleared distance over the target length
 constexpr int kMostSubsteps = 100000;
 
 class TraceMotion {
@@ -70,7 +70,7 @@ class TraceMotion {
         return Verdict::Done;
     }
 
-    // Drops vertices that are gone and takes along those put on the trace.
+    // Drops removed vertices and adds new ones on the trace.
     void follow(std::size_t first_event)
     {
         for (std::size_t k = first_event; k < surgery_.events().size(); ++k) {
@@ -91,7 +91,7 @@ class TraceMotion {
 
     ClothSurgery& surgery_;
     const MeshTarget& target_;
-    std::map<VertexId, Way> rest_;  // of the way
+    std::map<VertexId, Way> rest_;  // remaining way
 };
 
 }  // namespace

@@ -10,14 +10,14 @@ namespace arris {
 struct TraceMotionReport {
     Verdict verdict = Verdict::Done;
     int substeps = 0;
-    double fraction = 0.0;          ///< of the way that was made; 1 if done
-    std::vector<VertexId> blocked;  ///< as in ClearanceReport, where it ended
+    double fraction = 0.0;          ///< share of the way that was completed; 1 if done
+    std::vector<VertexId> blocked;  ///< vertices blocked at the end, as in ClearanceReport
 };
 
-/// Takes trace vertices to new places, however far, all together and straight: in steps of at most 0.3 of the
-/// target length, clearing before each and cleaning up after it. Vertices of the trace that clean-up merges
-/// on the way are dropped from the motion; those it adds on an edge between moving vertices move along with
-/// that edge. Stops at the last possible step where the way cannot be cleared.
+/// Moves trace vertices together along straight lines to new places at any distance. Each step is at most 30
+/// % of the target length, with clearing before and clean-up after. Trace vertices that clean-up merges are
+/// dropped from the motion. Vertices that clean-up adds on an edge between moving vertices move with that
+/// edge. The motion stops at the last possible step if the way cannot be cleared.
 TraceMotionReport move_trace(ClothSurgery& surgery, const MeshTarget& target,
                              const std::vector<VertexMove>& moves);
 

@@ -37,7 +37,7 @@ struct Sheet {
     }
 };
 
-/// Two in three vertices are the system's, in an order of their own.
+/// Two of three vertices belong to the system, in an order of its own.
 std::vector<int> make_places(int count, int& taken)
 {
     std::vector<int> places(count, -1);
@@ -55,7 +55,7 @@ TEST(DenseSystem, HasTheNumbersOfTheSparseOne)
     DenseSystem dense(places, count);
     LinearSystem sparse;
     sparse.make_pattern(sheet.elements, places);
-    for (int round = 0; round < 2; ++round) {  // nothing is left of the first in the second
+    for (int round = 0; round < 2; ++round) {  // the second round must not contain entries of the first
         dense.assemble(sheet.elements, sheet.terms, sheet.at);
         sparse.assemble(sheet.mesh, sheet.elements, sheet.terms, sheet.at);
         const Mat3 spring = 40.0 * Vec3(1, 2, 2) * Vec3(1, 2, 2).transpose();
@@ -63,7 +63,7 @@ TEST(DenseSystem, HasTheNumbersOfTheSparseOne)
         sparse.add_to_vertex(count / 2, spring);
         const Eigen::MatrixXd truth = sparse.matrix().toDense().triangularView<Eigen::Lower>();
         const Eigen::MatrixXd found = dense.matrix().triangularView<Eigen::Lower>();
-        constexpr double kRoundOff = 1e-14;  // sums in another order
+        constexpr double kRoundOff = 1e-14;  // of sums in another order
         EXPECT_LT((found - truth).cwiseAbs().maxCoeff(), kRoundOff * truth.cwiseAbs().maxCoeff());
         EXPECT_LT((dense.rhs() - sparse.rhs()).cwiseAbs().maxCoeff(),
                   kRoundOff * sparse.rhs().cwiseAbs().maxCoeff());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cloths with EOL vertices for the tests of elements and systems: random, but the same every time.
+// Cloths with EOL vertices for the tests of elements and systems: random, but reproducible.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,22 +14,22 @@ namespace arris {
 
 using Generator = std::mt19937_64;
 
-/// Components between -size and size.
+/// A random vector with components between -size and size.
 Vec2 random2(Generator& random, double size);
 Vec3 random3(Generator& random, double size);
 
-/// A crumpled 1 m sheet whose mesh follows no lines.
+/// A crumpled 1 m sheet whose mesh lines are perturbed in the material, too.
 ClothMesh crumpled_sheet(std::array<int, 2> resolution, GridPattern pattern, unsigned seed);
 
-/// Everything of the linearisation random, one vertex in two EOL, the mesh at q^ and where it is extrapolated
-/// to a little different.
+/// A linearisation with random entries and one of two vertices EOL. The mesh is at q^; the extrapolated state
+/// differs slightly.
 Linearization random_linearization(const ClothMesh& mesh, unsigned seed);
 
-/// gamma = 1, everything at rest where the mesh is: rhs = B^T f_x + E^T f_X.
+/// A linearisation with gamma = 1 at the mesh's own state, at rest: rhs = B^T f_x + E^T f_X.
 Linearization linearization_at_rest(const ClothMesh& mesh, unsigned seed);
 
 struct Assembled {
-    Eigen::MatrixXd matrix;  ///< whole
+    Eigen::MatrixXd matrix;  ///< both triangles
     Eigen::VectorXd rhs;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reduced coordinates of EOL vertices: the system's matrix is positive definite, flat or folded, and as
-// well conditioned as the directions of its coordinates are apart.
+// The reduced coordinates of EOL vertices keep the system's matrix positive definite, for flat and folded
+// cloth. The angles between the coordinates' directions bound its condition number.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -14,8 +14,8 @@
 namespace arris {
 namespace {
 
-/// Of D^-1/2 A D^-1/2, D the diagonal: what units and bases cannot mend. Negative or infinite where A is not
-/// positive definite.
+/// Condition number of D^-1/2 A D^-1/2 with D the diagonal of A, which no choice of units can improve.
+/// Negative or infinite if A is not positive definite.
 double condition(const Eigen::MatrixXd& A)
 {
     const Eigen::VectorXd scale = A.diagonal().cwiseSqrt().cwiseInverse();
@@ -26,8 +26,8 @@ double condition(const Eigen::MatrixXd& A)
 }
 
 struct Conditions {
-    double mass;  ///< of the mass alone
-    double step;  ///< of a step of 5 ms of soft cloth, over that of the same cloth without EOL vertices
+    double mass;  ///< condition number of the mass matrix
+    double step;  ///< of a step of 5 ms of soft cloth, over that of this cloth without EOL vertices
 };
 
 Conditions find_conditions(const ClothMesh& mesh, const std::vector<VertexCoordinates>& coordinates)
@@ -42,9 +42,9 @@ Conditions find_conditions(const ClothMesh& mesh, const std::vector<VertexCoordi
     return {mass, condition(step) / condition(assemble(mesh, terms, at).matrix)};
 }
 
-/// Cells of 1/6 m whose columns lean by `lean` (a right angle: none) against the border v = 0, folded by
-/// `fold` along the middle column, which lies on an edge with tangent y and whose nbar leans by `tilt` from
-/// the fold's own bisector. All radians.
+/// Cells of 1/6 m whose columns meet the border v = 0 at the angle `lean`. The cloth is folded by `fold`
+/// along the middle column, which lies on an edge with tangent y. There nbar leans by `tilt` from the fold's
+/// bisector. All angles are in radians.
 struct FoldedPatch {
     double fold = 0.0, lean = 0.5 * std::numbers::pi, tilt = 0.0;
 };
@@ -58,7 +58,7 @@ Conditions find_conditions(const FoldedPatch& patch, GridPattern pattern)
     ClothMesh mesh = make_cloth_grid(grid);
     const std::vector<char> is_border = make_topology(mesh.vertex_count(), mesh.faces).is_border;
     std::vector<VertexCoordinates> coordinates;
-    // Across the trace in material and along it.
+    // Material directions across the trace and along it.
     const Vec2 across(std::sin(patch.lean), -std::cos(patch.lean)), along(-across.y(), across.x());
     const double half = 0.5 * patch.fold;
     const Vec3 nbar(std::sin(patch.tilt), 0.0, std::cos(patch.tilt));
@@ -79,10 +79,11 @@ Conditions find_conditions(const FoldedPatch& patch, GridPattern pattern)
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::array kFolds = {0.0, 1.0, 10.0, 45.0, 90.0, 135.0, 170.0, 179.0, 180.0};
-constexpr double kConsistentMass = 4.0;  // of a sheet without EOL vertices: of linear triangles' mass matrix
+// Condition number of linear triangles' mass matrix without EOL vertices.
+constexpr double kConsistentMass = 4.0;
 
-/// What two unit directions that are `angle` from parallel cost where they are coordinates of one vertex:
-/// the condition of [1, cos; cos, 1].
+/// Condition number of [1, cos; cos, 1]: the factor caused by two unit directions at `angle` as coordinates
+/// of one vertex.
 double condition_of_skew(double angle)
 {
     const double cosine = std::abs(std::cos(angle));
@@ -91,7 +92,7 @@ double condition_of_skew(double angle)
 
 TEST(EulerianCoordinates, AreAsGoodAsLagrangianOnesOnAnEdgeHoweverTheClothIsFolded)
 {
-    // Flat, over an edge, and on both sides of a knife's edge or a wire.
+    // The folds are flat, over an edge, and on both sides of a knife's edge or a wire.
     for (const GridPattern pattern : {GridPattern::Diagonal, GridPattern::Alternating, GridPattern::Cross})
         for (const double fold : kFolds) {
             SCOPED_TRACE(fold);
@@ -106,7 +107,8 @@ TEST(EulerianCoordinates, AreAsGoodAsLagrangianOnesOnAnEdgeHoweverTheClothIsFold
 
 TEST(EulerianCoordinates, AreAsGoodAsTheAngleBetweenTraceAndBorder)
 {
-    // On the border material flows along it, and u along the edge is skew to that.
+    // On the border, material flows along the border, which is oblique to the world coordinate along the
+    // edge.
     for (const double lean : {70.0, 45.0, 30.0, 20.0})
         for (const double fold : kFolds) {
             SCOPED_TRACE(testing::Message() << "lean " << lean << ", fold " << fold);
@@ -122,7 +124,7 @@ TEST(EulerianCoordinates, AreAsGoodAsTheAngleBetweenTraceAndBorder)
 
 TEST(EulerianCoordinates, AreAsGoodAsTheAngleBetweenClothAndNbarOrTheFold)
 {
-    // Cloth that leans against an edge or turns a little there, more to one side than nbar is.
+    // The cloth leans against an edge, so nbar differs from the fold's bisector.
     for (const double tilt : {30.0, 60.0, 80.0})
         for (const double fold : kFolds) {
             SCOPED_TRACE(testing::Message() << "tilt " << tilt << ", fold " << fold);
@@ -135,7 +137,8 @@ TEST(EulerianCoordinates, AreAsGoodAsTheAngleBetweenClothAndNbarOrTheFold)
             EXPECT_GT(c.step, 0.0);
         }
 
-    // Flat cloth that contains nbar has none: two of its coordinates are one. A fold of 10 degrees is enough.
+    // In flat cloth that contains nbar two coordinates coincide. A fold of 10 degrees is enough to separate
+    // them.
     FoldedPatch flat;
     flat.tilt = 89.99 * kDegree;
     EXPECT_GT(find_conditions(flat, GridPattern::Diagonal).mass, 1e6);
@@ -145,7 +148,7 @@ TEST(EulerianCoordinates, AreAsGoodAsTheAngleBetweenClothAndNbarOrTheFold)
 
 TEST(EulerianCoordinates, AreAsGoodAsTheAngleBetweenClothAndNbarOnAPoint)
 {
-    // A tent over a nail, from flat to closed, whose nbar leans.
+    // A tent over a nail, from flat to closed, with a tilted nbar.
     for (const double slope : {0.0, 1.0, 30.0, 60.0, 89.0, 90.0})
         for (const double tilt : {0.0, 45.0, 80.0}) {
             SCOPED_TRACE(testing::Message() << "slope " << slope << ", tilt " << tilt);

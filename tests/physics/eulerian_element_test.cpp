@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-12;
 
-/// x and X of every vertex, five a vertex, from the three of u.
+/// Reduction matrix: from the three coordinates u of each vertex to its five components of x and X.
 Eigen::MatrixXd reduction(const Linearization& at)
 {
     const Eigen::Index n = static_cast<Eigen::Index>(at.basis.size());
@@ -44,13 +44,14 @@ Eigen::VectorXd stack(const std::vector<Vec3>& world, const std::vector<Vec2>& m
 
 TEST(EulerianElement, InertiaIsTheReportsElementMatrixReduced)
 {
-    // rho A / 12 [2I I I -2F -F -F; I 2I I -F -2F -F; ...; F^T F blocks alike], where it is extrapolated to.
+    // M = rho A / 12 [2I I I -2F -F -F; I 2I I -F -2F -F; ...; likewise F^T F], in the extrapolated state.
     const double density = 0.15;
     for (const GridPattern pattern : {GridPattern::Diagonal, GridPattern::Cross}) {
         const ClothMesh mesh = crumpled_sheet({4, 3}, pattern, 1);
         Linearization at = random_linearization(mesh, 2);
         at.flow->extrapolated.velocity.assign(mesh.world.size(), Vec3(1, 2, 3));
-        at.flow->extrapolated.material_velocity.assign(mesh.world.size(), Vec2::Zero());  // no 2 Fdot V
+        // Without flow 2 Fdot V vanishes.
+        at.flow->extrapolated.material_velocity.assign(mesh.world.size(), Vec2::Zero());
         const Eigen::Index n = mesh.vertex_count();
         Eigen::MatrixXd M = Eigen::MatrixXd::Zero(5 * n, 5 * n);
         for (const Face& face : mesh.faces) {
@@ -75,8 +76,7 @@ TEST(EulerianElement, InertiaIsTheReportsElementMatrixReduced)
     }
 }
 
-/// The element sum written once more, for matrices of faces alone: corner velocities as if they were
-/// vertices', then G^T . G.
+/// Independent element sum for face terms: corner velocities in place of vertex velocities, then G^T . G.
 Assembled sum_by_corners(const ClothMesh& mesh, const FaceTerm& term, const Linearization& at,
                          const std::vector<Vec3>& x, const std::vector<Vec2>& X)
 {
@@ -107,7 +107,7 @@ Assembled sum_by_corners(const ClothMesh& mesh, const FaceTerm& term, const Line
     return sum;
 }
 
-/// Drag in every direction: wind does not see how material flows, as that is along the face.
+/// Drag in every direction. (Wind acts along the normal only, so flow along the face does not affect it.)
 class Drag : public FaceTerm {
   public:
     void add(const FaceState& face, FaceSystem& system) const override
@@ -130,7 +130,7 @@ TEST(EulerianElement, LoadsAndViscosityActOnTheMaterialWhereItIsExtrapolatedTo)
     loads.push_back(std::make_unique<GravityForce>(0.15, Gravity{}));
     loads.push_back(std::make_unique<Drag>());
     for (auto& term : loads) {
-        // Only Lagrangian faces are taken at q^, and here every face has an EOL corner.
+        // Only Lagrangian faces are evaluated at q^; here every face has an EOL corner.
         for (const Face& face : mesh.faces) ASSERT_TRUE(has_eulerian_vertex(*at.flow, face));
         const Assembled expected =
             sum_by_corners(mesh, *term, at, at.flow->extrapolated.position, at.flow->extrapolated.material);
@@ -149,7 +149,7 @@ TEST(EulerianElement, ElasticStiffnessIsThatOfTheCornersAtTheExpansionPoint)
     const Assembled system = assemble(mesh, only(std::make_unique<Membrane>(500.0, 0.3)), at);
     EXPECT_LT((system.matrix - expected.matrix).norm(), kRoundOff * expected.matrix.norm());
 
-    // What the right-hand side has besides are the energies let into the faces: -gamma E^T sum V b_i.
+    // The right-hand side also contains the energy that flows into the faces: -gamma E^T sum V b_i.
     Eigen::VectorXd rhs = expected.rhs;
     for (const Face& face : mesh.faces) {
         const FaceElement element = make_face_element(at.flow->position, face);
@@ -163,7 +163,7 @@ TEST(EulerianElement, ElasticStiffnessIsThatOfTheCornersAtTheExpansionPoint)
 
 TEST(EulerianElement, HingeStiffnessIsThatOfTheMeanCornersAtTheExpansionPoint)
 {
-    // One hinge whose edge is EOL, with X^ far from where the mesh was made.
+    // One hinge with an EOL edge; X^ is far from the material coordinates of the mesh.
     ClothMesh mesh;
     mesh.material = {Vec2(0, 0), Vec2(0.1, 1), Vec2(-1, 0.4), Vec2(0.8, 0.5)};
     mesh.world = {Vec3(0, 0, 0), Vec3(0, 1, 0.1), Vec3(-0.9, 0.4, -0.3), Vec3(0.7, 0.5, -0.4)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces on vertices through which material flows: minus the differences of the whole sheet's energy in x and
-// X, and inertia that of material points as they are seen to move.
+// Forces on vertices through which material flows. They are minus the differences of the whole sheet's energy
+// in x and X. Inertia is that of material points in their observed motion.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -20,8 +20,8 @@ namespace {
 constexpr double kStep = 1e-6;         // m, of central differences; the sheet is 1 m
 constexpr double kFdTolerance = 1e-7;  // truncation and eps / h, relative to the forces' scale
 
-/// Checks rhs against central differences of `energy_of(mesh)` along each vertex's coordinates, where
-/// `is_checked` says so.
+/// Checks rhs against central differences of `energy_of(mesh)` in the coordinates of each vertex for which
+/// `is_checked` is true.
 template <typename EnergyOf, typename IsChecked>
 void expect_gradient(const ClothMesh& mesh, const Terms& terms, const Linearization& at,
                      const EnergyOf& energy_of, const IsChecked& is_checked)
@@ -51,8 +51,8 @@ double total(const Energies& energies)
 
 TEST(EulerianForces, ForcesAreMinusTheGradientsOfTheWholeSheetsEnergy)
 {
-    // Gravity's is one of the whole sheet only: material that leaves a face enters the next. At the border
-    // material cannot flow out.
+    // Gravity's gradient is exact for the whole sheet only, because material that leaves a face enters the
+    // next one. At the border material cannot flow out.
     for (const GridPattern pattern : {GridPattern::Diagonal, GridPattern::Alternating, GridPattern::Cross})
         for (const char* effect : {"stretch", "bending", "gravity", "all"}) {
             SCOPED_TRACE(effect);
@@ -77,7 +77,7 @@ TEST(EulerianForces, ForcesAreMinusTheGradientsOfTheWholeSheetsEnergy)
 
 TEST(EulerianForces, PullDoesTheWorkOfItsForceOnTheMaterialInItsBox)
 {
-    // Its potential is -p . (mean x over the box), whatever vertices carry it there.
+    // The potential is -p . (mean x over the box), for any vertices in the box.
     const Vec3 p(1.0, -2.0, 0.5);
     const MaterialBox boxes[] = {
         {Vec2(0.2, 0.3), Vec2(0.62, 0.9)}, {Vec2(-1, -1), Vec2(2, 2)}, {Vec2(0.31, 0.1), Vec2(0.31, 0.93)}};
@@ -100,8 +100,9 @@ TEST(EulerianForces, PullDoesTheWorkOfItsForceOnTheMaterialInItsBox)
 
 TEST(EulerianForces, InertiaIsThatOfMaterialPointsAsTheyAreSeenToMove)
 {
-    // One face whose corners move along parabolas in x and X; a material point's acceleration is the second
-    // difference of where it is. rhs - M u with v' - v~ = xddot, V' - V~ = Xddot, gamma = 1.
+    // One face moves with its corners along parabolas in x and X. A material point's acceleration is the
+    // second difference of its position. The inertia is rhs - M u with v' - v~ = xddot, V' - V~ = Xddot,
+    // gamma = 1.
     Generator random(11);
     for (int trial = 0; trial < 20; ++trial) {
         ClothMesh mesh;
@@ -138,7 +139,7 @@ TEST(EulerianForces, InertiaIsThatOfMaterialPointsAsTheyAreSeenToMove)
         const double density = 0.3;
         const Assembled system = assemble(mesh, only(std::make_unique<Inertia>(density)), at);
 
-        // Where the material point that is at N now is at time t.
+        // Position at time t of the material point that is at N at time 0.
         const auto where = [&](const Vec3& N, double t) -> Vec3 {
             Vec2 point = Vec2::Zero();
             std::vector<Vec3> x = mesh.world;
@@ -154,9 +155,9 @@ TEST(EulerianForces, InertiaIsThatOfMaterialPointsAsTheyAreSeenToMove)
         const FaceElement element = make_face_element(mesh.material, {0, 1, 2});
         const Mat32 F = FaceState(element, mesh.world).F;
         Eigen::VectorXd expected = Eigen::VectorXd::Zero(9);
-        constexpr double kTime = 1e-4;  // of second differences: error t^2 and eps / t^2, both 1e-8
+        constexpr double kTime = 1e-4;  // step of second differences: errors t^2 and eps / t^2, both 1e-8
         for (int edge = 0; edge < 3; ++edge) {
-            // Midpoints of the edges: exact for the product of two linear functions.
+            // Quadrature at the edges' midpoints is exact for the product of two linear functions.
             Vec3 N = Vec3::Constant(0.5);
             N[edge] = 0.0;
             const Vec3 a = (where(N, kTime) - 2.0 * where(N, 0.0) + where(N, -kTime)) / (kTime * kTime);

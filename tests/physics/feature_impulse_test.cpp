@@ -10,7 +10,7 @@
 namespace arris {
 namespace {
 
-constexpr double kRoundOff = 1e-12;  // of the largest of sums over some tens of elements
+constexpr double kRoundOff = 1e-12;  // relative to the largest of sums over some tens of elements
 
 Eigen::VectorXd some_velocity(int vertices)
 {

@@ -12,8 +12,8 @@ constexpr double kRoundOff = 1e-12;
 
 TEST(CornerVelocities, AVertexThatSlidesInAFlatSheetMovesNoMaterial)
 {
-    // (dx, dX) = (F s, s) on any vertices: the same corner velocities, energy, momenta and rows of the
-    // system.
+    // Adding (dx, dX) = (F s, s) to any vertices leaves corner velocities, energy, momenta and rows of the
+    // system unchanged.
     Generator random(16);
     ClothMesh mesh = crumpled_sheet({6, 5}, GridPattern::Cross, 17);
     Mat32 F;
@@ -53,7 +53,8 @@ TEST(CornerVelocities, AVertexThatSlidesInAFlatSheetMovesNoMaterial)
     EXPECT_EQ(mean_corner_velocities(elements, plain, velocity, std::vector<Vec2>(n, Vec2::Zero())),
               velocity);
 
-    // u = (x along the normal and one direction, X along another) finds the same mass as it would without.
+    // With u = (x along the normal and one direction, X along another) the mass matrix must agree with the
+    // unreduced one.
     Linearization at = linearization_at_rest(mesh, 18);
     for (std::size_t v = 0; v < n; ++v) {
         at.flow->is_eulerian[v] = 1;

@@ -106,7 +106,7 @@ TEST(LinearSystem, IsReducedByTheVerticesBases)
     const Eigen::MatrixXd matrix = dense(sheet.system);
     const Eigen::VectorXd rhs = sheet.system.rhs();
 
-    // One vertex in two gets a skew basis: A -> B^T A B, b -> B^T b.
+    // Every second vertex gets an oblique basis: A -> B^T A B, b -> B^T b.
     const int n = sheet.mesh.vertex_count();
     Eigen::MatrixXd B = Eigen::MatrixXd::Identity(3 * n, 3 * n);
     for (int v = 0; v < n; v += 2) {
@@ -144,7 +144,7 @@ TEST(LinearSystem, OfWhatIsNotHeldIsThatPartOfTheWhole)
     const Eigen::MatrixXd whole = dense(sheet.system);
     const Eigen::VectorXd rhs = sheet.system.rhs();
 
-    // Two vertices in three.
+    // Two of three vertices.
     std::vector<int> places(sheet.mesh.world.size(), -1), loose;
     for (int v = 0; v < sheet.mesh.vertex_count(); ++v) {
         if (v % 3 == 0) continue;

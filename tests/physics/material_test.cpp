@@ -16,7 +16,7 @@ TEST(MaterialPresets, AreSheetsWithASource)
         const Material& material = preset.material;
         EXPECT_TRUE(names.insert(preset.name).second) << preset.name;
         EXPECT_TRUE(preset.source.ends_with('.')) << preset.name;
-        // Between tulle and a belt.
+        // Densities are between those of tulle and of a belt.
         EXPECT_GT(material.density, 0.02) << preset.name;
         EXPECT_LT(material.density, 2.0) << preset.name;
         EXPECT_GT(material.youngs_modulus, 50.0) << preset.name;

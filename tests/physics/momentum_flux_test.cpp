@@ -10,15 +10,15 @@ namespace arris {
 namespace {
 
 constexpr double kDensity = 0.3;     // kg/m^2
-constexpr double kRoundOff = 1e-12;  // of sums over some tens of hinges
+constexpr double kRoundOff = 1e-12;  // for sums over some tens of hinges
 
 ClothElements elements_of(const ClothMesh& mesh)
 {
     return make_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
 }
 
-/// A 1 m strip along x that goes over the y axis at X = fold and comes down at 90 degrees; its material flows
-/// over the fold with `speed` towards +x, all of it as fast.
+/// A 1 m strip along x goes over the y axis at X = fold and down at 90 degrees. All of its material flows
+/// over the fold with `speed` towards +x.
 struct FoldedStrip {
     ClothMesh mesh;
     Linearization at;
@@ -61,13 +61,14 @@ struct FoldedStrip {
 
 TEST(MomentumFlux, OfAStripOverATableEdgeIsMassFlowTimesTheTurnOfItsVelocity)
 {
-    for (const double speed : {2.0, -2.0}) {  // either way it pushes outward, as tension pulls inward
+    // For both signs the momentum flux pushes outward; tension would pull inward.
+    for (const double speed : {2.0, -2.0}) {
         const FoldedStrip strip(0.6, speed);
         const Eigen::VectorXd force = strip.force();
         const double flow = kDensity * 2.0 * 0.2;  // kg/s
-        // u = (c, a, s) with c along x here: half of it on either end.
+        // u = (c, a, s) with c along x: each of the two vertices has half of the force.
         for (const int v : {2, 3}) EXPECT_NEAR(force[3 * v], 0.5 * flow * 2.0, kRoundOff);
-        // Material slows down nowhere: no force along the flow.
+        // Material does not slow down, so there is no force along the flow.
         for (const int v : {2, 3}) EXPECT_NEAR(force[3 * v + 2], 0.0, kRoundOff);
         for (const int v : {0, 1, 4, 5}) EXPECT_EQ(force.segment<3>(3 * v).norm(), 0.0);
     }
@@ -95,7 +96,7 @@ TEST(MomentumFlux, IsNothingWhereClothIsFlatOrNoMaterialFlows)
     EXPECT_EQ(rhs.norm(), 0.0);
 }
 
-/// Corners of a face's side at a hinge, m/s.
+/// Velocities of a face's corners on the hinge's edge, m/s.
 std::array<Vec3, 2> speeds_beside(const ClothMesh& mesh, const Linearization& at, const HingeElement& hinge,
                                   int face)
 {
@@ -110,8 +111,8 @@ std::array<Vec3, 2> speeds_beside(const ClothMesh& mesh, const Linearization& at
     return w;
 }
 
-/// The integral of passing times f along the crease, all linear between their ends' values: Gauss's three
-/// points are exact to the fifth degree.
+/// Integral along the crease. Gauss's three points are exact to the fifth degree; the factors are linear
+/// between the ends.
 template <typename Integrand>
 double integrate(const Integrand& at)
 {
@@ -124,7 +125,7 @@ TEST(MomentumFlux, HasThePowerOfTheKineticEnergyThatFlowsFromOneSideToTheOther)
     const ClothMesh mesh = crumpled_sheet({5, 4}, GridPattern::Alternating, 31);
     Linearization at = random_linearization(mesh, 32);
     const int n = mesh.vertex_count();
-    // u = 1 along the extrapolated motion itself.
+    // u = 1 is the extrapolated motion itself.
     for (int v = 0; v < n; ++v) {
         at.basis[v].setZero();
         at.basis[v].col(0) = at.flow->extrapolated.velocity[v];
@@ -147,7 +148,7 @@ TEST(MomentumFlux, HasThePowerOfTheKineticEnergyThatFlowsFromOneSideToTheOther)
             const auto between = [&](const auto& p, const auto& q) { return ((1.0 - s) * p + s * q).eval(); };
             const Vec2 V = between(there.material_velocity[hinge.vertices[0]],
                                    there.material_velocity[hinge.vertices[1]]);
-            // What the crease passes over towards the right was there and is on the left now.
+            // Material over which the crease moves towards the right was on the right and is now on the left.
             return 0.5 * kDensity * V.dot(to_right) *
                    (between(left[0], left[1]).squaredNorm() - between(right[0], right[1]).squaredNorm());
         });

@@ -12,7 +12,7 @@ namespace arris {
 
 namespace {
 
-/// a~ = (4 a_k - a_(k-1)) / 3, or a_k.
+/// a~ = (4 a_k - a_(k-1)) / 3, or a_k without history.
 template <typename Vector>
 std::vector<Vector> predict(const std::vector<Vector>& last, const std::vector<Vector>& previous,
                             bool has_history)
@@ -23,7 +23,7 @@ std::vector<Vector> predict(const std::vector<Vector>& last, const std::vector<V
     return predicted;
 }
 
-/// 2 v_k - v_(k-1), or v_k.
+/// 2 v_k - v_(k-1), or v_k without history.
 template <typename Vector>
 std::vector<Vector> extrapolate(const std::vector<Vector>& last, const std::vector<Vector>& previous,
                                 bool has_history)
@@ -41,7 +41,7 @@ std::vector<Vector> moved(std::vector<Vector> position, double gamma, const std:
     return position;
 }
 
-/// A u = b with the known ones of u taken out.
+/// Solves A u = b with the known components of u eliminated.
 Eigen::VectorXd solve(const LinearSystem& system, const std::vector<VertexCoordinates>& coordinates)
 {
     std::vector<int> unknown;

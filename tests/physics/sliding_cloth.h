@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plainest time stepper that uses the assembled system with EOL vertices: BDF2, dense factorisation,
-// contacts that neither open nor need to be found.
+// A minimal time stepper for the assembled system with EOL vertices: BDF2, dense factorisation, given
+// permanent contacts.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 
 namespace arris {
 
-/// v' = basis u, V' = material_basis u, with the known ones of u.
+/// v' = basis u, V' = material_basis u; some components of u may be known.
 struct VertexCoordinates {
     Mat3 basis = Mat3::Identity();
     Mat23 material_basis = Mat23::Zero();
@@ -22,26 +22,27 @@ struct VertexCoordinates {
     bool is_eulerian() const { return !material_basis.isZero(0.0); }
 };
 
-/// On a face with unit normal n: u = (out of it, along it twice), the first 0.
+/// Coordinates on a face with unit normal n: u = (along n, two along the face), with the first 0.
 VertexCoordinates on_face(const Vec3& n);
 
-/// EOL on an edge or wire with unit tangent t: u = (along nbar, along t, material along `direction`), the
-/// first 0.
+/// EOL coordinates on an edge or wire with unit tangent t: u = (along nbar, along t, material along
+/// `direction`), with the first 0.
 VertexCoordinates on_edge(const Vec3& t, const Vec3& nbar, const Vec2& direction);
 
-/// EOL on a corner or a lone point: u = (along nbar, material along u, along v), the first 0.
+/// EOL coordinates on a corner or a lone point: u = (along nbar, material along u, material along v), with
+/// the first 0.
 VertexCoordinates on_point(const Vec3& nbar);
 
-/// A cloth and its past.
+/// A cloth and its history.
 struct SlidingCloth {
-    /// Each vertex's coordinates for the next step, from the cloth as it is.
+    /// Each vertex's coordinates for the next step, as a function of the present cloth.
     using Coordinates = std::function<std::vector<VertexCoordinates>(const SlidingCloth&)>;
 
     Terms terms;
     ClothMesh mesh;
-    ClothElements elements;  ///< of `mesh` as it is
+    ClothElements elements;  ///< of the present `mesh`
     Coordinates coordinates;
-    bool has_convection = true;  ///< 2 Fdot V, which some leave out
+    bool has_convection = true;  ///< whether inertia includes 2 Fdot V
 
     std::vector<Vec3> velocity, previous_world, previous_velocity;
     std::vector<Vec2> material_velocity, previous_material, previous_material_velocity;
@@ -50,14 +51,14 @@ struct SlidingCloth {
 
     SlidingCloth(Terms some_terms, ClothMesh a_mesh, Coordinates some_coordinates);
 
-    /// BDF2 with equal steps, after a first one of implicit Euler. A matrix that is not positive definite
-    /// fails the test.
+    /// A step of BDF2 with equal steps; the first step is implicit Euler. The test fails if the matrix is not
+    /// positive definite.
     void step(double h);
 
-    /// `steps` equal steps.
+    /// Makes `steps` equal steps.
     void advance(double duration, int steps);
 
-    /// Kinetic and potential, J.
+    /// Kinetic and potential energy, J.
     double total_energy(double density) const;
 
     Linearization linearize(const std::vector<VertexCoordinates>& at, double h) const;

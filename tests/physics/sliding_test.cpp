@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cloth whose material flows through vertices on an edge, against closed forms. No friction, no remeshing:
-// the slides are so short that no vertex comes near the edge.
+// Cloth whose material flows through vertices on an edge, compared with closed forms. There is no friction
+// and no remeshing; slides are so short that no vertex comes near the edge.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -20,8 +20,8 @@ namespace {
 constexpr double kG = 9.81;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// A strip over the edge x = z = 0 between two planes that fall by `alpha` towards -x (negative: it rises
-/// towards the edge) and by `beta` beyond the edge, radians below the horizontal along +u.
+/// A strip over the edge x = z = 0 between two planes. Their angles below the horizontal along +u are `alpha`
+/// before and `beta` beyond the edge, in radians. A negative `alpha` rises towards the edge.
 struct Fold {
     double alpha = 0.0, beta = 0.5 * std::numbers::pi;
 
@@ -35,7 +35,7 @@ struct Fold {
         const double angle = s < 0.0 ? alpha : beta;
         return {std::sin(angle), 0.0, std::cos(angle)};
     }
-    /// The bisector; over a wire straight up.
+    /// The bisector of the normals; straight up over a wire.
     Vec3 nbar() const
     {
         const Vec3 sum = normal(-1.0) + normal(1.0);
@@ -46,16 +46,16 @@ struct Fold {
 struct Strip {
     Fold fold;
     double length = 1.0, width = 0.1;  ///< m
-    double at_edge = 0.9;              ///< u that lies on the edge, m
+    double at_edge = 0.9;              ///< u on the edge at the start, m
     int cells = 8, rows = 2;
-    double skew = 0.0;  ///< of a cell, how far the columns lean
+    double skew = 0.0;  ///< inclination of the columns, in cells
     double density = 0.1, modulus = 2e5, bending = 1e-7;
 
     double cell() const { return length / cells; }
 };
 
-/// Columns of the grid nearer to the edge than this make way for the EOL column.
-constexpr double kClearance = 0.3;  // of a cell
+/// Columns of the grid nearer to the edge than this are left out for the EOL column.
+constexpr double kClearance = 0.3;  // in cells
 
 std::vector<double> columns_of(const Strip& strip)
 {
@@ -73,7 +73,7 @@ std::vector<double> columns_of(const Strip& strip)
 struct StripMesh {
     ClothMesh mesh;
     std::vector<char> is_on_edge;
-    int height = 0;  ///< vertices in a column; they are numbered by columns
+    int height = 0;  ///< vertices in a column; numbering is by columns
 };
 
 StripMesh make_strip_mesh(const Strip& strip)
@@ -103,7 +103,7 @@ StripMesh make_strip_mesh(const Strip& strip)
     return result;
 }
 
-/// On the edge along the cloth's border, or across the trace of the edge.
+/// Material direction of flow on the edge: along the cloth's border, or across the trace.
 Vec2 flow_direction(const ClothMesh& mesh, int v, int height)
 {
     const int row = v % height;
@@ -132,7 +132,7 @@ SlidingCloth make_strip(const Strip& strip)
     return SlidingCloth(make_terms(material, Gravity{Vec3(0, 0, -kG)}, {}, {}), made.mesh, coordinates);
 }
 
-/// How far the last column has come along its slope, m.
+/// Distance of the last column along its slope, m.
 double hanging(const SlidingCloth& cloth, const Strip& strip)
 {
     double sum = 0.0;
@@ -141,7 +141,7 @@ double hanging(const SlidingCloth& cloth, const Strip& strip)
     return sum / (strip.rows + 1);
 }
 
-/// Material that has passed the edge, m: the mean over the EOL column.
+/// Material beyond the edge, m: the mean over the EOL column.
 double slid(const SlidingCloth& cloth, const Strip& strip)
 {
     double sum = 0.0;
@@ -168,8 +168,8 @@ double gravity_energy(const SlidingCloth& cloth)
     return compute_energies(cloth.elements, cloth.terms, cloth.mesh.world).gravity;
 }
 
-/// Relative errors after a slide of `duration`: of the length beyond the edge, and of the energy (of what was
-/// exchanged). The length is at_start + growth (cosh(rate duration) - 1).
+/// Relative errors after a slide of `duration`: of the length beyond the edge, and of the energy relative to
+/// the energy exchanged. The exact length is at_start + growth (cosh(rate duration) - 1).
 struct SlideErrors {
     double length, energy;
 };
@@ -191,7 +191,7 @@ SlideErrors measure(const Strip& strip, const Slide& slide, int steps)
             std::abs(cloth.total_energy(strip.density) - energy) / std::abs(gravity_energy(cloth) - height)};
 }
 
-/// Second order in the time step, down to 1.25 ms; and 5 ms are good for `bound`.
+/// Checks second order in the time step down to 1.25 ms, and an error below `bound` at 5 ms.
 void expect_second_order(const Strip& strip, const Slide& slide, double bound)
 {
     SCOPED_TRACE(testing::Message() << strip.cells << " cells, skew " << strip.skew);
@@ -199,15 +199,15 @@ void expect_second_order(const Strip& strip, const Slide& slide, double bound)
     const SlideErrors coarse = measure(strip, slide, steps / 2), middle = measure(strip, slide, steps),
                       fine = measure(strip, slide, 4 * steps);
     EXPECT_LT(middle.length, bound);
-    EXPECT_LT(middle.energy, 10.0 * bound);  // of what was exchanged, which is little
-    constexpr double kOrder = 1.85;  // the first step, of implicit Euler, and stretch (1e-6) take their share
+    EXPECT_LT(middle.energy, 10.0 * bound);  // relative to the energy exchanged, which is small
+    constexpr double kOrder = 1.85;          // reduced by the first step (implicit Euler) and stretch (1e-6)
     EXPECT_GT(std::log2(coarse.length / middle.length), kOrder);
     EXPECT_GT(0.5 * std::log2(middle.length / fine.length), kOrder);
 }
 
 TEST(Sliding, StripOverATableEdgeFollowsTheHyperbolicCosineOnAnyMesh)
 {
-    // x = x0 cosh(t sqrt(g / L)); 6.6 cm in 0.35 s, less than the clearance at 4 cells.
+    // x = x0 cosh(t sqrt(g / L)): 6.6 cm in 0.35 s, which is less than the clearance at 4 cells.
     for (const int cells : {4, 8})
         for (const double skew : {0.0, 0.4}) {
             Strip strip;
@@ -219,7 +219,7 @@ TEST(Sliding, StripOverATableEdgeFollowsTheHyperbolicCosineOnAnyMesh)
 
 TEST(Sliding, StripOverAWireFollowsTheHyperbolicCosineOnAnyMesh)
 {
-    // From y0 off balance y = y0 cosh(t sqrt(2 g / L)).
+    // From y0 off equilibrium, y = y0 cosh(t sqrt(2 g / L)).
     for (const int cells : {4, 8}) {
         Strip strip;
         strip.fold = {-90.0 * kDegree, 90.0 * kDegree};
@@ -232,15 +232,16 @@ TEST(Sliding, StripOverAWireFollowsTheHyperbolicCosineOnAnyMesh)
 
 TEST(Sliding, StripInBalanceOverARidgeDoesNotCreep)
 {
-    // Bending pays for a fold by the widths beside it: with -F^T f in place of -dV/dX this slips by
-    // centimetres at K = 1e-4. What is left is the strip's stretch as it takes its weight, ~ 1 / E.
+    // The bending energy of a fold depends on the widths of the cells beside it. With -F^T f in place of
+    // -dV/dX the strip slips by centimetres at K = 1e-4. The remaining slip is the strip's stretch under its
+    // weight, ~ 1 / E.
     for (const double modulus : {2e4, 2e5})
         for (const double bending : {1e-7, 1e-4})
             for (const int cells : {7, 8, 12}) {
                 SCOPED_TRACE(testing::Message() << modulus << " N/m, " << bending << " J, " << cells);
                 Strip strip;
                 strip.fold = {-20.0 * kDegree, 45.0 * kDegree};
-                // Lengths as sin 45 : sin 20.
+                // In equilibrium the lengths are in the ratio sin 45 : sin 20.
                 const double upper = std::sin(45.0 * kDegree), lower = std::sin(20.0 * kDegree);
                 strip.at_edge = upper / (upper + lower);
                 strip.cells = cells;
@@ -261,8 +262,8 @@ struct Swing {
     double angle, rate;
 };
 
-/// One element of cloth paid out at `rate` from a fixed edge along y, where it is `length` long at first and
-/// swings by `start` from straight down.
+/// One element of cloth is paid out at `rate` from a fixed edge along y. Its initial length is `length`, and
+/// it swings from the angle and rate `start` relative to straight down.
 struct PayOut {
     double length, rate;  ///< m, m/s
     Swing start;
@@ -281,7 +282,8 @@ Swing run(const PayOut& p, int steps, bool has_convection)
     for (const Vec2& X : mesh.material)
         mesh.world.push_back((X.x() - kTotal + p.length) * d + X.y() * Vec3::UnitY());
     mesh.faces = {{0, 2, 1}, {2, 3, 1}};
-    const Material material{0.1, 3e3, 0.0, 1.0, 0.0, 1e-3};  // stretches by 1e-6, folds less
+    // The cloth stretches by 1e-6; bending has a smaller effect.
+    const Material material{0.1, 3e3, 0.0, 1.0, 0.0, 1e-3};
     const auto coordinates = [rate = p.rate](const SlidingCloth&) {
         VertexCoordinates paying = on_edge(Vec3::UnitY(), Vec3::UnitX(), -Vec2::UnitX());
         paying.known = {0.0, 0.0, rate};
@@ -297,8 +299,8 @@ Swing run(const PayOut& p, int steps, bool has_convection)
     return {angle, cloth.velocity[2].dot(Vec3(std::cos(angle), 0.0, std::sin(angle))) / end.norm()};
 }
 
-/// The same by its equation of motion: thetaddot = -(3 ldot thetadot + 3/2 g sin theta) / l, from the
-/// moment of momentum about the edge.
+/// Integrates the equation of motion thetaddot = -(3 ldot thetadot + 3/2 g sin theta) / l, from the moment of
+/// momentum about the edge.
 Swing integrate(const PayOut& p)
 {
     const auto slope = [&](double t, const Eigen::Vector2d& y) -> Eigen::Vector2d {
@@ -324,10 +326,11 @@ TEST(Sliding, ClothThatSwingsWhileItIsPaidOutSlowsAsTheCubeOfItsLength)
         angles.push_back(swing.angle);
     }
     EXPECT_NEAR(angles.back(), exact.angle, 3e-6);
-    // Second order: differences fall by 4. Errors themselves end at the cloth's stretch, 1e-6.
+    // Second order: differences fall by a factor of 4. The errors themselves level off at the cloth's
+    // stretch, 1e-6.
     EXPECT_GT((angles[1] - angles[2]) / (angles[2] - angles[3]), 3.6);
 
-    // Inertia without 2 Fdot V conserves another thing: thetadot falls as the square of the length only.
+    // Inertia without 2 Fdot V conserves another quantity: thetadot falls only with the square of the length.
     EXPECT_NEAR(run(pay_out, 200, false).rate, 0.5, 1e-3);
 }
 
@@ -340,7 +343,7 @@ TEST(Sliding, PendulumThatIsPaidOutFollowsItsEquation)
     EXPECT_NEAR(swing.rate, exact.rate, 1e-3);
 }
 
-/// A free sheet, 1 m, without gravity, whose middle vertex is EOL, on a point or on an edge along y.
+/// A free sheet of 1 m without gravity. Its middle vertex is EOL, on a point or on an edge along y.
 SlidingCloth make_free_sheet(bool is_on_point)
 {
     ClothGrid grid;
@@ -357,7 +360,7 @@ SlidingCloth make_free_sheet(bool is_on_point)
     return SlidingCloth(make_terms({0.1, 1e3, 0.3, 1e-4, 0.0, 1e-3}, {}, {}, {}), mesh, coordinates);
 }
 
-/// Gives the sheet the material velocities of `velocity_at`(x).
+/// Gives the sheet's material the velocities `velocity_at`(x).
 template <typename VelocityAt>
 void set_in_motion(SlidingCloth& cloth, const VelocityAt& velocity_at)
 {
@@ -392,13 +395,13 @@ TEST(Sliding, FlatClothPassesAPointOrAnEdgeAsIfItWereNotThere)
     }
 }
 
-/// Share of its angular momentum that a sheet gains which turns about an axis and slides over a point beside
-/// it.
+/// Relative gain of angular momentum of a sheet that turns about an axis while sliding over a point beside
+/// that axis.
 double spin_gain(int steps, bool has_convection)
 {
     SlidingCloth cloth = make_free_sheet(true);
     cloth.has_convection = has_convection;
-    for (Vec3& x : cloth.mesh.world) x -= Vec3(0.3, 0.4, 0.0);  // the axis is off the point
+    for (Vec3& x : cloth.mesh.world) x -= Vec3(0.3, 0.4, 0.0);  // the axis does not pass through the point
     set_in_motion(cloth, [](const Vec3& x) { return Vec3::UnitZ().cross(x); });
     const auto momentum = [&] {
         const CornerVelocities corners = compute_corner_velocities(cloth.elements, cloth.mesh.world,
@@ -412,7 +415,8 @@ double spin_gain(int steps, bool has_convection)
 
 TEST(Sliding, ClothThatSpinsOverAPointKeepsItsAngularMomentum)
 {
-    // Nothing holds it in the plane. To second order; without 2 Fdot V not at all.
+    // No force acts in the plane, so angular momentum is conserved to second order. Without 2 Fdot V it is
+    // not conserved.
     const double coarse = spin_gain(20, true), fine = spin_gain(80, true);
     EXPECT_LT(std::abs(coarse), 1e-4);
     EXPECT_GT(0.5 * std::log2(coarse / fine), 1.9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One harness for every term: a new one is one line in a table below.
+// One harness tests every term: a new term is one line in a table below.
 #include "physics/term.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@
 namespace arris {
 namespace {
 
-constexpr double kStep = 1e-6;         // of central differences; positions and sizes are about 1
-constexpr double kFdTolerance = 2e-8;  // truncation h^2 f''' and round-off eps / h, relative to the stiffness
+constexpr double kStep = 1e-6;         // step of central differences; positions and sizes are about 1
+constexpr double kFdTolerance = 2e-8;  // truncation h^2 f''' and round-off eps / h, relative to stiffness
 constexpr double kRoundOff = 1e-12;
 
 using Generator = std::mt19937_64;
@@ -44,7 +44,7 @@ Mat3 random_rotation(Generator& random)
         .toRotationMatrix();
 }
 
-/// One element in a mesh of its own, so that a term can be asked for its energy, force and matrices.
+/// One element in a mesh of its own, for evaluating a term's energy, force and matrices.
 template <int N>
 struct Element;
 
@@ -65,7 +65,7 @@ struct Element<3> {
         mesh.faces = {Face{0, 1, 2}};
         return make_elements(mesh, make_topology(3, mesh.faces)).faces[0];
     }
-    /// World positions with the material's shape.
+    /// World positions in the shape of the material.
     static std::vector<Vec3> rest(const FaceElement& face)
     {
         // x_0 = 0 and gradients g: x_i = X_i - X_0 solves g_j . (X_i - X_0) = delta_ij for i, j in {1, 2}.
@@ -89,7 +89,7 @@ struct Element<4> {
     }
 };
 
-/// gamma = 1 and everything at rest, so that rhs = force, matrix = mass + stiffness + viscosity.
+/// Linearisation with gamma = 1 at rest, so that rhs = force and matrix = mass + stiffness + viscosity.
 template <int N>
 Linearization make_linearization(const std::vector<Vec3>& position)
 {
@@ -124,7 +124,7 @@ Evaluation<N> evaluate(const Term& term, const ElementType& element, const Linea
     return result;
 }
 
-/// An element made from the material coordinates of its corners, with F at each corner.
+/// An element from the material coordinates of its corners, with F at each corner.
 template <int N>
 struct ElementAt;
 
@@ -186,7 +186,7 @@ struct ElementAt<4> {
     }
 };
 
-/// The shapes a term must survive. `is_smooth` where differences are meaningful.
+/// Shapes for which a term must stay finite; for smooth shapes (`is_smooth`) differences are meaningful.
 struct Shape {
     const char* name;
     bool is_smooth;
@@ -255,7 +255,7 @@ struct Case {
     const char* name;
     std::shared_ptr<typename Element<N>::Term> term;
     Stiffness stiffness;
-    bool is_invariant;  ///< under rigid motion, with zero net force and torque
+    bool is_invariant;  ///< under rigid motion; net force and torque are then zero
 
     friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 };
@@ -332,9 +332,9 @@ void expect_stiffness_is_the_projected_hessian(const Case<N>& c)
             hessian.col(i) = -(force_at(kStep) - force_at(-kStep)) / (2 * kStep);
         }
         EXPECT_LT((hessian - hessian.transpose()).norm(), kFdTolerance * (size + 1.0));
-        // Projection only takes negative eigenvalues away (those of the element in its deformation gradient,
-        // so the corners' matrix is not the corners' projection): the same where there are none, never less
-        // elsewhere.
+        // Projection only removes negative eigenvalues, those of the element in its deformation gradient.
+        // Without such eigenvalues the matrix equals the Hessian; otherwise it is larger. (The corners'
+        // matrix is not the projection of the corners' Hessian.)
         const Matrix symmetric = 0.5 * (hessian + hessian.transpose());
         const Matrix difference = analytic.matrix - symmetric;
         const double tolerance = 10 * kFdTolerance * (size + 1.0);
@@ -358,7 +358,7 @@ void expect_rigid_invariance(const Case<N>& c)
             net += here.rhs.template segment<3>(3 * i);
             torque += (x[i] - x[0]).cross(here.rhs.template segment<3>(3 * i));
         }
-        // Forces are differences of what the positions' round-off is multiplied with.
+        // The round-off of forces is that of positions multiplied by the stiffness.
         const double force_scale = here.rhs.norm() + here.matrix.norm() * extent;
         EXPECT_LE(net.norm(), kRoundOff * force_scale);
         EXPECT_LE(torque.norm(), kRoundOff * force_scale * extent);
@@ -372,8 +372,8 @@ void expect_rigid_invariance(const Case<N>& c)
     });
 }
 
-/// The force on the material coordinates of an element's corners, by the reduction that the system uses:
-/// V' = (u_1, u_2), v' = 0, so that rhs_i = E^T f_X.
+/// Force on the material coordinates of an element's corners, by the system's own reduction: V' = (u_1, u_2),
+/// v' = 0, so that rhs_i = E^T f_X.
 template <int N>
 std::array<Vec2, N> material_forces(const typename Element<N>::Term& term, const std::vector<Vec3>& x,
                                     const std::vector<Vec2>& X)
@@ -401,7 +401,7 @@ std::array<Vec2, N> material_forces(const typename Element<N>::Term& term, const
     return forces;
 }
 
-/// States as for_each_state's, with the material coordinates of the element.
+/// Calls for the states of for_each_state, with the material coordinates of the element.
 template <int N, typename Visit>
 void for_each_material_state(const Visit& visit)
 {
@@ -447,8 +447,8 @@ template <int N>
 void expect_material_invariance(const Case<N>& c)
 {
     for_each_material_state<N>([&](const Shape&, const std::vector<Vec3>& x, const std::vector<Vec2>& X) {
-        // The cloth is alike everywhere and in every direction: no net force or torque on the material, and
-        // what rotates x changes nothing.
+        // The cloth is homogeneous and isotropic: net force and torque on the material vanish, and rotating x
+        // changes nothing.
         const std::array<Vec2, N> here = material_forces<N>(*c.term, x, X);
         Vec2 net = Vec2::Zero();
         double torque = 0.0, size = 0.0;
@@ -457,7 +457,7 @@ void expect_material_invariance(const Case<N>& c)
             torque += (X[i] - X[0]).x() * here[i].y() - (X[i] - X[0]).y() * here[i].x();
             size += here[i].norm();
         }
-        // Where x is far away or huge, f_X is a difference of F^T f_x, and F has the positions' round-off.
+        // For distant or huge x, f_X is a difference of F^T f_x, and F contains the round-off of positions.
         double extent = 1.0;
         for (const Vec3& p : x) extent = std::max(extent, p.norm());
         const Evaluation<N> world =
@@ -490,7 +490,7 @@ TEST_P(FaceTerms, RigidMotionChangesNothing)
 }
 TEST_P(FaceTerms, MaterialForceIsMinusTheGradient)
 {
-    // Others are loads on the material, whose energy is that of the whole sheet.
+    // Other terms are loads on the material; their energy is that of the whole sheet.
     if (GetParam().term->is_elastic()) expect_material_force_is_minus_the_gradient(GetParam());
 }
 TEST_P(FaceTerms, MaterialForcesBalance)
@@ -548,7 +548,7 @@ TEST(Bending, StiffnessIsGaussNewtonInTheSineOfHalfTheAngle)
 
 constexpr double kCreaseWidth = 0.7;  // m
 
-/// A crease of make_material's shape, folded by `degrees` about its edge.
+/// A crease in the shape of make_material, folded by `degrees` about its edge.
 ElementAt<4> folded_crease(double degrees, std::vector<Vec2> X)
 {
     std::vector<Vec3> x;
@@ -560,7 +560,7 @@ ElementAt<4> folded_crease(double degrees, std::vector<Vec2> X)
 
 TEST(Bending, ACreaseForcesAreMinusTheGradientsOfItsEnergy)
 {
-    constexpr double kTolerance = 1e-8;  // central differences
+    constexpr double kTolerance = 1e-8;  // of central differences
     Generator random(21);
     const Bending bending(0.7);
     for (const double degrees : {0.0, 1.0, 30.0, 59.0, 61.0, 90.0, 170.0}) {
@@ -603,14 +603,14 @@ TEST(Bending, ACreaseFoldedFarExertsNoForceAndAShallowOneThatOfAHingeOfItsWidth)
     const ElementAt<4> shallow = folded_crease(1.0, X);
     const double sine = std::sin(M_PI / 360.0);
     const double length = (X[1] - X[0]).norm();
-    constexpr double kSmallAngle = 2e-4;  // sigma / 2 sigma_0 at one degree
+    constexpr double kSmallAngle = 2e-4;  // small-angle error: sigma / 2 sigma_0 at one degree
     EXPECT_NEAR(bending.energy(shallow.state()) / (0.7 * 3.0 * length / kCreaseWidth * sine * sine), 1.0,
                 kSmallAngle);
 }
 
 TEST(Bending, AFoldOnACreaseDoesNoWorkOnMaterialThatFlowsAcrossIt)
 {
-    // Its energy does not know of the widths of the faces beside it.
+    // The energy of a crease does not depend on the widths of the faces beside it.
     const Bending bending(0.7);
     Generator random(23);
     const std::vector<Vec2> X = ElementAt<4>::make_material(random);
@@ -626,7 +626,7 @@ TEST(Bending, AFoldOnACreaseDoesNoWorkOnMaterialThatFlowsAcrossIt)
 
 TEST(Membrane, UniformStretchAnswersWithEPerWidth)
 {
-    // Stretched by e along u with the sides free, the force per width is E e to first order.
+    // With stretch e along u and free sides, the force per width is E e to first order.
     const double E = 500.0, nu = 0.3;
     for (const double e : {1e-3, 1e-5, 1e-7}) {
         ClothMesh mesh;
@@ -643,7 +643,8 @@ TEST(Membrane, UniformStretchAnswersWithEPerWidth)
         LinearSystem system;
         system.make_pattern(elements);
         system.assemble(mesh, elements, terms, at);
-        const double force = -(system.rhs()[3] + system.rhs()[6]);  // of the two vertices at u = 1, width 1 m
+        // Force on the two vertices at u = 1; the width is 1 m.
+        const double force = -(system.rhs()[3] + system.rhs()[6]);
         EXPECT_NEAR(force / (E * e), 1.0, 2 * e + 1e-9 / e * 1e-6);
         EXPECT_NEAR(system.rhs()[4], 0.0, 2 * E * e * e + 1e-12) << "the sides are free";
     }

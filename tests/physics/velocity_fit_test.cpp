@@ -9,7 +9,7 @@
 namespace arris {
 namespace {
 
-constexpr double kRoundOff = 1e-12;  // of values about 1
+constexpr double kRoundOff = 1e-12;  // for values of about 1
 constexpr double kDensity = 0.7;
 
 class Random {
@@ -25,7 +25,7 @@ class Random {
     std::uint64_t state_ = 1;
 };
 
-/// A square of n x n cells, each cut along one diagonal; all vertices free Lagrangian ones.
+/// A square of n x n cells, each cut along one diagonal; all vertices are free and Lagrangian.
 FitPatch make_patch(int n, bool is_other_diagonal)
 {
     FitPatch patch;
@@ -54,7 +54,7 @@ FitPatch make_patch(int n, bool is_other_diagonal)
     return patch;
 }
 
-/// The field that a patch of Lagrangian vertices has.
+/// The velocity field of a patch of Lagrangian vertices.
 VelocityField field_of(const FitPatch& patch, const std::vector<Vec3>& velocity)
 {
     VelocityField field;
@@ -134,8 +134,8 @@ TEST(VelocityFit, IsTheNearestFieldOfThatMomentum)
     const FitPatch old = make_patch(3, false);
     FitPatch other = make_patch(3, true);
     const std::vector<Vec3> velocity = random_velocities(old.material.size(), random);
-    for (std::size_t v = 0; v < other.is_free.size();
-         ++v) {  // only the two in the middle of each row are free
+    // Only the two vertices in the middle of each inner row are free.
+    for (std::size_t v = 0; v < other.is_free.size(); ++v) {
         const Vec2& X = other.material[v];
         other.is_free[v] = X.x() > 0.1 && X.x() < 0.9 && X.y() > 0.1 && X.y() < 0.9;
         if (!other.is_free[v]) other.drift[v] = velocity[v];
@@ -144,7 +144,8 @@ TEST(VelocityFit, IsTheNearestFieldOfThatMomentum)
     const auto fit = fit_velocity(kDensity, field, other);
     ASSERT_TRUE(fit);
     EXPECT_NEAR((momentum(field_of(other, fit->velocity)) - momentum(field)).norm(), 0.0, kRoundOff);
-    // Distance to the old field by a fine quadrature; changes of no momentum only make it larger.
+    // Squared distance to the old field by fine quadrature; changes without net momentum must increase this
+    // distance.
     const auto squared_distance = [&](const std::vector<Vec3>& candidate) {
         const VelocityField fitted = field_of(other, candidate);
         double sum = 0.0;
@@ -176,13 +177,13 @@ TEST(VelocityFit, IsTheNearestFieldOfThatMomentum)
     for (int trial = 0; trial < 6; ++trial) {
         std::vector<Vec3> candidate = fit->velocity;
         const Vec3 change = 0.2 * random.vector();
-        candidate[free[trial % 3]] += change;  // all four carry the same mass
+        candidate[free[trial % 3]] += change;  // all four free vertices have equal mass
         candidate[free[3]] -= change;
         EXPECT_GT(squared_distance(candidate), best);
     }
 }
 
-/// The same flat, translating cloth with one vertex through which the material flows.
+/// Flat, translating cloth with one vertex through which the material flows.
 TEST(VelocityFit, FindsTheVelocityOfAnEolVertexOnFlatClothExactly)
 {
     Random random;
@@ -218,8 +219,8 @@ TEST(VelocityFit, DoesNotDependOnWhereTheClothIsOrHowLargeItIs)
         ASSERT_TRUE(fit);
         const Vec3 before = momentum(field_of(old, velocity)),
                    after = momentum(field_of(other, fit->velocity));
-        EXPECT_NEAR((after - before).norm(), 0.0,
-                    1e-11 * scale * scale);  // coordinates are 100 of their size
+        // The offset of coordinates is 100 times the cloth's size.
+        EXPECT_NEAR((after - before).norm(), 0.0, 1e-11 * scale * scale);
         EXPECT_LE(fit->energy_gain, 1e-11 * compute_kinetic_energy(kDensity, field_of(old, velocity)));
     }
 }

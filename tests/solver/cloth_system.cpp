@@ -20,7 +20,7 @@ void add_block(Entries& entries, int i, int j, const Eigen::Matrix3d& block)
         for (int c = 0; c < 3; ++c) entries.emplace_back(3 * i + r, 3 * j + c, block(r, c));
 }
 
-/// Constant-strain triangle in its own plane, unstressed as it is.
+/// Constant-strain triangle in its own plane, unstressed at the given shape.
 void add_stretch(Entries& entries, const std::array<int, 3>& face, const std::vector<Vector3d>& x,
                  double factor)
 {
@@ -133,14 +133,14 @@ OwnedProblem make_resting_cloth(const ClothShape& shape, double share)
     std::mt19937 random(shape.seed + 1);
     std::normal_distribution<double> normal;
     const auto size = cloth.mass.size();
-    Eigen::VectorXd speed(size);  // what the cloth would do freely: it falls, and ripples
+    Eigen::VectorXd speed(size);  // unconstrained velocity: the cloth falls and ripples
     for (int i = 0; i < size; ++i) {
         const Vector3d& x = cloth.position[i / 3];
         speed[i] = i % 3 == 2 ? -9.81 * shape.step + 0.02 * std::sin(31 * x[0] + 7 * x[1])
                               : 0.05 * std::cos(9 * x[1]);
         speed[i] += 0.002 * normal(random);
     }
-    std::vector<double> clearance;  // of the waves of the floor below the cloth
+    std::vector<double> clearance;  // from the cloth down to the wavy floor
     for (const Vector3d& x : cloth.position)
         clearance.push_back(x[2] - 1.2 * shape.wrinkle * std::sin(19 * x[0] + 3) * std::sin(21 * x[1] + 1));
     std::vector<double> sorted = clearance;

@@ -21,16 +21,14 @@ struct ClothShape {
     unsigned seed = 1;
 };
 
-/// An implicit step of that cloth: M + h^2 K as VelocityProblem wants it, the masses and where the vertices
-/// are.
+/// An implicit step of a SampleCloth: M + h^2 K in the form of VelocityProblem, masses and vertex positions.
 struct ClothSystem {
     Eigen::SparseMatrix<double> matrix;
-    Eigen::VectorXd mass;                   ///< one an unknown, kg
+    Eigen::VectorXd mass;                   ///< one for each unknown, kg
     std::vector<Eigen::Vector3d> position;  ///< m
 };
 ClothSystem make_cloth_system(const ClothShape& shape);
 
-/// The problem's data, which VelocityProblem points to.
 struct OwnedProblem {
     Eigen::SparseMatrix<double> matrix;
     Eigen::VectorXd rhs;
@@ -42,11 +40,12 @@ struct OwnedProblem {
     void set_matrix(Eigen::SparseMatrix<double> a);
 };
 
-/// The same cloth falling onto a floor with broad waves, which `share` of its vertices reach within the step.
+/// A SampleCloth that falls onto a floor with broad waves; a `share` of its vertices would reach the floor in
+/// the step.
 OwnedProblem make_resting_cloth(const ClothShape& shape, double share);
 
-/// Lower triangle and whole 3x3 diagonal blocks of a dense symmetric matrix, every entry stored; what stands
-/// above the diagonal is filled with nonsense, which nobody may read.
+/// Lower triangle and full 3x3 diagonal blocks of a dense symmetric matrix, every entry stored. Entries above
+/// the diagonal are filled with nonsense, because the solver must not read them.
 Eigen::SparseMatrix<double> lower_blocks(const Eigen::MatrixXd& matrix);
 
 /// The whole symmetric matrix from the lower triangle.

@@ -13,8 +13,8 @@ namespace arris {
 namespace {
 
 constexpr double kStep = 0.01;       // s
-constexpr double kRoundOff = 1e-10;  // relative: the certificate's residual, squared nowhere
-const Vec3 kEverywhere(0, 0, 1e-3);  // m, the sheet's place: at its stand-off above z = 0
+constexpr double kRoundOff = 1e-10;  // relative: the certificate's residual enters only linearly
+const Vec3 kEverywhere(0, 0, 1e-3);  // m, the sheet's position: at its stand-off above z = 0
 
 ClothMesh make_sheet(const Vec3& at = kEverywhere)
 {
@@ -26,7 +26,7 @@ ClothMesh make_sheet(const Vec3& at = kEverywhere)
     return mesh;
 }
 
-/// One step of implicit Euler of a sheet at rest, and what it left behind.
+/// One step of implicit Euler of a sheet at rest, and the workspace after the step.
 struct OneStep {
     Scene scene;
     Settings settings;
@@ -42,7 +42,7 @@ struct OneStep {
         state.time = start;
         before = state;
         EXPECT_EQ(step(scene, settings, start + kStep, state, work).status, StepStatus::Done);
-        work.proposal.velocity = state.velocity;  // the commit has taken it away
+        work.proposal.velocity = state.velocity;  // the commit has moved it into the state
         work.proposal.material_velocity = state.material_velocity;
     }
 
@@ -66,7 +66,7 @@ struct OneStep {
     double driven() const { return compute_driven_work(before, work); }
 };
 
-/// Starts to move at `velocity` (m/s) at t = 1 s.
+/// A motion that starts at t = 1 s with `velocity` (m/s).
 RigidMotion start_off(const Vec3& velocity)
 {
     RigidMotion motion;
@@ -75,7 +75,8 @@ RigidMotion start_off(const Vec3& velocity)
     return motion;
 }
 
-// From rest to V in one step: the impulse m V over the way h V / h does m V^2, twice what the cloth has then.
+// From rest to V in one step, the impulse m V acts over the distance h V / h. Its work m V^2 is twice the
+// kinetic energy.
 
 TEST(DrivenWork, OfPinsIsTheirImpulseTimesTheirWay)
 {
@@ -152,9 +153,10 @@ TEST(DrivenWork, OfWindIsItsForceAtTheNewVelocityTimesTheWay)
 
 TEST(DrivenWork, OfAFeatureIsThatOfAllThatHoldsTheClothThere)
 {
-    // A knife starts off under cloth that has three times as much on one side, where it may be stretched:
-    // that side pulls the fold across, along the knife's way or against it. From rest in a step so short that
-    // no strain changes much R . (q' - q) is the gain of potential and v'^T M v'.
+    // A knife starts to move under cloth that has three times as much material on one side, optionally
+    // stretched there. That side pulls the fold across, with or against the knife's motion. The step from
+    // rest is so short that strain hardly changes. Then R . (q' - q) is the gain of potential energy plus
+    // v'^T M v'.
     constexpr double kShort = 1e-5;  // s
     for (const double stretch : {1.0, 1.03}) {
         for (const Vec3& direction : {Vec3(0, 0, 1), Vec3(0.8, 0, 0.6), Vec3(-0.8, 0, 0.6)}) {
@@ -171,7 +173,7 @@ TEST(DrivenWork, OfAFeatureIsThatOfAllThatHoldsTheClothThere)
                 if (std::abs(across) < 1e-9) cloth.add_eol(v, false, testing::tip_of(knife));
             }
             state.time = 1.0;
-            state.step = 1;  // nothing is to be found that pressed before
+            state.step = 1;  // so that no contact counts as pressing in an earlier step
             cloth.scene.material.bending_stiffness = 0.0;
             const State before = state;
             Settings settings;
@@ -220,14 +222,14 @@ TEST(EnergyRise, IsNoRoundOffOfASheetThatHangsFarAway)
     scene.pins = {pin};
     for (const double far : {1.0, 1e3, 1e6}) {
         OneStep one(scene, Vec3(far, -far, far));
-        std::vector<Vec3>& v = one.work.proposal.velocity;  // as round-off of a place so far away would do
+        std::vector<Vec3>& v = one.work.proposal.velocity;  // with round-off of coordinates of this size
         for (std::size_t i = 0; i < v.size(); ++i) v[i].z() = 1e-16 * far / kStep;
         one.weigh();
         EXPECT_EQ(find_energy_rise(one.scene, one.before, one.work), 0.0) << far;
     }
 }
 
-// Half of the sheet goes straight out of its plane, so its strain is of second order in the way, and its
+// Half of the sheet moves straight out of its plane. Its strain is of second order in the displacement, its
 // energy of fourth.
 TEST(UnforeseenEnergy, IsTheStretchOfWhatMovesAcrossItself)
 {
@@ -241,15 +243,17 @@ TEST(UnforeseenEnergy, IsTheStretchOfWhatMovesAcrossItself)
     EXPECT_GT(stretch, 0.05 * one.work.energies.solved.kinetic);
     EXPECT_NEAR(find_unforeseen_energy(one.scene, one.work) / stretch, 1.0, 0.02);
 
-    one.work.expansion.world = one.work.proposal.velocity;  // from there nothing is left to see
+    // With the expansion at the solution nothing is unforeseen.
+    one.work.expansion.world = one.work.proposal.velocity;
     EXPECT_EQ(find_unforeseen_energy(one.scene, one.work), 0.0);
 }
 
-// Equations around cloth that is strained far more than what they find is: what else might be, they do not
-// see.
+// The equations are linearised around cloth that is strained far more than the solution. Such equations may
+// miss a solution of higher energy.
 TEST(UnforeseenEnergy, IsAllThatIsGainedWhereTheExpansionIsStrainedFarMore)
 {
-    for (const double times : {2.0, 3.0}) {  // of the stretch found, so 4 and 9 of its energy
+    // Stretch of the expansion over that of the solution; its energy is 4 and 9 times as large.
+    for (const double times : {2.0, 3.0}) {
         OneStep one{Scene()};
         one.work.expansion.world.assign(one.before.velocity.size(), Vec3::Zero());
         one.work.expansion.material.assign(one.before.velocity.size(), Vec2::Zero());

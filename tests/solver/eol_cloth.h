@@ -21,55 +21,54 @@ int end_of(const Obstacle& ridge);
 /// A square of cloth 0.4 m wide over the ridge x = z = 0.
 struct Drape {
     int cells = 8;
-    double turn_degrees = 0.0;   ///< of the material against the ridge
-    double fold_degrees = 90.0;  ///< between its two sides; 180 is flat
+    double turn_degrees = 0.0;   ///< angle between material and ridge
+    double fold_degrees = 90.0;  ///< angle between the two sides; 180 is flat
     double stretch = 1.0;        ///< along y
 };
 
-/// The cloth's middle is on the ridge, its sides hang down from it to x < 0 and x > 0.
+/// The cloth's middle is on the ridge; its sides hang down to x < 0 and x > 0.
 ClothMesh make_draped(const Drape& shape);
 
-/// A state of it, the scene's material and mesh target set; without gravity.
+/// A scene and state with the given obstacle and cloth, a material and a mesh target, without gravity.
 struct EolCloth {
     Scene scene;
     State state;
 
     EolCloth(Obstacle obstacle, ClothMesh mesh);
-    int vertex_at(double u, double v) const;  ///< nearest to that material point
-    /// Makes a vertex EOL and returns its entry.
+    int vertex_at(double u, double v) const;  ///< nearest to the material point (u, v)
+    /// Makes a vertex EOL and returns the index of its entry.
     int add_eol(int vertex, bool is_corner, int feature);
     ClothStars stars() const;
     EolPlacing place(int vertex, const Placement& end = {}) const;
 };
 
-inline constexpr double kThickness = 1e-3;       // m, of an EolCloth
-inline constexpr double kLyingCell = 0.4 / 7.0;  // m: no mesh line is above the ridge
+inline constexpr double kThickness = 1e-3;       // m, thickness of an EolCloth
+inline constexpr double kLyingCell = 0.4 / 7.0;  // m: for this cell size no mesh line is above the ridge
 
-/// Flat cloth that lies on the ridge at the thickness' height, turned by `turn` (degrees), moved by `shift`
-/// (m) along x.
+/// Flat cloth one thickness above the ridge, turned by `turn` (degrees) and moved by `shift` (m) along x.
 EolCloth lying(double turn, double shift = 0.0, double half_length = 0.5);
 
-/// Rows where the cloth's edges cross the ridge's tip, as a step leaves them.
+/// Adds pressing rows where the cloth's edges cross the ridge's tip, as after a step.
 void press_edges(EolCloth& cloth);
 
-/// Flat cloth `height` (thicknesses) above a disk of 16 sides and radius .1 m; no vertex is above its rim.
+/// Flat cloth `height` thicknesses above a disk of 16 sides and radius 0.1 m; no vertex is above the rim.
 EolCloth make_disk_cloth(double height);
 
-/// Every face of the cloth presses on a point of the obstacle's mesh.
+/// Lets every face of the cloth press on a point of the obstacle's mesh.
 void press_faces_on(int point, State& state);
 
-inline constexpr double kStep = 0.005;  // s, for which these conform
+inline constexpr double kStep = 0.005;  // s, the step of conform_cloth and take
 
-/// What the cloth's features ask of its mesh.
+/// Conforms the cloth's mesh to its features.
 ConformOutcome conform_cloth(const EolCloth& cloth, const FailedFlow& failed = {},
                              const ConformLimits& limits = {});
 
-/// The same, and carries the state over. Fails the test where the mesh is right as it is.
+/// Conforms the mesh and carries the state over to it. Fails the test if the mesh needs no change.
 ConformedMesh take(EolCloth& cloth);
 
 std::vector<MeshEdge> edges_of(const State& state);
 
-/// Of the whole cloth: kinetic energy (J) and linear momentum (kg m/s) of its material.
+/// Kinetic energy (J) and linear momentum (kg m/s) of the whole cloth's material.
 double kinetic_energy_of(const Scene& scene, const State& state);
 Vec3 momentum_of(const Scene& scene, const State& state);
 

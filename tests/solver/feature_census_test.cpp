@@ -16,7 +16,7 @@ using testing::EolCloth;
 using testing::kThickness;
 using testing::lying;
 
-/// A solved step that is only its contacts.
+/// A solved step reduced to its contacts.
 struct Solved {
     EolCloth cloth = lying(0.0);
     Workspace work;
@@ -87,7 +87,7 @@ TEST(FeatureCensus, ARowHasTheCauseForWhichItWasRefused)
                                 {{9, kNone, kNone}, ContactKind::Vertex, 0, -1, RowCause::Released}};
     solved.add(ContactKind::Edge, {3, 4, -1}, solved.tip(), true);
     solved.add(ContactKind::Edge, {4, 5, -1}, solved.tip(), true);  // refused at another edge of the obstacle
-    solved.add(ContactKind::Edge, {5, 6, -1}, solved.tip(), true);  // and of another obstacle
+    solved.add(ContactKind::Edge, {5, 6, -1}, solved.tip(), true);  // refused at another obstacle
     solved.add(ContactKind::Triangle, {6, 7, 8}, 2, true);
     solved.add(ContactKind::Vertex, {9, -1, -1}, 1, true);
     EXPECT_EQ(solved.count(RowCause::Guard), 1);
@@ -104,7 +104,8 @@ TEST(FeatureCensus, EolVerticesThatPressAreCountedAndWhatElseTheyTouch)
     Solved solved;
     EolCloth& cloth = solved.cloth;
     const int tip = testing::tip_of(cloth.scene.obstacles[0]);
-    for (Vec3& x : cloth.state.mesh.world) x.x() -= 0.5 * testing::kLyingCell;  // a row is on the ridge
+    // Moves a row of vertices onto the ridge.
+    for (Vec3& x : cloth.state.mesh.world) x.x() -= 0.5 * testing::kLyingCell;
     solved.work.obstacles[0].motion.begin = cloth.state.mesh.world;
     const auto near_ridge = [&](double y) {
         const auto& world = cloth.state.mesh.world;
@@ -127,7 +128,7 @@ TEST(FeatureCensus, EolVerticesThatPressAreCountedAndWhatElseTheyTouch)
     solved.add(ContactKind::Vertex, {a, -1, -1}, 1000, true);
     EXPECT_EQ(solved.count(RowCause::OtherFeature), 1);
 
-    // One whose cloth stands up has no coordinates: its contact is a row, and says why.
+    // An EOL vertex of upright cloth has no coordinates; its contact is a row with the cause EdgeOn.
     for (Vec3& x : cloth.state.mesh.world) x = Vec3(0.0, x.y(), kThickness + x.x());
     solved.work.obstacles[0].motion.begin = cloth.state.mesh.world;
     EXPECT_EQ(solved.count(RowCause::EdgeOn), 1);
@@ -157,7 +158,7 @@ TEST(FeatureCensus, ARowAtTheEolVertexOfItsFeatureIsTheSameContact)
     EXPECT_EQ(cause_at(0.5, true), RowCause::AtEol) << "the edge is the trace";
 }
 
-/// The ridge with a point of its mesh in the middle of its tip, the last one.
+/// The ridge with an additional mesh point in the middle of its tip, which is the last point.
 Obstacle make_split_ridge()
 {
     ObstacleMesh mesh = testing::make_ridge(60.0).mesh();
@@ -181,7 +182,7 @@ Obstacle make_split_ridge()
 
 TEST(FeatureCensus, AFaceOnAPointInTheMiddleOfAnEdgeTouchesTheTraceThere)
 {
-    // `off`: of the face's third corner; `aside`: m, of the point from the trace.
+    // `off`: offset of the face's third corner; `aside`: distance of the point from the trace, m.
     const auto cause_at = [](const Obstacle& ridge, int point, double off, bool has_trace,
                              double aside = 0.0) {
         Solved solved;
@@ -293,7 +294,7 @@ TEST(FeatureCensus, AVertexTouchesAFeatureWhereItsPlaneIsNoFaces)
     EXPECT_TRUE(touches(nail, {0.3, 0, 0}, {0, 0, 1}, 0));
     EXPECT_TRUE(touches(nail, {0.3, 0, 0}, {0, 1, 1}, 7));
 
-    // The edges of a smooth surface are no features: a box where nothing is sharp.
+    // The edges of a smooth surface are no features; at this angle the box has no sharp edge.
     const Obstacle smooth("smooth", make_box({1, 1, 1}), {}, {}, 179.0);
     ASSERT_TRUE(smooth.features().edges.empty());
     EXPECT_FALSE(touches(smooth, {0.5, 0.2, 0.5}, {1, 0, 1}, top));

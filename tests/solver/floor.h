@@ -5,7 +5,7 @@
 
 namespace arris {
 
-/// A slab 40 m wide whose upper side is the plane normal . x = offset (m), `normal` of unit length.
+/// A slab 40 m wide. Its upper side is the plane normal . x = offset (m), with unit `normal`.
 inline Obstacle make_floor(const Vec3& normal = Vec3::UnitZ(), double offset = 0.0)
 {
     ObstacleMesh slab;

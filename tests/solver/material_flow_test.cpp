@@ -17,8 +17,8 @@ using testing::tip_of;
 
 constexpr double kStep = 0.005;  // s
 
-/// Cloth on the ridge with one EOL vertex through which material flows by `share` of a cell a step, another
-/// through which none does.
+/// Cloth on the ridge with two EOL vertices. Through one, `share` of a cell of material flows in a step;
+/// through the other, none.
 EolCloth flowing(double share)
 {
     EolCloth cloth = lying(0.0);
@@ -66,8 +66,8 @@ TEST(FlowParts, CountOnlyWhatIsEol)
     EXPECT_EQ(parts_of(cloth), 1);
 }
 
-/// Flat cloth on the ridge, cells of 0.05 m halved by a diagonal, with an EOL vertex in its middle, before
-/// its velocity is solved for.
+/// Flat cloth on the ridge with cells of 0.05 m halved by a diagonal. An EOL vertex is in its middle; its
+/// velocity is not solved for yet.
 struct FlowingCloth {
     EolCloth cloth{testing::make_ridge(60.0), testing::make_draped({8, 0.0, 180.0})};
     int v = cloth.vertex_at(0.2, 0.2);
@@ -82,7 +82,8 @@ struct FlowingCloth {
         work.linearization.time = kStep;
         work.linearization.flow.emplace();
     }
-    /// Through it flow `now` and, a step ago, `before` cells a step; it rises by as much.
+    /// Sets the flow through the vertex: `now` and, one step ago, `before`, cells a step. The vertex rises at
+    /// the present speed of flow.
     void flow(double now, double before)
     {
         State& state = cloth.state;
@@ -97,7 +98,7 @@ struct FlowingCloth {
         work.prediction = predict(state, Integrator::Bdf2, kStep);
         work.expansion = {state.velocity, state.material_velocity};
     }
-    /// The least share that a face at the vertex has left there of what it has now.
+    /// Least remaining area of a face at the vertex, over its present area.
     double least_left(const std::vector<Vec2>& material) const
     {
         double least = 1.0;
@@ -110,8 +111,8 @@ struct FlowingCloth {
     }
 };
 
-/// Whether the mesh has the material where in a step as much flows as (m) across the ridge; `overrun` are the
-/// vertices named.
+/// Whether the mesh has enough material for a flow of `way` (m) across the ridge in a step. `overrun`
+/// receives the vertices reported.
 bool has_material_for(double way, std::vector<Overrun>& overrun)
 {
     FlowingCloth flowing;
@@ -150,7 +151,7 @@ TEST(MaterialFlow, IsLinearisedOnTheWayThereWhereThereIsNone)
         const MovingCloth there = find_end(flowing.work.prediction, flowing.work.expansion);
         EXPECT_GE(flowing.least_left(there.material), 0.4);
         EXPECT_GE(flowing.least_left(flowing.work.linearization.flow->extrapolated.material), 0.4);
-        // World and material have gone the same share of their ways.
+        // World and material positions have moved by the same share of their displacements.
         const double share =
             (there.material[v] - state.mesh.material[v]).x() / (end.material[v] - state.mesh.material[v]).x();
         EXPECT_NEAR((there.world[v] - state.mesh.world[v]).z(),
@@ -185,7 +186,7 @@ TEST(MaterialFlow, ThatIsNotFiniteIsNotLinearised)
 
 TEST(MaterialFlow, TakesHalfOfAFaceButNotAllOfIt)
 {
-    // What goes by w takes w / 0.05 of a face ahead.
+    // A flow by w uses up w / 0.05 of a face ahead.
     std::vector<Overrun> overrun;
     for (const double sign : {1.0, -1.0}) {
         EXPECT_TRUE(has_material_for(sign * 0.55 * 0.05, overrun));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps of cloth on real obstacles: nothing passes, nothing sticks that should slide, nothing gains energy.
+// Steps of cloth on realistic obstacles: cloth never passes, sticks only where it should, and gains no
+// energy.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +38,7 @@ Obstacle place(ObstacleMesh mesh, const Vec3& at = Vec3::Zero(), RigidMotion mot
     return Obstacle("it", std::move(mesh), {Mat3::Identity(), at}, std::move(motion), 30.0);
 }
 
-/// `rings` of faces from pole to pole, `around` of them in each.
+/// A sphere with `rings` of faces from pole to pole, `around` faces in each.
 ObstacleMesh make_sphere(double radius, int rings, int around)
 {
     ObstacleMesh mesh;
@@ -62,16 +63,16 @@ ObstacleMesh make_sphere(double radius, int rings, int around)
     return mesh;
 }
 
-/// A cloth on obstacles, each of whose steps is checked by the classification that knows nothing of the step.
+/// Cloth on obstacles. An independent penetration check follows each step.
 struct ObstacleRun {
     Scene scene;
     Settings settings;
     State state;
     Workspace work;
     int rewound = 0, yielded = 0, most_solves = 0;
-    double worst_gained = 0.0;  ///< J, by an accepted part, as its report says
-    double driven = 0.0;        ///< J, work of what moves, so far
-    double worst_rise = -1.0;   ///< of an accepted part's energy beyond that work, over what it may be
+    double worst_gained = 0.0;  ///< J, greatest energy rise reported by an accepted part
+    double driven = 0.0;        ///< J, work of moving obstacles and pins so far
+    double worst_rise = -1.0;   ///< greatest energy rise of a part beyond that work, over the allowed rise
 
     ObstacleRun(std::vector<Obstacle> obstacles, ClothMesh mesh, const Vec3& velocity = Vec3::Zero(),
                 bool has_gravity = true)
@@ -133,12 +134,12 @@ struct ObstacleRun {
     }
 
   private:
-    /// A part may raise the energy by a hundredth of what was in motion and what changed kind, by a quarter
-    /// of the work that drives it, which counts a mean force as that at the end, and, where cloth is moved
-    /// out to its stand-off at up to 0.1 m/s, by what such a push would give it.
+    /// Compares a part's energy rise with its allowance. The allowance is kShare of the kinetic and exchanged
+    /// energy, plus kMean of the driving work, plus the energy of a push. The work counts a mean force as
+    /// that at the end. A push moves cloth out to its stand-off at up to kPush.
     void weigh(double dt)
     {
-        constexpr double kShare = 0.003, kMean = 0.25, kPush = 0.1;  // m/s
+        constexpr double kShare = 0.003, kMean = 0.25, kPush = 0.1;  // kPush in m/s
         State before = state;
         before.mesh.world = state.previous_world;
         work.proposal.velocity = state.velocity;
@@ -159,7 +160,7 @@ struct ObstacleRun {
     ClothEnergy last_;
 };
 
-/// Cloth thrown down on something small or thin with one of its vertices, edges or faces above the middle.
+/// Cloth is thrown down on a small or thin obstacle, with a vertex, an edge or a face above its middle.
 class Fall : public testing::TestWithParam<double> {};
 
 TEST_P(Fall, OnAThinPlateStopsAboveIt)
@@ -181,7 +182,7 @@ TEST_P(Fall, OnAWireHangsOnIt)
                         make_sheet(0.6, 12, {rotation_about(Vec3::UnitZ(), 20), Vec3(offset, 0, 0.07)}),
                         Vec3(0, 0, -GetParam()));
         run.advance_all(25);
-        // It still goes over the wire, all along it: without it, it would be far below.
+        // The cloth still lies over the whole wire; otherwise it would be far below.
         for (const double y : {-0.1, -0.05, 0.0, 0.05, 0.1}) {
             double highest = -1e9;
             for (const Vec3& x : run.state.mesh.world)
@@ -195,11 +196,11 @@ TEST_P(Fall, OnAWireHangsOnIt)
 TEST_P(Fall, OnANailIsHeldByIt)
 {
     for (const Vec3& nail :
-         {Vec3(0, 0, 0), Vec3(0.017, 0.0, 0), Vec3(0.012, 0.009, 0)}) {  // vertex, edge, face
+         {Vec3(0, 0, 0), Vec3(0.017, 0.0, 0), Vec3(0.012, 0.009, 0)}) {  // above a vertex, an edge, a face
         ObstacleRun run({place(make_points({nail}))},
                         make_sheet(0.6, 12, {Mat3::Identity(), Vec3(0, 0, 0.07)}), Vec3(0, 0, -GetParam()));
         run.advance_all(15);
-        // The column of cloth over the nail has not gone through: some cloth stays at its height.
+        // The nail has not passed through the cloth: some cloth stays at its height.
         double highest = -1e9;
         for (const Vec3& x : run.state.mesh.world) highest = std::max(highest, x.z());
         EXPECT_GT(highest, -0.03);
@@ -337,7 +338,7 @@ TEST(MovingObstacle, CarriesClothWithoutPushingEnergyIn)
 
 TEST(MovingObstacle, PulledAwayFromUnderAFoldPushesNoEnergyIn)
 {
-    // Its edge goes 2 cm a step, and presses on nothing any more.
+    // The moving edge covers 2 cm a step and no longer presses on anything.
     RigidMotion motion;
     motion.velocity = Vec3(-4, 0, 0);
     motion.start = 0.1;
@@ -363,7 +364,8 @@ TEST(MovingObstacle, PulledAwayFromUnderAFoldPushesNoEnergyIn)
     EXPECT_GT(most_eol, 3);
 }
 
-/// Stiff cloth, thrown at what is not flat: the linear solve of a step knows nothing of what it does there.
+/// Stiff cloth is thrown at a surface that is not flat. The linear solve of a step cannot foresee the strain
+/// there.
 struct Shock {
     Integrator integrator;
     double stiffness, speed, dt;  ///< N/m, m/s, s
@@ -418,7 +420,7 @@ TEST(StiffCloth, JerkedByAPinGainsNoMoreThanThePinDoes)
 {
     for (const Integrator integrator : {Integrator::Bdf2, Integrator::ImplicitEuler})
         for (const double dt : {0.005, 0.02}) {
-            // A slack sheet on a floor; one edge is drawn off at 2 m/s, sideways and up, and stopped.
+            // A slack sheet on a floor; one edge is pulled away at 2 m/s, sideways and up, and stopped.
             ObstacleRun run({make_floor()}, make_sheet(0.6, 12, {Mat3::Identity(), Vec3(0, 0, 1e-3)}));
             run.scene.material = {0.4, 5000.0, 0.3, 1e-4, 0.0, 1e-3};
             run.settings.integrator = integrator;
@@ -447,7 +449,8 @@ TEST(StiffCloth, JerkedByAPinGainsNoMoreThanThePinDoes)
 
 TEST(StiffCloth, MovedOutToItsStandOffIsNotStrained)
 {
-    // It falls 1 cm onto a table it hangs over; what the rim lets nearer than the thickness is moved out.
+    // The cloth falls 1 cm onto a table and overhangs it. Vertices that the rim lets nearer than the
+    // thickness are pushed out.
     ObstacleRun run({place(make_box({0.6, 0.6, 0.1}), {0.02, 0.03, -0.05})},
                     make_sheet(0.8, 16, {Mat3::Identity(), Vec3(0, 0, 0.011)}));
     run.scene.material = {0.2, 1e6, 0.3, 1e-3, 0.0, 1e-3};
@@ -461,7 +464,8 @@ TEST(StiffCloth, MovedOutToItsStandOffIsNotStrained)
 
 TEST(StiffCloth, ThatOnlyRingsIsLeftAlone)
 {
-    // Stretched by a fifth and let go, bent and let go: BDF2's energy only falls, by what it always loses.
+    // The cloth is stretched by 20 % or bent, then released. BDF2's energy may only fall, by its numerical
+    // damping.
     for (const double stretch : {0.2, 0.0}) {
         ObstacleRun run({}, make_sheet(0.5, 10, {Mat3::Identity(), Vec3::Zero()}), Vec3::Zero(), false);
         run.scene.material.bending_stiffness = 1e-3;

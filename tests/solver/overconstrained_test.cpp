@@ -12,9 +12,9 @@
 namespace arris {
 namespace {
 
-/// A solved step of an EOL vertex between two obstacles, whose contacts' normals are `angle` (degrees) apart.
-/// Both press with 1 N s; the first obstacle goes its contact's way by a millimetre, against the second or
-/// with it.
+/// A solved step of an EOL vertex between two obstacles, with contact normals `angle` (degrees) apart. Both
+/// contacts press with 1 N s. The first obstacle moves 1 mm along its normal; the second stays, or moves
+/// along if `is_together`.
 Workspace make_vise(double angle, bool is_together)
 {
     Workspace work;
@@ -56,7 +56,7 @@ TEST(SqueezedVertices, AreThoseWhoseContactsPushAgainstEachOther)
 
 TEST(SqueezedVertices, AreThoseWhoseContactIsAcrossTheirWay)
 {
-    // It can go one way only, which leans against what presses on it.
+    // The vertex can move in one direction only, at the angle `lean` to the contact's normal.
     for (const double lean : {85.0, 20.0}) {
         Workspace work = make_vise(0.0, false);
         work.contacts.pop_back();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStep = 0.01;  // s
 
-/// A sheet at rest after a step of implicit Euler, whose proposal is then made to move.
+/// A sheet at rest after a step of implicit Euler; the tests then give its proposal a velocity.
 struct Proposed {
     Scene scene;
     Settings settings;
@@ -30,7 +30,7 @@ struct Proposed {
         state = make_state(scene, make_cloth_grid(grid), Vec3::Zero());
         EXPECT_EQ(step(scene, settings, kStep, state, work).status, StepStatus::Done);
         report.status = StepStatus::Done;
-        work.least.at = {};  // as a step begins
+        work.least.at = {};  // as at the beginning of a step
         work.proposal.velocity.assign(state.velocity.size(), velocity);
         work.proposal.material_velocity.assign(state.velocity.size(), Vec2::Zero());
         work.proposal.world =
@@ -44,7 +44,7 @@ struct Proposed {
     }
 };
 
-const Vec3 kDriven(0.3, 0.0, 0.4);  // m/s, by nothing
+const Vec3 kDriven(0.3, 0.0, 0.4);  // m/s, without a driving force
 
 TEST(KeepEnergy, SolvesAgainAtWhatWasFoundThenFailsOrTakesTheLeast)
 {
@@ -65,12 +65,12 @@ TEST(KeepEnergy, SolvesAgainAtWhatWasFoundThenFailsOrTakesTheLeast)
     EXPECT_GT(resort.report.energy_rise, 0.0);
 }
 
-// The forces may have been linearised again for material that ran out, before any energy was weighed.
+// Forces may be linearised again because material ran out, before any energy is measured.
 TEST(KeepEnergy, TheLeastIsOfThisStepAlsoWhereItIsNotTheFirstLinearisation)
 {
     Proposed proposed(kDriven);
     proposed.report.relinearisations = 1;
-    proposed.work.least.rise = 0.0;  // as an earlier step has left it
+    proposed.work.least.rise = 0.0;  // left by an earlier step
     const ClothVelocity expansion = proposed.work.expansion;
     EXPECT_TRUE(proposed.keep(Attempt::Last, false));
     EXPECT_EQ(proposed.work.expansion.world, expansion.world);
@@ -94,7 +94,7 @@ TEST(FallBack, IsToAVelocityThatRaisedNoEnergyAndOnce)
     EXPECT_FALSE(proposed.keep(Attempt::Ordinary, true));
     const ClothVelocity good = proposed.work.expansion;
     proposed.work.expansion.world.front() = kDriven;
-    proposed.report.status = StepStatus::EnergyRise;  // for which there are other ways
+    proposed.report.status = StepStatus::EnergyRise;  // a status with other retries
     EXPECT_FALSE(restore_least_rise(proposed.work, proposed.report));
     proposed.report.status = StepStatus::Overrun;
     EXPECT_TRUE(restore_least_rise(proposed.work, proposed.report));

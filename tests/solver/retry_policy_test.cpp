@@ -34,7 +34,7 @@ TEST(RetryPolicy, WhatOverrunsIsClearedThenShortenedThenGivenUpOneByOneThenAll)
     EXPECT_EQ(failed.flow().flow.at(2), Vec2(1.0, 0.0));
     EXPECT_TRUE(failed.flow().given_up.empty());
     fail();
-    EXPECT_FALSE(failed.has_new_mesh());  // a shorter step first
+    EXPECT_FALSE(failed.has_new_mesh());  // a shorter step comes first
     EXPECT_TRUE(failed.flow().given_up.empty());
     for (int k = 3; k <= RetryPolicy::kMostOverruns; ++k) {
         fail();
@@ -45,7 +45,7 @@ TEST(RetryPolicy, WhatOverrunsIsClearedThenShortenedThenGivenUpOneByOneThenAll)
     EXPECT_TRUE(failed.has_new_mesh());
     EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{1, 2, 3}));
     fail();
-    EXPECT_FALSE(failed.has_new_mesh());  // bounded, whatever goes on to fail
+    EXPECT_FALSE(failed.has_new_mesh());  // bounded, even if attempts keep failing
 }
 
 TEST(RetryPolicy, WhatIsNewIsGivenUpByItsPlace)
@@ -89,7 +89,7 @@ TEST(RetryPolicy, WhereNoShorterStepIsLeftAnotherMeshIsTried)
         EXPECT_EQ(other.flow().given_up.size(), 2u);
         const State none = state_with_eol({});
         other.note(with(status), Attempt::Last, none, none, {});
-        EXPECT_FALSE(other.has_new_mesh());  // all are gone, and it still fails
+        EXPECT_FALSE(other.has_new_mesh());  // all EOL vertices are demoted, and the step still fails
     }
 }
 
@@ -120,10 +120,10 @@ TEST(RetryPolicy, WhatContactsPinchIsGivenUpBeforeAShorterStepIsTried)
         EXPECT_EQ(failed.flow().given_up, (std::set<VertexId>{2}));
     }
     failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {{}, {2}});
-    EXPECT_FALSE(failed.has_new_mesh());  // bounded
+    EXPECT_FALSE(failed.has_new_mesh());  // such attempts are bounded
     failed.forget();
     failed.note(with(StepStatus::Infeasible), Attempt::Ordinary, state, state, {});
-    EXPECT_FALSE(failed.has_new_mesh());  // rows alone: no mesh is better
+    EXPECT_FALSE(failed.has_new_mesh());  // with rows alone no other mesh helps
     EXPECT_TRUE(failed.flow().given_up.empty());
 }
 
@@ -148,8 +148,8 @@ TEST(RetryPolicy, AStepThatIsDoneForgets)
     EXPECT_TRUE(failed.flow().empty());
 }
 
-// Going round a wire with the cloth is no step of the equations: where that pushes energy in, it is left, for
-// as long as the step that was planned takes.
+// Going round a wire moves a vertex outside the equations of motion. If this motion raises the energy, it is
+// switched off for the rest of the planned step.
 TEST(RetryPolicy, WhereTurningRaisesTheEnergyVerticesStay)
 {
     const State state = state_with_eol({1});
@@ -165,9 +165,9 @@ TEST(RetryPolicy, WhereTurningRaisesTheEnergyVerticesStay)
     EXPECT_TRUE(failed.has_stopped_turning());
     EXPECT_FALSE(failed.may_turn());
     fail(failed, StepStatus::EnergyRise, false);
-    EXPECT_FALSE(failed.has_stopped_turning());  // once
+    EXPECT_FALSE(failed.has_stopped_turning());  // reported once
     fail(failed, StepStatus::Done, false);
-    EXPECT_FALSE(failed.may_turn());  // nor in the rest of it
+    EXPECT_FALSE(failed.may_turn());  // still off in the rest of the planned step
     failed.forget();
     EXPECT_TRUE(failed.may_turn());
     fail(failed, StepStatus::NotConverged, true);
@@ -205,7 +205,7 @@ TEST(RetryPolicy, TakesTheFirstRungThatApplies)
     EXPECT_EQ(next(last, StepStatus::NotConverged, true, true), NextAttempt::None);
 }
 
-// Whatever a step fails on, again and again, its attempts come to an end.
+// The attempts at a step end, whichever failure recurs.
 TEST(RetryPolicy, ComesToAnEnd)
 {
     for (const StepStatus status :

@@ -13,7 +13,7 @@ using Real = long double;
 using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
-/// C over the coordinates that are not fixed, one row each row of the problem.
+/// The constraint matrix C over the coordinates that are not fixed, with one row for each row of the problem.
 Matrix dense_rows(const VelocityProblem& problem)
 {
     Matrix c = Matrix::Zero(static_cast<Eigen::Index>(problem.rows.size()), problem.rhs->size());
@@ -32,7 +32,7 @@ std::array<double, 3> random_point(std::mt19937& random)
     return {low, high - low, 1.0 - high};
 }
 
-/// Faces in the order in which a pattern takes them.
+/// Faces in the order in which a pattern uses them.
 std::vector<int> faces_of(RowPattern pattern, int side, int count, std::mt19937& random)
 {
     std::vector<int> order(static_cast<std::size_t>(2 * (side - 1) * (side - 1)));

@@ -54,8 +54,7 @@ TEST(Step, FreeFallIsTheParabola)
         const Vec3 start = state.mesh.world[7];
         advance(scene, settings, 0.5, state, work);
         const Vec3 exact = start + Vec3(0.5, 0.0, 1.0 - 0.5 * 9.81 * 0.25);
-        // Implicit Euler takes g h at the step's end: it falls g h t / 2 further. BDF2: only its first step
-        // does, by h^2 g / 2.
+        // Implicit Euler falls g h t / 2 too far. BDF2 falls h^2 g / 2 too far, all in its first step.
         const double h = settings.step;
         const double lag = integrator == Integrator::Bdf2 ? 9.81 * h * h : 0.5 * 9.81 * h * 0.5;
         EXPECT_LT((state.mesh.world[7] - exact).norm(), 1.01 * lag);
@@ -137,7 +136,7 @@ TEST(Step, PinsAreExactlyWhereTheirMotionSays)
     turning.motion.angular_velocity = Vec3(0, 0, 2);
     turning.motion.velocity = Vec3(0.1, 0, 0);
     turning.motion.pivot = Vec3(0, 0.5, 0);
-    Pin sliding;  // held in z alone
+    Pin sliding;  // holds z only
     sliding.material = {Vec2(1, 0), Vec2(1, 0)};
     sliding.held = {false, false, true};
     sliding.motion.velocity = Vec3(5, 5, 0.3);
@@ -164,8 +163,8 @@ TEST(Step, PinsAreExactlyWhereTheirMotionSays)
 
 TEST(Step, APartlyHeldVertexFollowsItsPlaceAtTimeZero)
 {
-    // x(t) = R x(0) for the held components, whatever the free ones do: turned by 90 degrees about z, what
-    // was at (1, 0) has x = 0, though y was free to go where it liked.
+    // For held components x(t) = R x(0), independent of the free ones. After 90 degrees about z a point from
+    // (1, 0) has x = 0, although y is free.
     Scene scene;
     scene.material = soft_cloth();
     scene.gravity = Gravity{Vec3(0, -3, -9.81)};
@@ -198,7 +197,7 @@ TEST(Step, KeyframesAtTimeZeroPlaceWhatTheyHold)
     pin.material = {Vec2(0, 0), Vec2(0, 1)};
     pin.motion.keyframes = {Keyframe{0.0, Vec3(0.5, 0, 0), Eigen::Quaterniond::Identity()},
                             Keyframe{1.0, Vec3(1.5, 0, 0), Eigen::Quaterniond::Identity()}};
-    Pin over;  // released before it holds anything
+    Pin over;  // is released at its start
     over.material = {Vec2(1, 0), Vec2(1, 1)};
     over.motion.velocity = Vec3(5, 0, 0);
     over.release = 0.0;
@@ -233,7 +232,8 @@ TEST(Step, APinThatDrivesClothIntoTheFloorIsInfeasibleAndNamed)
 
 TEST(Step, AVertexHeldSidewaysStillRestsOnATiltedFloor)
 {
-    // Held in x, a vertex meets a plane tilted about y: its normal's part across the pin carries the contact.
+    // A vertex held in x meets a plane tilted about y. The component of the normal that is not held carries
+    // the contact.
     Scene scene = make_draped_scene();
     const Vec3 normal(0.5, 0.0, std::sqrt(0.75));
     scene.obstacles = {make_floor(normal, -0.2)};
@@ -274,7 +274,7 @@ TEST(Advance, StartsWithAThirdOfAStepWhereBdf2HasNoPast)
         settings.integrator = integrator;
         State state = make_state(scene, make_raised_sheet(), Vec3::Zero());
         Workspace work;
-        std::vector<double> parts;  // of a step
+        std::vector<double> parts;  // lengths of a step's parts
         const auto accept = [&](const StepReport& report, bool is_halved) {
             EXPECT_FALSE(is_halved);
             EXPECT_EQ(report.part == StepPart::Opening, report.dt < 0.5 * 0.005);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sheet that hangs over two opposite edges of a table by as much: a balance, but an unstable one. The
-// longer side pulls more, and a difference grows as e^(t sqrt(2 g / L)), to 3500 times of it in 2 s. At rest
-// there is none but what the mesh or the method make: they may move nothing.
+// A sheet hangs over two opposite edges of a table by equal lengths: an unstable equilibrium. A difference of
+// the lengths grows as cosh(t sqrt(2 g / L)), 3500-fold in 2 s. The only initial difference is from mesh and
+// method, and the test bounds the drift that it causes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ ClothRun make_run(const BalancedSheet& sheet)
     return ClothRun(std::move(scene), std::move(mesh));
 }
 
-/// Of the middle, m.
+/// x of the cloth's centre of mass, m.
 double middle_of(const ClothMesh& mesh)
 {
     double sum = 0.0, area = 0.0;
@@ -78,11 +78,11 @@ TEST(BalancedSheet, StaysOnAnyMesh)
                 ClothRun run = make_run({cells, pattern, angle, modulus});
                 const double first = middle_of(run.state.mesh);
                 double drift = 0.0;
-                int changes = 0;  // of vertices' kinds
+                int changes = 0;  // EOL vertices inserted or released
                 for (int k = 1; k * kStep <= kDuration + 1e-9 && !HasFailure(); ++k) {
                     const StepReport report = run.advance(k * kStep - run.state.time);
                     EXPECT_EQ(report.crossings, 0);
-                    if (k > 2) changes += report.inserted + report.released;  // what presses is a row first
+                    if (k > 2) changes += report.inserted + report.released;  // a new contact is a row first
                     drift = std::max(drift, std::abs(middle_of(run.state.mesh) - first));
                 }
                 EXPECT_EQ(audit(run.scene, run.state.mesh, run.state.time).obstacle, -1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cloth on a table whose border lies exactly along the table's edge: nothing may hold it there. Pulled onto
-// the table it accelerates at F / m; pulled over the edge what hangs pulls, too.
+// The border of cloth on a table lies exactly along the table's edge, and nothing may hold the border there.
+// Pulled onto the table, the cloth accelerates at F / m. Pulled over the edge, its overhang adds to the pull.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ ClothRun make_run(int cells, GridPattern pattern, double pull)
     return ClothRun(std::move(scene), std::move(mesh));
 }
 
-/// Of the border that stays on the table, m.
+/// Mean displacement of the border that stays on the table, m.
 double measure_displacement(const ClothRun& run)
 {
     double sum = 0.0;
@@ -45,14 +45,15 @@ double measure_displacement(const ClothRun& run)
     return sum / count;
 }
 
-/// Of cloth that hangs straight down, by x, as soon as it is beyond the edge: gravity adds g x / L.
+/// Displacement of cloth whose overhang x hangs straight down at once: gravity adds g x / L to the
+/// acceleration.
 double displacement_hanging(double pull)
 {
     const double rate = std::sqrt(Gravity{}.acceleration.norm() / kLength);
     return pull / (rate * rate) * (std::cosh(rate * kDuration) - 1.0);
 }
 
-// Outward there is more: what is beyond the edge falls, and pulls as it comes to hang.
+// Outward the cloth moves farther: the overhang falls and adds to the pull.
 TEST(BorderOnEdge, HoldsNothing)
 {
     constexpr double kTolerance = 1e-3;

@@ -76,7 +76,7 @@ void ClothRun::advance(double duration, double dt, const Look& look)
 ClothEnergy measure_energy(ClothRun& run)
 {
     const State& state = run.state;
-    prepare(run.scene, state, run.work);  // elements where material has flowed
+    prepare(run.scene, state, run.work);  // rebuilds the elements where material has flowed
     return compute_cloth_energy(
         run.scene, run.work,
         {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}});
@@ -99,8 +99,9 @@ EnergySpan watch_energy(ClothRun& run, double duration, double dt,
 
 void settle(ClothRun& run)
 {
-    constexpr double kStill = 1e-10;  // of the cloth's size, moved by one step
-    constexpr double kGentle = 0.02;  // of the cloth's size: what a step may move while steps still grow
+    constexpr double kStill = 1e-10;  // greatest motion in one step of cloth at rest, over the cloth's size
+    // Greatest motion in one step for which the next step may grow, over the cloth's size.
+    constexpr double kGentle = 0.02;
     constexpr int kMostSteps = 3000;
     const double size = material_size(run.state.mesh.material);
     run.settings.integrator = Integrator::ImplicitEuler;

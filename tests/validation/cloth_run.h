@@ -12,17 +12,18 @@ namespace arris {
 ClothMesh make_sheet(Vec2 size, std::array<int, 2> resolution, GridPattern pattern,
                      double pattern_angle = 0.0);
 
-/// Flat, the material's origin at `corner`, m.
+/// Lays the cloth flat in the world plane of `corner` (m), which is where the material's origin goes.
 void lay(ClothMesh& mesh, const Vec3& corner);
 
-/// Cloth with EOL vertices under gravity, and a table: a box of `size` (m) about `middle`.
+/// A scene with gravity, EOL vertices and one obstacle: a box of `size` (m) about `middle` as a table.
 Scene make_table_scene(const ClothMesh& mesh, const Material& material, const Vec3& size, const Vec3& middle);
 
-/// What is at rest and then accelerated evenly BDF2 takes too far by this times h^2 times the acceleration,
-/// all of it in its first step: that is made in a third and the rest, the third with implicit Euler.
+/// BDF2's error of position from rest under constant acceleration, over h^2 times the acceleration. All of
+/// the error arises in the first step. That step is split into one third with implicit Euler and two thirds
+/// with BDF2.
 inline constexpr double kBdf2StartLag = 99.0 / 720.0;
 
-/// Everything a run needs. Cloth at rest unless `velocity` (m/s) says otherwise.
+/// Everything a run needs. The cloth is at rest unless `velocity` (m/s) is given.
 struct ClothRun {
     Scene scene;
     Settings settings;
@@ -33,28 +34,29 @@ struct ClothRun {
 
     using Look = std::function<void(const StepReport&)>;
 
-    /// One step of `dt` (s); `look` is called after it, or after each of its parts. A step that does not end
-    /// well fails the test.
+    /// Makes one step of `dt` (s). `look` is called after the step, or after each of its parts if it is
+    /// halved. The test fails if the step does.
     StepReport advance(double dt, const Look& look = {});
 
-    /// Equal steps of about `dt`, the last one ending `duration` from now.
+    /// Makes equal steps of about `dt`; the last one ends `duration` from now.
     void advance(double duration, double dt, const Look& look = {});
 };
 
-/// Kinetic and potential, of the run's present state.
+/// Kinetic and potential energy of the run's present state.
 ClothEnergy measure_energy(ClothRun& run);
 
-/// Of kinetic and potential energy together, J.
+/// Sum of kinetic and potential energy over a run, J.
 struct EnergySpan {
     double first = 0.0, greatest = 0.0, last = 0.0;
 };
 
-/// Equal steps of at most `dt` (s) for `duration`, or until a test fails; `look` is called after each.
+/// Makes equal steps of at most `dt` (s) for `duration`, or until a test fails. `look` is called after each
+/// step.
 EnergySpan watch_energy(ClothRun& run, double duration, double dt,
                         const std::function<void(const StepReport&)>& look);
 
-/// Brings the cloth to where its forces balance: implicit Euler steps that each start from rest, and grow
-/// until they are Newton's. Fails the test where it is not still after a bounded number of them.
+/// Brings the cloth to static equilibrium by implicit Euler steps that each start from rest. The steps grow
+/// until they are Newton steps. The test fails if the cloth still moves after a bounded number of steps.
 void settle(ClothRun& run);
 
 }  // namespace arris

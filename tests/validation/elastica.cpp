@@ -20,11 +20,11 @@ Vec4 shoot(const ElasticaLoad& load, double curvature)
         return {at[1], -stretch * force * std::cos(at[0]), stretch * std::cos(at[0]),
                 stretch * std::sin(at[0])};
     };
-    constexpr int kSteps = 1000;  // RK4: its error is below 1e-10
+    constexpr int kSteps = 1000;  // RK4's error is then below 1e-10
     return integrate_rk4(Vec4(0.0, curvature, 0.0, 0.0), 0.0, 1.0, kSteps, slope);
 }
 
-/// The curvature at the clamp that leaves no moment at the tip, near `guess`.
+/// The curvature at the clamp, near `guess`, for which the moment at the tip is zero.
 double find_curvature(const ElasticaLoad& load, double guess)
 {
     constexpr double kOffset = 1e-4, kExact = 1e-13;
@@ -45,8 +45,8 @@ double find_curvature(const ElasticaLoad& load, double guess)
 
 ElasticaTip solve_elastica(const ElasticaLoad& load)
 {
-    // The curvature at the clamp, by secants, followed from no load at all: that keeps to the straight
-    // strip's branch.
+    // The curvature at the clamp by secants, continued from zero load: this stays on the branch of the
+    // straight strip.
     const int stages = 1 + static_cast<int>(std::ceil(0.25 * (load.weight + load.tip)));
     double curvature = 0.0;
     for (int k = 1; k <= stages; ++k) {
@@ -60,13 +60,13 @@ ElasticaTip solve_elastica(const ElasticaLoad& load)
 
 double find_elastica_weight(double tip_ratio, double extensibility)
 {
-    constexpr double kExact = 1e-12;  // of the ratio
+    constexpr double kExact = 1e-12;  // tolerance of the ratio y / x
     constexpr int kMostIterations = 50;
     const auto excess = [&](double weight) {
         const ElasticaTip tip = solve_elastica({weight, 0.0, extensibility});
         return tip.y / tip.x - tip_ratio;
     };
-    // Secants from the linear theory's weight, y / x = G / 8.
+    // Secants start at the weight of linear theory, y / x = G / 8.
     double before = 8.0 * tip_ratio, at = 1.01 * before;
     double excess_before = excess(before), excess_at = excess(at);
     for (int k = 0; k < kMostIterations && std::abs(excess_at) > kExact * tip_ratio && at != before; ++k) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The elastica, by shooting: what clamped strips are measured against. Lengths are in units of the strip's.
+// The elastica, by shooting: the reference for clamped strips. Lengths are in units of the strip's length.
 //
 //   theta'' = -(1 + eps) [G (1 - s) cos(theta) + P cos(theta)],   theta(0) = 0, theta'(1) = 0
 //   x' = (1 + eps) cos(theta),  y' = (1 + eps) sin(theta),  eps = c [G (1 - s) + P] sin(theta)
 //
-// theta is the angle below the horizontal, G = rho g L^3 / D the weight, P = p L^2 / D the load at the tip
-// (force p per width), both downward. c = D / (E L^2) lets the strip stretch as the cloth does; 0 is the
-// classic elastica.
+// theta is the angle below the horizontal. The loads are downward: the weight G = rho g L^3 / D, and the load
+// at the tip P = p L^2 / D (force p per width). c = D / (E L^2) lets the strip stretch as the cloth does; c =
+// 0 is the classic elastica.
 #pragma once
 
 namespace arris {

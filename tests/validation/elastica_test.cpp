@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bending against the elastica. A strip of length 2 held along its middle line is two cantilevers of length
-// 1, clamped exactly at that line by symmetry. Strips of regular patterns are one cell wide, with free sides:
-// then nothing but the pattern decides the bending rigidity, D = 6/5 K, 6/5 K, 3/2 K. (It is the beam's,
-// where transverse bending and twist are free: for "diagonal" the energy density 3/4 K [(h_uu + h_uv)^2 +
-// (h_vv + h_uv)^2 + 4 h_uv^2] in the second derivatives h of the sheet is least at h_uv = -h_uu / 5, h_vv =
-// -h_uv.)
+// Bending compared with the elastica. A strip of length 2 held along its middle line is two cantilevers of
+// length 1. By symmetry they are clamped exactly at that line. Strips of regular patterns are one cell wide
+// with free sides, so the pattern alone decides the bending rigidity: D = 6/5 K (diagonal), 6/5 K
+// (alternating), 3/2 K (cross). This is a beam's rigidity, where transverse bending and twist are free. For
+// "diagonal" the energy density is 3/4 K [(h_uu + h_uv)^2 + (h_vv + h_uv)^2 + 4 h_uv^2] in the second
+// derivatives h of the sheet. Its least value is at h_uv = -h_uu / 5, h_vv = -h_uv.
 #include "elastica.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kBending = 1.0;  // K, J
 constexpr double kThickness =
-    0.02;  // sqrt(12 K / E), m: below curvature x width^2 nothing but bending would stiffen
+    0.02;  // sqrt(12 K / E), m: so large that curvature x width^2 is below it and only bending stiffens
 constexpr double kSoftThickness = 0.04;
 
 constexpr double modulus_of(double thickness)
@@ -40,8 +40,8 @@ struct Pattern {
     friend void PrintTo(const Pattern& p, std::ostream* out) { *out << p.name; }
 };
 
-// "diagonal" couples bending to twist: the strip sways out of the plane, which the plane elastica does not
-// know. "unstructured" has no exact figure: 4/3 would be that of equilateral triangles.
+// "diagonal" couples bending to twist: the strip sways out of the plane, which the plane elastica excludes.
+// "unstructured" has no exact rigidity; 4/3 is that of equilateral triangles.
 const std::vector<Pattern> kPatterns = {
     {GridPattern::Diagonal, "diagonal", 1, 1.2, 0.06},
     {GridPattern::Alternating, "alternating", 1, 1.2, 0.003},
@@ -50,10 +50,11 @@ const std::vector<Pattern> kPatterns = {
 };
 
 struct Tip {
-    double x, y, sideways;  ///< from the clamp, in strip lengths; y downward
+    double x, y, sideways;  ///< position from the clamp, in strip lengths; y downward
 };
 
-/// Two cantilevers of length 1 and `cells` cells under the loads, given by G and P with rigidity `D`.
+/// Settles two cantilevers of length 1 and `cells` cells under the loads G and P, made dimensionless with
+/// rigidity `D`.
 Tip settle_cantilever(const Pattern& pattern, int cells, double weight, double tip_load, double D,
                       double thickness = kThickness)
 {
@@ -63,7 +64,7 @@ Tip settle_cantilever(const Pattern& pattern, int cells, double weight, double t
     grid.resolution = {2 * cells, pattern.cells_across};
     grid.pattern = pattern.pattern;
     if (pattern.pattern ==
-        GridPattern::Unstructured)  // a fold by nothing cuts the clamp's line into the mesh
+        GridPattern::Unstructured)  // a fold by 0 degrees puts mesh edges on the clamp's line
         grid.folds = {Fold{{Vec2(1.0, -1.0), Vec2(1.0, 1.0)}, 0.0}};
 
     Scene scene;
@@ -142,9 +143,9 @@ INSTANTIATE_TEST_SUITE_P(All, HeavyElastica, testing::ValuesIn(kPatterns),
 
 TEST(HeavyElastica, ConvergesAtSecondOrder)
 {
-    // Stretch e changes a pattern's own rigidity by about e, which the elastica does not know: errors level
-    // off there. So the order is that of what doubling the cells changes, and the limit by Richardson is held
-    // against the elastica.
+    // Stretch e changes a pattern's own rigidity by about e, which the elastica neglects, so the errors level
+    // off. The order is therefore measured from the changes between resolutions. Richardson's limit is
+    // compared with the elastica.
     Table table("elastica_order",
                 {"cells", "x, y of the tip at G = 5", "changed by", "at G = 20", "changed by"});
     const Pattern& pattern = kPatterns[2];
@@ -196,10 +197,11 @@ TEST(TipLoadedCantilever, IsTheElastica)
         for (const double load : {2.0, 4.0}) {
             const Tip tip = settle_cantilever(pattern, cells, 0.0, load, rigidity * kBending);
             ASSERT_FALSE(HasFailure());
-            // The strip may stretch, by c P; the elastica that may is exact for it, the classic one to that.
+            // The strip stretches by up to c P. The extensible elastica is exact for the strip, the classic
+            // one only up to this stretch.
             const ElasticaTip exact = solve_elastica({0.0, load, rigidity * kBending / kModulus});
             const ElasticaTip classic = solve_elastica({0.0, load});
-            constexpr double kDiscrete = 1e-3;  // 64 cells
+            constexpr double kDiscrete = 1e-3;  // discretisation error of 64 cells
             EXPECT_NEAR(tip.y / exact.y, 1.0, kDiscrete) << pattern.name;
             EXPECT_NEAR((1.0 - tip.x) / (1.0 - exact.x), 1.0, kDiscrete) << pattern.name;
             table.add({pattern.name, fmt::to_string(load), fmt::format("{:.4f}", 10.0 * tip.y),
@@ -211,9 +213,10 @@ TEST(TipLoadedCantilever, IsTheElastica)
 
 TEST(PinnedColumns, ClampAShareOfACellBehindTheLastOne)
 {
-    // Two pinned columns hold a cell flat. Its half beside the hinge at the last column does not bend with
-    // it: the clamp sits where the flat triangle stands for the slope, in "cross" 1/4 cell behind; in
-    // "alternating" 1/2, shortened to 0.4 as cloth between pins cannot twist (1.5 K instead of 1.2 K).
+    // Two pinned columns hold a cell flat, and its half beside the hinge at the last column does not bend
+    // with that hinge. The effective clamp is where the flat triangle has the hinge's slope. In "cross" that
+    // is 1/4 cell behind the column. In "alternating" it is 1/2, reduced to 0.4 because cloth between pins
+    // cannot twist (1.5 K instead of 1.2 K).
     Table table("pinned_columns", {"pattern", "cells", "tip, clamp at the column", "clamp behind it"});
     for (const auto& [pattern, share] : {std::pair{kPatterns[2], 0.25}, std::pair{kPatterns[1], 0.4}}) {
         std::vector<double> sizes, at_column, behind;
@@ -229,8 +232,8 @@ TEST(PinnedColumns, ClampAShareOfACellBehindTheLastOne)
             const std::vector<int> line =
                 vertices_in_box(run.state.mesh, {Vec2(1.0 + dx, 0.0), Vec2(1.0 + dx, dx)});
             const double y = -0.5 * (run.state.mesh.world[line[0]].z() + run.state.mesh.world[line[1]].z());
-            // Over the extra piece a the moment is that at the column: the tip falls by G / 2 a more, to
-            // first order.
+            // Over the extra length a the moment is that at the column: to first order the tip falls by
+            // another G a / 2.
             const ElasticaTip exact = solve_elastica({G, 0.0, D / kModulus});
             sizes.push_back(dx);
             at_column.push_back(y / exact.y - 1.0);

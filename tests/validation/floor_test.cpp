@@ -31,16 +31,17 @@ Vec3 normal_of(double angle)
     return {0.0, std::sin(angle), std::cos(angle)};
 }
 
-/// A scene whose floor leans by `angle` about x, through a point far from where the normal meets the origin.
+/// The obstacle under the cloth. Its upper plane leans by an angle about x and is kOffset from the origin.
 enum class Ground { Slab, ImportedTable };
 
-/// Its upper side is the plane; of the table (triangles, legs and all) that side is 0.6 m wide.
+/// The ground's upper side is the plane. The imported table has triangles and legs, and its top is 0.6 m
+/// wide.
 Obstacle make_ground(Ground ground, const Vec3& normal)
 {
     if (ground == Ground::Slab) return make_floor(normal, kOffset);
     const Mat3 lean = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
     ObstacleFile table = import_obstacle(ARRIS_SOURCE_DIR "/data/meshes/table.obj", {}, {});
-    double top = 0.0;  // 0.73 m, but for the file's single precision
+    double top = 0.0;  // 0.73 m, rounded to the file's single precision
     for (const Vec3& p : table.mesh.points) top = std::max(top, p.z());
     const Placement placement{lean, lean * Vec3(0.25, 0.25, kOffset - top)};
     return Obstacle("table", std::move(table.mesh), placement, {}, 30.0);
@@ -73,7 +74,7 @@ TEST(Incline, AcceleratesByGTimesTheSine)
                 const double angle = degrees * std::numbers::pi / 180.0;
                 const Scene scene = make_scene(angle, true);
                 ClothMesh mesh = place_above(normal_of(angle), is_crumpled ? 0.03 : 0.0);
-                if (is_crumpled) {  // it falls, and its contacts come and go
+                if (is_crumpled) {  // the cloth falls, and contacts open and close
                     std::mt19937_64 random(9);
                     std::uniform_real_distribution<double> noise(-0.01, 0.01);
                     for (Vec3& x : mesh.world) x += Vec3(noise(random), noise(random), noise(random));
@@ -91,7 +92,7 @@ TEST(Incline, AcceleratesByGTimesTheSine)
                     linear_momentum(0.05, run.work.mesh.elements, run.state.velocity).dot(down) / mass;
                 const double error = speed / (kG * std::sin(angle) * t) - 1.0;
                 EXPECT_LT(std::abs(error), 1e-3);
-                if (!is_crumpled) {  // the path too, up to the integrator's own lag on a parabola
+                if (!is_crumpled) {  // compare the path, too, allowing for the integrator's lag on a parabola
                     const double lag = integrator == Integrator::Bdf2 ? kBdf2StartLag * h * h : 0.5 * h * t;
                     const double path = kG * std::sin(angle) * (0.5 * t * t + lag);
                     for (std::size_t v = 0; v < mesh.world.size(); ++v)
@@ -104,10 +105,10 @@ TEST(Incline, AcceleratesByGTimesTheSine)
 }
 
 struct Impact {
-    double rebound = 0.0;      ///< greatest speed off the floor after the first contact, over V
-    double jump = 0.0;         ///< greatest distance from the stand-off after it, m
-    double penetration = 0.0;  ///< greatest ever, m
-    double energy_rise = 0.0;  ///< greatest of a step, over the first kinetic energy
+    double rebound = 0.0;      ///< greatest normal speed away from the floor after the first contact, over V
+    double jump = 0.0;         ///< greatest distance from the stand-off after the first contact, m
+    double penetration = 0.0;  ///< greatest of the whole run, m
+    double energy_rise = 0.0;  ///< greatest rise in a step, over the initial kinetic energy
 };
 
 Impact drop(Integrator integrator, double speed, double phase, bool has_gravity, Ground ground)
@@ -127,7 +128,7 @@ Impact drop(Integrator integrator, double speed, double phase, bool has_gravity,
         if (testing::Test::HasFailure()) break;
         for (int v = 0; v < run.state.mesh.vertex_count(); ++v) {
             const double gap = n.dot(run.state.mesh.world[v]) - kOffset - kThickness;
-            // Before round-off is put back, too: the bound itself must close the gap and no more.
+            // Checked before round-off is corrected, too: the contact's bound must close the gap exactly.
             const Vec3 proposed =
                 run.work.prediction.position[v] + run.work.prediction.gamma * run.state.velocity[v];
             const double proposed_gap = n.dot(proposed) - kOffset - kThickness;
@@ -147,7 +148,7 @@ void expect_no_rebound(Ground ground, const std::string& name)
 {
     Table table(name, {"integrator", "V", "gravity", "rebound / V", "off the stand-off", "penetration",
                        "rise of kinetic energy"});
-    constexpr double kRoundOff = 1e-13;  // m, positions are about 1
+    constexpr double kRoundOff = 1e-13;  // m, for positions of about 1 m
     for (const Integrator integrator : kIntegrators)
         for (const bool has_gravity : {false, true})
             for (const double speed : {0.1, 1.0, 5.0}) {
@@ -184,12 +185,12 @@ TEST(Impact, HoldsOnAnImportedMesh)
     expect_no_rebound(Ground::ImportedTable, "impact_imported");
 }
 
-/// Stiff cloth thrown at what is not flat, without gravity: what it has then only ever falls.
+/// Stiff cloth is thrown at a toothed surface without gravity, so its energy may only fall.
 struct Shock {
-    double greatest = 0.0;  ///< kinetic, stretch and bending energy after it has met, over the first
-    double rise = 0.0;      ///< greatest of a step, alike
-    double stretch = 0.0;   ///< greatest stretch energy, alike
-    double solves = 0.0;    ///< a step
+    double greatest = 0.0;  ///< kinetic, stretch and bending energy after the impact, over the initial energy
+    double rise = 0.0;      ///< greatest rise in a step, over the initial energy
+    double stretch = 0.0;   ///< greatest stretch energy, over the initial energy
+    double solves = 0.0;    ///< mean number of solves in a step
 };
 
 Shock throw_at_teeth(Integrator integrator, double stiffness, double speed, double phase)
@@ -232,7 +233,8 @@ TEST(Impact, OfStiffClothOnTeethGainsNoEnergy)
 {
     Table table("impact_stiff", {"integrator", "E", "V", "greatest energy / first", "rise in a step / first",
                                  "stretch / first", "solves a step"});
-    constexpr double kRise = 0.003;  // of a step, and what is moved out to its stand-off at 0.1 m/s
+    // Allowed rise in a step, besides the energy of pushing cloth out to its stand-off at 0.1 m/s.
+    constexpr double kRise = 0.003;
     const int phases = is_deep() ? 20 : 3;
     for (const Integrator integrator : kIntegrators)
         for (const double stiffness : {2e3, 1e6})

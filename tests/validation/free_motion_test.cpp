@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cloth that nothing touches: the parabola, and what is conserved.
+// Cloth in free flight: the parabola, and conservation of momentum.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,9 +18,10 @@ constexpr double kG = 9.81;
 
 TEST(FreeFall, LagsTheParabolaByExactlyWhatTheIntegratorDoes)
 {
-    // Implicit Euler: y_n = -g h^2 n (n + 1) / 2 = -g t^2 / 2 - g h t / 2. BDF2: exact but for the first
-    // third of a step, which is implicit Euler's and leaves e = -g h^2 / 18. Steps twice and 1.5 times as
-    // long as the one before make 9/5 and 9/4 of it, and (4 e_n - e_(n-1)) / 3 from there 99/40.
+    // Implicit Euler: y_n = -g h^2 n (n + 1) / 2 = -g t^2 / 2 - g h t / 2. BDF2 is exact except for its first
+    // third of a step, which is made with implicit Euler and leaves the error e = -g h^2 / 18. The second
+    // step is twice and the third 1.5 times as long as the step before. These steps raise the error to 9/5 e
+    // and 9/4 e. From there (4 e_n - e_(n-1)) / 3 tends to 99/40 e.
     Scene scene;
     scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
@@ -78,8 +79,8 @@ TEST(LinearMomentum, GrowsByTheWeight)
 TEST(AngularMomentum, OfASpinningSheetConvergesAtTheIntegratorsOrder)
 {
     Table table("angular_momentum", {"step", "implicit Euler: loss", "step", "BDF2: loss"});
-    // The sheet's fastest modes are what both must resolve; implicit Euler needs more steps for its order to
-    // show.
+    // Both integrators must resolve the sheet's fastest modes; implicit Euler shows its order only at shorter
+    // steps.
     const std::array<std::vector<double>, 2> steps = {std::vector{5e-4, 2.5e-4, 1.25e-4, 6.25e-5},
                                                       std::vector{1e-3, 5e-4, 2.5e-4, 1.25e-4}};
     std::array<std::vector<double>, 2> losses;
@@ -99,7 +100,7 @@ TEST(AngularMomentum, OfASpinningSheetConvergesAtTheIntegratorsOrder)
                                         run.state.velocity);
             };
             const Vec3 before = momentum();
-            double loss = 0.0;  // the greatest: it oscillates
+            double loss = 0.0;  // the maximum, as the loss oscillates
             run.advance(0.4, h, [&](const StepReport&) {
                 loss = std::max(loss, (momentum() - before).norm() / before.norm());
             });

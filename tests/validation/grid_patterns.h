@@ -11,7 +11,7 @@ namespace arris {
 inline constexpr std::array kPatterns = {GridPattern::Diagonal, GridPattern::Alternating, GridPattern::Cross,
                                          GridPattern::Unstructured};
 
-/// As scene files name it.
+/// The pattern's name in scene files.
 inline const char* name_of(GridPattern pattern)
 {
     constexpr std::array kNames = {"diagonal", "alternating", "cross", "unstructured"};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A silk cloth falls on three nails, which have no shaft: it slides over them as it sags between, hangs down
-// around them in pleats, and hardly any of it may be held by rows, on whatever mesh.
+// A silk cloth falls on three nails without shafts. The cloth slides over the nails as it sags between them,
+// and hangs down around them in pleats. On any mesh, almost all contacts with the nails must be EOL vertices
+// instead of rows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ ClothRun make_run(int cells)
 }
 
 struct Pressing {
-    int eol = 0, rows = 0;  ///< rows: that pressed before and could be EOL
+    int eol = 0, rows = 0;  ///< rows: counted if the contact pressed before and could be EOL
     double rise = 0.0;      ///< J
 
     double share() const { return eol / double(eol + rows); }
@@ -55,8 +56,9 @@ Pressing fall(int cells)
 
 TEST(ClothOnNails, IsEolOnThemWhateverItsMesh)
 {
-    // Of all runs together (.962 to .980 is measured, by rounding), and of each (.755 to .86): a pleat that
-    // stands in a nail's way may have it for long, on which meshes depends on little.
+    // Bounds on the EOL share of all runs together (measured: 0.962 to 0.980) and of each run (0.755 to
+    // 0.86). The values scatter with rounding. A pleat that blocks a nail's EOL vertex may do so for long, on
+    // some meshes and not on others.
     constexpr double kShare = 0.93, kLeastShare = 0.7;
     Pressing all;
     for (const int cells : {7, 8, 9, 10, 11, 12, 13, 14, 16}) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A wire turns and moves across cloth that hangs over it, past a box a little lower. The plane behind the
-// fold over the wire, which keeps both sides of the cloth apart, goes along and comes to press cloth against
-// the box: as nothing is there it must give way. It gave the cloth many times what moved it, in a step.
+// A wire turns and moves across cloth that hangs over it, past a box a little lower. The fold plane behind
+// the wire, which keeps the cloth's two sides apart, moves with the wire and presses cloth against the box.
+// Nothing solid is at the plane, so its contact must yield. A plane that does not yield adds a multiple of
+// the cloth's kinetic energy in one step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 namespace arris {
 namespace {
 
-/// The most energy that the cloth gains in a step, J.
+/// Largest energy gain of the cloth in a step, J.
 double pass_box(int cells, double duration)
 {
     constexpr double kStep = 0.005;
@@ -46,8 +47,7 @@ double pass_box(int cells, double duration)
 
 TEST(PassingWire, PressesNoClothAgainstABoxByThePlaneBehindItsFold)
 {
-    // .013 to .020 J are measured, what the wire drives in; 1.6 J with 14 cells where the plane does not give
-    // way.
+    // Measured: 0.013 to 0.020 J, the work of the wire. If the plane does not yield: 1.6 J with 14 cells.
     constexpr double kDriven = 0.04;  // J
     EXPECT_LT(pass_box(14, 0.32), kDriven);
     EXPECT_LT(pass_box(18, 0.36), kDriven);

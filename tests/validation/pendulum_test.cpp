@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A nearly rigid plate of two faces that swings about its pinned edge: the physical pendulum at a great
-// amplitude.
+// A nearly rigid plate of two faces swings about its pinned edge: the physical pendulum at large amplitude.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -39,7 +38,7 @@ double exact_period(double amplitude)
 ClothRun make_plate(double amplitude, Integrator integrator, double modulus = 1e4)
 {
     Scene scene;
-    scene.material = {kDensity, modulus, 0.0, 1.0, 0.0, 1e-3};  // bending: as good as rigid
+    scene.material = {kDensity, modulus, 0.0, 1.0, 0.0, 1e-3};  // bending stiffness 1 J: practically rigid
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
     scene.pins.push_back({{Vec2(0.0, 0.0), Vec2(0.0, 0.6)}, {}, {true, true, true}});
     ClothMesh mesh = make_sheet(Vec2(kLength, 0.6), {1, 1}, GridPattern::Diagonal);
@@ -71,7 +70,7 @@ double measure_period(double amplitude, double h)
         if (run.advance(h).status != StepStatus::Done) break;
         const double x1 = hem(run).x(), v1 = hem_speed(run);
         if (x1 > 0.0) continue;
-        // Where the cubic through both step ends and their velocities passes 0.
+        // Finds the zero of the cubic that has position and velocity at both ends of the step.
         double low = 0.0, high = 1.0;
         for (int k = 0; k < 60; ++k) {
             const double s = 0.5 * (low + high), r = 1.0 - s;
@@ -85,8 +84,8 @@ double measure_period(double amplitude, double h)
     return 0.0;
 }
 
-/// Share of its amplitude that implicit Euler has lost after half a period, when the exact pendulum is at
-/// rest again. (Its first error is damping; the period shows none of it at small amplitudes.)
+/// Share of its amplitude that implicit Euler loses in half a period, when the exact pendulum is at rest
+/// again. Implicit Euler's leading error is damping, which leaves the period of small swings unchanged.
 double measure_loss(double amplitude, double h)
 {
     ClothRun run = make_plate(amplitude, Integrator::ImplicitEuler);
@@ -95,10 +94,11 @@ double measure_loss(double amplitude, double h)
     return 1.0 - angle / amplitude;
 }
 
-/// Halves the step from `first` on; the order is that of what each halving changes, and `limit` Richardson's.
+/// Result of halving the step from `first` on. `order` is measured from the changes between steps; `limit` is
+/// Richardson's.
 struct Refinement {
     double order = 0.0, limit = 0.0;
-    std::vector<std::string> row;  ///< the values, less `exact`, and the order
+    std::vector<std::string> row;  ///< the values less `exact`, then the order
 };
 
 template <typename Measure>
@@ -123,7 +123,7 @@ Refinement refine(const Measure& measure, double first, double order, double exa
     return refinement;
 }
 
-// Of the plate's stretch under the forces of its swing, up to 3 rho g L / E.
+// Allowance for the plate's stretch under the forces of its swing, up to 3 rho g L / E.
 constexpr double kStretch = 3e-4;
 
 TEST(Pendulum, Bdf2HasTheExactPeriodToSecondOrder)
@@ -133,7 +133,8 @@ TEST(Pendulum, Bdf2HasTheExactPeriodToSecondOrder)
     for (const double degrees : {10.0, 90.0, 150.0}) {
         const double amplitude = degrees * std::numbers::pi / 180.0, exact = exact_period(amplitude);
         const double first =
-            degrees < 45.0 ? 8e-3 : 2e-3;  // a slow, small swing's error would be lost in the plate's own
+            // At 2 ms the error of a small swing would be less than that of the plate's stretch.
+            degrees < 45.0 ? 8e-3 : 2e-3;
         Refinement found =
             refine([&](double h) { return measure_period(amplitude, h) / exact; }, first, 2.0, 1.0);
         EXPECT_GT(found.order, 1.85) << degrees;
@@ -160,7 +161,7 @@ TEST(Pendulum, ImplicitEulerLosesAmplitudeAtFirstOrder)
     }
 }
 
-/// How far the plate, let go at 90 degrees, is behind the rigid one after 0.48 s, in degrees.
+/// Lag of the plate behind the rigid one, degrees, 0.48 s after its release at 90 degrees.
 double measure_lag(Integrator integrator, double modulus, double h)
 {
     constexpr double kEnd = 0.48;
@@ -175,8 +176,8 @@ double measure_lag(Integrator integrator, double modulus, double h)
 
 TEST(StiffPlate, IsHeldBackByItsLinearisationAndByBdf2FarLess)
 {
-    // One linearisation a step takes a turning face's stretch (h thetadot)^2 / 2 for tension:
-    // docs/validation.md.
+    // With one linearisation a step, a turning face's apparent stretch (h thetadot)^2 / 2 acts as tension:
+    // see docs/validation.md.
     Table table("stiff_plate", {"E", "step", "implicit Euler", "BDF2"});
     for (const double modulus : {1e4, 1e6})
         for (const double h : {8e-3, 4e-3, 1e-3}) {
@@ -184,7 +185,7 @@ TEST(StiffPlate, IsHeldBackByItsLinearisationAndByBdf2FarLess)
             const double bdf2 = measure_lag(Integrator::Bdf2, modulus, h);
             table.add({fmt::format("{:g} N/m", modulus), fmt::format("{:g} ms", 1e3 * h),
                        fmt::format("{:.2f}", euler), fmt::format("{:.2f}", bdf2)});
-            // What is so much out of the way that it is seen is linearised again.
+            // A large error of the linearisation makes the step linearise again.
             const bool is_again = modulus > 1e5 && h > 5e-3;
             EXPECT_LT(is_again ? euler : std::abs(bdf2), is_again ? 3.0 : euler / 3.0);
             if (h < 2e-3) {

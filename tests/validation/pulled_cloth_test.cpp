@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cloth that leaves a table faster in the end than its tension holds it on the edge: its fold flies off while
-// the tail still flows through it. Pull and fall do work all the time, nothing takes any.
+// Pulled cloth finally leaves a table faster than its tension can hold it on the edge. The fold flies off
+// while the rest of the cloth still flows through it. Pull and gravity do work all the time, and nothing
+// dissipates energy.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,9 +16,10 @@
 namespace arris {
 namespace {
 
-constexpr double kBefore = 0.4, kAfter = 0.58;  // s: all of it on the edge; the fold .1 m off it
+// Times in s: the whole fold is on the edge; the fold is 0.1 m off the edge.
+constexpr double kBefore = 0.4, kAfter = 0.58;
 
-/// A strip of denim, 0.1 m of it over the edge, pulled there.
+/// A strip of denim, 0.1 m of it over the edge, pulled at its overhanging border.
 ClothRun make_run(std::array<int, 2> cells)
 {
     ClothMesh mesh = make_sheet(Vec2(0.9, 0.1), cells, GridPattern::Cross);
@@ -30,7 +32,7 @@ ClothRun make_run(std::array<int, 2> cells)
 
 struct Pulled {
     double before = 0.0, after = 0.0;  ///< J
-    double drop = 0.0;                 ///< J, greatest below the running maximum between them
+    double drop = 0.0;                 ///< J, largest drop below the running maximum from kBefore to kAfter
 };
 
 Pulled pull_off(std::array<int, 2> cells, double step)
@@ -61,14 +63,14 @@ Pulled pull_off(std::array<int, 2> cells, double step)
 TEST(PulledCloth, LosesLittleWhereItsFoldLeavesTheTable)
 {
     Table results("pulled_cloth", {"cells", "step", "energy at .4 s", "energy at .58 s", "greatest drop"});
-    // Material goes through the fold at two velocities, and a vertex that is let go, a cell off the edge, has
-    // one for both.
+    // Some loss is inherent: material has two velocities on the two sides of a fold. A vertex that is
+    // released, one cell off the edge, has only one.
     for (const auto& [cells, step] : {std::pair(18, 5e-3), {18, 2.5e-3}, {18, 1.25e-3}, {36, 1.25e-3}}) {
         const Pulled found = pull_off({cells, cells / 9}, step);
         const std::string name = fmt::format("{} cells, {} s", cells, step);
         ASSERT_FALSE(HasFailure()) << name;
         EXPECT_LT(found.drop, 2e-3) << name;
-        // Rows only, 144 cells at .6 ms: from .0261 to .0540 J.
+        // Without EOL vertices, 144 cells at 0.6 ms: from 0.0261 to 0.0540 J.
         EXPECT_NEAR(found.after, 0.0545, 0.1 * 0.0545) << name;
         results.add({fmt::format("{}", cells), fmt::format("{:g} ms", 1e3 * step),
                      fmt::format("{:.4f} J", found.before), fmt::format("{:.4f} J", found.after),
@@ -77,11 +79,11 @@ TEST(PulledCloth, LosesLittleWhereItsFoldLeavesTheTable)
 }
 
 struct Slope {
-    double tilt, turn;  ///< degrees: of the box, and of the cloth on it
+    double tilt, turn;  ///< degrees: tilt of the box, turn of the cloth about the vertical
     GridPattern pattern;
 };
 
-/// Denim that falls 2 cm onto a box's sloping top and slides down over its edge.
+/// Denim falls 2 cm onto a box's sloping top and slides down over its edge.
 ClothRun make_slope_run(const Slope& slope)
 {
     ClothMesh mesh = make_sheet(Vec2(1.0, 0.6), {17, 11}, slope.pattern);
@@ -96,10 +98,11 @@ ClothRun make_slope_run(const Slope& slope)
     return ClothRun(std::move(scene), std::move(mesh));
 }
 
-// All of it has left at .7 s. A fold that is led farther than a cell from its edge has no edge any more, but
-// is held in a plane, and so is one, nearer, that is led otherwise than its cloth comes: with four cells
-// these had .05 to .2 J at .8 s, others -.33 J. How the last corner leaves is another way in every run. Rows
-// only: .27 to .37 J on this mesh, .37 J on 68 x 44 cells with a quarter of the step.
+// At 0.7 s all of the cloth has left. A free fold is kept for one cell only and must move in the direction of
+// its cloth. Otherwise it holds the cloth in a plane. With folds kept for four cells, 0.05 to 0.2 J were left
+// at 0.8 s. With folds that moved in another direction, -0.33 J were left. The path of the last corner off
+// the edge varies from run to run. Without EOL vertices: 0.27 to 0.37 J on this mesh, 0.37 J on 68 x 44 cells
+// with a quarter of the step.
 TEST(SheetOnASlope, KeepsItsEnergyWhereItsFoldFliesOff)
 {
     Table results("sheet_on_a_slope",
@@ -134,7 +137,7 @@ TEST(SheetOnASlope, KeepsItsEnergyWhereItsFoldFliesOff)
     EXPECT_GT(sum / static_cast<double>(slopes.size()), 0.2);
 }
 
-/// Cotton on a box, a tenth of it over the edge, pulled there by its front border.
+/// Cotton on a box, with 0.1 m over the edge, pulled down by its front border.
 ClothRun make_sheet_run(GridPattern pattern)
 {
     const Vec2 size(0.8, 0.5);
@@ -154,8 +157,8 @@ double largest_face(const ClothMesh& mesh)
     return largest;
 }
 
-// What stands ahead of a trace is merged and comes back behind it: at the rear border, too, after which the
-// trace is gone and nothing changes the mesh any more.
+// Vertices ahead of a trace are merged and inserted again behind it. At the rear border this must happen
+// before the trace is gone, because nothing changes the mesh afterwards.
 TEST(PulledCloth, HasFacesOfTheirOwnSizeWhereItsRearBorderHasPassedTheEdge)
 {
     for (const GridPattern pattern : {GridPattern::Diagonal, GridPattern::Cross}) {

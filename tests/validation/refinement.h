@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the validation tests share: orders of convergence, and the tables that end up in docs/validation.md.
+// Orders of convergence and the tables of docs/validation.md, shared by the validation tests.
 #pragma once
 
 #include <string>
@@ -11,12 +11,11 @@ namespace arris {
 /// positive.
 double order_of(const std::vector<double>& sizes, const std::vector<double>& errors);
 
-/// Whether the refinements that take minutes are asked for (environment variable ARRIS_DEEP=1).
+/// Whether the environment variable ARRIS_DEEP=1 asks for the refinements that take minutes.
 bool is_deep();
 
-/// A measured table. When it goes out of scope it is written as Markdown to <name>.md in the folder that
-/// ARRIS_VALIDATION_TABLES names (scripts/validation puts it into docs/validation.md), or nowhere without
-/// one.
+/// A measured table. Its destructor writes <name>.md in the folder that ARRIS_VALIDATION_TABLES names, or
+/// nothing if that variable is not set. scripts/validation puts the tables into docs/validation.md.
 class Table {
   public:
     Table(std::string name, std::vector<std::string> columns);
@@ -24,7 +23,7 @@ class Table {
     Table(const Table&) = delete;
     Table& operator=(const Table&) = delete;
 
-    void add(std::vector<std::string> cells);  ///< one a column
+    void add(std::vector<std::string> cells);  ///< one cell for each column
 
   private:
     std::string name_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A strip of cloth that hangs over a wire, both sides straight down but for the angle that holds them apart,
-// and slides off without friction: a rope over a pulley of no size.
+// A strip of cloth hangs over a wire and slides off without friction, like a rope over a pulley of radius 0.
+// Its two sides hang straight down, except for the small angle between them.
 //
 //        o      y" = 2 g y / L,  y: how far the longer side is longer than half of the strip.
 //       | |     It presses while its tension exceeds the flow of momentum around the wire, 2 rho y'^2.
@@ -26,32 +26,36 @@ namespace {
 
 constexpr double kG = 9.81, kDensity = 0.1, kThickness = 1e-3;
 constexpr double kLength = 1.0, kWidth = 0.2, kStart = 0.05;  // m
-constexpr double kLiftOff = 0.598076;                         // s, of this rope
-constexpr double kShare = 0.9;                                // of it, over which errors are measured
-constexpr double kStep = 0.005;                               // s
-constexpr double kTimeError = 5e-4;     // BDF2's at 5 ms, over y: the rate is sqrt(2) times a table's
-constexpr double kHeldError = 1.5e-3;   // over y: more where the clap has crumpled the rope
-constexpr double kHangingError = 5e-4;  // over the longer side
-constexpr double kLoss = 0.01;          // of energy, over what is exchanged
+constexpr double kLiftOff = 0.598076;                         // s, when this rope lifts off
+constexpr double kShare = 0.9;   // share of kLiftOff over which errors are measured
+constexpr double kStep = 0.005;  // s
+// Error of BDF2 at 5 ms, relative to y. The rate is sqrt(2) times that at a table's edge.
+constexpr double kTimeError = 5e-4;
+// Relative to y. The error is larger where the impact of the sides has crumpled the rope.
+constexpr double kHeldError = 1.5e-3;
+constexpr double kHangingError = 5e-4;  // error relative to the length of the longer side
+constexpr double kLoss = 0.01;          // allowed loss, relative to the energy exchanged
 constexpr double kClothError =
-    3e-4;  // over y, beyond BDF2's: the fold leans in its first cell, as kOnWire says
-constexpr double kMeshError = 2.5e-4;  // over y: the sides rest on planes that hold them apart by an angle
-constexpr double kRise = 1e-4;         // of energy over its start, over what is exchanged
-constexpr double kClapRise = 0.05;     // the same, where sides clap on each other without damping
-constexpr double kDamping = 2e-3;      // s, of the scenes: of a rope that does not stretch it takes nothing
-constexpr double kAreaTolerance = 1e-12;  // round-off of some 100 faces, over the area
-constexpr double kOnWire = 5e-5;          // m, of a stand-off of 1e-3: the fold leans by .05 rad at most
+    3e-4;  // relative to y, beyond BDF2's error: the fold leans in its first cell (kOnWire)
+constexpr double kMeshError = 2.5e-4;  // relative to y: fold planes keep an angle between the sides
+constexpr double kRise = 1e-4;      // allowed rise of energy over its start, relative to the energy exchanged
+constexpr double kClapRise = 0.05;  // allowed rise, as kRise, where the sides hit each other without damping
+// Damping of the scenes, s. It dissipates nothing in a rope that does not stretch.
+constexpr double kDamping = 2e-3;
+constexpr double kAreaTolerance = 1e-12;  // round-off over some 100 faces, relative to the area
+constexpr double kOnWire = 5e-5;          // m, for a stand-off of 1e-3: the fold leans by at most 0.05 rad
 
 struct RopeCase {
     std::array<int, 2> cells = {8, 2};
     GridPattern pattern = GridPattern::Diagonal;
     double pattern_angle = 0.0;  ///< degrees
     Integrator integrator = Integrator::Bdf2;
-    int segments = 1;           ///< of the wire, from y = -1 to 1
-    double open_degrees = 0.6;  ///< between its sides at the start: a little more than the least
-    double stiffness = 2e5;     ///< N/m
-    double bending = 1e-7;      ///< J
-    double damping = 0.0;       ///< s
+    int segments = 1;  ///< number of wire segments from y = -1 to 1
+    /// Angle between the sides at the start: a little more than the fold planes require.
+    double open_degrees = 0.6;
+    double stiffness = 2e5;  ///< N/m
+    double bending = 1e-7;   ///< J
+    double damping = 0.0;    ///< s
 };
 
 std::string describe(const RopeCase& rope)
@@ -66,21 +70,21 @@ double displacement(double time)
     return kStart * std::cosh(time * std::sqrt(2.0 * kG / kLength));
 }
 
-/// Kinetic, of the rope that moves so, J.
+/// Kinetic energy of the rope moving by displacement(), J.
 double exchanged_energy(double time)
 {
     const double rate = std::sqrt(2.0 * kG / kLength);
     return 0.5 * kDensity * kLength * kWidth * std::pow(kStart * rate * std::sinh(rate * time), 2);
 }
 
-/// What the integrator makes of y" = 2 g y / L alone, in the steps of a run: the loads are linear in y, and
-/// are taken where the last velocities lead.
+/// Integrates y" = 2 g y / L alone, with the integrator and the steps of a run. The load is linear in y and
+/// is evaluated at the position extrapolated by the last velocities, as in a run.
 double integrated_displacement(Integrator integrator, double duration, double dt)
 {
     const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
     const double squared_rate = 2.0 * kG / kLength;
     std::vector<double> lengths(steps, duration / steps);
-    if (integrator == Integrator::Bdf2) {  // begins with a third of a step
+    if (integrator == Integrator::Bdf2) {  // the first step is split at one third
         lengths[0] *= 2.0 / 3.0;
         lengths.insert(lengths.begin(), 0.5 * lengths[0]);
     }
@@ -106,7 +110,7 @@ ObstacleMesh make_wire_of(int segments)
     return make_wire(points, false);
 }
 
-/// Folded over the wire, with vertices on it.
+/// A run with the rope folded over the wire and EOL vertices on it.
 ClothRun make_rope_run(const RopeCase& rope)
 {
     const double fold = 0.5 * kLength - kStart;
@@ -162,7 +166,7 @@ void expect_sound(const State& state)
 
 struct Slide {
     double displacement = 0.0, error = 0.0, rise = 0.0, loss = 0.0;
-    double cloth_error = 0.0;  ///< over what the integrator alone makes of it
+    double cloth_error = 0.0;  ///< relative to integrated_displacement()
 };
 
 Slide slide(const RopeCase& rope, double dt)
@@ -230,7 +234,8 @@ TEST(RopeOverWire, IsARopeOnAnyMeshAndOverAnyWire)
                     rope.pattern_angle = angle;
                     rope.cells = cells;
                     rope.segments = segments;
-                    rope.stiffness = 2e4;  // as stiff as for the orders fine cells buckle: see below
+                    // With the stiffness of the order test fine cells buckle: see the next test.
+                    rope.stiffness = 2e4;
                     const Slide found = slide(rope, kStep);
                     ASSERT_FALSE(testing::Test::HasFailure()) << describe(rope);
                     EXPECT_LT(found.error, kTimeError) << describe(rope);
@@ -248,8 +253,9 @@ TEST(RopeOverWire, IsARopeOnAnyMeshAndOverAnyWire)
     EXPECT_LT(most / least - 1.0, kMeshError);
 }
 
-// Nearly inextensible cloth with next to no bending stiffness, whose sides fall shut on each other, buckles,
-// and with cells as short as these that grows where a step is too long. What else than the step stills it.
+// Nearly inextensible cloth with almost no bending stiffness buckles when its sides fall shut. With cells
+// this short the buckles grow where the step is too long. This test measures which damping, stiffness or step
+// prevents the growth.
 TEST(RopeOverWire, OfFineCellsWantsShortStepsOrSomethingThatStillsIt)
 {
     struct Case {
@@ -301,8 +307,8 @@ TEST(RopeOverWire, OfFineCellsWantsShortStepsOrSomethingThatStillsIt)
     }
 }
 
-// A hard case: sides that stand open swing shut and clap on each other, faster than they slide. That takes
-// some of their energy. Without damping they get crumpled, and hold the cloth back more than that.
+// A hard case: the open sides swing shut and hit each other, faster than they slide. The impact dissipates
+// some of their energy. Without damping the sides crumple, which slows the rope further.
 TEST(RopeOverWire, SlidesOffThoughItsSidesClap)
 {
     Table table("rope_clap", {"degrees open", "damping, s", "pattern", "turned by", "cells", "y over cosh",

@@ -13,8 +13,8 @@ namespace {
 constexpr double kG = 9.81;
 constexpr double kDensity = 0.1;        // kg/m^2
 constexpr double kThickness = 1e-3;     // m
-constexpr double kFeatureAngle = 10.0;  // degrees, of a turn that makes an edge sharp
-constexpr double kReach = 3.0;          // m, of the slopes: the strip stays on them
+constexpr double kFeatureAngle = 10.0;  // degrees: a dihedral angle above this makes an edge sharp
+constexpr double kReach = 3.0;          // m, length of the slopes, so that the strip stays on them
 constexpr double kDegrees = std::numbers::pi / 180.0;
 
 Vec3 downhill(double angle)
@@ -27,7 +27,7 @@ Vec3 normal_of(double angle)
     return {std::sin(angle), 0.0, std::cos(angle)};
 }
 
-/// A prism whose upper edge is the y axis.
+/// A prism; its upper edge is the y axis.
 ObstacleMesh make_prism(const Slopes& slopes)
 {
     ObstacleMesh mesh;
@@ -39,7 +39,7 @@ ObstacleMesh make_prism(const Slopes& slopes)
     return mesh;
 }
 
-/// At its stand-off from both slopes.
+/// Bends the strip over the edge, at its stand-off from both slopes.
 Vec3 find_bend(const Slopes& slopes)
 {
     const Vec3 n1 = normal_of(slopes.before), n2 = normal_of(slopes.after);

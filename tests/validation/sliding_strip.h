@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A strip of cloth that slides without friction over a straight edge, from one slope onto a steeper one: a
+// A strip of cloth slides without friction over a straight edge, from one slope onto a steeper one, like a
 // chain over a pulley.
 //
 //      before          x: material that has gone over the edge, measured along the slope after it
@@ -9,8 +9,8 @@
 //                \     a table's edge: a = 0, b = 90 degrees; a ridge: a < 0
 //                 after
 //
-// Thin and stiff, the strip has nothing else to move by. It presses on the edge while its tension exceeds the
-// flow of momentum around the bend, rho x'^2; then it lifts off.
+// The strip is thin and stiff, so it neither stretches nor bends noticeably. It presses on the edge while its
+// tension exceeds the flow of momentum around the bend, rho x'^2; then it lifts off.
 #pragma once
 
 #include "cloth_run.h"
@@ -31,14 +31,14 @@ class SlidingChain {
     double speed(double time) const;         ///< x', m/s
     double acceleration(double time) const;  ///< x", m/s^2
 
-    /// When it no longer presses on the edge, s; it must slide forward. `held` (m) of its length rest on the
-    /// edge beside its tension.
+    /// Time at which the chain stops pressing on the edge, s; the chain must slide forward. The edge also
+    /// carries the weight of `held` (m) of the chain, besides its tension.
     double lift_off(double held = 0.0) const;
 
-    double balance() const { return balance_; }  ///< x at which it would stay, m
+    double balance() const { return balance_; }  ///< x of the chain in equilibrium, m
 
   private:
-    double tension_excess(double time) const;  ///< T - rho x'^2 at the edge over rho, m^2/s^2
+    double tension_excess(double time) const;  ///< (T - rho x'^2) / rho at the edge, m^2/s^2
     Slopes slopes_;
     double length_, start_;
     double balance_;
@@ -54,15 +54,16 @@ struct StripCase {
     double youngs_modulus = 2e5, bending_stiffness = 1e-7;
     Integrator integrator = Integrator::Bdf2;
     bool has_eol = true;
-    Placement place = {};         ///< of edge, strip and gravity alike: changes nothing
-    Vec3 carried = Vec3::Zero();  ///< m/s, velocity of edge and strip alike: changes nothing
+    Placement place = {};         ///< moves edge, strip and gravity together: must not change the result
+    Vec3 carried = Vec3::Zero();  ///< m/s, common velocity of edge and strip: must not change the result
 };
 
-/// How far from where the strip must bend, at its stand-off from both slopes, `world` is now, m; along the
-/// edge does not count.
+/// Distance of `world` from the line of the fold, m, perpendicular to the edge. That line is at the stand-off
+/// from both slopes.
 double distance_from_bend(const StripCase& strip, double time, const Vec3& world);
 
-/// Bent over the edge, which is the y axis before it is placed, at its stand-off from both slopes.
+/// A run with the strip bent over the edge, at its stand-off from both slopes. The edge is the y axis before
+/// `place` moves it.
 ClothRun make_strip_run(const StripCase& strip);
 
 double strip_mass(const StripCase& strip);  ///< kg

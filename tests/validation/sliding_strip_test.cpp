@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cloth that slides over a straight edge on EOL vertices: on any mesh it is a chain over a pulley.
+// Cloth slides over a straight edge on EOL vertices. On any mesh it must move as a chain over a pulley.
 #include "sliding_strip.h"
 
 #include <fmt/format.h>
@@ -20,15 +20,16 @@ namespace arris {
 namespace {
 
 constexpr double kDegrees = std::numbers::pi / 180.0;
-constexpr double kStep = 0.005;      // s
-constexpr double kShare = 0.9;       // of the time until lift-off, over which errors are measured
-constexpr double kTimeError = 5e-4;  // BDF2's at 5 ms, over x; a table's edge shows 3.4e-4
+constexpr double kStep = 0.005;  // s
+constexpr double kShare = 0.9;   // share of the time until lift-off over which errors are measured
+// Error of BDF2 at 5 ms, relative to x. Measured at a table's edge: 3.4e-4.
+constexpr double kTimeError = 5e-4;
 constexpr double kMeshError =
-    1e-5;                       // over x: what the mesh may change; K and E h^2 are not quite 0 and infinite
-constexpr double kRise = 1e-4;  // of energy over its start, over what is exchanged
-constexpr double kLoss = 0.01;  // BDF2's, alike
-constexpr double kAreaTolerance = 1e-12;  // round-off of some 100 faces, over the area
-constexpr double kOnEdge = 1e-6;          // m, a thousandth of the stand-off: what stretch lifts a vertex by
+    1e-5;  // allowed effect of the mesh, relative to x: K > 0 bends and finite E stretches the strip
+constexpr double kRise = 1e-4;  // allowed rise of energy over its start, relative to the energy exchanged
+constexpr double kLoss = 0.01;  // allowed loss by BDF2, relative to the energy exchanged
+constexpr double kAreaTolerance = 1e-12;  // round-off over some 100 faces, relative to the area
+constexpr double kOnEdge = 1e-6;          // m, 0.1 % of the stand-off: stretch lifts a vertex by less
 
 std::string describe(const StripCase& strip)
 {
@@ -55,12 +56,13 @@ bool has_edge(const ClothMesh& mesh, int a, int b)
     });
 }
 
-/// All its material in positive faces, and EOL vertices along the whole edge, joined by edges of the mesh.
+/// Checks that the faces are positive and cover the whole material. EOL vertices must lie along the whole
+/// edge, joined by mesh edges.
 void expect_sound(const StripCase& strip, const State& state)
 {
     EXPECT_EQ(validate(state.mesh), "");
     EXPECT_NEAR(material_area(state.mesh) / (strip.length * strip.width), 1.0, kAreaTolerance);
-    std::vector<std::pair<double, int>> trace;  // along the edge
+    std::vector<std::pair<double, int>> trace;  // coordinate along the edge, vertex
     for (const EolVertex& eol : state.eol) {
         const int v = state.index_of(eol.vertex_id);
         trace.emplace_back(state.mesh.material[v].y(), v);
@@ -75,12 +77,12 @@ void expect_sound(const StripCase& strip, const State& state)
             << "at " << state.time << " s";
 }
 
-/// What a run shows.
+/// Result of one run.
 struct Slide {
     double length = 0.0;  ///< x at the end, m
-    double error = 0.0;   ///< of it, over x
-    double rise = 0.0;    ///< greatest excess of energy over its start, over what is exchanged until the end
-    double loss = 0.0;    ///< at the end, alike
+    double error = 0.0;   ///< of x, relative
+    double rise = 0.0;    ///< greatest energy over its start, relative to the energy exchanged until the end
+    double loss = 0.0;    ///< energy lost at the end, relative to the energy exchanged
 };
 
 Slide slide(const StripCase& strip, double duration, double dt)
@@ -136,12 +138,13 @@ TEST(SlidingStrip, ConvergesAtTheIntegratorsOrder)
 TEST(SlidingStrip, IsAChainOnAnyMesh)
 {
     Table table("sliding_meshes", {"pattern", "turned by", "cells", "error of x", "energy lost / exchanged"});
-    double least = 1.0, most = 0.0;  // x over all meshes
+    double least = 1.0, most = 0.0;  // range of x over all meshes
     for (const GridPattern pattern : kPatterns)
         for (const double angle : {0.0, 17.0, 45.0})
             for (const std::array<int, 2> cells : {std::array{4, 1}, {8, 2}, {16, 4}, {32, 8}, {64, 16}}) {
                 if (cells[0] > 16 && !is_deep()) continue;
-                if (pattern == GridPattern::Unstructured && angle > 0.0) continue;  // it has no direction
+                // An unstructured mesh has no direction to turn.
+                if (pattern == GridPattern::Unstructured && angle > 0.0) continue;
                 StripCase strip;
                 strip.pattern = pattern;
                 strip.pattern_angle = angle;
@@ -162,7 +165,7 @@ TEST(SlidingStrip, IsAChainOnAnyMesh)
 TEST(SlidingStrip, TakesHalfACellInOneStepAndIsTheSame)
 {
     constexpr double kLong = 0.0125;       // s
-    constexpr double kLongError = 2.5e-3;  // BDF2's, over x
+    constexpr double kLongError = 2.5e-3;  // error of BDF2, relative to x
     double lengths[2] = {};
     for (const int k : {0, 1}) {
         StripCase strip;
@@ -171,7 +174,8 @@ TEST(SlidingStrip, TakesHalfACellInOneStepAndIsTheSame)
         ClothRun run = make_strip_run(strip);
         const double duration = most_of_the_way(strip), steps = std::ceil(duration / kLong);
         const EnergySpan energy = watch_energy(run, duration, kLong, [&](const StepReport& report) {
-            const bool is_first = run.state.time < 1.5 * duration / steps;  // whose last part is two thirds
+            // BDF2 makes the last two thirds of the first step.
+            const bool is_first = run.state.time < 1.5 * duration / steps;
             EXPECT_NEAR(report.dt, (is_first ? 2.0 / 3.0 : 1.0) * duration / steps, 1e-12)
                 << "at " << run.state.time << " s";
             expect_sound(strip, run.state);
@@ -205,7 +209,7 @@ TEST(SlidingStrip, FollowsAnyTwoSlopes)
             const double end = most_of_the_way(strip);
             const Slide found = slide(strip, end, kStep);
             ASSERT_FALSE(testing::Test::HasFailure()) << describe(strip);
-            // A short run feels its start.
+            // In a short run the lag of BDF2's first step is a noticeable part of x.
             const SlidingChain chain = chain_of(strip);
             const double ahead =
                 kBdf2StartLag * kStep * kStep * chain.acceleration(0.0) / chain.length_after(end);
@@ -219,7 +223,8 @@ TEST(SlidingStrip, FollowsAnyTwoSlopes)
 
 TEST(SlidingStrip, IsTheSameWhereverAndHoweverFastItIsCarried)
 {
-    constexpr double kCarriedTolerance = 1e-8;  // over x; round-off of 1 km, 2e-13 m, adds up over the steps
+    // Relative to x. Round-off at 1 km, 2e-13 m, accumulates over the steps.
+    constexpr double kCarriedTolerance = 1e-8;
     const StripCase strip;
     const double end = most_of_the_way(strip);
     const double length = slide(strip, end, kStep).length;
@@ -232,11 +237,11 @@ TEST(SlidingStrip, IsTheSameWhereverAndHoweverFastItIsCarried)
     EXPECT_NEAR(slide(carried, end, kStep).length / length, 1.0, kCarriedTolerance);
 }
 
-/// What the table's side bears of what holds the strip to the edge in the step just made, N s: tension less
-/// the flow of momentum. Its top bears the rest, also the weight of the half cell on it.
+/// Impulse on the table's side from the EOL vertices in the last step, N s: tension less the flow of
+/// momentum. The table's top bears the other component, which includes the weight of the half cell on it.
 double push_of_side(const ClothRun& run)
 {
-    const Vec3 outward = Vec3::UnitX();  // of the side
+    const Vec3 outward = Vec3::UnitX();  // normal of the table's side
     ClothMesh begin = run.state.mesh;
     begin.world = run.state.previous_world;
     double sum = 0.0;
@@ -246,7 +251,7 @@ double push_of_side(const ClothRun& run)
     return sum;
 }
 
-/// When, s, the EOL vertices on the edge last pressed at all, and last on the table's side.
+/// Last times, s, at which the EOL vertices on the edge pressed at all, and pressed on the table's side.
 struct LastPress {
     double at_all = 0.0, on_side = 0.0;
 };
@@ -269,12 +274,12 @@ LastPress last_press(const StripCase& strip, double duration, double dt)
     return last;
 }
 
-// Its material turned around the edge, the strip lifts off where that takes all its tension: then nothing of
-// what holds its vertices there is the side's any more. They stay as long as the weight of the half cell on
-// the table, that they carry, too, holds them.
+// The strip lifts off when turning its material around the edge takes all its tension. From then on the
+// table's side bears no impulse. The EOL vertices stay a little longer, because they also carry the weight of
+// the half cell on the table.
 TEST(SlidingStrip, LiftsOffWhenTurningItsMaterialTakesAllTension)
 {
-    constexpr double kWatched = 1.06;  // of the time until lift-off: 4 cells do it at 1.04
+    constexpr double kWatched = 1.06;  // over the time until lift-off: 4 cells lift off at 1.04
     Table table("sliding_lift_off", {"cells", "step", "side bears last at", "last presses at", "lift-off"});
     for (const double dt : {kStep, 0.001})
         for (const int cells : {4, 8, 16, 32, 64}) {
@@ -303,7 +308,7 @@ TEST(SlidingStrip, SnagsWithoutEolVertices)
     }
 }
 
-/// Greatest distance, m, that a strip put in balance over a ridge slides in a second.
+/// Greatest distance, m, that a strip slides in 1 s from its equilibrium over a ridge.
 double creep(StripCase strip)
 {
     SCOPED_TRACE(describe(strip));
@@ -318,8 +323,8 @@ double creep(StripCase strip)
     return most;
 }
 
-// The balance is unstable, e^(3.2) in a second: what slips is what settling, rho g L^2 / 2 E, has moved it
-// by.
+// The equilibrium is unstable: a displacement grows about e^3.2-fold in 1 s. The allowed slip is the
+// displacement rho g L^2 / (2 E) by which the strip stretches as it settles.
 TEST(SlidingStrip, DoesNotCreepInBalance)
 {
     Table table("sliding_creep", {"E", "K", "pattern", "turned by", "cells", "slip in 1 s"});
@@ -404,14 +409,14 @@ TEST(SlidingStrip, IsLeftAsItWasByAStepThatFails)
     int overruns = 0;
     for (int k = 1; k <= 60; ++k) {
         const State before = run.state;
-        // More material would flow over the edge than the mesh has there.
+        // In 0.2 s more material would flow over the edge than the mesh has there.
         State tried = before;
         const StepReport report = step(run.scene, run.settings, run.state.time + 0.2, tried, run.work);
         if (report.status == StepStatus::Overrun) {
             ++overruns;
             ASSERT_NO_FATAL_FAILURE(expect_identical(before, tried));
         }
-        // No solution is this good.
+        // No solution meets a tolerance of zero.
         Settings strict = run.settings;
         strict.tolerance = 0.0;
         EXPECT_EQ(step(run.scene, strict, k * kStep, run.state, run.work).status, StepStatus::NotConverged);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A soft strip over a ridge, let go unstretched where a stiff one would be in balance: it settles, rings and
-// slides. The truth is an elastic bar along the slopes, solved here by small explicit steps.
+// A soft strip over a ridge is released unstretched at the place where a stiff strip would be in equilibrium.
+// It settles, oscillates and slides. The reference is an elastic bar along the slopes, solved here by small
+// explicit steps.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ constexpr double kG = 9.81;
 constexpr double kDegrees = std::numbers::pi / 180.0;
 constexpr double kDuration = 0.5;  // s
 
-/// Linear elements along the strip. `place` is the way past the ridge, m.
+/// Linear elements along the strip. `place_` is the coordinate along the slopes past the ridge, m.
 class Bar {
   public:
     Bar(const StripCase& strip, int cells)
@@ -36,7 +37,7 @@ class Bar {
 
     double end() const { return place_.back(); }
 
-    /// Leapfrog steps well below the cells' time of sound.
+    /// Leapfrog steps at 40 % of the time in which sound crosses a cell.
     void advance(double duration)
     {
         const int steps = static_cast<int>(std::ceil(duration / (0.4 * cell_ / std::sqrt(stiffness_))));
@@ -59,14 +60,16 @@ class Bar {
         }
     }
 
-    /// Over the density: elastic, and gravity by exact integrals also where the ridge is within an element.
+    /// Force over density: elasticity, and gravity by exact integrals, also where the ridge is inside an
+    /// element.
     void find_force()
     {
         std::fill(force_.begin(), force_.end(), 0.0);
         for (std::size_t i = 0; i + 1 < place_.size(); ++i) {
             const double length = place_[i + 1] - place_[i];
             const double tension = stiffness_ * (length / cell_ - 1.0);
-            const double q = std::clamp(-place_[i] / length, 0.0, 1.0);  // share before the ridge
+            // Share of the element before the ridge.
+            const double q = std::clamp(-place_[i] / length, 0.0, 1.0);
             const double steeper = cell_ * (after_ - before_);
             force_[i] += tension + 0.5 * cell_ * before_ + 0.5 * steeper * (1.0 - q) * (1.0 - q);
             force_[i + 1] += -tension + 0.5 * cell_ * before_ + 0.5 * steeper * (1.0 - q * q);
@@ -99,7 +102,7 @@ TEST(SoftStrip, SlidesAsAnElasticBar)
     const double exact = slips.back();
     EXPECT_NEAR(slips[1] / exact, 1.0, 1e-3) << "the bar has converged";
 
-    // Steps well below the ring's period, 0.1 s: BDF2 damps it.
+    // Steps far below the period of the oscillation, 0.1 s, as BDF2 damps it.
     constexpr double kStep = 0.000625;  // s
     Table table("sliding_soft", {"cells", "pattern", "slip in 0.5 s", "error"});
     for (const auto& [cells, tolerance] : {std::pair{7, 0.02}, {16, 0.005}, {32, 0.005}, {64, 0.005}})

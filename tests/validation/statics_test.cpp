@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cloth that hangs: its elongation, and the catenary.
+// Statics of hanging cloth: its elongation, and the catenary.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kG = 9.81;
 
-/// Elongation, over rho g L^2 / (2 E), of a sheet of 1 m that hangs from its edge u = 0. nu = 0: the membrane
-/// is linear in the stretch then, so the closed form holds for any strain, and the held edge has nothing to
-/// narrow.
+/// Elongation, over rho g L^2 / (2 E), of a sheet of 1 m that hangs from its edge u = 0. With nu = 0 the
+/// membrane is linear in the stretch, so the closed form holds for any strain and the held edge prevents no
+/// contraction.
 double relative_elongation(GridPattern pattern, int cells, double modulus)
 {
     const double density = 0.1;
@@ -40,7 +40,7 @@ TEST(HangingSheet, IsLongerByItsWeightTimesHalfItsLengthOverE)
     for (const auto& [pattern, name] :
          {std::pair{GridPattern::Diagonal, "diagonal"}, std::pair{GridPattern::Alternating, "alternating"},
           std::pair{GridPattern::Cross, "cross"}, std::pair{GridPattern::Unstructured, "unstructured"}})
-        for (const double modulus : {10.0, 1000.0}) {  // stretched by up to 10 % and 0.1 %
+        for (const double modulus : {10.0, 1000.0}) {  // strains up to 10 % and 0.1 %
             std::vector<double> sizes, errors;
             std::vector<std::string> row = {name, fmt::format("{:g} N/m", modulus)};
             for (const int cells : {4, 8, 16, 32}) {
@@ -97,7 +97,7 @@ TEST(Catenary, OfANearlyInextensibleStrip)
         for (const double u : {0.0, length})
             scene.pins.push_back({{Vec2(u, 0.0), Vec2(u, width)}, {}, {true, true, true}});
         ClothMesh mesh = make_sheet(Vec2(length, width), {cells, 1}, GridPattern::Alternating);
-        // It starts as a V of its own length.
+        // The strip starts as a V of its material length.
         const double depth = std::sqrt(0.25 * (length * length - span * span));
         for (std::size_t v = 0; v < mesh.world.size(); ++v) {
             const double u = mesh.material[v].x(), from_end = std::min(u, length - u);

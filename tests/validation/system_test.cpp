@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The assembled system: its mass is the cloth's, and it is symmetric positive definite whatever the cloth
-// looks like.
+// The assembled system: its mass is the cloth's, and its matrix is symmetric positive definite in any state
+// of the cloth.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -35,7 +35,7 @@ Linearization at_rest(const ClothMesh& mesh, double dt)
 struct Assembled {
     Eigen::MatrixXd matrix;
     Eigen::VectorXd rhs;
-    double asymmetry;  ///< of the diagonal blocks, which are stored whole
+    double asymmetry;  ///< of the diagonal blocks, which are stored in full
 };
 
 Assembled assemble(const ClothMesh& mesh, const Terms& terms, const Linearization& at)
@@ -53,7 +53,7 @@ Assembled assemble(const ClothMesh& mesh, const Terms& terms, const Linearizatio
     return result;
 }
 
-/// M of the assembled system: without stiffness, as a step of no length.
+/// Mass matrix of the assembled system: inertia is the only term.
 Eigen::MatrixXd mass_matrix(const ClothMesh& mesh, double density)
 {
     Terms terms;
@@ -100,7 +100,7 @@ TEST(Mass, OfARigidRotationIsThePlatesMomentOfInertia)
             const ClothElements elements =
                 make_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
             EXPECT_NEAR(0.5 * v.dot(M * v), kinetic_energy(density, elements, velocity), kRoundOff);
-            // About the origin: L = I omega + m c x (omega x c'), and the sheet's middle stands still.
+            // About the origin L = I omega + m c x (omega x c); the sheet's centre does not move.
             EXPECT_NEAR(angular_momentum(density, elements, mesh.world, velocity)[axis],
                         mass * principal[axis][axis] / 12.0, kRoundOff);
         }
@@ -166,7 +166,7 @@ TEST(AssembledMatrix, IsSymmetricPositiveDefiniteWhateverTheClothLooksLike)
                     EXPECT_LT(system.asymmetry, 1e-12);
                     EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(system.matrix).info(), Eigen::Success);
 
-                    // It dominates its own mass: what was added to it is positive semi-definite.
+                    // The matrix less its mass must be positive semi-definite.
                     const Eigen::MatrixXd added = system.matrix - mass_matrix(mesh, material.density);
                     const double least =
                         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(added, Eigen::EigenvaluesOnly)
@@ -194,7 +194,7 @@ TEST(AssembledForces, OfTheClothOnItselfBalance)
                 size = std::max({size, arm.norm(), 1e-3});
                 force_size += force.norm();
             }
-            // Where forces vanish, what is left of them is round-off of the stiffness times the size.
+            // Where forces vanish, only round-off of stiffness times size remains.
             const double scale = force_size + 1e-3 * system.matrix.norm() * size;
             EXPECT_LT(net.norm(), 1e-12 * scale);
             EXPECT_LT(torque.norm(), 1e-12 * scale * size);

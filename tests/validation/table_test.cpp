@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cloth dropped onto a table that is under four sevenths of it slides off over the table's long edge, on any
-// mesh, and off a small one around its corners. Without friction nothing but impacts take energy: cloth that
-// snags loses most of what it has (rows only: .025 J of .091 J at .6 s on 16 cells).
+// Cloth lands with four fifths of its length on a table and slides off over the table's long edge, on any
+// mesh. On a small table it slides off around the corners. Without friction only impacts dissipate energy,
+// but cloth that snags loses most of its energy. Without EOL vertices 0.025 J of 0.091 J are left at 0.6 s on
+// 16 cells.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -43,8 +44,8 @@ ClothRun make_run(const Drop& drop)
 struct Slid {
     double kinetic = 0.0;  ///< J, at the end
     double height = 0.0;   ///< m, of the centre of mass at the end
-    double rise = 0.0;     ///< J, greatest of the energy over its running minimum
-    double runaway = 0.0;  ///< greatest flow of material over the greatest speed of cloth at its time
+    double rise = 0.0;     ///< J, greatest rise of the energy over its running minimum
+    double runaway = 0.0;  ///< greatest flow over the greatest speed of the cloth at that time
     int halved = 0;
 };
 
@@ -55,7 +56,7 @@ double greatest_flow(const State& state)
     return most;
 }
 
-/// Of what is not EOL, so that it goes with its material.
+/// Greatest speed of the Lagrangian vertices, which move with their material.
 double greatest_speed(const State& state)
 {
     double most = 0.0;
@@ -102,7 +103,8 @@ TEST(HalfTable, ClothSlidesOffOnAnyMeshSoftOrStiff)
                 const Slid found = slide_off({cells, angle, modulus});
                 const std::string name = fmt::format("{} cells turned by {}, E {}", cells, angle, modulus);
                 ASSERT_FALSE(HasFailure()) << name;
-                // How stiff cloth bounces off the table depends on the mesh, and the slide multiplies it.
+                // The bounce of stiff cloth off the table depends on the mesh, and the slide amplifies the
+                // difference.
                 EXPECT_NEAR(found.kinetic, 0.0915, (modulus < 100.0 ? 0.04 : 0.06) * 0.0915) << name;
                 EXPECT_LT(found.rise, 1e-3) << name;
                 results.add({fmt::format("{:g}", modulus), fmt::format("{:g}", angle),
@@ -111,8 +113,8 @@ TEST(HalfTable, ClothSlidesOffOnAnyMeshSoftOrStiff)
             }
 }
 
-// Stiff cloth bounces: its fold leaves the edge for a while, and has to come back to it. Led along the
-// bisector of the table's faces it did not: .147 J here, and .094 J with a quarter of the step.
+// Stiff cloth bounces: its fold leaves the edge for a while and must come back to it. A fold that moved along
+// the bisector of the table's faces did not: 0.147 J here, 0.094 J with a quarter of the step.
 TEST(HalfTable, FoldThatLeavesTheEdgeComesBack)
 {
     const Slid found = slide_off({32, 45.0, 2000.0});
@@ -121,8 +123,9 @@ TEST(HalfTable, FoldThatLeavesTheEdgeComesBack)
     EXPECT_LT(found.halved, 5);
 }
 
-// Where within its step the impact falls: linear equations stop the cloth on the table and let the rest fall
-// on, across one cell, which they do not see stretched. Snapping back it left the edge: .053 and .077 J here.
+// The result must not depend on when within a step the impact happens. Linear equations stop the cloth on the
+// table but let the overhang keep falling. They neglect the stretch of the one cell between the two. When
+// that cell contracted again, the fold left the edge: 0.053 and 0.077 J here.
 TEST(HalfTable, TheImpactMayFallAnywhereInItsStep)
 {
     for (const double higher : {5e-4, 1e-3}) {
@@ -132,9 +135,10 @@ TEST(HalfTable, TheImpactMayFallAnywhereInItsStep)
     }
 }
 
-// Around corners the fold ends at the corner and the cloth beside it crumples, another way in every run:
-// drops that differ by .1 mm scatter by .011 J, a mean of eleven by .0033 J. Rows only leave .053 J on 64
-// cells with a quarter of the step, and with this one .013 to .019 J on 16 and 32 cells: there it catches.
+// The fold ends at the table's corner and the cloth beside it crumples, in a way that varies from run to run.
+// Drops that differ by 0.1 mm scatter by 0.011 J, and the mean of eleven by 0.0033 J. Without EOL vertices 64
+// cells with a quarter of the step leave 0.053 J. With this step 16 and 32 cells leave 0.013 to 0.019 J: the
+// cloth snags there.
 TEST(SmallTable, SoftClothSlidesAroundItsCorners)
 {
     constexpr int kDrops = 11;
@@ -150,7 +154,7 @@ TEST(SmallTable, SoftClothSlidesAroundItsCorners)
     EXPECT_GT(least, 0.022);
 }
 
-/// The mean of drops from five heights: kinetic energy and height of the centre of mass.
+/// Mean over drops from five heights: kinetic energy and height of the centre of mass.
 Slid slide_around_corners(Drop drop)
 {
     constexpr int kDrops = 5;
@@ -165,8 +169,9 @@ Slid slide_around_corners(Drop drop)
     return mean;
 }
 
-// Bending against weight makes pleats of (K / (rho g))^(1/3) at the corners. Of cells that can form them, two
-// or more a pleat, EOL vertices and rows leave the same; K = 1e-5 (above) would take 74 cells.
+// Bending and weight make pleats of length (K / (rho g))^(1/3) at the corners. Where cells resolve these
+// pleats, with two or more cells each, EOL vertices and rows must agree. K = 1e-5 (above) would take 74
+// cells.
 TEST(SmallTable, WhereCellsResolveItsPleatsClothSlidesAsFineClothOfRows)
 {
     struct Case {
@@ -174,7 +179,7 @@ TEST(SmallTable, WhereCellsResolveItsPleatsClothSlidesAsFineClothOfRows)
         int cells;
     };
     constexpr double kAgree = 0.03;
-    // Rows of 32 cells are within 2 % of those of 64, which take a minute.
+    // Without EOL vertices, 32 cells agree within 2 % with 64 cells, which take a minute.
     const int cells_of_rows = is_deep() ? 64 : 32;
     const double allowed = is_deep() ? kAgree : kAgree + 0.02;
     Table results("pleats", {"K", "features as", "cells", "kinetic energy at .6 s", "centre of mass"});

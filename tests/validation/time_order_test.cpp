@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Orders in time, by refinement of the step at a fixed mesh. The truth is the closed form where there is one,
-// else Richardson's limit of the finest steps.
+// Order of convergence in time, on a fixed mesh. The reference is the closed form if there is one, otherwise
+// Richardson's limit of the finest steps.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ void advance_alternating(ClothRun& run, double end, double first, double second)
     }
 }
 
-// --- A clamped hinge: the flap of two faces that share the edge (0, 1), of which face (0, 1, 2) is held. ---
+// --- A clamped hinge: two faces share the edge (0, 1); face (0, 1, 2) is held and the other is the flap. ---
 
 constexpr double kFlap = 0.5;       // m, the flap's height
 constexpr double kStiffness = 0.4;  // J, of the hinge, V = 2 k sin^2(theta / 2)
@@ -72,9 +72,9 @@ double flap_angle(const ClothRun& run)
     return std::atan2(run.state.mesh.world[3].z(), run.state.mesh.world[3].x());
 }
 
-/// theta at `end`. Only the third corner moves, with the mass m = rho A / 6, in the plane v = 1/2: at the
-/// radius r and the angle theta, V = 2 k sin^2(theta / 2) + A E / 2 (r / l - 1)^2, whose two equations of
-/// motion are solved here.
+/// theta at `end`. Only the third corner moves, with mass m = rho A / 6, in the plane v = 1/2. At radius r
+/// and angle theta, V = 2 k sin^2(theta / 2) + A E / 2 (r / l - 1)^2; the two equations of motion are solved
+/// here.
 double exact_flap_angle(double end)
 {
     const double area = 0.5 * kFlap, mass = kDensity * area / 6.0;
@@ -138,7 +138,7 @@ class TimeOrder : public testing::TestWithParam<OrderCase> {};
 TEST_P(TimeOrder, OfAClampedHinge)
 {
     const OrderCase& c = GetParam();
-    const double end = 0.12;  // s, it swings through about a right angle
+    const double end = 0.12;  // s, in which the flap swings through about a right angle
     const double exact = exact_flap_angle(end);
     const std::vector<double> steps = c.integrator == Integrator::Bdf2
                                           ? std::vector{2e-3, 1e-3, 5e-4, 2.5e-4}
@@ -153,14 +153,13 @@ TEST_P(TimeOrder, OfAClampedHinge)
     expect_order(c, "hinge", steps, errors);
 }
 
-// --- A strip clamped along one end, let go from the horizontal: bending, stretch and great turns at once.
-// ---
+// --- A strip clamped along one end, released from the horizontal: bending, stretch and large rotations ---
 
 ClothRun make_swinging_strip(Integrator integrator)
 {
     Scene scene;
-    // Let go at once, the strip rings in its fastest modes, whose phase over 200 periods no step here
-    // resolves: they are damped away (a mode of 100 rad/s by a tenth of critical).
+    // The sudden release excites the strip's fastest modes. No step here resolves their phase over 200
+    // periods, so they are damped away (a mode of 100 rad/s by 10 % of critical).
     scene.material = {0.3, 50.0, 0.3, 1e-3, 2e-3, 1e-3};
     scene.gravity = Gravity{};
     scene.pins.push_back({{Vec2(0.0, 0.0), Vec2(0.05, 0.1)}, {}, {true, true, true}});
@@ -182,7 +181,7 @@ TEST_P(TimeOrder, OfASwingingStrip)
     const double end = 0.192;  // s
     std::vector<double> steps = {1e-3, 5e-4, 2.5e-4, 1.25e-4};
     if (is_deep()) steps.push_back(6.25e-5);
-    // What halving the step changes falls with the order that the error has.
+    // The changes between successive steps converge at the order of the error.
     std::vector<double> changes;
     std::vector<Vec3> last;
     for (std::size_t k = 0; k <= steps.size(); ++k) {

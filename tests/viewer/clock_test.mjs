@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Clock } from "../../viewer/src/clock.js";
 
-/** Ticks every `gap` ms until `end`; starts with the tick that sets the clock's zero. */
+/** Ticks every `gap` ms until `end`. The first tick sets the clock's zero. */
 function run(clock, gap, end) {
   for (let now = 0; now <= end; now += gap) clock.tick(1000 + now);
 }

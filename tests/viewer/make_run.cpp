@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles]]: a run without a simulation, for looking at the
-// viewer and testing it. A square cloth waves and folds over a sharp edge that wanders along it: EOL edges
-// and mesh change with time. With obstacles there are a table at rest, a wire that turns, and nails that
-// rise.
+// make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles]]: writes a run without a simulation, for trying and
+// testing the viewer. A square cloth waves and folds over a sharp edge that moves along the cloth, so EOL
+// edges and mesh change with time. With `obstacles` there are a table at rest, a wire that turns, and nails
+// that rise.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -20,7 +20,7 @@ namespace {
 constexpr double kFramesPerSecond = 24.0;
 constexpr double kSize = 1.0;  // m
 
-/// Bends a flat point at `edge` on the u axis: beyond it the cloth hangs down steeply.
+/// Bends a flat point about `edge` on the u axis: beyond the edge the cloth hangs down steeply.
 Vec3 fold(double u, double v, double edge, double wave)
 {
     const double over = std::max(0.0, u - edge);
@@ -32,7 +32,8 @@ Frame make_frame(int number, int frames, int cells)
 {
     Frame frame;
     const double phase = 2.0 * std::numbers::pi * number / std::max(frames, 1);
-    // The column of vertices on the edge follows it; where it passes a column it takes the next one.
+    // The column of vertices on the edge follows the edge; when the edge passes another column, that one
+    // takes over.
     const double edge = 0.62 + 0.12 * std::sin(phase);
     const int column = static_cast<int>(std::lround(edge * cells));
     const bool is_folded = number >= frames / 3;

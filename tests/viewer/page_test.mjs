@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page in a browser: what a person sees and does.
+// Tests of the page in a browser: what a person sees and does.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -29,7 +29,7 @@ async function openFrame(frame, fragment = "", options = {}) {
   return page;
 }
 
-/** Shares of a picture's pixels: one number for each test of r, g, b (as JavaScript). */
+/** Shares of a picture's pixels that pass each test. A test is a JavaScript expression in r, g, b. */
 async function shares(page, tests) {
   await page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))");
   const picture = `data:image/png;base64,${(await page.screenshot()).toString("base64")}`;
@@ -131,8 +131,9 @@ test("the page runs no script but its own", async () => {
 test("it plays by itself, in time, and pauses", async () => {
   const page = await open("", undefined, { width: 320, height: 240 });
   await page.until("Number(document.documentElement.dataset.frame) > 2");
-  // Time between two moments of the run, against the wall: in the page, so that no round trip counts. What a busy
-  // machine adds is measured too: a frame comes late by up to a refresh, and refreshes over half a second are not made up for.
+  // Compares time between two moments of the run with wall time, inside the page so that round trips do not count.
+  // The delay of a busy machine is measured too: a frame may be late by one refresh. The clock does not catch up on
+  // refreshes longer than half a second.
   const [wall, shown, late] = await page.evaluate(`(async () => {
     const frame = () => Number(document.documentElement.dataset.frame);
     let before = performance.now(), longest = 0, lost = 0;

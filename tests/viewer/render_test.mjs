@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What scripts/render refuses, in one line each; nothing of it needs a browser.
+// Arguments that scripts/render refuses with one line each; no browser is needed.
 
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page's reader against the frames on disk, without a browser.
+// Compares the page's reader with the frames on disk, without a browser.
 
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -8,7 +8,7 @@ import { deflateSync, inflateSync } from "node:zlib";
 import { BrokenData, Run, normalGroups } from "../../viewer/src/run.js";
 import { documentOf, makeRun, pageOf, readPly } from "./support.mjs";
 
-const kFloatRounding = 1e-7; // of single precision, relative to the run's extent
+const kFloatRounding = 1e-7; // single precision, relative to the run's extent
 const run = makeRun("reader", { frames: 30, cells: 12 });
 const page = pageOf(run);
 const open = (text) => new Run(documentOf(text));
@@ -93,7 +93,10 @@ const kFrameBreaks = {
   "too few vertices for its mesh": (text) => text.replace('"vertices":169', '"vertices":168'),
   "a missing mesh": (text) => text.replace('id="arris-topology-0"', 'id="other"'),
 };
-/** The first corner's vertex, 0, becomes 200 of 169; all other corners follow, as they are stored as differences. */
+/**
+ * Changes the first corner's vertex from 0 to 200 (there are 169). All other corners change too, as differences are
+ * stored.
+ */
 kFrameBreaks["a mesh that names vertices that do not exist"] = (text) =>
   text.replace(/(id="arris-topology-0">)([^<]*)/, (_, head, data) => {
     const bytes = inflateSync(Buffer.from(data, "base64"));
@@ -161,7 +164,7 @@ test("a view shows the cloth and what is near of the obstacles", () => {
 });
 
 test("cloth that has left is not followed by the first view", () => {
-  /** The page with its cloth `drop` metres lower in each frame from the `first`-th on than in the one before. */
+  /** The page with its cloth lowered by another `drop` metres in each frame from the `first` one on. */
   const dropped = (text, first, drop) => text.replace(/(id="arris-meta">)([^<]*)/, (_, head, json) => {
     const meta = JSON.parse(json);
     meta.frames.forEach((frame, k) => (frame.least[2] -= drop * Math.max(0, k - first + 1)));

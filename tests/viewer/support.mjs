@@ -9,7 +9,7 @@ import { join } from "node:path";
 export const directory = mkdtempSync(join(tmpdir(), "arris-viewer-test-"));
 process.on("exit", () => rmSync(directory, { recursive: true, force: true }));
 
-/** A run of `frames` frames of cells x cells squares, with obstacles or without; returns its directory. */
+/** Makes a run of `frames` frames of cells x cells squares, with obstacles or without. Returns its directory. */
 export function makeRun(name, { title = name, frames = 60, cells = 40, mostBytes, hasObstacles } = {}) {
   const program = process.env.ARRIS_MAKE_RUN;
   if (!program) throw new Error("ARRIS_MAKE_RUN must name the program made from make_run.cpp");
@@ -23,14 +23,14 @@ export function pageOf(run) {
   return readFileSync(join(run, "viewer.html"), "utf8");
 }
 
-/** A changed page as a file of its own; returns its path. */
+/** Writes a changed page as a file and returns its path. */
 export function writePage(name, page) {
   const path = join(directory, `${name}.html`);
   writeFileSync(path, page);
   return path;
 }
 
-/** What Run needs of a document: the script elements of a page by their id. */
+/** A minimal document for Run: the script elements of a page by their id. */
 export function documentOf(page) {
   const elements = new Map();
   for (const [, id, textContent] of page.matchAll(/<script type="[a-z/]+" id="([^"]+)">([^<]*)<\/script>/g))
@@ -38,7 +38,7 @@ export function documentOf(page) {
   return { getElementById: (id) => elements.get(id) ?? null };
 }
 
-/** A frame as `arris run` writes it: { positions, strain, contact, faces, edges }. */
+/** Reads a frame as `arris run` writes it: { positions, strain, contact, faces, edges }. */
 export function readPly(path) {
   const bytes = readFileSync(path);
   const end = bytes.indexOf("end_header\n") + "end_header\n".length;

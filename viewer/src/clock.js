@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Where playback is. Time runs with the clock on the wall, times the speed: a slow machine leaves frames out, it does
-// not slow the motion down.
+// The playback time. It runs with wall time, times the speed: a slow machine skips frames but does not slow the
+// motion.
 
-const kLongestGap = 0.5; // s between two ticks; more means that the page was asleep, not that it was watched
+const kLongestGap = 0.5; // s between two ticks; time beyond this is skipped, as the page was suspended
 
 export class Clock {
   time = 0; // s of the run
@@ -13,7 +13,10 @@ export class Clock {
   #period;
   #last = null;
 
-  /** `end`: time of the last frame, s; `period`: how long a frame stands, s, so that the last one is seen in a loop. */
+  /**
+   * `end`: time of the last frame, s. `period`: duration of a frame, s; in a loop the last frame is shown that long,
+   * too.
+   */
   constructor(end, period) {
     this.#end = end;
     this.#period = period;
@@ -29,7 +32,7 @@ export class Clock {
     this.isPlaying = false;
   }
 
-  /** `now` in ms, as requestAnimationFrame gives it. */
+  /** Advances the clock to `now`, ms, as given by requestAnimationFrame. */
   tick(now) {
     const gap = this.#last === null ? 0 : (now - this.#last) / 1000;
     this.#last = now;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The cloth of one frame as three.js objects: lit faces, EOL edges and EOL corners.
 //
-// Every face has its own three corners, so that strain is shown as computed, one value a face, and a normal may jump
-// across an EOL edge. Mesh edges are drawn by the faces' shader from the distance to the face's sides: of even
-// width on the screen, hidden where the cloth hides them, and without a second geometry.
+// Every face has its own three corners. So strain is shown as computed, one value a face, and a normal may jump
+// across an EOL edge. The faces' shader draws mesh edges from the distance to the face's sides. They have even width
+// on the screen, are hidden where the cloth hides them, and need no second geometry.
 
 import {
   BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Group, Mesh, MeshStandardMaterial, Points,
@@ -42,14 +42,14 @@ vec3 strainColour(float strain) {
   return mix(uRamp[step], uRamp[step + 1], place - float(step));
 }
 `;
-// The back of a coloured cloth is a little darker, so that its sides are told apart without changing the hue.
+// The back of a coloured cloth is a little darker, which distinguishes the sides without changing the hue.
 const kFragmentColour = `
 float side = gl_FrontFacing ? 1.0 : 0.8;
 if (uMode == ${kMode.strain}) diffuseColor.rgb = side * strainColour(vValue);
 else if (uMode == ${kMode.contact}) diffuseColor.rgb = side * mix(uFree, uContact, smoothstep(0.25, 0.75, vValue));
 else diffuseColor.rgb = gl_FrontFacing ? uFront : uBack;
 `;
-// Distances to the three sides in pixels; edges fade out where faces are only a few pixels high.
+// Distances to the three sides are in pixels; edges fade out where faces are only a few pixels high.
 const kFragmentEdges = `
 vec3 slope = max(fwidth(vBarycentric), vec3(1e-9));
 vec3 pixels = vBarycentric / slope;
@@ -144,7 +144,7 @@ export class Cloth {
     this.#dots.material.color.set(colours.eol);
   }
 
-  /** What the faces' colour shows: "none", "strain" or "contact". */
+  /** Sets what the faces' colour shows: "none", "strain" or "contact". */
   setMode(mode) {
     this.#mode = mode;
     this.#uniforms.uMode.value = kMode[mode];
@@ -185,7 +185,7 @@ export class Cloth {
     this.#showFeatures(frame.positions, edges, corners);
   }
 
-  /** Room for `corners` corners, a quarter more than needed, as adaptive meshes grow by a few faces at a time. */
+  /** Buffers for `corners` corners plus a quarter, because adaptive meshes grow by a few faces at a time. */
   #reserve(corners) {
     const old = this.#faces.geometry;
     if (old.attributes.position?.count >= corners) return;

@@ -4,8 +4,9 @@
 import { Color } from "three";
 
 /**
- * The strain scale, in even steps of lightness from the grey of cloth at rest to a deep red: lightness falls all the
- * way (so it is read without telling hues apart) and begins high, which leaves room for light and shadow at rest.
+ * The strain scale, in even steps of lightness from the grey of unstrained cloth to a deep red. Lightness decreases
+ * monotonically, so the scale can be read without distinguishing hues. The scale begins light, which leaves room for
+ * light and shadow on unstrained cloth.
  */
 export const kRamp = ["#e9e6df", "#f6deaa", "#fbc672", "#f8a44a", "#ee7d35", "#d8562b", "#b53329", "#8a1a2c", "#5e0d2b"];
 export const kBeyond = "#3b35e6"; // strains above the scale's top
@@ -27,14 +28,14 @@ export function onPaletteChange(listener) {
   kScheme.addEventListener("change", listener);
 }
 
-/** `colour` as the three linear components that shaders calculate with. */
+/** `colour` as three linear components, which shaders use. */
 export function linear(colour) {
   return new Color(colour);
 }
 
-const kRoundSteps = [1, 1.2, 1.6, 2, 2.4, 3, 4, 5, 6, 8, 10]; // their quarters are short too
+const kRoundSteps = [1, 1.2, 1.6, 2, 2.4, 3, 4, 5, 6, 8, 10]; // quarters of these have few digits, too
 
-/** The next round number, not below `value`. */
+/** The smallest round number that is not below `value`. */
 export function roundUp(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   return power * (kRoundSteps.find((step) => step * power >= value * (1 - 1e-9)) ?? 10);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The page: opens the run, then on every screen refresh lets the clock say which frame is due, decodes it and draws.
-// The address may say what to show first: viewer.html#frame=12&colour=strain&edges=1&ui=0 (see ../README.md).
+// The page: opens the run. On every screen refresh the clock selects the frame that is due, which is decoded and
+// drawn. The address may choose the first view: viewer.html#frame=12&colour=strain&edges=1&ui=0 (see ../README.md).
 
 import { Clock } from "./clock.js";
 import { Cloth } from "./cloth.js";
@@ -65,12 +65,12 @@ class Viewer {
     this.#showPlaying();
     this.#bringFrame();
     if (this.#stage.draw()) showAxes(this.#stage.axes());
-    const marks = document.documentElement.dataset; // for scripts that watch the page
+    const marks = document.documentElement.dataset; // state for scripts that watch the page
     marks.wanted = this.#run.frames[this.#wanted].index;
     marks.frame = this.#shown < 0 ? "" : this.#run.frames[this.#shown].index;
   }
 
-  /** Shows the wanted frame if it is decoded; else decodes it, and the frame shown stays until then. */
+  /** Shows the wanted frame if it is decoded. Otherwise decodes the frame; until then the frame shown stays. */
   #bringFrame() {
     if (this.#wanted === this.#shown || this.#isLoading) return;
     const frame = this.#run.peek(this.#wanted);
@@ -116,7 +116,7 @@ class Viewer {
     showMessage(error.message);
   }
 
-  /** Only where something in it changed: a rebuilt input would lose what is being typed. */
+  /** Rebuilds the legend only if its content changed, because a rebuilt input would lose the text being typed. */
   #legendState = "";
   #showLegend(isForced = false) {
     const topology = this.#run.peek(this.#shown)?.topology;
@@ -210,7 +210,7 @@ class Viewer {
 
   #onKey(event, actions) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    // Fields keep their keys, and the space bar presses the button that has the focus.
+    // Input fields keep their keys, and the space bar presses the focused button.
     const { target } = event;
     if (target.matches("select, input[type=number]")) return;
     if (event.key === " " && target.matches("button, summary")) return;
@@ -225,7 +225,7 @@ class Viewer {
     action();
   }
 
-  /** What the address asks for; values that make no sense are left out. */
+  /** Applies the parameters in the address; invalid values are ignored. */
   #applyAddress() {
     const asked = new URLSearchParams(window.location.hash.slice(1));
     const number = (name) => {

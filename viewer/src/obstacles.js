@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The obstacles as three.js objects: solids with flat faces, wires as lines, lone points as dots. Their geometry is made
-// once; a frame only places it.
+// The obstacles as three.js objects: solids with flat faces, wires as lines, lone points as dots. Their geometry is
+// made once; a frame only places the objects.
 
 import { BufferAttribute, BufferGeometry, DoubleSide, Group, Mesh, MeshStandardMaterial, Points } from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
@@ -19,7 +19,7 @@ export class Obstacles {
   group = new Group();
   #run;
   #placed = []; // { mesh, object }
-  // Pushed back further than the cloth is, so that cloth lying a millimetre above is seen at every angle.
+  // Pushed back further than the cloth, so that cloth lying 1 mm above is visible at every angle.
   #solid = new MeshStandardMaterial({
     side: DoubleSide, roughness: 0.9, metalness: 0, flatShading: true,
     polygonOffset: true, polygonOffsetFactor: 3, polygonOffsetUnits: 8,
@@ -39,7 +39,7 @@ export class Obstacles {
     this.#dot.color.set(obstacleLine);
   }
 
-  /** Decodes all; one that is damaged is left out, and the first such error thrown when the others are there. */
+  /** Decodes all obstacles. A damaged obstacle is left out; after all others are added, the first error is thrown. */
   async load() {
     const results = await Promise.allSettled(this.#run.meshes.map((_, index) => this.#run.loadMesh(index)));
     results.forEach(({ value }, index) => {
@@ -49,7 +49,7 @@ export class Obstacles {
     if (failed) throw failed.reason;
   }
 
-  /** Puts them where the `position`-th frame has them. */
+  /** Places all obstacles as in the `position`-th frame. */
   show(position) {
     for (const { mesh, object } of this.#placed) {
       object.matrix.set(...this.#run.placement(mesh, position), 0, 0, 0, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stands around the picture: read-outs, legend, axes. All of a run's words are set as text, never as markup.
+// The panels around the picture: read-outs, legend, axes. All words of a run are set as text, never as markup.
 
 import { kBeyond, kRamp, palette, roundUp } from "./colours.js";
 
@@ -40,7 +40,7 @@ export function showHeading(run) {
   notices.forEach(addNotice);
 }
 
-/** What a person should know of the whole run, below its title. */
+/** Adds a remark on the whole run below its title. */
 export function addNotice(text) {
   byId("notice").textContent = `${byId("notice").textContent} ${text}`.trim();
   byId("notice").hidden = false;
@@ -74,7 +74,7 @@ export function hideMessage() {
   byId("message").hidden = true;
 }
 
-/** The top of the strain scale that the page starts with: round, and few faces of the run are above it. */
+/** The initial top of the strain scale: a round number that few faces of the run exceed. */
 export function firstStrainTop(run) {
   return roundUp(run.strain.typical > 0 ? run.strain.typical : Math.max(run.strain.greatest, 1e-3));
 }
@@ -100,7 +100,7 @@ function strainScale(run, top, onTop) {
   ];
 }
 
-/** The top of the scale may be typed over; what is not a positive number is put back. */
+/** Lets the user type the top of the scale. A value that is not a positive number is replaced by the former one. */
 function topInput(top, onTop) {
   const input = element("input", { type: "number", min: "0", step: "any", value: Number((100 * top).toPrecision(3)) });
   input.id = "strain-top";
@@ -109,7 +109,7 @@ function topInput(top, onTop) {
   return input;
 }
 
-/** `mode`: what colours the cloth; `features`: { edges, corners } of EOL in the frame shown. */
+/** Shows the legend. `mode`: quantity shown by colour; `features`: whether the frame has EOL { edges, corners }. */
 export function showLegend(run, mode, top, features, onTop) {
   const colours = palette();
   const parts = mode === "strain" ? strainScale(run, top, onTop) : [];
@@ -122,7 +122,7 @@ export function showLegend(run, mode, top, features, onTop) {
 
 const kAxisColours = ["#d8433b", "#3f9142", "#3a76d0"];
 
-/** `axes`: see Stage.axes. The ones that point away are drawn first and fainter. */
+/** Draws the axes, given as in Stage.axes. Axes that point away from the viewer are drawn first and fainter. */
 export function showAxes(axes) {
   const make = (name, attributes) => {
     const result = document.createElementNS("http://www.w3.org/2000/svg", name);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The run inside the page: a JSON element that lists the frames, and one element a block of data, base64 of zlib.
-// Blocks are decoded when they are asked for and kept while they fit. The layout is described in ../README.md.
+// The run inside the page: a JSON element that lists the frames, and one element for each block of data, base64 of
+// zlib. Blocks are decoded on demand and cached. The layout is described in ../README.md.
 
 const kFormat = 1;
 const kCacheBytes = 64e6;
 const kLevels = 65535;
-const kNear = 0.2; // of a box's diagonal: obstacles are shown that far around the cloth
-const kWay = 2; // cloth's sizes: how far from its start cloth without obstacles is followed
+const kNear = 0.2; // margin around the cloth within which obstacles are shown, over the box's diagonal
+const kWay = 2; // distance from its start, in cloth sizes, up to which cloth without obstacles is followed
 
-/** What is wrong with the data, in words for the person who opened the page. */
+/** An error in the data, in words for the person who opened the page. */
 export class BrokenData extends Error {}
 
 function require(condition, what) {
@@ -19,7 +19,7 @@ const isCount = (value) => Number.isSafeInteger(value) && value >= 0;
 const isNumbers = (value, count) =>
   Array.isArray(value) && value.length === count && value.every((number) => Number.isFinite(number));
 
-/** An obstacle: one placement where it never moves, else one a frame. */
+/** Checks an obstacle's entry: one placement if it never moves, otherwise one for each frame. */
 function isMesh(mesh, frameCount) {
   return typeof mesh?.name === "string" && isCount(mesh.points) && mesh.points > 0 && isCount(mesh.faces) &&
     isCount(mesh.segments) && isCount(mesh.lone_points) && isNumbers(mesh.size, 3) && Array.isArray(mesh.placements) &&
@@ -27,7 +27,7 @@ function isMesh(mesh, frameCount) {
     mesh.placements.every((placement) => isNumbers(placement, 12));
 }
 
-/** The JSON element, checked: nothing behind this function meets a value of another kind than the format says. */
+/** Reads and checks the JSON element. Code after this function can rely on the types that the format defines. */
 function readMeta(document) {
   const element = document.getElementById("arris-meta");
   require(element, "There is no run in this page: it is the viewer's template, or it was cut off.");
@@ -68,7 +68,7 @@ function fromBase64(text) {
   return bytes;
 }
 
-/** The `length` bytes that `compressed` must hold, no more and no less. */
+/** Decompresses `compressed`, which must hold exactly `length` bytes. */
 async function inflate(compressed, length) {
   const bytes = new Uint8Array(length);
   const stream = new Blob([compressed]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -91,7 +91,7 @@ async function readBlock(document, id, length) {
   return inflate(fromBase64(element.textContent), length);
 }
 
-/** Differences of 16-bit numbers, high bytes before low ones; returns the numbers. */
+/** Decodes 16-bit numbers stored as differences, with all high bytes before all low bytes. */
 function unpack16(bytes, offset, count, result) {
   let value = 0;
   for (let i = 0; i < count; ++i) {
@@ -100,7 +100,7 @@ function unpack16(bytes, offset, count, result) {
   }
 }
 
-/** Numbers of 32 bits in four planes of bytes, the highest first. */
+/** Decodes 32-bit numbers stored in four planes of bytes, the highest first. */
 function unpack32(bytes, count) {
   const result = new Uint32Array(count);
   for (let i = 0; i < count; ++i)
@@ -108,7 +108,7 @@ function unpack32(bytes, count) {
   return result;
 }
 
-/** Zigzag differences of vertex numbers. */
+/** Decodes vertex numbers stored as zigzag differences. */
 function unpackIndices(bytes, count) {
   const result = unpack32(bytes, count);
   let value = 0;
@@ -120,8 +120,9 @@ function unpackIndices(bytes, count) {
 }
 
 /**
- * Which corners of faces share a normal: those of one vertex, except across an EOL edge, where the cloth is bent
- * sharply. Returns one group for each corner (the vertex itself, or a number above all vertices) and their number.
+ * Groups the corners of faces that share a normal: the corners of one vertex, except across an EOL edge, where the
+ * cloth is bent sharply. Returns one group for each corner (the vertex itself, or a number above all vertices) and the
+ * number of groups.
  */
 export function normalGroups(faces, edges, vertexCount) {
   const groups = faces.slice();
@@ -134,7 +135,7 @@ export function normalGroups(faces, edges, vertexCount) {
     onSharp[edges[e]] = onSharp[edges[e + 1]] = 1;
   }
 
-  // Corners that meet in an edge that is not sharp are of one group (union by the lower corner).
+  // Corners that meet in an edge that is not sharp are in one group (union by the lower corner).
   const parent = new Map();
   const find = (corner) => {
     while (parent.get(corner) !== corner) corner = parent.get(corner);
@@ -172,7 +173,7 @@ export function normalGroups(faces, edges, vertexCount) {
   return { groups, groupCount };
 }
 
-/** Keeps what was decoded while it fits into a number of bytes; drops first what was used longest ago. */
+/** Keeps decoded data up to a number of bytes and drops the least recently used data first. */
 class Cache {
   #entries = new Map();
   #bytes = 0;
@@ -196,7 +197,7 @@ class Cache {
   }
 }
 
-/** Boxes { least, size }: the one around both; one with a margin; what is in both of it, or null. */
+/** Operations on boxes { least, size }: the box around both; one enlarged by a margin; the intersection, or null. */
 function joined(a, b) {
   const least = a.least.map((value, axis) => Math.min(value, b.least[axis]));
   const size = least.map((value, axis) =>
@@ -239,7 +240,7 @@ export class Run {
     this.surroundings = this.#computeSurroundings();
   }
 
-  /** The box { least, size } of an obstacle's box where the `position`-th frame has it. */
+  /** The bounding box { least, size } of an obstacle in the `position`-th frame. */
   #meshBox(mesh, position) {
     const placement = mesh.placements[mesh.placements.length === 1 ? 0 : position];
     const half = [0, 1, 2].map((row) =>
@@ -247,7 +248,7 @@ export class Run {
     return { least: half.map((value, row) => placement[4 * row + 3] - value), size: half.map((value) => 2 * value) };
   }
 
-  /** The last frame in which the cloth's box is within `reach` of an obstacle's; -1 if in none. */
+  /** The last frame in which the cloth's box is within `reach` of an obstacle's box; -1 if there is none. */
   #lastNear(reach) {
     for (let position = this.frames.length - 1; position >= 0; --position) {
       const around = grown(this.frames[position], reach);
@@ -257,8 +258,9 @@ export class Run {
   }
 
   /**
-   * The box that the cloth plays in: of every frame until it has left the obstacles for good; where it never met any,
-   * of its way as far as it stays near. Cloth that falls or flies off for the rest of the run would make all else a dot.
+   * The box that the view shows of the cloth: its boxes in all frames until it has left the obstacles for good. If the
+   * cloth never met an obstacle: its boxes near the first one. With the whole way of cloth that falls or flies off,
+   * everything would be a dot.
    */
   #computeStage() {
     const sizes = this.frames.map((frame) => Math.hypot(...frame.size)).sort((a, b) => a - b);
@@ -269,7 +271,7 @@ export class Run {
     return this.frames.map((frame) => clipped(frame, around)).filter((box) => box).reduce(joined);
   }
 
-  /** That box with what is near of the obstacles, at the first frame and at the last: all that a view shows. */
+  /** The stage and the parts of obstacles near it, in the first and the last frame: everything that a view shows. */
   #computeSurroundings() {
     const around = grown(this.stage, kNear * Math.hypot(...this.stage.size));
     const boxes = [0, this.frames.length - 1].flatMap((position) =>
@@ -277,14 +279,14 @@ export class Run {
     return boxes.filter((box) => box).reduce(joined, this.stage);
   }
 
-  /** Where the `position`-th frame has an obstacle: 3 x 4 numbers by rows, relative to `origin`. */
+  /** An obstacle's placement in the `position`-th frame: 3 x 4 numbers by rows, relative to `origin`. */
   placement(mesh, position) {
     const placement = [...mesh.placements[mesh.placements.length === 1 ? 0 : position]];
     for (let row = 0; row < 3; ++row) placement[4 * row + 3] -= this.origin[row];
     return placement;
   }
 
-  /** An obstacle's points about the middle of its box, and its faces, segments and lone points; BrokenData names it. */
+  /** An obstacle's points about the middle of its box, its faces, segments and lone points. BrokenData has its name. */
   async loadMesh(index) {
     const { name, points, faces, segments, lone_points: lonePoints } = this.meshes[index];
     try {
@@ -311,7 +313,7 @@ export class Run {
     return this.frames[position].index / this.framesPerSecond;
   }
 
-  /** The last kept frame not after `time`. */
+  /** Position of the last frame in the page that is not after `time`. */
   positionAt(time) {
     const index = time * this.framesPerSecond + 1e-6; // a frame's own time finds that frame
     let [low, high] = [0, this.frames.length - 1];
@@ -323,19 +325,19 @@ export class Run {
     return low;
   }
 
-  /** The kept frame that is nearest to the run's frame `index`. */
+  /** Position of the frame in the page that is nearest to the run's frame `index`. */
   positionOf(index) {
     const position = this.positionAt(index / this.framesPerSecond);
     const next = this.frames[position + 1];
     return next && next.index - index < index - this.frames[position].index ? position + 1 : position;
   }
 
-  /** A decoded frame if it is there already, else undefined. */
+  /** A decoded frame if it is in the cache, otherwise undefined. */
   peek(position) {
     return this.#cache.get(`f${position}`);
   }
 
-  /** A decoded frame. Rejects with BrokenData that names it. */
+  /** Decodes a frame. Rejects with a BrokenData that names the frame. */
   load(position) {
     const there = this.peek(position);
     if (there) return Promise.resolve(there);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The space the cloth is in: camera and its control, lights, ground. Up is z; positions are relative to the run's centre.
+// The 3D scene: camera and its controls, lights, ground. Up is z; positions are relative to the run's centre.
 
 import {
   DirectionalLight, DoubleSide, HemisphereLight, Mesh, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Scene,
@@ -12,9 +12,9 @@ const kFieldOfView = 32; // degrees, vertical
 const kAzimuth = -62; // degrees from +x of the first view
 const kElevation = 24; // degrees above the horizon
 const kKeyLight = new Vector3(-0.8, -0.55, 1.15).normalize();
-const kMargin = 0.84; // how much of the view's half width or height a fitted box may take
+const kMargin = 0.84; // share of the view's half width or height that a fitted box may fill
 
-/** A box { least, size } as its centre and the radius of the ball around it, at least 1 mm, relative to `origin`. */
+/** Centre and radius of the ball around a box { least, size }, relative to `origin`; the radius is at least 1 mm. */
 function ballAround(box, origin) {
   const centre = new Vector3(...box.least.map((least, axis) => least + box.size[axis] / 2 - origin[axis]));
   return { centre, radius: Math.max(Math.hypot(...box.size) / 2, 5e-4) };
@@ -60,7 +60,7 @@ export class Stage {
   #floor;
   isStale = true;
 
-  /** Throws where the browser gives no WebGL 2. */
+  /** Throws if the browser has no WebGL 2. */
   constructor(canvas, run) {
     this.#run = run;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
@@ -98,8 +98,8 @@ export class Stage {
   }
 
   /**
-   * Looks at a box { least, size } so that it fills the view; from the present direction unless `azimuth` (degrees
-   * from +x about z) and `elevation` (degrees) are given. `zoom` above 1 comes nearer.
+   * Turns the camera to a box { least, size } so that the box fills the view. The direction is the present one unless
+   * `azimuth` (degrees from +x about z) and `elevation` (degrees) are given. A `zoom` above 1 comes nearer.
    */
   fit(box, { azimuth, elevation, zoom = 1 } = {}) {
     const { centre, radius } = ballAround(box, this.#run.origin);
@@ -116,7 +116,7 @@ export class Stage {
     this.isStale = true;
   }
 
-  /** How far from its centre a box of this size is seen whole, looking against `direction`. */
+  /** Distance from its centre at which a box of this size fits into the view, for a view against `direction`. */
   #distanceFor(size, direction) {
     const right = this.#camera.up.clone().cross(direction).normalize();
     const up = direction.clone().cross(right);
@@ -130,7 +130,9 @@ export class Stage {
     return distance;
   }
 
-  /** Shadows fall from the cloth of this frame; the light's view is as large as it and its way to the ground. */
+  /**
+   * Aims the shadow light at the cloth of this frame. The light's view contains the cloth and its way to the ground.
+   */
   aimShadow(box) {
     const { centre, radius } = ballAround(box, this.#run.origin);
     const camera = this.#key.shadow.camera;
@@ -153,7 +155,7 @@ export class Stage {
     this.isStale = true;
   }
 
-  /** Draws if anything has changed; returns whether it did. */
+  /** Draws if anything has changed; returns whether it drew. */
   draw() {
     this.#controls.update();
     if (!this.isStale) return false;
@@ -167,7 +169,7 @@ export class Stage {
     return true;
   }
 
-  /** Where the unit vectors of x, y, z point on the screen: [right, up, towards the viewer] each. */
+  /** Directions of the unit vectors of x, y, z on the screen: [right, up, towards the viewer] each. */
   axes() {
     const view = this.#camera.matrixWorldInverse;
     return [0, 1, 2].map((axis) => new Vector3().setComponent(axis, 1).transformDirection(view).toArray());
@@ -179,19 +181,19 @@ export class Stage {
     this.#key.shadow.mapSize.set(2048, 2048);
     this.#key.shadow.bias = -0.0006;
     this.#key.shadow.radius = 2.5;
-    this.#fill.position.set(0.6, 0.2, 1); // from beside the camera, so that no view is flat
+    this.#fill.position.set(0.6, 0.2, 1); // from beside the camera, so that no view looks flat
     this.#camera.add(this.#fill, this.#fill.target);
     this.#fill.target.position.set(0, 0, -1);
     this.#scene.add(this.#sky, this.#key, this.#key.target, this.#camera);
   }
 
-  /** A grid and the shadow at the lowest z of the run's view, a hair below so that what lies there is not cut by it. */
+  /** Adds a grid and the shadow slightly below the lowest z of the run's view, so that they cut nothing lying there. */
   #addGround() {
     const { least } = this.#run.surroundings;
     const { centre, radius } = ballAround(this.#run.stage, this.#run.origin);
     const reach = 5 * radius;
     const cell = 10 ** Math.floor(Math.log10(radius / 1.5));
-    // World zero is on a line: the offset, modulo the coarse cells, in double precision.
+    // The world's origin is on a grid line: the offset is taken modulo the coarse cells, in double precision.
     const offset = ["x", "y"].map((axis, k) => this.#run.origin[k] + centre[axis])
       .map((value) => value - Math.floor(value / (10 * cell)) * 10 * cell);
     this.#grid = new Mesh(new PlaneGeometry(2 * reach, 2 * reach), new ShaderMaterial({

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A headless Chromium, driven over a pipe by its DevTools protocol: nothing to install but Chromium and Node.
+// Drives a headless Chromium over a pipe by its DevTools protocol: only Chromium and Node must be installed.
 
 import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
@@ -24,7 +24,7 @@ export class Browser {
   #listeners = new Set();
   #log = "";
 
-  /** `hasGraphics`: with WebGL, drawn by the processor so that every machine draws the same. */
+  /** `hasGraphics`: with WebGL, drawn by the processor so that every machine draws equal pixels. */
   constructor({ hasGraphics = true } = {}) {
     const graphics = hasGraphics ? ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
                                  : ["--disable-gpu", "--disable-software-rasterizer", "--disable-3d-apis"];
@@ -61,7 +61,7 @@ export class Browser {
     this.#listeners.add(listener);
   }
 
-  /** A page of this size in pixels; `scheme`: "light" or "dark". */
+  /** Opens a page of this size in pixels; `scheme`: "light" or "dark". */
   async open(address, { width = 1280, height = 800, scheme = "light" } = {}) {
     const { targetId } = await this.send("Target.createTarget", { url: "about:blank" });
     const { sessionId } = await this.send("Target.attachToTarget", { targetId, flatten: true });
@@ -128,7 +128,7 @@ export class Page {
     return this.#browser.send(method, params, this.#session);
   }
 
-  /** Loads an address and waits until all of it is there. */
+  /** Loads an address and waits until the page is loaded completely. */
   async go(address) {
     const loaded = new Promise((resolve) => (this.#onLoad = resolve));
     const { errorText } = await this.send("Page.navigate", { url: address });
@@ -140,7 +140,7 @@ export class Page {
     return this.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: scheme }] });
   }
 
-  /** The value of an expression in the page (a promise's, where it is one). */
+  /** The value of an expression in the page; a promise is awaited. */
   async evaluate(expression) {
     const { result, exceptionDetails } =
       await this.send("Runtime.evaluate", { expression, awaitPromise: true, returnByValue: true });
@@ -148,7 +148,7 @@ export class Page {
     return result.value;
   }
 
-  /** Waits until an expression in the page is true; names it where it never is. */
+  /** Waits until an expression in the page is true; after a time limit throws an error that names the expression. */
   async until(expression, seconds = 30) {
     const end = Date.now() + 1000 * seconds;
     while (Date.now() < end) {

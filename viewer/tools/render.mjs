@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures of a run's viewer.html; called by scripts/render, which says how.
+// Makes pictures of a run's viewer.html; called by scripts/render, which documents the usage.
 
 import { existsSync, writeFileSync } from "node:fs";
 import { resolve } from "node:path";
@@ -8,7 +8,7 @@ import { Browser } from "./browser.mjs";
 
 const kUsage = "usage: scripts/render [--size WxH] [--dark] [--view FRAGMENT] RUN_DIR OUT_PREFIX [FRAME...]\n";
 
-// What a view may say, as viewer/README.md lists it, but for the frame, which is an argument of its own.
+// Parameters of a view, as listed in viewer/README.md, except the frame, which is an argument of its own.
 const isNumber = (text) => text.trim() !== "" && Number.isFinite(Number(text));
 const kNumber = { holds: isNumber, allowed: "a number" };
 const kPositive = { holds: (text) => isNumber(text) && Number(text) > 0, allowed: "a number above 0" };
@@ -18,7 +18,7 @@ const kView = {
   azimuth: kNumber, elevation: kNumber, zoom: kPositive, fit: oneOf("frame"), play: oneOf("0", "1"),
 };
 
-/** What is wrong with a view, which a page would pass over in silence; null if nothing. */
+/** The error in a view's parameters, which the page would ignore silently; null if there is none. */
 function findFault(view) {
   for (const [name, value] of new URLSearchParams(view)) {
     if (name === "frame") return "--view frame: frames stand behind OUT_PREFIX";

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Branch and bound. Within a triangle no point is farther from the surface than the farthest corner is from
-// any one obstacle face (a face is convex, so the distance to it is), which is exact over a flat surface; and
-// where the surface is farther from its middle than its corners are, a triangle is inside or outside as a
-// whole. What is shallow against the cloth face it cuts is too fine for that: such places are sampled where
-// the surfaces meet, and the best of all is improved by a search around it.
+// Branch and bound. Within a triangle no point is farther from the surface than the triangle's farthest
+// corner is from any one obstacle face. (A face is convex, and so is the distance to it.) Over a flat surface
+// this bound is exact. Where the surface is farther from the triangle's middle than its corners are, the
+// whole triangle is inside or outside.
+//
+// Penetration that is shallow compared with the cloth face is too fine for this search. Such places are
+// sampled where the surfaces meet. A local search then improves the best point of all.
 #include "geometry/check/deepest_point.h"
 
 #include <CGAL/AABB_traits.h>
@@ -32,10 +34,11 @@ using Triangle = Kernel::Triangle_3;
 using Tree = CGAL::AABB_tree<
     CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, std::vector<Triangle>::const_iterator>>>;
 
-constexpr double kAccuracy = 0.01;       // of the depth
-constexpr double kFinestPart = 1e-4;     // of the longest side of what entered: shallower places are sampled
-constexpr int kMostEvaluations = 40000;  // two seconds on 100 000 obstacle faces; a bound against the clock
-                                         // would make the result depend on it
+constexpr double kAccuracy = 0.01;       // relative to the depth
+constexpr double kFinestPart = 1e-4;     // relative to the longest side of the triangle entered: shallower
+                                         // places are sampled
+constexpr int kMostEvaluations = 40000;  // two seconds on 100 000 obstacle faces; a time limit would make the
+                                         // result depend on the machine
 
 /// Distances to the faces of an obstacle's solids.
 class SolidSurface {
@@ -84,14 +87,15 @@ class SolidSurface {
     Tree tree_;
 };
 
-/// A part of a cloth face that may hold the deepest point.
+/// A part of a cloth face that may contain the deepest point.
 struct Part {
     std::array<Vec3, 3> corners;
     ClothSide side;
     int face;
-    double finest;                                           ///< m, depths below are left to the samples
-    double bound = std::numeric_limits<double>::infinity();  ///< m, no point of it is deeper
-    int number = 0;                                          ///< decides between equal bounds
+    double finest;                                           ///< m, smaller depths are left to the samples
+    double bound = std::numeric_limits<double>::infinity();  ///< m, upper bound on the depth of its points
+    int number = 0;                                          ///< order of entry, which decides between equal
+                                                             ///< bounds
 
     bool operator<(const Part& other) const
     {
@@ -114,7 +118,7 @@ class DepthSearch {
         take_if_deeper(place, find_nearest(place).distance, side, face);
     }
 
-    /// Enters a part into the search, unless nothing in it is deeper than the best.
+    /// Enters a part into the search, unless none of its points can be deeper than the best.
     void enter(Part part)
     {
         part.bound = std::min(part.bound, bound_by(near_, part.corners));
@@ -132,7 +136,7 @@ class DepthSearch {
         parts_.push(part);
     }
 
-    /// Halves the part with the greatest bound, until none can hold anything deeper.
+    /// Halves the part with the greatest bound, until no part can contain a deeper point.
     void run()
     {
         while (!parts_.empty() && !is_spent()) {
@@ -151,8 +155,8 @@ class DepthSearch {
         }
     }
 
-    /// Looks around the best point, in its cloth face (whose corners are given), for a deeper one at ever
-    /// shorter distances, in directions that turn so that none is preferred.
+    /// Searches around the best point, within its cloth face (with these corners), for a deeper one at
+    /// shrinking distances. The directions rotate from round to round, so that none is preferred.
     void improve(const std::array<Vec3, 3>& corners)
     {
         constexpr int kMostRounds = 200;
@@ -171,7 +175,7 @@ class DepthSearch {
                 sample(closest_on_triangle(centre + way, corners, normal).point, ClothSide::Unknown,
                        best_.face);
             }
-            turn += 1.0;  // rad, no fraction of a turn
+            turn += 1.0;  // rad, not a rational fraction of a full turn
             if (best_.depth <= depth * (1.0 + kAccuracy * kAccuracy)) reach /= 2.0;
         }
     }
@@ -217,7 +221,7 @@ class DepthSearch {
 
     const Obstacle& obstacle_;
     SolidSurface surface_;
-    int near_;  ///< nearest to what was looked at last, so that it bounds the distance of what is beside
+    int near_;  ///< face nearest to the last place evaluated; bounds the depth of places nearby
     std::priority_queue<Part> parts_;
     int entered_ = 0, evaluations_ = 0;
     DeepestPoint best_;
@@ -228,7 +232,7 @@ double longest_side(const std::array<Vec3, 3>& t)
     return std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
 }
 
-/// Areal coordinates of a point of a triangle that has an area.
+/// Barycentric coordinates of a point in a triangle of non-zero area.
 Vec3 coordinates_in(const std::array<Vec3, 3>& t, const Vec3& p)
 {
     const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
@@ -237,7 +241,8 @@ Vec3 coordinates_in(const std::array<Vec3, 3>& t, const Vec3& p)
     return coordinates / normal.squaredNorm();
 }
 
-/// By how much a triangle may be shrunk towards a point of it and still hold others of its points.
+/// The smallest factor by which the triangle can be scaled about its point `centre` and still contain
+/// `others`.
 double shrinkage(const std::array<Vec3, 3>& t, const Vec3& centre, const std::vector<Vec3>& others)
 {
     const Vec3 at = coordinates_in(t, centre);
@@ -250,14 +255,15 @@ double shrinkage(const std::array<Vec3, 3>& t, const Vec3& centre, const std::ve
     return factor;
 }
 
-/// Samples a cloth face where it meets the surface: in the middle of all meetings and between pairs of them.
-/// Of a convex thing that pokes through one of these is inside, however small it is. Where the meetings are
-/// close together, their surroundings enter the search as a part of their own size.
+/// Samples a cloth face where it intersects the surface: at the mean of all intersections, and midway between
+/// pairs of them. If a convex obstacle pokes through, one of these samples is inside, however small the
+/// obstacle is. Where the intersections are close together, the triangle around them enters the search as a
+/// part of that size.
 void search_meetings(const Obstacle& obstacle, const std::array<Vec3, 3>& corners, int face,
                      DepthSearch& search)
 {
     constexpr int kMostInPairs = 8;
-    constexpr double kMargin = 3.0;  // middles of a cut's sides span a half to a third of it
+    constexpr double kMargin = 3.0;  // midpoints of the sides of a cut span a third to a half of the cut
     ObstacleTouch touch;
     find_touches(obstacle, corners, touch);
     if (touch.faces.empty()) return;
@@ -271,14 +277,14 @@ void search_meetings(const Obstacle& obstacle, const std::array<Vec3, 3>& corner
     }
     const Vec3 centre = middles.front() + sum / static_cast<double>(middles.size());
     search.sample(centre, ClothSide::Unknown, face);
-    // Evenly many of them, where there are more.
+    // If there are more, take evenly spaced ones.
     const int n = static_cast<int>(middles.size()), m = std::min(n, kMostInPairs);
     for (int i = 0; i < m; ++i)
         for (int j = 0; j < i; ++j)
             search.sample((middles[i * n / m] + middles[j * n / m]) / 2.0, ClothSide::Unknown, face);
 
     const double factor = kMargin * shrinkage(corners, centre, middles);
-    if (!(factor > 0.0 && factor < 1.0)) return;  // also where the cloth face has no area
+    if (!(factor > 0.0 && factor < 1.0)) return;  // also rejects a cloth face without area
     std::array<Vec3, 3> around;
     for (int i = 0; i < 3; ++i) around[i] = centre + factor * (corners[i] - centre);
     search.enter({around, ClothSide::Unknown, face, kFinestPart * longest_side(around)});

@@ -19,7 +19,7 @@ void halve(const std::vector<Vec3>& centers, int group_size, Iterator begin, Ite
     for (Iterator i = begin; i != end; ++i) box.extend(centers[*i]);
     int axis = 0;
     box.sizes().maxCoeff(&axis);
-    // The first part is whole groups, so that runs do not straddle the halves.
+    // The first half gets whole groups, so that no group straddles the halves.
     const int groups = (count + group_size - 1) / group_size;
     const Iterator middle = begin + groups / 2 * group_size;
     std::nth_element(begin, middle, end, [&](int a, int b) {

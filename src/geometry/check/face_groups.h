@@ -7,9 +7,9 @@
 
 namespace arris {
 
-/// Indices of boxes in an order in which each run of `group_size` (the last one shorter) lies close together,
-/// so that one query serves a run: halved by the median along the longest side, again and again. A function
-/// of the boxes alone; n log n.
+/// Orders boxes so that each run of `group_size` (the last one may be shorter) lies close together, and one
+/// query serves a run. Repeatedly halves the set at the median along its longest side. Returns indices, which
+/// depend on the boxes alone. O(n log n).
 std::vector<int> order_by_place(const std::vector<Box3>& boxes, int group_size);
 
 }  // namespace arris

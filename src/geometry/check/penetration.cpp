@@ -27,14 +27,14 @@ std::array<Vec3, 3> corners_of(const std::vector<Vec3>& points, const Face& face
     return {points[face[0]], points[face[1]], points[face[2]]};
 }
 
-/// What a cloth face touches, of growing weight.
+/// Kind of element that a cloth face touches. `Thing`: sheets, wires or points only.
 enum class Touch : char { Nothing, Thing, Solid };
 
 std::vector<Touch> find_touching(const Obstacle& obstacle, const std::vector<Vec3>& positions,
                                  const std::vector<Face>& faces)
 {
     std::vector<Touch> touches(faces.size(), Touch::Nothing);
-    constexpr int kGrain = 256;  // faces, most of which are far away
+    constexpr int kGrain = 256;  // faces; most of them are far away and cheap
     const tbb::blocked_range<int> all(0, static_cast<int>(faces.size()), kGrain);
     tbb::parallel_for(all, [&](const tbb::blocked_range<int>& part) {
         ObstacleTouch touch;
@@ -49,7 +49,7 @@ std::vector<Touch> find_touching(const Obstacle& obstacle, const std::vector<Vec
     return touches;
 }
 
-/// Where each cloth face is. Vertices joined by faces that touch no solid are on one side, told by one of
+/// Side of each cloth face. Vertices joined by faces that touch no solid are all on one side, found at one of
 /// them.
 std::vector<ClothSide> find_sides(const Obstacle& obstacle, const std::vector<Vec3>& positions,
                                   const std::vector<Face>& faces, const std::vector<Touch>& touches)
@@ -77,7 +77,7 @@ std::vector<ClothSide> find_sides(const Obstacle& obstacle, const std::vector<Ve
     return sides;
 }
 
-/// About where a cloth face touches the obstacle.
+/// Approximate location at which a cloth face touches the obstacle.
 Vec3 place_of_touch(const Obstacle& obstacle, const std::array<Vec3, 3>& corners)
 {
     const std::vector<Vec3>& points = obstacle.mesh().points;
@@ -90,7 +90,7 @@ Vec3 place_of_touch(const Obstacle& obstacle, const std::array<Vec3, 3>& corners
     return middle_of_touch(corners, {points[a], points[b], points[b]});
 }
 
-/// Directions all around, in no way aligned with anything: a spiral by the golden angle.
+/// Directions spread over the sphere along a golden-angle spiral, aligned with no axis.
 Vec3 spiral_direction(int i, int count)
 {
     const double z = 1.0 - (2.0 * i + 1.0) / count, angle = std::numbers::pi * (3.0 - std::sqrt(5.0)) * i;
@@ -98,7 +98,7 @@ Vec3 spiral_direction(int i, int count)
     return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-/// How a segment's way out passes a face.
+/// How a segment passes a face.
 enum class Passage { Outward, Inward, Beside, Starts, Grazes };
 
 Passage passage(const Point3& from, const Point3& to, const Point3& a, const Point3& b, const Point3& c)
@@ -113,7 +113,8 @@ Passage passage(const Point3& from, const Point3& to, const Point3& a, const Poi
     return end == CGAL::POSITIVE ? Passage::Outward : Passage::Inward;
 }
 
-/// The signed count of solids' faces along a way out; nothing where it meets an edge or a point.
+/// Signed count of solid faces crossed on a straight way out. Returns nothing where the way hits an edge or
+/// point.
 std::optional<int> count_crossings(const Obstacle& obstacle, const Vec3& from, const Vec3& to,
                                    std::vector<int>& found)
 {
@@ -134,7 +135,7 @@ std::optional<int> count_crossings(const Obstacle& obstacle, const Vec3& from, c
             case Passage::Beside:
                 break;
             case Passage::Starts:
-                return 0;  // on the surface
+                return 0;  // starts on the surface
             case Passage::Grazes:
                 grazes = true;
                 break;
@@ -151,8 +152,8 @@ int winding_number(const Obstacle& obstacle, const Vec3& place)
     assert(place.allFinite());
     const Box3& bounds = obstacle.bounds();
     if (!bounds.contains(place)) return 0;
-    // Past the bounds, and so far that rounding leaves the direction free where the obstacle is small and far
-    // from the origin.
+    // The end lies beyond the bounds. It is also far enough that rounding does not align directions where the
+    // obstacle is small and far from the origin.
     const double length = 2.0 * bounds.diagonal().norm() + 1e-3 * place.cwiseAbs().maxCoeff();
     constexpr int kDirections = 64;
     std::vector<int> found;

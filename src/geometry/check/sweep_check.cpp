@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two surfaces that are apart and then are not have met first where a vertex of the one touched a face of the
-// other, or an edge of the one an edge of the other. So these pairs, swept over the step, are all there is to
-// check; every pair that is not swept is known to stay apart: by boxes, or by a plane between a cloth face's
-// sweep and a face of the obstacle.
+// Two surfaces that are apart first meet in one of two ways: a vertex of one touches a face of the other, or
+// two edges touch. So sweeping these pairs over the step checks everything. All other pairs are known to stay
+// apart: by their boxes, or by a plane between the swept cloth face and a face of the obstacle.
 //
-// Every cloth vertex and edge belongs to one cloth face and is swept with it alone. Cloth faces that lie
-// together share one query of the obstacle.
+// Every cloth vertex and edge belongs to one cloth face and is swept with that face only. Neighbouring cloth
+// faces share one query of the obstacle.
 #include "geometry/check/sweep_check.h"
 
 #include <algorithm>
@@ -23,24 +22,25 @@
 namespace arris {
 namespace {
 
-// Nearer than this share of a swept cloth face's box two elements count as touching, unless they began
-// nearer: far above the rounding of differences (1e-14), far below any stand-off.
+// Two elements nearer than this share of the swept cloth face's box count as touching, unless they began
+// nearer. Far above the rounding of differences (1e-14), far below any stand-off.
 constexpr double kTouching = 1e-11;
-constexpr int kMostViolations = 9;  // of one cloth face
-constexpr int kGroupSize = 16;      // cloth faces a query: fewer, and queries cost; more, and their boxes do
+constexpr int kMostViolations = 9;  // per cloth face
+constexpr int kGroupSize = 16;      // cloth faces per query: smaller groups cost more queries, larger ones
+                                    // have larger boxes
 
-/// Elements that belong to a cloth face; -1 where there are fewer.
+/// Vertices and edges that belong to a cloth face; -1 where there are fewer.
 struct Owned {
     std::array<int, 3> vertices{-1, -1, -1};
     std::array<int, 3> edges{-1, -1, -1};
 };
 
-/// What was found about a cloth face that is not clean.
+/// Findings for one cloth face.
 struct FaceFinding {
     int face;
-    bool is_touching = false;        ///< the obstacle at the end
-    bool is_met = false;             ///< by a point
-    std::vector<int> vertices = {};  ///< of its own that met something
+    bool is_touching = false;        ///< touches the obstacle at the end
+    bool is_met = false;             ///< met a point of the obstacle
+    std::vector<int> vertices = {};  ///< its own vertices that met a face
     std::vector<int> edges = {};
     std::vector<ObstacleContact> violations = {};
 
@@ -82,21 +82,21 @@ Box3 box_of(std::span<const Vec3> points)
     return box;
 }
 
-/// An element of the cloth met one of the obstacle.
+/// An element of the cloth met an element of the obstacle.
 struct Meeting {
     ContactKind kind;
     int cloth_element, obstacle_element;
     SweepHit hit;
-    double depth;  ///< how far past the meeting point, against its normal, the cloth's point ends
+    double depth;  ///< distance past the meeting point, against its normal, at which the cloth's point ends
 };
 
-/// A face, wire or lone point of the obstacle: its face, edge of the topology or point.
+/// A face, wire segment or lone point of the obstacle. `element` is a face, a topology edge or a point.
 struct Near {
     int element;
     Box3 box;
 };
 
-/// Checks cloth faces that lie together; keeps lists for reuse.
+/// Checks cloth faces that lie close together; reuses its lists.
 class GroupSearch {
   public:
     GroupSearch(const Obstacle& obstacle, const ClothMotion& motion, double thickness)
@@ -104,14 +104,14 @@ class GroupSearch {
     {
     }
 
-    /// Appends what is not clean.
+    /// Appends findings that are not clean.
     void search(std::span<const int> faces, const std::vector<Box3>& boxes, const std::vector<Owned>& owned,
                 std::vector<FaceFinding>& findings)
     {
         Box3 group;
         for (const int f : faces) group.extend(boxes[f]);
         if (!group.intersects(obstacle_.bounds())) return;
-        // Boxes of faces, compared below, are exact; the query need not be.
+        // The face boxes compared below are exact; the query's box need not be.
         const double margin = kTouching * group.diagonal().norm();
         collect_group(Box3(group.min().array() - margin, group.max().array() + margin));
         for (const int f : faces) {
@@ -177,7 +177,8 @@ class GroupSearch {
             if (near.box.intersects(box)) chosen.push_back(near.element);
     }
 
-    /// Drops what a plane keeps off the swept face; edges and points of what remains join the others.
+    /// Drops elements that a plane separates from the swept face; adds the edges and points of the remaining
+    /// ones.
     void keep_reachable(const SweptFace& swept)
     {
         const ObstacleMesh& mesh = obstacle_.mesh();
@@ -197,7 +198,7 @@ class GroupSearch {
         sort_unique(points_);
     }
 
-    /// Of what a vertex meets only the first counts: the rest lies behind it.
+    /// A vertex reports only the first face it meets; the others lie behind that face.
     void sweep_vertices(const Owned& owned, FaceFinding& finding)
     {
         for (const int v : owned.vertices) {
@@ -252,7 +253,7 @@ class GroupSearch {
         meetings_.push_back({kind, cloth_element, obstacle_element, hit, hit.normal.dot(hit.point - end)});
     }
 
-    /// On a fine obstacle a coarse face has hundreds.
+    /// A coarse cloth face may meet hundreds of elements of a fine obstacle.
     void keep_deepest(FaceFinding& finding)
     {
         const auto is_deeper = [](const Meeting& a, const Meeting& b) {
@@ -293,14 +294,14 @@ class GroupSearch {
     const ClothMotion& motion_;
     double thickness_;
     double distance_ = 0.0;
-    std::vector<Near> near_faces_, near_wires_, near_points_;  ///< of the group
-    std::vector<int> faces_, edges_, points_;                  ///< of those, near the present face
+    std::vector<Near> near_faces_, near_wires_, near_points_;  ///< near the group
+    std::vector<int> faces_, edges_, points_;                  ///< of these, near the present face
     std::vector<Meeting> meetings_;                            ///< of the present face
     std::vector<int> found_;
     ObstacleTouch touch_;
 };
 
-/// Cloth faces of which any part met the obstacle or touches it.
+/// Cloth faces with any part that met or touches the obstacle.
 std::vector<int> find_unclean(const ClothMotion& motion, const std::vector<FaceFinding>& findings)
 {
     std::vector<char> is_vertex_met(motion.begin.size(), 0);
@@ -337,7 +338,7 @@ SweepReport summarize(const ClothMotion& motion, const std::vector<FaceFinding>&
     const auto key = [](const ObstacleContact& c) { return std::tie(c.kind, c.vertices, c.element); };
     std::stable_sort(report.violations.begin(), report.violations.end(),
                      [&](const auto& a, const auto& b) { return key(a) < key(b); });
-    // A point that meets the edge between two faces meets both.
+    // A point that meets the edge between two cloth faces meets both faces.
     const auto last = std::unique(report.violations.begin(), report.violations.end(),
                                   [&](const auto& a, const auto& b) { return key(a) == key(b); });
     report.violations.erase(last, report.violations.end());

@@ -6,11 +6,11 @@
 namespace arris {
 namespace {
 
-// Sine below which the way to a point is along a plane, which then tells no side of it and holds nothing
-// back.
+// Sine below which the way to a point runs along a plane: it then gives no side of the plane, and the plane
+// would hold nothing back.
 constexpr double kAlongPlane = 1e-3;
 
-/// What a hit is made of, whichever elements met.
+/// The data of a hit, for any pair of elements.
 struct Meeting {
     const ClothMotion& motion;
     ContactKind kind;
@@ -23,9 +23,9 @@ struct Meeting {
     Vec3 end() const { return cloth_point.at(motion.end); }
 };
 
-/// Nothing where the plane does not part the cloth's point at begin, which came along `way`, from that at the
-/// end. The stand-off goes by begin alone: unlike in contacts made before the solve, for which the end tells
-/// what slides along a curve, the end is what is to be mended.
+/// Returns nothing unless the plane separates the cloth's point at begin, which came along `way`, from that
+/// point at the end. Only the begin determines the stand-off. In contacts made before the solve, the end
+/// shows what slides along a curve; here the end is the violation.
 std::optional<ObstacleContact> as_violation(const Meeting& meeting, ObstacleContact contact,
                                             double least_sine)
 {
@@ -39,7 +39,7 @@ std::optional<ObstacleContact> as_violation(const Meeting& meeting, ObstacleCont
     return contact;
 }
 
-/// The plane through the meeting point.
+/// Tries the plane through the meeting point with this normal.
 std::optional<ObstacleContact> try_normal(const Meeting& meeting, const Vec3& normal, double least_sine)
 {
     if (!(normal.squaredNorm() > 0.0)) return std::nullopt;
@@ -48,8 +48,8 @@ std::optional<ObstacleContact> try_normal(const Meeting& meeting, const Vec3& no
     return as_violation(meeting, contact, least_sine);
 }
 
-/// The plane of the hit, or, where that does not serve, across the way of the cloth's point, which began
-/// before that one and ended behind it.
+/// The plane of the hit. If that fails, the plane across the way of the cloth's point, which began before the
+/// plane and ended behind it.
 std::optional<ObstacleContact> by_hit(const Meeting& meeting, const SweepHit& hit)
 {
     const std::optional<ObstacleContact> contact = try_normal(meeting, hit.normal, 0.0);
@@ -78,7 +78,8 @@ std::optional<ObstacleContact> make_edge_violation(const Obstacle& obstacle, con
     const Meeting meeting{motion, ContactKind::Edge, {{cloth.a, cloth.b, -1}, hit.weights},
                           edge,   hit.point,         thickness};
     const auto found = make_edge_contact(obstacle, motion, motion.end, {cloth.a, cloth.b}, edge, thickness);
-    // However nearly along it the cloth came, its begin told the side: the hit's own direction may point in.
+    // The begin determines the side, however nearly the cloth moved along the edge: the hit's own normal may
+    // point inside.
     const auto contact = found ? as_violation(meeting, *found, 0.0) : std::nullopt;
     return contact ? contact : by_hit(meeting, hit);
 }

@@ -8,9 +8,10 @@
 
 namespace arris {
 
-// Each makes a contact of a hit of the sweep from `motion.begin` to `motion.end`, with a plane that has the
-// cloth's point on its free side at begin and that the end violates; nothing only where that point touched at
-// begin or does not move. The stand-off is the thickness, or what the point had at begin where that was less.
+// Each function makes a contact from a hit of the sweep from `motion.begin` to `motion.end`. The contact's
+// plane has the cloth's point on its free side at begin, and is violated at the end. Returns nothing only
+// where that point touched at begin or does not move. The stand-off is the thickness, or the point's gap at
+// begin where that was less.
 
 /// A vertex and a face.
 std::optional<ObstacleContact> make_vertex_violation(const Obstacle& obstacle, const ClothMotion& motion,

@@ -9,7 +9,7 @@
 namespace arris {
 namespace {
 
-// Of a scalar product of a unit vector and a difference, relative to the difference.
+// Rounding error of the scalar product of a unit vector and a difference, relative to the difference.
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 std::array<Vec3, 3> corners(const std::vector<Vec3>& positions, const Face& face)

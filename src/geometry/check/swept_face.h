@@ -8,7 +8,8 @@
 
 namespace arris {
 
-/// A cloth face on its way: the hull of its corners at begin and end, which what it meets must touch.
+/// The convex hull of a cloth face's corners at begin and end. Whatever the moving face meets touches this
+/// hull.
 class SweptFace {
   public:
     SweptFace(const ClothMotion& motion, int face);
@@ -17,9 +18,9 @@ class SweptFace {
     const std::array<Vec3, 3>& end() const { return end_; }
     bool is_moving() const { return begin_ != end_; }
 
-    /// Whether a plane keeps the hull and that of up to three points strictly apart, across `normal` (unit)
-    /// or the cloth's own normals: then nothing of the one meets anything of the other. Certain in spite of
-    /// rounding; false proves nothing.
+    /// Whether a plane across `normal` (unit) or across one of the cloth's own normals strictly separates the
+    /// hull and the hull of up to three points. If so, no elements of the two meet. True is certain in spite
+    /// of rounding; false proves nothing.
     bool is_apart(std::span<const Vec3> points, const Vec3* normal = nullptr) const;
 
   private:
@@ -30,9 +31,9 @@ class SweptFace {
     Slab make_slab(const Vec3& normal) const;
 
     std::array<Vec3, 3> begin_, end_;
-    std::array<Vec3, 6> offsets_;  ///< of the corners from the first at begin
-    double size_;                  ///< greatest of the offsets
-    std::array<Slab, 2> own_;      ///< across the cloth's normals at begin and end
+    std::array<Vec3, 6> offsets_;  ///< of the corners, relative to the first corner at begin
+    double size_;                  ///< largest offset
+    std::array<Slab, 2> own_;      ///< slabs across the cloth's normals at begin and end
 };
 
 }  // namespace arris

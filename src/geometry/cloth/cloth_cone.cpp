@@ -11,7 +11,7 @@ namespace arris {
 
 namespace {
 
-/// Of a sector's arc the direction nearest to `to`.
+/// The direction in a sector's arc nearest to `to`.
 Vec3 nearest_in(const FaceSector& sector, const Vec3& to)
 {
     const Vec3& end = sector[0].dot(to) > sector[1].dot(to) ? sector[0] : sector[1];
@@ -22,8 +22,8 @@ Vec3 nearest_in(const FaceSector& sector, const Vec3& to)
     return is_between ? foot : end;
 }
 
-/// What of `to` leads away from a sector: across the direction nearest in it; all of it where that is more
-/// than a right angle off. As long as the sine to the sector.
+/// The part of `to` perpendicular to the sector's nearest direction; all of `to` if that is more than a right
+/// angle away. Its length is the sine to the sector.
 Vec3 away_from(const FaceSector& sector, const Vec3& to)
 {
     const Vec3 nearest = nearest_in(sector, to);
@@ -47,8 +47,8 @@ double sine_to_sector(const FaceSector& sector, const Vec3& direction)
 Vec3 find_cone_axis(const std::vector<FaceSector>& sectors, const Vec3& inside)
 {
     constexpr int kMostTurns = 20;
-    constexpr double kTouching = 1e-6;  // sine: on a face, to which no side can be told
-    constexpr double kGain = 1e-3;      // of the room: less is not worth a turn
+    constexpr double kTouching = 1e-6;  // sine: the direction lies in a face, so that it has no side
+    constexpr double kGain = 1e-3;      // relative gain of room below which the iteration stops
     Vec3 axis = inside;
     double room = least_sine(sectors, axis);
     for (int turn = 0; turn < kMostTurns && room > kTouching; ++turn) {

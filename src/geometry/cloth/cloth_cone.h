@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Cloth around a vertex that hangs over a point is a cone with the point inside, mostly a pleated one: cloth
-// that hangs steeper than it can without pleats. Its faces' normals then have no middle, and their mean may
-// lead out of it; what the point needs is room. Seen from the vertex the faces are arcs on a sphere, and the
-// axis is the centre of the largest circle about the point's direction that can be grown among them:
+// Finds the axis of a cone of cloth: cloth around a vertex that hangs over a point (a nail, or the end of a
+// wire), with the point inside. Cloth that hangs steeply has pleats. The normals of its faces then have no
+// common half space, and their mean may lead out of the cone. Seen from the vertex, the faces are arcs on a
+// sphere. The axis is the centre of the largest circle that can be grown among these arcs from the direction
+// of the point:
 //
 //        ___
 //     __/   \_
@@ -11,9 +12,9 @@
 //      \_ o ___/
 //        \_/
 //
-// Around q each arc is kept off by the great circle that touches it where it is nearest. The middle of these
-// half spaces has as much room as q at least, and no arc is between q and it: so it may be gone to, and from
-// there again.
+// At q, each arc is bounded by the great circle that touches the arc at its point nearest to q. The middle of
+// the resulting half spaces has at least as much room as q, and no arc lies between the two. So the axis
+// moves there, and the construction is repeated.
 #pragma once
 
 #include <array>
@@ -23,15 +24,16 @@
 
 namespace arris {
 
-/// A face of the cloth seen from one of its vertices: the unit directions along its two edges there.
+/// A face of the cloth seen from one of its vertices: the unit directions along its two edges at that vertex.
 using FaceSector = std::array<Vec3, 2>;
 
-/// Sine of the angle between a unit direction and the sector: of the distance from a place in that direction
-/// to a face that has no end, over the distance to the vertex. 1 where the vertex is nearest.
+/// Sine of the angle between a unit direction and the sector; 1 from a right angle on. It is the distance of
+/// a point in that direction to the face, taken as unbounded, over the point's distance to the vertex.
 double sine_to_sector(const FaceSector& sector, const Vec3& direction);
 
-/// The unit direction from the vertex with the most room, as far as it can be turned to from `inside` (unit)
-/// with no less room on the way and through none of the sectors. `inside` where it touches one.
+/// The unit direction from the vertex with the most room (least sine to a sector) that can be reached from
+/// `inside` (unit). On the way the room never shrinks and no sector is passed. Returns `inside` if it touches
+/// a sector.
 Vec3 find_cone_axis(const std::vector<FaceSector>& sectors, const Vec3& inside);
 
 }  // namespace arris

@@ -8,14 +8,14 @@
 
 namespace arris {
 
-/// Persistent: a vertex keeps its id for life, and no other ever gets it.
+/// Persistent number of a vertex: kept as long as the vertex exists, and never reused.
 using VertexId = std::uint32_t;
 
-/// The cloth's triangles as plain arrays; the form in which layers exchange them. `material` and `world`
-/// have one entry a vertex. Faces are counter-clockwise in material space, and every vertex belongs to one.
+/// The cloth's triangle mesh as plain arrays; layers exchange it in this form. `material` and `world` have
+/// one entry per vertex. Faces are counter-clockwise in material space, and every vertex belongs to a face.
 struct ClothMesh {
-    std::vector<Vec2> material;  ///< X, m: which point of the cloth a vertex is
-    std::vector<Vec3> world;     ///< x, m: where it is
+    std::vector<Vec2> material;  ///< X, m: position on the flat cloth
+    std::vector<Vec3> world;     ///< x, m: position in space
     std::vector<Face> faces;
 
     int vertex_count() const { return static_cast<int>(world.size()); }

@@ -12,7 +12,7 @@
 namespace arris {
 namespace {
 
-// Material coordinates are accepted as equal within this share of the cloth's size.
+// Material coordinates this close, relative to the cloth's size, count as equal.
 constexpr double kMaterialTolerance = 1e-9;
 
 MaterialBox bounding_box(const std::vector<Vec2>& material)
@@ -64,7 +64,7 @@ class ShareSum {
     long double total_ = 0.0L;
 };
 
-// A point of a face while it is clipped: where, and its barycentric coordinates.
+// A corner of a face that is being clipped: its material position and its barycentric coordinates.
 struct ClipPoint {
     Vec2 X;
     Vec3 weights;
@@ -148,7 +148,7 @@ struct LinePart {
     int face;
 };
 
-// `axis` is the direction the line runs in; box.min and box.max agree in the other.
+// `axis` is the line's direction; in the other direction box.min equals box.max.
 std::optional<LinePart> clip_line(const ClothMesh& mesh, int f, const MaterialBox& box, int axis)
 {
     const int across = 1 - axis;
@@ -165,8 +165,8 @@ std::optional<LinePart> clip_line(const ClothMesh& mesh, int f, const MaterialBo
     return LinePart{*first, *last, f};
 }
 
-// A line along a mesh edge lies in two faces: every stretch of it is taken from the first part that reaches
-// it, in the order of where parts begin, so that none counts twice.
+// A line along a mesh edge lies in two faces. Each stretch counts once: for the first part that covers it, in
+// the order in which parts begin.
 void spread_by_length(const ClothMesh& mesh, const MaterialBox& box, int axis, ShareSum& sum)
 {
     std::vector<LinePart> parts;
@@ -189,8 +189,8 @@ void spread_by_length(const ClothMesh& mesh, const MaterialBox& box, int axis, S
     }
 }
 
-// All on the nearest of `candidates` to `point`, lowest index on ties; as a corner of face `preferred` where
-// it is one, else of the first face that has it.
+// Puts the whole load on the candidate nearest to `point` (lowest index on ties). The load is listed under
+// face `preferred` if the vertex is one of its corners, else under its first face.
 void spread_to_nearest_vertex(const ClothMesh& mesh, const std::vector<int>& candidates, const Vec2& point,
                               int preferred, ShareSum& sum)
 {
@@ -225,7 +225,8 @@ void spread_over_point(const ClothMesh& mesh, const Vec2& point, ShareSum& sum)
     spread_to_nearest_vertex(mesh, all, point, face, sum);
 }
 
-// Where the box only touches the cloth from outside: along its sides, else at vertices.
+// For a box that only touches the cloth from outside: spreads along the box's sides, else to the nearest
+// vertex.
 void spread_over_sides(const ClothMesh& mesh, const MaterialBox& box, ShareSum& sum)
 {
     for (int axis = 0; axis < 2; ++axis) {
@@ -240,7 +241,7 @@ void spread_over_sides(const ClothMesh& mesh, const MaterialBox& box, ShareSum& 
     spread_to_nearest_vertex(mesh, vertices_in_box(mesh, box), 0.5 * (box.min + box.max), kNoFace, sum);
 }
 
-// The box's part within the cloth's bounding box; a side no longer than the tolerance becomes none.
+// The part of the box within the cloth's bounding box. A side no longer than the tolerance gets length zero.
 std::optional<MaterialBox> part_near_cloth(const ClothMesh& mesh, const MaterialBox& box)
 {
     const double tolerance = kMaterialTolerance * material_size(mesh.material);
@@ -282,7 +283,7 @@ Vec2 nearest_on_segment(const Vec2& a, const Vec2& b, const Vec2& p)
     return a + std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d;
 }
 
-// Nearest to `point` among the face's border points; for points outside.
+// The point on the face's border nearest to `point`, which lies outside the face.
 Vec2 nearest_on_border(const std::array<Vec2, 3>& X, const Vec2& point)
 {
     Vec2 nearest = X[0];

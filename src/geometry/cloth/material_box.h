@@ -16,38 +16,39 @@ struct MaterialBox {
 /// Largest side of the box around the material coordinates, m: the scale of material tolerances.
 double material_size(const std::vector<Vec2>& material);
 
-/// Vertices inside `box`, ascending, each side widened by 1e-9 of `material_size`.
+/// Vertices inside `box`, ascending. The box is widened on each side by 1e-9 of `material_size`.
 std::vector<int> vertices_in_box(const ClothMesh& mesh, const MaterialBox& box);
 
-/// A share of a load spread over a box: `weight` of it acts on `vertex`. Weights sum to 1.
+/// Share of a box's load on one vertex: the fraction `weight`. Weights sum to 1.
 struct LoadShare {
     int vertex;
     double weight;
 };
 
-/// Spreads a unit load evenly over the part of the cloth inside `box`: by area where that part has one, by
-/// length where the box is a line, onto the nearest vertex where it is a point. Exact for linear elements
-/// (the box is clipped against each face and the shape functions integrated). Ascending by vertex; empty
-/// where the box meets no cloth.
+/// Spreads a unit load evenly over the part of the cloth inside `box`: by area, or by length if the box is a
+/// line. If the box is a point, the nearest vertex gets the load. Exact for linear elements: the box is
+/// clipped against each face and the shape functions are integrated. Ascending by vertex; empty if the box
+/// meets no cloth.
 std::vector<LoadShare> spread_over_box(const ClothMesh& mesh, const MaterialBox& box);
 
-/// A share of a load on the corners of one face.
+/// Share of a box's load on the three corners of one face.
 struct FaceShare {
     int face;
     Vec3 weights;
 };
 
-/// The same load by faces: what `spread_over_box` gives a vertex is the sum of what its corners have here.
+/// The load of `spread_over_box` listed by faces: a vertex's share there is the sum of its corners' weights
+/// here.
 std::vector<FaceShare> spread_over_faces(const ClothMesh& mesh, const MaterialBox& box);
 
-/// Where a material point lies: `face` and its barycentric coordinates there.
+/// Position of a material point: a face and barycentric coordinates in it.
 struct MaterialLocation {
     int face = -1;  ///< -1: the point meets no cloth
     Vec3 weights = Vec3::Zero();
 };
 
-/// The face that contains `point` (tolerance 1e-9 of `material_size`; the nearest such face, lowest index on
-/// ties).
+/// Finds the face that contains `point`. If none does, the nearest face within 1e-9 of `material_size` is
+/// taken, with the lowest index on ties.
 MaterialLocation locate(const ClothMesh& mesh, const Vec2& point);
 
 }  // namespace arris

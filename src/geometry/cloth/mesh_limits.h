@@ -3,17 +3,18 @@
 
 namespace arris {
 
-// Lengths of the cloth's mesh as shares of its target length (mesh_target.h).
+// Limits on lengths in the cloth's mesh, relative to its target length (mesh_target.h).
 
-/// Two vertices nearer to each other than this are in each other's way: mesh surgery moves one onto the other
-/// or clears as much ahead of a trace. Raising it makes traces rounder and faces around them thinner.
+/// Two vertices nearer to each other than this are too close. Mesh surgery moves one onto the place of the
+/// other, and clears this much ahead of a trace. Raising it makes traces rounder and faces around them
+/// thinner.
 inline constexpr double kCrowded = 0.3;
 
 /// An edge shorter than this is merged. Raising it coarsens the mesh beside traces.
 inline constexpr double kShortEdge = 0.5;
 
-/// An edge longer than this is split: four times kShortEdge, so that no split makes a short edge. Neighbours
-/// along a trace are no farther apart either.
+/// An edge longer than this is split. The value is four times kShortEdge, so that no split makes a short
+/// edge. It also limits the distance between neighbours along a trace.
 inline constexpr double kLongEdge = 2.0;
 
 }  // namespace arris

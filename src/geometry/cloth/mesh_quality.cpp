@@ -17,7 +17,7 @@ double material_area(const ClothMesh& mesh)
 
 namespace {
 
-/// Radians.
+/// Least angle of a face in material space, radians.
 double least_angle(const ClothMesh& mesh, const Face& f)
 {
     // At each corner tan = cross / dot; atan2 needs no division and no clamp.

@@ -8,16 +8,17 @@
 
 namespace arris {
 
-/// What clean-up works towards, as functions of the material point.
+/// Target edge length and face angle of mesh clean-up, as functions of the material point.
 struct MeshTarget {
-    std::function<double(const Vec2&)> length;       ///< m, of edges
-    std::function<double(const Vec2&)> least_angle;  ///< degrees, of faces
-    double mean_length = 0.0;                        ///< m, of the whole mesh's edges
-    /// No `length` or `least_angle` is beyond these: they spare most questions.
+    std::function<double(const Vec2&)> length;       ///< of edges, m
+    std::function<double(const Vec2&)> least_angle;  ///< least angle allowed in faces, degrees
+    double mean_length = 0.0;                        ///< mean edge length of the whole mesh, m
+    /// Bounds: shortest <= `length` <= longest, `least_angle` <= most_angle. They save most calls of the
+    /// functions.
     double shortest = 0.0, longest = std::numeric_limits<double>::infinity(), most_angle = 180.0;
 };
 
-/// The same everywhere.
+/// A target that does not depend on the material point.
 MeshTarget uniform_target(double length, double least_angle);
 
 }  // namespace arris

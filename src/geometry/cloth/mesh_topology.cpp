@@ -15,7 +15,7 @@ namespace {
 
 // One side of a face: from corner `corner` to the next. `low` < `high` are its vertices.
 struct Side {
-    std::uint64_t key;  // by what those with one `low` are sorted: `high`, those that run backward last, face
+    std::uint64_t key;  // sort key among sides of one `low`: `high`, forward before backward, face
     int low, corner;
 
     int high() const { return static_cast<int>(key >> 32); }
@@ -33,10 +33,10 @@ Side make_side(const Face& face, int f, int corner)
             corner};
 }
 
-// By `low`, then `high`; of one edge those that run forward first.
+// All sides, ordered by `low`, then `high`. Among the sides of one edge, forward ones come first.
 std::vector<Side> sorted_sides(int vertex_count, const std::vector<Face>& faces)
 {
-    // Each vertex has few: counted out by `low`, then sorted a vertex at a time.
+    // Bucket sort by `low`, then a sort of each vertex's few sides.
     std::vector<std::size_t> next(static_cast<std::size_t>(vertex_count) + 1, 0);
     const auto low_of = [](const Face& face, int k) { return std::min(face[k], face[(k + 1) % 3]); };
     for (const Face& face : faces)
@@ -49,7 +49,7 @@ std::vector<Side> sorted_sides(int vertex_count, const std::vector<Face>& faces)
             sides[next[side.low]++] = side;
         }
     }
-    std::size_t begin = 0;  // `next` now tells where each vertex's end
+    std::size_t begin = 0;  // next[v] is now the end of vertex v's sides
     for (int v = 0; v < vertex_count; begin = next[v++])
         std::sort(sides.begin() + static_cast<std::ptrdiff_t>(begin),
                   sides.begin() + static_cast<std::ptrdiff_t>(next[v]),
@@ -62,7 +62,7 @@ bool same_edge(const Side& s, const Side& t)
     return s.low == t.low && s.high() == t.high();
 }
 
-// What the sentences call vertices and faces.
+// Numbers by which messages name vertices and faces.
 struct Names {
     const ElementNumbers& numbers;
 
@@ -126,7 +126,8 @@ std::string find_bad_edge(const std::vector<Side>& sides, const Names& names)
     return {};
 }
 
-// Faces around a vertex must be one fan: corners joined through the vertex's edges are one set.
+// The faces around a vertex must form one fan. Corners joined through the edges at the vertex form one set
+// (union-find); each vertex must have a single set.
 std::string find_bow_tie(const ClothMesh& mesh, const std::vector<Side>& sides, const Names& names)
 {
     std::vector<int> parent(3 * mesh.faces.size());
@@ -139,7 +140,7 @@ std::string find_bow_tie(const ClothMesh& mesh, const std::vector<Side>& sides, 
         const Side& s = sides[i];
         const Side& t = sides[i + 1];
         if (!same_edge(s, t)) continue;
-        // Where s starts, t ends.
+        // s and t run in opposite directions: t ends where s starts.
         parent[root(3 * s.face() + s.corner)] = root(3 * t.face() + (t.corner + 1) % 3);
         parent[root(3 * s.face() + (s.corner + 1) % 3)] = root(3 * t.face() + t.corner);
     }

@@ -25,7 +25,7 @@ struct MeshEdge {
 struct MeshTopology {
     std::vector<MeshEdge> edges;
     std::vector<Hinge> hinges;
-    std::vector<char> is_border;  ///< one a vertex
+    std::vector<char> is_border;  ///< one entry per vertex
 };
 
 /// Linear in face count. Faces must form an oriented 2-manifold: `validate` checks that.
@@ -44,19 +44,19 @@ class VertexFaces {
     }
 
   private:
-    std::vector<int> begin_;  // of each vertex's, and the end of the last's
+    std::vector<int> begin_;  // where each vertex's faces begin, and the end of the last vertex's
     std::vector<int> faces_;
 };
 
-/// What a sentence calls a mesh's vertices and faces; where empty, their indices, counted from 0.
+/// Numbers by which messages name a mesh's vertices and faces. If empty, messages use indices counted from 0.
 struct ElementNumbers {
     std::vector<int> vertices;
     std::vector<int> faces;
 };
 
-/// Names what is wrong with a cloth mesh: empty string if indices are in range, every vertex is used, the
-/// faces form an oriented manifold, coordinates are finite and every material orientation is positive by an
-/// exact predicate; else one sentence naming the element by its number.
+/// Checks a cloth mesh. Returns an empty string if indices are in range, every vertex is used, faces form an
+/// oriented manifold, coordinates are finite and every face is counter-clockwise in material space (exact
+/// predicate). Otherwise returns one sentence that names the faulty element by its number.
 std::string validate(const ClothMesh& mesh, const ElementNumbers& numbers = {});
 
 }  // namespace arris

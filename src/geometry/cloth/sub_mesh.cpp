@@ -8,7 +8,7 @@ namespace arris {
 SubMesh extract_faces(const ClothMesh& whole, const std::vector<int>& faces)
 {
     SubMesh part;
-    std::unordered_map<int, int> local;  // looked up only
+    std::unordered_map<int, int> local;  // never iterated, so that its order does not matter
     for (const int f : faces) {
         Face made;
         for (int i = 0; i < 3; ++i) {

@@ -9,11 +9,12 @@ namespace arris {
 
 /// Some faces of a mesh as a mesh of their own.
 struct SubMesh {
-    ClothMesh mesh;             ///< vertices in the order in which the faces name them first
-    std::vector<int> vertices;  ///< of the whole mesh: which each of them is
+    ClothMesh mesh;             ///< vertices in the order of their first use by the faces
+    std::vector<int> vertices;  ///< index in the whole mesh of each vertex of `mesh`
 };
 
-/// `faces` (indices) of `whole`, in their order. Costs what the part does, whatever the whole is.
+/// Extracts the faces with the indices `faces`, in this order. The cost depends on their number, not on the
+/// size of `whole`.
 SubMesh extract_faces(const ClothMesh& whole, const std::vector<int>& faces);
 
 }  // namespace arris

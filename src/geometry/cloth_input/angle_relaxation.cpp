@@ -12,13 +12,13 @@
 namespace arris {
 namespace {
 
-constexpr double kAim = 0.5;         // sine of 30 degrees: angles above it are left alone
-constexpr double kLeastGain = 1e-3;  // of the sine, below which a move is not worth its cost
+constexpr double kAim = 0.5;         // sine of 30 degrees: larger angles are left unchanged
+constexpr double kLeastGain = 1e-3;  // least gain of the sine for which a vertex moves
 constexpr int kSweeps = 12;
 constexpr int kDirections = 8;
 constexpr std::array<double, 4> kSteps = {0.2, 0.1, 0.05, 0.025};  // of the length scale
 
-// Faces around each vertex, one after the other in `faces`, from start[v] to start[v + 1].
+// Faces around each vertex v: the entries start[v] to start[v + 1] - 1 of `faces`.
 struct Stars {
     std::vector<int> start, faces;
 };
@@ -62,7 +62,7 @@ class Relaxation {
         return least_sine(places_[a], places_[b], places_[c]);
     }
 
-    // With `v` at `place` instead of where it is.
+    // Least sine of the faces around `v` if `v` were at `place`.
     double sine_around(int v, const Vec2& place)
     {
         const Vec2 before = places_[v];

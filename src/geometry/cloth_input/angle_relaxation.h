@@ -7,16 +7,16 @@
 
 namespace arris {
 
-/// What a vertex of a flat triangulation may do while its angles are improved.
+/// How a vertex of a flat triangulation may move while its angles are improved.
 struct Freedom {
     bool is_fixed = false;
     bool is_on_line = false;
-    Vec2 along = Vec2::Zero();  ///< unit length; a vertex on a line moves along it only
+    Vec2 along = Vec2::Zero();  ///< unit length; a vertex on a line moves only along it
 };
 
-/// Moves vertices of faces whose least angle is below the aim so that the least angle around each grows;
-/// never lets one shrink. `length` is the scale of the moves. Deterministic, a bounded number of sweeps.
-/// Faces stay counter-clockwise if they are.
+/// Moves the vertices of faces with an angle below 30 degrees so that the least angle around each vertex
+/// grows; no move reduces it. `length` is the scale of the moves. Deterministic, with a bounded number of
+/// sweeps. Faces that are counter-clockwise stay so.
 void relax_angles(const std::vector<Face>& faces, const std::vector<Freedom>& freedom, double length,
                   std::vector<Vec2>& places);
 

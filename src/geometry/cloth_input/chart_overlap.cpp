@@ -12,7 +12,7 @@ namespace {
 
 using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 2, std::vector<Face>::const_iterator>;
 
-// The interiors of two convex polygons are disjoint exactly where the line of a side of one parts them.
+// Two convex polygons have disjoint interiors exactly if the line through a side of one separates them.
 bool is_parted_by_side(const std::vector<Vec2>& X, const Face& face, const Face& other)
 {
     for (int k = 0; k < 3; ++k) {

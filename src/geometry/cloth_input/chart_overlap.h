@@ -9,8 +9,9 @@
 
 namespace arris {
 
-/// Two faces (f < g) whose interiors share a point in material space, if there are any; exact, and the lowest
-/// such pair. Faces must be counter-clockwise with area; touching in vertices or along edges is no overlap.
+/// Finds the lowest pair of faces (f < g) whose interiors share a point in material space (exact); nothing if
+/// there is none. Faces must be counter-clockwise with area. Faces that touch at vertices or along edges do
+/// not overlap.
 std::optional<std::array<int, 2>> find_overlap(const std::vector<Vec2>& material,
                                                const std::vector<Face>& faces);
 

@@ -8,9 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -20,6 +18,7 @@
 #include "geometry/cgal.h"
 #include "geometry/cloth/material_box.h"
 #include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth_input/assimp_log.h"
 #include "geometry/cloth_input/chart_overlap.h"
 #include "geometry/cloth_input/obj_outline.h"
 #include "geometry/input_error.h"
@@ -28,41 +27,8 @@
 namespace arris {
 namespace {
 
-// Cloth farther out or larger than this is in the wrong unit.
+constexpr double kFlat = 1e-6;  // relative to size; files are often written in single precision
 
-// A mesh is flat within this share of its size: files are often written in single precision.
-constexpr double kFlat = 1e-6;
-
-// Takes assimp's warnings and errors for as long as it lives.
-class LogCapture : public Assimp::LogStream {
-  public:
-    LogCapture()
-    {
-        Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
-        Assimp::DefaultLogger::get()->attachStream(this, kSeverity);
-    }
-    ~LogCapture() override
-    {
-        Assimp::DefaultLogger::get()->detachStream(this, kSeverity);
-        Assimp::DefaultLogger::kill();
-    }
-    LogCapture(const LogCapture&) = delete;
-    LogCapture& operator=(const LogCapture&) = delete;
-
-    void write(const char* message) override
-    {
-        std::string line = message;
-        while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())) != 0) line.pop_back();
-        lines.push_back("assimp: " + line);
-    }
-
-    std::vector<std::string> lines;
-
-  private:
-    static constexpr unsigned kSeverity = Assimp::Logger::Err | Assimp::Logger::Warn;
-};
-
-// A corner of a face as the file has it.
 struct FileVertex {
     Vec3 position;
     Vec2 uv;
@@ -73,17 +39,16 @@ struct FileVertex {
 
 struct FileMesh {
     std::vector<FileVertex> vertices;
-    std::vector<int> numbers;  // counted from 1, of the `v` statement of each vertex (the first of several)
+    std::vector<int> numbers;  // number, from 1, of each vertex's (first) `v` statement
     std::vector<Face> faces;
-    std::vector<int> lines;  // of the file, that of each face
+    std::vector<int> lines;  // line of each face in the file
     bool has_uv = false;
 };
 
-// assimp keeps coordinates in single precision, and not their order: each corner's number travels as its UVs,
-// in two parts that single precision holds exactly.
+// assimp reorders vertices and rounds to float. UVs carry each corner's number, in two exact parts.
 constexpr int kNumberBase = 1 << 12;
 
-// The faces of an outline as text for assimp, near the origin so that single precision tells vertices apart.
+// The outline's faces as text for assimp, near the origin so that single precision keeps vertices apart.
 std::string numbered_text(const ObjOutline& outline)
 {
     const Vec3 origin = outline.vertices[outline.corners.front().vertex].place;
@@ -163,11 +128,10 @@ class ClothReader {
         if (extension != ".obj") refuse(fmt::format("cloth is read from .obj files, not '{}'", extension));
     }
 
-    // The file's triangles, vertices welded where position and UVs agree to the last bit. assimp's own
-    // welding would join what is within 1e-5, whatever the cloth's size.
+    // Imports triangles, welding only equal vertices; assimp itself would weld any within 1e-5.
     void import()
     {
-        LogCapture log;
+        AssimpLog log;
         Assimp::Importer importer;
         const std::string text = numbered_text(outline_);
         const aiScene* scene = importer.ReadFileFromMemory(
@@ -249,7 +213,7 @@ class ClothReader {
                                              kLargestCoordinate));
     }
 
-    // A place with two UVs is a seam: the cloth would come apart there.
+    // A place with two UVs is a seam, at which the cloth would come apart.
     void require_single_uvs() const
     {
         std::vector<int> order(file_.vertices.size());
@@ -291,7 +255,7 @@ class ClothReader {
                            a.y(), a.z());
     }
 
-    // No face without area in the world, and none twice, in whichever direction.
+    // Refuses faces without area in the world, and faces given twice, in either orientation.
     void require_distinct_faces() const
     {
         std::map<Face, int> seen;
@@ -325,7 +289,7 @@ class ClothReader {
         return largest;
     }
 
-    // Without UVs: the mesh's own plane, seen from the side its faces turn counter-clockwise on.
+    // Without UVs: uses the mesh's own plane, seen from the side on which faces are counter-clockwise.
     void flatten()
     {
         const Vec3& origin = mesh_.world.front();
@@ -336,8 +300,7 @@ class ClothReader {
                     "curved (by {:.3g} m at ({:.6g}, {:.6g}, {:.6g}) m) and without UVs: give UVs in "
                     "metres, or a flat mesh",
                     std::abs((x - origin).dot(normal)), x.x(), x.y(), x.z()));
-        // u along x where the plane allows, so that a horizontal mesh has its own x and y as material
-        // coordinates.
+        // u is along x if possible: a horizontal mesh then keeps its x and y.
         const Vec3 guide = std::abs(normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
         const Vec3 along_u = (guide - guide.dot(normal) * normal).normalized();
         const Vec3 along_v = normal.cross(along_u);
@@ -350,7 +313,7 @@ class ClothReader {
         return exact_orientation(mesh_.material[a], mesh_.material[b], mesh_.material[c]);
     }
 
-    // Makes every face counter-clockwise in material space, where one mirror does.
+    // Makes every face counter-clockwise in material space; mirrors the chart if all are clockwise.
     void orient()
     {
         int clockwise = 0;

@@ -8,21 +8,23 @@
 
 namespace arris {
 
-/// A cloth mesh read from a file, and what was noticed on the way (one sentence each, with counts).
+/// A cloth mesh read from a file, and the warnings of the reader (one sentence each, with counts).
 struct ClothFile {
     ClothMesh mesh;
     std::vector<std::string> warnings;
 };
 
-/// Reads a mesh (polygons are triangulated): positions become the initial world positions, UVs (in metres)
-/// the material coordinates; a flat mesh without UVs is its own chart. `unit_in_metres` scales positions (not
-/// UVs), `up` is 'x', 'y' or 'z': the file's up axis, turned to +z about a single axis. Formats today: OBJ;
-/// coordinates are the doubles nearest to the file's numbers (times `unit_in_metres`). Several pieces are
-/// allowed if their charts are apart. Vertices are numbered in the order in which faces first name them; a
-/// chart that is mirrored as a whole is turned round with a warning. Throws InputError naming the file for
-/// whatever cannot be cloth: unreadable, truncated, no faces, non-finite or out-of-range, non-manifold,
-/// duplicate faces or faces without area, UV seams (a place with two UVs), overlapping or folded charts,
-/// curved without UVs.
+/// Reads a cloth mesh; polygons are triangulated. Positions become the initial world positions, and UVs (in
+/// metres) the material coordinates. A flat mesh without UVs is its own chart. `unit_in_metres` scales
+/// positions, not UVs. `up` is the file's up axis, 'x', 'y' or 'z'; a rotation about a single axis turns it
+/// to +z. The only format is OBJ. Coordinates are the doubles nearest to the file's numbers (times
+/// `unit_in_metres`). Several pieces are allowed if their charts do not overlap. Vertices are numbered in the
+/// order of their first use by faces. A chart that is mirrored as a whole is mirrored back, with a warning.
+///
+/// Throws InputError naming the file if the mesh cannot be cloth:
+///  - file unreadable, truncated or without faces; coordinates not finite or out of range;
+///  - mesh not manifold, faces twice or without area;
+///  - UV seams (a place with two UVs), overlapping or folded charts, a curved mesh without UVs.
 ClothFile read_cloth_file(const std::string& path, double unit_in_metres, char up);
 
 }  // namespace arris

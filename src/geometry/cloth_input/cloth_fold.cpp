@@ -12,11 +12,11 @@
 namespace arris {
 namespace {
 
-// Cutting a line into the mesh rounds its vertices off it by a few units in the last place of the cloth's
-// size.
+// Relative to the cloth's size. Vertices cut into the mesh are off their line by rounding, a few units in the
+// last place.
 constexpr double kOnLine = 1e-12;
 
-// World positions carry the rounding of every earlier fold as well.
+// World positions also carry the rounding of every earlier fold.
 constexpr double kOnAxis = 1e-11;
 
 std::string describe(const Fold& fold)
@@ -25,8 +25,8 @@ std::string describe(const Fold& fold)
     return fmt::format("fold [[{}, {}], [{}, {}]] by {} degrees", p.x(), p.y(), q.x(), q.y(), fold.degrees);
 }
 
-// Which side of a fold's line every vertex is on: 1 left, 0 on it, -1 right; and the vertices on it, in
-// order.
+// The side of a fold's line on which each vertex is (1 left, 0 on the line, -1 right), and the vertices on
+// the line, in order.
 struct Sides {
     std::vector<int> side;
     std::vector<int> on_line;
@@ -61,8 +61,9 @@ void require_line_in_mesh(const Fold& fold, const ClothMesh& mesh, const Sides& 
     }
 }
 
-// Where the line is in the world now: through `origin`, in the direction in which it leaves its first vertex.
-// It may run back over itself (folded by 180 degrees), so its ends do not tell; its farthest vertex does.
+// The fold line's present place in the world: through `origin`, in the direction in which the line leaves its
+// first vertex. The line may run back over itself (folded by 180 degrees), so its farthest vertex gives the
+// direction, not its end.
 struct Axis {
     Vec3 origin;
     Vec3 direction;
@@ -78,7 +79,7 @@ Axis axis_of(const ClothMesh& mesh, const Sides& sides)
     return {origin, direction.stableNormalized()};
 }
 
-// Every face turns or stays as a whole, so the fold is isometric exactly where its line is still straight.
+// Each face turns or stays as a whole, so the fold is isometric exactly if its line is still straight.
 void require_straight(const Fold& fold, const ClothMesh& mesh, const Sides& sides, const Axis& axis)
 {
     const double tolerance = kOnAxis * material_size(mesh.material);

@@ -14,7 +14,7 @@
 namespace arris {
 namespace {
 
-// The share i / n of `length`, exactly `length` at i = n.
+// i / n of `length`; exactly `length` at i = n.
 double share(double length, double i, int n)
 {
     return i < n ? length * (i / n) : length;
@@ -83,17 +83,18 @@ void require_valid(const ClothGrid& grid)
             fmt::format("{}: pattern_angle {} is not finite", name_of(grid), grid.pattern_angle));
 }
 
-// Its pattern does not fit the rectangle as it is.
+// Whether the pattern must be cut to fit the rectangle: it is turned, or has folds.
 bool is_cut(const ClothGrid& grid)
 {
     return !grid.folds.empty() || rotation_about(Vec3::UnitZ(), grid.pattern_angle) != Mat3::Identity();
 }
 
-// Shares measured over sizes of 10 to 1000 cells, sides 1 to 30, and angles.
-constexpr double kCleared = 0.45;  // cells wide, the strip beside a crease without pattern vertices
-// Unstructured: vertices a square of the mean side, and a mean side of half the border.
+// Constants measured over sizes of 10 to 1000 cells, side ratios of 1 to 30, and all angles.
+constexpr double kCleared = 0.45;  // width in cells of the strip beside a crease without pattern vertices
+// Unstructured: vertices per square of the mean side, and per mean side of half the border.
 constexpr double kInside = 1.12, kOnBorder = 0.8;
-// The same, a square of a rectangle narrower than that: sides are halves of halves, 0.77 to 1.31.
+// Unstructured, on a rectangle narrower than the mean side: vertices per square of the width. Sides come from
+// repeated halving: 0.77 to 1.31.
 constexpr double kAlongNarrow = 1.0;
 
 GridCount count_regular(const ClothGrid& grid)
@@ -103,13 +104,14 @@ GridCount count_regular(const ClothGrid& grid)
     return {(nu + 1.0) * (nv + 1.0) + (has_middles ? nu * nv : 0.0), (has_middles ? 4.0 : 2.0) * nu * nv};
 }
 
-// Of a triangulated disc: F = 2 V - B - 2 with B vertices on the border.
+// Faces of a triangulated disc: F = 2 V - B - 2 with B vertices on the border.
 double count_faces(double vertices, double border)
 {
     return std::max(2.0, 2.0 * vertices - border - 2.0);
 }
 
-// Creases are a cell's length divided, and clear pattern vertices from a strip on either side.
+// Creases (border and fold lines) are divided at about a cell's length. Pattern vertices are dropped from a
+// strip on either side.
 GridCount estimate_cut_pattern(const ClothGrid& grid)
 {
     const FoldLines graph = make_fold_lines(grid.size, grid.folds);
@@ -128,8 +130,8 @@ GridCount estimate_cut_pattern(const ClothGrid& grid)
     return {vertices, count_faces(vertices, border)};
 }
 
-// At the cells' mean side; but angles of 20.7 degrees leave no faces much longer than a narrow rectangle is
-// wide.
+// Faces have the cells' mean side. In a narrow rectangle, the least angle of 20.7 degrees lets no face be
+// much longer than the rectangle is wide.
 GridCount estimate_unstructured(const ClothGrid& grid)
 {
     const double side = 0.5 * (grid.size.x() / grid.resolution[0] + grid.size.y() / grid.resolution[1]);

@@ -10,14 +10,14 @@ namespace arris {
 
 enum class GridPattern { Diagonal, Alternating, Cross, Unstructured };
 
-/// A straight line through the cloth along which it is bent at the start: material right of the line (from
-/// its first to its second point) is turned down about it by `degrees`.
+/// A straight fold line of the initial cloth. The material right of the line (from its first to its second
+/// point) is turned down about the line by `degrees`.
 struct Fold {
     std::array<Vec2, 2> line;
     double degrees = 0.0;
 };
 
-/// A grid of more vertices than this is refused: SI sizes and cells that make one are a slip of the pen.
+/// Largest number of vertices of a grid. A grid with more is probably an error in its size or cells.
 inline constexpr double kMostGridVertices = 5e6;
 
 /// A rectangle of cloth [0, size_u] x [0, size_v] to be meshed.
@@ -25,21 +25,25 @@ struct ClothGrid {
     Vec2 size = Vec2::Ones();                ///< m
     std::array<int, 2> resolution = {1, 1};  ///< cells along u and v
     GridPattern pattern = GridPattern::Cross;
-    double pattern_angle = 0.0;  ///< degrees the pattern is turned inside the rectangle
-    std::vector<Fold> folds;     ///< their lines are cut into the mesh
+    double pattern_angle = 0.0;  ///< degrees by which the pattern is turned in the rectangle
+    std::vector<Fold> folds;     ///< mesh edges are made along their lines
 };
 
-/// Flat mesh of the rectangle, world = (u, v, 0), with every fold line (clipped to the rectangle) along mesh
-/// edges from border to border; lines may cross and meet. Vertices and faces are a function of the arguments
-/// alone. "diagonal", "alternating" (diagonals alternate like a draughtboard) and "cross" (a vertex in each
-/// cell's middle) are regular; a turned pattern is clipped to the rectangle, and one with folds keeps what no
-/// fold meets. "unstructured" is CGAL's Delaunay refinement at the cells' mean side (measured: within 10 %);
-/// it has no direction, so `pattern_angle` does not change it. Least angles, square cells: turned 29 degrees
-/// (measured, all angles); with folds 25 where nothing forces less (lines that meet or pass near each other,
-/// or near a corner, do); unstructured 20.7 likewise. Other cells: judged in cell coordinates. Border
-/// vertices have exactly 0 or the size as coordinate. Throws InputError for sizes or resolutions that are not
-/// positive, for more than kMostGridVertices (by the estimate before it is made, and when it is made), and
-/// for a fold whose line misses the rectangle.
+/// Makes a flat mesh of the rectangle, with world = (u, v, 0). Mesh edges run along every fold line (clipped
+/// to the rectangle) from border to border; fold lines may cross and meet. Vertices and faces depend on the
+/// arguments alone. Border vertices have exactly 0 or the size as coordinate.
+///
+/// The patterns "diagonal", "alternating" (diagonals alternate as on a draughtboard) and "cross" (a vertex in
+/// the middle of each cell) are regular. A turned pattern is clipped to the rectangle; a pattern with folds
+/// keeps the faces that no fold line meets. "unstructured" is CGAL's Delaunay refinement with the cells' mean
+/// side as edge length (measured: within 10 %). It has no direction, so `pattern_angle` does not change it.
+///
+/// Least angles with square cells: 29 degrees for a turned pattern (measured over all angles), 25 with folds,
+/// 20.7 for "unstructured". Fold lines that meet or pass near one another, or near a corner, may force
+/// smaller angles. Angles in other cells are judged in cell coordinates.
+///
+/// Throws InputError if a size or resolution is not positive, if a fold's line misses the rectangle, or for
+/// more than kMostGridVertices vertices (estimated before the mesh is made, and counted after).
 ClothMesh make_cloth_grid(const ClothGrid& grid);
 
 struct GridCount {
@@ -47,17 +51,17 @@ struct GridCount {
     double faces = 0.0;
 };
 
-/// How many vertices and faces make_cloth_grid would make, in no time and for any numbers: exact for a
-/// regular pattern unturned and without folds; else measured within 20 % (from 10 cells on), or 40 % for
-/// "unstructured" on a rectangle narrower than its cells' mean side. What folds force of "unstructured" is
-/// not in it. Throws InputError for what is no rectangle of cells and, for a regular pattern, for folds that
-/// miss it.
+/// Estimates how many vertices and faces make_cloth_grid would make, without making them. Exact for a regular
+/// pattern that is not turned and has no folds. Otherwise the measured error is at most 20 % (from 10 cells
+/// on), or 40 % for "unstructured" on a rectangle narrower than its cells' mean side. Vertices that folds
+/// force on "unstructured" are not counted. Throws InputError for an invalid rectangle or resolution and, for
+/// a regular pattern, for folds that miss the rectangle.
 GridCount estimate_cloth_grid(const ClothGrid& grid);
 
-/// Bends a flat mesh isometrically along `folds`, in order, each turning what lies right of its line about
-/// where the line is by then. A line that an earlier fold laid back on itself (180 degrees) is still
-/// straight. Throws InputError where a fold's line was not cut into the mesh, and where an earlier fold bent
-/// it.
+/// Bends a flat mesh isometrically along `folds`, in order. Each fold turns the material right of its line
+/// about the line's current place in the world. A line that an earlier fold laid back on itself (180 degrees)
+/// is still straight. Throws InputError if a fold's line is not along mesh edges, or if an earlier fold bent
+/// the line.
 void fold_cloth(const std::vector<Fold>& folds, ClothMesh& mesh);
 
 }  // namespace arris

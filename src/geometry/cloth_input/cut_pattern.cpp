@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A regular pattern is fitted to its creases (the rectangle's border and the fold lines) like this: creases
-// get vertices about a cell apart; pattern vertices too close to a crease are dropped; pattern faces that are
-// still whole and meet no crease are kept as they are; the gap between them and the creases is filled by a
-// constrained Delaunay triangulation, whose vertices then move a little to open the smallest angles.
+// Fits a regular pattern to its creases. In this file, a crease is a segment on which mesh edges must lie: a
+// part of the rectangle's border or of a fold line.
+//  1. Creases get vertices about a cell apart.
+//  2. Pattern vertices too close to a crease are dropped.
+//  3. Pattern faces that are complete and meet no crease are kept.
+//  4. A constrained Delaunay triangulation fills the gap between the kept faces and the creases.
+//  5. Vertices move a little to open the smallest angles.
 //
-//      crease  *-----*-----*-----*       Pattern vertices that lie on a crease stay where they are, so a
-//      crease
-//        gap   | \  / \   / \  / |       along the pattern's own edges leaves the pattern unchanged.
-//      kept    o---o---o---o---o         All this happens in cell coordinates, where a cell is a unit square.
+//      crease  *-----*-----*-----*       Pattern vertices on a crease stay where they are. A crease along
+//        gap   | \  / \   / \  / |       edges of the pattern therefore leaves the pattern unchanged.
+//      kept    o---o---o---o---o         Coordinates are in cells: a cell is a unit square.
 #include "geometry/cloth_input/cut_pattern.h"
 
 #include <fmt/format.h>
@@ -26,22 +28,22 @@
 namespace arris {
 namespace {
 
-// In cells. Chosen by measurement over all patterns and angles (the floors are in cloth_grid_test.cpp).
-constexpr double kSpacing = 1.0;  // between vertices on a crease
-constexpr double kClearance =
-    0.45;  // from a crease, within which pattern vertices are dropped; a cross's are at 0.5
-constexpr double kNodeClearance = 0.5;  // the same along a crease from its ends
-constexpr double kOnCrease = 1e-9;      // pattern vertices nearer than this lie on the crease
+// Lengths in cells, chosen by measurement over all patterns and angles (cloth_grid_test.cpp has the least
+// angles).
+constexpr double kSpacing = 1.0;     // between vertices on a crease
+constexpr double kClearance = 0.45;  // pattern vertices nearer to a crease are dropped; a cross's are at 0.5
+constexpr double kNodeClearance = 0.5;  // the clearance along a crease from its ends
+constexpr double kOnCrease = 1e-9;      // pattern vertices nearer to a crease lie on it
 constexpr int kRelaxRounds = 3;
 
 constexpr int kFree = -1;     // a pattern vertex that is not (yet) in the mesh
-constexpr int kDropped = -2;  // and one that will not be
+constexpr int kDropped = -2;  // a pattern vertex that will not be in the mesh
 
 // A vertex on a crease.
 struct CreaseVertex {
-    int segment;       // of the graph; -1: a node
-    double parameter;  // along it, 0 to 1
-    int lattice;       // the pattern vertex that lies there, or -1
+    int segment;       // index in the fold lines; -1: the vertex is a node
+    double parameter;  // along the segment, 0 to 1
+    int lattice;       // the pattern vertex at this place, or -1
 };
 
 class CutPattern {
@@ -93,14 +95,14 @@ class CutPattern {
         add_crease_vertex(place, {-1, 0.0, lattice_at(place)});
     }
 
-    // Pattern vertices on the open segment from a to b, far enough from its ends, by their place along it.
+    // Pattern vertices on the open segment from a to b and far enough from its ends, in order along it.
     std::vector<CreaseVertex> pattern_vertices_on(int segment, const Vec2& a, const Vec2& b) const
     {
         const Vec2 reach = Vec2::Constant(kOnCrease);
         const double length = (b - a).norm();
         std::vector<CreaseVertex> found;
         const int steps = std::max(1, static_cast<int>(std::ceil(length)));
-        // In pieces, so that the boxes searched hug the segment.
+        // The segment is searched in pieces, so that the search boxes stay small.
         for (int k = 0; k < steps; ++k) {
             const Vec2 p = a + (b - a) * (double(k) / steps);
             const Vec2 q = a + (b - a) * (double(k + 1) / steps);
@@ -119,7 +121,7 @@ class CutPattern {
         return found;
     }
 
-    // Puts vertices on a segment: the pattern's own, and between them others at even distances.
+    // Puts vertices on a segment: the pattern's own, and further ones between them at even distances.
     void divide(int segment)
     {
         const auto [begin, end] = graph_.segments[segment];
@@ -146,7 +148,7 @@ class CutPattern {
         }
     }
 
-    // --- what of the pattern stays
+    // --- pattern vertices and faces that are kept
 
     void drop_near_creases()
     {
@@ -170,7 +172,7 @@ class CutPattern {
 
     int turn(const Vec2& a, const Vec2& b, const Vec2& c) const { return exact_orientation(a, b, c); }
 
-    // Whether a crease edge meets a pattern face in more than vertices and edges of both.
+    // Whether a crease edge meets a pattern face at more than common vertices or a common edge.
     bool is_cut(const Face& face, int p, int q) const
     {
         std::array<int, 2> end = {p, q};
@@ -188,7 +190,7 @@ class CutPattern {
             const Vec2& last = lattice_.place(face[(at_first + 2) % 3]);
             return turn(a, next, b) >= 0 && turn(a, b, last) >= 0;
         }
-        // Disjoint convex sets are parted by the line of one of their sides.
+        // Disjoint convex polygons are separated by the line through a side of one of them.
         std::array<int, 3> side;
         for (int k = 0; k < 3; ++k) {
             const Vec2& c = lattice_.place(face[k]);
@@ -202,7 +204,7 @@ class CutPattern {
 
     void keep_faces()
     {
-        std::vector<unsigned char> is_lost(lattice_.vertex_count(), 0);  // by cell, one bit a face
+        std::vector<unsigned char> is_lost(lattice_.vertex_count(), 0);  // per cell, one bit per face
         for (const auto& [p, q] : crease_edges_) {
             const Vec2 low = places_[p].cwiseMin(places_[q]);
             const Vec2 high = places_[p].cwiseMax(places_[q]);
@@ -221,7 +223,7 @@ class CutPattern {
         }
     }
 
-    // Not the middle of a "cross" cell.
+    // Whether a pattern vertex is a corner of cells and not the middle of a "cross" cell.
     bool is_corner(int v) const { return lattice_.place(v).y() == std::round(lattice_.place(v).y()); }
 
     void add_pattern_vertices()
@@ -253,7 +255,8 @@ class CutPattern {
         return rim;
     }
 
-    // The gap's outline in its own numbering: creases, the rim of what is kept, and lone pattern vertices.
+    // Builds the gap's outline, with its own numbering: creases, the border of the kept faces, and pattern
+    // vertices in no kept face.
     void find_gap()
     {
         const std::vector<std::array<int, 2>> rim = rim_of_kept();
@@ -327,11 +330,11 @@ class CutPattern {
 
     FoldLines graph_;
     PatternLattice lattice_;
-    std::vector<int> index_;               // of each pattern vertex in the mesh, or kFree, kDropped
-    std::vector<Vec2> places_;             // of the mesh's vertices, in cells: nodes, creases, pattern
-    std::vector<CreaseVertex> on_crease_;  // the first of them
+    std::vector<int> index_;    // mesh vertex of each pattern vertex, or kFree, kDropped
+    std::vector<Vec2> places_;  // mesh vertices, in cells: nodes, other crease vertices, pattern vertices
+    std::vector<CreaseVertex> on_crease_;  // of the first vertices in places_
     std::vector<std::array<int, 2>> crease_edges_;
-    std::vector<Face> faces_;  // kept ones first
+    std::vector<Face> faces_;  // kept faces first
     std::size_t kept_count_ = 0;
     PlanarGraph gap_;
     std::vector<int> gap_vertices_;

@@ -5,8 +5,8 @@
 
 namespace arris {
 
-/// A regular pattern that does not fit its rectangle as it is: turned, or with fold lines. Throws InputError
-/// where the fold lines do (fold_lines.h). Angles are judged in cell coordinates (pattern_lattice.h).
+/// Makes a regular pattern that must be cut to fit its rectangle: a turned one, or one with fold lines.
+/// Throws InputError as make_fold_lines does. Angles are judged in cell coordinates (pattern_lattice.h).
 ClothMesh make_cut_pattern(const ClothGrid& grid);
 
 /// CGAL's Delaunay refinement of the rectangle with its fold lines, edges about as long as the cells' sides.

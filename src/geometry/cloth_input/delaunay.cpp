@@ -22,7 +22,7 @@
 namespace arris {
 namespace {
 
-// sin^2 of the least angle, the greatest bound for which the refinement is proven to end (20.7 degrees).
+// sin^2 of the least angle (20.7 degrees): the greatest bound for which the refinement is proven to end.
 constexpr double kAngleBound = 0.125;
 
 // A vertex's index in the graph, or kNew for one that the refinement added.
@@ -40,7 +40,7 @@ using Triangulation =
 using VertexHandle = Triangulation::Vertex_handle;
 using FaceHandle = Triangulation::Face_handle;
 
-// An order of insertion without quadratic cases; the same at every call.
+// An order of insertion without quadratic cost. Deterministic.
 std::vector<std::size_t> insertion_order(const std::vector<Point2>& points)
 {
     std::vector<std::size_t> order(points.size());
@@ -96,7 +96,7 @@ void make_canonical(std::vector<Face>& faces)
     std::sort(faces.begin(), faces.end());
 }
 
-// In the order of their coordinates, appended to `points`.
+// Numbers the new vertices in the order of their coordinates and appends them to `points`.
 void number_new_vertices(Triangulation& triangulation, std::vector<Vec2>& points)
 {
     std::vector<VertexHandle> added;

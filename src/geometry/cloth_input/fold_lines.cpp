@@ -62,8 +62,8 @@ class GraphBuilder {
         return static_cast<int>(graph_.nodes.size()) - 1;
     }
 
-    // The point of the line p + s d on side `axis`-coordinate = bound; exact in both coordinates where the
-    // line is parallel to the other axis.
+    // The point of the line p + s d whose coordinate `axis` is `bound`. Both coordinates are exact if the
+    // line is perpendicular to that side.
     Vec2 on_side(const Vec2& p, const Vec2& d, int axis, double bound) const
     {
         const int other = 1 - axis;

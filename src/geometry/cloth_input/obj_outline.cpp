@@ -21,7 +21,7 @@ constexpr const char* kIndexForm =
     "'f' and at least 3 of vertex, vertex/uv, vertex//normal or "
     "vertex/uv/normal, whole numbers counted from 1 (or back from -1)";
 
-// Quoted from a file in a message: enough to find it by.
+// Longest quotation from a file in a message, in characters.
 constexpr std::size_t kLongestQuote = 40;
 
 class OutlineReader {
@@ -46,7 +46,8 @@ class OutlineReader {
     }
 
   private:
-    // One statement: a line, with those that a backslash continues. `line_` is its first.
+    // Reads one statement: a line, and the lines that follow after a backslash. `line_` is the number of the
+    // first.
     bool read_statement(std::istream& file, std::string& statement)
     {
         statement.clear();
@@ -117,7 +118,7 @@ class OutlineReader {
         return numbers;
     }
 
-    // A fourth number alone is a weight, that of projective coordinates; more are a colour.
+    // A fourth number alone is the weight of projective coordinates; more numbers are a colour.
     void take_vertex(std::istringstream& words)
     {
         const std::vector<double> numbers = read_numbers(words, kVertexForm);
@@ -161,7 +162,7 @@ class OutlineReader {
         outline_.corners.push_back(corner);
     }
 
-    // From 0; negative indices count back from the last of `count` so far.
+    // Returns an index from 0. A negative index counts back from the last of the `count` elements so far.
     int read_index(const char* what, std::string_view word, std::size_t count) const
     {
         long long index = 0;

@@ -14,7 +14,7 @@ struct ObjVertex {
     int line;  ///< of the file, counted from 1
 };
 
-/// A `vt` statement, likewise.
+/// A `vt` statement: its numbers as the file states them, to the last bit.
 struct ObjUv {
     Vec2 place;
     int line;
@@ -24,25 +24,26 @@ struct ObjUv {
 struct ObjCorner {
     int vertex;
     int uv;
-    int line;  ///< of its face
+    int line;  ///< line of its face in the file
 };
 
-/// What the lines of an OBJ file declare, in double precision and with their places in the file: importers
-/// forget both.
+/// Statements of an OBJ file in double precision and with their line numbers; importers drop both.
 struct ObjOutline {
     std::vector<ObjVertex> vertices;
     std::vector<ObjUv> uvs;
-    std::vector<ObjCorner> corners;  ///< of all faces, in the file's order
-    std::vector<int> corner_counts;  ///< of each face, at least 3
-    int unused_vertex_count = 0;     ///< named by no face
+    std::vector<ObjCorner> corners;  ///< corners of all faces, in the file's order
+    std::vector<int> corner_counts;  ///< number of corners of each face, at least 3
+    int unused_vertex_count = 0;     ///< vertices that no face names
     int line_and_point_count = 0;    ///< `l` and `p` elements
 };
 
 /// Reads the file's statements. Throws InputError naming the file, the line, the statement and what is
-/// allowed for: a `v` or `vt` without its numbers, a face of fewer than three corners, an index that is not a
-/// number, zero, or out of range (negative ones count back from the last vertex, as the format has it), faces
-/// with and without UVs, and a file without faces. Numbers may be infinite or NaN: what no face names does no
-/// harm. The numbers are correctly rounded, so that what was written with 17 digits comes back the same.
+/// allowed:
+///  - a `v` or `vt` without its numbers; a face of fewer than three corners;
+///  - an index that is not a number, zero or out of range (a negative one counts back from the last vertex);
+///  - faces with and without UVs in one file; a file without faces.
+/// Numbers may be infinite or NaN, as a vertex that no face names does no harm. Numbers are correctly
+/// rounded: one written with 17 digits is read back unchanged.
 ObjOutline read_obj_outline(const std::string& path);
 
 }  // namespace arris

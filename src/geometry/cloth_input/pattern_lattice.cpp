@@ -25,7 +25,7 @@ struct Interval {
     }
 };
 
-// Where the horizontal line at `y` runs inside the parallelogram.
+// The interval of x in which the parallelogram contains points at height `y`.
 Interval cut_at(const std::array<Vec2, 4>& corners, double y)
 {
     Interval cut;
@@ -82,7 +82,7 @@ void PatternLattice::append_row(int half_row, const std::array<Vec2, 4>& corners
     rows_.push_back(row);
 }
 
-// Turned about the centre, then measured in cells.
+// Turns back about the centre, then scales to cells.
 Vec2 PatternLattice::to_cells(const Vec2& material) const
 {
     const Vec2 X = is_turned_ ? Vec2(rotation_.transpose() * (material - centre_) + centre_) : material;

@@ -8,9 +8,10 @@
 
 namespace arris {
 
-/// A grid's regular pattern, turned about the middle of the rectangle: those of its vertices that lie in the
-/// rectangle, in *cell coordinates*, where a cell is the unit square between whole numbers and a "cross" cell
-/// has its middle at halves. Storage is proportional to the cells inside and the border's length in cells.
+/// The vertices of a grid's regular pattern, turned about the middle of the rectangle, that lie in the
+/// rectangle. They are given in *cell coordinates*: a cell is the unit square between whole numbers, and a
+/// "cross" cell has its middle at halves. Storage is proportional to the number of cells inside and the
+/// border's length in cells.
 class PatternLattice {
   public:
     /// `grid` must be valid and its pattern regular.
@@ -25,16 +26,16 @@ class PatternLattice {
     /// Vertices whose cell coordinates lie in the box, in ascending order.
     std::vector<int> vertices_in(const Vec2& min, const Vec2& max) const;
 
-    /// Cells that meet the box, each named by the vertex at its lower left corner, ascending. A cell without
-    /// that vertex is never named: its faces would not be whole.
+    /// Cells that meet the box, each named by the vertex at its lower left corner, ascending. A cell whose
+    /// lower left corner is outside the rectangle is left out, as it is incomplete.
     std::vector<int> cells_in(const Vec2& min, const Vec2& max) const;
 
-    /// The faces of a cell, counter-clockwise; a vertex outside the rectangle is -1, as are all of a face
-    /// that the pattern does not have.
+    /// The faces of a cell, counter-clockwise. A vertex outside the rectangle is -1; a face that the pattern
+    /// does not have is -1 throughout.
     std::array<Face, 4> faces_of(int cell) const;
 
   private:
-    // Vertices at height `half_row` / 2, from x = first (+ 1/2 where half_row is odd).
+    // Vertices at y = half_row / 2, with x = first, first + 1, ... (plus 1/2 if half_row is odd).
     struct Row {
         int first = 0, count = 0, offset = 0;
     };

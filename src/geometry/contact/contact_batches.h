@@ -9,8 +9,9 @@
 
 namespace arris {
 
-/// Joins what `find(first, last, results)` appends for the elements [first, last) of each batch, in the order
-/// of the elements. Batches run in parallel and have a fixed size, so that the result knows no threads.
+/// Concatenates the results that `find(first, last, results)` appends for the elements [first, last) of each
+/// batch, in the order of the elements. Batches run in parallel. Their size is fixed, so the result does not
+/// depend on the number of threads.
 template <class Result, class Find>
 std::vector<Result> collect_in_batches(int count, const Find& find)
 {

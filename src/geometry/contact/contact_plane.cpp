@@ -30,7 +30,7 @@ ObstacleContact make_contact(ContactKind kind, const ClothPoint& cloth_point, in
                              const Vec3& point, double least_gap)
 {
     ObstacleContact contact{cloth_point, kind, element, normal, point, least_gap};
-    // Ascending, unused ones last.
+    // Sort vertices ascending, unused ones last.
     const auto swap_if = [&](int i, int j) {
         const int a = contact.vertices[i], b = contact.vertices[j];
         if (b < 0 || (a >= 0 && a < b)) return;
@@ -45,8 +45,8 @@ ObstacleContact make_contact(ContactKind kind, const ClothPoint& cloth_point, in
 
 namespace {
 
-/// Of the cloth's element from that of the obstacle at the begin. Its point alone may have been far away: it
-/// comes along the cloth that slides over an edge.
+/// Distance at the step's begin between the cloth's element and the obstacle's element. The contact's cloth
+/// point alone may have been far away then: on cloth that slides over an edge it arrives along the cloth.
 double distance_between_elements(const Obstacle& obstacle, const ClothMotion& motion,
                                  const ObstacleContact& contact)
 {
@@ -80,8 +80,8 @@ ObstacleContact make_contact(const Obstacle& obstacle, const ClothMotion& motion
     const double after = normal.dot(cloth_point.at(motion.end) - point);
     ObstacleContact contact =
         make_contact(kind, cloth_point, element, normal, point, std::min(thickness, before));
-    // What slides along a curved surface comes to this plane from below it, and goes on as far from the
-    // surface as it was.
+    // Cloth that slides along a curved surface approaches this plane from below. Allow it to keep its present
+    // distance from the surface.
     if (contact.least_gap < std::min(thickness, after)) {
         const double farthest = std::min(thickness, distance_between_elements(obstacle, motion, contact));
         contact.least_gap =

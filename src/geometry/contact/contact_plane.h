@@ -8,32 +8,33 @@
 
 namespace arris {
 
-// What the classes of contact share.
+// Shared by the contacts of vertices, edges and faces.
 
-/// Distances below this share of the thickness have no direction to speak of.
+/// Distance, as a share of the thickness, below which the vector between the closest points gives no reliable
+/// direction.
 inline constexpr double kTinyDistance = 1e-3;
 
-/// Weight below which a contact is at the end of a cloth's edge (then it is the vertex's), or on the side of
-/// a face (then it is the edge's): sweeps know the place to 1e-6 of the way.
+/// Weight below which a contact on a cloth edge belongs to the edge's vertex, and a contact on a face to the
+/// face's edge. Sweeps locate a meeting point to 1e-6 of the element.
 inline constexpr double kEndWeight = 1e-4;
 
-/// Distance at which a sweep counts as touching, m: a millionth of the thickness, or what rounding leaves of
-/// coordinates of this size.
+/// Distance at which a sweep counts as a touch, m: a millionth of the thickness, or the rounding error of
+/// coordinates of this size if that is larger.
 double touch_distance(const Obstacle& obstacle, double thickness);
 
-/// How far from its reference position an element is looked for, m: three times the thickness, and up to a
-/// quarter of the step's way where nothing is nearer: what stiffness and neighbours may add to the
-/// prediction. What is missed is found by the check after the solve.
+/// Search distance around the reference position of an element, m: three thicknesses, plus a quarter of the
+/// element's way in the step. The quarter allows for what stiffness and neighbours add to the prediction.
+/// Contacts beyond are found by the check after the solve.
 inline constexpr double kReachThicknesses = 3.0;
 inline constexpr double kReachShareOfWay = 0.25;
 double longest_reach(const ClothMotion& motion, std::span<const int> vertices, double thickness);
 
-/// Fills in vertices in ascending order.
+/// Sorts the vertices ascending.
 ObstacleContact make_contact(ContactKind kind, const ClothPoint& cloth_point, int element, const Vec3& normal,
                              const Vec3& point, double least_gap);
 
-/// The same of what is found before the solve, with `least_gap` by where the cloth's point began and by where
-/// its free way ends.
+/// As above, for contacts found before the solve. `least_gap` follows from where the cloth's point began and
+/// from where its free motion ends.
 ObstacleContact make_contact(const Obstacle& obstacle, const ClothMotion& motion, ContactKind kind,
                              const ClothPoint& cloth_point, int element, const Vec3& normal,
                              const Vec3& point, double thickness);

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Both elements are convex and the cloth's points move linearly, so that two facts certify, over an interval
-// of time, that they do not meet:
-//  - a plane: along a fixed direction n every difference "point of the cloth - point of the obstacle" is
-//  linear
-//    in time, and the elements are apart while all of them are positive. n is taken from the present closest
-//    features, so that the plane is one that holds for long;
-//  - volume: elements that touch have four coplanar points, that is a root of a cubic in time, enclosed by
-//  its
-//    Bernstein coefficients (as the inclusion functions of Wang et al. 2021, "A Large-scale Benchmark and an
-//    Inclusion-based Algorithm for Continuous Collision Detection").
-// Time advances from certificate to certificate until they reach the end, or the gap is below `distance`.
-// Only certificates decide, each with a bound on its rounding errors: a poor direction costs a round, or a
-// report where none was needed, never a miss. All is done on differences of the given points, whose rounding
-// does not grow with the distance from the origin.
+// Both elements are convex and the cloth's points move linearly. Two certificates therefore prove, over an
+// interval of time, that the elements do not meet:
+//  - plane: along a fixed direction n every difference "point of the cloth - point of the obstacle" is linear
+//    in time. The elements are apart while all these differences are positive. n comes from the present
+//    closest features, so that the plane holds for long;
+//  - volume: elements that touch have four coplanar points, that is a root of a cubic in time. The root is
+//    enclosed by Bernstein coefficients (as the inclusion functions of Wang et al. 2021, "A Large-scale
+//    Benchmark and an Inclusion-based Algorithm for Continuous Collision Detection").
+// Time advances from certificate to certificate until it reaches the end, or the gap is below `distance`.
+// Only certificates decide, each with a bound on its rounding error. A poor direction costs a round or an
+// unnecessary report, never a miss. All computations use differences of the given points, whose rounding does
+// not grow with the distance from the origin.
 #include "geometry/contact/continuous_collision.h"
 
 #include <Eigen/Geometry>
@@ -27,28 +25,29 @@ namespace arris {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kNever = 2.0;        // a time after the step
-constexpr int kMaxAdvances = 256;     // 3 are usual; more only for planar elements that pivot at a tiny gap
-constexpr double kRootWidth = 1e-12;  // of the step, to which a root is enclosed
-// Of a scalar product of a unit vector and a difference, interpolated: 4 roundings of the product, 1 of the
-// difference, 3 of the interpolation, each half an epsilon of the size; twice that for the normal's own.
+constexpr double kNever = 2.0;        // a time after the step: no touch
+constexpr int kMaxAdvances = 256;     // 3 are usual; more only where planar elements pivot at a tiny gap
+constexpr double kRootWidth = 1e-12;  // width, as a fraction of the step, to which a root is enclosed
+// Rounding bound, relative to size, of an interpolated scalar product of a unit vector and a difference. The
+// product rounds 4 times, the difference once, the interpolation 3 times, each by half an epsilon. The factor
+// 2 covers the normal's own rounding.
 constexpr double kPlaneRounding = 16.0 * kEpsilon;
-// Of the Bernstein coefficients of a product of three differences, and of their subdivision (halving
-// averages).
+// Rounding bound, relative to size, of the Bernstein coefficients of a product of three differences, and of
+// their subdivision (repeated averaging).
 constexpr double kVolumeRounding = 128.0 * kEpsilon;
 
-/// Differences at the step's begin and end that the certificates need.
+/// Differences between the elements' points at the step's begin and end, as the certificates need them.
 struct Pair {
     int gaps;                                  ///< 3: point and triangle, 4: two segments
     std::array<Vec3, 4> gap_begin, gap_end;    ///< each point of the cloth minus each of the obstacle
-    std::array<Vec3, 3> side_begin, side_end;  ///< the triangle's sides, or the two segments
+    std::array<Vec3, 3> side_begin, side_end;  ///< sides of the triangle, or the two segments
 };
 
-/// A certificate: along `normal` the elements are `separation` apart now, and apart until `until`.
+/// A certificate: along `normal` the elements are `separation` apart now, and remain apart until `until`.
 struct Plane {
     Vec3 normal = Vec3::Zero();
     double separation = 0.0;
-    double until = 0.0;  ///< kNever: to the end
+    double until = 0.0;  ///< kNever: to the step's end
 };
 
 struct Touch {
@@ -61,7 +60,7 @@ Vec3 at(const Vec3& begin, const Vec3& end, double time)
     return begin + time * (end - begin);
 }
 
-/// Bounds on the components of all differences over the step.
+/// Bounds on the components of all differences during the step.
 struct Extent {
     Vec3 low, high;
     double sum = 0.0;
@@ -74,8 +73,8 @@ struct Extent {
             sum += pair.gap_begin[k].sum() + pair.gap_end[k].sum();
         }
     }
-    bool is_finite() const { return std::isfinite(sum); }  // minima may lose a NaN, a sum does not
-    /// The swept boxes do not meet: exact, as the sign of a difference is.
+    bool is_finite() const { return std::isfinite(sum); }  // a minimum may drop a NaN, a sum does not
+    /// Whether the swept boxes are disjoint. Exact, because the sign of a difference is exact.
     bool is_apart() const { return (low.array() > 0.0).any() || (high.array() < 0.0).any(); }
     double size() const { return low.cwiseAbs().cwiseMax(high.cwiseAbs()).sum(); }
 };
@@ -94,22 +93,24 @@ Plane make_plane(const Pair& pair, const Vec3& normal, double time, double margi
     return plane;
 }
 
-/// The best certificate among the directions offered: the plane that holds longest, the greatest separation.
+/// The best certificate among the directions offered: the plane that holds longest, and the largest
+/// separation.
 struct Search {
     const Pair& pair;
     double time, margin;
     Plane longest = Plane();
     double separation = -std::numeric_limits<double>::infinity();
-    Vec3 widest = Vec3::Zero();  ///< the direction of `separation`
+    Vec3 widest = Vec3::Zero();  ///< direction of `separation`
 
-    /// `direction` of any length, made orthogonal to `side` where given.
+    /// `direction` may have any length; it is made orthogonal to `side` if that is given.
     void offer(const Vec3& direction, const Vec3* side = nullptr)
     {
         if (longest.until >= kNever) return;
         const double length = direction.norm();
         if (!(length > 0.0)) return;
         Vec3 normal = direction / length;
-        // Twice: the first projection may leave little, which is then inexact along the side.
+        // Project twice: the first projection may leave a short vector, whose component along the side is
+        // inexact.
         for (int pass = 0; side && pass < 2; ++pass) {
             const double square = side->squaredNorm();
             if (square > 0.0) normal -= normal.dot(*side) / square * *side;
@@ -131,7 +132,7 @@ struct Search {
     }
 };
 
-/// Offers the direction of the closest points, whichever interior, side or corner they lie on.
+/// Offers the direction between the closest points, for each case: interiors, sides and corners.
 void offer_directions(const Pair& pair, double time, Search& search)
 {
     std::array<Vec3, 4> gap;
@@ -143,8 +144,8 @@ void offer_directions(const Pair& pair, double time, Search& search)
     search.offer_facing(side[0].cross(side[1]), gap[0], side[0]);
     if (pair.gaps == 3) {
         for (int k = 0; k < 3; ++k) search.offer(gap[k], &side[k]);
-    } else {  // gaps: (0, 0), (0, 1), (1, 0), (1, 1) of the cloth's segment side[0] and the obstacle's
-              // side[1]
+    } else {  // gaps (0, 0), (0, 1), (1, 0), (1, 1): ends of the cloth's segment side[0] and of the
+              // obstacle's side[1]
         search.offer(gap[0], &side[1]);
         search.offer(gap[2], &side[1]);
         search.offer(gap[0], &side[0]);
@@ -153,10 +154,10 @@ void offer_directions(const Pair& pair, double time, Search& search)
     for (int k = 0; k < pair.gaps; ++k) search.offer(gap[k]);
 }
 
-/// Six times the volume of the four points over a step, a cubic, by its Bernstein coefficients.
+/// Six times the signed volume of the four points during a step: a cubic in time, as Bernstein coefficients.
 struct Volume {
     std::array<double, 4> coefficients;
-    double margin;  ///< of rounding
+    double margin;  ///< rounding bound
 
     explicit Volume(const Pair& pair)
     {
@@ -198,8 +199,8 @@ double value(const std::array<double, 4>& c, double x)
     return ((c[0] * y + 3.0 * c[1] * x) * y + 3.0 * c[2] * x * x) * y + c[3] * x * x * x;
 }
 
-/// For a cubic that changes steadily from one sign to the other: as first_root, by Newton's method. Nothing
-/// where that leaves doubt.
+/// As first_root, by Newton's method, for a cubic that is monotonic. Returns nothing where the result is not
+/// certain.
 std::optional<double> only_root(const std::array<double, 4>& c, double margin)
 {
     const std::array<double, 3> slope{3.0 * (c[1] - c[0]), 3.0 * (c[2] - c[1]), 3.0 * (c[3] - c[2])};
@@ -215,15 +216,15 @@ std::optional<double> only_root(const std::array<double, 4>& c, double margin)
         tangent = slope[0] * y * y + 2.0 * slope[1] * x * y + slope[2] * x * x;
         if (std::abs(x - before) < kRootWidth) break;
     }
-    // Steady: what has the sign of the start has no root before.
+    // The cubic is monotonic: a value with the sign of the start has no root before it.
     x -= kRootWidth + 2.0 * margin / std::abs(tangent);
     const double here = value(c, x);
     if (!(x > 0.0) || !(rises ? here < -margin : here > margin)) return std::nullopt;
     return x;
 }
 
-/// A time before which (from `low`) the cubic has no root, and which is within kRootWidth of where it comes
-/// within `margin` of one; kNever where there is none before `high`.
+/// A lower bound on the cubic's first root between `low` and `high`, within kRootWidth of where the cubic
+/// comes within `margin` of zero; kNever where there is none.
 double first_root(const std::array<double, 4>& c, double margin, double low, double high)
 {
     const auto [least, greatest] = std::minmax_element(c.begin(), c.end());
@@ -248,11 +249,12 @@ Search search_at(const Pair& pair, double time, double margin)
     return search;
 }
 
-/// What begins nearer than `distance` may go on, or leave: it has met nothing yet. So the gap that counts as
-/// a touch is at most half of that at begin.
+/// Gap that counts as a touch: at most half of the gap at begin. A pair that begins nearer than `distance`
+/// has met nothing yet, so it may move on or apart.
 double touching_gap(const Pair& pair, double distance, const Vec3& normal, double margin)
 {
-    double begin = make_plane(pair, normal, 0.0, margin).separation;  // along one direction: a lower bound
+    double begin = make_plane(pair, normal, 0.0, margin).separation;  // a lower bound, as along one direction
+                                                                      // only
     if (begin < 2.0 * distance) begin = search_at(pair, 0.0, margin).separation;
     return std::max(std::min(distance, 0.5 * begin), 4.0 * margin);
 }
@@ -282,7 +284,7 @@ std::optional<Touch> first_touch(const Pair& pair, double distance)
     return Touch{time, normal};
 }
 
-/// Weights of the triangle's point that is closest to the origin.
+/// Barycentric weights of the triangle's point closest to the origin.
 std::array<double, 3> weights_of_least(const std::array<Vec3, 3>& corners)
 {
     const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).stableNormalized();
@@ -331,7 +333,7 @@ std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const 
     const std::optional<Touch> touch = first_touch(pair, distance);
     if (!touch) return std::nullopt;
 
-    // Seen from the obstacle's first point, so that nothing is lost far from the origin.
+    // Relative to the obstacle's first point, so that no digits are lost far from the origin.
     const Vec3 start = at(pair.gap_begin[0], pair.gap_end[0], touch->time);
     const Vec3 along = at(pair.side_begin[0], pair.side_end[0], touch->time);
     const SegmentPair closest =

@@ -8,20 +8,23 @@
 
 namespace arris {
 
-/// Where a moving element of the cloth meets a resting element of an obstacle.
+/// The first touch of a moving element of the cloth and a resting element of an obstacle.
 struct SweepHit {
-    double time;                    ///< of first touch, fraction of the step in [0, 1]
-    std::array<double, 3> weights;  ///< of the meeting point on the cloth's element; unused ones 0
-    Vec3 point;                     ///< of the obstacle
-    Vec3 normal;  ///< unit, from the obstacle to the cloth: separates them just before; zero if nothing does
+    double time;                    ///< fraction of the step in [0, 1]
+    std::array<double, 3> weights;  ///< weights of the meeting point on the cloth's element; unused ones 0
+    Vec3 point;                     ///< meeting point on the obstacle
+    Vec3 normal;  ///< unit vector from the obstacle to the cloth that separates the elements just before;
+                  ///< zero if none does
 };
 
-// The cloth's vertices move linearly from `begin` to `end`. Conservative: one that touches is always
-// reported, at the latest when it does, in spite of rounding; degenerate elements and zero motion included.
-// One that comes within `distance` (m, > 0) may be, but what begins nearer than twice that is let go on as
-// long as it does not come within half of its gap; gaps below 1e-14 of the pair's size count as none. What is
-// not finite is reported at time 0. Elements that pivot at a tiny gap in one common plane may be reported as
-// well, where 256 rounds do not tell.
+// The cloth's vertices move linearly from `begin` to `end`. The sweeps are conservative: a pair that touches
+// is always reported, at the latest at the touch, in spite of rounding. This includes degenerate elements and
+// zero motion.
+//
+// A pair that comes within `distance` (m, > 0) may be reported too. A pair that begins nearer than twice
+// `distance` is reported only if it comes within half of its initial gap. Gaps below 1e-14 of the pair's size
+// count as zero. Coordinates that are not finite are reported at time 0. Elements that pivot at a tiny gap in
+// one common plane may be reported where 256 rounds do not decide.
 
 /// A vertex and a triangle.
 std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A cloth edge and a feature edge. Two lines that cross in space are kept apart along the cross product of
-// their directions; on a touch it points to the side from which the cloth came, at rest it is the direction
-// between the closest points. A touch is possible only where that lies in the feature's normal cone, into
-// which it is clamped for what the prediction of the other elements makes of it.
+// Contacts of a cloth edge and a feature edge. Two lines that cross in space are kept apart along the cross
+// product of their directions. On a touch the normal points to the side from which the cloth came; without a
+// touch it is the direction between the closest points. Closest points give a contact only where that
+// direction lies in the feature's normal cone. The normal is clamped into the cone.
 //
-// Along a polyline a closest point may be the node between two segments: it belongs to the lower one. Of
-// touches of adjacent segments the first in time counts: the others follow from it.
+// A closest point on a polyline may be the node between two segments; it then belongs to the segment of lower
+// index. Of touches with adjacent segments only the first in time counts, as the others follow from it.
 
 #include <algorithm>
 #include <array>
@@ -24,13 +24,15 @@
 namespace arris {
 namespace {
 
-// Sine of the angle below which edges are parallel (1 degree): then their cross product is no direction to
-// rely on, and at rest the vertices' own contacts keep them apart.
+// Sine of the angle below which edges count as parallel (1 degree). Their cross product is then no reliable
+// direction; contacts of the vertices keep the edges apart.
 constexpr double kParallel = 0.0175;
-// Sine of the turn below which a polyline is straight at a node: a parallel cloth edge has no place there.
+// Sine of the bend angle below which a polyline is straight at a node. A cloth edge parallel to it has no
+// contact there.
 constexpr double kStraight = 1e-4;
-constexpr double kAlongPlane = 1e-6;  // share of a way that tells no side of a plane it runs in
-constexpr double kAtRest = 2.0;       // time of a contact without touch: after all touches
+constexpr double kAlongPlane = 1e-6;  // share of a way's length below which its height over a plane is
+                                      // rounding
+constexpr double kAtRest = 2.0;       // time of a contact without a touch: later than every touch
 
 using Segment = std::array<Vec3, 2>;
 
@@ -70,9 +72,9 @@ double sine_between(const Vec3& a, const Vec3& b)
     return lengths > 0.0 ? a.cross(b).norm() / lengths : 0.0;
 }
 
-// 1 or -1: the side of the plane through `point` on which the cloth edge was at the begin; 0 where it came
-// within the plane. What meets the point later comes from the side where it was, or, where that point of the
-// cloth ran in the plane, where the edges' closest points were.
+// The side, 1 or -1, of the plane through `point` on which the cloth edge was at begin; 0 if it came within
+// the plane. A point of the cloth that meets the plane later comes from its side at begin. If that point
+// moved in the plane, the edges' closest points at begin decide.
 int side_of_begin(const Obstacle& obstacle, const EdgePair& pair, double s, const Vec3& point,
                   const Vec3& normal)
 {
@@ -85,7 +87,7 @@ int side_of_begin(const Obstacle& obstacle, const EdgePair& pair, double s, cons
     return 0;
 }
 
-// Away from the feature to where the cloth's point came from, across the line `along`.
+// Direction from the feature to where the cloth's point came from, perpendicular to `along`.
 Vec3 approach_direction(const EdgePair& pair, double s, const Vec3& point, const Vec3& along)
 {
     const Vec3 unit = along.stableNormalized();
@@ -96,7 +98,7 @@ Vec3 approach_direction(const EdgePair& pair, double s, const Vec3& point, const
     return across(closest.first - closest.second);
 }
 
-// The direction that keeps edges apart which touch at `time`; zero where the side cannot be told.
+// The direction that keeps apart edges that touch at `time`; zero where the cloth's side is unknown.
 Vec3 normal_of_touch(const Obstacle& obstacle, const EdgePair& pair, double time, double s, const Vec3& point)
 {
     const Vec3 edge = pair.segment[1] - pair.segment[0];
@@ -109,16 +111,17 @@ Vec3 normal_of_touch(const Obstacle& obstacle, const EdgePair& pair, double time
         normal = cloth.cross(edge).normalized();
         normal *= side_of_begin(obstacle, pair, s, point, normal);
     }
-    // Parallel edges, and those that come within the plane of both, are kept apart along the way they came.
+    // Separate parallel edges, and edges that approach within their common plane, along the direction of
+    // approach.
     if (!(normal.squaredNorm() > 0.0)) {
         normal = approach_direction(pair, s, point, is_crossing ? cloth : edge);
         if (!(normal.norm() > touch_distance(obstacle, pair.thickness))) return Vec3::Zero();
         normal.normalize();
-        if (is_crossing) return normal;  // a node's, which no edge's cone bounds
+        if (is_crossing) return normal;  // the normal at a node, which is in no single edge's cone
     }
-    // Clamped it must still have the cloth's begin on its free side, or it would hold nothing back. Where
-    // another part of the cloth has sunk into a face the cross product may point inside; the way from the
-    // begin does not.
+    // The clamped normal must still have the cloth's begin on its free side, or the contact would hold
+    // nothing back. Where another part of the cloth has sunk into a face, the cross product may point inside.
+    // The way from the begin does not.
     const Vec3 from = at(pair.begin, s) - point;
     const Vec3 clamped = clamp_to_edge_cone(obstacle, pair.element, normal);
     if (clamped.dot(from) >= 0.0) return clamped;
@@ -135,7 +138,8 @@ bool is_feature(const Obstacle& obstacle, int edge)
     return found != edges.end() && found->edge == edge;
 }
 
-// A node inside a polyline is served by the lowest of its feature edges. A corner is the cloth faces' matter.
+// A node inside a polyline belongs to its feature edge of lowest index. Corners belong to contacts of cloth
+// faces.
 bool owns_node(const Obstacle& obstacle, const EdgePair& pair, int point)
 {
     if (is_corner(obstacle.features(), point)) return false;
@@ -168,7 +172,7 @@ bool is_inside(double s)
     return s > kEndWeight && s < 1.0 - kEndWeight;
 }
 
-// The plane between the closest points at the reference position, where they are a local minimum of distance.
+// The plane between the closest points at the reference position, if they are a local minimum of distance.
 std::optional<ObstacleContact> contact_at_rest(const Obstacle& obstacle, const ClothMotion& motion,
                                                const EdgePair& pair)
 {
@@ -192,7 +196,8 @@ std::optional<ObstacleContact> contact_at_rest(const Obstacle& obstacle, const C
         if (!owns_node(obstacle, pair, point) || !is_in_point_cone(obstacle, point, normal))
             return std::nullopt;
     }
-    // Behind the plane the cloth did not begin, or it would be pulled through to where its free flight ends.
+    // Reject a plane behind which the cloth began: it would pull the cloth through to where its free motion
+    // ends.
     if (!(normal.dot(at(pair.begin, closest.s) - closest.second) >=
           -touch_distance(obstacle, pair.thickness)))
         return std::nullopt;
@@ -215,7 +220,7 @@ std::optional<TimedContact> find_pair_contact(const Obstacle& obstacle, const Cl
     return TimedContact{*contact, hit ? hit->time : kAtRest};
 }
 
-// Whether another segment of the same polyline that shares a node was touched before.
+// Whether another segment of the polyline that shares a node with this one was touched earlier.
 bool follows_from_another(const Obstacle& obstacle, const std::vector<TimedContact>& found, std::size_t i)
 {
     if (found[i].time >= kAtRest) return false;

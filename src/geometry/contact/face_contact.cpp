@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A cloth face and a corner (or a node of a polyline): the plane is the cloth's own, through the corner.
-// Where the nearest point of the cloth lies on an edge between two faces, or on the cloth's border, the
-// direction between the points stands in for it.
+// Contacts of a cloth face and a corner or a node of a polyline: the plane of the cloth face, through the
+// corner. The nearest point of the cloth may lie on an edge between two faces, or on the cloth's border. Then
+// the direction between the closest points replaces the face's normal.
 
 #include <algorithm>
 #include <array>
@@ -21,13 +21,15 @@
 namespace arris {
 namespace {
 
-constexpr double kAlongPlane = 1e-6;  // share of a way that tells no side of a plane it runs in
-// Sine by which the direction to a point may lie over a face beside the edge that is nearest: rounding.
+constexpr double kAlongPlane = 1e-6;  // share of a way's length below which its height over a plane is
+                                      // rounding
+// Rounding tolerance for the test whether an edge is nearest: sine by which the direction to the point may
+// lean over a face beside that edge.
 constexpr double kClothCone = 1e-6;
 
-constexpr double kAtRest = 2.0;  // time of a contact without touch: after all touches
-// Sine by which a polyline must fall off on both sides of a node for a face to rest on it: a turn of 1
-// degree.
+constexpr double kAtRest = 2.0;  // time of a contact without a touch: later than every touch
+// Sine by which a polyline must drop away on both sides of a node for a face to rest on that node: a bend of
+// 1 degree.
 constexpr double kStandsOut = 0.01;
 
 using Triangle = std::array<Vec3, 3>;
@@ -38,7 +40,7 @@ struct CornerPair {
     int element;
     Vec3 point;
     double thickness;
-    double touch;  // distance that counts as none
+    double touch;  // distance that counts as a touch
 };
 
 Triangle triangle_of(const std::vector<Vec3>& positions, const Face& face)
@@ -46,13 +48,13 @@ Triangle triangle_of(const std::vector<Vec3>& positions, const Face& face)
     return {positions[face[0]], positions[face[1]], positions[face[2]]};
 }
 
-// Unit; zero where the triangle has no area.
+// Unit normal; zero where the triangle has no area.
 Vec3 normal_of(const Triangle& t)
 {
     return (t[1] - t[0]).cross(t[2] - t[0]).stableNormalized();
 }
 
-// The motion's positions at a fraction of its way to the reference, of one face.
+// Corners of one face at fraction `time` of the way from begin to `reference`.
 Triangle triangle_at(const ClothMotion& motion, const std::vector<Vec3>& reference, int face, double time)
 {
     const Face& vertices = (*motion.faces)[face];
@@ -71,7 +73,7 @@ const MeshEdge& edge_between(const ClothMotion& motion, int a, int b)
                              });
 }
 
-// Unit, in the triangle's plane, from its edge between the vertices a and b into it.
+// Unit vector in the triangle's plane, perpendicular to edge `edge`, towards the interior.
 Vec3 into_triangle(const Triangle& triangle, const Vec3& normal, int edge)
 {
     return normal.cross((triangle[(edge + 1) % 3] - triangle[edge]).stableNormalized());
@@ -84,9 +86,9 @@ int edge_of(const Face& face, const MeshEdge& edge)
     return 0;
 }
 
-// `normal`, turned to the side of the cloth's begin where the pair's cloth came from: see the edges' contact.
-// Where the way tells nothing, the side of the face at the begin on which the corner was; zero where that
-// tells nothing either.
+// Orients `normal` to the side from which the cloth came, as for contacts of edges. Where the way of the
+// cloth's point does not decide, the side of the face on which the corner was at begin does. Zero where that
+// does not decide either.
 Vec3 towards_begin(const CornerPair& pair, const ClothMotion& motion, const ClothPoint& cloth_point,
                    const Vec3& normal)
 {
@@ -102,8 +104,8 @@ Vec3 towards_begin(const CornerPair& pair, const ClothMotion& motion, const Clot
     return height > 0.0 ? normal : Vec3(-normal);
 }
 
-// The direction of a touch on an edge of the cloth: between two faces their mean normal; on the border from
-// where the cloth came, but never from over the face itself.
+// The normal of a touch on an edge of the cloth. Between two faces this is the mean of their normals. On the
+// border it points to where the cloth came from, but never from over the face itself.
 Vec3 normal_on_edge(const CornerPair& pair, const ClothMotion& motion, const std::vector<Vec3>& reference,
                     const MeshEdge& edge, const ClothPoint& cloth_point, double time)
 {
@@ -124,7 +126,7 @@ Vec3 normal_on_edge(const CornerPair& pair, const ClothMotion& motion, const std
     return towards_begin(pair, motion, cloth_point, normal);
 }
 
-// The cloth's point with weights on a triangle: on one of its edges without the third vertex.
+// The cloth's point with these weights on a face; on edge `edge` the third vertex is left out.
 ClothPoint cloth_point_on(const CornerPair& pair, const std::array<double, 3>& weights, int edge)
 {
     ClothPoint cloth_point{{pair.vertices[0], pair.vertices[1], pair.vertices[2]}, weights};
@@ -168,7 +170,7 @@ std::optional<ObstacleContact> contact_of_touch(const Obstacle& obstacle, const 
     Vec3 normal =
         edge < 0 ? towards_begin(pair, motion, cloth_point, face_normal)
                  : normal_on_edge(pair, motion, reference, cloth_edge(pair, motion, edge), cloth_point, time);
-    // Where a part of the cloth has sunk into the solid the cloth's plane may lead the rest in.
+    // The cloth's own plane may lead into the solid, if part of the cloth has sunk into the solid already.
     if (!normal.isZero(0.0) && !is_in_point_cone(obstacle, pair.element, normal)) {
         const Vec3 outside =
             face_normal_towards(obstacle, pair.element, cloth_point.at(motion.begin) - pair.point);
@@ -177,7 +179,7 @@ std::optional<ObstacleContact> contact_of_touch(const Obstacle& obstacle, const 
     return contact_of(obstacle, motion, pair, cloth_point, normal);
 }
 
-// Whether the edge is nearest to the point seen from every face beside it.
+// Whether the edge is nearest to the point, compared with every face beside the edge.
 bool is_nearest(const CornerPair& pair, const ClothMotion& motion, const std::vector<Vec3>& reference,
                 const MeshEdge& edge, const Vec3& to_cloth)
 {
@@ -190,7 +192,7 @@ bool is_nearest(const CornerPair& pair, const ClothMotion& motion, const std::ve
     return true;
 }
 
-// The plane at the reference position, where the distance has a local minimum there.
+// The plane at the reference position, if the distance has a local minimum there.
 std::optional<ObstacleContact> contact_at_rest(const Obstacle& obstacle, const ClothMotion& motion,
                                                const std::vector<Vec3>& reference, const CornerPair& pair)
 {
@@ -214,7 +216,8 @@ std::optional<ObstacleContact> contact_at_rest(const Obstacle& obstacle, const C
                                : towards_begin(pair, motion, cloth_point, face_normal);
     }
     if (!is_in_point_cone(obstacle, pair.element, normal)) return std::nullopt;
-    // Behind the plane the cloth did not begin, or it would be pulled through to where its free flight ends.
+    // Reject a plane behind which the cloth began: it would pull the cloth through to where its free motion
+    // ends.
     if (!(normal.dot(cloth_point.at(motion.begin) - pair.point) >= -pair.touch)) return std::nullopt;
     return contact_of(obstacle, motion, pair, cloth_point, normal);
 }
@@ -245,12 +248,13 @@ std::optional<TimedContact> find_pair_contact(const Obstacle& obstacle, const Cl
     return TimedContact{*contact, hit ? hit->time : kAtRest};
 }
 
-// Of a polyline's nodes a face needs only those inside it that stand out against it, and of those touched the
-// first in time of neighbours. Under a cloth that lies flat around a rim, all nodes are equally near.
+// Whether a face needs its contact with a node. It needs every corner. Of nodes inside polylines it needs
+// those that stand out against the face; of touched neighbouring nodes only the first in time. Under cloth
+// that lies flat around a rim, all nodes are equally near.
 bool is_needed(const FeatureNode& node, const TimedContact& found, const std::vector<TimedContact>& all)
 {
     if (node.is_corner) return true;
-    if (found.contact.vertices[2] < 0) return false;  // the edges' contact
+    if (found.contact.vertices[2] < 0) return false;  // a contact of a cloth edge instead
     if (found.time >= kAtRest)
         return std::max(node.away[0].dot(found.contact.normal), node.away[1].dot(found.contact.normal)) <
                -kStandsOut;
@@ -326,7 +330,7 @@ std::vector<ObstacleContact> find_face_contacts(const Obstacle& obstacle, const 
                      [](const ObstacleContact& a, const ObstacleContact& b) {
                          return std::pair(a.vertices, a.element) < std::pair(b.vertices, b.element);
                      });
-    // What is on an edge is seen from both its faces.
+    // A contact on an edge is found from both of its faces; keep one.
     contacts.erase(std::unique(contacts.begin(), contacts.end(), has_same_place), contacts.end());
     return contacts;
 }

@@ -11,16 +11,16 @@
 
 namespace arris {
 
-/// The cloth's way during a step in an obstacle's frame; one entry a vertex.
+/// Motion of the cloth during a step, in an obstacle's frame; one entry per vertex.
 struct ClothMotion {
     const std::vector<Face>* faces = nullptr;
     const std::vector<MeshEdge>* edges = nullptr;
-    std::vector<Vec3> begin;  ///< where it is; free of the obstacle
-    std::vector<Vec3>
-        end;  ///< before the solve: where it would be if nothing were in its way; after: where it went
+    std::vector<Vec3> begin;  ///< positions at the step's start, free of the obstacle
+    /// Before the solve: where the cloth would be without obstacles. After the solve: where it went.
+    std::vector<Vec3> end;
 };
 
-enum class ContactKind { Vertex, Edge, Triangle };  ///< which element of the cloth meets the obstacle
+enum class ContactKind { Vertex, Edge, Triangle };  ///< element of the cloth
 
 /// A point of the cloth: weights on up to three vertices.
 struct ClothPoint {
@@ -35,7 +35,7 @@ struct ClothPoint {
         return sum;
     }
 
-    /// Changes `field` at the point by `change`, with the least change at its vertices.
+    /// Changes `field` by `change` at the point, with the least change at its vertices.
     void shift(const Vec3& change, std::vector<Vec3>& field) const
     {
         double squares = 0.0;
@@ -46,48 +46,52 @@ struct ClothPoint {
     }
 };
 
-/// A point of the cloth that must keep its distance from a plane that touches the obstacle:
-/// normal . (sum_i weights_i x_i' - point) >= least_gap at the step's end, in the obstacle's frame.
+/// A point of the cloth that must keep its distance from a plane tangent to the obstacle, at the step's end:
+/// normal . (sum_i weights_i x_i' - point) >= least_gap, in the obstacle's frame.
 struct ObstacleContact : ClothPoint {  // vertices ascending, unused ones last
     ContactKind kind;
-    int element;  ///< of the obstacle: Vertex: a face, or with no face a feature edge or corner of
-                  ///< `features()` (they only serve to compare); Edge: an edge of the topology; Triangle: a
-                  ///< point of the mesh
-    Vec3 normal;  ///< unit, from the obstacle to the cloth
+    int element;  ///< element of the obstacle. Edge: an edge of the topology. Triangle: a point of the mesh.
+                  ///< Vertex: a face, or without a face an edge or corner of `features()`; it serves for
+                  ///< comparison only.
+    Vec3 normal;  ///< unit vector from the obstacle to the cloth
     Vec3 point;   ///< on the obstacle
-    double least_gap;  ///< m: the thickness, or less where the cloth was nearer: its distance from the
-                       ///< obstacle at the begin, as far as its free way brings it there. More would hold it
-                       ///< to the speed at which it comes out: what else pulls it back would be overcome,
-                       ///< step by step.
+    double least_gap;  ///< m, the thickness, or less where the cloth was nearer. Then the gap is the cloth's
+                       ///< distance from the obstacle at begin, as far as its free motion keeps it. A larger
+                       ///< gap would fix the speed at which the cloth comes out, against any force that
+                       ///< pulls it back.
 };
 
-/// Where the cloth would end if it slid along what is in its way: from `begin` towards `end`, at a face it
-/// meets it goes on along that face, at most a few times; each leg is free of the obstacle's faces by exact
-/// predicates. Where nothing is in the way it is `end`.
+/// Reference positions: where the cloth would end if it slid along the obstacle. Each vertex moves from
+/// `begin` towards `end`. At a face it continues along that face, a few times at most. Each leg is free of
+/// the obstacle's faces by exact predicates. Without a face in the way the result is `end`.
 std::vector<Vec3> slide(const Obstacle& obstacle, const ClothMotion& motion, double thickness);
 
-// Contacts of a step, before its solve. `reference` is `slide`'s. Each class sorted by (vertices, element).
-// What is within three thicknesses of the reference position is found, more where the way is long; a plane
-// behind which the cloth began is left out: it would pull it through to the side where its free flight ends.
+// Contacts of a step, found before its solve. `reference` is the result of `slide`. Each function sorts its
+// contacts by (vertices, element). The search covers three thicknesses around the reference position, and
+// more where the cloth moves far. A plane behind which the cloth began is left out: it would pull the cloth
+// through to where its free motion ends.
 
-/// A vertex and what of the obstacle it may reach: at each local minimum of the distance around its reference
-/// position, one plane; at most three, the nearest first, of directions more than 20 degrees apart. Where
-/// only a convex edge or corner is near it is one plane.
+/// Contacts of a vertex: one plane at each local minimum of its distance to the obstacle, around its
+/// reference position. At most three planes, the nearest first, with normals more than 20 degrees apart. Near
+/// only a convex edge or corner this is one plane.
 std::vector<ObstacleContact> find_vertex_contacts(const Obstacle& obstacle, const ClothMotion& motion,
                                                   const std::vector<Vec3>& reference, double thickness);
 
-/// A cloth edge and a feature edge, inside the one and anywhere on the other but at corners. Edges within 1
-/// degree of parallel have a contact only where they touch on the way.
+/// Contacts of a cloth edge and a feature edge: in the interior of the cloth edge, and anywhere on the
+/// feature edge but at corners. Edges within 1 degree of parallel have a contact only where they touch during
+/// the step.
 std::vector<ObstacleContact> find_edge_contacts(const Obstacle& obstacle, const ClothMotion& motion,
                                                 const std::vector<Vec3>& reference, double thickness);
 
-/// A cloth face and a corner, anywhere but at the face's vertices; on an edge between two faces once.
+/// Contacts of a cloth face and a corner, anywhere on the face but at its vertices; reported once on an edge
+/// between two faces.
 std::vector<ObstacleContact> find_face_contacts(const Obstacle& obstacle, const ClothMotion& motion,
                                                 const std::vector<Vec3>& reference, double thickness);
 
-// One pair: where the way from `begin` to `reference` touches, the plane at the first touch; else that of the
-// closest points at `reference`. Nothing where the closest point is no local minimum of the distance within
-// the pair's interiors (a vertex's contact then), or where it cannot be told which side the cloth is on.
+// The contact of one pair. If the motion from `begin` to `reference` touches, this is the plane at the first
+// touch; else the plane between the closest points at `reference`. Returns nothing where the closest points
+// are no local minimum of distance in the interiors of both elements (a vertex's contact then). Returns
+// nothing, too, where the side of the cloth is unknown.
 
 /// Cloth edge `vertices` (a < b) and edge `element` of the obstacle's topology.
 std::optional<ObstacleContact> make_edge_contact(const Obstacle& obstacle, const ClothMotion& motion,

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A vertex slides along what it meets, one straight leg after another. A leg is cut where it would come
-// nearer to the face it meets than the thickness (or than it was), and the rest of the way loses its part
-// into that face; where that leads into the face before, only the part along the crease of both is left.
-// Whether a leg touches is decided by exact predicates, where it does in doubles: a leg that was cut is asked
-// again.
+// A vertex slides along obstacle faces in straight legs. A leg ends one thickness before the face it meets,
+// or at its initial distance if that is less. The rest of the way loses its component into that face. Where
+// the rest leads into an earlier face, only its component along the crease of both faces remains. Exact
+// predicates decide whether a leg touches, for its end points in doubles. So a shortened leg is tested again.
 
 #include <algorithm>
 #include <array>
@@ -18,22 +17,25 @@ namespace arris {
 namespace {
 
 constexpr int kMostLegs = 4;
-constexpr int kMostCuts = 8;          // halvings of a leg that rounding let touch, then it is given up
-constexpr double kSamePlane = 1e-12;  // share of a way below which its part into a plane is rounding
-constexpr double kSameTime = 1e-9;    // fraction of a leg that two faces are met at together
-constexpr double kCrease = 1e-6;      // sine of the angle between planes that make a crease
+constexpr int kMostCuts = 8;          // halvings of a leg that still touches because of rounding, before it
+                                      // is dropped
+constexpr double kSamePlane = 1e-12;  // share of a way's length below which its component into a plane is
+                                      // rounding
+constexpr double kSameTime = 1e-9;    // fraction of a leg within which two faces count as met together
+constexpr double kCrease = 1e-6;      // sine of the angle above which two planes have a crease
 
 using Triangle = std::array<Vec3, 3>;
 
-// A face in the way: met at a fraction of the leg, `normal` on the side where the leg began.
+// A face in the way, met at fraction `time` of the leg. `normal` points to the side where the leg began.
 struct Obstruction {
     double time = std::numeric_limits<double>::infinity();
-    double height = 0.0;    // of the leg's begin over the face's plane, m, >= 0
-    double approach = 0.0;  // what the leg loses of it, m
+    double height = 0.0;    // of the leg's begin above the face's plane, m, >= 0
+    double approach = 0.0;  // component of the leg into the face, m
     Vec3 normal = Vec3::Zero();
 };
 
-// The least fraction of a way in a triangle's plane that is in the triangle; 1 where rounding finds none.
+// The smallest fraction of a way in the triangle's plane at which it is inside the triangle; 1 if rounding
+// hides it.
 double time_in_plane(const Vec3& a, const Vec3& way, const Triangle& triangle, const Vec3& normal)
 {
     double enter = 0.0, leave = 1.0;
@@ -51,7 +53,7 @@ Obstruction meet(const Vec3& a, const Vec3& way, const Triangle& triangle, const
     Obstruction met;
     const double height = normal.dot(a - triangle[0]);
     const double approach = -normal.dot(way);
-    // The exact test says that it touches: the begin is on the side that the way comes from.
+    // The exact test found a touch, so the leg begins on the side from which it comes.
     met.normal = approach > 0.0 ? normal : Vec3(-normal);
     met.approach = std::abs(approach);
     met.height = std::max(approach > 0.0 ? height : -height, 0.0);
@@ -74,7 +76,7 @@ class Slide {
         normal_count_ = 0;
         for (int leg = 0; leg < kMostLegs && touches(place, place + way); ++leg) {
             const Obstruction met = first_met(place, way);
-            // Head on against the rim of a sheet there is no plane to go along.
+            // A way in the face's own plane, head on against the rim of a sheet, has no plane to slide along.
             if (!(met.approach > kSamePlane * way.norm()))
                 return free_point(place, std::max(met.time - thickness_ / way.norm(), 0.0) * way);
             const double time = std::clamp((met.height - thickness_) / met.approach, 0.0, met.time);
@@ -93,7 +95,7 @@ class Slide {
         return !found_.empty();
     }
 
-    // Of the faces that `touches` found the first; of several at once the one that is most in the way.
+    // The first of the faces in `found_`; of several met at once, the one that blocks most of the way.
     Obstruction first_met(const Vec3& place, const Vec3& way) const
     {
         Obstruction first;
@@ -110,7 +112,7 @@ class Slide {
         return first;
     }
 
-    // `place + way`, or less of the way where rounding let it touch.
+    // `place + way`, or less of the way where rounding makes it touch.
     Vec3 free_point(const Vec3& place, Vec3 way)
     {
         for (int cut = 0; cut < kMostCuts; ++cut, way *= 0.5)
@@ -118,7 +120,7 @@ class Slide {
         return place;
     }
 
-    // What is left of a way along the plane just met and those met before, if it leads into them.
+    // Removes from a way its components into the plane just met and the planes met before.
     Vec3 along_planes(const Vec3& normal, const Vec3& way)
     {
         Vec3 left = way - normal.dot(way) * normal;
@@ -130,7 +132,7 @@ class Slide {
             if (!(squared > kCrease * kCrease)) continue;
             left = crease.dot(left) / squared * crease;
             for (int k = 0; k < normal_count_; ++k)
-                if (normals_[k].dot(left) < -least) left = Vec3::Zero();  // a corner
+                if (normals_[k].dot(left) < -least) left = Vec3::Zero();  // blocked in a corner
         }
         normals_[normal_count_++] = normal;
         return left;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A vertex and its local minima of distance to the obstacle (normal_cone.h). Above a table near its rim that
-// is the top's plane alone; beyond the rim one plane across the rim, so that the vertex may slide off or
-// back; in a reflex edge two planes and in a reflex corner three.
+// Contacts of a vertex: the local minima of its distance to the obstacle (normal_cone.h). Above a table near
+// its rim this is the plane of the top alone. Beyond the rim it is one plane at the rim, so that the vertex
+// may slide off or back. In a reflex edge there are two planes, in a reflex corner three.
 //
-// A plane behind which the vertex began would pull it through to the side where its free flight ends, though
-// the cloth around it may be held: what falls beside a wire, or shoots over a rim and down the side. Such a
-// plane is left out, but for the little by which a smooth surface turns away on the way.
+// A plane behind which the vertex began would pull it through to where its free motion ends, although the
+// cloth around it may be held. Examples are a vertex that falls beside a wire, or shoots over a rim and down
+// the side. Such a plane is left out, except for the small angle by which a smooth surface turns away during
+// the step.
 
 #include <algorithm>
 #include <array>
@@ -24,14 +25,15 @@ namespace {
 constexpr int kMostContacts = 3;
 const double kSameDirection = std::cos(20.0 * M_PI / 180.0);
 
-// Of the way from the begin, how far behind a plane that may lie: a turn of about 30 degrees.
+// How far behind a plane the begin may lie, relative to the distance moved: a surface that turns by about 30
+// degrees.
 constexpr double kTurnAway = 0.25;
 
 struct Minimum {
     double distance;
     Vec3 point, normal;
     int element;
-    bool is_vague = false;  // too near to have a direction of its own
+    bool is_vague = false;  // too near to have a direction of its own; `normal` is a guess
 };
 
 bool contains(const std::vector<int>& sorted_or_not, int wanted)
@@ -39,7 +41,7 @@ bool contains(const std::vector<int>& sorted_or_not, int wanted)
     return std::find(sorted_or_not.begin(), sorted_or_not.end(), wanted) != sorted_or_not.end();
 }
 
-// Finds the minima around one place after another.
+// Finds the minima around one place after another; reuses its lists.
 class MinimaFinder {
   public:
     MinimaFinder(const Obstacle& obstacle, double thickness)
@@ -55,8 +57,8 @@ class MinimaFinder {
         has_lone_points_ = !mesh_.lone_points.empty();
     }
 
-    // Minima of the distance from `place` up to `reach`, the nearest first. `begin`, where the vertex was,
-    // tells the side where `place` cannot.
+    // Minima of the distance from `place` up to `reach`, the nearest first. `begin`, the vertex's former
+    // position, decides the side where `place` does not.
     const std::vector<Minimum>& find(const Vec3& place, const Vec3& begin, double reach)
     {
         place_ = place;
@@ -83,7 +85,7 @@ class MinimaFinder {
         const Vec3& normal = topology_.face_normals[f];
         const double height = normal.dot(place_ - mesh_.points[c[0]]);
         const bool is_solid = topology_.is_solid[topology_.component[f]] != 0;
-        // From behind a solid's face nothing of it is seen: a convex edge has a face to its front.
+        // Skip solid faces seen from behind: at a convex edge, another face has the place in front.
         if (std::abs(height) > reach_ || (is_solid && height < -touch_)) return;
         const PointOnTriangle closest =
             closest_on_triangle(place_, {mesh_.points[c[0]], mesh_.points[c[1]], mesh_.points[c[2]]}, normal);
@@ -96,13 +98,13 @@ class MinimaFinder {
 
     double turn_away() const { return kTurnAway * (place_ - begin_).norm(); }
 
-    // Unless the begin was further than this behind the plane.
+    // Adds a minimum, unless the begin was more than `most_behind` behind its plane.
     void add(const Minimum& minimum, double most_behind)
     {
         if (minimum.normal.dot(begin_ - minimum.point) >= -most_behind) minima_.push_back(minimum);
     }
 
-    // Of wires and borders: cloth may hang over them, so that one side is not the other.
+    // Whether an edge is a wire or border. Cloth may hang over such an edge, so its two sides differ.
     bool is_thin(int edge) const { return topology_.edges[edge].faces[1] < 0; }
 
     bool is_thin_at(int point) const
@@ -112,7 +114,7 @@ class MinimaFinder {
         return topology_.edge_count_at(point) == 0;
     }
 
-    // The side of a sheet's face.
+    // Whether the vertex is on the front side of a sheet's face.
     bool is_on_front(int f, double height) const
     {
         if (std::abs(height) > touch_) return height > 0.0;
@@ -149,7 +151,8 @@ class MinimaFinder {
             is_thin_at(point) ? touch_ : thickness_ + turn_away());
     }
 
-    // At a point: where the vertex came from, if that is in the cone, else the middle of its faces' normals.
+    // Normal at a point that is too near: towards the begin of the vertex if that lies in the cone, else the
+    // mean normal of the faces.
     Vec3 vague_normal(int point) const
     {
         const Vec3 from = begin_ - mesh_.points[point];
@@ -185,7 +188,8 @@ class MinimaFinder {
         }
     }
 
-    // Beside a face's own plane at the same place a guess is one plane too many.
+    // Drops guessed normals where a minimum at the place has a clear direction: the guess would be a
+    // redundant plane.
     void drop_vague()
     {
         const bool has_clear = std::any_of(minima_.begin(), minima_.end(), [&](const Minimum& m) {
@@ -206,7 +210,7 @@ class MinimaFinder {
     std::vector<int> near_, seen_edges_, seen_points_;
 };
 
-// Nearest first, of directions that differ.
+// Chooses the nearest minima whose directions differ.
 void choose(const std::vector<Minimum>& minima, std::vector<Minimum>& chosen)
 {
     chosen.clear();
@@ -230,7 +234,8 @@ std::vector<ObstacleContact> find_vertex_contacts(const Obstacle& obstacle, cons
         for (int v = first; v < last; ++v) {
             const double longest = longest_reach(motion, {&v, 1}, thickness);
             if (!(obstacle.bounds().squaredExteriorDistance(reference[v]) <= longest * longest)) continue;
-            // A longer reach only where nothing is nearer: on a fine mesh each doubling costs four times.
+            // Search farther only where nothing is nearer: on a fine mesh each doubling costs four times as
+            // much.
             chosen.clear();
             for (double reach = kReachThicknesses * thickness; chosen.empty(); reach *= 2.0) {
                 choose(finder.find(reference[v], motion.begin[v], std::min(reach, longest)), chosen);

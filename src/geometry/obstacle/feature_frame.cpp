@@ -12,25 +12,26 @@
 namespace arris {
 namespace {
 
-constexpr double kLongestMitre = 2.0;  // sharp stays sharp: a knife's mitre would have no end
-constexpr double kLeastPart = 0.1;     // of the outward direction along each normal
+constexpr double kLongestMitre = 2.0;  // bounds the mitre at very sharp edges, such as a knife's
+constexpr double kLeastPart = 0.1;     // least component of outward along each normal
 
 double mitre_of(double least_part)
 {
     return least_part * kLongestMitre > 1.0 ? 1.0 / least_part : kLongestMitre;
 }
 
-// The cloth's mean normal on its side, and the direction against where it leaves: of cloth that bends over
-// the feature like a V both point the same way, the one short where the other is long, so that their sum
-// turns evenly from flat cloth to cloth that hangs down on both sides. Nothing where both are too short.
+// Outward is the cloth's mean normal, signed towards its outer side, plus the direction opposite to where its
+// two sides leave. On cloth that bends over the feature like a V, both vectors are parallel, and one is short
+// where the other is long. Their sum turns steadily from flat cloth to cloth that hangs down on both sides.
+// Returns nothing where both vectors are too short.
 std::optional<Vec3> outward_of_cloth(const ClothAround& cloth, const Vec3& tangent)
 {
-    constexpr double kShort = 1e-3;  // of a sum of unit vectors
+    constexpr double kShort = 1e-3;  // length of a sum of unit vectors
     const auto across = [&](const Vec3& v) { return Vec3(v - tangent.dot(v) * tangent); };
     const Vec3 normal = across(cloth.normal), back = across(-cloth.leaving);
     if (!(std::max(normal.norm(), back.norm()) > kShort)) return std::nullopt;
-    // Which way the normal goes, unless it is known, the fold tells where there is one, else where the cloth
-    // has been.
+    // The sign of the normal comes from the known orientation; else from the fold, if there is one; else from
+    // the side on which the cloth has been.
     const Vec3& known = back.norm() > normal.norm() ? back : cloth.side;
     const bool is_inward = cloth.orientation != 0 ? cloth.orientation < 0 : normal.dot(known) < 0.0;
     const Vec3 outward = is_inward ? Vec3(back - normal) : Vec3(back + normal);
@@ -38,7 +39,7 @@ std::optional<Vec3> outward_of_cloth(const ClothAround& cloth, const Vec3& tange
     return outward.normalized();
 }
 
-// Unit directions from a point along its feature edges.
+// Unit directions from a point along its edges.
 std::vector<Vec3> find_edges_away(const Obstacle& obstacle, int point)
 {
     const ObstacleTopology& topology = obstacle.topology();
@@ -77,7 +78,8 @@ std::optional<FeatureFrame> find_edge_frame(const Obstacle& obstacle, int edge, 
         frame.outward = *outward;
         return frame;
     }
-    // Against the inside of both faces: the bisector of their normals, also on a knife, where these cancel.
+    // Opposite to the directions into both faces. This is the bisector of the faces' normals, and remains
+    // defined on a knife, where the normals cancel.
     Vec3 inside = Vec3::Zero();
     for (const int f : ends.faces)
         if (f >= 0) inside += into_face(obstacle, f, feature.edge);

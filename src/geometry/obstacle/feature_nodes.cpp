@@ -6,7 +6,7 @@
 namespace arris {
 namespace {
 
-constexpr double kStraight = 1e-4;  // sine of a turn that is none
+constexpr double kStraight = 1e-4;  // sine of the bend angle below which a polyline counts as straight
 
 }  // namespace
 
@@ -36,7 +36,7 @@ std::vector<FeatureNode> find_feature_nodes(const Obstacle& obstacle)
     std::vector<FeatureNode> nodes;
     for (const FeatureCorner& corner : features.corners) nodes.push_back({corner.point, true, {}, {}});
 
-    // Where a feature edge leaves a point, and for where.
+    // Both directed copies of each feature edge: the point it leaves and the point it leads to.
     std::vector<std::array<int, 2>> ends;
     for (const FeatureEdge& feature : features.edges) {
         const auto& [a, b] = obstacle.topology().edges[feature.edge].points;

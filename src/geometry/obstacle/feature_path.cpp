@@ -17,15 +17,15 @@ double length_of(const Obstacle& obstacle, int feature)
     return (b - a).norm();
 }
 
-/// Unit.
+/// Unit vector from the edge's first point to its second.
 Vec3 direction_of(const Obstacle& obstacle, int feature)
 {
     const auto [a, b] = feature_segment(obstacle, feature);
     return (b - a).normalized();
 }
 
-/// The edge of the same polyline on the other side of end `end` (0 or 1) of an edge, and which of its ends is
-/// there.
+/// The edge that follows in the same polyline beyond end `end` (0 or 1) of edge `feature`, and which of its
+/// own ends lies there.
 struct Step {
     int feature, end;
 };
@@ -46,7 +46,8 @@ std::optional<Step> across(const Obstacle& obstacle, int feature, int end)
     return std::nullopt;
 }
 
-/// From `place` towards end `end` of its edge and on, over at most `reach`, at most once around.
+/// Walks from `place` past end `end` of its edge, over a length of at most `reach` and at most once around a
+/// closed polyline.
 template <typename Visit>
 void walk(const Obstacle& obstacle, const FeaturePlace& place, int end, double reach, const Visit& visit)
 {
@@ -135,7 +136,8 @@ double missed_by_chord(const Obstacle& obstacle, const FeatureBend& bend, double
     const std::optional<Step> next = across(obstacle, bend.feature, bend.end);
     if (!next || std::min(length_of(obstacle, bend.feature), length_of(obstacle, next->feature)) < reach)
         return 0.0;
-    // Half the angle between the ways is what lies between either and the tangent.
+    // The tangent lies halfway between the two edges, so the angle between either edge and the tangent is
+    // half the bend angle.
     return reach * direction_of(obstacle, bend.feature).cross(tangent_at(obstacle, bend)).norm();
 }
 
@@ -204,9 +206,9 @@ Polyline trace_polyline(const Obstacle& obstacle, int polyline)
                                    [&](const FeatureEdge& e) { return e.polyline == polyline; });
     Polyline traced;
     if (seed == edges.end()) return traced;
-    // Back to its begin, or once around.
+    // Go back to the polyline's first edge, or once around if it is closed.
     const int first = static_cast<int>(seed - edges.begin());
-    Step at{first, 1};  // its edge and the end by which it goes on
+    Step at{first, 1};  // the current edge, and the end at which the polyline continues
     for (std::optional<Step> before = across(obstacle, first, 0); before;
          before = across(obstacle, at.feature, 1 - at.end)) {
         if (before->feature == first) {

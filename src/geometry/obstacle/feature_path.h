@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ways along a polyline of an obstacle's features, from segment to segment; they end at its corners.
+// Paths along the polylines of an obstacle's features, from edge to edge. A path ends at corners.
 #pragma once
 
 #include <array>
@@ -10,14 +10,13 @@
 
 namespace arris {
 
-/// A place on a polyline: feature edge (index in features().edges) and the point of it nearest to a given
-/// one.
+/// A place on a polyline: a feature edge (index in features().edges) and a parameter on that edge.
 struct FeaturePlace {
     int feature;
-    double s;  ///< in [0, 1], from the edge's first point
+    double s;  ///< parameter in [0, 1] from the edge's first point
 };
 
-/// Ends of feature edge `feature` (index in features().edges).
+/// End points of feature edge `feature` (index in features().edges).
 std::array<Vec3, 2> feature_segment(const Obstacle& obstacle, int feature);
 
 /// The point of a feature edge nearest to `place`.
@@ -27,55 +26,61 @@ struct PointOnFeature {
 };
 PointOnFeature place_on_feature(const Obstacle& obstacle, int feature, const Vec3& place);
 
-/// Where on the polyline of feature edge `feature` a place is that has gone along from that edge: from it to
-/// the next as long as that is nearer. So a strand of the same polyline that happens to be near is not taken.
+/// Finds the place on the polyline for a point that has moved along it, starting from feature edge `feature`.
+/// Moves on to the next edge as long as that edge is nearer. So another part of the same polyline that
+/// happens to be near is not taken.
 FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& place);
 
-/// Whether what of feature edge `feature` is nearest to a place is an end of its polyline.
+/// Whether the point of feature edge `feature` nearest to `place` is an end of its polyline.
 bool is_past_end(const Obstacle& obstacle, int feature, const Vec3& place);
 
-/// Where a wire turns: an end (0 or 1) of one of its edges, beyond which the polyline goes on elsewhere.
+/// A bend of a polyline: an end (0 or 1) of one of its edges, beyond which the polyline continues in another
+/// direction.
 struct FeatureBend {
     int feature;
     int end;
 };
 
-/// At a point of the mesh: the first edge there of a wire that turns by more than a degree but has no corner.
+/// The bend at a point of the mesh where a wire bends by more than a degree without a corner, given by the
+/// first such edge there.
 std::optional<FeatureBend> find_bend(const Obstacle& obstacle, int point);
 
-/// By how much a chord from `reach` before a turn to as far behind it passes it by, m. 0 where one of its two
-/// edges is shorter than that: it is one of many then, and its wire a curve.
+/// Distance, m, by which a chord from `reach` before a bend to `reach` behind it misses the bend. Returns 0
+/// where one of the bend's two edges is shorter than `reach`: such an edge is one of many on a curved wire.
 double missed_by_chord(const Obstacle& obstacle, const FeatureBend& bend, double reach);
 
-/// Of the mesh, and where that is.
+/// The bend's index in the mesh, and its position.
 int point_at(const Obstacle& obstacle, const FeatureBend& bend);
 Vec3 bend_point(const Obstacle& obstacle, const FeatureBend& bend);
-/// Unit, halfway between the directions of both edges there, seen along the turn's own.
+/// Unit vector halfway between the directions of both edges at the bend, in the direction of edge
+/// `bend.feature`.
 Vec3 tangent_at(const Obstacle& obstacle, const FeatureBend& bend);
 
-/// Length of the polyline between two places on it, m; nothing where it is more than `most`, or where they
-/// are on different ones.
+/// Length along the polyline between two places, m. Returns nothing where the length exceeds `most` or the
+/// places are on different polylines.
 std::optional<double> distance_along(const Obstacle& obstacle, const FeaturePlace& a, const FeaturePlace& b,
                                      double most);
 
-/// The same from a place to a corner (index in features().corners) at an end of its polyline.
+/// Length along the polyline from a place to a corner (index in features().corners) at an end of the
+/// polyline, m. Returns nothing where the length exceeds `most` or the corner is at no end of the polyline.
 std::optional<double> distance_to_corner(const Obstacle& obstacle, const FeaturePlace& a, int corner,
                                          double most);
 
-/// An edge of a polyline in the order along it.
+/// An edge of a polyline, in the order along the polyline.
 struct PolylineEdge {
     int feature;
-    bool is_forward;  ///< from its first point to its second
-    double begin;     ///< m, length of the polyline before it
+    bool is_forward;  ///< whether the polyline runs from the edge's first point to its second
+    double begin;     ///< m, length of the polyline before this edge
 };
 struct Polyline {
-    std::vector<PolylineEdge> edges;  ///< a closed one begins at its first edge
+    std::vector<PolylineEdge> edges;  ///< a closed polyline begins at the first of its edges in
+                                      ///< features().edges
     double length = 0.0;              ///< m
     bool is_closed = false;
 };
 Polyline trace_polyline(const Obstacle& obstacle, int polyline);
 
-/// Index of a topology edge in features().edges; -1 where it is none.
+/// Index in features().edges of a topology edge; -1 where the edge is no feature.
 int feature_of_edge(const ObstacleFeatures& features, int edge);
 
 }  // namespace arris

@@ -30,8 +30,8 @@ double angle_at(const Obstacle& obstacle, int face, int point)
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// The face's normal that bounds an edge's cone: on a solid the outward one, on a sheet that on the side of
-// `direction`.
+// The face normal that bounds an edge's cone. On a solid this is the outward normal, on a sheet the normal on
+// the side of `direction`.
 Vec3 cone_bound(const Obstacle& obstacle, int face, const Vec3& direction)
 {
     const Vec3& normal = obstacle.topology().face_normals[face];

@@ -5,34 +5,37 @@
 
 namespace arris {
 
-// Where a point c of an obstacle is the nearest of its surroundings to a place y, y - c lies in the normal
-// cone at c: it has no part along any direction that leads from c into the obstacle (Johnson and Cohen, local
-// minima of distance). On an edge these are the directions into its faces, at a point the edges that leave
-// it. On solids the cone is outside by the sign of the angle-weighted normal (Baerentzen and Aanaes 2005):
-// behind a thin wall is no contact. Sheets, wires and points have no inside.
+// If a point c of an obstacle is the nearest of its surroundings to a place y, then y - c lies in the normal
+// cone at c. That is, y - c has no component along any direction that leads from c into the obstacle (Johnson
+// and Cohen, local minima of distance). At an edge these directions lead into its faces; at a point they lead
+// along the edges that leave it. On solids the sign of the angle-weighted normal (Baerentzen and Aanaes 2005)
+// selects the outside, so there is no contact from behind a thin wall. Sheets, wires and points have no
+// inside.
 
-/// Sine of the angle by which a direction may lie outside a cone: cloth that lies flat on a table is at the
-/// rim's cone's bound, and comes and goes there by rounding. About three degrees.
+/// Sine of the angle by which a direction may lie outside a cone, about three degrees. Cloth that lies flat
+/// on a table is at the bound of the rim's cone, where rounding would switch contacts on and off.
 inline constexpr double kConeTolerance = 0.05;
 
-/// Whether a unit direction lies in the normal cone inside topology edge `edge` (its part along the edge is
-/// not looked at), or at `point`; within kConeTolerance.
+/// Whether a unit direction lies in the normal cone in the interior of topology edge `edge`, or at `point`,
+/// within kConeTolerance. The component along the edge is ignored.
 bool is_in_edge_cone(const Obstacle& obstacle, int edge, const Vec3& direction);
 bool is_in_point_cone(const Obstacle& obstacle, int point, const Vec3& direction);
 
-/// The unit direction of the edge's normal cone nearest to `direction` (not along the edge), perpendicular to
-/// the edge.
+/// The unit direction perpendicular to the edge, in the edge's normal cone, that is nearest to `direction`.
+/// `direction` must not be parallel to the edge.
 Vec3 clamp_to_edge_cone(const Obstacle& obstacle, int edge, const Vec3& direction);
 
-/// The outward normal of that of the solid faces at `point` over which a place off by `from` is highest; zero
-/// where it is over none of them.
+/// The outward normal of one of the solid faces at `point`: the face above which the place `point` + `from`
+/// is highest. Zero where that place is above none of these faces.
 Vec3 face_normal_towards(const Obstacle& obstacle, int point, const Vec3& from);
 
-/// Unit, in `face` and perpendicular to its edge `edge` (topology), towards the face's inside.
+/// Unit vector in the plane of `face`, perpendicular to its edge `edge` (topology), towards the interior of
+/// the face.
 Vec3 into_face(const Obstacle& obstacle, int face, int edge);
 
-/// Away from the obstacle: along the sum of the normals of an edge's faces, of a point's by their angles;
-/// zero on wires and lone points, from a sheet's border away from the sheet.
+/// Direction away from the obstacle, not unit. For an edge this is the sum of its faces' normals, for a point
+/// the sum weighted by the faces' angles. Zero on wires and lone points. On a sheet's border edge it points
+/// away from the sheet, in the sheet's plane.
 Vec3 outward_of_edge(const Obstacle& obstacle, int edge);
 Vec3 outward_of_point(const Obstacle& obstacle, int point);
 

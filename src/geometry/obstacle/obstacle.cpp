@@ -26,7 +26,7 @@ using FaceTree = CGAL::AABB_tree<
 using SegmentTree = CGAL::AABB_tree<
     CGAL::AABB_traits<Kernel, CGAL::AABB_segment_primitive<Kernel, std::vector<Segment>::const_iterator>>>;
 
-/// Writes the indices of the primitives a query meets, ascending.
+/// Writes the indices of the primitives that a query intersects, ascending.
 template <typename Tree, typename Query, typename Items>
 void find_in(const Tree& tree, const Query& query, const Items& items, std::vector<int>& found)
 {
@@ -59,7 +59,7 @@ struct Obstacle::Trees {
     FaceTree faces;
     SegmentTree edges;
     std::vector<Vec3> corners;
-    std::vector<int> corners_by_x;  ///< corners are few: a sorted list serves
+    std::vector<int> corners_by_x;  ///< corner indices sorted by x; a list suffices, as corners are few
 
     Trees(const ObstacleMesh& mesh, const ObstacleTopology& topology, const ObstacleFeatures& features)
     {
@@ -72,7 +72,7 @@ struct Obstacle::Trees {
                                        arris::to_cgal(mesh.points[ends[1]]));
             edge_boxes.push_back(Box3(mesh.points[ends[0]]).extend(mesh.points[ends[1]]));
         }
-        // Built now: a tree that builds itself at its first query does so under a lock.
+        // Build now: a tree that builds itself at its first query does so under a lock.
         faces.insert(triangles.cbegin(), triangles.cend());
         if (!triangles.empty()) faces.build();
         edges.insert(feature_edges.cbegin(), feature_edges.cend());
@@ -134,7 +134,7 @@ void Obstacle::find_faces(const Box3& box, std::vector<int>& found) const
 
 void Obstacle::find_feature_edges(const Box3& box, std::vector<int>& found) const
 {
-    constexpr std::size_t kFew = 16;  // a box's: one after the other is sooner than down a tree
+    constexpr std::size_t kFew = 16;  // up to this count (a box has 12) a linear scan is faster than the tree
     found.clear();
     if (!box.intersects(bounds_)) return;
     if (trees_->feature_edges.size() > kFew)
@@ -163,7 +163,7 @@ void Obstacle::find_faces_touching(const Vec3& a, const Vec3& b, const Vec3& c, 
 {
     const Triangle triangle(arris::to_cgal(a), arris::to_cgal(b), arris::to_cgal(c));
     if (!triangle.is_degenerate()) return find_in(trees_->faces, triangle, trees_->triangles, found);
-    // A triangle that has collapsed to a line is its three sides.
+    // A triangle that has collapsed to a line is tested as its three sides.
     std::vector<int> side;
     find_faces_touching(a, b, found);
     for (const auto& [p, q] : {std::pair(b, c), std::pair(c, a)}) {

@@ -5,8 +5,8 @@
 
 namespace arris {
 
-/// From `place` (frame, finite) to the nearest of the obstacle's faces, wires and lone points, whichever side
-/// it is on; `most` where none is nearer (m).
+/// Unsigned distance (m) from `place` (in the obstacle's frame, finite) to the nearest of the obstacle's
+/// faces, wires and lone points. Returns `most` where nothing is nearer than that.
 double distance_to(const Obstacle& obstacle, const Vec3& place, double most);
 
 }  // namespace arris

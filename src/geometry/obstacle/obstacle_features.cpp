@@ -12,20 +12,22 @@
 namespace arris {
 namespace {
 
-// Rounding of turns near the threshold, so that at 90 degrees a turned box is what an upright one is.
+// Absorbs rounding of angles near a threshold, so that a rotated box gets the same features as an upright one
+// at 90 degrees.
 constexpr double kTurnSlack = 1e-6;  // degrees
 constexpr double kCornerTurn = 30.0;
-constexpr double kWireCornerTurn = 60.0;  // wires have one plane halfway between both edges up to there
+constexpr double kWireCornerTurn = 60.0;  // up to this bend a wire's two edges share one plane halfway
+                                          // between them
 constexpr double kCornerDefect = 60.0;
 
-// Faces of one plane: their normals agree as well as coordinates in single precision let them.
+// Tolerances for faces in one plane, as single-precision coordinates allow.
 constexpr double kPlanarAngle = 1e-6;     // rad
-constexpr double kPlanarDistance = 1e-6;  // of the bounding box's diagonal
+constexpr double kPlanarDistance = 1e-6;  // relative to the bounding box's diagonal
 
-// Coordinates in single precision are rounded by up to 6e-8 of their size: the normal of a sliver that is
-// lower than a few of these is noise.
-constexpr double kThinHeight = 3e-7;  // of the bounding box's diagonal
-constexpr double kThinAspect = 1e-2;  // of its longest edge
+// Single-precision coordinates are rounded by up to 6e-8 of their size. The normal of a sliver lower than a
+// few such errors is noise.
+constexpr double kThinHeight = 3e-7;  // relative to the bounding box's diagonal
+constexpr double kThinAspect = 1e-2;  // relative to the face's longest edge
 
 double angle_between(const Vec3& a, const Vec3& b)
 {
@@ -44,8 +46,9 @@ double diagonal_of(const ObstacleMesh& mesh)
     return box.isEmpty() ? 0.0 : box.diagonal().norm();
 }
 
-/// The normals by which faces are compared. A thin face has that of the first face that is not thin across
-/// longest sides: a cap that rounding bent out of its plane lies in its neighbour's, as was meant.
+/// The normals by which faces are compared. A thin face borrows the normal of the first face that is not
+/// thin, found across longest sides. So a cap that rounding bent out of its plane counts as part of its
+/// neighbour's plane, as intended.
 struct FacePlanes {
     std::vector<Vec3> normals;
     std::vector<char> is_borrowed;
@@ -66,7 +69,7 @@ bool is_thin(const ObstacleMesh& mesh, int face, double diagonal)
     return height < kThinHeight * diagonal && height < kThinAspect * length;
 }
 
-/// Across the longest side that is no border; -1 where all are.
+/// The neighbour across the longest side that is no border; -1 where all sides are borders.
 int widest_neighbour(const ObstacleMesh& mesh, const ObstacleTopology& topology, int face)
 {
     int widest = -1;
@@ -86,7 +89,7 @@ FacePlanes find_planes(const ObstacleMesh& mesh, const ObstacleTopology& topolog
     for (int f = 0; f < n; ++f) thin[f] = is_thin(mesh, f, diagonal);
 
     FacePlanes planes{topology.face_normals, std::vector<char>(n, 0)};
-    constexpr int kMostThinInARow = 64;  // a way that ends in a circle is no use
+    constexpr int kMostThinInARow = 64;  // bounds the search, which may run in a circle
     for (int f = 0; f < n; ++f) {
         int from = f;
         for (int k = 0; k < kMostThinInARow && from >= 0 && thin[from]; ++k)
@@ -98,7 +101,7 @@ FacePlanes find_planes(const ObstacleMesh& mesh, const ObstacleTopology& topolog
     return planes;
 }
 
-/// Along an edge in the direction in which `face` runs; not unit.
+/// The edge vector in the direction in which `face` runs along the edge; not unit.
 Vec3 direction_in(const ObstacleMesh& mesh, const ObstacleTopology& topology, int face, int edge)
 {
     const std::array<int, 3>& sides = topology.face_edges[face];
@@ -106,7 +109,7 @@ Vec3 direction_in(const ObstacleMesh& mesh, const ObstacleTopology& topology, in
     return mesh.points[mesh.faces[face][(i + 1) % 3]] - mesh.points[mesh.faces[face][i]];
 }
 
-/// Radians by which the faces beside an inner edge turn, negative where it is reflex.
+/// Angle between the normals of the faces beside an inner edge, radians; negative at a reflex edge.
 double signed_turn(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes,
                    int edge)
 {
@@ -123,8 +126,8 @@ int apex_across(const ObstacleMesh& mesh, const std::array<int, 2>& side, int fa
     return -1;
 }
 
-/// Whether a solid's sharp edge is convex. Faces folded flat onto one another count as convex: cloth can
-/// reach the edge of a plate without thickness, but no crack without width.
+/// Whether a solid's sharp edge is convex. Faces folded flat onto one another count as convex: cloth reaches
+/// the edge of a plate without thickness, but no crack without width.
 bool is_convex(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes, int edge)
 {
     const auto [f, g] = topology.edges[edge].faces;
@@ -156,7 +159,7 @@ std::vector<FeatureEdge> find_feature_edges(const ObstacleMesh& mesh, const Obst
     return found;
 }
 
-/// Feature edges at a point: how many, and the first two of them.
+/// Feature edges at a point: their count, and the first two.
 struct EdgesAt {
     int count = 0;
     std::array<int, 2> edges = {-1, -1};
@@ -181,7 +184,7 @@ int other_end(const ObstacleEdge& edge, int point)
     return edge.points[0] == point ? edge.points[1] : edge.points[0];
 }
 
-/// Whether features meet, end, turn or change their kind at a point.
+/// Whether the point is a corner: features meet, end, bend sharply or change kind there.
 bool is_node(const ObstacleMesh& mesh, const ObstacleTopology& topology,
              const std::vector<FeatureEdge>& edges, const EdgesAt& at, int point)
 {
@@ -197,7 +200,7 @@ bool is_node(const ObstacleMesh& mesh, const ObstacleTopology& topology,
     return degrees(turn) > most + kTurnSlack;
 }
 
-/// 3 face + corner.
+/// Index of a corner of a face: 3 face + corner.
 int corner_of(const ObstacleMesh& mesh, int face, int point)
 {
     const Face& f = mesh.faces[face];
@@ -211,8 +214,8 @@ double angle_at(const ObstacleMesh& mesh, const Face& face, int corner)
                          (mesh.points[face[(corner + 2) % 3]] - p).stableNormalized());
 }
 
-/// For each corner of a face (3 face + corner) one that stands for its fan: the corners at a point that are
-/// joined through edges. Surfaces that meet in a point alone are a fan each.
+/// Maps each corner of a face (3 face + corner) to the representative of its fan. A fan is a set of corners
+/// at one point that are joined through edges. Surfaces that meet in a point alone have a fan each.
 std::vector<int> find_fans(const ObstacleMesh& mesh, const ObstacleTopology& topology)
 {
     std::vector<int> parent(3 * mesh.faces.size());
@@ -231,8 +234,8 @@ std::vector<int> find_fans(const ObstacleMesh& mesh, const ObstacleTopology& top
     return parent;
 }
 
-/// Marks the apexes of cones: points where the angles of a closed fan of faces fall short of a full turn by
-/// much. A solid's pits, reflex on the whole, are none.
+/// Marks the apexes of cones: points where the angles of a closed fan of faces sum to much less than 360
+/// degrees. A pit in a solid, reflex on the whole, is not marked.
 void mark_apexes(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes,
                  std::vector<char>& is_corner)
 {
@@ -263,7 +266,7 @@ void mark_apexes(const ObstacleMesh& mesh, const ObstacleTopology& topology, con
     }
 }
 
-/// Numbers the chains of feature edges between corners in the order of their first edges.
+/// Numbers the chains of feature edges between corners, in the order of their first edges.
 int chain(const ObstacleTopology& topology, const std::vector<EdgesAt>& at,
           const std::vector<char>& is_corner, std::vector<FeatureEdge>& edges)
 {
@@ -272,7 +275,7 @@ int chain(const ObstacleTopology& topology, const std::vector<EdgesAt>& at,
         if (edges[seed].polyline >= 0) continue;
         const int polyline = count++;
         for (int point : topology.edges[edges[seed].edge].points) {
-            // Ends at a corner, or where a closed chain comes round.
+            // A chain ends at a corner, or where a closed chain returns to its start.
             int k = seed;
             edges[k].polyline = polyline;
             while (!is_corner[point]) {
@@ -293,7 +296,7 @@ std::vector<int> find_patches(const ObstacleMesh& mesh, const ObstacleTopology& 
     int count = 0;
     for (int seed = 0; seed < static_cast<int>(mesh.faces.size()); ++seed) {
         if (patch[seed] >= 0) continue;
-        // All are compared with the seed, so that a finely curved surface does not drift into one patch.
+        // Compare every face with the seed, so that a finely curved surface does not drift into one patch.
         const Vec3& normal = planes.normals[seed];
         const Vec3& origin = mesh.points[mesh.faces[seed][0]];
         const auto is_in_plane = [&](int f) {
@@ -307,7 +310,7 @@ std::vector<int> find_patches(const ObstacleMesh& mesh, const ObstacleTopology& 
     return patch;
 }
 
-/// Normals of the planes around a point, in the order of their first faces there; each once.
+/// Distinct normals of the planes around a point, in the order of their first faces there.
 std::vector<Vec3> normals_around(const ObstacleTopology& topology, const FacePlanes& planes,
                                  const std::vector<int>& patch, int point)
 {

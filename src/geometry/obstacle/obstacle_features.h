@@ -10,35 +10,45 @@ namespace arris {
 
 enum class FeatureKind { Convex, Border, Wire };
 
-/// A sharp edge that cloth can bend over: a convex edge of a solid or sheet (a sheet's edge that turns is
-/// convex on one of its sides and is one, too), a sheet's border, or a wire's segment.
+/// A sharp edge over which cloth can bend: a convex edge of a solid, a bent edge of a sheet, a sheet's
+/// border, or a segment of a wire. A bent edge of a sheet is convex on one of the sheet's two sides, so it
+/// has the kind Convex.
 struct FeatureEdge {
-    int edge;  ///< in the topology
+    int edge;  ///< index in the topology
     FeatureKind kind;
-    std::array<Vec3, 2> normals;  ///< of the faces beside it; border: both that face's; wire: zero
-    int polyline;                 ///< edges of one kind chained from corner to corner share one
+    std::array<Vec3, 2> normals;  ///< normals of the faces beside the edge; border: twice that of its only
+                                  ///< face; wire: zero
+    int polyline;                 ///< number shared by the edges of one kind that form a chain from corner to
+                                  ///< corner
 };
 
-/// A point where features meet, end or turn, or that stands out by itself.
+/// A point where features meet, end or bend sharply, a cone's apex, or a lone point.
 struct FeatureCorner {
-    int point;                  ///< in the mesh
-    std::vector<Vec3> normals;  ///< of the planar patches around it; none for wires' ends and lone points
+    int point;                  ///< index in the mesh
+    std::vector<Vec3> normals;  ///< normals of the planar patches around the point; none for ends of wires
+                                ///< and lone points
 };
 
 struct ObstacleFeatures {
     std::vector<FeatureEdge> edges;      ///< ascending by `edge`
-    std::vector<FeatureCorner> corners;  ///< ascending by `point`; lone points among them
-    std::vector<int> patch;              ///< planar patch of each face: neighbours in one plane, 1e-6 rad
+    std::vector<FeatureCorner> corners;  ///< ascending by `point`; includes lone points
+    std::vector<int> patch;              ///< planar patch of each face: connected faces in one plane, within
+                                         ///< 1e-6 rad
     int polyline_count = 0;
 };
 
-/// Features of a mesh that passes `validate`. An edge is sharp where its faces turn by more than
-/// `feature_angle` (degrees, + 1e-6). A solid's are convex or reflex by an exact predicate, faces folded flat
-/// onto one another convex; reflex ones are no features. Corners: where the number of feature edges is
-/// neither none nor two, where two turn by more than 30 degrees (of a wire: 60) or differ in kind, or where
-/// the angle defect of the faces exceeds 60 degrees (a cone's apex, but no solid's pit). A triangle lower
-/// than rounding in single precision (3e-7 of the mesh's diagonal) has the normal of the neighbour at its
-/// longest side.
+/// Finds the features of a mesh that passes `validate`. An edge is sharp where the normals of its faces
+/// differ by more than `feature_angle` (degrees, + 1e-6).
+///
+/// An exact predicate decides whether a solid's edge is convex or reflex; faces folded flat onto one another
+/// are convex. Reflex edges are no features.
+///
+/// A point is a corner where the number of feature edges is neither none nor two, or where its two edges
+/// differ in kind. It is also a corner where the two bend by more than 30 degrees (wires: 60), or where the
+/// angle defect of the faces exceeds 60 degrees. The last rule marks a cone's apex, but no pit in a solid.
+///
+/// A triangle lower than rounding in single precision (3e-7 of the mesh's diagonal) takes the normal of the
+/// neighbour at its longest side.
 ObstacleFeatures find_features(const ObstacleMesh& mesh, const ObstacleTopology& topology,
                                double feature_angle);
 

@@ -12,7 +12,8 @@
 namespace arris {
 namespace {
 
-/// A triangle's side: its points ascending, whose it is, and which way that one runs along it.
+/// A side of a triangle: its two points in ascending order, its face and corner index, and whether the face
+/// runs from the lower point to the higher.
 struct Side {
     std::array<int, 2> points;
     int face, corner;
@@ -61,7 +62,7 @@ void make_point_edges(const ObstacleMesh& mesh, ObstacleTopology& topology)
         for (const int p : topology.edges[e].points) topology.point_edges[next[p]++] = e;
 }
 
-/// The sum of the sides' cross products, of unit sides: slivers far from the origin keep their direction.
+/// Normalises the sides before the cross product, so that slivers far from the origin keep their direction.
 Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c)
 {
     return (b - a).stableNormalized().cross((c - a).stableNormalized()).stableNormalized();

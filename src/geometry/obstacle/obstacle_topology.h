@@ -9,23 +9,24 @@
 
 namespace arris {
 
-/// An edge of an obstacle's triangles, or a wire's segment.
+/// An edge of an obstacle's triangles, or a segment of a wire.
 struct ObstacleEdge {
     std::array<int, 2> points;  ///< ascending
-    std::array<int, 2> faces;   ///< beside it: the second is -1 on a border, both are on a wire
+    std::array<int, 2> faces;   ///< faces beside the edge: second -1 on a border, both -1 on a wire
 };
 
-/// What is next to what in an obstacle. Edges of triangles come first, ascending by points; then the wires'
-/// segments in the order of the mesh.
+/// Adjacency of an obstacle's points, edges and faces. Edges of triangles come first, ascending by points;
+/// then wire segments in the mesh's order.
 struct ObstacleTopology {
     std::vector<ObstacleEdge> edges;
     int surface_edge_count = 0;
     std::vector<std::array<int, 3>> face_edges;  ///< edge i runs from corner i to corner i + 1
     std::vector<Vec3> face_normals;              ///< unit
-    std::vector<int> first_edge;                 ///< of each point in `point_edges`; one more than points
+    std::vector<int> first_edge;                 ///< start of each point's range in `point_edges`; size
+                                                 ///< points + 1
     std::vector<int> point_edges;                ///< edges at a point, ascending
     std::vector<int> component;                  ///< of each face
-    std::vector<char> is_solid;                  ///< of each component: has no border
+    std::vector<char> is_solid;                  ///< 1 for each component without a border
 
     int edge_at(int point, int k) const { return point_edges[first_edge[point] + k]; }
     int edge_count_at(int point) const { return first_edge[point + 1] - first_edge[point]; }
@@ -38,8 +39,8 @@ struct ObstacleTopology {
     }
 };
 
-/// Gives `seed` and the faces joined to it through unlabelled ones that may be entered (a function of the
-/// face) this label; -1 is none.
+/// Labels `seed` and the faces connected to it through unlabelled faces for which `may_enter(face)` holds.
+/// Label -1 means none.
 template <typename MayEnter>
 void label_connected(const ObstacleTopology& topology, int seed, int label, const MayEnter& may_enter,
                      std::vector<int>& labels)
@@ -58,11 +59,12 @@ void label_connected(const ObstacleTopology& topology, int seed, int label, cons
     }
 }
 
-/// Linear in the mesh but for a sort. The mesh must pass `validate`.
+/// Linear in the mesh size, apart from a sort. The mesh must pass `validate`.
 ObstacleTopology make_topology(const ObstacleMesh& mesh);
 
-/// Names what is wrong with an obstacle's mesh: empty if coordinates are finite, indices in range, no face
-/// or segment degenerate (by exact predicate), at most two faces at an edge and those oriented alike.
+/// Describes the first defect of an obstacle's mesh; empty if there is none. Coordinates must be finite and
+/// indices in range. No face or segment may be degenerate (exact predicate). At most two faces may meet at an
+/// edge, with consistent orientation.
 std::string validate(const ObstacleMesh& mesh);
 
 }  // namespace arris

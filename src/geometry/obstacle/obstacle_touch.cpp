@@ -17,7 +17,7 @@ namespace {
 using Triangle = Kernel::Triangle_3;
 using Segment = Kernel::Segment_3;
 
-/// Whether a point is on a closed triangle that has an area.
+/// Whether a point lies on a closed triangle of non-zero area.
 bool is_on(const Point3& p, const Point3& a, const Point3& b, const Point3& c)
 {
     if (CGAL::orientation(a, b, c, p) != CGAL::COPLANAR) return false;
@@ -31,7 +31,7 @@ bool is_on(const Point3& p, const Point3& a, const Point3& b)
     return CGAL::collinear(a, p, b) && CGAL::collinear_are_ordered_along_line(a, p, b);
 }
 
-/// A cloth triangle as what it covers: of dimension 2, a segment (1) or a point (0).
+/// The set of points that a cloth triangle covers: a triangle (dimension 2), a segment (1) or a point (0).
 struct Shape {
     std::array<Point3, 3> corners;
     int dimension;
@@ -40,7 +40,7 @@ struct Shape {
         : corners{to_cgal(triangle[0]), to_cgal(triangle[1]), to_cgal(triangle[2])}, dimension(2)
     {
         if (!CGAL::collinear(corners[0], corners[1], corners[2])) return;
-        // In lexicographic order points of a line are in their order along it.
+        // Lexicographic order is the order along the line.
         std::sort(corners.begin(), corners.end());
         corners[1] = corners[2];
         dimension = corners[0] == corners[1] ? 0 : 1;
@@ -52,7 +52,7 @@ struct Shape {
         return dimension == 1 ? is_on(p, corners[0], corners[1]) : p == corners[0];
     }
 
-    /// A segment that has a length.
+    /// The segment must have a length.
     bool touches(const Point3& a, const Point3& b) const
     {
         if (dimension == 2)
@@ -107,7 +107,7 @@ void find_touches(const Obstacle& obstacle, const std::array<Vec3, 3>& triangle,
     if (!obstacle.mesh().lone_points.empty()) {
         obstacle.find_corners(box, found.lone_points);
         for (int& p : found.lone_points) p = obstacle.features().corners[p].point;
-        // A point with edges is touched with them.
+        // A point with edges is reported through those edges.
         std::erase_if(found.lone_points, [&](int p) {
             return topology.edge_count_at(p) > 0 || !shape.touches(to_cgal(points[p]));
         });
@@ -128,7 +128,8 @@ Vec3 normal_of(const std::array<Vec3, 3>& t)
     return (t[1] - t[0]).stableNormalized().cross((t[2] - t[0]).stableNormalized()).stableNormalized();
 }
 
-/// The mean of the candidates that are on a triangle; the nearest one where rounding put all of them off.
+/// Averages the candidate points that lie on a triangle. Where rounding put all of them off the triangle, the
+/// nearest one stands in.
 struct Meeting {
     double tolerance;
     Vec3 sum = Vec3::Zero();
@@ -148,7 +149,7 @@ struct Meeting {
         ++count;
     }
 
-    /// Corners of `one`, and points where its sides pass the plane of `other`.
+    /// Adds the corners of `one`, and the points where its sides cross the plane of `other`.
     void add_sides(const std::array<Vec3, 3>& one, const std::array<Vec3, 3>& other)
     {
         const Vec3 normal = normal_of(other);
@@ -169,7 +170,8 @@ Vec3 middle_of_touch(const std::array<Vec3, 3>& first, const std::array<Vec3, 3>
     double size = 0.0;
     for (const std::array<Vec3, 3>* t : {&first, &second})
         for (const Vec3& p : *t) size = std::max({size, (p - first[0]).norm(), p.cwiseAbs().maxCoeff()});
-    Meeting meeting{1e-13 * size};  // rounding of an intersection, unless of needles: then the nearest serves
+    Meeting meeting{1e-13 * size};  // rounding error of an intersection; larger for needles, where the
+                                    // nearest point stands in
     meeting.add_sides(first, second);
     meeting.add_sides(second, first);
     return meeting.count > 0 ? Vec3(meeting.sum / meeting.count) : meeting.nearest;

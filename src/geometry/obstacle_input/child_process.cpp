@@ -27,10 +27,10 @@ constexpr bool kLimitsAddresses = false;
 constexpr bool kLimitsAddresses = true;
 #endif
 
-// Exit status of a child that could not become `command`, as shells have it.
+// Exit status of a child that failed before it became `command`, as in shells.
 constexpr int kNotStarted = 127;
 
-// Descriptors below are overwritten in the child.
+// Lower descriptors are overwritten in the child.
 constexpr int kFirstFree = 10;
 
 class Descriptor {
@@ -48,7 +48,7 @@ class Descriptor {
         fd_ = -1;
     }
 
-    // Moves out of the range that the child overwrites.
+    // Moves the descriptor out of the range that the child overwrites.
     void move_up()
     {
         const int higher = fd_ < 0 ? -1 : ::fcntl(fd_, F_DUPFD_CLOEXEC, kFirstFree);
@@ -65,7 +65,7 @@ struct Limit {
     rlimit value;
 };
 
-// No limit may be raised above the one there is.
+// No limit may be raised above the present hard limit.
 Limit make_limit(__rlimit_resource resource, std::uint64_t value)
 {
     rlimit now{};
@@ -83,8 +83,8 @@ std::vector<Limit> make_limits(const ChildLimits& limits)
     return made;
 }
 
-// Ours, but for OpenBLAS, which the program links: it reserves memory for each core of the machine when it
-// starts, and a child has little.
+// This process's environment, but with one OpenBLAS thread. The program links OpenBLAS, which reserves memory
+// for each core of the machine at its start; the child's memory is limited.
 std::vector<char*> make_environment()
 {
     static char one_thread[] = "OPENBLAS_NUM_THREADS=1";
@@ -95,13 +95,13 @@ std::vector<char*> make_environment()
     return environment;
 }
 
-// In the child, where only system calls are safe: other threads' locks stay locked for ever here.
+// Runs in the child. Only system calls are safe here, as locks held by other threads are never released.
 [[noreturn]] void become(char* const* arguments, char* const* environment, const std::vector<Limit>& limits,
                          int null, int reply, pid_t parent)
 {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(kNotStarted);  // it died before this could be asked for
+    if (::getppid() != parent) ::_exit(kNotStarted);  // the parent died before the death signal was set
     for (const int standard : {0, 1, 2})
         if (::dup2(null, standard) < 0) ::_exit(kNotStarted);
     if (::dup2(reply, kReplyDescriptor) < 0) ::_exit(kNotStarted);
@@ -125,9 +125,9 @@ class Child {
     {
         ChildResult result{ChildEnd::Exited, 0, {}};
         const bool has_ended = read_all(reply, result) && wait_until_end(result);
-        // Before the child is reaped: until then nobody else is given its number.
-        ::kill(-pid_, SIGKILL);                 // what it started
-        if (!has_ended) ::kill(pid_, SIGKILL);  // where it had no time to found its group
+        // Before the child is reaped: until then its number is not reused.
+        ::kill(-pid_, SIGKILL);                 // processes that the child started
+        if (!has_ended) ::kill(pid_, SIGKILL);  // in case the child has no group of its own yet
         reap(result);
         return result;
     }
@@ -139,7 +139,7 @@ class Child {
         return static_cast<int>(std::clamp<long long>(left, 0, 1000000));
     }
 
-    // False where time or the reply's length ran out, with the reason in `result`.
+    // Returns false where the time or the reply's length limit was exceeded, with the reason in `result`.
     bool read_all(int reply, ChildResult& result)
     {
         std::array<char, 1 << 16> buffer;
@@ -165,7 +165,7 @@ class Child {
 
     bool wait_until_end(ChildResult& result) const
     {
-        // It has closed its reply, so it ends soon: a short nap between looks.
+        // The child has closed its reply and will end soon: poll at short intervals.
         constexpr std::chrono::milliseconds kNap{1};
         while (is_running()) {
             if (milliseconds_left() == 0) {
@@ -184,8 +184,8 @@ class Child {
                about.si_pid == 0;
     }
 
-    // A reason that stands in `result` already stays. Where nobody keeps statuses (SIGCHLD ignored), the
-    // reply alone decides.
+    // Keeps a reason that is already in `result`. Where no status is kept (SIGCHLD ignored), the reply alone
+    // decides.
     void reap(ChildResult& result) const
     {
         int status = 0;
@@ -211,7 +211,7 @@ class Child {
 
 ChildResult run_child(const std::vector<std::string>& command, const ChildLimits& limits)
 {
-    // All that allocates comes before fork.
+    // Everything that allocates precedes fork.
     std::vector<char*> arguments;
     for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
     arguments.push_back(nullptr);

@@ -18,18 +18,20 @@ enum class ChildEnd { Exited, Killed, TimedOut, ReplyTooLong, NotStarted };
 
 struct ChildResult {
     ChildEnd end;
-    int code;           ///< exit status, or the signal that killed it
-    std::string reply;  ///< all it wrote
+    int code;           ///< exit status, or the signal that killed the child
+    std::string reply;  ///< everything that the child wrote
 };
 
 /// The descriptor on which a child of run_child replies.
 constexpr int kReplyDescriptor = 3;
 
-/// Runs `command` (a program by path, then its arguments) and collects what it writes to kReplyDescriptor.
-/// The child has no other descriptors but /dev/null as its three standard ones, leaves no core, may write no
-/// file, may use as much CPU as wall time, and dies with the calling thread. When this returns it has ended,
-/// by force if it took too long or said too much, along with processes it started (unless they left its
-/// group). Thread-safe: between fork and exec only system calls are made.
+/// Runs `command` (a program's path, then its arguments) and collects what the child writes to
+/// kReplyDescriptor. The child's three standard descriptors are /dev/null; it has no others. It writes no
+/// core dump and no file, may use as much CPU time as wall time, and dies with the calling thread.
+///
+/// When run_child returns, the child has ended. A child that took too long or replied too much is killed,
+/// along with processes it started (unless they left its process group). Thread-safe: only system calls are
+/// made between fork and exec.
 ChildResult run_child(const std::vector<std::string>& command, const ChildLimits& limits);
 
 }  // namespace arris

@@ -29,7 +29,7 @@ bool is_damage(const std::string& line)
                           "Chunk overflow", "nexpected EOF"});
 }
 
-// The 3MF reader complains of parts that every archive has.
+// Messages on materials and textures, and the 3MF reader's complaints about parts that every archive has.
 bool is_noise(std::string line)
 {
     std::transform(line.begin(), line.end(), line.begin(),
@@ -55,7 +55,7 @@ void ImportLog::write(const char* message)
 {
     std::string line = one_line(message);
     line.erase(line.find_last_not_of(' ') + 1);
-    // "Warn,  T0: " comes before what is said.
+    // Remove assimp's prefix, "Warn, T0: ".
     if (const std::size_t head = line.find(": "); line.find(", ") < head) line.erase(0, head + 2);
     if (damage_.empty() && is_damage(line)) damage_ = line;
     if (is_noise(line) || std::find(lines_.begin(), lines_.end(), line) != lines_.end()) return;

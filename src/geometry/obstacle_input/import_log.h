@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-// For .cpp files of the geometry layer only: no other layer sees assimp.
+// For .cpp files of the geometry layer only: no other layer includes assimp.
 namespace arris {
 
-/// Takes assimp's warnings and errors for as long as it lives, each once, without those on materials,
-/// textures and such: obstacles have no looks. One at a time in a process.
+/// Collects assimp's warnings and errors while it exists, without duplicates. Omits messages on materials and
+/// textures, which obstacles do not use. At most one instance per process.
 class ImportLog : public Assimp::LogStream {
   public:
     ImportLog();
@@ -19,11 +19,11 @@ class ImportLog : public Assimp::LogStream {
 
     void write(const char* message) override;
 
-    /// Throws InputError for what some readers only mention, going on with faces left out or bent to other
-    /// vertices.
+    /// Throws InputError for damage that some readers only log. Such readers go on with faces left out or
+    /// assigned to wrong vertices.
     void require_no_damage() const;
 
-    /// Appends the first of what was logged, and how much more there was.
+    /// Appends the first messages, and the number of further ones.
     void append_to(std::vector<std::string>& warnings) const;
 
   private:

@@ -16,10 +16,10 @@
 namespace arris {
 namespace {
 
-// Quoted from a file in a message: enough to find it by.
+// Longest quotation from a file in a message: enough to locate the place.
 constexpr std::size_t kLongestQuote = 40;
 
-// Multi-byte numbers in all binary formats checked here are little endian, as the machines that this runs on.
+// All binary formats checked here are little endian, as are the machines that this program supports.
 template <class Number>
 Number number_at(std::string_view bytes, std::size_t offset)
 {
@@ -47,7 +47,7 @@ std::string_view take_word(std::string_view& text)
     return word;
 }
 
-// ----------------------------------------------------------------- OBJ
+// OBJ
 
 class ObjCheck {
   public:
@@ -143,9 +143,9 @@ class ObjCheck {
     int greatest_line_ = 0;
 };
 
-// ----------------------------------------------------------------- STL
+// STL
 
-constexpr std::size_t kStlHeader = 84;  // 80 of comment, 4 the count
+constexpr std::size_t kStlHeader = 84;  // 80 bytes of comment, 4 of face count
 constexpr std::size_t kStlFace = 50;
 
 void check_ascii_stl(std::string_view text)
@@ -200,7 +200,7 @@ void check_stl(std::string_view bytes)
                     count, kStlHeader + kStlFace * count, bytes.size()));
 }
 
-// ----------------------------------------------------------------- GLB, 3DS and others
+// GLB, 3DS and others
 
 constexpr std::size_t kGlbHeader = 12;
 constexpr std::size_t kGlbChunkHeader = 8;
@@ -214,7 +214,7 @@ void check_glb(std::string_view bytes)
     if (length > bytes.size())
         throw InputError(
             fmt::format("truncated: its header says {} bytes, but the file has {}", length, bytes.size()));
-    bytes = bytes.substr(0, length);  // what follows does not matter
+    bytes = bytes.substr(0, length);  // bytes after the declared length are ignored
     for (std::size_t at = kGlbHeader; at < bytes.size();) {
         if (bytes.size() - at < kGlbChunkHeader)
             throw InputError(fmt::format("truncated: a chunk's header at byte {}", at));

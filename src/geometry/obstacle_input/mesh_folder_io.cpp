@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Materials, buffers and textures beside the mesh.
+// Size limit for materials, buffers and textures beside the mesh.
 constexpr std::uintmax_t kLargestSecondary = std::uintmax_t{1} << 30;
 constexpr std::size_t kMostRefusals = 10;
 
@@ -44,7 +44,7 @@ std::string read_descriptor(int fd, std::uintmax_t limit)
     return bytes;
 }
 
-// Reads bytes that it holds, or that somebody else does.
+// Reads bytes that are owned by the stream or by its creator.
 class BytesStream : public Assimp::IOStream {
   public:
     explicit BytesStream(std::string owned) : owned_(std::move(owned)), bytes_(owned_) {}
@@ -62,7 +62,7 @@ class BytesStream : public Assimp::IOStream {
     }
     std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
 
-    // Some importers go back by adding a negative offset, which wraps round.
+    // Some importers seek back by a negative offset, which wraps around.
     aiReturn Seek(std::size_t offset, aiOrigin origin) override
     {
         const std::size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
@@ -85,7 +85,7 @@ class BytesStream : public Assimp::IOStream {
 
 std::string read_regular_file(const fs::path& path, std::uintmax_t limit)
 {
-    // Without O_NONBLOCK a pipe would be waited for.
+    // Without O_NONBLOCK, opening a pipe would block.
     const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
     if (fd < 0) throw InputError(errno == ENOENT ? "no such file" : std::strerror(errno));
     try {
@@ -108,7 +108,8 @@ bool MeshFolderIo::is_main(const std::string& name) const
     return fs::path(name).lexically_normal() == main_name_;
 }
 
-// Where `name` is, links followed; empty, with a refusal, where it is not inside the folder.
+// The resolved path of `name`, links followed. Empty, with a refusal recorded, where that is not inside the
+// folder.
 std::string MeshFolderIo::find_inside(const std::string& name) const
 {
     const fs::path asked(name);

@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
-// For .cpp files of the geometry layer only: no other layer sees assimp.
+// For .cpp files of the geometry layer only: no other layer includes assimp.
 namespace arris {
 
-/// The bytes of a regular file of at most `limit` bytes. A pipe, device or folder is refused unopened or at
-/// once. Throws InputError without the file's name.
+/// Reads a regular file of at most `limit` bytes. Refuses a pipe, device or folder without blocking. Throws
+/// InputError without the file's name.
 std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t limit);
 
-/// What assimp may open: the mesh itself, under the name `main_name`, from bytes that were read and checked
-/// before; and regular files that lie, links followed, in `folder` or below. Anything else does not exist for
-/// it, and its name is kept.
+/// Restricts the files that assimp may open. These are the mesh itself, under the name `main_name`, from
+/// bytes already read and checked, and regular files in `folder` or below, with links followed. Any other
+/// file is reported as missing, and its name is recorded.
 class MeshFolderIo : public Assimp::IOSystem {
   public:
     MeshFolderIo(std::string main_name, const std::string& main_bytes, const std::filesystem::path& folder);
@@ -27,7 +27,7 @@ class MeshFolderIo : public Assimp::IOSystem {
     Assimp::IOStream* Open(const char* name, const char* mode) override;
     void Close(Assimp::IOStream* stream) override;
 
-    /// One sentence for each file that was asked for and not given, in order, each once.
+    /// One sentence for each file that was requested and refused, in order, without duplicates.
     const std::vector<std::string>& refusals() const { return refusals_; }
 
   private:

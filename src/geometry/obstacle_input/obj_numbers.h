@@ -6,8 +6,8 @@
 
 namespace arris {
 
-/// The text of an OBJ file with a 0 before each decimal point that begins a number of its vertices, normals
-/// and texture coordinates. The importer (assimp 5.2) takes such a word for none, and leaves the vertex out.
+/// Inserts a 0 before each decimal point that begins a number of a vertex, normal or texture coordinate in an
+/// OBJ file. The importer (assimp 5.2) does not read such a word as a number, and leaves the vertex out.
 std::string spell_out_numbers(std::string_view obj);
 
 }  // namespace arris

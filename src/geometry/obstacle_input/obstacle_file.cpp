@@ -17,11 +17,11 @@
 namespace arris {
 namespace {
 
-// Text of a mesh grows some tenfold in an importer's trees, archives tenfold more when unpacked.
+// An importer's trees take about ten times a text mesh's size; an unpacked archive takes ten times more.
 constexpr std::uint64_t kBaseMemory = std::uint64_t{2} << 30;
 constexpr std::uint64_t kMemoryPerByte = 64;
 
-// 1e7 faces fit, if most of their points are shared.
+// Room for 1e7 faces if most of their points are shared.
 constexpr std::uint64_t kLongestReply = std::uint64_t{1} << 29;
 
 std::uint64_t memory_for(const std::string& path)

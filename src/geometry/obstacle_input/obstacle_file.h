@@ -12,28 +12,30 @@ namespace arris {
 
 struct ObstacleFileRequest {
     std::string path;                       ///< .obj, .stl, .ply, .gltf, .glb, .dae, .fbx, .3mf or .3ds
-    std::optional<double> metres_per_unit;  ///< instead of the unit that the file declares
-    std::optional<char> up;             ///< 'x', 'y' or 'z', instead of the up axis that the file declares
-    std::vector<std::string> importer;  ///< program (by path) and arguments; ends in import_obstacle_command
+    std::optional<double> metres_per_unit;  ///< overrides the unit that the file declares
+    std::optional<char> up;                 ///< 'x', 'y' or 'z'; overrides the up axis that the file declares
+    std::vector<std::string> importer;      ///< program (path) and arguments; ends in import_obstacle_command
     std::chrono::milliseconds timeout{120000};  ///< for the whole import
 };
 
 struct ObstacleFile {
     ObstacleMesh mesh;                  ///< m, +z up; passes `validate`
-    std::vector<std::string> warnings;  ///< one sentence each, without the file's name: what was repaired
-    std::vector<std::string> notes;     ///< likewise: what is legitimate but good to know
+    std::vector<std::string> warnings;  ///< one sentence for each kind of repair, without the file's name
+    std::vector<std::string> notes;     ///< one sentence for each legitimate finding worth knowing
 };
 
-/// Reads and repairs an obstacle's mesh (see repair_soup) from a file that nobody vouches for. A process of
-/// its own, `importer`, does so: whatever the file makes the import library do, it ends with an InputError.
-/// That process may use `timeout`, as many CPU seconds, and memory by the file's size (not under address
-/// sanitizers, which reserve all there is); its reply is checked before it is believed.
-/// Without explicit ones, units and up axis are what the file declares (COLLADA, FBX, 3MF; glTF: metres,
-/// y up), else metres and z. An up axis is turned to +z: y by (x, y, z) -> (x, -z, y), x by (-z, y, x).
-/// Coordinates are read in single precision; a warning says where that matters.
-/// Throws InputError, one line that begins with the path, for a file that is missing, not a regular file,
-/// larger than 2 GB, of another format, damaged, or with nothing in it that can be an obstacle, and where the
-/// import crashed, was too slow or asked for too much memory. Thread-safe.
+/// Reads and repairs (see repair_soup) an obstacle's mesh from an untrusted file. A separate process,
+/// `importer`, does the work, so that any failure of the import library ends in an InputError. That process
+/// may use `timeout` of wall time, as much CPU time, and memory in proportion to the file's size. (Memory is
+/// not limited under address sanitizers, which reserve all of it.) Its reply is checked before use.
+///
+/// Units and up axis, unless given, are those that the file declares (COLLADA, FBX, 3MF; glTF: metres, y up),
+/// else metres and z. An up axis is turned to +z: y by (x, y, z) -> (x, -z, y), x by (-z, y, x). Coordinates
+/// are read in single precision; a warning says where that matters.
+///
+/// Throws InputError, one line that begins with the path, for a file that cannot be used. It may be missing,
+/// not regular, larger than 2 GB, of another format, damaged, or without usable geometry. Also throws where
+/// the import crashed, was too slow or needed too much memory. Thread-safe.
 ObstacleFile read_obstacle_file(const ObstacleFileRequest& request);
 
 }  // namespace arris

@@ -32,9 +32,10 @@
 #include "geometry/obstacle_input/soup_weld.h"
 #include "geometry/obstacle_input/three_mf_unit.h"
 
-// The importer is given one format's reader, no post-processing but triangulation, and a file system of one
-// folder. Its own checks, joining of vertices (within 1e-5, whatever the unit) and flattening of the node
-// tree (in single precision) are not used: positions leave it as the file has them and are double from there.
+// The importer gets the reader of one format, no post-processing but triangulation, and a file system of one
+// folder. Its own checks, its joining of vertices (within 1e-5, whatever the unit) and its flattening of the
+// node tree (in single precision) are not used. So positions leave the importer as the file has them, and are
+// double from there.
 namespace arris {
 namespace {
 
@@ -42,13 +43,13 @@ constexpr std::uintmax_t kLargestFile = std::uintmax_t{2} << 30;
 constexpr std::size_t kMostFaces = 10'000'000;
 constexpr std::size_t kMostNodes = 1'000'000;
 
-// Single precision moves points by 6e-8 of their distance from the origin: beyond this ratio by more than
-// 6e-4 of the mesh's size.
+// Single precision moves points by 6e-8 of their distance from the origin. Beyond this ratio of distance to
+// mesh size, that is more than 6e-4 of the mesh's size.
 constexpr double kFarFromOrigin = 1e4;
 
 using Placement4 = Eigen::Matrix4d;
 
-// Leaves `importer` the one reader of files with this extension.
+// Leaves `importer` only the reader of files with this extension.
 void keep_reader_of(const std::string& extension, Assimp::Importer& importer)
 {
     std::vector<Assimp::BaseImporter*> others;
@@ -56,7 +57,7 @@ void keep_reader_of(const std::string& extension, Assimp::Importer& importer)
     for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
         const aiImporterDesc& about = *importer.GetImporterInfo(i);
         const std::string extensions = fmt::format(" {} ", about.mFileExtensions);
-        // Of two readers of glTF one is of its first version, long out of use.
+        // Skip the reader of glTF version 1, which is obsolete.
         const bool is_reader = extensions.find(" " + extension + " ") != std::string::npos &&
                                std::string_view(about.mName) != "glTF Importer";
         if (is_reader && !is_kept)
@@ -71,7 +72,7 @@ void keep_reader_of(const std::string& extension, Assimp::Importer& importer)
     }
 }
 
-// The shortest decimal number that is `value` in single precision: 0.01f is 0.01.
+// The shortest decimal number that rounds to `value` in single precision: 0.01f gives 0.01.
 double decimal(float value)
 {
     return std::strtod(fmt::format("{}", value).c_str(), nullptr);
@@ -114,7 +115,7 @@ class ObstacleImporter {
         load(bytes);
         place();
         warn_where_far();
-        // All but these two give each face points of its own, whatever the file has.
+        // Readers of all other formats give each face its own points, even where the file shares them.
         if (extension_ != "stl" && extension_ != "ply") join_equal_points(soup_);
         RepairedSoup repaired = repair_soup(std::move(soup_));
         warnings_.insert(warnings_.end(), repaired.warnings.begin(), repaired.warnings.end());
@@ -131,8 +132,8 @@ class ObstacleImporter {
         keep_reader_of(extension_, importer);
         auto owned_files = std::make_unique<MeshFolderIo>(name, bytes, folder.empty() ? "." : folder);
         const MeshFolderIo& files = *owned_files;
-        importer.SetIOHandler(owned_files.release());  // it deletes what it is given
-        // Scenes without a mesh are not given one that shows their nodes.
+        importer.SetIOHandler(owned_files.release());  // the importer takes ownership
+        // Stop assimp from adding a mesh of the nodes to a scene without a mesh.
         importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
         const aiScene* scene = importer.ReadFile(name, 0);
         if (scene == nullptr || scene->mRootNode == nullptr)
@@ -161,7 +162,7 @@ class ObstacleImporter {
         throw InputError(one_line(why));
     }
 
-    // --- what the file declares
+    // Declarations of the file
 
     void read_declared(const aiScene& scene)
     {
@@ -170,14 +171,14 @@ class ObstacleImporter {
         if (extension_ == "fbx") read_fbx_metadata(scene);
     }
 
-    // The COLLADA reader puts unit and up axis into its root node, which is otherwise without a placement.
+    // The COLLADA reader stores unit and up axis in its root node, which has no other placement.
     void read_root(const aiMatrix4x4& root)
     {
         const Placement4 m = to_eigen(root);
         const double unit = m.col(0).head<3>().norm();
         if (!(unit > 0.0 && std::isfinite(unit))) throw InputError(fmt::format("its unit is {} m", unit));
         declared_unit_ = decimal(static_cast<float>(unit));
-        // It turns up axes to y.
+        // The reader rotates the up axis to y.
         int axis = 0;
         m.row(1).head<3>().cwiseAbs().maxCoeff(&axis);
         declared_up_ = "xyz"[axis];
@@ -202,7 +203,7 @@ class ObstacleImporter {
         if (axis >= 0 && axis <= 2) declared_up_ = "xyz"[axis];
     }
 
-    // --- checks, before anything is done with the numbers
+    // Checks that precede any use of the numbers
 
     static std::string name_of(unsigned mesh, const aiScene& scene)
     {
@@ -238,7 +239,7 @@ class ObstacleImporter {
         return count;
     }
 
-    // --- the node tree
+    // The node tree
 
     void collect(const aiScene& scene)
     {
@@ -247,7 +248,7 @@ class ObstacleImporter {
             Placement4 parent;
         };
         std::vector<Visit> visits = {{scene.mRootNode, Placement4::Identity()}};
-        // COLLADA's root is what read_root takes; that of 3DS turns z to y.
+        // Skip the root of COLLADA, which read_root interprets, and that of 3DS, which turns z to y.
         const bool skips_root = extension_ == "dae" || extension_ == "3ds";
         for (std::size_t visited = 0; !visits.empty(); ++visited) {
             if (visited == kMostNodes) throw InputError(fmt::format("more than {} nodes", kMostNodes));
@@ -274,7 +275,7 @@ class ObstacleImporter {
             const aiVector3D& p = mesh.mVertices[v];
             soup_.points.push_back((placement * Eigen::Vector4d(p.x, p.y, p.z, 1.0)).head<3>());
         }
-        // A mirror turns faces inside out.
+        // A mirroring placement reverses the orientation of faces.
         const bool is_mirrored = placement.topLeftCorner<3, 3>().determinant() < 0.0;
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
             const aiFace& face = mesh.mFaces[f];
@@ -284,13 +285,13 @@ class ObstacleImporter {
             if (face.mNumIndices != 3) continue;
             soup_.faces.push_back({point(0), point(is_mirrored ? 2 : 1), point(is_mirrored ? 1 : 2)});
         }
-        // A PLY file of vertices alone is a cloud of points.
+        // A PLY file with vertices only is a point cloud.
         if (mesh.mNumFaces == 0 && extension_ == "ply")
             for (unsigned v = 0; v < mesh.mNumVertices; ++v)
                 soup_.lone_points.push_back(base + static_cast<int>(v));
     }
 
-    // --- from the file's unit and axes to ours
+    // Conversion from the file's unit and axes to metres and +z up
 
     void place()
     {

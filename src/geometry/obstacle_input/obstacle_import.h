@@ -8,14 +8,14 @@
 
 namespace arris {
 
-/// The work of read_obstacle_file in this process, unprotected from crashes of the import library.
+/// Does the work of read_obstacle_file in this process, unprotected from crashes of the import library.
 /// Throws InputError without the file's name.
 ObstacleFile import_obstacle(const std::string& path, std::optional<double> metres_per_unit,
                              std::optional<char> up);
 
-/// The importer process that read_obstacle_file starts. `arguments`, `count` of them: a file descriptor for
-/// the reply, metres per unit or "-", up axis or "-", path. Prints nothing; returns the exit status, 0 if the
-/// reply (a mesh or an error) was written.
+/// Entry point of the importer process that read_obstacle_file starts. `arguments` (`count` of them): a file
+/// descriptor for the reply, metres per unit or "-", up axis or "-", path. Prints nothing. Returns the exit
+/// status, 0 if the reply (a mesh or an error) was written.
 int import_obstacle_command(int count, char** arguments);
 
 }  // namespace arris

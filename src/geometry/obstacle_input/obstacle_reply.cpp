@@ -53,7 +53,7 @@ class ReplyReader {
         return true;
     }
 
-    // A count that what is left of the bytes can hold.
+    // Takes a count, which must not exceed the elements that fit in the remaining bytes.
     std::size_t take_count(std::size_t element_size)
     {
         std::uint64_t count = 0;

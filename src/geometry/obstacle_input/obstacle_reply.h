@@ -8,19 +8,19 @@
 
 namespace arris {
 
-/// What an importer process writes: a mesh with warnings and notes. Bytes of this machine's own layout; they
-/// live for as long as the process.
+/// Encodes an importer process's reply: a mesh with warnings and notes. Uses this machine's byte layout; a
+/// reply is never stored.
 std::string encode_reply(const ObstacleFile& file);
 
-/// What it writes instead where the file cannot be read.
+/// Encodes the reply for a file that cannot be read.
 std::string encode_refusal(const std::string& why);
 
-/// Takes a reply apart without trusting it: lengths are held against the bytes before anything is allocated,
-/// the mesh must pass `validate` and lie within 1e6 m, texts are cut to one line each. Throws InputError: the
-/// refusal's own text, or what is wrong with the reply.
+/// Decodes an untrusted reply. Lengths are compared with the bytes before any allocation. The mesh must pass
+/// `validate` and lie within 1e6 m; texts are shortened to one line each. Throws InputError with the
+/// refusal's own text, or with what is wrong with the reply.
 ObstacleFile decode_reply(std::string_view bytes);
 
-/// `text` on one line, control characters as spaces, at most 500 bytes.
+/// `text` on one line, control characters replaced by spaces, at most 500 bytes.
 std::string one_line(std::string_view text);
 
 }  // namespace arris

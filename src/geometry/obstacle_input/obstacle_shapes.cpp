@@ -14,10 +14,10 @@
 namespace arris {
 namespace {
 
-// What is larger or farther out is in the wrong unit.
 constexpr int kMostTeeth = 10000;
 
-// A flat valley narrower than this share of the pitch is the rounding of tan(): no valley was meant.
+// A flat valley narrower than this share of the pitch is rounding of tan(): the valley was meant to have no
+// width.
 constexpr double kNoValley = 1e-12;
 
 void require_length(const char* what, double value)
@@ -43,7 +43,7 @@ bool comes_before(const Vec3& p, const Vec3& q)
     return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
 }
 
-// One point of the profile in the x-z plane, from left to right.
+// A point of the profile in the x-z plane, from left to right.
 struct ProfilePoint {
     double x;
     double z;
@@ -67,8 +67,8 @@ std::vector<ProfilePoint> teeth_profile(const TeethShape& shape, double half_bas
     return profile;
 }
 
-// The solid between the profile and the plane z = -depth. Below each point of the profile lies one of the
-// base, so that front and back are strips of triangles and no edge ends on another's inside.
+// The solid between the profile and the plane z = -depth. Each profile point has a base point below it. So
+// front and back are strips of triangles, and no point lies in the interior of another triangle's edge.
 ObstacleMesh extrude(const std::vector<ProfilePoint>& profile, double depth, double width)
 {
     ObstacleMesh mesh;
@@ -77,13 +77,13 @@ ObstacleMesh extrude(const std::vector<ProfilePoint>& profile, double depth, dou
             mesh.points.emplace_back(p.x, y, p.z);
             mesh.points.emplace_back(p.x, y, -depth);
         }
-    // Of profile point i: 4 i front top, + 1 front base, + 2 back top, + 3 back base.
+    // Profile point i has points 4 i (front top), + 1 (front base), + 2 (back top), + 3 (back base).
     const auto add_quad = [&](int a, int b, int c, int d) {
         mesh.faces.push_back({a, b, c});
         mesh.faces.push_back({a, c, d});
     };
     const int count = static_cast<int>(profile.size());
-    add_quad(0, 2, 3, 1);  // the end at least x
+    add_quad(0, 2, 3, 1);  // the end at smallest x
     for (int i = 0; i + 1 < count; ++i) {
         const int p = 4 * i;
         const int q = p + 4;
@@ -93,7 +93,7 @@ ObstacleMesh extrude(const std::vector<ProfilePoint>& profile, double depth, dou
         add_quad(p + 3, p + 2, q + 2, q + 3);  // back
     }
     const int last = 4 * (count - 1);
-    add_quad(last, last + 1, last + 3, last + 2);  // the end at greatest x
+    add_quad(last, last + 1, last + 3, last + 2);  // the end at largest x
     return mesh;
 }
 

@@ -14,7 +14,8 @@
 namespace arris {
 namespace {
 
-// More properties than any exporter writes: a header of nothing else would be walked for every element.
+// More properties than any exporter writes. Bounds the work per element, as a header could declare any number
+// of them.
 constexpr std::size_t kMostProperties = 1000;
 
 struct PlyType {
@@ -42,7 +43,7 @@ constexpr std::array<PlyType, 16> kTypes = {{{"char", 1, true, false},
                                              {"float64", 8, true, true}}};
 
 struct PlyProperty {
-    PlyType count{"", 0, false, false};  // of a list; size 0 where it is none
+    PlyType count{"", 0, false, false};  // count of a list property; size 0 for a property that is no list
     PlyType value{"", 0, false, false};
     bool is_index = false;  // names vertices
 };
@@ -72,7 +73,7 @@ class PlyCheck {
     }
 
   private:
-    // --- header
+    // Header
 
     std::string_view take_line()
     {
@@ -128,7 +129,7 @@ class PlyCheck {
             std::from_chars(digits.data(), digits.data() + digits.size(), element.count);
         if (error != std::errc() || end != digits.data() + digits.size() || digits.empty())
             throw InputError(fmt::format("its header has no count for element '{}'", quote(element.name)));
-        // Each element takes a byte at least.
+        // Each element takes at least one byte.
         if (element.count > bytes_.size())
             throw InputError(fmt::format("its header counts {} of element '{}', but the file has {} bytes",
                                          element.count, quote(element.name), bytes_.size()));
@@ -165,7 +166,7 @@ class PlyCheck {
 
     static std::string quote(std::string_view word) { return std::string(word.substr(0, 40)); }
 
-    // --- body
+    // Body
 
     void walk(const PlyElement& element)
     {
@@ -208,7 +209,7 @@ class PlyCheck {
         rest_.remove_prefix(size);
     }
 
-    // The next number, if it is an integer (0 for others).
+    // Reads the next number; returns it if it is an integer type, else 0.
     std::int64_t take(const PlyType& type, const PlyElement& element, std::uint64_t i)
     {
         if (format_ == "ascii") return take_text(type, element, i);

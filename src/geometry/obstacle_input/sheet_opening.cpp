@@ -8,7 +8,7 @@ namespace arris {
 
 namespace {
 
-/// Closes the border edges joined to `first`, one of `is_open`.
+/// Clears `is_open` along the loop of border edges connected to `first`.
 void close_loop(const ObstacleTopology& topology, int first, std::vector<char>& is_open)
 {
     std::vector<int> next = {first};

@@ -92,7 +92,7 @@ class ShellOrienter {
         return bounds;
     }
 
-    // How many shells `shell` lies in.
+    // Number of shells that contain `shell`.
     int depth(int shell)
     {
         int inside = 0;
@@ -105,7 +105,7 @@ class ShellOrienter {
         return inside;
     }
 
-    // Shells apart: one point of the inner decides, if it is not where the two touch.
+    // For shells that do not cross, one point of the inner shell decides, if it is not on the outer shell.
     bool is_inside(int inner, int outer)
     {
         if (!sides_[outer]) {
@@ -122,7 +122,7 @@ class ShellOrienter {
         return false;
     }
 
-    // Six times the volume, about the shell's own middle, where rounding is least.
+    // Six times the signed volume, computed about the shell's own middle, where rounding is smallest.
     double signed_volume(int shell) const
     {
         const Vec3 middle = bounds_[shell].center();
@@ -146,11 +146,11 @@ class ShellOrienter {
     ObstacleMesh& mesh_;
     ObstacleTopology topology_;
     SurfaceMesh surface_;
-    std::vector<std::vector<int>> faces_;       // of each component
-    std::vector<Eigen::AlignedBox3d> bounds_;   // likewise
-    std::vector<std::unique_ptr<Tree>> trees_;  // likewise, where asked for
-    std::vector<std::unique_ptr<Side>> sides_;  // likewise
-    std::set<std::pair<int, int>> crossing_;    // components, ascending
+    std::vector<std::vector<int>> faces_;       // faces of each component
+    std::vector<Eigen::AlignedBox3d> bounds_;   // bounds of each component
+    std::vector<std::unique_ptr<Tree>> trees_;  // tree of each component, built when needed
+    std::vector<std::unique_ptr<Side>> sides_;  // side test of each component, built when needed
+    std::set<std::pair<int, int>> crossing_;    // pairs of components that cross, each ascending
     ShellReport report_;
 };
 

@@ -25,15 +25,13 @@ namespace PMP = CGAL::Polygon_mesh_processing;
 using SurfaceMesh = CGAL::Surface_mesh<Point3>;
 using Polygon = std::array<std::size_t, 3>;
 
-// What is larger or farther out is in the wrong unit.
-
 std::array<int, 2> edge_of(const Face& face, int k)
 {
     const auto [low, high] = std::minmax(face[k], face[(k + 1) % 3]);
     return {low, high};
 }
 
-// CGAL takes NaN and wrong indices for granted: these checks stand before all else.
+// CGAL does not check for NaN and wrong indices, so these checks come first.
 void require_sound(const ObstacleMesh& soup)
 {
     for (std::size_t i = 0; i < soup.points.size(); ++i) {
@@ -57,7 +55,7 @@ void require_sound(const ObstacleMesh& soup)
         require_index("lone point", i, soup.lone_points[i]);
 }
 
-// Hears which point orient_polygon_soup made a copy of.
+// Records which point each copy by orient_polygon_soup comes from.
 struct CopyListener : PMP::Default_orientation_visitor {
     explicit CopyListener(std::vector<int>* origin) : origin_of(origin) {}
     void duplicated_vertex(std::size_t original, std::size_t copy)
@@ -104,7 +102,7 @@ class SoupRepairer {
             warnings_.push_back(fmt::format("welded {} vertices ({} equal to others, {} within {:.3g} m)",
                                             counts.equal_points + counts.near_points, counts.equal_points,
                                             counts.near_points, counts.tolerance));
-        else if (counts.equal_points > 0)  // some formats know no shared vertices
+        else if (counts.equal_points > 0)  // formats without shared vertices produce equal points
             notes_.push_back(fmt::format("welded {} vertices that equal others", counts.equal_points));
         warn_of(counts.collapsed_faces, "dropped {} faces that name a vertex twice");
         warn_of(counts.duplicate_faces, "dropped {} duplicate faces");
@@ -119,8 +117,8 @@ class SoupRepairer {
         return CGAL::collinear(place(a), place(b), place(c));
     }
 
-    // A face without area that closes a surface (two neighbours on each edge) must be taken out by flips, or
-    // a slit would stay; any other is dropped.
+    // Drops faces without area, except those that close the surface (two faces on each edge). Those must be
+    // removed by flips, or a slit would remain.
     void drop_stray_flat_faces()
     {
         std::vector<char> is_flat_face(soup_.faces.size(), 0);
@@ -166,12 +164,12 @@ class SoupRepairer {
         origin_ = surface_.add_property_map<SurfaceMesh::Vertex_index, int>("v:origin", -1).first;
         for (const SurfaceMesh::Vertex_index v : surface_.vertices())
             origin_[v] = origin[static_cast<std::size_t>(v)];
-        // Copies whose borders can be sewn again without harm were no defect: they are no longer told.
+        // Copies whose borders can be stitched again are no defect and are not reported.
         if (copies > 0) PMP::stitch_borders(surface_);
         surface_.collect_garbage();
     }
 
-    // The flips that take out a sliver may leave another: what is left is dropped in the end.
+    // The flips that remove a sliver may leave another one; drop what remains in the end.
     void remove_flat_faces()
     {
         const auto is_flat_face = [&](SurfaceMesh::Face_index f) {
@@ -187,7 +185,7 @@ class SoupRepairer {
         surface_.collect_garbage();
     }
 
-    // Points that faces use come first, in their order of before.
+    // Points that faces use come first, in their former order.
     void extract_surface()
     {
         std::vector<SurfaceMesh::Vertex_index> order;
@@ -214,15 +212,15 @@ class SoupRepairer {
             if (origins_[p] >= 0 && origins_[p] == origins_[p - 1]) ++split_;
     }
 
-    // The corners of a face in a fixed rotation: least first.
+    // Rotates a face's corners so that the lowest index is first.
     static Face rotated(Face face)
     {
         std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
         return face;
     }
 
-    // How many faces run the other way than in the soup. Of a sheet, whose sides are alike, the fewer: those
-    // that disagreed with the rest.
+    // Number of faces that are reversed against the soup. For a sheet, whose two sides are equivalent, the
+    // smaller of the reversed and the unchanged faces counts.
     int count_turned() const
     {
         std::vector<Face> before;
@@ -267,7 +265,7 @@ class SoupRepairer {
 
     void tell_flat_faces() { warn_of(flat_faces_, "removed {} faces without area"); }
 
-    // Wires and lone points share points with the faces where they touch.
+    // Wires and lone points share points with the faces that they touch.
     void attach_wires_and_points()
     {
         std::vector<int> name(soup_.points.size(), -1);
@@ -289,9 +287,9 @@ class SoupRepairer {
 
     ObstacleMesh soup_;
     SurfaceMesh surface_;
-    SurfaceMesh::Property_map<SurfaceMesh::Vertex_index, int> origin_;  // in the soup
+    SurfaceMesh::Property_map<SurfaceMesh::Vertex_index, int> origin_;  // index in the soup
     ObstacleMesh mesh_;
-    std::vector<int> origins_;  // in the soup, of the faces' points; -1 for one that is new
+    std::vector<int> origins_;  // indices in the soup of the faces' points; -1 for a new point
     int flat_faces_ = 0;
     int split_ = 0;
     std::vector<std::string> warnings_;

@@ -13,11 +13,11 @@
 namespace arris {
 namespace {
 
-// Files in single precision are exact to 6e-8 of their size, and exporters lose a digit more.
+// Files in single precision are exact to 6e-8 of their size; exporters lose another digit.
 constexpr double kWeldShare = 1e-6;
 
-// Cells this many tolerances wide are rarely near a point's other side, and hold few points that are farther
-// apart than the tolerance.
+// Cell width in tolerances. In cells this wide, a search seldom covers a second cell, and a cell holds few
+// points that are farther apart than the tolerance.
 constexpr double kCellTolerances = 8.0;
 
 using Cell = std::array<std::int64_t, 3>;
@@ -32,7 +32,7 @@ struct CellHash {
     }
 };
 
-// Points by cell of a grid; answers which of them, the first in number, lies within the tolerance.
+// Points in the cells of a grid. Finds the first point, by number, within the tolerance.
 class WeldGrid {
   public:
     WeldGrid(const Vec3& origin, double tolerance)
@@ -58,7 +58,7 @@ class WeldGrid {
     }
 
   private:
-    // Within the bounding box the numbers stay below 1e6 / kCellTolerances.
+    // Within the bounding box, cell numbers stay below 1e6 / kCellTolerances.
     Cell cell_of(const Vec3& p) const
     {
         const Vec3 scaled = ((p - origin_) / cell_).array().floor();
@@ -106,7 +106,7 @@ void drop_unused_points(ObstacleMesh& soup)
     rename(soup, name);
 }
 
-// Points of borders, wires and lone points.
+// Marks the points of borders, wires and lone points.
 std::vector<char> loose_points(const ObstacleMesh& soup)
 {
     std::vector<std::array<int, 2>> edges;
@@ -136,7 +136,7 @@ int join_near(ObstacleMesh& soup, double& tolerance)
     for (const Vec3& p : soup.points) bounds.extend(p);
     if (bounds.isEmpty()) return 0;
     tolerance = kWeldShare * bounds.diagonal().stableNorm();
-    // One place only, or a grid too fine for its numbers: nothing is near but not equal.
+    // All points coincide, or cell numbers would overflow: no points are near but unequal.
     if (!(tolerance > std::numeric_limits<double>::min())) return 0;
     WeldGrid grid(bounds.min(), tolerance);
     const std::vector<char> is_loose = loose_points(soup);
@@ -151,7 +151,7 @@ int join_near(ObstacleMesh& soup, double& tolerance)
     return joined;
 }
 
-// Keeps the first of each set of elements with the same points; returns how many were dropped.
+// Keeps the first of each set of elements with the same points; returns the number dropped.
 template <class Element>
 int drop_duplicates(std::vector<Element>& elements)
 {

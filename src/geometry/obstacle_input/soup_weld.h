@@ -5,28 +5,29 @@
 
 namespace arris {
 
-/// What `weld` joined and dropped.
+/// Counts of elements that `weld` joined and dropped.
 struct WeldCounts {
-    int equal_points = 0;        ///< joined with one at the same place
-    int near_points = 0;         ///< joined with one within the tolerance
+    int equal_points = 0;        ///< joined with a point at the same place
+    int near_points = 0;         ///< joined with a point within the tolerance
     double tolerance = 0.0;      ///< m
-    int collapsed_faces = 0;     ///< named a point twice
-    int duplicate_faces = 0;     ///< same three points, in whichever direction
-    int zero_segments = 0;       ///< named a point twice
-    int duplicate_segments = 0;  ///< same two points
+    int collapsed_faces = 0;     ///< naming a point twice
+    int duplicate_faces = 0;     ///< with the same three points, in either orientation
+    int zero_segments = 0;       ///< naming a point twice
+    int duplicate_segments = 0;  ///< with the same two points
     int duplicate_lone_points = 0;
 };
 
-/// Joins points that are equal to the last bit, and drops those that nothing names. Coordinates must not be
-/// NaN and indices be in range. Returns how many were joined. O(n log n).
+/// Joins points that are bitwise equal, and drops points that no element names. Coordinates must not be NaN,
+/// and indices must be in range. Returns the number of points joined. O(n log n).
 int join_equal_points(ObstacleMesh& soup);
 
-/// Joins points of a soup: all that are equal to the last bit, and then, among points of borders, wires and
-/// lone points, those within 1e-6 of the bounding box's diagonal. Inside a closed surface points are where
-/// they were meant to be: a plate a million times as wide as it is thick stays one. Each point joins the
-/// first, by number, of those near it, so chains of near points do not run away. Faces and segments that
-/// named a point twice, and duplicates (the first stays), are dropped, then points that nothing names.
-/// Coordinates must be finite and indices in range. Linear, but for a sort.
+/// Joins points of a soup that are bitwise equal. Among points of borders, wires and lone points, it also
+/// joins points within 1e-6 of the bounding box's diagonal. Points inside a closed surface are left where
+/// they are, so that a plate a million times as wide as it is thick survives. Each point joins the first, by
+/// number, of the points near it, so chains of near points do not collapse.
+///
+/// Drops faces and segments that name a point twice, duplicates except the first, and then points that no
+/// element names. Coordinates must be finite and indices in range. Linear, apart from a sort.
 WeldCounts weld(ObstacleMesh& soup);
 
 }  // namespace arris

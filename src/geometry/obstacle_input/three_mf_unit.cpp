@@ -13,8 +13,8 @@
 
 #include "geometry/input_error.h"
 
-// A ZIP archive ends with a directory (PKWARE's APPNOTE 6.3): an end record, before it an entry a file, each
-// naming where its local header and data stand.
+// A ZIP archive ends with a directory (PKWARE's APPNOTE 6.3). Its end record comes last; before it, one entry
+// per file names the position of the file's local header and data.
 namespace arris {
 namespace {
 
@@ -23,7 +23,7 @@ constexpr std::size_t kLongestComment = 0xffff;
 constexpr std::size_t kEntry = 46;
 constexpr std::size_t kLocalHeader = 30;
 
-// The tag <model ...> stands in the first lines.
+// The tag <model ...> is in the first lines.
 constexpr std::size_t kModelStart = 1 << 16;
 
 [[noreturn]] void refuse_truncated()
@@ -50,7 +50,7 @@ bool is_model(std::string_view name)
     });
 }
 
-// The first bytes of what `packed` unpacks to.
+// The first bytes of the unpacked data.
 std::string inflate_start(std::string_view packed)
 {
     std::string text(kModelStart, '\0');
@@ -99,7 +99,7 @@ std::string start_of_model(std::string_view bytes)
     throw InputError("its archive holds no model");
 }
 
-// The value of attribute `unit` in the tag <model ...>; empty where there is none.
+// The value of attribute `unit` in the tag <model ...>; empty if the attribute is absent.
 std::string unit_attribute(std::string_view xml)
 {
     std::size_t at = xml.find("<model");

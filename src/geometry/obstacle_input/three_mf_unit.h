@@ -5,10 +5,10 @@
 
 namespace arris {
 
-/// The unit of a 3MF file's coordinates in metres: the attribute `unit` of its first model (3D Manufacturing
-/// Format core specification 1.3, section 3.4; millimetres where there is none). Throws InputError, without
-/// the file's name, for bytes that are no whole ZIP archive, an archive without a model, and a unit that the
-/// specification does not have.
+/// The unit of a 3MF file's coordinates, in metres: the attribute `unit` of its first model, millimetres by
+/// default (3D Manufacturing Format core specification 1.3, section 3.4). Throws InputError, without the
+/// file's name, for an incomplete ZIP archive, an archive without a model, and a unit that is not in the
+/// specification.
 double three_mf_unit(std::string_view bytes);
 
 }  // namespace arris

@@ -122,7 +122,7 @@ PatchFace ClothSurgery::patch_face(const IdFace& face) const
     return implementation_->patch_face(face);
 }
 
-// --- what is not geometry
+// --- roles and tags
 
 void ClothSurgery::set_role(VertexId v, TraceRole role, int tag)
 {
@@ -170,7 +170,7 @@ Verdict ClothSurgery::commit(const SurgeryProposal& proposal)
     return Verdict::Done;
 }
 
-// --- what happened
+// --- record of changes
 
 const std::vector<SurgeryEvent>& ClothSurgery::events() const
 {

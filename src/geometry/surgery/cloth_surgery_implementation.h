@@ -15,8 +15,8 @@
 // ClothSurgery's data and the parts of its proposals. For its .cpp files only.
 namespace arris {
 
-// A point computed on a line between two others is off it by rounding: a few units in the last place of the
-// greatest coordinate.
+// A computed point on the line between two others is off the line by rounding: a few units in the last place
+// of the greatest coordinate.
 inline constexpr double kOnLineUlps = 16.0;
 
 inline bool is_on_line(const Vec2& a, const Vec2& b, const Vec2& p)
@@ -86,7 +86,7 @@ class ClothSurgery::Implementation {
 
     VertexChange change_at(const IdFace& parents, const Vec3& weights) const
     {
-        // From the first parent: a point between two of equal coordinate has it exactly.
+        // Interpolates from the first parent: a point between two parents of equal coordinate has it exactly.
         VertexChange change{
             next_id, mesh.material(parents[0]), Vec2::Zero(), mesh.world(parents[0]), Vec3::Zero(), parents,
             weights};
@@ -134,7 +134,7 @@ class ClothSurgery::Implementation {
                                               mesh.material(ring.vertices.back()), mesh.material(v));
     }
 
-    // --- whether a collapse is allowed, but for orientation
+    // --- conditions for a collapse, except orientation
 
     Verdict check_trace_collapse(VertexId v, VertexId w) const
     {
@@ -145,7 +145,7 @@ class ClothSurgery::Implementation {
         const VertexId other = along[0] == w ? along[1] : along[0];
         if (mesh.edge_tag(mesh.halfedge(v, w)) != mesh.edge_tag(mesh.halfedge(v, other)))
             return Verdict::Trace;
-        // The two edges become one, which must not be on a trace yet.
+        // The two trace edges become one edge, which must not be on a trace yet.
         const bool is_loop = has_edge(w, other) && mesh.edge_tag(mesh.halfedge(w, other)) != kNoTag;
         return is_loop ? Verdict::Trace : Verdict::Done;
     }
@@ -172,8 +172,8 @@ class ClothSurgery::Implementation {
 
     // --- moves
 
-    // Where the surface, as it is, has a material point; the nearest place in the vertex's faces where none
-    // does (by rounding on a slanted border).
+    // The change that moves `v` to a material point of the present surface. If no face holds the point (by
+    // rounding on a slanted border), the nearest place in the faces of `v` is used.
     VertexChange interpolated(const ClothSurgery& surgery, VertexId v, const Vec2& material) const
     {
         MaterialLocation best;
@@ -199,8 +199,8 @@ class ClothSurgery::Implementation {
         return change;
     }
 
-    // Border vertices must come to lie between their border neighbours, where these come to lie: from corner
-    // to corner that leaves only the line they are on.
+    // A border vertex must end between its border neighbours' new places. As corners are fixed, this keeps
+    // the vertex on its line of the border.
     bool keeps_border(const SurgeryEvent& event, VertexId v) const
     {
         const VertexRing ring = mesh.ring(v);

@@ -13,7 +13,7 @@
 namespace arris {
 namespace {
 
-constexpr double kRounding = 1e-12;  // relative, of a weighted mean of three: far more than it has
+constexpr double kRounding = 1e-12;  // relative; well above the rounding of a weighted mean of three
 
 class InitialMesh {
   public:
@@ -40,7 +40,7 @@ class InitialMesh {
     }
 
     double mean_length() const { return mean_; }
-    // Of what `length` interpolates, with room for its rounding.
+    // Bounds on `length`, widened by its rounding.
     double shortest() const { return (1.0 - kRounding) * *std::min_element(length_.begin(), length_.end()); }
     double longest() const { return (1.0 + kRounding) * *std::max_element(length_.begin(), length_.end()); }
 
@@ -78,7 +78,7 @@ class InitialMesh {
         cells_ = std::move(cells);
     }
 
-    // What is outside counts to the cells at the border.
+    // Parts of the box outside the grid count as in the cells at its border.
     template <typename Take>
     void for_each_cell(const Box& box, const Take& take) const
     {
@@ -95,7 +95,7 @@ class InitialMesh {
             for (int j = first[1]; j <= last[1]; ++j) take(static_cast<std::size_t>(i) * count_[1] + j);
     }
 
-    // Faces whose boxes touch it, some of them more than once.
+    // Visits the faces whose boxes touch `box`, some of them more than once.
     template <typename Take>
     void visit(const Box& box, const Take& take) const
     {
@@ -134,8 +134,8 @@ class InitialMesh {
         mean_ *= 2.0 / ends;
     }
 
-    // The face that comes nearest to holding the point, the first of these, among those within a reach that
-    // grows until there is one: it passes any distance in as many rounds as a double has powers of two.
+    // The face nearest to the point (lowest index on ties), among the faces within a reach. The reach doubles
+    // until it contains a face: rounds are at most the powers of two of a double.
     Place find(const Vec2& X) const
     {
         Place best{-1, Vec3::Constant(1.0 / 3.0)};
@@ -162,11 +162,11 @@ class InitialMesh {
     std::vector<Face> faces_;
     std::vector<double> length_;           // m, one a vertex
     std::vector<double> angle_;            // degrees, one a vertex
-    double mean_ = 0.0;                    // edge length, m
-    Vec2 low_;                             // m, of a grid of cells
-    Vec2 per_length_;                      // cells, 1/m
-    std::array<int, 2> count_;             // of cells
-    std::vector<std::vector<int>> cells_;  // faces whose boxes touch them, ascending
+    double mean_ = 0.0;                    // mean edge length, m
+    Vec2 low_;                             // lower corner of the grid of cells, m
+    Vec2 per_length_;                      // cells per metre
+    std::array<int, 2> count_;             // number of cells in each direction
+    std::vector<std::vector<int>> cells_;  // of each cell: faces whose boxes touch it, ascending
 };
 
 }  // namespace

@@ -5,11 +5,13 @@
 
 namespace arris {
 
-/// Keeps a mesh about as it was made: the target length is the mean length of the initial mesh's edges at a
-/// vertex, linear in between, the target angle the least of the faces at the corners of the face there, and
-/// no more than `most_angle` degrees. Beyond the mesh (by rounding, at the border) the nearest face counts.
-/// A mesh of cells more than about three times as long as wide has edges that count as short.
-/// Holds a copy of what it needs; a query takes logarithmic time on average. `initial` must pass `validate`.
+/// Target that keeps a mesh about as it was made. The target length at a vertex is the mean length of its
+/// edges in the initial mesh; it is linear in between. The target angle is the least angle of the faces at
+/// the corners of the face there, but at most `most_angle` degrees. Beyond the mesh (by rounding, at the
+/// border) the nearest face counts.
+/// If cells are more than about three times as long as wide, some of their edges count as short. The target
+/// holds a copy of its data. A query takes constant time on average for faces of similar size. `initial` must
+/// pass `validate`.
 MeshTarget make_initial_target(const ClothMesh& initial, double most_angle = 15.0);
 
 }  // namespace arris

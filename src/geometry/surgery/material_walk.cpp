@@ -6,7 +6,8 @@
 namespace arris {
 namespace {
 
-// From corner to corner the border is straight, and every border has corners, which are fixed.
+// For border vertices. Every border has corners, which are fixed, and is straight between them: so the loop
+// ends.
 bool leads_off_border(const ClothSurgery& surgery, VertexId v, const Vec2& way)
 {
     const Vec2 X = surgery.material(v);
@@ -75,10 +76,10 @@ void MaterialWalk::advance()
 bool leads_off(const ClothSurgery& surgery, VertexId v, const Vec2& way)
 {
     const Vec2 to = surgery.material(v) + way;
-    if (to == surgery.material(v)) return false;  // also where the way is lost in rounding
+    if (to == surgery.material(v)) return false;  // also if the way is below rounding
     if (surgery.is_border(v)) return leads_off_border(surgery, v, way);
     MaterialWalk walk(surgery, v, to);
-    // In a valid mesh it comes to the end long before.
+    // In a valid mesh the walk ends long before this bound.
     for (int left = 4 * surgery.vertex_count(); left > 0; --left) {
         if (walk.has_left()) return true;
         if (walk.is_past_end()) return false;

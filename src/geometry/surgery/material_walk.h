@@ -5,8 +5,8 @@
 
 namespace arris {
 
-/// What a line from a vertex meets on the outline of a face or ring: a vertex p (q == kNoVertex) or the
-/// inside of the edge from p to q, p right of the line. Nothing: p == kNoVertex.
+/// First hit of a line from a vertex on the outline of a face or ring. It is the vertex p (q == kNoVertex),
+/// or a point inside the edge from p to q, with p right of the line. No hit: p == kNoVertex.
 struct RingHit {
     VertexId p = kNoVertex;
     VertexId q = kNoVertex;
@@ -14,17 +14,18 @@ struct RingHit {
     bool is_vertex() const { return q == kNoVertex; }
 };
 
-/// What the line from a vertex to a point meets first on that vertex's ring (exact); nothing where it leads
-/// off the cloth at once.
+/// First hit of the line from a vertex to a point on that vertex's ring (exact). No hit if the line leaves
+/// the cloth at once.
 RingHit first_hit(const ClothSurgery& surgery, VertexId from, const Vec2& to);
 
-/// Along a straight line through the material, from one crossing to the next. Each is farther from the
-/// beginning; in a valid mesh no face is met twice, so it ends. It does not stop at the line's end.
+/// Walk along a straight line through the material, from one crossing to the next. Each crossing is farther
+/// from the start. In a valid mesh the walk meets no face twice, so it ends. It does not stop at the end of
+/// the line.
 class MaterialWalk {
   public:
     MaterialWalk(const ClothSurgery& surgery, VertexId from, const Vec2& to);
 
-    bool has_left() const { return hit_.p == kNoVertex; }  ///< the cloth
+    bool has_left() const { return hit_.p == kNoVertex; }  ///< whether the walk has left the cloth
     const RingHit& hit() const { return hit_; }
     /// Whether the line's end is at or before the present crossing.
     bool is_past_end() const;
@@ -36,8 +37,8 @@ class MaterialWalk {
     RingHit hit_;
 };
 
-/// Whether a vertex that went that way through the material would get beyond the cloth's border; one that is
-/// on it goes along it, and would get beyond the next fixed vertex.
+/// Whether a vertex that moves by `way` in the material passes the border of the cloth. A border vertex moves
+/// along the border: whether it passes the next fixed vertex.
 bool leads_off(const ClothSurgery& surgery, VertexId v, const Vec2& way);
 
 }  // namespace arris

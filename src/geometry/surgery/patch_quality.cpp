@@ -9,8 +9,8 @@ namespace arris {
 
 double least_angle(const PatchFace& face)
 {
-    // At each corner tan = cross / dot; atan2 needs no division and no clamp. The cross product is the same
-    // at all, so that the dot product tells which is least.
+    // At each corner tan = cross / dot; atan2 needs no division and no clamp. The cross product is equal at
+    // all corners, so the dot products show which angle is least.
     const auto& X = face.material;
     const double doubled = twice_area(X[0], X[1], X[2]);
     std::array<double, 3> dots;

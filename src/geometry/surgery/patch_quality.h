@@ -8,9 +8,9 @@ namespace arris {
 
 /// Least angle of a face in material space, degrees; negative if it is clockwise.
 double least_angle(const PatchFace& face);
-/// Of all; 180 for none.
+/// Least angle of all faces in material space, degrees; 180 if there are none.
 double least_angle(const std::vector<PatchFace>& faces);
-/// In material space, m; 0 for none.
+/// Length of the longest edge in material space, m; 0 if there are no faces.
 double longest_edge(const std::vector<PatchFace>& faces);
 Vec2 material_centre(const PatchFace& face);
 

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A fixed sequence of passes over a patch P of vertices, fixed at the start but for those that splits add:
+// A fixed sequence of passes over a patch P of vertices. P is chosen at the start; splits add their vertices.
 //
 //   merge short edges -> flip -> split long edges -> flip (while there are any, at most 8 rounds)
 //                     -> open thin faces (at most 3 rounds) -> flip
 //
-// Why it ends, whatever the mesh and whatever the guard refuses:
-//   merge   each success removes a vertex of P: at most |P|. A refused edge is tried again only after a
+// Termination, whatever the mesh is and whatever the guard refuses:
+//   merge   Each success removes a vertex of P: at most |P|. A refused edge is tried again only after a
 //           success beside it.
-//   flip    only where the opposite vertex is strictly inside the circumcircle (exact predicate): the surface
-//           (X, Y, X^2 + Y^2) over the faces sinks strictly, so no triangulation of the same points comes
-//           twice, and there are finitely many. That bound is useless as a figure, so there is a cap, linear
-//           in the patch, which is reported when it is hit.
-//   split   the list of a round is made once, each is split at most once. Halves and what flips make of them
-//           may be long still, and there may be no later time: where the trace that has left them is gone
-//           from the cloth nothing comes to mend the mesh again.
-//   open    the list of a round is made once; a face costs at most one operation.
+//   flip    Only if the opposite vertex is strictly inside the circumcircle (exact predicate). The surface
+//           (X, Y, X^2 + Y^2) over the faces then sinks strictly, so no triangulation of the points recurs,
+//           and there are finitely many. That bound is far too large, so flips have a cap, linear in the
+//           patch.
+//   split   The list of a round is made once, and each edge in it is split at most once. Halves, and edges
+//           that flips make of them, may still be long, so there are several rounds. A later clean-up may
+//           never come here: none does once the trace that has left the place is gone from the cloth.
+//   open    The list of a round is made once; a face costs at most one operation.
 // `most_operations` is the sum of these bounds.
 //
-// A flip is made only where a face has an angle below kFlipAngle: on folded cloth each flip moves the
-// surface, and a mesh that is good enough is better left alone.
+// A flip is made only if a face has an angle below kFlipAngle. On folded cloth each flip moves the surface,
+// so a mesh that is good enough is left unchanged.
 #include "geometry/surgery/surgery_cleanup.h"
 
 #include <CGAL/predicates_on_points_2.h>
@@ -37,12 +37,12 @@ namespace arris {
 namespace {
 
 constexpr double kFlipAngle = 30.0;  // degrees
-constexpr double kKeepAngle = 10.0;  // degrees: a merge may not leave thinner faces than it found, below this
-constexpr double kSplitAngle = 0.5;  // of the least angle before: what a split may leave for the next round
-constexpr int kSplitRounds = 8;      // for edges of 500 target lengths
+constexpr double kKeepAngle = 10.0;  // degrees: below this, a merge may not leave thinner faces than before
+constexpr double kSplitAngle = 0.5;  // of the least angle before: a split may not leave a smaller one
+constexpr int kSplitRounds = 8;      // enough for edges of 500 target lengths
 constexpr int kThinRounds = 3;
 constexpr int kFlipsPerEdge = 8;
-constexpr double kLeastFoot = 0.15;  // of an edge: where it is split opposite a vertex
+constexpr double kLeastFoot = 0.15;  // of an edge: least distance of a split from its ends
 
 using Edge = std::array<VertexId, 2>;
 
@@ -68,10 +68,8 @@ class Cleanup {
     {
         merge_short_edges();
         flip_edges();
-        int round = 0;
-        for (; round < kSplitRounds && split_long_edges(); ++round) flip_edges();
-        report_.is_capped |= round == kSplitRounds;
-        for (round = 0; round < kThinRounds; ++round)
+        for (int round = 0; round < kSplitRounds && split_long_edges(); ++round) flip_edges();
+        for (int round = 0; round < kThinRounds; ++round)
             if (!open_thin_faces()) break;
         flip_edges();
         surgery_.take_touched();
@@ -90,7 +88,7 @@ class Cleanup {
         return edges;
     }
 
-    // From their least vertices.
+    // The faces of the patch, each from its least vertex.
     std::vector<IdFace> patch_faces() const
     {
         std::vector<IdFace> faces;
@@ -105,12 +103,12 @@ class Cleanup {
 
     bool in_patch(VertexId v) const { return std::binary_search(patch_.begin(), patch_.end(), v); }
 
-    // So that what has several vertices in the patch is listed once.
+    // Lists an edge or face with several vertices in the patch only once.
     bool is_first_in_patch(VertexId v, VertexId other) const { return v < other || !in_patch(other); }
 
     double length(const Edge& e) const { return (surgery_.material(e[1]) - surgery_.material(e[0])).norm(); }
 
-    // In units of the target.
+    // Length of an edge in target lengths.
     double relative_length(const Edge& e) const
     {
         return length(e) / target_.length(0.5 * (surgery_.material(e[0]) + surgery_.material(e[1])));
@@ -161,8 +159,8 @@ class Cleanup {
         return longest_edge(event.after) > std::max(allowed, longest_edge(event.before));
     }
 
-    // The better of the two ways to merge an edge, by the least angle it leaves; `accepts` is asked with the
-    // event and that angle.
+    // Merges an edge into one of its ends, first trying the end that leaves the larger least angle. `accepts`
+    // is called with the event and that angle.
     template <typename Accepts>
     bool merge(const Edge& e, const Accepts& accepts)
     {
@@ -181,8 +179,9 @@ class Cleanup {
         return false;
     }
 
-    // Leaves no thinner face than it found, or none thin. A very short edge makes faces about as thin as it
-    // is, and sometimes (two vertices beside a corner of the cloth) it takes two merges to be rid of them.
+    // Merges an edge if that leaves no thinner face than before, or none that is thin. A very short edge
+    // makes faces about as thin as itself. Removing them sometimes takes two merges (two vertices beside a
+    // corner of the cloth).
     bool merge_short(const Edge& e)
     {
         const double floor = kKeepAngle * std::min(1.0, relative_length(e) / kShortEdge);
@@ -237,7 +236,7 @@ class Cleanup {
         const std::vector<Edge> edges = patch_edges();
         int left = kFlipsPerEdge * static_cast<int>(edges.size());
         report_.most_operations += left;
-        // Most edges are Delaunay's; of these only a flip beside one makes it another.
+        // Most edges are locally Delaunay. Only a flip beside such an edge can change this.
         std::set<Edge> queue;
         for (const Edge& e : edges)
             if (!is_locally_delaunay(e)) queue.insert(e);
@@ -246,10 +245,7 @@ class Cleanup {
             const Edge e = *queue.begin();
             queue.erase(queue.begin());
             if (!wants_flip(e, proposal)) continue;
-            if (left == 0) {
-                report_.is_capped = true;
-                return;
-            }
+            if (left == 0) return;  // the mesh is valid, perhaps not as good as it could be
             if (!commit(proposal)) continue;
             --left;
             for (const PatchFace& face : proposal.event.after)
@@ -303,11 +299,11 @@ class Cleanup {
         });
         const Edge longest = side(by_length[2]);
         if (improves(surgery_.propose_flip(longest[0], longest[1]))) return true;
-        // No face may be left as thin as the one that is to go.
+        // A merge may leave no face as thin as the one to be opened.
         const auto opens = [&](const SurgeryEvent&, double after) { return after > angle; };
         for (const int k : by_length)
             if (merge(side(k), opens)) return true;
-        // What the guard keeps apart a split would only make more of.
+        // If the guard refuses to merge a side, a split would only make more such sides.
         for (int k = 0; k < 3; ++k)
             if (kept_apart_.contains(side(k))) return false;
         return split_thin(face, by_length[2]);
@@ -319,7 +315,7 @@ class Cleanup {
                least_angle(proposal.event.after) > least_angle(proposal.event.before) && commit(proposal);
     }
 
-    // Where along face side k the corner opposite it has its foot.
+    // Parameter along face side k of the foot of the opposite corner, clamped.
     double foot(const IdFace& face, int k) const
     {
         const Vec2 a = surgery_.material(face[k]);
@@ -328,16 +324,17 @@ class Cleanup {
         return std::clamp(s, kLeastFoot, 1.0 - kLeastFoot);
     }
 
-    // Halves an angle at most: a thinner face would be worse than the one it is to open if nothing follows.
+    // A split may at most halve an angle. If nothing follows, a thinner face would be worse than the one to
+    // be opened.
     static bool is_opening(const SurgeryProposal& proposal)
     {
         return proposal.is_legal() &&
                least_angle(proposal.event.after) >= kSplitAngle * least_angle(proposal.event.before);
     }
 
-    // What is thin and can be neither flipped nor merged gets a new vertex, from which the next round's flips
-    // and merges can open it: on the edge opposite its one trace vertex, on the trace's edge between two, on
-    // an edge that is no trace's between three.
+    // A thin face that can be neither flipped nor merged gets a new vertex. Flips and merges of the next
+    // round can then open the face. The edge to be split is the one opposite a single trace vertex, the trace
+    // edge between two trace vertices, or an edge on no trace between three.
     bool split_thin(const IdFace& face, int longest)
     {
         int traced = 0;
@@ -360,7 +357,7 @@ class Cleanup {
     ClothSurgery& surgery_;
     const MeshTarget& target_;
     std::vector<VertexId> patch_;  // ascending
-    std::set<Edge> kept_apart_;    // by the guard
+    std::set<Edge> kept_apart_;    // edges that the guard refused to merge
     CleanupReport report_;
 };
 

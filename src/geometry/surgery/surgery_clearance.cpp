@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Each operation is one point's straight way, that drags the faces around it along: a collapse takes the
-// removed vertex to the one it is merged into, a move takes its vertex, and a flip takes the middle of the
-// old edge to the middle of the new one. What the faces pass over is what is between the surfaces, and the
-// step's own check of a way answers for it.
+// Each operation is treated as the straight motion of one point, which takes the faces around it along. A
+// collapse moves the removed vertex to the one it is merged into, and a move moves its vertex. A flip moves
+// the middle of the old edge to the middle of the new one. The faces sweep the space between the old and the
+// new surface, so the check of a step's path (check_sweep) applies.
 #include "geometry/surgery/surgery_clearance.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace arris {
 namespace {
 
-/// The faces before the operation as a small cloth of its own.
+/// The faces before the operation as a small cloth.
 struct Patch {
     std::vector<VertexId> ids;
     std::vector<Vec3> begin;
@@ -29,7 +29,7 @@ struct Patch {
         return known;
     }
 
-    /// The number of vertices where it is none of them.
+    /// The index of the vertex; the number of vertices if the patch does not contain it.
     int index_of(VertexId id) const
     {
         return static_cast<int>(std::find(ids.begin(), ids.end(), id) - ids.begin());
@@ -47,7 +47,7 @@ Patch make_patch(const SurgeryEvent& event)
     return patch;
 }
 
-/// Cuts both faces of a flip at the middle of the edge, which is what moves.
+/// Cuts both faces of a flip at the middle of the edge, the point that moves; returns its index.
 int cut_in_the_middle(const std::array<VertexId, 2>& edge, Patch& patch)
 {
     const int a = patch.index_of(edge[0]), b = patch.index_of(edge[1]);
@@ -63,7 +63,7 @@ int cut_in_the_middle(const std::array<VertexId, 2>& edge, Patch& patch)
     return middle;
 }
 
-/// Where the flip's new edge has its middle: between the two vertices across the old one.
+/// The middle of the flip's new edge, which joins the two vertices across the old one.
 Vec3 middle_across(const std::array<VertexId, 2>& edge, const Patch& patch)
 {
     Vec3 sum = Vec3::Zero();

@@ -8,9 +8,9 @@
 
 namespace arris {
 
-/// Whether an operation leaves the cloth free of an obstacle whose frame is at `placement`: no new face
-/// touches it, and nothing of it is between the surface that was and the one that is to be, so that no
-/// corner, wire or nail gets from one side to the other. A split changes no surface and is always free.
+/// Whether an operation keeps the cloth free of an obstacle whose frame is at `placement`. No new face may
+/// touch the obstacle, and no part of it may be between the old and the new surface. So no corner, wire or
+/// nail gets to the other side of the cloth. A split does not change the surface and is always free.
 bool is_free(const SurgeryEvent& event, const Obstacle& obstacle, const Placement& placement,
              double thickness);
 

@@ -18,7 +18,7 @@ Face from_least(const Face& face)
     return b < c ? Face{b, c, a} : Face{c, a, b};
 }
 
-// Each starts at its least vertex, where few do: counted out by it, then sorted a vertex at a time.
+// Faces start at their least vertex: bucket sort by this vertex, then a sort of the few faces of each.
 void sort_faces(int vertex_count, std::vector<Face>& faces)
 {
     std::vector<std::ptrdiff_t> next(static_cast<std::size_t>(vertex_count) + 1, 0);
@@ -26,7 +26,7 @@ void sort_faces(int vertex_count, std::vector<Face>& faces)
     std::partial_sum(next.begin(), next.end(), next.begin());
     std::vector<Face> sorted(faces.size());
     for (const Face& face : faces) sorted[next[face[0]]++] = face;
-    std::ptrdiff_t begin = 0;  // `next` now tells where each vertex's end
+    std::ptrdiff_t begin = 0;  // next[v] is now the end of vertex v's faces
     for (int v = 0; v < vertex_count; begin = next[v++])
         std::sort(sorted.begin() + begin, sorted.begin() + next[v],
                   [](const Face& f, const Face& g) { return f[1] < g[1] || (f[1] == g[1] && f[2] < g[2]); });
@@ -57,11 +57,12 @@ SurgeryMesh::SurgeryMesh(const ClothMesh& mesh, const std::vector<VertexId>& ids
     connect(mesh, edges);
 }
 
-// The half-edges of the whole mesh at once: CGAL's add_face looks for each among those there are.
+// Connects the half-edges of the whole mesh at once: CGAL's add_face would search for existing ones at each
+// face.
 void SurgeryMesh::connect(const ClothMesh& mesh, const std::vector<MeshEdge>& edges)
 {
     const auto at = [](int v) { return Vertex(static_cast<Mesh::size_type>(v)); };
-    std::vector<std::array<Halfedge, 3>> sides(mesh.faces.size());  // that leaves each corner of a face
+    std::vector<std::array<Halfedge, 3>> sides(mesh.faces.size());  // half-edge that leaves each corner
     std::vector<Halfedge> border;
     const auto take_side = [&](int f, int a, Halfedge from_a) {
         const Face& face = mesh.faces[f];
@@ -93,7 +94,8 @@ void SurgeryMesh::connect(const ClothMesh& mesh, const std::vector<MeshEdge>& ed
             mesh_.set_halfedge(mesh_.target(around[k]), around[k]);
         }
     }
-    // On the border each goes on to the one that leaves its end, and is the one that its end knows.
+    // The next of a border half-edge is the one that leaves its target. A border vertex's own half-edge is on
+    // the border.
     std::vector<Halfedge> leaving(static_cast<std::size_t>(mesh.vertex_count()));
     for (const Halfedge h : border) leaving[mesh_.source(h)] = h;
     for (const Halfedge h : border) {
@@ -112,11 +114,11 @@ SurgeryMesh::Halfedge SurgeryMesh::halfedge(VertexId a, VertexId b) const
 
 VertexRing SurgeryMesh::ring(VertexId v) const
 {
-    // Of two half-edges that arrive one after the other, counter-clockwise, the second is the one before the
-    // first's opposite.
+    // The next half-edge that arrives at the vertex, counter-clockwise, is the one before the opposite of the
+    // last.
     const Halfedge first = mesh_.halfedge(vertex(v));
     VertexRing ring;
-    constexpr std::size_t kUsual = 8;  // neighbours, at most
+    constexpr std::size_t kUsual = 8;  // most vertices have no more neighbours
     ring.vertices.reserve(kUsual);
     std::size_t start = 0;
     for (Halfedge h = first;;) {

@@ -11,9 +11,9 @@
 
 namespace arris {
 
-/// CGAL's half-edge mesh in the material plane with persistent ids: bookkeeping and bare changes of
-/// connectivity, no decisions. For .cpp files of the surgery only. Every id named must exist; whether a
-/// change is legal is the caller's to know.
+/// CGAL's half-edge mesh in the material plane with persistent ids: bookkeeping and changes of connectivity,
+/// without decisions. For .cpp files of the surgery only. Every id given must exist. The caller must know
+/// that a change is legal.
 class SurgeryMesh {
   public:
     using Mesh = CGAL::Surface_mesh<Point2>;
@@ -30,7 +30,7 @@ class SurgeryMesh {
         return Vertex(vertices_.find(v));
     }
     VertexId id(Vertex v) const { return id_[v]; }
-    /// From a to b; null if they are no neighbours.
+    /// The half-edge from a to b; null if they are not neighbours.
     Halfedge halfedge(VertexId a, VertexId b) const;
     bool has_face(Halfedge h) const { return !mesh_.is_border(h); }
     VertexId apex(Halfedge h) const { return id_[mesh_.target(mesh_.next(h))]; }
@@ -55,11 +55,11 @@ class SurgeryMesh {
     /// Both halves keep the edge's tag.
     void split_edge(VertexId a, VertexId b, const VertexChange& made);
     void split_face(const IdFace& face, const VertexChange& made);
-    /// Tags of edges that fall together are kept.
+    /// Where two edges merge into one, the tag of either is kept.
     void collapse(VertexId removed, VertexId kept);
     void flip(VertexId a, VertexId b);
 
-    /// Vertices, and the faces between them.
+    /// Writes the vertices and faces to `result`.
     void write(SurgeryResult& result) const;
 
   private:

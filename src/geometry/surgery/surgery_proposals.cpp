@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Every change has the same three parts: the faces it replaces and those in their place are written down
-// (propose), each new face's orientation is checked by exact predicate, and only then the half-edges change
-// (commit). A patch whose outline stays and whose new faces all turn counter-clockwise is again a
-// triangulation of the same part of the plane, so nothing else needs checking there.
+// Every operation has three parts. A proposal lists the faces before and after, and checks the orientation of
+// each new face by exact predicate. Only the commit changes the half-edges. A patch whose outline stays and
+// whose new faces are all counter-clockwise again triangulates the same part of the plane. So no further
+// geometric check is needed.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -82,7 +82,7 @@ SurgeryProposal ClothSurgery::propose_moves(const std::vector<VertexMove>& moves
         if (!move.material.allFinite() || !moved.insert(move.vertex).second) return {Verdict::Argument, {}};
         if (is_fixed(move.vertex)) return {Verdict::Fixed, {}};
     }
-    // Orientation first: it is cheap, and then the new places are inside the old faces.
+    // Orientation is checked first: this is cheap, and ensures that the new places are inside the old faces.
     for (const VertexMove& move : moves)
         event.changes.push_back({move.vertex, material(move.vertex), move.material, world(move.vertex),
                                  world(move.vertex), IdFace{move.vertex, move.vertex, move.vertex},

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 //        ahead                    A face turns over when a moving corner comes to the line of the other two.
-//   *-----*-----*  trace          Such a face is threatened. It is saved by merging what stands there into
-//    \   / \   /    |             the trace, by merging it into something farther away, or by turning the
-//     \ /   \ /     v             edge that lies across the way. Where two vertices of the trace approach
-//      p-----q                    each other, as at a corner that slides along its edge, one is merged into
-//                               the other.
+//   *-----*-----*  trace          Such a face is threatened. It is saved by merging the vertex in the way
+//    \   / \   /    |             into the trace or into one farther away, or by flipping the edge across
+//     \ /   \ /     v             the way. Where two vertices of the trace approach each other, as at a
+//      p-----q                    corner that slides along its edge, one is merged into the other.
 //
-// Clearing ends: a merge removes a vertex, and a flip is made only where it leaves fewer threatened faces, so
-// that (vertices, threatened faces) sinks strictly in lexicographic order.
+// Clearing ends, as (vertices, threatened faces) decreases strictly in lexicographic order. A merge removes a
+// vertex, and a flip is made only if it leaves fewer threatened faces.
 #include "geometry/surgery/trace_clearing.h"
 
 #include <algorithm>
@@ -25,12 +24,12 @@
 namespace arris {
 namespace {
 
-constexpr double kSoundAngle = 3.0;  // degrees: preferred are ways that leave no thinner face
-constexpr double kLeastAngle = 0.1;  // degrees: where rounding decides which side up a face is
-constexpr int kInstants = 4;         // of the way, at which faces are looked at: corners go straight
+constexpr double kSoundAngle = 3.0;  // degrees: operations that leave no thinner face are preferred
+constexpr double kLeastAngle = 0.1;  // degrees: below this, rounding decides the orientation of a face
+constexpr int kInstants = 4;         // of the way, at which faces are tested; corners move on straight lines
 constexpr int kMostStages = 100;
 
-/// Ways as they are looked up: of every face there is, three times.
+/// Ways, with fast look-up: they are looked up for the three corners of every face.
 class WayTable {
   public:
     explicit WayTable(const TraceWays& ways) : places_(ways.size())
@@ -43,7 +42,7 @@ class WayTable {
     }
 
     bool contains(VertexId v) const { return places_.find(v) != VertexTable::kNone; }
-    /// Zero where it has none.
+    /// The way of a vertex; zero if it has none.
     Vec2 of(VertexId v) const
     {
         const std::uint32_t at = places_.find(v);
@@ -70,7 +69,7 @@ std::array<Vec2, 3> ways_of(const PatchFace& face, const TraceWays& ways)
     return way;
 }
 
-// The least doubled area on the way.
+// The least doubled area of a face on the way, m^2.
 double least_area(const PatchFace& face, const std::array<Vec2, 3>& way)
 {
     double least = std::numeric_limits<double>::infinity();
@@ -82,7 +81,8 @@ double least_area(const PatchFace& face, const std::array<Vec2, 3>& way)
     return least;
 }
 
-// That over the square of the longest side as it is: how far from turning.
+// The least doubled area on the way, over the square of the longest side: how far the face is from turning
+// over.
 double soundness(const PatchFace& face, const WayTable& ways)
 {
     double side = 0.0;
@@ -90,10 +90,10 @@ double soundness(const PatchFace& face, const WayTable& ways)
     return least_area(face, ways_of(face, ways)) / (side * side);
 }
 
-// False where the doubled area, (b + t db) x (c + t dc), is above zero for certain at every t in [0, 1].
+// False only if the doubled area, (b + t db) x (c + t dc), is certainly above zero at every t in [0, 1].
 bool is_at_risk(const PatchFace& face, const WayTable& ways)
 {
-    constexpr double kRounding = 1e-6;  // of the sides' squares: far above any in the area
+    constexpr double kRounding = 1e-6;  // relative to the squares of the sides; far above that of the area
     const auto cross = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
     const std::array<Vec2, 3> way = ways_of(face, ways);
     const Vec2 b = face.material[1] - face.material[0], c = face.material[2] - face.material[0];
@@ -104,7 +104,7 @@ bool is_at_risk(const PatchFace& face, const WayTable& ways)
     return !(least > kRounding * squares);
 }
 
-// Vertices that move with a face that may turn over, whatever share of their ways they go: around others
+// Collects moving vertices with a face that may turn over at some share of their ways. Around other vertices
 // there is nothing to clear.
 class RiskWatch {
   public:
@@ -116,7 +116,7 @@ class RiskWatch {
                 if (is_at_risk(surgery.patch_face(face))) watched_.insert(v);
     }
 
-    // Takes in the faces that operations have made since.
+    // Adds the vertices of faces that operations have made since the last call.
     void follow()
     {
         for (; events_ < surgery_.events().size(); ++events_)
@@ -127,7 +127,7 @@ class RiskWatch {
             }
     }
 
-    // Those of them that have not been merged, ascending.
+    // The collected vertices that still exist, ascending.
     std::vector<VertexId> vertices() const
     {
         std::vector<VertexId> left;
@@ -143,14 +143,14 @@ class RiskWatch {
     }
 
     const ClothSurgery& surgery_;
-    std::array<WayTable, 2> ways_;  // of the same vertices
-    std::size_t events_;            // that have been taken in
+    std::array<WayTable, 2> ways_;  // the ways to be cleared, and the ways with room
+    std::size_t events_;            // number of events followed
     std::set<VertexId> watched_;
 };
 
 enum class Need {
-    Way,  ///< of what moves: where vertices of traces come upon each other, some go
-    Room  ///< for what may come: none between traces, which will not come as near as that
+    Way,  ///< the way itself: where trace vertices come upon each other, some are merged
+    Room  ///< room ahead of a short way: none between traces, which do not come that near
 };
 
 class Clearing {
@@ -160,7 +160,7 @@ class Clearing {
     {
     }
 
-    /// Around `vertices`; how much it has done.
+    /// Clears around `vertices`; returns the number of operations.
     int run(const std::vector<VertexId>& vertices)
     {
         int operations = 0;
@@ -208,15 +208,15 @@ class Clearing {
     }
 
     struct Candidate {
-        int change;  // in the number of threatened faces
+        int change;  // change in the number of threatened faces
         double soundness;
         bool is_into_trace;
-        bool is_of_trace;  // what would go moves
-        bool is_thin;      // it leaves thin faces
+        bool is_of_trace;  // the vertex to be removed is a moving one
+        bool is_thin;      // the operation leaves thin faces
         SurgeryProposal proposal;
 
-        // Fewer threatened faces; as many, with the obstacle merged into the trace; fewer, for a vertex less
-        // on the trace; a merge that is a step on the way at best.
+        // 0: fewer threatened faces. 1: as many, with the vertex in the way merged into the trace. 2: fewer,
+        // at the cost of a trace vertex. 3: another merge, at best an intermediate step.
         int rank() const
         {
             if (is_of_trace) return 2;
@@ -255,8 +255,8 @@ class Clearing {
             candidates.push_back(std::move(candidate));
     }
 
-    // Best first: by rank, then those that leave no thin faces, then by the number of threatened faces, then
-    // the soundest; equal ones stay in the order in which they were found.
+    // Best first: least rank, then no thin faces left, then fewest threatened faces, then greatest soundness.
+    // The sort is stable, so ties keep the order in which candidates were found.
     static bool is_better(const Candidate& c, const Candidate& d)
     {
         const auto key = [](const Candidate& e) {
@@ -285,7 +285,7 @@ class Clearing {
     const Need need_;
 };
 
-// The way, made longer as far as that stays on the cloth, to the factor 2.
+// The way lengthened by `times`, halved as often as needed to stay on the cloth; never shortened.
 Vec2 find_room(const ClothSurgery& surgery, VertexId v, const Vec2& way, double times)
 {
     while (times > 1.0 && leads_off(surgery, v, times * way)) times *= 0.5;
@@ -312,9 +312,9 @@ bool turns_over(const PatchFace& face, const TraceWays& ways)
     return !(least_area(face, ways_of(face, ways)) > 0.0);
 }
 
-// In stages of at most kCrowded of the target length, so that what stands nearest goes first: vertices of one
-// cell after the other can be merged into the trace, but not those behind others. Then up to kCrowded where
-// the way is shorter: that is room for what comes, which another trace may take, too.
+// Clears in stages of at most kCrowded target lengths, so that the nearest vertices are merged first. The
+// vertices of one cell after the other can be merged into the trace, but not those behind others. Then
+// shorter ways are cleared up to kCrowded target lengths: room ahead, which another trace may also take.
 ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
                             const std::vector<TraceAdvance>& advances)
 {
@@ -323,7 +323,7 @@ ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
         const bool is_cut = advance.least < 1.0 && leads_off(surgery, advance.vertex, advance.ahead);
         ahead[advance.vertex] = (is_cut ? advance.least : 1.0) * advance.ahead;
     }
-    constexpr double kResting = 1e-12;  // of the room there is to be: its direction is rounding
+    constexpr double kResting = 1e-12;  // of the room to be cleared: a shorter way's direction is rounding
     double stages = 1.0;
     TraceWays room;
     for (auto at = ahead.begin(); at != ahead.end();) {

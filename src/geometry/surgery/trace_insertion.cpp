@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A trace is cut in from node to node:
+// A trace is inserted from node to node:
 //
-//        p1      p2              from a vertex of the trace the line to the end leaves through one edge of
-//       /  \    /  \             its ring; there the line gets its next vertex: the nearer end of that edge,
-//   a *----x--x------* b         moved onto the line where it is near, or a new one. Each comes nearer to
-//       \  /    \  /             the end b than the last, so that the walk ends; the bound on its steps is
-//       for
-//        q1      q2              meshes with faces so thin that rounding decides.
+//        p1      p2              From a vertex of the trace, the line to the end leaves through one edge of
+//       /  \    /  \             the vertex's ring. There the line gets its next vertex: the nearer end of
+//   a *----x--x------* b         that edge, moved onto the line if it is near, or a new one. Each vertex is
+//       \  /    \  /             nearer to the end b than the last, so the walk ends. The bound on its
+//        q1      q2              steps is for faces so thin that rounding decides.
 //
 // A line through an inner vertex uses that vertex. Every change is checked by ClothSurgery, so a walk that
-// is given up leaves a valid mesh.
+// fails leaves a valid mesh.
 #include "geometry/surgery/trace_insertion.h"
 
 #include <algorithm>
@@ -28,13 +27,13 @@
 namespace arris {
 namespace {
 
-constexpr double kOnEdge = 1e-9;         // of the target length: a point nearer to an edge is on it
-constexpr double kLeastFraction = 0.05;  // of an edge, from an end that cannot give way
-constexpr double kTraceFraction = 1e-3;  // the same if that end is on another trace
-constexpr double kLeastApart = 0.1;      // of the target length: nearer to a trace nothing is left before it
-constexpr double kSnapAngle = 5.0;       // degrees: a vertex does not move if that leaves a thinner face
+constexpr double kOnEdge = 1e-9;         // of the target length: a point nearer to an edge is on the edge
+constexpr double kLeastFraction = 0.05;  // of an edge: least distance of a split from an end that cannot move
+constexpr double kTraceFraction = 1e-3;  // least distance if the end is on another trace or is left behind
+constexpr double kLeastApart = 0.1;  // of the target length: a vertex nearer to a trace may not stay ahead
+constexpr double kSnapAngle = 5.0;   // degrees: a vertex does not move if that leaves a thinner face
 
-// Moves v there if no face becomes thin that was not.
+// Moves v to `place` unless that makes a face thin that was not.
 Verdict snap(ClothSurgery& surgery, VertexId v, const Vec2& place)
 {
     if (surgery.role(v) != TraceRole::Free) return Verdict::Trace;
@@ -45,14 +44,15 @@ Verdict snap(ClothSurgery& surgery, VertexId v, const Vec2& place)
     return surgery.commit(proposal);
 }
 
-// As good as there: inner vertices that are not quite there can move, those of the border perhaps not.
+// Whether v counts as at X. Border vertices have a tolerance, as they may be unable to move; inner ones can
+// move.
 bool is_at(const ClothSurgery& surgery, const MeshTarget& target, VertexId v, const Vec2& X)
 {
     const double distance = (surgery.material(v) - X).norm();
     return surgery.is_border(v) ? distance <= kOnEdge * target.length(X) : surgery.material(v) == X;
 }
 
-// Whether it may be taken for the new vertex: what slides along the trace is not where a node is to be.
+// Whether v may be used as the new vertex. One that slides along the trace cannot be used as a node.
 bool is_like(const ClothSurgery& surgery, VertexId v, const TraceVertex& made)
 {
     const TraceRole role = surgery.role(v);
@@ -60,14 +60,14 @@ bool is_like(const ClothSurgery& surgery, VertexId v, const TraceVertex& made)
            (role == TraceRole::Node || made.role == TraceRole::OnTrace);
 }
 
-// A trace at X that goes so leaves v behind: what is thin between them opens.
+// Whether a trace at X that moves by `way` leaves v behind: thin faces between them then open.
 bool is_behind(const ClothSurgery& surgery, VertexId v, const Vec2& X, const Vec2& way)
 {
     return (surgery.material(v) - X).dot(way) < 0.0;
 }
 
-// Whether a vertex that cannot move onto a trace at X may stay beside it: it is left behind, or is not
-// reached soon. Nearer the face between them would be thin for good.
+// Whether a vertex that cannot move onto a trace at X may stay beside it: the trace leaves it behind, or does
+// not reach it soon. If it were nearer, the face between them would stay thin.
 bool may_stay(const ClothSurgery& surgery, const MeshTarget& target, VertexId v, const Vec2& X,
               const Vec2& way)
 {
@@ -75,7 +75,7 @@ bool may_stay(const ClothSurgery& surgery, const MeshTarget& target, VertexId v,
     return is_behind(surgery, v, X, way) || (apart > kLeastApart * target.length(X) && apart > way.norm());
 }
 
-// Too near to an end for a split: the new faces would be thin for good.
+// Whether a split is too near to an end, so that the new faces would stay thin.
 bool is_crowded(const ClothSurgery& surgery, VertexId a, VertexId b, double s, const Vec2& way)
 {
     const Vec2 X = surgery.material(a) + s * (surgery.material(b) - surgery.material(a));
@@ -96,8 +96,8 @@ Verdict split(ClothSurgery& surgery, VertexId a, VertexId b, double s, const Tra
     return surgery.commit(proposal);
 }
 
-// Flips the edge a-b beside a new vertex where that opens angles. A trace that went along it goes through the
-// vertex instead.
+// Flips the edge a-b beside a new vertex if that opens angles. A trace along a-b then goes through the
+// vertex.
 void flip_away(ClothSurgery& surgery, VertexId a, VertexId b, VertexId vertex, int tag)
 {
     const bool is_of_trace = surgery.edge_tag(a, b) == tag;
@@ -113,7 +113,7 @@ void flip_away(ClothSurgery& surgery, VertexId a, VertexId b, VertexId vertex, i
 
 // --- the walk
 
-// How many edges and vertices the line crosses, for the walk's bound.
+// Number of edges and vertices that the line crosses, for the bound of the walk.
 int count_crossings(const ClothSurgery& surgery, VertexId from, VertexId end)
 {
     MaterialWalk walk(surgery, from, surgery.material(end));
@@ -160,10 +160,10 @@ class TraceWalk {
     }
 
   private:
-    // Finds or makes the next vertex, a neighbour of `current`, in `next_`.
+    // Finds or makes the next vertex, a neighbour of `current`, and stores it in `next_`.
     Verdict advance(VertexId current)
     {
-        // Each further round has one vertex less.
+        // The loop ends, as each further round has one vertex less.
         for (;;) {
             next_ = end_;
             if (surgery_.has_edge(current, end_)) return Verdict::Done;
@@ -174,8 +174,8 @@ class TraceWalk {
             if (surgery_.apex(hit.q, hit.p) == end_ && flip(hit)) return Verdict::Done;
             const Verdict crossed = cross(current, hit);
             if (crossed != Verdict::Quality) return crossed;
-            // A vertex beside the line and beside one of the line's vertices: moved onto it all the same (a
-            // short edge of the trace, for clean-up to merge), or merged into the line's vertex.
+            // A vertex is near both the line and a vertex of the line. Move it onto the line nevertheless
+            // (clean-up merges the short trace edge), or merge it into the vertex of the line.
             if (snap_end(current, hit, 0.0)) return Verdict::Done;
             if (!absorb_end(current, hit)) return crossed;
         }
@@ -196,7 +196,7 @@ class TraceWalk {
         return false;
     }
 
-    // A vertex exactly on the line.
+    // Uses a vertex that is exactly on the line.
     Verdict take(VertexId v)
     {
         if (surgery_.role(v) != TraceRole::Free && surgery_.tag(v) != tag_) return Verdict::Trace;
@@ -206,8 +206,8 @@ class TraceWalk {
         return Verdict::Done;
     }
 
-    // Moves the nearer end of the crossed edge onto the line, or else the other, if it is then at least
-    // `clearance` target lengths from the vertices that the line has here.
+    // Moves an end of the crossed edge onto the line, the nearer one if possible. It must then be at least
+    // `clearance` target lengths from `current` and from the end of the line.
     bool snap_end(VertexId current, const RingHit& hit, double clearance)
     {
         const Line line{surgery_.material(current), surgery_.material(end_)};
@@ -268,7 +268,7 @@ class TraceWalk {
 
     void undo()
     {
-        // The ends keep their role: only what this walk made goes.
+        // Only what this walk made is removed; the ends keep their role.
         for (const auto& [a, b] : tagged_) {
             surgery_.set_edge_tag(a, b, kNoTag);
             surgery_.touch(a);

@@ -8,17 +8,17 @@
 
 namespace arris {
 
-/// Which of a mesh's vertices has an id: open addressing, as surgery asks that more often than anything.
-/// Ids are added in ascending order and never twice.
+/// Finds a mesh's vertex by its id. Open addressing, as this is the most frequent query of surgery. Ids are
+/// added in ascending order and never twice.
 class VertexTable {
   public:
     static constexpr std::uint32_t kNone = 0xffffffffu;
 
-    /// Room for `count` ids before it grows.
+    /// Reserves room for `count` ids.
     explicit VertexTable(std::size_t count);
 
     int count() const { return count_; }
-    /// kNone where there is none.
+    /// The vertex with an id; kNone if there is none.
     std::uint32_t find(VertexId id) const { return slots_[place(id)].vertex; }
     void add(VertexId id, std::uint32_t vertex);
     void remove(VertexId id);
@@ -28,19 +28,19 @@ class VertexTable {
   private:
     struct Slot {
         VertexId id = kNoVertex;
-        std::uint32_t vertex = kNone;  // also of an id that was removed
+        std::uint32_t vertex = kNone;  // kNone also for a removed id
     };
 
-    // Where an id is or, if it is nowhere, would be.
+    // The slot of an id, or the free slot where it would be added.
     std::size_t place(VertexId id) const
     {
-        std::size_t at = (id * 2654435769u) >> shift_;  // multiplicative: neighbouring ids spread
+        std::size_t at = (id * 2654435769u) >> shift_;  // multiplicative hashing spreads neighbouring ids
         while (slots_[at].id != id && slots_[at].id != kNoVertex) at = (at + 1) & (slots_.size() - 1);
         return at;
     }
     void grow(int bits);
 
-    std::vector<VertexId> ids_;  // all that were added
+    std::vector<VertexId> ids_;  // all ids ever added, ascending
     std::vector<Slot> slots_;
     int shift_ = 0;
     int count_ = 0;

@@ -10,18 +10,18 @@
 namespace arris {
 
 struct Audit {
-    int obstacle = -1;  ///< index in the scene; -1 where the cloth is free of all
-    Penetration found;  ///< of that obstacle; `place` in the world
+    int obstacle = -1;  ///< index in the scene; -1 without penetration
+    Penetration found;  ///< in that obstacle; `place` in the world
 };
 
-/// Every obstacle that the cloth is in at `time` (s). Classifies the surface anew and knows nothing of how it
-/// got there, so it finds what a step's own check would have missed.
+/// Every obstacle that contains cloth at `time` (s). Classifies the surface anew and ignores the cloth's
+/// motion, so that errors of a step's own check are found.
 std::vector<Audit> find_penetrations(const Scene& scene, const ClothMesh& mesh, double time);
 
-/// The same of a state, whose cloth may touch wires and points beside vertices on them.
+/// As above for a state, whose cloth may touch wires and points beside the EOL vertices on them.
 std::vector<Audit> find_penetrations(const Scene& scene, const State& state);
 
-/// The deepest of them.
+/// The deepest penetration.
 Audit audit(const Scene& scene, const ClothMesh& mesh, double time);
 Audit audit(const Scene& scene, const State& state);
 

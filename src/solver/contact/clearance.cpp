@@ -9,7 +9,7 @@ namespace arris {
 
 namespace {
 
-/// The cloth at rest for a moment of time 0.
+/// A step of zero length with the cloth at rest at time 0.
 std::vector<ObstacleStep> stand_still(const Scene& scene, const ClothMesh& mesh,
                                       const std::vector<MeshEdge>& edges)
 {
@@ -28,7 +28,8 @@ std::vector<ObstacleStep> stand_still(const Scene& scene, const ClothMesh& mesh,
     return steps;
 }
 
-/// Moves the contact's point out to `thickness`, with the least change of its vertices; true where it did.
+/// Moves the contact's point out to `thickness`, with the least change of its vertices; true where this moved
+/// it.
 bool push_out(const ObstacleContact& contact, const ObstacleStep& step, double thickness,
               std::vector<Vec3>& world)
 {

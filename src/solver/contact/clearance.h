@@ -6,10 +6,10 @@
 
 namespace arris {
 
-/// At time 0: moves cloth that is free of all obstacles but nearer to one than the stand-off out to it, as
-/// far as it goes without passing anything (pins are not regarded: they move what they hold where they have
-/// it). Returns how many vertices it moved. Bounded sweeps over the contacts; where cloth is wedged so that
-/// they do not come to an end, it ends nearer than the stand-off, and the steps go on from there.
+/// Moves cloth at time 0 out to the stand-off where it is nearer to an obstacle but free of all. Stops short
+/// where it would pass through something. Returns the number of moved vertices. Pins are ignored here:
+/// `attach_pins` places the vertices that they hold. The sweeps over the contacts are bounded: wedged cloth
+/// may end nearer than the stand-off, and the steps start from there.
 int clear_stand_off(const Scene& scene, ClothMesh& mesh);
 
 }  // namespace arris

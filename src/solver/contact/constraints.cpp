@@ -11,16 +11,16 @@ namespace arris {
 
 namespace {
 
-/// Rows of a vertex's coordinates as they are chosen: pinned axes, then normals.
+/// Rows of a vertex's coordinates: pinned axes, then contact normals.
 struct Frame {
     Mat3 rows = Mat3::Zero();
-    Mat3 span = Mat3::Zero();  ///< orthonormal, of the same span
+    Mat3 span = Mat3::Zero();  ///< orthonormal basis of the span of `rows`
     int count = 0;
 
-    /// Adds a unit direction where its part across those chosen is large enough to divide by.
+    /// Adds a unit direction if its part perpendicular to the chosen ones is large enough to divide by.
     bool add(const Vec3& direction)
     {
-        constexpr double kLeastPart = 0.2;  // with less the basis would amplify round-off and stiffness alike
+        constexpr double kLeastPart = 0.2;  // a smaller part would amplify round-off
         Vec3 across = direction;
         for (int k = 0; k < count; ++k) across -= span.row(k).dot(direction) * span.row(k).transpose();
         if (count == 3 || across.norm() < kLeastPart) return false;
@@ -43,7 +43,7 @@ struct Frame {
     }
 };
 
-/// Takes hold of the pinned directions: their axes come first, and their u is 0.
+/// Fixes the pinned directions: their axes come first, and their u is 0.
 void hold(const std::vector<PinTarget>& held, const Prediction& prediction, std::vector<Frame>& frames,
           Linearization& at, VelocityProblem& problem)
 {
@@ -59,7 +59,7 @@ void hold(const std::vector<PinTarget>& held, const Prediction& prediction, std:
     }
 }
 
-/// EOL vertices have coordinates of their own, and start from where riding on the obstacle takes them.
+/// Sets the coordinates of EOL vertices, whose drift is the motion of the obstacle under them.
 void let_flow(const std::vector<EolCoordinates>& eol, const Prediction& prediction, Linearization& at)
 {
     at.flow.reset();
@@ -78,7 +78,7 @@ void let_flow(const std::vector<EolCoordinates>& eol, const Prediction& predicti
     }
 }
 
-/// Contacts in the order in which they may become bounds: what pressed comes first.
+/// Contacts in the order in which they may become bounds: contacts that pressed come first.
 std::vector<std::size_t> order_of(const std::vector<Contact>& contacts)
 {
     std::vector<std::size_t> order(contacts.size());
@@ -87,7 +87,7 @@ std::vector<std::size_t> order_of(const std::vector<Contact>& contacts)
     return order;
 }
 
-/// Expected active: what pressed in the last step, and what would pass its plane at its last velocity.
+/// Expected active: contacts that pressed in the last step, or would be violated at the last velocity.
 bool is_expected(const Contact& contact, const Prediction& prediction, const State& state)
 {
     const double closing = contact.normal.dot(contact.in_frame.at(state.velocity));
@@ -138,7 +138,7 @@ void build_constraints(const std::vector<PinTarget>& held, const std::vector<Eol
     problem.rows.clear();
     problem.row_guess.clear();
 
-    // Bounds: as many of a vertex's contacts as have independent normals.
+    // Bounds: all contacts of a vertex with independent normals.
     std::vector<Frame> frames(n);
     hold(held, prediction, frames, at, problem);
     let_flow(eol, prediction, at);
@@ -163,7 +163,7 @@ void build_constraints(const std::vector<PinTarget>& held, const std::vector<Eol
         at.has_basis[v] = at.basis[v] != Mat3::Identity();
     }
 
-    // Rows: the rest.
+    // Rows: all other contacts.
     for (Contact& contact : contacts) {
         if (contact.bound >= 0) continue;
         add_row(prediction, at, contact, problem);

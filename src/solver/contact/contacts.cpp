@@ -25,8 +25,8 @@ auto key_of(const ActiveContact& contact)
     return std::tuple(contact.vertex_ids, contact.obstacle, contact.kind, contact.element);
 }
 
-/// Pairs of an edge or face that pressed at the end of the last step and that the search by features did not
-/// find again: the check after the solve had found them.
+/// Edge and face contacts that pressed at the end of the last step and that the search by features misses.
+/// The check after the solve had found them.
 class RememberedPairs {
   public:
     RememberedPairs(const Scene& scene, const State& state, const std::vector<ObstacleStep>& steps)
@@ -69,7 +69,7 @@ class RememberedPairs {
                                  scene_.material.thickness);
     }
 
-    /// A face with these vertices, of which there may be two; -1 where the mesh has none any more.
+    /// A face with these vertices (an edge may have two); -1 where the mesh no longer has one.
     int find_face(const std::array<int, 3>& vertices)
     {
         if (faces_at_.empty()) faces_at_ = VertexFaces(state_.mesh.vertex_count(), state_.mesh.faces);
@@ -86,7 +86,7 @@ class RememberedPairs {
     const Scene& scene_;
     const State& state_;
     const std::vector<ObstacleStep>& steps_;
-    VertexFaces faces_at_;  ///< of each vertex; made when it is first asked for
+    VertexFaces faces_at_;  ///< of each vertex; filled on first use
 };
 
 void update_gap(const ObstacleStep& step, const Prediction& prediction, Contact& contact)
@@ -95,7 +95,7 @@ void update_gap(const ObstacleStep& step, const Prediction& prediction, Contact&
     contact.gap = contact.normal.dot(local.at(prediction.position) - step.end(local.point)) - local.least_gap;
 }
 
-/// What q~ and v~ would be along the contact's normal if its point had ridden on the obstacle for two steps.
+/// Components of q~ and v~ along the contact's normal if its point had ridden on the obstacle for two steps.
 struct RiddenHistory {
     double position, velocity;
 };
@@ -127,7 +127,8 @@ bool runs_into(const ObstacleStep& step, const Contact& contact, double shift)
     return now + shift < local.least_gap && end < local.least_gap;
 }
 
-/// Changes a field and its material side by `amount` along the contact's normal, with the least change.
+/// Changes a field and its material counterpart by `amount` along the contact's normal, with the least
+/// change.
 void shift_along(const std::vector<EolCoordinates>& eol, const Contact& contact, double amount,
                  std::vector<Vec3>& world, std::vector<Vec2>& material)
 {
@@ -137,18 +138,18 @@ void shift_along(const std::vector<EolCoordinates>& eol, const Contact& contact,
     material[at.vertex] += amount * (at.material_basis * at.opening);
 }
 
-/// Of two contacts of one vertex whose normals oppose each other.
+/// Shares the room between two contacts of one vertex whose normals are opposite.
 SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction, Contact& a,
                       Contact& b)
 {
     constexpr double kOpposite = -0.9;       // cosine between the normals
-    constexpr double kFacing = -1.0 + 1e-9;  // where they face each other exactly
-    constexpr double kShared = 0.99;         // of the room, so that what shares it is not in each other's way
-    constexpr double kNoRoom = 1e-6;         // of the stand-offs: less is round-off
+    constexpr double kFacing = -1.0 + 1e-9;  // cosine below which they face each other exactly
+    constexpr double kShared = 0.99;         // of the room, so that the two contacts do not conflict
+    constexpr double kNoRoom = 1e-6;         // of the stand-offs: a smaller room is round-off
     const double cosine = a.normal.dot(b.normal);
     const double wanted = a.in_frame.least_gap + b.in_frame.least_gap;
     if (!(cosine < kOpposite) || !(wanted > 0.0)) return {};
-    // Seen from the vertex: planes that do not face each other exactly have no distance of their own.
+    // Measured at the vertex: planes that do not face each other exactly have no single distance.
     const Vec3 place = steps[a.obstacle].end(steps[a.obstacle].reference[a.in_frame.vertices[0]]);
     const double room = a.normal.dot(place - steps[a.obstacle].end(a.in_frame.point)) +
                         b.normal.dot(place - steps[b.obstacle].end(b.in_frame.point));
@@ -273,11 +274,11 @@ bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& p
                      Contact& contact)
 {
     constexpr double kNothingLeft = 1e-3;  // of the thickness
-    constexpr double kFree = 1e3;          // m: no step goes so far
+    constexpr double kFree = 1e3;          // m: farther than any step moves
     const ObstacleStep& step = steps[contact.obstacle];
     ObstacleContact& local = contact.in_frame;
     const double now = local.normal.dot(local.at(step.motion.begin) - local.point);
-    if (contact.is_fold()) {  // no stand-off, but a help: the check will say where it is missed
+    if (contact.is_fold()) {  // only a help: the check finds cloth that passes without it
         if (local.least_gap <= -kFree) return false;
         local.least_gap = -kFree;
     } else {
@@ -293,7 +294,7 @@ bool flatten_history(const Scene& scene, const State& state, const std::vector<O
                      const std::vector<EolCoordinates>& eol, std::size_t first,
                      std::vector<Contact>& contacts, Prediction& prediction)
 {
-    constexpr int kPasses = 3;  // several contacts of one vertex disturb each other where they are not square
+    constexpr int kPasses = 3;  // contacts of a vertex with oblique normals affect each other
     bool is_changed = false;
     for (int pass = 0; prediction.has_history && pass < kPasses; ++pass)
         for (std::size_t c = first; c < contacts.size(); ++c) {

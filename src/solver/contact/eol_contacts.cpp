@@ -14,7 +14,7 @@ namespace arris {
 
 namespace {
 
-/// On a wire or at its end.
+/// Whether the vertex is on a wire or at its end.
 bool is_on_wire(const Obstacle& obstacle, const EolVertex& eol)
 {
     if (!eol.on.is_corner()) return obstacle.features().edges[eol.on.index].kind == FeatureKind::Wire;
@@ -23,11 +23,11 @@ bool is_on_wire(const Obstacle& obstacle, const EolVertex& eol)
     return topology.edge_count_at(point) > 0 && topology.edges[topology.edge_at(point, 0)].faces[0] < 0;
 }
 
-/// Whether a wire's contact with cloth that is joined to a vertex on it is beside that vertex.
+/// Whether a contact between the wire and cloth joined to an EOL vertex on it is close beside that vertex.
 bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, const Vec3& place,
                double thickness, const ObstacleContact& contact)
 {
-    constexpr double kReach = 10.0;  // heights: cloth that leaves it at 6 degrees is a stand-off away there
+    constexpr double kReach = 10.0;  // heights: cloth leaving at 6 degrees is a stand-off away
     const ObstacleFeatures& features = obstacle.features();
     const double height = std::max((place - at.frame.point).norm(), thickness);
     if ((contact.point - at.frame.point).norm() > kReach * height) return false;
@@ -45,8 +45,8 @@ bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordina
            is_of_wire(topology.edge_at(contact.element, 0));
 }
 
-/// Whether a point of the obstacle is within the mitre and a little of the feature of an EOL vertex, wherever
-/// along it: that is where the vertex has gone by the step's end.
+/// Whether a point of the obstacle is within kOnFeature thicknesses of an EOL vertex's feature. Any place
+/// along the feature counts, as the vertex may slide there by the step's end.
 bool is_near_feature(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at,
                      double thickness, const Vec3& point)
 {
@@ -57,7 +57,7 @@ bool is_near_feature(const Obstacle& obstacle, const EolVertex& eol, const EolCo
     return (point - nearest).norm() <= kOnFeature * thickness;
 }
 
-/// Whether a contact that the search found is one of an EOL vertex with the feature it is on.
+/// Whether the bound of an EOL vertex covers a contact that the search found with its feature.
 bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, const Vec3& place,
                 double thickness, const ObstacleContact& contact)
 {
@@ -96,8 +96,8 @@ Contact make_eol_contact(const ObstacleStep& step, const Prediction& prediction,
                          int obstacle, const EolCoordinates& at)
 {
     const ClothPoint point = {{at.vertex, -1, -1}, {1.0, 0.0, 0.0}};
-    // Never more than it has: on its way out it would be held to the speed it has, and, with its history
-    // flattened, pushed out faster step by step.
+    // Never more than the current gap. With a larger one a vertex on its way out would be held to its speed,
+    // and, with its history flattened, pushed out faster in each step.
     const double now = at.frame.outward.dot(step.motion.begin[at.vertex] - at.frame.point);
     const ObstacleContact contact = make_contact(ContactKind::Vertex, point, -1, at.frame.outward,
                                                  at.frame.point, std::min(at.frame.mitre * thickness, now));
@@ -122,7 +122,8 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         slot[placing.coordinates->vertex] = static_cast<int>(eol.size());
         eol.push_back(*placing.coordinates);
     }
-    // The cloth's edge between two vertices on one wire is the trace itself: a row there is all but singular.
+    // A cloth edge between two EOL vertices on one wire is the trace itself: a row there would be almost
+    // singular.
     const auto is_trace = [&](const Contact& contact) {
         const auto& [a, b, c] = contact.in_frame.vertices;
         if (contact.in_frame.kind != ContactKind::Edge || slot[a] < 0 || slot[b] < 0) return false;
@@ -152,7 +153,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         contacts.push_back(make_eol_contact(steps[o], prediction, thickness, o, eol[e]));
         contacts.back().eol = static_cast<int>(e);
         contacts.back().mitre = eol[e].frame.mitre;
-        contacts.back().may_grow = false;  // pushing it out would stretch the cloth on both sides
+        contacts.back().may_grow = false;  // a push-out would stretch the cloth on both sides
     }
     append_folds(scene, state, stars, prediction, steps, eol, contacts);
     for (std::size_t c = found; c < contacts.size(); ++c)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What EOL vertices make of the contacts that the search has found: each is held by a bound of its own, which
-// covers what it, and the cloth's edges and faces from it, touch of its feature nearby.
+// Replaces contacts that the search has found at EOL vertices. Each EOL vertex has a bound of its own. The
+// bound covers the vertex's contacts with its feature nearby, and the contacts of the cloth's edges and faces
+// at the vertex.
 #pragma once
 
 #include <vector>
@@ -10,10 +11,10 @@
 
 namespace arris {
 
-/// The coordinates of the state's EOL vertices, whose own contact is the bound on their first: those that
-/// the search found of them with the feature they are on are dropped, and the bounds are appended. Nothing
-/// for a vertex that can have no coordinates any more: it is then like any other. For `turning` (s) vertices
-/// go round wires and tips with the cloth.
+/// Coordinates of the state's EOL vertices, whose own contact is the bound on the first coordinate. Contacts
+/// that the search found between these vertices and their features are dropped, and the bounds are appended.
+/// A vertex that can have no coordinates any more has no entry and is ordinary in this step. `turning` (s) is
+/// the time for which vertices may go round wires and tips with the cloth.
 std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& state, const ClothStars& stars,
                                              const Prediction& prediction, double turning,
                                              const std::vector<ObstacleStep>& steps,

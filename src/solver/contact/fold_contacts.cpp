@@ -12,15 +12,15 @@ namespace arris {
 
 namespace {
 
-// rad: nobody gets round by the one in a step; what is farther than the other on the wrong side, where the
-// cloth has passed through itself, stays there.
+// Angles from the plane, rad. A vertex farther than kFarRound cannot pass the plane in one step. A vertex
+// more than kWrong on the wrong side, where the cloth has passed through itself, is left there.
 constexpr double kFarRound = 1.0, kWrong = 0.5;
 
-// Of the vertex on the wire: its neighbours' mean distance, and the time after which it comes to what now is
-// as far away as it has gone then. What has swung past the plane farther down comes to the wire on the wrong
-// side of it, where nothing can be merged across the wire, and holds all of the cloth: so the time in which a
-// metre of cloth slides off, not that in which it only swings. But a plane that goes along with its wire
-// pushes cloth, the more the farther it reaches.
+// Reach of a fold plane from its EOL vertex, in the material: kCells mean distances to its neighbours, plus
+// the flow during kTime. Cloth that has swung past the plane farther down arrives at the wire on its wrong
+// side. Nothing can be merged across the wire there, so such a vertex stops the whole cloth. kTime is
+// therefore the time in which a metre of cloth slides off, not the time of a swing. The plane of a moving
+// wire pushes the cloth, more so the farther it reaches: kTimeOfMoving.
 constexpr double kCells = 4.0, kTime = 1.0, kTimeOfMoving = 0.2;  // s
 
 class FoldSearch {
@@ -65,7 +65,7 @@ class FoldSearch {
     };
     struct Plane {
         const EolCoordinates* at;
-        int side;      ///< 0 where two planes do not agree
+        int side;      ///< 0 where two planes disagree
         double angle;  ///< rad, to its side
         double reach;  ///< m, material, from its vertex
     };
@@ -84,7 +84,7 @@ class FoldSearch {
 
     const Vec3& place_of(int vertex, const Wire& wire) const { return (*positions_[wire[0]])[vertex]; }
 
-    /// That are not on the wire themselves.
+    /// Visits the neighbours that are not on the wire.
     template <typename Visit>
     void for_neighbours(int vertex, const Wire& wire, const Visit& visit) const
     {
@@ -100,7 +100,7 @@ class FoldSearch {
 
     double way(int v, int w) const { return (state_.mesh.material[v] - state_.mesh.material[w]).norm(); }
 
-    /// How far from a vertex on the wire what comes to it soon is, m of material.
+    /// Distance, m of material, within which cloth soon arrives at a vertex on the wire.
     double find_reach(int vertex, const Wire& wire) const
     {
         double sum = 0.0;
@@ -114,8 +114,8 @@ class FoldSearch {
         return kCells * cell + time * state_.material_velocity[vertex].norm();
     }
 
-    /// Beyond the wire's end there is nothing to get round. Cloth that hangs down there lies in the very
-    /// plane of what is on the wire, and is on neither side of it.
+    /// Cloth past the wire's end can pass freely. Where it hangs straight down, it lies in the fold plane
+    /// itself and on neither side.
     bool is_past_end(const EolCoordinates& at, int w, const Wire& wire) const
     {
         const Obstacle& obstacle = obstacles_[wire[0]];
@@ -124,8 +124,8 @@ class FoldSearch {
         return arris::is_past_end(obstacle, edge, place);
     }
 
-    /// Neighbours of the last that were found, each on the side of its own. What is held elsewhere, as at the
-    /// wire's end, is on no side that it could hand on.
+    /// Neighbours of the last layer, each on the side of the vertex that leads to it. Vertices held
+    /// elsewhere, as at the wire's end, do not pass a side on.
     Planes find_beyond(const Planes& last) const
     {
         Planes next;
@@ -167,8 +167,8 @@ class FoldSearch {
     const ClothStars& stars_;
     const std::vector<EolCoordinates>& eol_;
     const std::vector<const std::vector<Vec3>*>& positions_;
-    /// Also on another feature, or the wire's end: that holds it, and it has no way to go where a bound
-    /// leads.
+    /// EOL vertices, also on other features or at the wire's end: their feature holds them, and a fold bound
+    /// would point where they cannot move.
     std::vector<char> is_eol_;
     Planes planes_;
 };

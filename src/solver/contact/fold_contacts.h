@@ -8,18 +8,19 @@
 
 namespace arris {
 
-/// A vertex of the cloth that is kept on its side of the plane behind a vertex on a wire (wire_fold.h).
+/// A vertex of the cloth that is kept on its side of the fold plane behind an EOL vertex on a wire
+/// (wire_fold.h).
 struct FoldContact {
     int vertex;
     int obstacle;  ///< index in the scene
     FoldBound bound;
-    Vec3 point;  ///< of the wire
+    Vec3 point;  ///< on the wire
 };
 
-/// Of the neighbours of the vertices on wires, and of theirs, which sliding will make such: each against the
-/// plane that it is nearest to; what is past the wire's end only where it is a neighbour. `positions`: the
-/// cloth's in the frame of each obstacle at the step's start. Sorted by (vertex, obstacle, polyline), each
-/// once.
+/// Contacts for the neighbours of EOL vertices on wires, and for cloth beyond them that will soon slide
+/// there. Each vertex is kept off its nearest plane. Vertices past the wire's end are included only as direct
+/// neighbours. `positions`: the cloth in the frame of each obstacle at the step's start. Sorted by (vertex,
+/// obstacle, polyline), without duplicates.
 std::vector<FoldContact> find_fold_contacts(const std::vector<Obstacle>& obstacles, const State& state,
                                             const ClothStars& stars, const std::vector<EolCoordinates>& eol,
                                             const std::vector<const std::vector<Vec3>*>& positions);

@@ -10,8 +10,9 @@ namespace arris {
 
 namespace {
 
-/// Halves the share of its way that every vertex of these faces goes, down to nothing below a sixteenth; then
-/// grows the patch by the vertices of the faces around. True where anything changed.
+/// Share of its path that each vertex moves. `shrink` halves this share at every vertex of the given faces;
+/// below a sixteenth it becomes zero. Once all are zero, the patch grows by the faces around it. True where
+/// anything changed.
 class Shares {
   public:
     Shares(const std::vector<Face>& faces, const std::vector<PinTarget>& held, std::size_t count)
@@ -69,7 +70,7 @@ void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<O
                        const std::vector<PinTarget>& held, double thickness, double growth,
                        Proposal& proposal)
 {
-    constexpr double kFoldShare = 0.1;  // of the push: what hangs straight is stretched by going aside
+    constexpr double kFoldShare = 0.1;  // of the push-out: moving aside stretches straight cloth
     for (const Contact& contact : contacts) {
         const ObstacleContact& local = contact.in_frame;
         const double gap =

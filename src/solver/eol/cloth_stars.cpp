@@ -10,7 +10,7 @@ namespace arris {
 
 namespace {
 
-/// A face of the star with `vertex` first.
+/// The face with `vertex` first.
 Face turned_to(const Face& face, int vertex)
 {
     const auto at = std::find(face.begin(), face.end(), vertex) - face.begin();
@@ -52,7 +52,7 @@ Star look_around(const ClothMesh& mesh, std::span<const int> faces, int vertex,
             DX.col(k) = mesh.material[face[k + 1]] - mesh.material[vertex];
         }
         const Vec3 across = Dx.col(0).cross(Dx.col(1));
-        if (!(across.norm() > 0.0)) continue;  // collapsed: tells no direction
+        if (!(across.norm() > 0.0)) continue;  // collapsed: has no direction
         const Mat32 F = Dx * DX.inverse();
         const double area = 0.5 * DX.determinant();
         star.squared_F += area * F.transpose() * F;
@@ -66,7 +66,7 @@ Star look_around(const ClothMesh& mesh, std::span<const int> faces, int vertex,
 
 std::optional<Vec2> find_border(const ClothMesh& mesh, const ClothStars& stars, int vertex)
 {
-    constexpr double kStraight = 0.9;  // cosine: a corner of the cloth turns by more than 26 degrees
+    constexpr double kStraight = 0.9;  // cosine: at a corner the border bends by more than 26 degrees
     const auto [a, b] = stars.border_neighbours[vertex];
     if (a < 0) return std::nullopt;
     const Vec2 before = (mesh.material[vertex] - mesh.material[a]).normalized();

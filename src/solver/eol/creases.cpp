@@ -12,7 +12,7 @@ namespace arris {
 
 namespace {
 
-/// sqrt(K / T), m: over which this cloth bends on either side of a feature. Without gravity it is endless.
+/// Length sqrt(K / T), m, over which this cloth bends on either side of a feature. Infinite without gravity.
 double find_bend_length(const Scene& scene, const ClothMesh& cloth)
 {
     const double weight = scene.gravity ? scene.gravity->acceleration.norm() : 0.0;
@@ -31,7 +31,7 @@ bool resolves_bends(const Scene& scene, const ClothMesh& cloth)
 
 double find_crease_width(const Scene& scene, const ClothMesh& cloth)
 {
-    constexpr double kHeight = 0.87;  // of an equilateral face, in edge lengths
+    constexpr double kHeight = 0.87;  // height of an equilateral face, in edge lengths
     if (!scene.eol) return 0.0;
     const double width = kHeight * scene.eol->mean_length;
     return 2.0 * find_bend_length(scene, cloth) < width ? width : 0.0;

@@ -27,7 +27,7 @@ struct Sides {
     Vec3 left = Vec3::Zero(), right = Vec3::Zero();
 };
 
-/// The two sides of a trace, each with one voice, however many faces it has.
+/// Sums the two sides of a trace, each with equal weight, however many faces it has.
 ClothAround sum_sides(const Star& star, const Vec2& trace, const Vec3& tangent, const EolVertex& eol,
                       Sides& sides)
 {
@@ -49,7 +49,7 @@ ClothAround sum_sides(const Star& star, const Vec2& trace, const Vec3& tangent, 
     return cloth;
 }
 
-/// Around a point, each face by the angle that it has there.
+/// Sums the faces around a point, each weighted by its angle there.
 ClothAround sum_around(const Star& star, const EolVertex& eol)
 {
     ClothAround cloth{Vec3::Zero(), Vec3::Zero(), eol.outward, eol.side};
@@ -66,8 +66,8 @@ Vec2 perpendicular(const Vec2& v)
     return Vec2(v.y(), -v.x()).normalized();
 }
 
-/// Material direction of the feature through the vertex: along the cloth's edges that lie on it, else what F
-/// maps nearest to the tangent.
+/// Material direction of the feature through the vertex: along the cloth's edges on the feature; without such
+/// edges, the direction that F maps nearest to the tangent.
 Vec2 find_trace(const Obstacle& obstacle, const State& state, int entry, int vertex,
                 std::span<const int> faces, const std::vector<Vec3>& positions, const Star& star,
                 const Vec3& tangent)
@@ -97,7 +97,8 @@ std::optional<FeatureFrame> find_frame(const Obstacle& obstacle, const EolVertex
     return find_edge_frame(obstacle, eol.on.index, place, around);
 }
 
-/// Where the cloth neither turns nor spreads across the outward direction, flow and world coincide.
+/// Whether the cloth around the vertex is flat and contains the outward direction: motion along outward in
+/// the world then equals flow in the material.
 bool is_edge_on(const Star& star, const Vec3& outward)
 {
     Vec3 mean = Vec3::Zero();
@@ -109,8 +110,8 @@ bool is_edge_on(const Star& star, const Vec3& outward)
     return is_flat && std::abs(mean.dot(outward)) < kSin10;
 }
 
-/// Away from the feature the vertex moves cloth, along and across it more or less of the same: c alone would
-/// stretch what beside it the flow has still to bring.
+/// Moving c alone would stretch the cloth beside the vertex, whose flow would have to follow. The least
+/// kinetic energy also moves the vertex along the feature and through the material.
 Vec3 find_opening(const Star& star, const Mat3& basis, const Mat23& material_basis)
 {
     Mat3 inertia = Mat3::Zero();
@@ -122,27 +123,28 @@ Vec3 find_opening(const Star& star, const Mat3& basis, const Mat23& material_bas
     return response / response[0];
 }
 
-/// Which way the normals go, seen where the cloth is not folded flat.
+/// Whether the normals point outward (1) or inward (-1); unchanged where the cloth is almost folded flat.
 int find_side(const ClothAround& cloth, const EolVertex& eol, const Vec3& outward)
 {
-    constexpr double kSeen = 0.3;  // of a sum of two unit vectors, or of angles: 17 degrees short of flat
+    constexpr double kSeen = 0.3;  // of a sum of two unit vectors, or of angles: 17 degrees from a flat fold
     const double along = cloth.normal.dot(outward);
     return std::abs(along) > kSeen ? (along > 0.0 ? 1 : -1) : eol.side;
 }
 
-/// The side that the vertex goes to through the material with `flow` (m/s).
+/// The side from which cloth arrives: the vertex moves towards that side through the material with `flow`
+/// (m/s).
 ArrivingCloth find_arriving(const Sides& sides, const Vec2& trace, const Vec2& flow)
 {
     const bool is_left = trace.x() * flow.y() - trace.y() * flow.x() > 0.0;
     return {is_left ? sides.left : sides.right, flow.norm()};
 }
 
-/// Outward from a tip is where the cone of the cloth around the vertex has its point, and the vertex
-/// goes round the point with it: held where it was, cloth that hangs ever steeper would come to the point.
-/// Not where it has left the point: carried across cloth that flies it would do work on that.
+/// Turns outward at a tip to the apex of the cone of cloth around the vertex, and moves the vertex round the
+/// point with it. If the vertex stayed, cloth that hangs ever steeper would come to the point. A vertex that
+/// has left the point stays: carrying it across flying cloth would do work on the cloth.
 void turn_with_cone(const Star& star, double thickness, double dt, FeatureFrame& frame, Vec3& place)
 {
-    constexpr double kShare = 0.5;  // of what is missing, a step: the cone turns with cloth that shakes
+    constexpr double kShare = 0.5;  // of the remaining angle per step: the cone follows cloth that shakes
     const double height = (place - frame.point).norm();
     if (!(height > 0.0)) return;
     if (height > kOnFeature * thickness) dt = 0.0;
@@ -157,7 +159,8 @@ void turn_with_cone(const Star& star, double thickness, double dt, FeatureFrame&
     place = frame.point + height * frame.outward;
 }
 
-/// A wire's outward direction turns with the cloth; the vertex goes round the wire with it, as it does there.
+/// Turns the outward direction at a wire with the cloth, and moves the vertex round the wire with it, as
+/// `turn_with_cone` does at a tip.
 void turn_with_cloth(const Obstacle& obstacle, double thickness, const State& state, int entry, int vertex,
                      std::span<const int> faces, const std::vector<Vec3>& positions, double dt,
                      FeatureFrame& frame, Vec3& place)
@@ -179,9 +182,10 @@ void turn_with_cloth(const Obstacle& obstacle, double thickness, const State& st
     place = frame.point + along + (from - along).norm() * frame.outward;
 }
 
-/// The vertex has the border's direction alone to flow in. Also where it has left its feature and the border
-/// has come to run along that in the world: it would flow and go along the feature as one, however fast. Each
-/// face is asked: those of a fold have the border lead away from the feature to opposite sides.
+/// Whether the border leads along the trace in the material, or along the feature in the world. A border
+/// vertex flows only along the border. If the border runs along the feature, flow and motion along the
+/// feature become one, and both could grow without limit. Faces are tested one by one: at a fold the border
+/// leads away from the feature to opposite sides.
 bool leads_along(const Star& star, const Vec2& border, const Vec2& trace, const Vec3& tangent)
 {
     double along = 0.0, across = 0.0;

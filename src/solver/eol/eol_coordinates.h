@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A vertex on a sharp feature has three unknowns like any other: away from the feature (c), along it (a), and
-// the material's flow over it (s); on a corner, or where a wire turns, c and two of flow. So contact is the
-// bound c >= ..., and the system stays positive definite where the cloth is flat, where the world's and the
-// material's motion across the feature are one and the same.
+// Velocity coordinates of EOL vertices. Such a vertex has three unknowns, as any other: c away from the
+// feature, a along it, and the material's flow s over it. At a corner or a bend of a wire these are c and two
+// components of flow. Contact is then the bound c >= .... The system stays positive definite in flat cloth,
+// where motion across the feature in the world and in the material are one and the same.
 #pragma once
 
 #include <optional>
@@ -20,27 +20,28 @@ namespace arris {
 /// (c, s1, s2).
 struct EolCoordinates {
     int vertex;
-    int entry;           ///< in State::eol
+    int entry;           ///< index in State::eol
     FeatureFrame frame;  ///< at the step's start, in the obstacle's frame
-    Vec3 carried;        ///< where riding on the obstacle takes it by the step's end, world
+    Vec3 carried;        ///< its place at the step's end if it rides on the obstacle, world
     Mat3 basis;          ///< first column: the outward direction at the step's end
     Mat23 material_basis;
-    int side;      ///< EolVertex::side from now on
+    int side;      ///< new value of EolVertex::side
     Vec3 opening;  ///< change of u, (1, ...), that opens the gap with the least kinetic energy
 };
 
-/// The coordinates of EOL vertex `entry` of the state, or why it can have none. `positions` are the cloth's
-/// in the obstacle's frame, which is at `end` when the step of `dt` (s) ends. `thickness`: of the cloth, m.
+/// The coordinates of EOL vertex `entry` of the state, or the reason why it can have none. `positions` are
+/// the cloth's in the obstacle's frame, whose placement is `end` when the step of `dt` (s) ends. `thickness`:
+/// of the cloth, m.
 struct EolPlacing {
     std::optional<EolCoordinates> coordinates;
-    RowCause refusal = RowCause::NoDirection;  ///< where there are none
+    RowCause refusal = RowCause::NoDirection;  ///< without coordinates
 };
 EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const State& state, int entry,
                             const ClothStars& stars, const std::vector<Vec3>& positions, const Placement& end,
                             double dt = 0.0);
 
-/// The same of obstacles that stay where they are at the state's time; looks at the cloth around a vertex
-/// only. References are kept: between calls the state's time and faces, and the stars, may not change.
+/// `place_eol_vertex` for obstacles at rest at the state's time; reads only the cloth around a vertex. Keeps
+/// references: between calls the state's time and faces, and the stars, must not change.
 class EolPlacer {
   public:
     EolPlacer(const std::vector<Obstacle>& obstacles, double thickness, const State& state,
@@ -56,9 +57,9 @@ class EolPlacer {
     double thickness_;  ///< m
     const State& state_;
     const ClothStars& stars_;
-    int of_ = -1;                  ///< obstacle
-    Placement now_;                ///< its
-    std::vector<Vec3> positions_;  ///< in its frame, of the star that is looked at; the rest is old
+    int of_ = -1;                  ///< index of the obstacle in `now_`
+    Placement now_;                ///< placement of that obstacle
+    std::vector<Vec3> positions_;  ///< in its frame; current only in the star of the last vertex placed
 };
 
 }  // namespace arris

@@ -28,7 +28,7 @@ bool is_on_convex_edge(const Obstacle& obstacle, const EolVertex& eol)
 
 bool is_of_one_strand(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b)
 {
-    constexpr double kSteepest = 0.7;  // a fold that runs off its edge does so at less than 35 degrees
+    constexpr double kSteepest = 0.7;  // tangent: a fold runs off its edge at less than 35 degrees
     const bool is_one_edge = a.eol.on.is_corner() == b.eol.on.is_corner() && a.eol.on.index == b.eol.on.index;
     if (!is_one_edge || !is_on_convex_edge(obstacle, a.eol)) return true;
     const Vec3 on_a = place_on_feature(obstacle, a.eol.on.index, a.place).point;
@@ -40,7 +40,7 @@ bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol
 {
     if (a.eol.on.obstacle != b.eol.on.obstacle || !is_of_one_strand(obstacle, a, b)) return false;
     if (!a.eol.on.is_corner() && !b.eol.on.is_corner() && a.eol.on.index == b.eol.on.index) return true;
-    constexpr double kLongestWay = 1.2;  // over the distance: an arc that turns by 120 degrees
+    constexpr double kLongestWay = 1.2;  // length over distance of an arc that bends by 120 degrees
     const ObstacleFeatures& features = obstacle.features();
     const auto place_of = [&](const PlacedEol& at) {
         return at.eol.on.is_corner() ? obstacle.mesh().points[features.corners[at.eol.on.index].point]

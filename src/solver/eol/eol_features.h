@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where EOL vertices are on the features of their obstacles, and which of them follow each other along one.
+// Places of EOL vertices on the features of their obstacles, and which of them follow each other along one.
 #pragma once
 
 #include <array>
@@ -12,36 +12,36 @@
 
 namespace arris {
 
-/// The point of the obstacle's mesh at which a fixed vertex is held; -1 of one that slides.
+/// The point of the obstacle's mesh at which a fixed vertex is held; -1 for a vertex that slides.
 int fixed_point(const Obstacle& obstacle, const EolVertex& eol);
 
-/// Unit, of the feature that the vertex is on, in the obstacle's frame; zero on a corner.
+/// Unit tangent of the vertex's feature in the obstacle's frame; zero at a corner.
 Vec3 feature_tangent(const Obstacle& obstacle, const EolVertex& eol);
 
 bool is_on_convex_edge(const Obstacle& obstacle, const EolVertex& eol);
 
-/// An EOL vertex and where it is in its obstacle's frame.
+/// An EOL vertex and its place in its obstacle's frame.
 struct PlacedEol {
     const EolVertex& eol;
     Vec3 place;
 };
 
-/// Whether two EOL vertices joined by an edge of the cloth have the feature along it: they are on one
-/// polyline, or at its end, and it goes from one to the other nearly straight.
+/// Whether the cloth's edge between two EOL vertices lies along the feature: both are on one polyline, or at
+/// its end, and the polyline leads from one to the other nearly straight.
 bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b);
 
-/// Whether two EOL vertices on one convex edge are on one line along it: of a fold that has flown off and of
-/// a trace behind it, which is on the edge, they are not. True of all others: where a polyline turns nothing
-/// tells which way they have gone.
+/// Whether two EOL vertices on one convex edge belong to one strand along it. A free fold and the trace
+/// behind it, which is on the edge, are different strands. True for all other pairs: at a bend of a polyline
+/// the direction in which a vertex has left the edge is unknown.
 bool is_of_one_strand(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b);
 
-/// The cloth's edges that lie along features at the state's time: the entries in State::eol of their ends,
+/// The cloth's edges that lie along features at the state's time, as the entries of their ends in State::eol,
 /// ascending.
 std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& obstacles, const State& state,
                                                  const ClothStars& stars);
 
-/// EOL vertices that have gone along their polyline past an end of their edge are on the next one from now
-/// on. At the state's time.
+/// Reassigns EOL vertices that have moved past an end of their edge to the next edge of the polyline, at the
+/// state's time.
 void follow_features(const std::vector<Obstacle>& obstacles, State& state);
 
 }  // namespace arris

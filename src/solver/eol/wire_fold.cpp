@@ -4,14 +4,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
 #include "solver/model/eol_limits.h"
 
 namespace arris {
 
 namespace {
 
-// rad: 1e-5 of what hangs straight down is missed in height, and the cloth passes the wire at 5e-3
-// stand-offs.
+// rad. Cloth that hangs straight down loses 1e-5 of its height, and passes the wire at 5e-3 stand-offs.
 constexpr double kLeastAngle = 5e-3;
 
 }  // namespace
@@ -25,7 +25,7 @@ double angle_behind(const FeatureFrame& frame, const Vec3& place)
 Vec3 turn_outward(const FeatureFrame& wanted, const Vec3& place, const std::vector<Vec3>& beside, double dt)
 {
     constexpr double kRoundOff = 1e-13;
-    constexpr double kShare = 0.5;  // of what is missing, a step: outward turns with cloth that shakes
+    constexpr double kShare = 0.5;  // of the remaining angle per step: outward follows cloth that shakes
     const Vec3& t = wanted.tangent;
     const Vec3 from = place - wanted.point - t.dot(place - wanted.point) * t;
     if (!(from.norm() > kRoundOff * place.norm())) return wanted.outward;

@@ -12,7 +12,7 @@ namespace arris {
 
 namespace {
 
-/// Of each of `ids` its place in `others`, or -1; both ascend.
+/// Place of each of `ids` in `others`, or -1; both ascend.
 std::vector<int> find_places(const std::vector<std::uint32_t>& ids, const std::vector<std::uint32_t>& others)
 {
     std::vector<int> places(ids.size(), -1);
@@ -49,7 +49,8 @@ class PatchFinder {
     }
 
   private:
-    /// Of one that is EOL in one of both or in both; -1 where it is none.
+    /// Whether the kind of a vertex's feature has changed between its entries in State::eol, after (`now`)
+    /// and before (`then`). An entry is -1 where the vertex is not EOL; not both may be.
     bool is_eol_changed(int now, int then) const
     {
         if ((now < 0) != (then < 0)) return true;
@@ -63,7 +64,7 @@ class PatchFinder {
     std::vector<int> touched()
     {
         std::vector<int> vertices;
-        std::vector<char> is_seen(after_.next_id, 0);  // of ids: events name most again and again
+        std::vector<char> is_seen(after_.next_id, 0);  // by id: events name most vertices repeatedly
         const auto add = [&](VertexId id) {
             if (std::exchange(is_seen[id], 1) != 0) return;
             if (const int v = after_.index_of(id); v >= 0) vertices.push_back(v);
@@ -82,8 +83,7 @@ class PatchFinder {
         return vertices;
     }
 
-    /// Of a face of one mesh, by its vertices in the other, the same three once around there; -1 where there
-    /// is none.
+    /// Index of the face with these vertices in this cyclic order; -1 where the mesh has no such face.
     static int find_face(const ClothMesh& mesh, const VertexFaces& faces_at, const Face& vertices)
     {
         const auto [a, b, c] = vertices;
@@ -101,7 +101,7 @@ class PatchFinder {
         return {to[face[0]], to[face[1]], to[face[2]]};
     }
 
-    /// Whether it was there before, at the same place in the material, and its vertices were what they are.
+    /// Whether the face existed before with unchanged material coordinates and EOL states of its vertices.
     bool is_kept(int f) const
     {
         const Face& face = after_.mesh.faces[f];
@@ -141,7 +141,7 @@ class PatchFinder {
         return is_near_[face[0]] && is_near_[face[1]] && is_near_[face[2]];
     }
 
-    /// Faces all of whose vertices are near, joined where they share one.
+    /// Collects faces with all vertices near, and joins those that share a vertex into patches.
     void join()
     {
         std::vector<int> faces;
@@ -184,12 +184,12 @@ class PatchFinder {
         }
     }
 
-    /// Those that are still there and in a patch, and those that are gone: all at what is near, and at
-    /// vertices that are gone.
+    /// Adds to each patch its faces of the old mesh: kept faces that are in the patch, and removed faces at
+    /// its vertices or at removed vertices.
     void add_faces_before()
     {
         std::vector<int> open;
-        std::vector<int> patch_of(before_.ids.size(), -1);  // of each vertex before
+        std::vector<int> patch_of(before_.ids.size(), -1);  // by old vertex
         for (std::size_t p = 0; p < patches_.size(); ++p)
             for (const int v : patches_[p].vertices)
                 if (const int then = then_[v]; then >= 0) {
@@ -221,12 +221,12 @@ class PatchFinder {
     const MeshChange& change_;
     const State& before_;
     const State& after_;
-    std::vector<int> then_;             ///< of each vertex after, before; -1 where it is new
-    std::vector<int> now_;              ///< of each vertex before, after; -1 where it is gone
-    std::vector<char> is_eol_changed_;  ///< of each vertex after: as what it is EOL, or whether
-    std::vector<int> near_;             ///< vertices after
-    std::vector<char> is_near_;         ///< of each
-    std::vector<int> patch_;            ///< of each face after; -1 outside
+    std::vector<int> then_;             ///< old index of each new vertex; -1 where it is new
+    std::vector<int> now_;              ///< new index of each old vertex; -1 where it is gone
+    std::vector<char> is_eol_changed_;  ///< by new vertex: whether its EOL state has changed
+    std::vector<int> near_;             ///< new vertices near a change
+    std::vector<char> is_near_;         ///< by new vertex: whether it is in `near_`
+    std::vector<int> patch_;            ///< patch of each new face; -1 outside
     std::vector<ChangedPatch> patches_;
 };
 

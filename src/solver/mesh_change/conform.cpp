@@ -66,19 +66,19 @@ class Conforming {
   private:
     std::optional<ConformedMesh> find_mesh(const FeatureChanges& changes)
     {
-        // Releases, and what failed attempts at the step have found out.
+        // Release vertices without retention, and vertices on which attempts at this step have failed.
         for (const EolRelease& release : changes.released) demote_to_row(release.vertex, release.cause);
         for (const VertexId v : failed_.given_up)
             if (trace_.is_on_trace(v)) demote_to_row(v, RowCause::GivenUp);
         for (const auto& [v, flow] : failed_.flow) ways_.expect_flow(v, flow);
 
-        // The ways of sliding vertices, before anything new may stand in them.
+        // Clear the ways of sliding vertices, before new vertices may stand there.
         clear_ways();
         if (lost_ > limits_.lost || blocked_ > limits_.blocked) return std::nullopt;
-        trace_.forget_released();  // a site that takes such a vertex again begins anew
+        trace_.forget_released();  // a site that reuses such a vertex gets a new entry
         ways_.forget_released();
 
-        // New vertices, and the mesh around all of them.
+        // Insert new vertices, join them along features, and clean up around all of them.
         insert(changes.sites);
         join();
         report_.operations += clean_up(surgery_, target_).operations();
@@ -93,7 +93,7 @@ class Conforming {
 
     void clear_ways()
     {
-        // As ordinary vertices those that leave the cloth are in nobody's way.
+        // Demote vertices whose way leads off the cloth: as ordinary vertices they block no other's way.
         for (const EolVertex& e : trace_.eol())
             if (trace_.is_on_trace(e.vertex_id) && ways_.leads_off_cloth(e))
                 demote_to_row(e.vertex_id, RowCause::Blocked);
@@ -101,8 +101,7 @@ class Conforming {
         if (advances.empty()) return;
         const ClearanceReport cleared = ways_.clear(advances);
         report_.operations += cleared.operations;
-        // A vertex whose way cannot be cleared becomes a row, and only that one: the rest of the trace
-        // carries the cloth on.
+        // Only the blocked vertex itself becomes a row: the rest of its trace carries the cloth on.
         for (const VertexId v : cleared.blocked) demote_to_row(v, RowCause::Blocked);
         blocked_ += static_cast<int>(cleared.blocked.size());
         for (const TraceAdvance& advance : advances) lost_ += trace_.is_on_trace(advance.vertex) ? 0 : 1;
@@ -112,7 +111,7 @@ class Conforming {
     {
         ways_.set_inserting(true);
         for (const FeatureSite& site : sites) {
-            // The step has failed on the vertices there were, or on one that was inserted here.
+            // Insert nothing once attempts have given vertices up, nor where an inserted vertex has failed.
             const bool has_failed = !failed_.given_up.empty() || has_failed_near(site.material);
             const std::optional<RowCause> cause =
                 has_failed ? RowCause::GivenUp : insertion_.try_insert(site);
@@ -127,7 +126,7 @@ class Conforming {
         return failed_.has_failed_near(material, kNear * target_.length(material));
     }
 
-    /// From now on the vertex is none on a trace: the contact there is a row.
+    /// Takes a vertex off its trace: its contact becomes a row.
     void demote_to_row(VertexId v, RowCause cause)
     {
         surgery_.release_vertex(v);
@@ -135,7 +134,8 @@ class Conforming {
         refused_.refuse_vertex(v, cause);
     }
 
-    /// Neighbours along a feature that are neighbours in the mesh, too, get a mesh edge between them.
+    /// Makes mesh edges between neighbours along a feature that share an edge or lie opposite each other
+    /// across one.
     void join()
     {
         const std::vector<PlacedEol> placed = trace_.placed();
@@ -155,7 +155,7 @@ class Conforming {
             join_trace_vertices(surgery_, target_, a, b, tag);
     }
 
-    /// Whether two vertices are across one edge.
+    /// Whether two vertices lie opposite each other across one edge.
     bool share_neighbours(VertexId a, VertexId b) const
     {
         for (const IdFace& face : surgery_.faces_at(a))

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A contact with a sharp feature is a row first. Where it pressed at the end of the last step the mesh gets a
-// vertex there, if it admits one of good quality, and edges along the feature from one to the next; where it
-// does not, the contact stays a row, which is always safe: any of this may be refused.
+// Conforms the mesh to the features that press. A contact with a sharp feature is a row at first. If it
+// pressed at the end of the last step, the mesh gets an EOL vertex on the feature, where quality allows. Mesh
+// edges along the feature then join such vertices. Every operation may be refused: the contact then stays a
+// row, which is always safe.
 #pragma once
 
 #include <limits>
@@ -24,7 +25,7 @@ struct ConformReport {
     int inserted = 0, released = 0, operations = 0;
 };
 
-/// What the surgery has done and who is EOL now.
+/// The mesh after surgery, and its EOL vertices.
 struct ConformedMesh {
     SurgeryResult surgery;
     std::vector<SurgeryEvent> events;
@@ -32,41 +33,41 @@ struct ConformedMesh {
     ConformReport report;
 };
 
-/// What features ask of the mesh, whatever may strain it.
+/// Changes of the mesh that features require, before any limit on strain.
 struct FeatureChanges {
     std::vector<EolRelease> released;  ///< in the order of the state's EOL vertices
-    std::vector<FeatureSite> sites;    ///< where there may be new ones
+    std::vector<FeatureSite> sites;    ///< where new EOL vertices may be
     bool empty() const { return released.empty() && sites.empty(); }
 };
 
-/// `stars` are the state's. Nothing without a target for the mesh.
+/// Finds releases and sites. `stars` belong to the state. Empty in a scene without EOL vertices.
 FeatureChanges find_feature_changes(const Scene& scene, const State& state, const ClothStars& stars);
 
-/// How carefully a mesh is made, and what it may cost.
+/// Limits for making a mesh: on strain, and on EOL vertices that clearing loses.
 struct ConformLimits {
     StrainLimit strain = StrainLimit::GivesWay;
-    /// Vertices, ascending: operations that replace a face at one of them are judged as with
+    /// Vertices, ascending. Operations that replace a face at one of these are judged as with
     /// StrainLimit::AsMade.
     std::vector<VertexId> careful_at = {};
-    // Of more the mesh is of no use.
-    int lost = std::numeric_limits<int>::max();     ///< the most that ConformOutcome::lost may come to
-    int blocked = std::numeric_limits<int>::max();  ///< the same of ConformOutcome::blocked
+    // A mesh that exceeds one of these limits is left unfinished.
+    int lost = std::numeric_limits<int>::max();     ///< on ConformOutcome::lost
+    int blocked = std::numeric_limits<int>::max();  ///< on ConformOutcome::blocked
 };
 
-/// What `conform_mesh` found.
+/// Result of `conform_mesh`.
 struct ConformOutcome {
-    std::optional<ConformedMesh> mesh;    ///< nothing where it is right as it is
-    std::vector<RefusedContact> refused;  ///< that pressed on a feature and stay or become rows
-    int lost = 0;     ///< EOL vertices that clearing has cost: blocked, or merged into others
-    int blocked = 0;  ///< of these what clearing met and could not move
-    /// Vertices, ascending, at which something may have been done that relies on cloth that gives way.
+    std::optional<ConformedMesh> mesh;    ///< nothing where the mesh stays as it is
+    std::vector<RefusedContact> refused;  ///< contacts that pressed on a feature and are rows
+    int lost = 0;                         ///< EOL vertices that clearing blocked, or merged into others
+    int blocked = 0;                      ///< of these, vertices whose way could not be cleared
+    /// Vertices, ascending, of operations that the guard allowed only because the cloth around gives way.
     std::vector<VertexId> relies_at;
 };
 
-/// The mesh that the next step of at most `dt` (s) wants: EOL vertices where features pressed, none where
-/// they have not for long, the way of those that slide cleared, what they left restored. `stars` and
-/// `changes` are the state's, `relaxations` the scene's. Unfinished, without a mesh, where clearing what is
-/// there loses more than it may.
+/// Makes the mesh for the next step, of at most `dt` (s). Inserts EOL vertices where features pressed,
+/// releases others by `decide_retention`, clears the way of sliding ones and cleans up behind them. `stars`
+/// and `changes` belong to the state, `relaxations` to the scene. Returns no mesh where nothing changes, or
+/// where clearing exceeds `limits.lost` or `limits.blocked`.
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
                             const FeatureChanges& changes, const FailedFlow& failed,
                             const ConformLimits& limits, RelaxationMemo& relaxations);

@@ -55,7 +55,7 @@ bool EolGuard::allows(const SurgeryEvent& event)
 double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) const
 {
     constexpr double kShare = 0.01;  // of the patch's elastic energy
-    // The alternative is to give the trace up: a row that holds all that slides.
+    // Otherwise the trace is released, and a row holds everything that slides.
     const double clearing = limit_ == StrainLimit::Forced ? 1000.0 : 10.0;
     double area = 0.0, squared_speed = 0.0;
     for (const PatchFace& face : event.before) {
@@ -66,7 +66,7 @@ double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) con
     }
     const double motion = 0.5 * scene_.material.density * area * squared_speed +
                           weight_over(scene_, area, scene_.eol->length(event.before[0].material[0]));
-    constexpr double kStrain = 1e-6;  // nobody sees; of cloth without strain and motion rounding is all
+    constexpr double kStrain = 1e-6;  // invisible; unstrained cloth at rest has only round-off
     const double unseen = scene_.material.youngs_modulus * area * kStrain * kStrain;
     return (is_clearing_ ? clearing : 1.0) * (kShare * elastic_energy + kAllowedStrain * motion + unseen);
 }
@@ -75,11 +75,11 @@ bool EolGuard::strains(const SurgeryEvent& event)
 {
     const bool is_split =
         event.operation == SurgeryOperation::SplitEdge || event.operation == SurgeryOperation::SplitFace;
-    if (is_split) return false;  // changes no surface, if how wide the hinges are
+    if (is_split) return false;  // changes only the width of hinges, not the surface
     const Energies before = find_energies(*surgery_, event, event.before, terms_, crease_width_);
     const Energies after = find_energies(*surgery_, event, event.after, terms_, crease_width_);
     double rise = after.sum() - before.sum();
-    if (!(rise > 0.0)) return false;  // it need not be known what is allowed
+    if (!(rise > 0.0)) return false;  // the allowance is not needed
     rise -= allowance(event, before.elastic());
     if (!(rise > 0.0)) return false;
     return !can_give_way(event, rise);

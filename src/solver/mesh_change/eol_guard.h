@@ -13,64 +13,64 @@
 
 namespace arris {
 
-/// How much surgery may strain the cloth.
+/// Limits on the strain of surgery.
 enum class StrainLimit {
-    GivesWay,  ///< what would be left of it when the cloth around gave way counts
-    AsMade,    ///< all of it
-    Forced     ///< as made, but the way of a sliding trace is cleared unless that is seen as a push
+    GivesWay,  ///< only strain that would remain after the cloth around gave way counts
+    AsMade,    ///< all strain counts
+    Forced     ///< as AsMade, with a larger limit for clearing ahead of a sliding trace
 };
 
-/// What mesh surgery may do to the cloth of a state: nothing of an obstacle gets through it, and it is hardly
-/// strained: the sum of stretch, bending and gravity energy does not rise, with the terms and creases of the
-/// step.
+/// Guards mesh surgery: refuses operations that would pass through an obstacle or strain the cloth. The sum
+/// of stretch, bending and gravity energy may not rise beyond a small allowance. Terms and creases are the
+/// step's.
 class EolGuard {
   public:
-    /// At the vertices `careful_at` (ascending) nothing counts on cloth that gives way. `relaxations` is of
-    /// the scene.
+    /// At the vertices `careful_at` (ascending) no operation may rely on cloth that gives way. `relaxations`
+    /// belongs to the scene.
     EolGuard(const Scene& scene, const State& state, StrainLimit limit, std::vector<VertexId> careful_at,
              RelaxationMemo& relaxations);
 
-    /// The mesh under surgery, whose patches may give way.
+    /// Sets the mesh under surgery, whose patches may give way.
     void watch(const ClothSurgery& surgery) { surgery_ = &surgery; }
     bool allows(const SurgeryEvent& event);
 
-    /// Vertices, ascending, of the faces that operations replace for which the cloth around has to give way:
-    /// those that were allowed, whether or not they were made.
+    /// Vertices, ascending, of the faces replaced by operations that rely on cloth giving way: all such
+    /// allowed operations, whether or not they were made.
     std::vector<VertexId> relies_at() const;
 
-    /// What clears the way of a sliding feature may strain more: the alternative is to give the trace up.
+    /// Clearing ahead of a sliding vertex may strain more: otherwise its trace is released.
     void set_clearing(bool is_clearing) { is_clearing_ = is_clearing; }
 
   private:
-    /// Whether an operation raises the cloth's energy beyond what is allowed, and the cloth around could not
-    /// take up what strain it makes, where it may.
+    /// Whether an operation raises the cloth's energy beyond the allowance, and the cloth around may or can
+    /// not give way to its strain.
     bool strains(const SurgeryEvent& event);
     bool can_give_way(const SurgeryEvent& event, double rise);
-    /// Around an operation: vertices, and the faces between them that it does not replace.
+    /// Vertices around an operation, and the faces between them that the operation does not replace.
     struct Neighbourhood {
         std::vector<VertexId> near;     ///< ascending
-        std::vector<VertexRing> rings;  ///< of each
-        std::vector<PatchFace> kept;    ///< ascending, from their least vertices
+        std::vector<VertexRing> rings;  ///< by entry of `near`
+        std::vector<PatchFace> kept;    ///< ascending; each begins with its least vertex
     };
     Neighbourhood look_around(const SurgeryEvent& event) const;
     void add_kept_faces(const SurgeryEvent& event, Neighbourhood& around) const;
-    /// What the operation makes, and around it.
+    /// The faces that the operation makes, and its surroundings.
     LoosePatch make_patch(const SurgeryEvent& event) const;
-    /// Whether a vertex, with its ring, may move: what is around it is near, too.
+    /// Whether a vertex may move: an unchanged free vertex whose whole ring is in `near`.
     bool is_loose(VertexId v, const VertexRing& ring, const std::vector<VertexId>& near,
                   const SurgeryEvent& event) const;
     double allowance(const SurgeryEvent& event, double elastic_energy) const;
 
     const Scene& scene_;
     const State& state_;
-    Terms terms_;          ///< that have an energy
+    Terms terms_;          ///< terms that have an energy
     double crease_width_;  ///< m
     StrainLimit limit_;
     std::vector<VertexId> careful_at_;
     bool is_clearing_ = false;
     const ClothSurgery* surgery_ = nullptr;
     RelaxationMemo& relaxations_;
-    std::vector<VertexId> relies_at_;  ///< as they come
+    std::vector<VertexId> relies_at_;  ///< unsorted, with duplicates
 };
 
 }  // namespace arris

@@ -24,7 +24,7 @@ struct MeshCache {
 
     // choose_step_mesh
     std::vector<RefusedContact> refused;  ///< contacts that pressed on a feature and are rows in this step
-    State conformed;                      ///< the state on the step's mesh, where that is a new one
+    State conformed;                      ///< the state on the step's mesh, where that mesh is new
 };
 
 }  // namespace arris

@@ -14,7 +14,7 @@ namespace arris {
 
 namespace {
 
-/// What one vertex carries; of BDF2's history too.
+/// State of one vertex, with its history for BDF2.
 struct Carried {
     Vec2 X, V, previous_X, previous_V;
     Vec3 x, v, previous_x, previous_v;
@@ -28,7 +28,7 @@ Carried read(const State& state, std::size_t v)
             state.previous_world[v],    state.previous_velocity[v]};
 }
 
-/// What surgery has changed, and of other vertices what they had.
+/// States by vertex id: changed by surgery, else as before.
 class CarriedById {
   public:
     explicit CarriedById(const State& before) : before_(before) {}
@@ -55,7 +55,7 @@ Vec3 weights_of(const std::array<Vec2, 3>& X, const Vec2& place)
     return {1.0 - second - third, second, third};
 }
 
-/// Position and material velocity of the surface at a material point of a face.
+/// Position, and velocity of the material, at a material point of a face.
 struct SurfaceSample {
     Vec3 x, v;
 };
@@ -73,17 +73,17 @@ SurfaceSample sample(const std::array<Vec2, 3>& X, const std::array<Vec3, 3>& x,
     return at;
 }
 
-/// Whether a material point was in a face or so near to it that its plane may be continued. Not where the
-/// material has flowed so that a step ago its corners were no face: as near to a line as you like, a plane
-/// through them may lead anywhere.
+/// Whether a material point was in a face or near enough to extend the face's plane. False where the material
+/// has flowed so that the corners did not form a face one step ago: the plane of a degenerate face is
+/// arbitrary.
 bool is_near(const std::array<Vec2, 3>& X, const Vec2& place)
 {
-    constexpr double kMostWeights = 3.0;  // inside they are 1: by how much it makes more of what corners have
+    constexpr double kMostWeights = 3.0;  // sum of |weights|, 1 inside: amplification of the corners' values
     return twice_area(X[0], X[1], X[2]) > 0.0 && weights_of(X, place).lpNorm<1>() <= kMostWeights;
 }
 
-/// The vertex is of the material from now on: it has what the surface has there, now and a step of `dt` (s)
-/// ago; where that cannot be told it has moved as it moves now.
+/// Makes the vertex Lagrangian, with the surface's state there, now and a step of `dt` (s) ago. Where the old
+/// state is unknown, the vertex is taken to have moved at its current velocity.
 void interpolate(const SurgeryEvent& event, const VertexChange& change, double dt, CarriedById& all)
 {
     Carried made{};
@@ -122,8 +122,8 @@ void interpolate(const SurgeryEvent& event, const VertexChange& change, double d
     all.set(change.vertex, made);
 }
 
-/// A contact of an edge or face that was split, merged or flipped goes: it would hold the cloth where there
-/// is none, for as long as its vertices are there.
+/// Drops contacts of edges or faces that were split, merged or flipped. Such a contact would hold cloth where
+/// none is, as long as its vertices exist.
 void drop_contacts_without_element(const ClothStars& stars, State& state)
 {
     const auto has_element = [&](const ActiveContact& contact) {
@@ -178,14 +178,14 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
         else
             assert(all.has_changed(after.ids[v]) && "what is new has been carried over");
     }
-    for (const auto& [id, carried] : all.changed())  // in any order: each has its own place
+    for (const auto& [id, carried] : all.changed())  // any order: each vertex has its own entry
         if (const int v = after.index_of(id); v >= 0) write(static_cast<std::size_t>(v), carried);
     std::erase_if(after.anchors, [&](const PinAnchor& a) { return after.index_of(a.vertex_id) < 0; });
     return after;
 }
 
-/// Whether material flows through each vertex: those of EOL entries that can have coordinates. Surgery beside
-/// one can take them from it, and it is of the material for the step that is left to it.
+/// Whether material flows through each vertex: EOL vertices that can have coordinates. Surgery beside a
+/// vertex can take its coordinates away; it is then Lagrangian in this step.
 std::vector<char> find_flowing(const Scene& scene, const State& state, const ClothStars& stars)
 {
     std::vector<char> is_flowing(state.ids.size(), 0);
@@ -196,8 +196,9 @@ std::vector<char> find_flowing(const Scene& scene, const State& state, const Clo
     return is_flowing;
 }
 
-/// The fit changes how material flows, on which it depends whether a vertex can have coordinates. One that
-/// has none moves with the material around it. Which flow.
+/// Stops the flow through vertices without coordinates, which then move with the material around them. The
+/// fit has changed the flow, on which it depends whether a vertex can have coordinates. Returns the vertices
+/// that flow.
 std::vector<char> stop_flow(const Scene& scene, const ClothStars& stars, State& state)
 {
     std::vector<char> is_flowing = find_flowing(scene, state, stars);
@@ -220,7 +221,8 @@ std::vector<char> stop_flow(const Scene& scene, const ClothStars& stars, State& 
     return is_flowing;
 }
 
-/// A vertex that is EOL from now on, or no more, has moved so far as it moves now.
+/// Gives vertices that have become or ceased to be EOL the history of constant motion at their current
+/// velocity.
 void begin_history(const State& before, const std::vector<char>& is_flowing, State& after)
 {
     for (const EolVertex& eol : after.eol) {
@@ -257,7 +259,7 @@ State transfer(const Scene& scene, const State& before, const ClothStars& stars,
     const std::vector<ChangedPatch> patches =
         find_changed_patches({before, after, conformed.events, stars.faces, stars_after.faces});
     report = fit_patches(scene, before, stars, patches, stars_after, most_strain, after);
-    if (report.strain > most_strain) return after;  // nobody takes it
+    if (report.strain > most_strain) return after;  // the caller discards it
     begin_history(before, stop_flow(scene, stars_after, after), after);
     return after;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the cloth carries over a change of its mesh. A new vertex in the surface has what the surface had
-// there, which changes nothing; where an edge or vertex went, or a vertex became or ceased to be EOL, the
-// velocity around it is the nearest that the new mesh can have, with the same momentum
-// (physics/velocity_fit.h).
+// Carries velocity and history of the cloth over to a changed mesh. A new vertex on the surface gets the
+// interpolated state, which changes nothing. Where an edge or vertex has gone, or a vertex has become or
+// ceased to be EOL, the velocity around it is fitted: the nearest that the new mesh can have with the same
+// momentum (physics/velocity_fit.h).
 #pragma once
 
 #include <limits>
@@ -14,9 +14,9 @@
 
 namespace arris {
 
-/// The state on the new mesh: positions, velocities, history, and of contacts and anchors those whose
-/// vertices are still there. `stars` are those of `before`, `stars_after` of the new mesh. Unfinished where a
-/// patch stays strained by more than `most_strain`, as a share of what moves it.
+/// The state on the new mesh: positions, velocities, history, and the contacts and anchors whose vertices
+/// still exist. `stars` belong to `before`, `stars_after` to the new mesh. Unfinished where a patch's strain
+/// (TransferReport) stays above `most_strain`.
 State transfer(const Scene& scene, const State& before, const ClothStars& stars,
                const ConformedMesh& conformed, const ClothStars& stars_after, TransferReport& report,
                double most_strain = std::numeric_limits<double>::infinity());

@@ -7,7 +7,7 @@ namespace arris {
 
 namespace {
 
-/// Of `count` vertices that do not move and have no coordinates of their own; where they are is left open.
+/// A linearization of `count` vertices at rest, in world coordinates; positions are set later.
 Linearization at_rest(std::size_t count, double step_time)
 {
     Linearization at;
@@ -31,7 +31,7 @@ PatchEquations::PatchEquations(std::vector<int> places, std::vector<int> free, d
 std::optional<Eigen::VectorXd> PatchEquations::find_way(const ClothMesh& patch, const ClothElements& elements,
                                                         const Terms& terms, const std::vector<Vec3>& normals)
 {
-    constexpr std::size_t kFew = 25;  // free vertices, up to which dense equations take less time
+    constexpr std::size_t kFew = 25;  // free vertices, up to which dense equations are faster
     at_.position = patch.world;
     std::optional<Eigen::VectorXd> velocity = free_.size() <= kFew
                                                   ? solve_dense(elements, terms, normals)
@@ -69,7 +69,7 @@ std::optional<Eigen::VectorXd> PatchEquations::solve_sparse(const ClothMesh& pat
 template <typename System>
 void PatchEquations::keep_heights(const std::vector<Vec3>& normals, System& system) const
 {
-    constexpr double kStiff = 1e6;  // beside the greatest stiffness: held
+    constexpr double kStiff = 1e6;  // times the greatest stiffness: holds the height
     const double stiff = kStiff * system.matrix().diagonal().maxCoeff();
     for (std::size_t k = 0; k < free_.size(); ++k)
         if (const Vec3& normal = normals[free_[k]]; !normal.isZero(0.0))

@@ -13,16 +13,16 @@
 
 namespace arris {
 
-/// A step of implicit Euler from rest, of what is free in a patch of cloth: (M + t^2 H) way = t^2 f.
+/// An implicit Euler step from rest for the free vertices of a patch of cloth: (M + t^2 H) way = t^2 f.
 class PatchEquations {
   public:
-    /// `free` are the patch's free vertices, ascending; `places` of each vertex its place in them, or -1.
-    /// `step_time` is t, s.
+    /// `free`: the patch's free vertices, ascending. `places`: place of each vertex in `free`, or -1.
+    /// `step_time`: t, s.
     PatchEquations(std::vector<int> places, std::vector<int> free, double step_time);
 
-    /// The way, m, of each free vertex, three numbers each; nothing where the equations have no factors. Only
-    /// where the patch is differs from call to call. Free vertices with one of `normals` (of each vertex;
-    /// zero where there is none) keep their height along it.
+    /// Displacement, m, of each free vertex, three numbers each; nothing where the factorisation fails. Only
+    /// the positions may differ from call to call. A free vertex with a normal in `normals` (one a vertex;
+    /// zero without) keeps its height along that normal.
     std::optional<Eigen::VectorXd> find_way(const ClothMesh& patch, const ClothElements& elements,
                                             const Terms& terms, const std::vector<Vec3>& normals);
 
@@ -38,8 +38,8 @@ class PatchEquations {
     double step_time_;  ///< s
     Linearization at_;
 
-    // One of the two:
-    std::optional<DenseSystem> dense_;  ///< of few
+    // One of two:
+    std::optional<DenseSystem> dense_;  ///< for few free vertices
     Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> dense_factor_;
     std::optional<LinearSystem> sparse_;
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, BlockAmdOrdering> sparse_factor_;

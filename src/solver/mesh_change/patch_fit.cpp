@@ -50,14 +50,14 @@ class PatchFitter {
     }
 
   private:
-    /// One with more energy than before, J.
+    /// A patch with more energy than before; energies in J.
     struct StrainedPatch {
         std::size_t index;
         double energy_before, kinetic;
-        double strain_bound;  ///< as it is, at most: that costs no lookups of targets
+        double strain_bound;  ///< upper bound of its strain, without looking up target lengths
     };
 
-    /// The most strained first: what cannot be, is seen there.
+    /// Strained patches, the most strained first, so that an unusable mesh is found early.
     std::vector<StrainedPatch> find_strained(const std::vector<ChangedPatch>& patches,
                                              const std::vector<VelocityField>& fields) const
     {
@@ -98,8 +98,8 @@ class PatchFitter {
         return field;
     }
 
-    /// A mesh that strains the cloth more than the one before, which had that energy, gives way.
-    /// Returns by how much its energy is above what it was, J.
+    /// Lets a patch give way where its new mesh strains the cloth. `before`: its energy on the old mesh, J.
+    /// Returns the energy above `before`, J.
     double relax_patch(const ChangedPatch& patch, double before)
     {
         relaxed_.faces = patch.faces;
@@ -128,7 +128,7 @@ class PatchFitter {
         return area;
     }
 
-    /// All that moves a patch, J: its kinetic energy, and its weight over a cell.
+    /// Kinetic energy of a patch plus its weight over one cell, J.
     double moving_energy(double kinetic, double area, double cell) const
     {
         return kinetic + weight_over(scene_, area, cell);
@@ -143,8 +143,8 @@ class PatchFitter {
         return ids;
     }
 
-    /// What `gain` is beside all that moves a patch, over the longest of its cells; where an
-    /// upper bound of it is no more than `small`, that.
+    /// Strain: `gain` relative to the patch's moving energy, over its longest cell. Returns only an upper
+    /// bound where that is at most `small`.
     double strain_of(const ChangedPatch& patch, double gain, double kinetic, double small) const
     {
         const double area = area_of(patch);
@@ -211,9 +211,9 @@ class PatchFitter {
     EolPlacer placer_;
     std::vector<PinTarget> held_;
     Creases creases_before_, creases_;
-    // Of vertices of other patches nothing that means anything.
+    // Entries of vertices outside the current patch are meaningless.
     RelaxedPatch relaxed_;
-    std::vector<int> local_;  ///< of each vertex its place in the patch
+    std::vector<int> local_;  ///< place of each vertex in the patch
 };
 
 }  // namespace

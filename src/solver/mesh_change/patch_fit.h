@@ -11,18 +11,17 @@
 namespace arris {
 
 struct TransferReport {
-    /// Of patches that could not give way to what strains them now: the most that elastic energy is above
-    /// what it was, as a share of what moves the patch.
+    /// Largest strain of a patch that could not give way: its rise in elastic energy, relative to its kinetic
+    /// energy plus its weight over one cell.
     double strain = 0.0;
-    /// Of each of those that stay strained by more than kPatchStrain, as far as they were looked at, its
-    /// vertices before, ascending.
+    /// Old vertices, ascending, of each tested patch whose strain stays above kPatchStrain.
     std::vector<std::vector<VertexId>> strained;
 };
 
-/// Brings `after`, whose new vertices have what the surface had there, to where each patch may stay: one that
-/// its new mesh strains gives way, and its velocity is the nearest to the old that has the same momentum.
-/// `stars_before`, `stars` are those of `before`, `after`. Stops, unfinished, at a patch that stays strained
-/// by more than `most_strain`, before any velocity is fitted.
+/// Adjusts the patches of `after`, whose new vertices have the interpolated state of the old surface. A patch
+/// strained by its new mesh gives way. Its velocity is the nearest to the old one with the same momentum.
+/// `stars_before` and `stars` belong to `before` and `after`. Stops at a patch that stays strained by more
+/// than `most_strain`, before any velocity is fitted; `after` is then unfinished.
 TransferReport fit_patches(const Scene& scene, const State& before, const ClothStars& stars_before,
                            const std::vector<ChangedPatch>& patches, const ClothStars& stars,
                            double most_strain, State& after);

@@ -25,14 +25,14 @@ namespace {
 
 constexpr int kMostSteps = 8;
 
-/// What has an energy, and mass.
+/// Terms that have an energy, and mass.
 Terms make_energy_terms(const Scene& scene)
 {
     return make_terms(scene.material, scene.gravity, {}, {});
 }
 
-/// Of each of the steps, s. In all together nothing falls by more than `kAllowedStrain` of a cell, or twice
-/// that. Without gravity nothing falls: mass only keeps what has no stiffness where it is.
+/// Time of each step, s. In all steps together nothing falls by more than about `kAllowedStrain` of a cell.
+/// Without gravity nothing falls, and mass only holds vertices without stiffness in place.
 double find_step_time(const Scene& scene)
 {
     const double weight = scene.gravity ? scene.gravity->acceleration.norm() : 0.0;
@@ -40,12 +40,12 @@ double find_step_time(const Scene& scene)
     return std::min(1.0, std::sqrt(kAllowedStrain * scene.eol->mean_length / (kMostSteps * weight)));
 }
 
-/// Those of a part of the cloth, whose vertex i is `vertices[i]` of the whole.
+/// Creases within a part of the cloth, whose vertex i is `vertices[i]` of the whole.
 Creases find_part(const Creases& creases, const std::vector<int>& vertices)
 {
     Creases part{creases.width, {}};
     if (creases.edges.empty()) return part;
-    std::unordered_map<int, int> local;  // looked up only
+    std::unordered_map<int, int> local;  // only for look-up
     for (std::size_t i = 0; i < vertices.size(); ++i) local[vertices[i]] = static_cast<int>(i);
     for (const auto& [a, b] : creases.edges) {
         const auto at_a = local.find(a), at_b = local.find(b);
@@ -81,14 +81,14 @@ class Relaxation {
         energy_ = energy_at(patch_.mesh.world);
     }
 
-    /// Lowers the energy to `wanted`, or until it is seen that a few steps do not bring it there, which it
-    /// tells. A full step lowers the energy by less than the one before, as every mode decays: what the steps
-    /// that are left would bring is less than as often what the last one did, and hardly ever (of 3400
-    /// patches before a sliding box, of 3) more than twice that. After one that was cut short that is a
-    /// guess, on the side of no.
+    /// Lowers the energy to `wanted`; false once a few steps are known not to reach it. As every mode decays,
+    /// a full step lowers the energy by less than the one before. The remaining steps therefore lower it by
+    /// less than their number times the last decrease. Rarely they lower it by more than twice that decrease
+    /// (3 of 3400 patches before a sliding box). After a shortened step the bound is a guess, which errs
+    /// towards false.
     bool run(double wanted)
     {
-        constexpr double kMostToCome = 2.0;  // times what the last step did
+        constexpr double kMostToCome = 2.0;  // times the last step's decrease
         for (int left = kMostSteps - 1; left >= 0 && energy_ > wanted; --left) {
             const double before = energy_;
             if (!descend(wanted)) return false;
@@ -97,8 +97,8 @@ class Relaxation {
         return energy_ <= wanted;
     }
 
-    /// Back on the last step's way to where the energy has just fallen to `wanted`: what strain the cloth had
-    /// before is its own.
+    /// Goes back along the last step to where the energy has just fallen to `wanted`: strain that the cloth
+    /// had before must remain.
     void rise_to(double wanted)
     {
         if (!(energy_ < wanted) || before_last_.empty()) return;
@@ -132,8 +132,8 @@ class Relaxation {
         return true;
     }
 
-    /// What has come into the stand-off goes back towards `begin` by halves, at last all of its way, until it
-    /// is as far from the obstacles as it was: what sinks there would be pushed out again.
+    /// Moves vertices that came within the stand-off back towards `begin` by halves, at last all the way,
+    /// until they are as far from the obstacles as before. Cloth that sinks in would be pushed out again.
     void keep_off(const std::vector<Vec3>& begin, double time)
     {
         for (const Obstacle& obstacle : scene_.obstacles) {
@@ -154,7 +154,7 @@ class Relaxation {
     }
 
   private:
-    /// The elements that concern no free vertex, out of the others.
+    /// Removes the elements without a free vertex from `elements_` and returns them.
     ClothElements take_held()
     {
         ClothElements held;
@@ -185,11 +185,11 @@ class Relaxation {
         if (gap_at(place) < least) place = begin;
     }
 
-    /// One step from rest that lowers the energy; false where there is none.
+    /// Takes one step from rest that lowers the energy; false where none does.
     bool descend(double wanted)
     {
         constexpr int kMostHalvings = 8;
-        constexpr double kWorthwhile = 1e-3;  // of what there is to lower
+        constexpr double kWorthwhile = 1e-3;  // of the energy still to lower
         const std::vector<Vec3> way = find_way();
         double share = 1.0;
         for (int k = 0; k < kMostHalvings; ++k, share *= 0.5) {
@@ -213,7 +213,7 @@ class Relaxation {
     {
         std::vector<Vec3> way(patch_.mesh.world.size(), Vec3::Zero());
         if (free_.empty()) return way;
-        if (!equations_) equations_.emplace(place_, free_, step_time_);  // many a patch never moves
+        if (!equations_) equations_.emplace(place_, free_, step_time_);  // many patches never move
         const auto found = equations_->find_way(patch_.mesh, elements_, terms_, patch_.normals);
         if (!found) return way;
         for (std::size_t k = 0; k < free_.size(); ++k)
@@ -224,15 +224,15 @@ class Relaxation {
     const Scene& scene_;
     LoosePatch patch_;
     std::vector<int> free_;   ///< vertices, ascending
-    std::vector<int> place_;  ///< of each vertex in `free_`; -1 where it is held
+    std::vector<int> place_;  ///< place of each vertex in `free_`; -1 where it is held
     std::vector<MeshEdge> edges_;
-    ClothElements elements_;  ///< that concern a free vertex; their hinges' faces mean nothing
+    ClothElements elements_;  ///< with a free vertex; their hinges' face indices are invalid
     Terms terms_;
     double step_time_;                 ///< s
-    double held_energy_ = 0.0;         ///< J, of what does not move
-    double energy_ = 0.0;              ///< J, where it is
-    std::vector<Vec3> before_last_;    ///< where it was before the last step
-    double energy_before_last_ = 0.0;  ///< J, there
+    double held_energy_ = 0.0;         ///< J, of elements without a free vertex
+    double energy_ = 0.0;              ///< J, at the current positions
+    std::vector<Vec3> before_last_;    ///< positions before the last step
+    double energy_before_last_ = 0.0;  ///< J, at these positions
     std::optional<PatchEquations> equations_;
 };
 
@@ -253,7 +253,7 @@ Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vert
 double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state)
 {
     constexpr int kMostHalvings = 4;
-    constexpr double kRounding = 1e-9;  // of sums over the patch: a split leaves the energy as it is
+    constexpr double kRounding = 1e-9;  // of sums over the patch: a split does not change the energy
     SubMesh part = extract_faces(state.mesh, patch.faces);
     LoosePatch loose{std::move(part.mesh), {}, {}, find_part(creases, part.vertices)};
     for (const int v : part.vertices) {

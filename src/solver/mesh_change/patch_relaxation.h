@@ -9,40 +9,40 @@
 
 namespace arris {
 
-/// A part of the cloth whose shape may give way.
+/// A part of the cloth whose shape may relax.
 struct RelaxedPatch {
     std::vector<int> faces;     ///< of the state's mesh
-    std::vector<char> is_free;  ///< of each vertex of the state
-    std::vector<Vec3>
-        normals;          ///< of each vertex: it keeps its height along this; zero where it is free to leave
-    double wanted = 0.0;  ///< J: energy at which it is relaxed enough
+    std::vector<char> is_free;  ///< by vertex of the state
+    std::vector<Vec3> normals;  ///< by vertex: it keeps its height along this; zero if unconstrained
+    double wanted = 0.0;        ///< J: energy at which relaxing ends
 };
 
-/// Of a vertex that pressed at the end of the last step its contact's normal, world; else zero.
+/// Normal, world, of the vertex's contact that pressed at the end of the last step; zero without such a
+/// contact.
 Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vertex_id);
 
-/// Moves free vertices, in the world, until the patch's stretch, bending and gravity energy has fallen to
-/// `wanted`, or so far that it is seen not to fall there, as in the pop filter of Narain, Pfaff and O'Brien
-/// 2013: a change of mesh that strains the cloth would be seen as a push. The way is that of a few steps from
-/// rest, so short that nothing falls by more than nobody sees: cloth that nothing holds up is not paid for
-/// its strain by falling. No vertex comes nearer to an obstacle than the stand-off, or than it is; and the
-/// way is kept free of obstacles: where it is not it is halved, at most a few times, then not gone. History
-/// moves along, so that no velocity comes of it. `creases` are the state's. Returns the energy, J.
+/// Moves free vertices in the world until the patch's stretch, bending and gravity energy has fallen to
+/// `wanted`. Stops earlier once a few steps are known not to reach `wanted`. Returns the energy, J. As in the
+/// pop filter of Narain, Pfaff and O'Brien 2013: otherwise a mesh change that strains the cloth would push it
+/// visibly. The vertices take a few implicit steps from rest. These are so short that falling cannot visibly
+/// pay for the strain of unsupported cloth. No vertex comes nearer to an obstacle than the stand-off or its
+/// current distance. The path is checked against obstacles: if not free, it is halved a few times, then not
+/// taken. History moves along, so that no velocity results. `creases` belong to the state.
 double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state);
 
-/// A patch by itself; one entry a vertex.
+/// A patch as a mesh of its own; one entry a vertex.
 struct LoosePatch {
     ClothMesh mesh;
     std::vector<char> is_free;
-    std::vector<Vec3> normals;  ///< as above
+    std::vector<Vec3> normals;  ///< as in RelaxedPatch
     Creases creases;
 };
 
-/// Whether a patch would relax by `drop` (J); obstacles are not looked at.
+/// Whether a patch would relax by `drop` (J); obstacles are ignored.
 bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop);
 
-/// Stretch, bending and gravity energy, J, as the step has them, of cloth in this shape; and of some of a
-/// cloth's faces and the hinges between them, whose creases are `creases`.
+/// Stretch, bending and gravity energy, J, as in the step's equations: of a whole mesh, or of some faces of a
+/// cloth and the hinges between them. `creases` belong to the mesh given.
 double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& mesh);
 double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& cloth,
                          const std::vector<int>& faces);

@@ -14,11 +14,11 @@ class RefusedContacts {
   public:
     explicit RefusedContacts(const State& state) : state_(state) {}
 
-    /// Vertex `v` was inserted for contact `contact` (index in State::active).
+    /// Notes that vertex `v` was inserted for contact `contact` (index in State::active).
     void note_inserted(VertexId v, int contact) { contact_of_[v] = contact; }
 
     void refuse(int contact, RowCause cause);
-    /// The contact of an EOL vertex, of the state or inserted.
+    /// Refuses the contact of an EOL vertex, one of the state or an inserted one.
     void refuse_vertex(VertexId v, RowCause cause);
 
     const std::vector<RefusedContact>& list() const { return refused_; }

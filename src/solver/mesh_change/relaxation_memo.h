@@ -8,12 +8,12 @@
 
 namespace arris {
 
-/// Remembers answers of `can_relax_by` for one scene: surgery proposes what was refused again and again. An
-/// answer is found by all that it is a function of, to the bit, so nothing makes one invalid.
+/// Stores answers of `can_relax_by` for one scene, as surgery proposes refused operations repeatedly. The key
+/// holds every input to the bit, so that no answer becomes invalid.
 class RelaxationMemo {
   public:
     bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop);
-    int count() const { return static_cast<int>(known_.size()); }  ///< of different questions
+    int count() const { return static_cast<int>(known_.size()); }  ///< of distinct inputs
 
   private:
     std::map<std::vector<double>, bool> known_;

@@ -62,7 +62,7 @@ TraceInsertion SiteInsertion::make_vertex(const Vec2& material, VertexId near, c
 {
     making_ = &wanted;
     const TraceInsertion made = insert_trace_point(trace_.surgery(), *scene_.eol, material, near, wanted);
-    ways_.erase_coming(proposed_);  // proposed last, which need not be the one that was made
+    ways_.erase_coming(proposed_);  // the last proposal need not be the one that was made
     if (made.verdict == Verdict::Done && !trace_.find(made.vertex)) ways_.add_coming(made.vertex, wanted.way);
     making_ = nullptr;
     proposed_ = kNoVertex;
@@ -77,8 +77,9 @@ void SiteInsertion::note_proposal(const SurgeryEvent& event)
     ways_.add_coming(proposed_, making_->way);
 }
 
-/// The vertex of its trace that is in a bend's way: a fixed one nearer than kFixedBeside, else the nearest
-/// sliding one within kSlidingBeside, where clean-up would merge the two.
+/// Vertex of the bend's trace that is too near to the bend for a new one. A fixed vertex within kFixedBeside
+/// comes first, then the nearest sliding one within kSlidingBeside, with which clean-up would merge a new
+/// vertex.
 std::optional<VertexId> SiteInsertion::find_beside(const FeatureSite& bend) const
 {
     const ClothSurgery& surgery = trace_.surgery();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Puts EOL vertices on sites: where the mesh admits one of good quality, by splitting, or by moving a vertex
-// that is near through the material.
+// Inserts EOL vertices at sites, where mesh quality allows: by splitting an edge or face, or by moving a near
+// vertex through the material.
 #pragma once
 
 #include <optional>
@@ -16,21 +16,20 @@
 
 namespace arris {
 
-/// The insertions of one surgery. All arguments outlive it.
+/// Insertions of one surgery. All arguments outlive it.
 class SiteInsertion {
   public:
-    /// `soon` (s): how long the material that flows must find room.
+    /// `soon` (s): time for which flowing material must find room.
     SiteInsertion(const Scene& scene, const State& state, const ClothStars& stars, double soon,
                   TraceMesh& trace, const EolAdmission& admission, WayClearing& ways,
                   RefusedContacts& refused);
 
-    /// Puts an EOL vertex on the site, or says why there is none.
+    /// Inserts an EOL vertex at the site, or returns the cause if there is none.
     std::optional<RowCause> try_insert(const FeatureSite& site);
 
     int inserted() const { return inserted_; }
 
-    /// To be called with every operation that is proposed: its first changed vertex may be the one that is
-    /// inserted.
+    /// Must be called with each proposed operation: its first changed vertex may be the one under insertion.
     void note_proposal(const SurgeryEvent& event);
 
   private:
@@ -48,8 +47,8 @@ class SiteInsertion {
     const EolAdmission& admission_;
     WayClearing& ways_;
     RefusedContacts& refused_;
-    const TraceVertex* making_ = nullptr;  ///< the vertex that is being inserted
-    VertexId proposed_ = kNoVertex;        ///< the id that it would have
+    const TraceVertex* making_ = nullptr;  ///< the vertex under insertion
+    VertexId proposed_ = kNoVertex;        ///< the id that this vertex would have
     int inserted_ = 0;
 };
 

@@ -25,7 +25,7 @@ void prepare_stars(const State& state, MeshCache& cache)
     cache.faces_of_stars = state.mesh.faces;
 }
 
-/// The elements of the state's mesh; true where they are of other faces than before.
+/// Updates the elements to the state's mesh. True where its faces have changed.
 bool prepare_elements(const State& state, MeshCache& cache)
 {
     prepare_stars(state, cache);
@@ -49,19 +49,20 @@ bool prepare_elements(const State& state, MeshCache& cache)
 constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr int kAnyNumber = std::numeric_limits<int>::max();
 
-/// A mesh, and the state on it where that has been carried over.
+/// A candidate mesh, and the state on it once that has been transferred.
 struct TriedMesh {
     ConformOutcome outcome;
     std::optional<State> state;
     ClothStars stars;
     TransferReport transferred;
-    double most_strain = 0.0;  ///< with which it was carried over
+    double most_strain = 0.0;  ///< limit of that transfer
 
     double strain() const { return transferred.strain; }
     bool is_carried_over() const { return state && strain() <= most_strain; }
 };
 
-/// The meshes that a step may have.
+/// Makes candidate meshes for a step and chooses one. docs/research-notes.md, "Strained patches", has the
+/// order and the measurements; strain_allowance.h has the limits.
 class MeshTries {
   public:
     MeshTries(const Scene& scene, double dt, const State& state, const MeshCache& cache,
@@ -77,8 +78,8 @@ class MeshTries {
     {
     }
 
-    /// The best of them; none, and the step is made on the mesh there is, where that strains the cloth by
-    /// more than can be borne, as long as attempts at the step have not come to give vertices up.
+    /// The best candidate. No mesh where the best one strains the cloth by more than kMostStrain: the step
+    /// then keeps the mesh it has. This no longer holds once attempts at the step have given vertices up.
     TriedMesh find_best()
     {
         TriedMesh best = choose();
@@ -96,7 +97,8 @@ class MeshTries {
     }
 
   private:
-    /// One that gives way, or one more carefully made where the cloth could not give way as it should have.
+    /// First tries a mesh that relies on cloth that gives way; then one with care, where patches stay
+    /// strained. The last try is a mesh made by force, where vertices are blocked or care has lost some.
     TriedMesh choose()
     {
         TriedMesh giving = make({});
@@ -107,12 +109,13 @@ class MeshTries {
         return or_forced(std::move(careful), is_costly);
     }
 
-    /// That, made again with care where it is strained, as far as that has been looked at; where that does
-    /// not help, with care everywhere. As it is where nothing in what is strained relies on cloth that gives
-    /// way, or where care would cost a trace vertices and it strains but little more than it should.
+    /// Makes a strained mesh again, with care at the strained patches known so far (a transfer stops at the
+    /// first patch over its limit). After kMostTries, care applies everywhere. Returns `mesh` itself where no
+    /// strained patch relies on cloth that gives way. Returns it also where care would lose more EOL vertices
+    /// and its strain is at most kTraceStrain.
     TriedMesh more_careful(TriedMesh mesh)
     {
-        constexpr int kMostTries = 2;  // what is strained after the first is most often elsewhere
+        constexpr int kMostTries = 2;  // after one try, the strained patches are mostly others
         ConformLimits limits;
         for (int k = 0; k <= kMostTries && mesh.strain() > kPatchStrain; ++k) {
             if (!add_strained(mesh, limits.careful_at)) break;
@@ -126,8 +129,8 @@ class MeshTries {
         return mesh;
     }
 
-    /// The vertices of strained patches in which something relies on cloth that gives way; whether there are
-    /// any more of them.
+    /// Adds the vertices of strained patches that rely on cloth that gives way. True where there are new
+    /// ones.
     static bool add_strained(const TriedMesh& mesh, std::vector<VertexId>& careful_at)
     {
         const std::vector<VertexId>& relies_at = mesh.outcome.relies_at;
@@ -141,9 +144,9 @@ class MeshTries {
         return careful_at.size() > known;
     }
 
-    /// That, or one made by force where that leaves less blocked and strains the cloth but little more than
-    /// it should, or where the other is costly, no more than it should. What is blocked would be met by rows,
-    /// which stop what slides and all the cloth that hangs on it.
+    /// Returns a mesh made by force, or else `gentle`. A forced mesh with fewer blocked vertices is taken up
+    /// to a strain of kTraceStrain. Any other is taken only where care was costly, up to kPatchStrain. A
+    /// blocked vertex becomes a row, which stops the sliding cloth and all that hangs on it.
     TriedMesh or_forced(TriedMesh gentle, bool is_costly)
     {
         if (is_costly || gentle.outcome.blocked > 0) {
@@ -169,7 +172,8 @@ class MeshTries {
         return made;
     }
 
-    /// Once; not to the end where a patch would be strained by more than `most_strain`.
+    /// Transfers the state to the mesh, unless that is done. Left unfinished where a patch is strained by
+    /// more than `most_strain`.
     void carry_over(TriedMesh& made, double most_strain)
     {
         if (!made.outcome.mesh || made.is_carried_over()) return;

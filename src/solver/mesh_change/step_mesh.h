@@ -10,19 +10,20 @@
 
 namespace arris {
 
-/// The state that a step starts from, and whether its elements or creases differ from those of the last step.
+/// The state that a step starts from, and whether its elements or creases have changed since the last step.
 struct StepMesh {
     State& start;
     bool is_changed;
 };
 
-/// Chooses the mesh of the step to `end` (s): `state` as it is, or `cache.conformed`, the same cloth on a
-/// mesh with EOL vertices where features press. `failed` is what earlier attempts at the step have found out.
-/// `cache` is up to date for the mesh chosen.
+/// Chooses the mesh of the step to `end` (s): `state` as it is, or `cache.conformed`, the state's cloth on a
+/// mesh with EOL vertices where features press. `failed` holds the failures of earlier attempts at the step.
+/// On return, `cache` belongs to the mesh chosen.
 StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& failed, State& state,
                           MeshCache& cache, StepReport& report);
 
-/// Rebuilds in `cache` what is not of the state's mesh; true where elements or creases have changed.
+/// Rebuilds the data in `cache` that do not belong to the state's mesh. True where elements or creases have
+/// changed.
 bool update_mesh_cache(const Scene& scene, const State& state, MeshCache& cache);
 
 }  // namespace arris

@@ -1,26 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Limits on the strain that mesh changes may cause in a step. Strain is the elastic energy added to a patch
+// of cloth, relative to the patch's kinetic energy plus its weight over one cell. The four limits act one
+// after another. EolGuard refuses a single operation above 1 % (kAllowedStrain; eol_guard.cpp adds small
+// terms, and a factor while clearing). Allowed operations may add up, so step_mesh.cpp measures each patch of
+// a finished mesh after relaxation. A mesh is good up to 3 % (kPatchStrain); above, it is made again with
+// more care. Up to 6 % (kTraceStrain) is accepted where less strain would lose or block EOL vertices. The
+// best mesh is used up to 50 % (kMostStrain); above, the step keeps the mesh it has.
 #pragma once
 
 #include "solver/model/scene.h"
 
 namespace arris {
 
-/// By what share of what moves a patch of cloth (its kinetic energy, and its weight over a cell) an operation
-/// on its mesh may raise its elastic energy: nobody sees that.
+/// Limit for a single operation (EolGuard): the strain of one operation stays invisible.
 inline constexpr double kAllowedStrain = 0.01;
 
-/// The same of all operations of a step on a patch, each within what it may. Less would cost a sliding trace
-/// its vertices, and more energy with them.
+/// Limit for all operations of a step on one patch. A smaller one would cost sliding traces their vertices,
+/// and more energy with them.
 inline constexpr double kPatchStrain = 0.03;
 
-/// The same, where less would cost a trace vertices: those come back a step later, at more cost.
+/// Limit for a patch where a smaller strain would cost a trace vertices. Lost vertices return a step later,
+/// at a higher cost.
 inline constexpr double kTraceStrain = 0.06;
 
-/// The same, beyond which the mesh rather stays as it is, step after step, as long as these can be made. With
-/// less cloth on thin blades, whose mesh changes all the time, comes to be held by the mesh it has.
+/// Limit above which the step keeps the mesh it has, step after step, as long as attempts succeed. With a
+/// smaller one, cloth on thin blades, whose mesh changes all the time, would be held by its old mesh.
 inline constexpr double kMostStrain = 0.5;
 
-/// What gravity gives cloth of `area` (material, m^2) that falls by `length` (m), J.
+/// Work of gravity, J, on cloth of `area` (material, m^2) that falls by `length` (m).
 inline double weight_over(const Scene& scene, double area, double length)
 {
     return scene.gravity ? scene.material.density * area * scene.gravity->acceleration.norm() * length : 0.0;

@@ -12,7 +12,7 @@ bool has_tag(const ClothSurgery& surgery, VertexId a, VertexId b)
     return surgery.has_vertex(a) && surgery.has_vertex(b) && surgery.edge_tag(a, b) != kNoTag;
 }
 
-/// A few faces, and what of the mesh around makes hinges with them.
+/// A few faces, with the hinges between them and to the mesh around.
 class PatchElements {
   public:
     PatchElements(const ClothSurgery& surgery, const SurgeryEvent& event, const std::vector<PatchFace>& faces)
@@ -45,7 +45,7 @@ class PatchElements {
         return static_cast<int>(ids_.size()) - 1;
     }
 
-    /// Across edge k of face f; of one between two of the faces, once.
+    /// Adds the hinge across edge k of face f; an edge between two of the faces once only.
     void add_hinge(int f, int k, double crease_width)
     {
         const Face& face = elements_.faces[f].vertices;
@@ -80,7 +80,7 @@ class PatchElements {
 
     const ClothSurgery& surgery_;
     const SurgeryEvent& event_;
-    std::vector<VertexId> ids_;  // of a dozen vertices
+    std::vector<VertexId> ids_;  // about twelve
     std::vector<Vec2> material_;
     std::vector<Vec3> world_;
     ClothElements elements_;

@@ -18,7 +18,7 @@ void WayClearing::expect_flow(VertexId v, const Vec2& failed)
     trace_.set_flow(v, failed * std::min(1.0, most / failed.norm()));
 }
 
-/// Steps of its flow that must be clear ahead of a vertex, without which it is released.
+/// Steps of a vertex's flow that must be clear ahead; with less room the vertex is released.
 double WayClearing::least_steps(const EolVertex& eol) const
 {
     const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
@@ -69,8 +69,8 @@ bool WayClearing::keeps_way(const SurgeryEvent& event) const
            std::any_of(event.before.begin(), event.before.end(), is_in_way);
 }
 
-/// A vertex that is being inserted is in the way only where it is so as it goes its own way, too: beside
-/// others on its obstacle it goes with them.
+/// Whether a face stands in a way that is kept clear. A face with vertices under insertion must also stand
+/// there when these go their own ways: they move together with others on their obstacle.
 bool WayClearing::stands_in_way(const PatchFace& face) const
 {
     if (!turns_over(face, *kept_)) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keeps the material ahead of sliding EOL vertices clear: clears their ways before a step, and lets no later
-// operation of the same surgery put anything there.
+// Keeps the material ahead of sliding EOL vertices clear. Clears their ways before a step, and refuses later
+// operations of that surgery that would put a face in a cleared way.
 #pragma once
 
 #include <vector>
@@ -12,35 +12,36 @@
 
 namespace arris {
 
-/// The ways of one surgery. All arguments outlive it.
+/// Ways of the sliding vertices in one surgery. All arguments outlive it.
 class WayClearing {
   public:
-    /// `soon` (s): how long the material that flows must find room.
+    /// `soon` (s): time for which flowing material must find room.
     WayClearing(const Scene& scene, double soon, TraceMesh& trace, EolGuard& guard)
         : scene_(scene), soon_(soon), trace_(trace), guard_(guard)
     {
     }
 
-    /// Takes account of the flow (m/s) with which an attempt at the step has failed. That flow may be wild:
-    /// cleared is at most a cell, or twice what the vertex's present flow asks for.
+    /// Takes `failed` (m/s), with which an earlier attempt at the step has failed, as the vertex's flow. Such
+    /// a flow may be far too large. So it is limited to a cell in the time `soon`, or to twice the present
+    /// flow.
     void expect_flow(VertexId v, const Vec2& failed);
 
-    /// Whether the cloth's border comes so soon that no clearing helps.
+    /// Whether the cloth's border is so near ahead that clearing cannot help.
     bool leads_off_cloth(const EolVertex& eol) const;
 
-    /// How far the vertices on the trace go.
+    /// Ways to clear ahead of all vertices on traces.
     std::vector<TraceAdvance> find_advances() const;
     ClearanceReport clear(const std::vector<TraceAdvance>& advances);
 
     void forget_released();
 
-    /// While vertices are inserted only the ways that are needed soon are kept clear.
+    /// During insertion only the ways that are needed soon are kept clear.
     void set_inserting(bool is_inserting) { kept_ = is_inserting ? &needed_ : &ways_; }
-    /// A vertex that is being inserted, and its way (m).
+    /// Registers a vertex under insertion, with its way (m).
     void add_coming(VertexId v, const Vec2& way) { coming_[v] = way; }
     void erase_coming(VertexId v) { coming_.erase(v); }
 
-    /// Whether an operation leaves clear what has been cleared.
+    /// Whether an operation keeps the cleared ways clear.
     bool keeps_way(const SurgeryEvent& event) const;
 
   private:
@@ -52,10 +53,10 @@ class WayClearing {
     double soon_;
     TraceMesh& trace_;
     EolGuard& guard_;
-    TraceWays ways_;                  ///< of the vertices that flow, as far as is well
-    TraceWays needed_;                ///< as far as they may soon go
-    const TraceWays* kept_ = &ways_;  ///< one of the two
-    TraceWays coming_;                ///< of vertices that are being inserted, or have been
+    TraceWays ways_;                  ///< full ways of the sliding vertices
+    TraceWays needed_;                ///< the parts of these ways that are needed soon
+    const TraceWays* kept_ = &ways_;  ///< `ways_` or `needed_`
+    TraceWays coming_;                ///< ways of vertices inserted in this surgery, or under insertion
 };
 
 }  // namespace arris

@@ -10,11 +10,11 @@
 
 namespace arris {
 
-/// What earlier attempts of a step have found out about the flow of material.
+/// Failures of earlier attempts at a step because too little material was left for the flow.
 struct FailedFlow {
-    std::map<VertexId, Vec2> flow;   ///< m/s: with it the mesh had not enough material at that vertex
-    std::set<VertexId> given_up;     ///< vertices for which no attempt had room: they are released
-    std::vector<Vec2> made_at = {};  ///< material, m: where new EOL vertices had not enough
+    std::map<VertexId, Vec2> flow;  ///< m/s: a flow for which the mesh had too little material at that vertex
+    std::set<VertexId> given_up;    ///< vertices without room in any attempt: they are released
+    std::vector<Vec2> made_at = {};  ///< material, m: places where new EOL vertices had too little material
     /// Whether one of `made_at` is nearer than `reach` (m) to a material point.
     bool has_failed_near(const Vec2& material, double reach) const
     {

@@ -20,7 +20,7 @@ struct FeatureId {
 
     bool is_corner() const { return kind == Kind::Corner; }
     bool is_bend() const { return kind == Kind::Bend; }
-    /// Whether a vertex there stays at one point of the obstacle.
+    /// Whether a vertex on this feature stays at one point of the obstacle.
     bool is_fixed() const { return kind != Kind::Edge; }
 
     static FeatureId edge(std::int32_t obstacle, std::int32_t index) { return {obstacle, Kind::Edge, index}; }

@@ -8,7 +8,7 @@ namespace arris {
 
 namespace {
 
-/// Where the vertex was at time 0; for one that was inserted later, where the pin's motion would have had it.
+/// Place of the vertex at time 0; for one inserted later, its current place moved back with the pin.
 Vec3 find_origin(const State& state, std::uint32_t pin, int vertex, const Placement& now)
 {
     const std::pair<std::uint32_t, std::uint32_t> key(pin, state.ids[vertex]);

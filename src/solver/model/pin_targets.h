@@ -9,7 +9,7 @@
 
 namespace arris {
 
-/// A vertex that a pin holds, and where it must be at the step's end.
+/// A vertex that a pin holds, and its target at the step's end.
 struct PinTarget {
     int vertex;
     std::array<bool, 3> held;  ///< x, y, z
@@ -20,10 +20,11 @@ struct PinTarget {
 /// the last pin that holds it.
 std::vector<PinTarget> find_pin_targets(const Scene& scene, const State& state, double end);
 
-/// Puts held vertices where they must be, in the directions in which they are held.
+/// Moves held vertices to their targets, in the directions in which they are held.
 void hold_in_place(const std::vector<PinTarget>& held, std::vector<Vec3>& world);
 
-/// What pins hold goes where they have it at time 0, and moves as they do.
+/// Moves vertices that pins hold to their places at time 0, with the pins' velocities, and records their
+/// anchors.
 void attach_pins(const Scene& scene, State& state);
 
 }  // namespace arris

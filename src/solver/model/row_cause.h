@@ -8,61 +8,63 @@
 
 namespace arris {
 
-/// Why a contact with a sharp feature that presses is a row, where it could be an EOL vertex.
+/// The reason why a pressing contact with a sharp feature is a row and not an EOL vertex.
 ///
-/// A contact is a place of the cloth on a feature. Of an edge of the cloth that ends at an EOL vertex of the
-/// same feature nothing can be told apart from that vertex within 5 % of its length, as no vertex is put
-/// nearer to another, nor within the stand-off, on whose rounding both touch; and where both its ends are
-/// such vertices it is the trace itself; so it is where a face that has that edge touches, within 5 % of it,
-/// a vertex that the obstacle's mesh has in the middle of a convex edge. The row there holds what the
-/// vertex's bound holds, and neither holds the material back: it is no contact of its own (`AtEol`). Farther
-/// from the vertex it is one (`BesideEol`).
+/// A contact is a place of the cloth on a feature. Near an EOL vertex of the same feature it is no contact of
+/// its own (`AtEol`): its row and the vertex's bound keep the same distance, and neither holds the material
+/// back. On an edge of the cloth that ends at such a vertex, this holds within 5 % of the edge's length: no
+/// vertex is inserted nearer to another. It also holds within the stand-off, where rounding decides which of
+/// the two touches. If both ends are such vertices, the edge is the trace, and this holds everywhere on it. A
+/// face with that trace edge may touch a vertex of the obstacle's mesh in the middle of a convex edge: within
+/// 5 % of the trace, this counts too. Farther from the vertex a contact is one of its own (`BesideEol`).
 ///
-/// Where a fold flies off an edge the cloth behind it lies on one face and goes on beyond its end in the same
-/// plane. What presses there does so along the face's normal: it is what the face holds of the cells that
-/// reach beyond it, turns the cloth by nothing and holds no material back. A vertex of two velocities would
-/// move as an ordinary one does, and be let go at once, as all are where cloth is flat (`FlatBehind`).
+/// Where a fold flies off an edge, the cloth behind the fold lies on one face and reaches beyond the face's
+/// end in the same plane. A contact there presses along the face's normal: the face carries the cells that
+/// reach beyond it. This contact neither turns the cloth nor holds material back (`FlatBehind`). An EOL
+/// vertex there would move like an ordinary vertex and be released at once, as all are where the cloth is
+/// flat.
 enum class RowCause {
-    New,           ///< it did not press at the end of the step before: a contact is a row first
-    NotCrossing,   ///< no place: the cloth does not pass through its edge's plane, or is not near its wire
-    AtEol,         ///< it is the contact of an EOL vertex of that feature, seen from beside it
-    BesideEol,     ///< the mesh's place for it is an EOL vertex of that feature, but the cloth touches
-                   ///< elsewhere; or it follows too near a fold that has just flown off the feature
-    FlatBehind,    ///< it follows a fold that flies off the feature, flat on a face beside that
-    NearBorder,    ///< of the cloth: nearer than where a trace may begin, or where it had to end
-    BorderAhead,   ///< of the cloth: so fast that it would have to go within a few steps
-    Guard,         ///< the mesh it needs would strain the cloth, or an obstacle is in the way
-    Quality,       ///< the mesh has no place for it: a corner, another trace, a face too thin
-    OffPlane,      ///< where the mesh could have it is off its plane
-    Blocked,       ///< what is ahead of its trace could not be cleared
-    GivenUp,       ///< with EOL vertices there an attempt at this step had failed
-    Released,      ///< it was EOL until this step
-    NoDirection,   ///< a saddle corner, or wire or point whose cloth tells no side
-    AlongBorder,   ///< the cloth's border leads along the trace, or the feature, within 20 degrees
-    EdgeOn,        ///< flat cloth that all but contains the outward direction: no coordinates there
-    ClothCorner,   ///< only rows at the cloth's own corners
-    OtherFeature,  ///< its vertex is on another feature, or one nearer than a thickness has a trace there
+    New,          ///< did not press at the end of the step before: a contact is first a row
+    NotCrossing,  ///< no place: the cloth does not cross the edge's plane, or is not near the wire
+    AtEol,        ///< is the contact of an EOL vertex of that feature, found from beside it
+    BesideEol,   ///< its place on the mesh is an EOL vertex of that feature, but the cloth touches elsewhere;
+                 ///< or it follows too near a fold that has just flown off the feature
+    FlatBehind,  ///< follows a fold that flies off the feature, flat on a face beside it
+    NearBorder,  ///< border of the cloth: nearer than where a trace may begin, or where it had to end
+    BorderAhead,   ///< border of the cloth: so fast that the vertex would be released within a few steps
+    Guard,         ///< the mesh change would strain the cloth, or an obstacle is in the way
+    Quality,       ///< the mesh has no place: a corner, another trace, a face too thin
+    OffPlane,      ///< the mesh's only place is off the edge's plane
+    Blocked,       ///< cloth ahead of its trace could not be cleared
+    GivenUp,       ///< an attempt at this step had failed with EOL vertices there
+    Released,      ///< was EOL until this step
+    NoDirection,   ///< a saddle corner, or a wire or point where the cloth's side is unknown
+    AlongBorder,   ///< the cloth's border leads along the trace or the feature, within 20 degrees
+    EdgeOn,        ///< flat cloth that almost contains the outward direction: no coordinates
+    ClothCorner,   ///< at a corner of the cloth, where all contacts are rows
+    OtherFeature,  ///< its vertex is on another feature, or another feature within a thickness has a trace
+                   ///< there
     OtherObstacle  ///< its vertex is on a feature of another obstacle
 };
 inline constexpr std::size_t kRowCauses = 19;
 using RowCounts = std::array<int, kRowCauses>;  ///< by RowCause
 
-/// In the columns of steps.csv.
+/// Name in the columns of steps.csv.
 const char* to_string(RowCause cause);
 
-/// Whether no EOL vertex is wanted there, whatever the mesh: it would have no coordinates, would be off the
-/// cloth's border at once, or is there.
+/// Whether no EOL vertex is possible there, whatever the mesh: without coordinates, at once off the cloth's
+/// border, or because there is one already.
 bool is_excluded(RowCause cause);
 
-/// Whether such rows count in the share of contacts that are EOL: not excluded, and not in their first step.
+/// Whether rows with this cause count in the EOL share: neither excluded nor in their first step.
 bool counts_in_share(RowCause cause);
 
-/// A contact that pressed at the step's start, and why none of EOL vertices has come of it.
+/// A contact that pressed at the step's start, and why it did not become an EOL vertex.
 struct RefusedContact {
-    std::array<std::uint32_t, 3> vertex_ids;  ///< as ActiveContact's, as all that follows
+    std::array<std::uint32_t, 3> vertex_ids;  ///< this and the next three members as in ActiveContact
     ContactKind kind;
     std::int32_t obstacle;
-    std::int32_t element;  ///< of a vertex's contact it does not count: it slides from face to face
+    std::int32_t element;  ///< not compared for a vertex's contact, which slides from face to face
     RowCause cause;
 };
 

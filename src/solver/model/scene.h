@@ -15,19 +15,19 @@
 
 namespace arris {
 
-/// Cloth vertices whose material coordinates lie in `material` are held in `held` world directions and moved.
+/// Holds and moves cloth vertices whose material coordinates lie in `material`, in the `held` world
+/// directions.
 struct Pin {
     MaterialBox material;
     RigidMotion motion;
     std::array<bool, 3> held = {true, true, true};             ///< x, y, z
     double release = std::numeric_limits<double>::infinity();  ///< s
-    std::optional<int> follows =
-        {};  ///< an obstacle (index in the scene) on which they ride instead of `motion`
+    std::optional<int> follows = {};  ///< obstacle (index) that they ride on instead of `motion`
 
     bool holds_until(double end) const { return end <= release; }
 };
 
-/// What is simulated: const while stepping. An effect that is absent here costs nothing.
+/// The simulated scene, const while stepping. An absent effect costs nothing.
 struct Scene {
     Material material;
     std::optional<Gravity> gravity;
@@ -35,16 +35,16 @@ struct Scene {
     std::vector<Pull> pulls;
     std::vector<Pin> pins;
     std::vector<Obstacle> obstacles;
-    std::optional<MeshTarget> eol;  ///< what the mesh near features should be; without it none is EOL
+    std::optional<MeshTarget> eol;  ///< target of the mesh near features; no EOL vertices without it
 };
 
 /// Whether any obstacle has a sharp edge, corner, wire or point.
 bool has_features(const Scene& scene);
 
-/// Maps where something that `pin` holds was at time 0 to where it has it at `time` (s).
+/// Maps the place at time 0 of something that `pin` holds to its place at `time` (s).
 Placement pin_placement(const Scene& scene, const Pin& pin, double time);
 
-/// Velocity (m/s) just after `time` of what `pin` holds at `place` then.
+/// Velocity (m/s) just after `time` of something that `pin` holds at `place`.
 Vec3 pin_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place);
 
 /// Times after 0 at which the input jumps (motion starts or stops, keyframe, release, pull): ascending,

@@ -8,9 +8,8 @@ enum class Integrator { ImplicitEuler, Bdf2 };
 /// Numbers a user may choose.
 struct Settings {
     Integrator integrator = Integrator::Bdf2;
-    double step = 0.005;  ///< s, the longest step
-    double tolerance =
-        1e-9;  ///< greatest relative KKT residual accepted; lower costs nothing until about 1e-12
+    double step = 0.005;      ///< s, the longest step
+    double tolerance = 1e-9;  ///< greatest relative KKT residual accepted; lower is free down to about 1e-12
 };
 
 }  // namespace arris

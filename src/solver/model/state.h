@@ -12,12 +12,11 @@
 
 namespace arris {
 
-/// A contact that pressed at the end of a step, with its multiplier: the next solve's warm start, and what
-/// the next search looks at again.
+/// A contact that pressed at the end of a step, with its multiplier. The next solve starts from it, and the
+/// next search tests it again.
 struct ActiveContact {
     static constexpr std::uint32_t kNoVertex = 0xffffffffu;
-    std::array<std::uint32_t, 3>
-        vertex_ids;  ///< of the cloth's vertex, edge or face, ascending; rest kNoVertex
+    std::array<std::uint32_t, 3> vertex_ids;  ///< of vertex, edge or face, ascending; else kNoVertex
     ContactKind kind;
     std::int32_t obstacle;  ///< index in the scene
     std::int32_t element;   ///< as ObstacleContact's
@@ -30,19 +29,19 @@ struct EolVertex {
     std::uint32_t vertex_id;
     FeatureId on;
     Vec3 outward;           ///< unit, from the feature, in the obstacle's frame
-    std::int32_t idle;      ///< steps in a row at whose end it did not press
-    std::int32_t side = 0;  ///< of a wire or point: 1 where the normals of the cloth's faces point outward,
-                            ///< -1 where inward, 0 as long as that is not known
+    std::int32_t idle;      ///< consecutive steps at whose end it did not press
+    std::int32_t side = 0;  ///< at a wire or point: 1 if the normals of the cloth's faces point outward, -1
+                            ///< if inward, 0 if unknown
 };
 
-/// Where a vertex that a pin holds was at time 0: the pin's motion maps this to where it must be.
+/// Place of a pinned vertex at time 0, which the pin's motion maps to the vertex's target.
 struct PinAnchor {
     std::uint32_t pin;  ///< index in the scene
     std::uint32_t vertex_id;
     Vec3 origin;  ///< x(0), m
 };
 
-/// Exactly what a resumed run needs, and nothing that could be computed from it.
+/// Exactly the data that a resumed run needs, and nothing that could be computed from them.
 struct State {
     double time = 0.0;  ///< s
     std::int64_t step = 0;
@@ -50,7 +49,7 @@ struct State {
     std::vector<std::uint32_t> ids;  ///< persistent, one a vertex, ascending
     std::uint32_t next_id = 0;
     std::vector<Vec3> velocity;           ///< v_k, m/s
-    std::vector<Vec2> material_velocity;  ///< V_k, m/s: with which X moves; zero but at EOL vertices
+    std::vector<Vec2> material_velocity;  ///< V_k, m/s: velocity of X; zero except at EOL vertices
 
     // One step back, for BDF2; meaningless where `previous_dt` is 0 (first step, after a jump of the input).
     double previous_dt = 0.0;  ///< s
@@ -62,16 +61,16 @@ struct State {
     std::vector<EolVertex> eol;         ///< ascending by vertex_id
     std::vector<PinAnchor> anchors;     ///< ascending by (pin, vertex_id)
     std::vector<ActiveContact> active;  ///< ascending by (vertex_ids, obstacle, kind, element)
-    std::int64_t crossings = 0;         ///< how often, so far, something passed through
+    std::int64_t crossings = 0;         ///< passages through obstacles so far
 
-    /// -1 where there is no such vertex.
+    /// Index of the vertex with this id; -1 without such a vertex.
     int index_of(std::uint32_t id) const
     {
         const auto found = std::lower_bound(ids.begin(), ids.end(), id);
         return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
     }
 
-    /// Entry in `eol` of the vertex with this id; -1 where it is none.
+    /// Entry in `eol` of the vertex with this id; -1 where it is not EOL.
     int eol_entry(std::uint32_t id) const
     {
         const auto found = std::lower_bound(

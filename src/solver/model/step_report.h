@@ -25,25 +25,25 @@ struct PhaseSeconds {
     }
 };
 
-/// A step that has no past to go on is made in two parts, told as one; any other part of a step, or all of
-/// it, is told as it is.
+/// A step without history is made in two parts, Opening and Rest, which are reported as one row. Ordinary:
+/// any other step or part of one, reported individually.
 enum class StepPart { Ordinary, Opening, Rest };
 
 struct StepReport {
     StepStatus status = StepStatus::Done;
     double dt = 0.0;  ///< s
     StepPart part = StepPart::Ordinary;
-    std::int64_t infeasible_vertex = -1;  ///< id of one whose pins and contacts no velocity meets
-    int contacts = 0;                     ///< that press, without planes behind wires
-    int feature_rows = 0;                 ///< those at a sharp edge, corner, wire or point but EOL vertices
-    RowCounts rows_by_cause{};            ///< these, by why they are rows, in a scene with EOL vertices
-    int eol_pressing = 0;                 ///< EOL vertices with a positive multiplier
-    int crossings = 0;                    ///< in this step
-    int solves = 0;                       ///< velocity solves: more than one where the check found violations
-    int relinearisations = 0;             ///< solves of forces linearised again (relinearization.h)
-    double energy_rise = 0.0;             ///< J, what was pushed in by a step that nothing mended
-    int yielded = 0;                      ///< contacts that could not keep their stand-off
-    int rewound = 0;                      ///< vertices put back on their way, so that nothing is passed
+    std::int64_t infeasible_vertex = -1;  ///< id of a vertex whose pins and contacts no velocity can meet
+    int contacts = 0;                     ///< pressing, without fold planes at wires
+    int feature_rows = 0;       ///< pressing, at a sharp edge, corner, wire or point, without EOL vertices
+    RowCounts rows_by_cause{};  ///< `feature_rows` by cause, in a scene with EOL vertices
+    int eol_pressing = 0;       ///< EOL vertices with a positive multiplier
+    int crossings = 0;          ///< in this step
+    int solves = 0;             ///< velocity solves: more than one if the check found violations
+    int relinearisations = 0;   ///< solves with relinearised forces (relinearization.h)
+    double energy_rise = 0.0;   ///< J, energy added by a step that no further attempt could mend
+    int yielded = 0;            ///< contacts that could not keep their stand-off
+    int rewound = 0;            ///< vertices put back on their path so that they pass nothing
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;

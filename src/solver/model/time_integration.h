@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Implicit Euler, q' = q + h v', and variable-step BDF2: with w = h_k / h_(k-1),
 //
-//   q~ = ((1+w)^2 q_k - w^2 q_(k-1)) / (1+2w),   v~ alike,   gamma = h (1+w)/(1+2w),   q' = q~ + gamma v'.
+//   q~ = ((1+w)^2 q_k - w^2 q_(k-1)) / (1+2w),   gamma = h (1+w)/(1+2w),   q' = q~ + gamma v',
 //
-// Forces are linearised at q^ = q~ + gamma v^ with v^ = v_k (BDF2) or 0 (implicit Euler): at q~ any stiffness
-// that is not the true Hessian would make BDF2 first order, as q' - q~ is O(h) where q' - q^ is O(h^2).
+// and v~ is extrapolated with the formula of q~. Forces are linearised at q^ = q~ + gamma v^ with v^ = v_k
+// (BDF2) or 0 (implicit Euler). At q~, any stiffness but the true Hessian would make BDF2 first order: q' -
+// q~ is O(h), q' - q^ is O(h^2).
 #pragma once
 
 #include <vector>
@@ -14,11 +15,11 @@
 
 namespace arris {
 
-/// Where a step starts from, one entry a vertex.
+/// The start of a step's equations, one entry a vertex.
 struct Prediction {
     double gamma = 0.0;                   ///< s
-    bool has_history = false;             ///< BDF2 with a step behind it; else implicit Euler
-    double ratio = 0.0;                   ///< of this step to the last
+    bool has_history = false;             ///< BDF2 with a previous step; else implicit Euler
+    double ratio = 0.0;                   ///< length of this step over the last
     double forward = 0.0;                 ///< q~ = q_k + forward (q_k - q_(k-1))
     std::vector<Vec3> position;           ///< q~, m
     std::vector<Vec3> velocity;           ///< v~, m/s
@@ -26,33 +27,34 @@ struct Prediction {
     std::vector<Vec2> material_velocity;  ///< V~, m/s
 };
 
-/// Velocities of vertices, m/s; `material` is that with which their material coordinates move.
+/// Velocities of vertices, m/s, in the world and of their material coordinates.
 struct ClothVelocity {
     std::vector<Vec3> world;
     std::vector<Vec2> material;
 };
 
-/// `share` of the way from one to the other.
+/// from + `share` (to - from).
 ClothVelocity blend(const ClothVelocity& from, const ClothVelocity& to, double share);
 
-/// The cloth's vertices at one moment, in the world and in the material, and how they move.
+/// The cloth's vertices at one moment, in the world and in the material, with their velocities.
 struct MovingCloth {
     std::vector<Vec3> world;     ///< m
     std::vector<Vec2> material;  ///< m
     ClothVelocity velocity;
 };
 
-/// Where a step ends with this velocity: q' = q~ + gamma v'.
+/// End of the step with this velocity: q' = q~ + gamma v'.
 MovingCloth find_end(const Prediction& prediction, const ClothVelocity& velocity);
 
-/// Where the cloth would be at the step's end by its past alone; implicit Euler: as it is.
+/// The cloth at the step's end, extrapolated from its history alone; with implicit Euler, the cloth of
+/// `state`.
 MovingCloth extrapolate(const State& state, const Prediction& prediction);
 
-/// Whether a step of `dt` (s) has one behind it that BDF2 can use: there is none after a jump, and after one
-/// so short variable-step BDF2 were not stable.
+/// Whether BDF2 can use the step before a step of `dt` (s). False after a jump, and after a step so much
+/// shorter that variable-step BDF2 would be unstable.
 bool has_past(const State& state, double dt);
 
-/// BDF2 is implicit Euler where it has no past.
+/// The prediction for a step of `dt` (s). BDF2 without history is implicit Euler.
 Prediction predict(const State& state, Integrator integrator, double dt);
 
 }  // namespace arris

@@ -17,13 +17,13 @@ namespace arris {
 
 namespace {
 
-/// On a wire: an EOL vertex or a site.
+/// An EOL vertex or a site on a wire.
 struct Place {
-    double along;  ///< m, from the polyline's begin
-    Vec3 point;    ///< of the wire
+    double along;  ///< m, from the polyline's start
+    Vec3 point;    ///< on the wire
     Vec2 material;
-    int vertex;  ///< of the cloth, there or next to it
-    int bend;    ///< point of the obstacle's mesh that it is held at; else -1
+    int vertex;  ///< the cloth's vertex there or nearest to it
+    int bend;    ///< point of the obstacle's mesh where it is held, or -1
 };
 
 struct Turn {
@@ -118,7 +118,7 @@ class BendFinder {
         return (1.0 - s) * positions_[a] + s * positions_[b];
     }
 
-    /// Of the turns between two neighbours the one that their chord misses most. `length`: of the polyline.
+    /// The bend between two neighbours that their chord misses most. `length`: of the polyline, m.
     std::optional<FeatureSite> between(const Place& p, const Place& q, const std::vector<Turn>& bends,
                                        double length) const
     {
@@ -140,7 +140,7 @@ class BendFinder {
         return worst ? nearest_to(*worst, {p.vertex, q.vertex}) : std::nullopt;
     }
 
-    /// Where the cloth around two vertices is nearest to a turn.
+    /// Site where the cloth around two vertices is nearest to a bend.
     std::optional<FeatureSite> nearest_to(const Turn& bend, const std::array<int, 2>& around) const
     {
         const Vec3& point = obstacle_.mesh().points[static_cast<std::size_t>(bend.point)];
@@ -160,7 +160,7 @@ class BendFinder {
         return site;
     }
 
-    /// And their neighbours.
+    /// Faces at these vertices and at their neighbours.
     std::set<int> faces_around(const std::array<int, 2>& vertices) const
     {
         std::set<int> faces;

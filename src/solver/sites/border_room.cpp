@@ -13,7 +13,7 @@ namespace arris {
 
 namespace {
 
-/// World, now.
+/// Tangent of the feature in the world, at the state's time.
 Vec3 tangent_of(const Scene& scene, const State& state, const EolVertex& eol)
 {
     const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
@@ -34,7 +34,7 @@ bool is_cloth_corner(const State& state, const ClothStars& stars, int v)
 double room_to_border(const Scene& scene, const State& state, const ClothStars& stars, const Vec2& X, int v,
                       bool is_on_border, const EolVertex& eol)
 {
-    std::optional<Vec3> tangent;  // most are not asked for
+    std::optional<Vec3> tangent;  // computed when first needed
     double least = std::numeric_limits<double>::infinity();
     for (const int f : stars.faces[v])
         for (const int w : state.mesh.faces[f]) {

@@ -7,15 +7,16 @@
 
 namespace arris {
 
-/// How far, m, material point X near vertex v is from where a trace leaves the cloth: on the border from its
-/// corners, else from borders that run along the trace; what is held at a point from any. Infinite where
-/// there is none among the faces at v. Of `eol` the feature counts.
+/// Distance, m, in the material, from point X near vertex v to where a trace leaves the cloth. On the cloth's
+/// border it is measured to the corners of the cloth, elsewhere to borders that run along the trace. For a
+/// vertex held at a point, borders in any direction count. Infinite where no such border is among the faces
+/// at v. Only the feature of `eol` is used.
 double room_to_border(const Scene& scene, const State& state, const ClothStars& stars, const Vec2& X, int v,
                       bool is_on_border, const EolVertex& eol);
 
-/// Whether the feature of `eol` meets the cloth's border at less than 20 degrees where the border passes
-/// through that edge of the cloth; `edge` twice the same vertex: through it, where both sides of it count. In
-/// the world.
+/// Whether the feature of `eol` meets the cloth's border at less than 20 degrees in the world, where the
+/// border passes through `edge`. If `edge` is one vertex twice, the border's direction is that between its
+/// two neighbours on the border.
 bool is_along_border(const Scene& scene, const State& state, const ClothStars& stars,
                      const std::array<int, 2>& edge, const EolVertex& eol);
 

@@ -17,8 +17,8 @@ namespace arris {
 
 namespace {
 
-constexpr double kInPlane = 1e-6;  // thicknesses: a vertex nearer to a feature's plane is in it
-constexpr double kAsGood = 0.1;    // the same, where the cloth comes no nearer: its edge begins or ends there
+constexpr double kInPlane = 1e-6;  // thicknesses from a feature's plane: counts as in the plane
+constexpr double kAsGood = 0.1;    // thicknesses: for an edge that begins or ends near the plane
 
 }  // namespace
 
@@ -70,7 +70,7 @@ std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const 
     return site;
 }
 
-/// Where it crosses, from a (0) to b (1).
+/// Share of the edge, from a (0) to b (1), at which it crosses.
 std::optional<double> EdgeCrossings::find_share(int a, int b, int feature, const Reach& reach) const
 {
     const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
@@ -100,8 +100,8 @@ std::optional<double> EdgeCrossings::find_share(int a, int b, int feature, const
     return s;
 }
 
-/// How much higher an edge of the cloth that pressed along `normal` may be over the feature by now. What
-/// kept the gap is the point that touched; the edge has slid on from there, and turned.
+/// Height, m, by which an edge of the cloth that pressed along `normal` may have risen over the feature. The
+/// point that touched keeps its gap, while the edge has slid along and turned since.
 double EdgeCrossings::find_rise(int a, int b, int feature, const Vec3& normal) const
 {
     const auto [from, to] = feature_segment(obstacle_, feature);
@@ -115,8 +115,9 @@ double EdgeCrossings::find_rise(int a, int b, int feature, const Vec3& normal) c
     return slide * std::abs(normal.dot((positions_[b] - positions_[a]).normalized()));
 }
 
-/// Cloth a stand-off above an edge passes through its plane a little beyond where it is nearest: where an
-/// edge of it ends between the two, on one that goes on from there.
+/// Crossing beyond the end of a cloth edge. Cloth a stand-off above a feature crosses the plane slightly
+/// beyond its nearest point. If an edge ends between the two, the crossing is on an edge that continues from
+/// there.
 std::optional<FeatureSite> EdgeCrossings::find_beyond_end(int a, int b, int feature, const Vec3& normal) const
 {
     if (obstacle_.features().edges[feature].kind != FeatureKind::Convex) return std::nullopt;

@@ -8,20 +8,20 @@
 
 namespace arris {
 
-/// Where edges of the cloth cross the feature edges of one obstacle: on a convex edge where they pass through
-/// the plane in which an EOL vertex may move, no higher than cloth that lies on it; on a wire or border,
-/// whose plane turns with the cloth, where they are nearest.
+/// Places where edges of the cloth cross the feature edges of one obstacle. At a convex edge this is where
+/// the cloth's edge crosses the plane in which an EOL vertex may move, no higher than cloth that lies on the
+/// feature. On a wire or border, whose plane turns with the cloth, this is the nearest point.
 class EdgeCrossings {
   public:
     /// `stars` are the state's.
     EdgeCrossings(const Scene& scene, const State& state, const ClothStars& stars, std::int32_t obstacle);
 
-    /// Of the edge from vertex a to b with feature edge `feature`, on which it lies or presses along `normal`
-    /// (in the obstacle's frame). Nothing at an EOL vertex.
+    /// Crossing of the cloth's edge from vertex a to b with feature edge `feature`, where it lies or presses
+    /// along `normal` (in the obstacle's frame). Nothing at an EOL vertex.
     std::optional<FeatureSite> find(int a, int b, int feature, const Vec3& normal) const;
 
-    /// The same of an edge that pressed: that may be higher by now, or end before it crosses, on an edge that
-    /// goes on from there.
+    /// `find` for an edge that pressed. By now the edge may be higher, or end before it crosses; the crossing
+    /// is then on an edge that continues from its end.
     std::optional<FeatureSite> find_pressed(int a, int b, int feature, const Vec3& normal) const;
 
     const Obstacle& obstacle() const { return obstacle_; }
@@ -29,16 +29,16 @@ class EdgeCrossings {
     const State& state() const { return state_; }
     const ClothStars& stars() const { return stars_; }
 
-    /// Of the cloth, in the obstacle's frame.
+    /// Positions of the cloth in the obstacle's frame.
     const std::vector<Vec3>& positions() const { return positions_; }
 
-    /// Of a vertex of the cloth, ascending.
+    /// Neighbours of a vertex of the cloth, ascending.
     std::vector<int> neighbours(int vertex) const;
 
   private:
     struct Reach {
-        double in_plane;  ///< thicknesses from the plane, within which an edge's end is the crossing
-        double height;    ///< m, above the feature, to which cloth lies on it
+        double in_plane;  ///< thicknesses from the plane, within which an end of an edge is the crossing
+        double height;    ///< m, above the feature, up to which cloth lies on it
     };
     std::optional<FeatureSite> find(int a, int b, int feature, const Vec3& normal, const Reach& reach) const;
     std::optional<double> find_share(int a, int b, int feature, const Reach& reach) const;

@@ -20,7 +20,7 @@ double room_wanted(const BorderRoom& room, const FeatureId& on)
     return on.is_fixed() ? room.fixed : room.sliding;
 }
 
-/// Whether what presses at a site of an edge is flat on a face beside it.
+/// Whether the cloth at a site on an edge lies flat on a face beside the edge.
 bool is_along_face(const Obstacle& obstacle, const FeatureSite& site)
 {
     const auto& normals = obstacle.features().edges[site.on.index].normals;
@@ -28,7 +28,7 @@ bool is_along_face(const Obstacle& obstacle, const FeatureSite& site)
                        [&](const Vec3& n) { return n.dot(site.outward) > kFlat; });
 }
 
-/// Whether the cloth turns at the vertex.
+/// Whether the cloth is folded at the vertex with these faces.
 bool is_folded(const State& state, std::span<const int> faces)
 {
     std::vector<Vec3> normals;
@@ -43,8 +43,8 @@ bool is_folded(const State& state, std::span<const int> faces)
     return !std::all_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(mean) > kFlat; });
 }
 
-/// Whether an EOL vertex is of a corner which presses on a face of the cloth: it holds one vertex, and is
-/// where that face is.
+/// Whether an EOL vertex belongs to a corner that now presses on a face of the cloth. A corner holds only one
+/// vertex, whose place is now in that face.
 bool is_corner_under_face(const Scene& scene, const State& state, const EolVertex& eol)
 {
     const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
@@ -56,8 +56,8 @@ bool is_corner_under_face(const Scene& scene, const State& state, const EolVerte
     });
 }
 
-/// Whether an EOL vertex that has left its edge or wire, through which material flows fast, is led otherwise
-/// than what comes to it: it then bends that, with every step. Along a face it is not (free_fold.h).
+/// Whether an EOL vertex off its edge or wire, under fast flow, moves in another direction than the arriving
+/// cloth. It then bends that cloth in every step. A fold that moves along a face does not (free_fold.h).
 bool is_led_astray(const Scene& scene, const State& state, const EolVertex& eol, const EolCoordinates& at,
                    const Vec3& place)
 {
@@ -73,18 +73,18 @@ bool is_led_astray(const Scene& scene, const State& state, const EolVertex& eol,
     });
 }
 
-/// Whether an EOL vertex is still on the polyline that it is on: not at its end.
+/// Whether an EOL vertex has not passed the end of its polyline.
 bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3& place)
 {
     return vertex.on.is_corner() || !is_past_end(obstacle, vertex.on.index, place);
 }
 
-/// Whether an EOL vertex has come so near to the cloth's border that it is released.
+/// Whether an EOL vertex is so near to the cloth's border that it is released.
 bool is_at_border(const Scene& scene, const State& state, const ClothStars& stars, const EolVertex& eol)
 {
     const int v = state.index_of(eol.vertex_id);
     const Vec2& X = state.mesh.material[v];
-    const double wanted = eol.on.is_corner() ? kRoomToStay.fixed : kRoomToStay.sliding;
+    const double wanted = room_wanted(kRoomToStay, eol.on);
     const double room = room_to_border(scene, state, stars, X, v, stars.border_neighbours[v][0] >= 0, eol);
     return !(room > wanted * scene.eol->longest) && !(room > wanted * scene.eol->length(X));
 }
@@ -100,7 +100,7 @@ std::optional<RowCause> EolAdmission::find_refusal(const FeatureSite& site, int 
     return std::nullopt;
 }
 
-/// Why the cloth's border leaves no room for a vertex; nothing where it does.
+/// Cause if the cloth's border leaves no room for a vertex; nothing if there is room.
 std::optional<RowCause> EolAdmission::find_border_cause(const FeatureSite& site, int v,
                                                         const Vec2& flow) const
 {
@@ -114,15 +114,16 @@ std::optional<RowCause> EolAdmission::find_border_cause(const FeatureSite& site,
     };
     const double room = room_at(site.material);
     if (room < room_wanted(kRoomToEnter, eol.on) * h) return RowCause::NearBorder;
-    // What comes fast would have to go at once.
-    constexpr double kAside = 1e-3;  // of the target length: to see how fast the room closes
+    // A vertex that moves fast towards the border would be released at once.
+    constexpr double kAside = 1e-3;  // target lengths: for a finite difference of the room
     const Vec2 aside = kAside * h * flow.stableNormalized();
     const double closing = (room - room_at(site.material + aside)) / (kAside * h) * flow.norm();
     if (room < soon_ * closing) return RowCause::BorderAhead;
     return std::nullopt;
 }
 
-/// Of edges nearer to each other than the cloth is thick one has a trace: between two there is no room.
+/// Whether another edge nearer than the thickness has a trace here: between two traces there would be no
+/// room.
 bool EolAdmission::is_beside_other(const FeatureSite& site) const
 {
     if (site.on.is_corner()) return false;
@@ -140,7 +141,7 @@ bool EolAdmission::is_beside_other(const FeatureSite& site) const
     });
 }
 
-/// Whether an EOL vertex is of a fold that has left its edge.
+/// Whether an EOL vertex belongs to a free fold: one that has left its convex edge.
 bool EolAdmission::has_left(const EolVertex& eol) const
 {
     const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
@@ -150,7 +151,7 @@ bool EolAdmission::has_left(const EolVertex& eol) const
                             scene_.material.thickness);
 }
 
-/// Where a site on an edge of the cloth is.
+/// World position of a site on an edge of the cloth; of its vertex where the site has no edge.
 Vec3 EolAdmission::world_at(const FeatureSite& site) const
 {
     const auto& [a, b] = site.edge;
@@ -161,22 +162,23 @@ Vec3 EolAdmission::world_at(const FeatureSite& site) const
     return (1.0 - s) * state_.mesh.world[a] + s * state_.mesh.world[b];
 }
 
-/// Where a fold has left an edge, what follows it over the edge, as much material away as the fold is from
-/// the edge, is mostly flat. Where it is not it gets a trace of its own, as soon as there is room for two.
-/// What is in one line with the fold is of its trace, where some of it has come back.
+/// Cause if a site follows a free fold over the edge. The cloth that follows is mostly flat, and then needs
+/// no EOL vertex. Where it is not flat, it gets a trace of its own, as soon as there is room for two traces.
+/// A site in line with the fold belongs to the fold's trace, part of which has returned, and is not refused.
 std::optional<RowCause> EolAdmission::find_fold_cause(const FeatureSite& site) const
 {
-    constexpr double kRoom = 1.0;  // target lengths: at less two traces are not told apart
+    constexpr double kRoom = 1.0;  // target lengths: nearer traces cannot be distinguished
     if (site.on.is_corner()) return std::nullopt;
     const std::optional<double> way = find_free_fold(site);
     if (!way) return std::nullopt;
-    const bool is_between = site.contact < 0;  // and presses nowhere itself
+    const bool is_between = site.contact < 0;  // fills a gap, and does not press itself
     if (is_between || is_along_face(scene_.obstacles[site.on.obstacle], site)) return RowCause::FlatBehind;
     return *way < kRoom * scene_.eol->length(site.material) ? std::optional(RowCause::BesideEol)
                                                             : std::nullopt;
 }
 
-/// How far the fold that a site follows is from the edge, m: the least, if there are several.
+/// Distance, m, from the edge to the free fold that a site follows: the least, if there are several. Nothing
+/// if the site follows none.
 std::optional<double> EolAdmission::find_free_fold(const FeatureSite& site) const
 {
     const Obstacle& obstacle = scene_.obstacles[site.on.obstacle];
@@ -189,9 +191,9 @@ std::optional<double> EolAdmission::find_free_fold(const FeatureSite& site) cons
         if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
             edges[e.on.index].polyline != edges[site.on.index].polyline || !has_left(e))
             continue;
-        constexpr double kShare = 0.5;                // of the fold's way from the edge
-        constexpr double kSoon = 0.05;                // s, in which it flows through the fold
-        constexpr double kNear = 2.0 * kFlyingCells;  // cells: how far a fold is held, and its first steps
+        constexpr double kShare = 0.5;  // least material across, over the fold's distance from the edge
+        constexpr double kSoon = 0.05;  // s: longest time of flow between site and fold
+        constexpr double kNear = 2.0 * kFlyingCells;  // cells: twice the distance up to which a fold is held
         const Vec3 off = trace_.placed(e).place - here;
         const double along = std::abs((to - from).normalized().dot(off));
         const double way = (trace_.surgery().material(e.vertex_id) - site.material).norm();
@@ -216,7 +218,7 @@ bool EolAdmission::is_in_plane(const EolVertex& eol) const
     const FeatureEdge& edge = obstacle.features().edges[eol.on.index];
     const Vec3 off = place - place_on_feature(obstacle, eol.on.index, place).point;
     if (edge.kind != FeatureKind::Convex) return off.norm() <= kOnFeature * scene_.material.thickness;
-    if (has_left(eol))  // and may be anywhere beyond both faces
+    if (has_left(eol))  // a free fold may be anywhere beyond both faces
         return std::all_of(edge.normals.begin(), edge.normals.end(), [&](const Vec3& normal) {
             return normal.dot(off) >= -kOffPlane * scene_.material.thickness;
         });
@@ -237,7 +239,7 @@ bool EolAdmission::is_on_side(const EolVertex& eol) const
     return from.dot(eol.outward) >= kAlong * from.norm();
 }
 
-/// A corner or turn holds one vertex of a cloth that lies over it.
+/// Whether a corner or bend has its EOL vertex already: cloth over it gets only one.
 bool EolAdmission::has_vertex_on(const FeatureSite& site) const
 {
     const double h = scene_.eol->length(site.material);
@@ -272,7 +274,7 @@ void retain_between(const Scene& scene, const State& state, const ClothStars& st
         beside[a].push_back(b);
         beside[b].push_back(a);
     }
-    // What is left when loose ends are cut off, again and again, lies between.
+    // Cut loose ends off again and again: the Loose vertices that remain lie between Firm ones.
     std::vector<int> open;
     for (std::size_t entry = 0; entry < retained.size(); ++entry) open.push_back(static_cast<int>(entry));
     while (!open.empty()) {

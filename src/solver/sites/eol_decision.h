@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides which contacts with sharp features are EOL vertices: whether a site gets one
-// (EolAdmission::find_refusal), whether an inserted vertex keeps being one (refuse_inserted), and whether one
-// of the state stays (find_releases). Thresholds to enter and to stay stand side by side in
-// model/eol_limits.h. The census (feature_census.h) only reports the causes that are found here.
+// Decides which contacts with sharp features are EOL vertices. `EolAdmission::find_refusal` decides whether a
+// site gets one, `refuse_inserted` whether an inserted vertex becomes one, and `find_releases` which ones of
+// the state are released. Thresholds to enter and to stay stand side by side in model/eol_limits.h. The
+// census (feature_census.h) only reports the causes that are found here.
 //
-// Entering: the cloth must lie over the feature, and go on doing so for a few steps, away from the cloth's
-// borders, from other traces, and from folds that have left.
+// Entering: the cloth must lie over the feature and remain there for a few steps. Borders of the cloth, other
+// traces and free folds must not be near.
 //
-// Staying: while material flows over a fold an EOL vertex has two velocities, one a side; an ordinary vertex
-// has their mean, and the cloth loses energy. Where a fold was released the cloth bends beside the feature,
-// so that inserting a vertex again strains it. So an EOL vertex that no longer presses is not released for
-// that alone: cloth that lifts off an edge keeps its fold until it is flat there or a cell from the edge. But
-// a fold off its feature is led in a plane that nothing is in: where the cloth that comes to it fast comes
-// another way, it is released before.
+// Staying: an EOL vertex under flow has two velocities, one for each side of the fold. An ordinary vertex has
+// only their mean, so a release loses kinetic energy. A released fold also bends beside the feature, so that
+// a new insertion strains the cloth. Therefore an EOL vertex stays after it has ceased to press, until the
+// cloth is flat there or a cell from the edge. A fold off its feature moves only in the plane of its
+// coordinates. Where fast cloth comes to it from another direction, the fold is released earlier.
 #pragma once
 
 #include <cstdint>
@@ -31,31 +30,33 @@
 
 namespace arris {
 
-/// Decides which sites of a state may get an EOL vertex on its mesh under surgery. All arguments outlive it.
+/// Decides which sites of a state may get an EOL vertex on the mesh under surgery. All arguments outlive it.
 class EolAdmission {
   public:
-    /// `soon` (s) is for how long material that flows must find room.
+    /// `soon` (s): time for which flowing material must find room.
     EolAdmission(const Scene& scene, const State& state, const ClothStars& stars, const TraceMesh& trace,
                  double soon)
         : scene_(scene), state_(state), stars_(stars), trace_(trace), soon_(soon)
     {
     }
 
-    /// Why a site gets no vertex, whatever the mesh has there; nothing if it may get one. `v` is the index of
-    /// the site's vertex, `flow` (m/s) the material's flow over the feature there.
+    /// Cause for which a site gets no EOL vertex, whatever the mesh there; nothing if it may get one. `v` is
+    /// the index of the site's vertex, `flow` (m/s) the flow of material over the feature there.
     std::optional<RowCause> find_refusal(const FeatureSite& site, int v, const Vec2& flow) const;
 
-    /// Why a vertex that has just been inserted is not EOL after all; nothing if it is. Surgery at one site
-    /// bends the surface a little at the next, and off its plane or side the vertex could not come back.
+    /// Cause for which a vertex just inserted does not become EOL; nothing if it does. Surgery at one site
+    /// bends the surface slightly at the next. A vertex inserted off its plane or side could not return
+    /// there.
     std::optional<RowCause> refuse_inserted(const EolVertex& eol) const;
 
-    /// Whether a vertex is where its coordinates can hold it: in the plane of its convex edge, in which alone
-    /// it may move, or, of a fold that has left the edge, beyond both the edge's faces.
+    /// Whether the coordinates of an EOL vertex can hold it at its place. On a convex edge this is the plane
+    /// in which alone it moves; for a free fold, anywhere beyond both faces of the edge. On other edges it is
+    /// within kOnFeature.
     bool is_in_plane(const EolVertex& eol) const;
 
   private:
-    /// Whether a vertex on a wire or border is on the side to which that has pressed. Its outward direction
-    /// is where the vertex is, and would be against what presses beside it.
+    /// Whether a vertex on a wire or border is on the side to which the feature has pressed. Outward points
+    /// from the feature to the vertex; on the other side it would oppose the contacts beside it.
     bool is_on_side(const EolVertex& eol) const;
     std::optional<RowCause> find_border_cause(const FeatureSite& site, int v, const Vec2& flow) const;
     bool is_beside_other(const FeatureSite& site) const;
@@ -75,30 +76,31 @@ class EolAdmission {
 /// Whether an EOL vertex stays.
 enum class EolRetention {
     None,   ///< released
-    Loose,  ///< released, unless it lies on its feature between two that stay
+    Loose,  ///< released, unless it lies along its trace between two that stay
     Firm    ///< stays
 };
 
-/// The retention of EOL vertex `entry`, at `place` in its obstacle's frame. Firm where it presses or has
-/// pressed within kIdleSteps; none farther than kFlyingCells from its feature (kAstrayCells where it is led
-/// astray), nor off a corner that presses on a face now; firm where the cloth is folded, by more than 6
-/// degrees.
+/// Retention of EOL vertex `entry`, which has coordinates `at` and lies at `place` in its obstacle's frame.
+/// The first rule that applies decides. Firm: it has pressed within kIdleSteps. None: it is farther from its
+/// feature than kFlyingCells (kAstrayCells where its fold moves otherwise than the arriving cloth). None: it
+/// is off a corner that now presses on a face. Firm: the cloth is folded there by more than 6 degrees.
+/// Otherwise Loose on its feature, None off it.
 EolRetention decide_retention(const Scene& scene, const State& state, const ClothStars& stars, int entry,
                               const EolCoordinates& at, const Vec3& place);
 
-/// Makes loose ones firm that lie along a trace between firm ones: a trace with a hole holds the cloth there.
-/// One retention an entry of `state.eol`.
+/// Makes Loose vertices along a trace between Firm ones Firm, as a trace with a hole holds the cloth there.
+/// Other Loose vertices become None. `retained` has one entry an entry of `state.eol`.
 void retain_between(const Scene& scene, const State& state, const ClothStars& stars,
                     std::vector<EolRetention>& retained);
 
-/// An EOL vertex that becomes an ordinary one, and why.
+/// An EOL vertex that becomes an ordinary one, and the cause.
 struct EolRelease {
     VertexId vertex;
     RowCause cause;
 };
 
-/// The EOL vertices that are released, in the order of `state.eol`: those without retention, at an end of
-/// their feature, too near to the cloth's border, or without coordinates.
+/// EOL vertices to release, in the order of `state.eol`. These have no retention or no coordinates, have
+/// passed an end of their feature, or are too near to the cloth's border.
 std::vector<EolRelease> find_releases(const Scene& scene, const State& state, const ClothStars& stars);
 
 }  // namespace arris

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A point that rests on the obstacle has material velocity V where F V + w = v_obs, w the velocity of the
-// cloth's material there. Over several faces that is the least-squares solution, weighted by area:
+// cloth's material there. Over several faces V is the least-squares solution, weighted by area:
 //
 //     (sum A F^T F) V = sum A F^T (v_obs - w)
 #include "solver/sites/feature_flow.h"
@@ -41,7 +41,7 @@ Vec2 finite_or_zero(const Vec2& flow)
     return flow.allFinite() ? flow : Vec2(Vec2::Zero());
 }
 
-/// Unit, of the cloth's border through a site that is on it.
+/// Unit material direction of the cloth's border through a site on the border.
 Vec2 border_through(const State& state, const ClothStars& stars, const FeatureSite& site)
 {
     const auto& [a, b] = site.edge;
@@ -62,7 +62,7 @@ Vec2 find_feature_flow(const Scene& scene, const State& state, const ClothStars&
     const Obstacle& obstacle = scene.obstacles[site.on.obstacle];
     const auto [from, to] = feature_segment(obstacle, site.on.index);
     const Vec3 tangent = obstacle.at(state.time).rotation * (to - from);
-    const Vec2 trace = (inverse * (star.F_transposed * tangent)).normalized();  // F maps it nearest
+    const Vec2 trace = (inverse * (star.F_transposed * tangent)).normalized();  // F maps it near `tangent`
     const Vec2 across(trace.y(), -trace.x());
     const Vec2 way = site.is_on_border ? border_through(state, stars, site) : across;
     return finite_or_zero(across.dot(flow) / across.dot(way) * way);

@@ -8,11 +8,11 @@
 
 namespace arris {
 
-/// How fast, m/s, the material would flow through an EOL vertex at a site: against the motion of the cloth
-/// around `site.near` over the obstacle. The mean over its faces, so that cloth which slides over an edge
-/// flows as it does on either side. A vertex that slides along its feature goes with the cloth there:
-/// material flows through it across its trace alone, or on the cloth's border along that, as much as across.
-/// Zero where the faces tell nothing.
+/// Flow, m/s, of the material through a future EOL vertex at a site, against the motion over the obstacle of
+/// the cloth around `site.near`. The mean over the faces, so that the flow of cloth sliding over an edge
+/// agrees with the cloth on both sides. A vertex that slides along its feature moves with the cloth in that
+/// direction. Material flows through it only across its trace, or on the cloth's border along the border,
+/// with equal flow across. Zero where the faces do not determine the flow.
 Vec2 find_feature_flow(const Scene& scene, const State& state, const ClothStars& stars,
                        const FeatureSite& site);
 

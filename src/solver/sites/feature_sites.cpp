@@ -20,7 +20,7 @@ namespace arris {
 
 namespace {
 
-/// Finds the places of one obstacle on which its features pressed in the last step.
+/// Finds the places where features of one obstacle pressed in the last step.
 class SiteFinder {
   public:
     SiteFinder(const Scene& scene, const State& state, const ClothStars& stars, std::int32_t o)
@@ -81,8 +81,8 @@ class SiteFinder {
         return make_corner(corner, X, v[heaviest - closest.weights.begin()], contact.normal);
     }
 
-    /// Where a rim bends at a vertex of the obstacle's mesh in the middle of a convex edge: what of the face
-    /// is straight outward of it. A trace without a vertex there passes by it.
+    /// Site at a bend of a rim, a vertex of the obstacle's mesh in the middle of a convex edge: the point of
+    /// the face straight outward from it. A trace without a vertex there would miss the bend.
     std::optional<FeatureSite> at_rim_bend(int point, const std::array<int, 3>& v, const Vec3& normal) const
     {
         constexpr double kInside = 1e-6;  // thicknesses
@@ -110,8 +110,8 @@ class SiteFinder {
         return std::nullopt;
     }
 
-    /// A vertex of the face that is on a tip as it is. Cloth around one that was let go has the tip
-    /// inside, and touches it with several faces: a vertex in one of them would be beside the others.
+    /// The vertex of the face that is on a tip already. Cloth around a released vertex has the tip inside and
+    /// touches it with several faces: a new vertex in one of the faces would be beside the others.
     std::optional<FeatureSite> at_corner_of(const std::array<int, 3>& v, int corner) const
     {
         if (!is_tip(obstacle_, corner)) return std::nullopt;
@@ -124,7 +124,8 @@ class SiteFinder {
         return make_corner(corner, state_.mesh.material[nearest], nearest, outward);
     }
 
-    /// At a corner, or beside an edge through whose plane an edge of the cloth from here passes.
+    /// Site at a corner or bend, or beside a feature edge whose plane is crossed by a cloth edge from this
+    /// vertex.
     std::optional<FeatureSite> at_vertex(int v, const Vec3& normal) const
     {
         const Vec3& place = crossings_.positions()[v];
@@ -150,7 +151,7 @@ class SiteFinder {
         return std::nullopt;
     }
 
-    /// At a point of the obstacle's mesh beside vertex `v` of the cloth.
+    /// The bend at a point of the obstacle's mesh where a vertex is locked, beside vertex `v` of the cloth.
     std::optional<FeatureBend> find_locked_bend(int point, int v) const
     {
         const std::optional<FeatureBend> bend = find_bend(obstacle_, point);
@@ -158,7 +159,7 @@ class SiteFinder {
         return is_held ? bend : std::nullopt;
     }
 
-    /// Where the end of a wire's edge that is nearest to the cloth's is a turn.
+    /// Site at a bend, if the bend is the point of the wire's edge nearest to the cloth's edge.
     std::optional<FeatureSite> on_bend(int a, int b, int feature, const Vec3& normal) const
     {
         const SegmentPair nearest = closest_between_segments(
@@ -171,7 +172,7 @@ class SiteFinder {
         return make_bend(*bend, {a, b, -1}, {1.0 - nearest.s, nearest.s, 0.0}, normal);
     }
 
-    /// Where a turn is nearest to a face, or to the edge between two.
+    /// Site where a bend is nearest to a face, or to the edge between two faces.
     std::optional<FeatureSite> at_bend(const FeatureBend& bend, const std::array<int, 3>& v,
                                        const Vec3& normal) const
     {
@@ -215,7 +216,7 @@ std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& sta
     const auto finder_of = [&](std::int32_t o) -> const SiteFinder& {
         return finders.try_emplace(o, scene, state, stars, o).first->second;
     };
-    std::map<std::array<int, 2>, std::vector<FeatureSite>> by_feature;  // of obstacle and edge
+    std::map<std::array<int, 2>, std::vector<FeatureSite>> by_feature;  // by obstacle and edge
     for (std::size_t c = 0; c < state.active.size(); ++c) {
         const ActiveContact& contact = state.active[c];
         const bool is_eol =

@@ -11,25 +11,25 @@
 
 namespace arris {
 
-/// A place of the cloth that a feature presses on.
+/// A place of the cloth on which a feature presses.
 struct FeatureSite {
     FeatureId on;
     Vec2 material;
-    VertexId near;                       ///< a vertex of the element that it is on
+    VertexId near;                       ///< a vertex of the cloth's element
     Vec3 outward;                        ///< the contact's normal, in the obstacle's frame
     bool is_on_border = false;           ///< of the cloth
-    std::array<int, 2> edge = {-1, -1};  ///< of the cloth that passes through there; twice the same: a vertex
-    int contact = -1;                    ///< index in State::active; -1 where it only lies between such
+    std::array<int, 2> edge = {-1, -1};  ///< edge of the cloth there; twice the same vertex at a vertex
+    int contact = -1;                    ///< index in State::active; -1 where it only fills a gap
 
-    /// Whether it is in a face, where a rim bends.
+    /// Whether the site is in a face, at a bend of a rim.
     bool is_in_face() const { return !on.is_fixed() && edge[0] < 0; }
 };
 
-/// Where features pressed at the end of the last step and no EOL vertex is yet; corners first, then
-/// turns, those of one feature in the order of the material. On a convex edge it is where the cloth passes
-/// through the plane in which an EOL vertex may move, so that nothing has to be put there; and the places
-/// between, as a trace with a hole holds the cloth there; on a wire the turns, too, that a trace would miss
-/// (bend_sites.h).
+/// Places where features pressed at the end of the last step and no EOL vertex is yet: corners first, then
+/// bends. Sites of one feature are in the order of their material coordinates. On a convex edge a site is
+/// where the cloth crosses the plane in which an EOL vertex may move, so that inserting one moves no cloth.
+/// Trace gaps between sites are included, as they would hold the cloth. On a wire, so are the bends that a
+/// trace would miss (bend_sites.h).
 std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& state, const ClothStars& stars);
 
 }  // namespace arris

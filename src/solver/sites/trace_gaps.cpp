@@ -52,7 +52,7 @@ class GapFilling {
   private:
     using Crossing = std::array<int, 2>;  ///< a FeatureSite's edge
     struct TraceNode {
-        std::optional<FeatureSite> site;  ///< none where an EOL vertex is
+        std::optional<FeatureSite> site;  ///< none at an EOL vertex
         bool is_known;                    ///< a site that presses, or an EOL vertex
         std::set<Crossing> beside;
     };
@@ -66,7 +66,7 @@ class GapFilling {
                state_.eol[entry].on.index == feature_;
     }
 
-    /// What is on the feature already; returned are those of them from which the trace may go on.
+    /// Puts known sites and EOL vertices into `trace`; returns those from which the trace may continue.
     std::vector<Crossing> begin_trace(const std::vector<FeatureSite>& sites, TraceGraph& trace) const
     {
         std::vector<Crossing> open;
@@ -84,7 +84,7 @@ class GapFilling {
         return open;
     }
 
-    /// Where the plane of the feature passes through the faces around a crossing.
+    /// Crossings of the feature's plane with the edges of the faces around a crossing.
     std::map<Crossing, std::optional<FeatureSite>> crossings_beside(const Crossing& at) const
     {
         std::map<Crossing, std::optional<FeatureSite>> found;
@@ -105,7 +105,8 @@ class GapFilling {
         return found;
     }
 
-    /// What remains beside what is known lies between; or on the cloth's border, next to it.
+    /// Removes crossings that do not lie between two others. An end on the cloth's border stays if it is
+    /// beside a known place.
     static void cut_loose_ends(TraceGraph& trace)
     {
         const auto is_loose = [&](const TraceNode& node) {

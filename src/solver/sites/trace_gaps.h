@@ -7,8 +7,8 @@
 
 namespace arris {
 
-/// Adds to `sites` on convex edge `feature` of the obstacle what of the cloth lies on it between them and EOL
-/// vertices: a trace with a hole holds the cloth there.
+/// Adds to `sites` on the convex edge `feature` the trace gaps: crossings between sites and EOL vertices
+/// where the cloth lies on the feature. A trace with a gap holds the cloth there.
 void fill_trace_gaps(const EdgeCrossings& crossings, int feature, std::vector<FeatureSite>& sites);
 
 }  // namespace arris

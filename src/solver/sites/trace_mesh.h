@@ -13,7 +13,7 @@
 
 namespace arris {
 
-/// Tags of the surgery: one a polyline and one a corner of each obstacle.
+/// Tags of the surgery: one for each polyline and corner of each obstacle.
 class FeatureTags {
   public:
     explicit FeatureTags(const std::vector<Obstacle>& obstacles);
@@ -27,11 +27,12 @@ class FeatureTags {
     int count_ = 0;
 };
 
-/// A state's cloth under surgery, which of its vertices are EOL, and how material flows over them. Of what
-/// surgery takes off its trace the entry stays until `forget_released`.
+/// A state's cloth under surgery, its EOL vertices and the flow of material through them. The entry of a
+/// vertex that surgery takes off its trace stays until `forget_released`.
 class TraceMesh {
   public:
-    /// With the state's own EOL vertices, and edges between them, on the trace. `pinned` are no free ones.
+    /// Starts with the state's EOL vertices, and the edges between them, on the trace. `pinned` vertices are
+    /// not free.
     TraceMesh(const Scene& scene, const State& state, const ClothStars& stars,
               const std::vector<VertexId>& pinned);
 
@@ -40,31 +41,31 @@ class TraceMesh {
     const FeatureTags& tags() const { return tags_; }
 
     const std::vector<EolVertex>& eol() const { return eol_; }  ///< ascending by vertex_id
-    const EolVertex* find(VertexId v) const;                    ///< nullptr where it has no entry
+    const EolVertex* find(VertexId v) const;                    ///< nullptr without an entry
     bool is_on_trace(VertexId v) const;
-    const Vec2& flow(VertexId v) const { return flow_.at(v); }  ///< m/s; of one with an entry
+    const Vec2& flow(VertexId v) const { return flow_.at(v); }  ///< m/s; the vertex must have an entry
     void set_flow(VertexId v, const Vec2& flow) { flow_[v] = flow; }
 
-    /// A new entry; a flow that is known stays.
+    /// Adds an entry; a known flow stays.
     void add(const EolVertex& made, const Vec2& flow);
     void forget_released();
     /// Fixes a vertex that slides along its wire at this bend of the wire.
     void lock(VertexId v, const FeatureId& bend);
 
-    /// One that slides along its polyline is on that edge of it now.
+    /// Reassigns a sliding vertex to edge `feature` of its polyline.
     void slide(VertexId v, int feature);
 
-    /// In the obstacle's frame, where the surgery has it.
+    /// The vertex's current place in the obstacle's frame.
     PlacedEol placed(const EolVertex& eol) const;
-    /// Of those on the trace.
+    /// All vertices on the trace.
     std::vector<PlacedEol> placed() const;
-    /// A vertex on the trace with that tag but without an entry, which clean-up or a join has put there, is
-    /// like its neighbour along it. Nothing where there is none.
+    /// Entry for a vertex on the trace with that tag that clean-up or a join has made: a copy of its
+    /// neighbour's entry along the trace. Nothing without such a neighbour.
     std::optional<EolVertex> like_neighbour(VertexId v, int tag) const;
-    /// On which side of the cloth (EolVertex::side) a wire is beside X: that of the nearest vertex of its
-    /// trace which knows it, as none gets through the cloth; 0 where there is none near.
+    /// Side of the cloth (EolVertex::side) of a wire beside X: that of the nearest vertex of its trace with a
+    /// known side, as the wire cannot pass through the cloth. 0 without such a vertex nearby.
     int side_beside(int tag, const Vec2& material) const;
-    /// The state's vertex nearest to X among those that are left.
+    /// The nearest to X of the state's vertices that still exist.
     VertexId nearest_to(const Vec2& material) const;
 
   private:
@@ -77,7 +78,7 @@ class TraceMesh {
     FeatureTags tags_;
     ClothSurgery surgery_;
     std::vector<EolVertex> eol_;
-    std::map<VertexId, Vec2> flow_;  ///< of those in `eol_`
+    std::map<VertexId, Vec2> flow_;  ///< by vertex in `eol_`
 };
 
 }  // namespace arris

@@ -12,7 +12,7 @@ namespace arris {
 
 namespace {
 
-/// Of the polyline up to a vertex, m; nothing where the vertex is not on it.
+/// Length of the polyline up to a vertex, m; nothing where the vertex is not on it.
 std::optional<double> length_before(const Obstacle& obstacle, const Polyline& polyline,
                                     const PlacedEol& placed)
 {
@@ -49,7 +49,7 @@ void add_along(const Obstacle& obstacle, int o, int index, const std::vector<Pla
     std::sort(row.begin(), row.end(), [](const auto& p, const auto& q) {
         return std::tuple(p.first, p.second->eol.vertex_id) < std::tuple(q.first, q.second->eol.vertex_id);
     });
-    // Of several strands each has its own order.
+    // Each strand has its own order.
     for (std::size_t i = 0; i < row.size(); ++i)
         for (std::size_t k = i + 1; k < row.size(); ++k) {
             if (!is_of_one_strand(obstacle, *row[i].second, *row[k].second)) continue;
@@ -64,7 +64,7 @@ void add_along(const Obstacle& obstacle, int o, int index, const std::vector<Pla
 
 Neighbours find_trace_neighbours(const std::vector<Obstacle>& obstacles, const std::vector<PlacedEol>& placed)
 {
-    std::set<std::pair<int, int>> polylines;  // of obstacle and index
+    std::set<std::pair<int, int>> polylines;  // by obstacle and index
     for (const PlacedEol& p : placed)
         if (!p.eol.on.is_corner())
             polylines.emplace(p.eol.on.obstacle,

@@ -8,9 +8,9 @@
 
 namespace arris {
 
-/// EOL vertices that are next to each other along a feature: polyline by polyline, from its start to its end,
-/// and of a closed one of more than two the last and the first. A corner's vertex is at an end of each
-/// polyline that ends there. They are `placed`'s own.
+/// Pairs of EOL vertices that are neighbours along a feature: polyline by polyline, from its start to its
+/// end. For a closed polyline of more than two, also the last and the first. A corner's vertex is at an end
+/// of each polyline that ends there. The pointers are to the vertices of `placed`.
 std::vector<std::pair<const EolVertex*, const EolVertex*>> find_trace_neighbours(
     const std::vector<Obstacle>& obstacles, const std::vector<PlacedEol>& placed);
 

@@ -9,17 +9,18 @@
 namespace arris {
 namespace {
 
-/// w is trusted down to this share of the largest known w, and to round-off of what has been added to it.
+/// The sign of w is trusted down to this share of the largest known w, and down to the round-off of the
+/// changes added to w.
 constexpr double kSignTolerance = 1e-13;
 constexpr double kRoundOff = 1e-15;
 
-/// Shifts that let Cholesky pass the matrix of dependent constraints: the first that does is taken.
-/// Directions that they shorten are moved along again.
+/// Shifts of the diagonal with which Cholesky factorises the matrix of dependent constraints: the smallest
+/// that works is taken. Along the directions that a shift shortens, the move is repeated.
 constexpr double kLeastShift = 1e-11;
 constexpr double kLargestShift = 1e-5;
 constexpr double kShiftGrowth = 100.0;
 
-/// Moves within one set of free unknowns, which take out what the shift has left.
+/// Moves within one set of free unknowns; the later ones remove the error left by the shift.
 constexpr int kMostMoves = 4;
 
 class Descent {
@@ -52,8 +53,8 @@ class Descent {
     const CondensedQp& qp_;
     const KnownGap& known_;
     CondensedAnswer& answer_;
-    Eigen::VectorXd tolerance_;   ///< of w
-    std::vector<char> is_stuck_;  ///< freed to no avail since z last moved
+    Eigen::VectorXd tolerance_;   ///< least trusted w
+    std::vector<char> is_stuck_;  ///< freed without any move since z last changed
 };
 
 void Descent::evaluate()
@@ -68,13 +69,13 @@ void Descent::evaluate()
     }
 }
 
-/// Above that of the known z: d^T (w + w_known) / 2.
+/// Energy above that of the known z: d^T (w + w_known) / 2, d = z - z_known.
 double Descent::energy() const
 {
     return 0.5 * (answer_.z - known_.z).dot(answer_.w + known_.w);
 }
 
-/// The unknown at a bound whose w most wants it to leave; -1 where none does.
+/// The unknown at a bound whose w has the wrong sign by most; -1 where no sign is wrong.
 int Descent::find_wrong() const
 {
     int worst = -1;
@@ -95,7 +96,7 @@ bool Descent::is_settled(const std::vector<int>& free) const
                        [&](int i) { return std::abs(answer_.w[i]) <= tolerance_[i]; });
 }
 
-/// One move of the free towards their minimum; `is_blocked` where a bound was met.
+/// Moves the free unknowns once towards their minimum; `is_blocked` where a bound was met.
 bool Descent::move(const std::vector<int>& free, bool& is_blocked)
 {
     const Eigen::MatrixXd part = qp_.hessian(free, free);
@@ -133,7 +134,7 @@ bool Descent::move(const std::vector<int>& free, bool& is_blocked)
     return true;
 }
 
-/// Moves until no bound is met; ends, as each bound met holds an unknown.
+/// Moves until no bound is met. Finite, as each bound met holds one more unknown.
 bool Descent::minimise()
 {
     for (int moves = 0; moves < kMostMoves; ++moves) {

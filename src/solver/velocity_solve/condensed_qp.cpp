@@ -14,18 +14,18 @@
 namespace arris {
 namespace {
 
-/// Shift that lets Cholesky pass a unit-diagonal matrix singular to round-off; two refinements take it out
-/// again.
+/// Diagonal shift with which Cholesky factorises a unit-diagonal matrix that is singular to round-off. Two
+/// refinements remove the error of the shift.
 constexpr double kShift = 1e-12;
 constexpr int kRefinements = 2;
 
 /// Signs smaller than this, relative to the largest z or w, are round-off.
 constexpr double kSignTolerance = 1e-13;
 
-/// Exchanges of the whole infeasible set that may pass without a new least count (Judice and Pires 1994, p).
+/// Exchanges of the whole infeasible set allowed without a new least count (p of Judice and Pires 1994).
 constexpr int kPatience = 10;
 
-/// S, q and caps scaled to a unit diagonal: z = scale * y.
+/// S, q and caps scaled so that S has a unit diagonal: z = scale * y.
 struct ScaledQp {
     Eigen::VectorXd scale;
     CondensedQp qp;
@@ -83,7 +83,7 @@ std::vector<double> to_std(const Eigen::VectorXd& vector)
     return {vector.begin(), vector.end()};
 }
 
-/// y with its units divided out: the solution of (S, q / unit) is y / unit.
+/// Minimiser y, computed in units of |q|: the solution of (S, q / unit) is y / unit.
 Eigen::VectorXd minimise(const CondensedQp& qp, const Eigen::VectorXd& start, int& evaluations)
 {
     const int size = static_cast<int>(qp.linear.size());
@@ -138,7 +138,7 @@ bool solve_on_set(const CondensedQp& qp, CondensedAnswer& answer)
     return answer.z.allFinite() && answer.w.allFinite();
 }
 
-/// Where unknown i should stand instead; nothing where it is right.
+/// The state that unknown i should have instead; nothing where its state is right.
 std::optional<Stand> better_stand(const CondensedQp& qp, const CondensedAnswer& answer, double least_z,
                                   double least_w, int i)
 {
@@ -172,9 +172,9 @@ std::vector<Exchange> infeasible(const CondensedQp& qp, const CondensedAnswer& a
     return result;
 }
 
-/// Block principal pivoting; Murty's exchange of one index, always the last, when blocks stop helping. S is a
-/// P-matrix, for which Murty's rule ends from any set, so that the whole is finite. With caps S may be
-/// semidefinite, and no rule helps: false then.
+/// Block principal pivoting, then Murty's exchange of one index, always the last, once blocks stop helping. A
+/// positive definite S is a P-matrix, for which Murty's rule ends from any set. With caps S may be
+/// semidefinite, where no rule need end: false then.
 bool pivot(const CondensedQp& qp, CondensedAnswer& answer)
 {
     const int size = static_cast<int>(qp.linear.size());
@@ -199,7 +199,7 @@ bool pivot(const CondensedQp& qp, CondensedAnswer& answer)
     return false;
 }
 
-/// What is left beyond a bound is round-off.
+/// Clamping to the bounds removes round-off only.
 CondensedAnswer to_given_units(const CondensedQp& qp, const ScaledQp& scaled, CondensedAnswer answer)
 {
     answer.z = scaled.scale.cwiseProduct(answer.z).cwiseMax(0.0);

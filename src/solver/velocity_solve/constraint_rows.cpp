@@ -11,19 +11,20 @@
 namespace arris {
 namespace {
 
-/// Cap of a multiplier in units of free speed / (g^T D^-1 g). Rows that can be met stay below 0.1, those that
-/// cannot grow without limit; stationarity loses as many digits as this has.
+/// Cap of a multiplier in units of free speed / (g^T D^-1 g). Multipliers of rows that can be met stay below
+/// 0.1; others grow without limit. Stationarity loses as many digits as this number has.
 constexpr double kCap = 1e3;
 
-/// Sums of 18 terms cancel to no less than this share of the largest.
+/// Round-off of a sum of 18 terms, relative to its largest term.
 constexpr double kRoundOff = 1e-14;
 
-/// Of the free speed: where rows bring everything to rest, velocities, gaps and forces left are all nothing
-/// but round-off, about 1e-16, of what is held back, and relative to each other they mean nothing.
+/// Least scale of speeds, relative to the free speed. Where rows bring everything to rest, the remaining
+/// velocities, gaps and forces are round-off, about 1e-16 of the forces held back. Ratios between them mean
+/// nothing.
 constexpr double kLeastSpeed = 1e-6;
 
-/// Conjugate-gradient steps that estimate the free speed: the first finds rigid motion, the others what
-/// ripples.
+/// Conjugate-gradient steps that estimate the free speed: the first finds rigid motion, the others shorter
+/// waves.
 constexpr int kSpeedSteps = 4;
 
 bool is_well_formed(const ConstraintRow& row)
@@ -41,7 +42,8 @@ double largest_coefficient(const ConstraintRow& row)
     return largest;
 }
 
-/// 1 where there is no positive one: such a matrix is not positive definite, or the coordinate is fixed.
+/// The diagonal of A, with 1 in place of entries that are not positive: such a matrix is not positive
+/// definite, or the coordinate is fixed.
 Eigen::VectorXd positive_diagonal(const Eigen::SparseMatrix<double>& matrix)
 {
     Eigen::VectorXd diagonal = matrix.diagonal();
@@ -50,7 +52,7 @@ Eigen::VectorXd positive_diagonal(const Eigen::SparseMatrix<double>& matrix)
     return diagonal;
 }
 
-/// One entry a coordinate that can move, ascending, without those that are round-off.
+/// One entry per coordinate that can move, ascending, without entries below round-off.
 SparseVector movable_entries(const VelocityProblem& problem, const ConstraintRow& row)
 {
     SparseVector entries;
@@ -107,7 +109,8 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
         const bool can_move = !result.rows.back().entries.empty();
         if (!can_move && row.lower > 0.0)
             result.impossible.push_back(static_cast<int>(result.rows.size()) - 1);
-        // What the whole row asks for: one of which only a tiny part can move may ask that for any speed.
+        // The speed that the row needs over all its coordinates: if only a tiny part can move, that part may
+        // need any speed.
         if (can_move) speed = std::max(speed, row.lower / largest_coefficient(row));
     }
     result.least_speed = kLeastSpeed * speed;
@@ -120,7 +123,8 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
 }
 
 /// Conjugate gradients on A u = b, preconditioned by the diagonal: their iterates grow towards A^-1 b from
-/// below (Steihaug 1983, Theorem 2.1). In units of |D^-1 b|, so that squares neither overflow nor vanish.
+/// below (Steihaug 1983, Theorem 2.1). Computed in units of |D^-1 b|, so that squares neither overflow nor
+/// vanish.
 double estimate_free_speed(const VelocityProblem& problem)
 {
     const Eigen::VectorXd diagonal = positive_diagonal(*problem.matrix);

@@ -18,11 +18,11 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-/// A's lower triangle in elimination order, and where each entry of A goes in it.
+/// A's lower triangle in elimination order, with the destination of each entry of A.
 struct PermutedMatrix {
     std::vector<int> start, row;
     std::vector<double> value;
-    std::vector<int> destination;  ///< one an entry of A; -1 above the diagonal
+    std::vector<int> destination;  ///< one per entry of A; -1 above the diagonal
 };
 
 /// Columns are not sorted: the supernodal factorisation scatters them.
@@ -90,7 +90,7 @@ struct Factorization::Impl {
     VertexOrdering ordering;
     cholmod_common common = {};
     cholmod_factor* factor = nullptr;
-    std::vector<int> outer, inner;  ///< pattern the analysis is of
+    std::vector<int> outer, inner;  ///< pattern that was analysed last
     std::vector<int> position, supernode_of;
     PermutedMatrix permuted;
     Eigen::VectorXd extra;  ///< CHOLMOD's workspace for the rows below a supernode
@@ -137,8 +137,7 @@ void Factorization::Impl::analyse(const Matrix& matrix)
     factor = cholmod_analyze_p(&pattern, order.data(), nullptr, 0, &common);
     throw_if_it_does_not_fit(common);
 
-    // CHOLMOD has followed the order by a postorder of the elimination tree: the factor's order is the one
-    // that counts.
+    // CHOLMOD applies a postorder of the elimination tree to the given order: the order of the factor counts.
     const int* final_order = array(factor->Perm);
     position.resize(static_cast<std::size_t>(size));
     for (int k = 0; k < size; ++k) position[final_order[k]] = k;
@@ -159,7 +158,7 @@ void Factorization::Impl::scatter(const Matrix& matrix, const std::vector<char>&
             const int row = inner[k], destination = permuted.destination[k];
             if (destination < 0) continue;
             const bool is_pin = is_pinned[row] || is_pinned[column];
-            if (row == column)  // what a pin's own diagonal is does not matter, as long as it is positive
+            if (row == column)  // any positive diagonal of a pinned coordinate will do
                 permuted.value[destination] = is_pin && !(value[k] > 0.0) ? 1.0 : value[k];
             else
                 permuted.value[destination] = is_pin ? 0.0 : value[k];
@@ -185,7 +184,7 @@ bool Factorization::factorise(const Matrix& matrix, const std::vector<char>& is_
     cholmod_sparse lower = lower_triangle(static_cast<int>(matrix.cols()), permuted.start.data(),
                                           permuted.row.data(), permuted.value.data());
     double shift[2] = {0.0, 0.0};
-    // CHOLMOD asks for four OpenMP threads in loops too short for them: waking these up took half of the
+    // CHOLMOD starts four OpenMP threads in loops too short for them; waking the threads took half of the
     // time.
     omp_set_max_active_levels(0);
     cholmod_super_numeric(&lower, nullptr, shift, impl_->factor, &impl_->common);

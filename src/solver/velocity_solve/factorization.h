@@ -9,8 +9,8 @@
 
 namespace arris {
 
-/// One dense block of L as CHOLMOD stores it: `columns` consecutive columns, which all have their entries in
-/// `rows`; the first `columns` rows are the triangle on the diagonal. Column-major, leading dimension
+/// One dense block of L as CHOLMOD stores it: `columns` consecutive columns, which share the row indices
+/// `rows`. The first `columns` rows are the triangle on the diagonal. Column-major, leading dimension
 /// `row_count`.
 struct Supernode {
     int first;  ///< column of L
@@ -21,10 +21,10 @@ struct Supernode {
 };
 
 /// Sparse Cholesky P A P^T = L L^T of a symmetric positive definite matrix with three unknowns a vertex, in
-/// which chosen coordinates are pinned: their rows and columns are replaced by a diagonal, so that the
-/// pattern, and the symbolic analysis with it, stays whatever is pinned. One BLAS thread: with more, threads
-/// of small blocks cost up to 47 times the work on a loaded machine, and results must not depend on their
-/// number.
+/// which chosen coordinates are pinned. Rows and columns of pinned coordinates are replaced by a diagonal, so
+/// that the pattern and its symbolic analysis do not depend on the pins. One BLAS thread: results must not
+/// depend on the thread count, and with small blocks on a loaded machine more threads cost up to 47 times
+/// more.
 class Factorization {
   public:
     explicit Factorization(VertexOrdering ordering = VertexOrdering::Metis);
@@ -32,9 +32,9 @@ class Factorization {
     Factorization(Factorization&&) noexcept;
     Factorization& operator=(Factorization&&) noexcept;
 
-    /// Orders the unknowns where the pattern is not the last one's; else this costs one comparison of the
-    /// arrays. `matrix`: compressed, lower triangle with every diagonal entry; entries above the diagonal are
-    /// ignored. Throws std::bad_alloc or std::length_error where the factor does not fit.
+    /// Orders the unknowns if the pattern has changed; else only compares the index arrays. `matrix`:
+    /// compressed, lower triangle with every diagonal entry; entries above the diagonal are ignored. Throws
+    /// std::bad_alloc or std::length_error where the factor does not fit.
     void analyse(const Eigen::SparseMatrix<double>& matrix);
 
     /// Numeric factorisation of the matrix analysed last. False where it is not positive definite.

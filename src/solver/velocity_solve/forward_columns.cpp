@@ -8,7 +8,7 @@
 namespace arris {
 namespace {
 
-/// Columns a panel: enough for matrix products, few enough that their paths are nearly the same.
+/// Columns per panel: enough for efficient matrix products, few enough that their paths are nearly equal.
 constexpr int kPanelWidth = 16;
 
 }  // namespace
@@ -85,7 +85,7 @@ void ForwardColumns::solve(Panel& panel)
     }
 }
 
-/// The new panel against each panel, on the blocks both stand on.
+/// Products of the new panel with every panel, on the blocks that both contain.
 void ForwardColumns::extend_gram(const Panel& panel)
 {
     for (const Panel& other : panels_) {

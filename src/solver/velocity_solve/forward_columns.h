@@ -13,13 +13,15 @@ namespace arris {
 using SparseVector = std::vector<std::pair<int, double>>;
 
 /// The growing matrix G = L^-1 P C of forward-solved sparse columns, and its Gram matrix G^T G. A column is
-/// non-zero only on the path from its unknowns to the root of the elimination tree: only those blocks are
-/// computed and kept, in panels of neighbouring columns. Refers to `factorization`, which must stay as it is.
+/// non-zero only on the path from its unknowns to the root of the elimination tree. Only the blocks on that
+/// path are computed and kept, in panels of neighbouring columns. Refers to `factorization`, which must not
+/// change.
 class ForwardColumns {
   public:
     explicit ForwardColumns(const Factorization& factorization);
 
-    /// Appends columns in the given order; neighbours in elimination order should stand together.
+    /// Appends columns in the given order; the cost is least where neighbours in elimination order are
+    /// adjacent.
     void append(const std::vector<SparseVector>& columns);
 
     int size() const { return size_; }
@@ -28,7 +30,7 @@ class ForwardColumns {
     void accumulate(const Eigen::VectorXd& coefficients, Eigen::VectorXd& forward) const;  ///< f += G c
 
   private:
-    /// `width` columns; block k stands on supernode path[k], transposed: width x columns, column-major.
+    /// `width` columns; block k belongs to supernode path[k], transposed: width x columns, column-major.
     struct Panel {
         int first, width;
         std::vector<int> path;  ///< ascending
@@ -44,7 +46,7 @@ class ForwardColumns {
     int size_ = 0;
     std::vector<Panel> panels_;
     Eigen::MatrixXd gram_;
-    std::vector<double> rows_;  ///< unknowns x width, row-major: the panel being solved; zero between panels
+    std::vector<double> rows_;      ///< unknowns x width, row-major: the panel in work; zero between panels
     std::vector<double> update_;    ///< width x rows below the triangle
     std::vector<char> is_on_path_;  ///< by supernode
 };

@@ -10,13 +10,13 @@
 namespace arris {
 namespace {
 
-/// The larger one; unlike std::max it lets no NaN pass unseen.
+/// The larger number; unlike std::max this keeps a NaN.
 double worse(double a, double b)
 {
     return std::isnan(a) || a >= b ? a : b;
 }
 
-/// error / scale for error >= 0, where no error needs no scale.
+/// error / scale for error >= 0; 0 where the error is 0, whatever the scale.
 double relative(double error, double scale)
 {
     return error <= 0.0 ? 0.0 : error / scale;
@@ -29,7 +29,8 @@ double largest(const Eigen::VectorXd& values)
     return result;
 }
 
-/// A multiplier so near to its cap, relatively, stands at it: round-off of undoing the row's scale.
+/// Relative distance from its cap within which a multiplier counts as at the cap: undoing the row's scale
+/// rounds.
 constexpr double kAtCap = 1e-12;
 
 double stationarity(const VelocityProblem& problem, const ConstraintRows& constraints,

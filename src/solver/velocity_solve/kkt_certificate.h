@@ -6,22 +6,22 @@
 
 namespace arris {
 
-/// How far (velocity, multipliers, row multipliers) is from solving the problem, by A, b, the bounds and the
-/// rows alone. The greatest of
+/// Relative KKT residual of (velocity, multipliers, row multipliers), from A, b, the bounds and the rows
+/// alone: the greatest of
 ///   stationarity     |A u - b - C^T lambda|_i / (|A||u| + |b| + |C^T||lambda|)_i     where not fixed
 ///   primal violation max(lower - C u, 0) / max|u|, and |u| / max|u| where fixed
 ///   wrong sign       max(-lambda, lambda - cap, 0) / max|lambda|
 ///   complementarity  |lambda (C u - lower)| / (max|lambda| max|u|)
-/// where C are the bounds and the scaled rows. Of a row that is violated with its multiplier at its cap,
-/// complementarity refers to the cap, |(cap - lambda)(C u - lower)|, and the violation is not counted.
-/// With rows max|u| counts as their least speed where it is less, and diag(A) times that is added to the
-/// scale of stationarity. 0/0 counts as 0. NaN where anything is NaN; infinite where a multiplier stands on
-/// no bound. `row_multipliers` are those of the scaled rows.
+/// where C holds the bounds and the scaled rows. For a violated row with its multiplier at its cap,
+/// complementarity is |(cap - lambda)(C u - lower)|, and the violation is not counted. With rows, max|u| is
+/// at least their least speed, and diag(A) times that speed is added to the scale of stationarity. 0/0 counts
+/// as 0. NaN where anything is NaN; infinite where a coordinate without a bound has a multiplier.
+/// `row_multipliers` belong to the scaled rows.
 double kkt_residual(const VelocityProblem& problem, const ConstraintRows& constraints,
                     const Eigen::VectorXd& velocity, const Eigen::VectorXd& multipliers,
                     const Eigen::VectorXd& row_multipliers);
 
-/// The same of a problem without rows.
+/// The residual of a problem without rows.
 double kkt_residual(const VelocityProblem& problem, const Eigen::VectorXd& velocity,
                     const Eigen::VectorXd& multipliers);
 

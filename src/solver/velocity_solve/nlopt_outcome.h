@@ -6,9 +6,8 @@
 
 namespace arris {
 
-/// Runs `optimizer` from x, and leaves in x how far it came. Ending by round-off or by a "failure" is a
-/// legitimate outcome here: x is updated before NLopt throws, and what it is worth is judged afterwards, by a
-/// certificate.
+/// Runs `optimizer` from x and stores the last iterate in x. Ending by round-off or by a "failure" is a
+/// legitimate outcome: NLopt updates x before it throws, and a certificate judges the result later.
 inline void improve(nlopt::opt& optimizer, std::vector<double>& x)
 {
     double value = 0.0;
@@ -20,11 +19,12 @@ inline void improve(nlopt::opt& optimizer, std::vector<double>& x)
     }
 }
 
-/// Vectors the quasi-Newton method remembers; NLopt's default is up to 1e6/n of them and 9 times slower.
+/// Vectors that the quasi-Newton method stores. NLopt's default is up to 1e6/n vectors, which is 9 times
+/// slower.
 constexpr unsigned kStoredVectors = 5;
 
-/// NLopt's methods treat 1e-8 as zero, for gradients and for distances to bounds: unknowns are scaled to be
-/// typically 1e3, so that this means 1e-11 of what is typical.
+/// NLopt's methods treat 1e-8 as zero, for gradients and for distances to bounds. Unknowns are scaled to
+/// about 1e3, so that 1e-8 is 1e-11 of a typical unknown.
 constexpr double kTypicalUnknown = 1e3;
 
 }  // namespace arris

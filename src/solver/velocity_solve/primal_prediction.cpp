@@ -10,10 +10,11 @@
 namespace arris {
 namespace {
 
-/// More find few further bounds: 10 and 25 nearly tie, 100 cost a factorisation.
+/// More evaluations find few further bounds: 10 and 25 give nearly equal run times, and 100 cost as much as a
+/// factorisation.
 constexpr int kEvaluations = 25;
 
-/// 1/2 x^T D^-1/2 A D^-1/2 x + x^T D^-1/2 g, x = D^1/2 (u - start) / unit, g the gradient at start over unit.
+/// 1/2 x^T D^-1/2 A D^-1/2 x + x^T D^-1/2 g / unit, x = D^1/2 (u - start) / unit, g the gradient at start.
 struct Objective {
     const VelocityProblem* problem;
     Eigen::VectorXd scale;   ///< D^-1/2

@@ -11,12 +11,13 @@ struct ActivePrediction {
     int nlopt_evaluations = 0;
 };
 
-/// A guess at the active bounds, cheap and global: a few evaluations of NLopt's LD_LBFGS on the sparse
-/// problem itself from `start` moved into its bounds; active is then where u - gradient / diagonal <= lower.
+/// A cheap global guess of the active bounds: a few evaluations of NLopt's LD_LBFGS on the sparse problem,
+/// from `start` moved into its bounds. A bound counts as active where u - gradient / diagonal <= lower.
 /// First-order accurate.
 ActivePrediction predict_active_bounds(const VelocityProblem& problem, const Eigen::VectorXd& start);
 
-/// The same from `iterate`, whose rows push on as they do there: NLopt's method knows bounds alone.
+/// The guess from `iterate`, with the impulses of its rows kept constant, as NLopt's method handles only
+/// bounds.
 ActivePrediction predict_active_bounds(const VelocityProblem& problem, const ConstraintRows& constraints,
                                        const Iterate& iterate);
 

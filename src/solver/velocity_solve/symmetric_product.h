@@ -5,7 +5,7 @@
 
 namespace arris {
 
-/// `value` = A x and `magnitude` = |A| |x|, the scale round-off in `value` is measured by.
+/// `value` = A x and `magnitude` = |A| |x|, the scale of the round-off in `value`.
 struct SymmetricProduct {
     Eigen::VectorXd value, magnitude;
 };

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-//
-// The working-set method. A base pins the bounds expected active and factorises once. Where its solution
-// violates a bound or a row, or a pin pulls, those few constraints form a working set U; NLopt solves the
-// dense problem condensed on U; one backward solve gives the velocity; new violators join U, until there are
-// none. Rows are never part of a base, as a penalty would cost the factor its accuracy: those expected active
-// start in U.
-// Finite: U only grows within a base, the dense problem's pivoting is finite, and the number of bases is
-// bounded. When the guess is too far off for a small U, NLopt on the sparse problem predicts a new guess
-// instead, and the next base starts from it. Whatever happened on the way, the certificate judges what comes
-// out.
+// The working-set method. A base pins the bounds expected active and factorises once. Violated bounds and
+// rows, and pins with a negative multiplier, form a working set U. NLopt solves the dense problem condensed
+// on U, and one backward solve gives the velocity. New violators join U until there are none. Rows expected
+// active start in U and are never part of a base, as a penalty would cost the factor its accuracy. Finite: U
+// only grows within a base, the dense pivoting is finite, and the number of bases is bounded. If the guess is
+// too far off for a small U, NLopt on the sparse problem predicts the next base's guess. Whatever happened,
+// the certificate judges the answer.
 #include "solver/velocity_solve/velocity_solve.h"
 
 #include <algorithm>
@@ -27,20 +24,21 @@
 namespace arris {
 namespace {
 
-/// Two answers certified at 1e-9 can differ in soft modes: below this they no longer do.
+/// Answers certified at 1e-9 can still differ in soft modes; below this residual they do not.
 constexpr double kAccurate = 1e-12;
 
-/// What cannot be met is named at fewer digits than a velocity is accepted at: capped multipliers stand a
-/// thousandfold above others.
+/// KKT residual at which infeasible rows are reported. Larger than the tolerance for velocities, as capped
+/// multipliers are a thousand times larger than others.
 constexpr double kNaming = 1e-6;
 
 constexpr int kRefinements = 2;
 
-/// Of dense problems with rows: each takes out what round-off in S has put on the wrong side.
+/// Corrections of a dense problem with rows: each removes wrong signs due to round-off in S.
 constexpr int kCorrections = 3;
 
-/// Members of U beyond which a new factorisation is cheaper than the dense work; the last extension may
-/// exceed it by half. With more violators than kHopeless caps the worst of them are not worth solving for.
+/// Size of U beyond which a new factorisation is cheaper than the dense work; the last extension may exceed
+/// this by half. If the violators exceed kHopeless times this number, solving for the worst of them does not
+/// pay.
 constexpr int kWorkingSetCap = 400;
 constexpr int kHopeless = 3;
 
@@ -49,7 +47,7 @@ constexpr int kCappedBases = 6;
 constexpr int kLargestWorkingSet = 2000;
 constexpr int kMostBases = 10;
 
-/// Rows in U; as no factorisation takes them over they do not count towards the cap.
+/// Largest number of rows in U. Rows do not count towards the cap, as no factorisation takes them over.
 constexpr int kMostRows = 3000;
 
 bool is_finite(const VelocityProblem& problem)
@@ -57,8 +55,7 @@ bool is_finite(const VelocityProblem& problem)
     const Eigen::SparseMatrix<double>& matrix = *problem.matrix;
     if (!Eigen::Map<const Eigen::VectorXd>(matrix.valuePtr(), matrix.nonZeros()).allFinite()) return false;
     if (!problem.rhs->allFinite()) return false;
-    for (int i = 0; i < problem.lower.size();
-         ++i)  // -infinity is no bound; NaN and +infinity are none that can be met
+    for (int i = 0; i < problem.lower.size(); ++i)  // -infinity is no bound; NaN and +infinity cannot be met
         if (!problem.is_fixed[i] && !(problem.lower[i] < std::numeric_limits<double>::infinity()))
             return false;
     return true;
@@ -98,7 +95,7 @@ std::vector<int> pressing_rows(const Iterate& iterate)
     return rows;
 }
 
-/// A factorised base, and how far its working set has come.
+/// A factorised base with its working set and current iterate.
 struct BaseInUse {
     PinnedBase base;
     WorkingSet set;
@@ -114,7 +111,7 @@ struct BaseInUse {
 struct VelocitySolver::Cache {
     Factorization factorization;
     ConstraintRows constraints;
-    std::optional<double> free_speed;  ///< of the last solve's A, b
+    std::optional<double> free_speed;  ///< m/s, from the last solve's A, b
     std::optional<BaseInUse> in_use;   ///< of the last solve, for `resume`
 
     /// False where rows are not finite.
@@ -128,7 +125,7 @@ struct VelocitySolver::Cache {
 
 namespace {
 
-/// One solve: the rounds, and the best answer met so far.
+/// One solve: its rounds and the best answer so far.
 class Search {
   public:
     Search(const VelocityProblem& problem, Factorization& factorization, const ConstraintRows& constraints,
@@ -150,7 +147,7 @@ class Search {
         return run_bases();
     }
 
-    /// From the base in use, which is of the same problem with fewer rows.
+    /// Goes on from the base in use, which belongs to this problem with fewer rows.
     VelocitySolution resume();
 
   private:
@@ -171,9 +168,9 @@ class Search {
     const ConstraintRows& constraints_;
     std::optional<BaseInUse>& in_use_;
     double tolerance_;
-    VelocitySolution best_;        ///< row multipliers are those of the scaled rows until the end
-    std::vector<char> is_active_;  ///< what the next base pins
-    std::vector<int> rows_;        ///< what the next base's working set starts with
+    VelocitySolution best_;        ///< row multipliers belong to the scaled rows until the end
+    std::vector<char> is_active_;  ///< pins of the next base
+    std::vector<int> rows_;        ///< rows with which the next base's working set starts
     bool has_rebased_for_accuracy_ = false;
     bool is_over_ = false;
 };
@@ -237,7 +234,7 @@ void Search::run_base(int cap)
     if (start_rows()) run_rounds(cap);
 }
 
-/// Solves for what the working set has and the rows expected active. False: the next base goes without these.
+/// Solves for the working set with the rows expected active. False: the next base goes without these rows.
 bool Search::start_rows()
 {
     in_use_->set.extend({}, rows_);
@@ -251,7 +248,7 @@ bool Search::start_rows()
 void Search::run_rounds(int cap)
 {
     auto& [base, set, iterate] = *in_use_;
-    for (;;) {  // ends: U grows by at least one each time, up to the cap
+    for (;;) {  // ends: U grows by at least one member per round, up to the cap
         Violators violators = find_violators(base, iterate, set);
         if (violators.empty()) {
             if (finish()) return;
@@ -279,7 +276,7 @@ void Search::rebase_by_prediction()
     rows_ = pressing_rows(iterate);
 }
 
-/// The working set has done most of the work: what is left may change sides untried.
+/// Most of the work is done: the remaining violators change sides without a solve for them.
 void Search::rebase_with_changed(const Violators& violators)
 {
     is_active_ = in_use_->iterate.is_active;
@@ -287,8 +284,8 @@ void Search::rebase_with_changed(const Violators& violators)
     rows_ = pressing_rows(in_use_->iterate);
 }
 
-/// No violator is left: accept, or refine, or factorise once more with exactly these bounds pinned. False
-/// where refinement has brought violators to light.
+/// No violator is left: accepts, refines, or factorises once more with exactly these bounds pinned. False
+/// where refinement has revealed new violators.
 bool Search::finish()
 {
     auto& [base, set, iterate] = *in_use_;
@@ -316,7 +313,7 @@ void Search::refine()
     }
 }
 
-/// Keeps the iterate where it is the best so far; true where it is as accurate as it needs to be.
+/// Keeps the iterate if it is the best so far; true where it is accurate enough.
 bool Search::certify()
 {
     const Iterate& iterate = in_use_->iterate;
@@ -334,7 +331,8 @@ bool Search::certify()
     return residual <= kAccurate;
 }
 
-/// At their cap with more slack than the certificate lets pass, and those that nothing can move.
+/// Rows at their cap that are violated by more than the certificate allows, and rows without a movable
+/// coordinate.
 std::vector<int> Search::find_infeasible_rows() const
 {
     std::vector<int> infeasible = constraints_.impossible;

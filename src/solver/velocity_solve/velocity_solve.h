@@ -10,14 +10,14 @@
 
 namespace arris {
 
-/// sum_k coefficient_k u_(coordinate_k) >= lower. Entries of fixed coordinates count nothing.
+/// sum_k coefficient_k u_(coordinate_k) >= lower. Entries of fixed coordinates are ignored.
 struct ConstraintRow {
     static constexpr int kMostEntries = 18;  ///< two faces of three vertices
     std::array<int, kMostEntries> coordinate{};
     std::array<double, kMostEntries> coefficient{};
     int count = 0;
     double lower = 0.0;  ///< m/s where the coefficients are weights
-    int group = 0;       ///< rows of one cloth face share a group: of each only the worst joins at a time
+    int group = 0;       ///< one per cloth face: only the worst row of a group joins at a time
 };
 
 /// min 1/2 u^T A u - b^T u subject to u >= lower, u = 0 where fixed, and rows. Three unknowns a vertex.
@@ -40,7 +40,7 @@ struct VelocitySolution {
     Eigen::VectorXd velocity;          ///< u
     Eigen::VectorXd multipliers;       ///< lambda >= 0, one a coordinate, 0 where no bound is active
     Eigen::VectorXd row_multipliers;   ///< in [0, cap], one a row
-    std::vector<int> infeasible_rows;  ///< at their cap with slack: the rest is met as well as it can be
+    std::vector<int> infeasible_rows;  ///< at their cap and not met; the others hold as well as possible
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;
@@ -48,9 +48,9 @@ struct VelocitySolution {
     double solve_seconds = 0.0;      ///< wall, all else, symbolic analysis included
 };
 
-/// Solves the constrained velocity step by the working-set method: the guess's coordinates are pinned in one
-/// sparse factorisation, violators are collected, NLopt solves the condensed dense problem on them, a
-/// KKT certificate accepts. Keeps the symbolic analysis between solves while the pattern stays.
+/// Solves the constrained velocity step by the working-set method. One sparse factorisation pins the guessed
+/// coordinates. NLopt solves the dense problem condensed on the violators. A KKT certificate accepts the
+/// answer. Keeps the symbolic analysis between solves while the pattern stays.
 class VelocitySolver {
   public:
     VelocitySolver();
@@ -60,9 +60,9 @@ class VelocitySolver {
 
     VelocitySolution solve(const VelocityProblem& problem, const Settings& settings);
 
-    /// As `solve`, where since this solver's last call rows were appended to the problem and nothing else
-    /// changed but row_guess: goes on from the last base and working set, which costs some solves and no
-    /// factorisation, unless as many bounds change sides as would make `solve` factorise again.
+    /// `solve` for a problem to which rows were appended since this solver's last call; otherwise only
+    /// row_guess may have changed. Goes on from the last base and working set, which costs some solves and no
+    /// factorisation. Factorises only where so many bounds change sides that `solve` would factorise again.
     VelocitySolution resume(const VelocityProblem& problem, const Settings& settings);
 
   private:

@@ -49,8 +49,8 @@ cholmod_sparse view(VertexGraph& graph)
     return sparse;
 }
 
-/// METIS takes SIGTERM for its own while it works, and gives up with a status that says nothing. Whoever sent
-/// it meant the program: that gets it now, and METIS another try.
+/// METIS handles SIGTERM itself while it works, and then returns an error status without a reason. The signal
+/// was meant for the program: it is raised again, and METIS runs once more.
 bool order_by_metis(cholmod_sparse& graph, std::vector<int>& vertices, cholmod_common& common)
 {
     const auto has_ordered = [&] {

@@ -8,10 +8,10 @@
 namespace arris {
 namespace {
 
-/// Signs are trusted down to this share of the largest speed, or of the terms a multiplier is the sum of.
+/// Signs are trusted down to this share of the largest speed, or of the terms summed into a multiplier.
 constexpr double kSignTolerance = 1e-13;
 
-/// The greatest violation of the set's rows that are not at their cap, or gap of those that press.
+/// The greatest error in the set's rows: the violation of rows below their cap, or the gap of pressing rows.
 double error_of_members(const ConstraintRows& constraints, const Iterate& iterate, const WorkingSet& set)
 {
     double error = 0.0;
@@ -25,7 +25,7 @@ double error_of_members(const ConstraintRows& constraints, const Iterate& iterat
     return error;
 }
 
-/// Violation by which rows are compared: that of a unit compliance.
+/// Violation by which rows are compared, scaled to unit compliance.
 double weighed_violation(const ScaledRow& row, const Eigen::VectorXd& velocity)
 {
     return -gap(row, velocity) / std::sqrt(row.compliance);

@@ -7,15 +7,16 @@
 
 namespace arris {
 
-/// What a working set has to take in.
+/// Constraints that a working set must take in.
 struct Violators {
-    std::vector<int> coordinates;  ///< free and below their bound, or active and pulling; ascending
-    std::vector<int> rows;         ///< of each group the one that is violated worst
+    std::vector<int>
+        coordinates;  ///< free and below their bound, or active and pulling (negative multiplier); ascending
+    std::vector<int> rows;  ///< the worst violated row of each group
     bool empty() const { return coordinates.empty() && rows.empty(); }
 };
 
-/// The violators outside `set`. NaN counts as a violation. A row's violation counts as far as it is greater
-/// than those of the rows that `set` is to meet: less is the same round-off.
+/// The violators outside `set`. NaN counts as a violation. A row is a violator only if its violation exceeds
+/// the errors of the rows that `set` should meet: a smaller violation is round-off.
 Violators find_violators(const PinnedBase& base, const Iterate& iterate, const WorkingSet& set);
 
 /// Keeps the `count` coordinates whose correction alone would change the energy most: lambda^2 / A_ii or
@@ -23,7 +24,7 @@ Violators find_violators(const PinnedBase& base, const Iterate& iterate, const W
 void keep_worst_coordinates(const PinnedBase& base, const Iterate& iterate, int count,
                             std::vector<int>& coordinates);
 
-/// The same for rows: gap^2 / (g^T D^-1 g).
+/// Keeps the `count` rows whose correction alone would change the energy most: gap^2 / (g^T D^-1 g).
 void keep_worst_rows(const PinnedBase& base, const Iterate& iterate, int count, std::vector<int>& rows);
 
 }  // namespace arris

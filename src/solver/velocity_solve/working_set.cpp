@@ -14,7 +14,7 @@ using Matrix = Eigen::SparseMatrix<double>;
 
 namespace {
 
-/// Of the diagonal: lets rows that depend on others pass the refinement's elimination.
+/// Relative diagonal shift with which the refinement's elimination can handle dependent rows.
 constexpr double kRowShift = 1e-12;
 
 }  // namespace
@@ -50,7 +50,7 @@ void WorkingSet::release_pins_of(const std::vector<int>& rows, std::vector<Membe
             }
 }
 
-/// In elimination order; of a row that of its first entry.
+/// Position in the elimination order; for a row, that of its first entry.
 int WorkingSet::position_of(const Member& member) const
 {
     const std::vector<int>& position = base_->factorization->position();
@@ -83,12 +83,12 @@ void WorkingSet::extend(const std::vector<int>& coordinates, const std::vector<i
     columns_.append(right_hand_sides(added));
 }
 
-/// A_FR for a pin released, a unit vector for a coordinate stopped, the free coefficients of a row.
+/// A_FR for a released pin, a unit vector for a stopped coordinate, the free coefficients of a row.
 std::vector<SparseVector> WorkingSet::right_hand_sides(const std::vector<Member>& added)
 {
     const int first = size() - static_cast<int>(added.size());
     std::vector<SparseVector> result(added.size());
-    std::vector<int> place(is_member_.size(), -1);  // in U, of the released
+    std::vector<int> place(is_member_.size(), -1);  // in U, of the released pins
     bool is_any_released = false;
     for (int k = 0; k < size(); ++k)
         if (members_[k].kind == Kind::Released) place[members_[k].index] = k;
@@ -112,7 +112,7 @@ void WorkingSet::add_row(int member, const std::vector<int>& place, SparseVector
     }
 }
 
-/// One pass over the lower triangle finds the columns of all released from member `first` on, and A_RR.
+/// One pass over the lower triangle finds A_RR and the columns of all pins released from member `first` on.
 void WorkingSet::add_released(int first, const std::vector<int>& place, std::vector<SparseVector>& columns)
 {
     const Matrix& matrix = *base_->problem->matrix;
@@ -176,7 +176,7 @@ double WorkingSet::gap_of(const Member& member, const Eigen::VectorXd& velocity)
     return velocity[member.index] - base_->problem->lower[member.index];
 }
 
-/// Empty without rows.
+/// Cap of each member's multiplier; empty without rows.
 Eigen::VectorXd WorkingSet::caps() const
 {
     Eigen::VectorXd result;
@@ -257,7 +257,8 @@ void WorkingSet::set_member(int k, const CondensedAnswer& answer, Iterate& itera
     }
 }
 
-/// Pins that are free now, and what was free and is met as an equation now.
+/// Whether refinement treats the member as an equation: pins that are free now, coordinates stopped now, and
+/// rows between 0 and their cap.
 bool WorkingSet::is_equation(const Member& member, const Iterate& iterate) const
 {
     if (member.kind != Kind::Row)
@@ -302,8 +303,8 @@ bool WorkingSet::refine(Iterate& iterate) const
     return true;
 }
 
-/// (dR, lambda_a) from [C, B; -B^T, Y^T Y] (dR; lambda) = (r_R - W^T f; -gap_a - Y^T f); the gap of a bound
-/// is zero exactly.
+/// (dR, lambda_a) from [C, B; -B^T, Y^T Y] (dR; lambda) = (r_R - W^T f; -gap_a - Y^T f). The gap of a bound
+/// is exactly zero.
 Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Iterate& iterate,
                                     const Eigen::VectorXd& forward) const
 {
@@ -319,14 +320,14 @@ Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Ite
         if (member.kind == Kind::Released) known = -iterate.gradient[member.index];
         if (member.kind == Kind::Row) {
             known = -gap_of(member, iterate.velocity);
-            size = std::max(size, row_of(member).compliance);  // on pins alone its own entry is 0
+            size = std::max(size, row_of(member).compliance);  // 0 for a row on pins alone
             shift[i] = kRowShift;
         }
         scale[i] = 1.0 / std::sqrt(size);
         rhs[i] = known - product[k];
         for (Eigen::Index j = 0; j < count; ++j) matrix(i, j) = mixed(k, equations[j]);
     }
-    // Members have different units: to a unit diagonal first.
+    // Members have different units: scale to a unit diagonal first.
     matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
     if (row_count_ > 0) matrix.diagonal() += shift;
     return scale.cwiseProduct(matrix.partialPivLu().solve(scale.cwiseProduct(rhs)));

@@ -7,40 +7,42 @@
 
 namespace arris {
 
-/// The constraints U that may have to change sides against the base: pins to be released (R), free
-/// coordinates to be stopped and rows (together a). Everything else is eliminated by the base's factor: with
-/// W = L^-1 P A_FR and Y = L^-1 P g_F, where g is a row's coefficients or a unit vector, and of which
-/// `columns` holds the Gram matrix, the base's solution changes by
+/// The constraints U that may have to change sides relative to the base: pins to be released (R), free
+/// coordinates to be stopped and rows (together a). The base's factor eliminates everything else. With W =
+/// L^-1 P A_FR and Y = L^-1 P g_F, where g is a row's coefficients or a unit vector, the base's solution
+/// changes by
 ///   gradient_R = gradient0_R + C dR + B lambda_a,   C = A_RR - W^T W  (compliance^-1 of the released)
 ///   gap_a      = gap0_a - B^T dR + Y^T Y lambda_a,   B = W^T Y - g_R
-/// with dR = u_R - lower_R. Solved for (dR, gap_a) it is w = S lambda + q, where S = g^T (A_F+R)^-1 g, SPD
-/// but for rows that depend on others: the condensed problem. U only grows. With a row its pinned coordinates
-/// are released: S_kk of a row that stands on pins alone would be zero.
+/// with dR = u_R - lower_R. `columns_` holds the Gram matrix of W and Y. Solved for (dR, gap_a) this is the
+/// condensed problem w = S lambda + q with S = g^T (A_F+R)^-1 g. S is SPD except for rows that depend on
+/// others. U only grows. A row brings the release of the pins among its coordinates: S_kk of a row on pinned
+/// coordinates alone would be zero.
 class WorkingSet {
   public:
     explicit WorkingSet(const PinnedBase& base);
 
     int size() const { return static_cast<int>(members_.size()); }
     int row_count() const { return row_count_; }
-    int coordinate_count() const { return size() - row_count_ - followers_; }  ///< without rows' pins
+    int coordinate_count() const { return size() - row_count_ - followers_; }  ///< without pins of rows
     bool contains(int coordinate) const { return is_member_[coordinate]; }
     bool contains_row(int row) const { return is_row_member_[row]; }
 
-    /// The coordinates and rows, none of which is a member yet, and the pins that the rows stand on.
+    /// Adds the coordinates and rows, none of which may be a member yet, and the pins among the rows'
+    /// coordinates.
     void extend(const std::vector<int>& coordinates, const std::vector<int>& rows = {});
 
-    /// Takes notice that the base's constraints have got further rows.
+    /// Call after rows were appended to the base's constraints.
     void see_new_rows();
 
-    /// Finds multipliers on U, and with them the velocity. False where the dense problem is not positive
-    /// definite to working precision or does not end; the working set is of no use then.
+    /// Finds multipliers on U and the velocity that they give. False where the dense problem is not positive
+    /// definite to working precision or does not end; the working set is then useless.
     bool solve(Iterate& iterate, int& nlopt_evaluations);
 
-    /// One step of iterative refinement of the equations of the present active set; false as above.
+    /// One step of iterative refinement of the equations of the current active set; false as for `solve`.
     bool refine(Iterate& iterate) const;
 
-    /// Solves for U once more from a refined `iterate`, relative to its true gaps and multipliers: what
-    /// round-off in S has put on the wrong side changes it. For working sets with rows; false as above.
+    /// Solves for U once more from a refined `iterate`, relative to its true gaps and multipliers, which
+    /// corrects wrong signs due to round-off in S. For working sets with rows; false as for `solve`.
     bool correct(Iterate& iterate);
 
   private:
@@ -73,7 +75,7 @@ class WorkingSet {
     std::vector<Member> members_;
     int row_count_ = 0, followers_ = 0;
     ForwardColumns columns_;
-    Eigen::MatrixXd direct_;  ///< U x U: A_ij of two released, g_i of a released and a row, 0 elsewhere
+    Eigen::MatrixXd direct_;  ///< U x U: A_ij of two released pins, g_i of a released pin and a row, else 0
     Eigen::VectorXd multipliers_;
 };
 

@@ -76,7 +76,7 @@ TEST(ExportFrames, SaysWhatIsMissing)
     write_run(dir, 3, kScene);
     std::filesystem::remove(frame_file(dir.path(), 1, "ply"));
     EXPECT_THAT(error_of([&] { export_frames(dir.path(), {"obj"}, {}); }),
-                HasSubstr("cloth_00001.ply: missing"));
+                HasSubstr("cloth_00001.ply: is missing"));
 }
 
 TEST(ExportFrames, RefusesReportsThatAreNone)

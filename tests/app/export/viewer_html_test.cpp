@@ -434,10 +434,10 @@ TEST_F(ViewerHtml, GivesTheStrainsOfTheRun)
 
 TEST_F(ViewerHtml, RefusesWhatItCannotShow)
 {
-    EXPECT_THAT(refusal(), HasSubstr(run_ + "/frames: no frames"));
+    EXPECT_THAT(refusal(), HasSubstr(run_ + "/frames: has no frames"));
     write_frame(frame_path(0), make_strip(2, 0));
     write_frame(frame_path(3), make_strip(2, 0));
-    EXPECT_THAT(refusal(), HasSubstr(frame_path(1) + ": missing"));
+    EXPECT_THAT(refusal(), HasSubstr(frame_path(1) + ": is missing"));
 
     for (const int k : {1, 2}) write_frame(frame_path(k), make_strip(2, 0));
     fs::resize_file(frame_path(2), fs::file_size(frame_path(2)) - 1);
@@ -445,17 +445,17 @@ TEST_F(ViewerHtml, RefusesWhatItCannotShow)
     EXPECT_FALSE(fs::exists(page_path()));
 
     write_frame(frame_path(2), make_strip(0, 0));
-    EXPECT_THAT(refusal(), HasSubstr(frame_path(2) + ": no faces"));
+    EXPECT_THAT(refusal(), HasSubstr(frame_path(2) + ": has no faces"));
     for (const double extent : {1e20, 1e308}) {
         Frame wide = make_strip(2, 0);
         wide.world[0].x() = extent, wide.world[1].x() = -extent;
         write_frame(frame_path(2), wide);
-        EXPECT_THAT(refusal(), HasSubstr(frame_path(2) + ": a vertex further away"));
+        EXPECT_THAT(refusal(), HasSubstr(frame_path(2) + ": a vertex is farther away"));
     }
     Frame torn = make_strip(2, 0);
     torn.strain[1] = -1e300;
     write_frame(frame_path(2), torn);
-    EXPECT_THAT(refusal(), HasSubstr(frame_path(2) + ": a strain larger"));
+    EXPECT_THAT(refusal(), HasSubstr(frame_path(2) + ": a strain is larger"));
     write_frame(frame_path(2), make_strip(2, 0));
     for (const double rate : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
         EXPECT_THAT(refusal({"", rate}), HasSubstr("frames_per_second"));

@@ -136,7 +136,8 @@ TEST(CsvTable, RefusesToCutToMoreRowsThanThereAre)
 {
     const TemporaryDirectory dir;
     write_bytes(dir / "a.csv", "t,x\n0,1\n1,2");
-    EXPECT_THAT(error_of([&] { truncate_csv(dir / "a.csv", 2); }), HasSubstr("a.csv: 1 whole rows, where"));
+    EXPECT_THAT(error_of([&] { truncate_csv(dir / "a.csv", 2); }),
+                HasSubstr("a.csv: has 1 complete rows, but"));
     write_bytes(dir / "a.csv", "t,x");
     EXPECT_THAT(error_of([&] { truncate_csv(dir / "a.csv", 0); }), HasSubstr("a.csv"));
     EXPECT_THAT(error_of([&] { truncate_csv(dir / "missing.csv", 0); }), HasSubstr("missing.csv"));
@@ -147,7 +148,7 @@ TEST(CsvTable, GoesOnWhereItWasCut)
 {
     const TemporaryDirectory dir;
     write_bytes(dir / "a.csv", "t,x\n0,1\n1,2\n2,");
-    EXPECT_THAT(error_of([&] { CsvWriter::append_to(dir / "a.csv", "t,x"); }), HasSubstr("torn"));
+    EXPECT_THAT(error_of([&] { CsvWriter::append_to(dir / "a.csv", "t,x"); }), HasSubstr("incomplete"));
     truncate_csv(dir / "a.csv", 1);
     CsvWriter::append_to(dir / "a.csv", "t,x").append("1,7");
     EXPECT_EQ(read_bytes(dir / "a.csv"), "t,x\n0,1\n1,7\n");

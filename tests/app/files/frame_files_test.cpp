@@ -41,7 +41,7 @@ TEST(FrameFiles, NamesTheFirstOneMissing)
         count_frames(dir.path());
         FAIL() << "a gap was not noticed";
     } catch (const InputError& error) {
-        EXPECT_THAT(error.what(), ::testing::HasSubstr("cloth_00002.ply: missing"));
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("cloth_00002.ply: is missing"));
     }
 }
 

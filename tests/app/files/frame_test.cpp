@@ -138,7 +138,7 @@ TEST(Frame, RefusesEveryTruncation)
     for (std::size_t size = 0; size < bytes.size(); ++size)
         EXPECT_NE(error_of(bytes.substr(0, size)), "") << size;
     EXPECT_EQ(error_of(bytes), "");
-    EXPECT_THAT(error_of(bytes + "x"), HasSubstr("promises"));
+    EXPECT_THAT(error_of(bytes + "x"), HasSubstr("implies"));
 }
 
 TEST(Frame, SurvivesEveryCorruptedByte)
@@ -165,7 +165,7 @@ TEST(Frame, AllocatesNothingForAHeaderThatLies)
             const std::string name = std::string(element).substr(0, std::string(element).size() - 1);
             EXPECT_THAT(
                 error_of(replaced(bytes, std::string("element ") + element, "element " + name + count)),
-                HasSubstr("promises"));
+                HasSubstr("implies"));
         }
     getrusage(RUSAGE_SELF, &after);
     EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 64 * 1024);  // KiB; the lies are of 16 GB and more

@@ -151,7 +151,7 @@ TEST(ReportHtml, TellsTheShareOfEolVerticesAndWhyRowsAreRows)
           std::string("<th scope=\"row\">EOL vertex</th><td class=\"count\">45</td>"),
           std::string("row: guard</th><td class=\"count\">5</td><td>") + explain(RowCause::Guard) + "</td>",
           std::string("row: near_border</th><td class=\"count\">15</td><td>") +
-              explain(RowCause::NearBorder) + " (left out of the share)</td>"})
+              explain(RowCause::NearBorder) + " (not counted in the EOL share)</td>"})
         EXPECT_THAT(html, HasSubstr(part));
     EXPECT_THAT(html, Not(HasSubstr("row: blocked"))) << "what did not happen says nothing";
 

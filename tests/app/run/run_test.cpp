@@ -162,11 +162,12 @@ TEST_F(Run, ResumedAtItsEndSaysThatNothingIsLeftAndHowToGoOn)
     const std::string steps = read_bytes(dir + "/steps.csv");
     Program resumed(folder, {"resume", dir});
     EXPECT_EQ(resumed.wait(), 0) << resumed.err();
-    EXPECT_EQ(resumed.out().rfind("nothing to do: the run has come to its end, t = 0.5 s\n", 0), 0U)
+    EXPECT_EQ(resumed.out().rfind("nothing to do: the run has reached its end, t = 0.5 s\n", 0), 0U)
         << resumed.out();
     EXPECT_NE(resumed.out().find("arris resume " + dir + " --until T"), std::string::npos) << resumed.out();
-    EXPECT_NE(resumed.out().find("run the scene anew: arris run SCENE --set output.frames_per_second=N"),
-              std::string::npos)
+    EXPECT_NE(
+        resumed.out().find("another rate needs a new run: arris run SCENE --set output.frames_per_second=N"),
+        std::string::npos)
         << resumed.out();
     EXPECT_TRUE(read_bytes(dir + "/steps.csv") == steps);
     Program further(folder, {"resume", dir, "--until", "0.51"});

@@ -14,7 +14,8 @@ namespace {
 
 const std::string kCloth = "[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";
 const std::string kRemedy =
-    "move one of them ('translate') until they are at least 0.001 m apart, the cloth's thickness";
+    "move the cloth or the obstacle ('translate') until they are at least 0.001 m apart, the cloth's "
+    "thickness";
 const std::string kBase = "duration = 1\n" + kCloth;
 const std::string kNail = "[[obstacle]]\npoints = [[0, 0, 9]]\n";
 
@@ -295,21 +296,23 @@ const std::vector<WrongScene> kWrongScenes = {
     {"Integrator",
      kBase + "[time]\nintegrator = \"rk4\"\n",
      {},
-     "s.toml:6: time.integrator = \"rk4\": is none of the choices; allowed: \"bdf2\", \"implicit_euler\""},
+     "s.toml:6: time.integrator = \"rk4\": is not one of the choices; allowed: \"bdf2\", \"implicit_euler\""},
     {"Pattern",
      kBase + "pattern = \"Cross\"\n",
      {},
-     "s.toml:5: cloth.pattern = \"Cross\": is none of the choices; allowed: \"diagonal\", \"alternating\", "
+     "s.toml:5: cloth.pattern = \"Cross\": is not one of the choices; allowed: \"diagonal\", "
+     "\"alternating\", "
      "\"cross\", \"unstructured\""},
     {"Preset",
      kBase + "[cloth.material]\npreset = \"spandex\"\n",
      {},
-     "s.toml:6: cloth.material.preset = \"spandex\": is none of the choices; allowed: \"cotton\", \"silk\", "
+     "s.toml:6: cloth.material.preset = \"spandex\": is not one of the choices; allowed: \"cotton\", "
+     "\"silk\", "
      "\"wool\", \"denim\", \"leather\", \"rubber\""},
     {"Direction",
      kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\ndirections = [\"x\", \"w\"]\n",
      {},
-     "s.toml:7: pin.0.directions = [\"x\", \"w\"]: \"w\" is none of the choices; allowed: one or more of "
+     "s.toml:7: pin.0.directions = [\"x\", \"w\"]: \"w\" is not one of the choices; allowed: one or more of "
      "\"x\", \"y\", \"z\""},
     {"NoDirection",
      kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\ndirections = []\n",
@@ -323,7 +326,7 @@ const std::vector<WrongScene> kWrongScenes = {
     {"Format",
      kBase + "[output]\nformats = [\"mp4\"]\n",
      {},
-     "s.toml:6: output.formats = [\"mp4\"]: \"mp4\" is none of the choices; allowed: any of \"obj\", "
+     "s.toml:6: output.formats = [\"mp4\"]: \"mp4\" is not one of the choices; allowed: any of \"obj\", "
      "\"usd\", \"viewer\""},
     {"BadName",
      kBase + "[[probe]]\nname = \"a b\"\nmaterial = [0, 0]\n",
@@ -339,12 +342,13 @@ const std::vector<WrongScene> kWrongScenes = {
     {"NameOfCloth",
      kBase + "[[probe]]\nname = \"cloth\"\nmaterial = [0, 0]\n",
      {},
-     "s.toml:6: probe.0.name = \"cloth\": is the name of the cloth already; allowed: a name of its own, not "
-     "cloth"},
+     "s.toml:6: probe.0.name = \"cloth\": is already the name of the cloth; allowed: a unique name other "
+     "than cloth"},
     {"NameTwice",
      kBase + "[[probe]]\nname = \"a\"\nmaterial = [0, 0]\n[[probe]]\nname = \"a\"\nmaterial = [1, 1]\n",
      {},
-     "s.toml:9: probe.1.name = \"a\": is the name of probe.0 already; allowed: a name of its own, not cloth"},
+     "s.toml:9: probe.1.name = \"a\": is already the name of probe.0; allowed: a unique name other than "
+     "cloth"},
     {"NoDuration",
      kCloth,
      {},
@@ -352,17 +356,20 @@ const std::vector<WrongScene> kWrongScenes = {
     {"NoCloth",
      "duration = 1\n",
      {},
-     "s.toml:1: cloth.size: is required and missing (or else cloth.file); allowed: 2 numbers from 1e-06 to "
+     "s.toml:1: cloth.size: is required and missing, as there is no cloth.file; allowed: 2 numbers from "
+     "1e-06 to "
      "10000 (m)"},
     {"NoResolution",
      "duration = 1\n[cloth]\nsize = [1, 1]\n",
      {},
-     "s.toml:2: cloth.resolution: is required and missing (or else cloth.file); allowed: 2 integers from 1 "
+     "s.toml:2: cloth.resolution: is required and missing, as there is no cloth.file; allowed: 2 integers "
+     "from 1 "
      "to 5000000"},
     {"NoSize",
      "duration = 1\n[cloth]\nresolution = [1, 1]\n",
      {},
-     "s.toml:2: cloth.size: is required and missing (or else cloth.file); allowed: 2 numbers from 1e-06 to "
+     "s.toml:2: cloth.size: is required and missing, as there is no cloth.file; allowed: 2 numbers from "
+     "1e-06 to "
      "10000 (m)"},
     {"PinWithoutMaterial",
      kBase + "[[pin]]\n",
@@ -438,7 +445,7 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\n[[pin.keyframes]]\ntime = 0.5\n[[pin.keyframes]]\ntime = "
              "0.5\n",
      {},
-     "s.toml:10: pin.0.keyframes.1.time = 0.5: is not later than the keyframe before; allowed: a number > "
+     "s.toml:10: pin.0.keyframes.1.time = 0.5: is not later than the previous keyframe; allowed: a number > "
      "0.5 (s)"},
     {"PullStopsBeforeItStarts",
      kBase + "[[pull]]\nmaterial = [[0, 0], [0, 1]]\nforce = [0, 0, 1]\nstart = 0.5\nstop = 0.5\n",
@@ -479,24 +486,23 @@ const std::vector<WrongScene> kWrongScenes = {
     {"ObstacleCalledCloth",
      kBase + kNail + "name = \"cloth\"\n",
      {},
-     "s.toml:7: obstacle.0.name = \"cloth\": is the name of the cloth already; allowed: a name of its own, "
-     "not cloth"},
+     "s.toml:7: obstacle.0.name = \"cloth\": is already the name of the cloth; allowed: a unique name other "
+     "than cloth"},
     {"ObstacleNameTwice",
      kBase + kNail + "name = \"nail\"\n" + kNail + "name = \"nail\"\n",
      {},
-     "s.toml:10: obstacle.1.name = \"nail\": is the name of obstacle.0 already; allowed: a name of its own, "
-     "not cloth"},
+     "s.toml:10: obstacle.1.name = \"nail\": is already the name of obstacle.0; allowed: a unique name other "
+     "than cloth"},
     {"ObstacleAndProbeOfOneName",
      kBase + kNail + "name = \"nail\"\n[[probe]]\nname = \"nail\"\nmaterial = [0, 0]\n",
      {},
-     "s.toml:9: probe.0.name = \"nail\": is the name of obstacle.0 already; allowed: a name of its own, not "
-     "cloth"},
+     "s.toml:9: probe.0.name = \"nail\": is already the name of obstacle.0; allowed: a unique name other "
+     "than cloth"},
     {"ObstacleDefaultNameIsTaken",
      kBase + kNail + "name = \"obstacle1\"\n" + kNail,
      {},
-     "s.toml:8: obstacle.1.name: its default, obstacle1, is the name of obstacle.0 already; allowed: a name "
-     "of "
-     "its own, not cloth"},
+     "s.toml:8: obstacle.1.name: the default obstacle1 is already the name of obstacle.0; allowed: a unique "
+     "name other than cloth"},
     {"FlatObstacleBox",
      kBase + "[[obstacle]]\nbox = [1, 1, 0]\n",
      {},
@@ -557,11 +563,12 @@ const std::vector<WrongScene> kWrongScenes = {
     {"Units",
      kBase + "[[obstacle]]\nfile = \"table.obj\"\nunits = \"feet\"\n",
      {},
-     "s.toml:7: obstacle.0.units = \"feet\": is none of the choices; allowed: \"m\", \"cm\", \"mm\", \"in\""},
+     "s.toml:7: obstacle.0.units = \"feet\": is not one of the choices; allowed: \"m\", \"cm\", \"mm\", "
+     "\"in\""},
     {"Up",
      kBase + "[[obstacle]]\nfile = \"table.obj\"\nup = \"-z\"\n",
      {},
-     "s.toml:7: obstacle.0.up = \"-z\": is none of the choices; allowed: \"x\", \"y\", \"z\""},
+     "s.toml:7: obstacle.0.up = \"-z\": is not one of the choices; allowed: \"x\", \"y\", \"z\""},
     {"ObstacleScale",
      kBase + kNail + "scale = -1\n",
      {},
@@ -600,15 +607,17 @@ const std::vector<WrongScene> kWrongScenes = {
     {"ObstacleKeyframesOutOfOrder",
      kBase + kNail + "keyframes = [ { time = 1 }, { time = 0.5 } ]\n",
      {},
-     "s.toml:7: obstacle.0.keyframes.1.time = 0.5: is not later than the keyframe before; allowed: a number "
+     "s.toml:7: obstacle.0.keyframes.1.time = 0.5: is not later than the previous keyframe; allowed: a "
+     "number "
      "> "
      "1 (s)"},
     {"ObstacleTurnsTooFarInAStep",
      kBase + kNail + "motion = { angular_velocity = [0, 0, 320] }\n",
      {},
-     "s.toml:7: obstacle.0.motion = { angular_velocity = [0, 0, 320] }: turns by 1.6 rad in a step of 0.005 "
+     "s.toml:7: obstacle.0.motion = { angular_velocity = [0, 0, 320] }: rotates by 1.6 rad in a step of "
+     "0.005 "
      "s; "
-     "allowed: at most a quarter turn (1.57 rad) in a step; a shorter time.step allows more"},
+     "allowed: at most a quarter turn (1.57 rad) per step; a shorter time.step allows faster rotation"},
     {"MotionStopsBeforeItStarts",
      kBase + kNail + "motion = { velocity = [1, 0, 0], start = 0.5, stop = 0.25 }\n",
      {},
@@ -621,18 +630,19 @@ const std::vector<WrongScene> kWrongScenes = {
     {"TooManyObstacles",
      kBase + many_nails(1001),
      {},
-     "s.toml:2005: obstacle.1000: is one of 1001 obstacles; allowed: at most 1000; one file, or one list of "
-     "points, may hold many things"},
+     "s.toml:2005: obstacle.1000: is one of 1001 obstacles; allowed: at most 1000; one file or one list of "
+     "points may hold many objects"},
     {"FollowNobody",
      kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nfollow = \"table\"\n",
      {},
-     "s.toml:7: pin.0.follow = \"table\": is no obstacle; allowed: the name of an [[obstacle]]; this scene "
+     "s.toml:7: pin.0.follow = \"table\": is not an obstacle; allowed: the name of an [[obstacle]]; this "
+     "scene "
      "has "
      "none"},
     {"FollowAnotherName",
      kBase + kNail + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nfollow = \"table\"\n",
      {},
-     "s.toml:9: pin.0.follow = \"table\": is no obstacle; allowed: the name of an obstacle: obstacle0"},
+     "s.toml:9: pin.0.follow = \"table\": is not an obstacle; allowed: the name of an obstacle: obstacle0"},
     {"FollowAndVelocity",
      kBase + kNail + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nvelocity = [0, 0, 1]\nfollow = \"obstacle0\"\n",
      {},
@@ -650,19 +660,19 @@ const std::vector<WrongScene> kWrongScenes = {
      {},
      "s.toml:5: obstacle.0: at time 0 the cloth reaches 0.1 m deep into crate, at [0.5, 0.5, 0] (m); "
      "allowed: "
-     "cloth that starts clear of every obstacle: " +
+     "cloth that starts clear of every obstacle; " +
          kRemedy},
     {"ClothThroughAWire",
      kBase + "[[obstacle]]\nwire = [[0.3, 0.3, -1], [0.3, 0.3, 1]]\n",
      {},
      "s.toml:5: obstacle.0: at time 0 the cloth intersects obstacle0, at [0.3, 0.3, 0] (m); allowed: cloth "
-     "that starts clear of every obstacle: " +
+     "that starts clear of every obstacle; " +
          kRemedy},
     {"ClothOnANail",
      kBase + "[[obstacle]]\npoints = [[0.25, 0.25, 0]]\n",
      {},
      "s.toml:5: obstacle.0: at time 0 the cloth intersects obstacle0, at [0.25, 0.25, 0] (m); allowed: cloth "
-     "that starts clear of every obstacle: " +
+     "that starts clear of every obstacle; " +
          kRemedy},
     {"Friction",
      kBase + "[friction]\n",
@@ -713,12 +723,14 @@ const std::vector<WrongScene> kWrongScenes = {
     {"PullBesideTheCloth",
      kBase + "[[pull]]\nmaterial = [[-1, -1], [-0.5, -0.5]]\nforce = [0, 0, 1]\n",
      {},
-     "s.toml:6: pull.0.material = [[-1, -1], [-0.5, -0.5]]: meets no cloth; allowed: material coordinates of "
+     "s.toml:6: pull.0.material = [[-1, -1], [-0.5, -0.5]]: contains no cloth; allowed: material coordinates "
+     "of "
      "the cloth, within [[0, 0], [1, 1]] (m)"},
     {"ProbeBesideTheCloth",
      kBase + "[[probe]]\nname = \"a\"\nmaterial = [0, 1.001]\n",
      {},
-     "s.toml:7: probe.0.material = [0, 1.001]: meets no cloth; allowed: material coordinates of the cloth, "
+     "s.toml:7: probe.0.material = [0, 1.001]: is not on the cloth; allowed: material coordinates of the "
+     "cloth, "
      "within [[0, 0], [1, 1]] (m)"},
     {"Vertices",
      "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [3000, 1000]\n",
@@ -842,7 +854,7 @@ const std::vector<WrongScene> kWrongScenes = {
     {"SetControlCharacters",
      kBase,
      {"cloth.pattern=\"a\\u001b\""},
-     "--set cloth.pattern=\"a\\u001b\": is none of the choices; allowed: "
+     "--set cloth.pattern=\"a\\u001b\": is not one of the choices; allowed: "
      "\"diagonal\", \"alternating\", \"cross\", \"unstructured\""},
     {"LongValue",
      "duration = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21]\n",

@@ -49,60 +49,64 @@ const std::vector<IneffectiveKey> kIneffectiveKeys = {
     {"Preset",
      "[cloth.material]\npreset = \"silk\"\ndensity = 1\nyoungs_modulus = 1\npoisson_ratio = "
      "0\nbending_stiffness = 0\n",
-     "6: cloth.material.preset = \"silk\": has no effect: all its values are overridden"},
+     "6: cloth.material.preset = \"silk\": has no effect: keys override all values of the preset"},
     {"Thickness", "[cloth.material]\nthickness = 1e-3\n",
-     "6: cloth.material.thickness = 1e-3: has no effect: there is no obstacle to keep away from"},
+     "6: cloth.material.thickness = 1e-3: has no effect: the scene has no obstacle"},
     {"Eol", "[eol]\nenabled = true\n",
      "6: eol.enabled = true: has no effect: no obstacle has a sharp feature"},
     {"Gravity", "[gravity]\nacceleration = [0, 0, 0]\n",
-     "6: gravity.acceleration = [0, 0, 0]: has no effect: it is zero"},
-    {"Drag", "[wind]\nvelocity = [1, 0, 0]\ndrag = 0\n", "5: wind: has no effect: its drag is zero"},
+     "6: gravity.acceleration = [0, 0, 0]: has no effect: the acceleration is zero"},
+    {"Drag", "[wind]\nvelocity = [1, 0, 0]\ndrag = 0\n", "5: wind: has no effect: wind.drag is zero"},
     {"AirDensity", "[wind]\nvelocity = [1, 0, 0]\nair_density = 0\n",
-     "5: wind: has no effect: its air_density is zero"},
+     "5: wind: has no effect: wind.air_density is zero"},
     {"GustAmplitude", "[wind]\nvelocity = [1, 0, 0]\ngust = { amplitude = 0, frequency = 1 }\n",
-     "7: wind.gust = { amplitude = 0, frequency = 1 }: has no effect: its amplitude is zero"},
+     "7: wind.gust = { amplitude = 0, frequency = 1 }: has no effect: the amplitude is zero"},
     {"GustOfStillAir", "[wind]\nvelocity = [0, 0, 0]\n[wind.gust]\namplitude = 1\nfrequency = 1\n",
      "7: wind.gust: has no effect: the wind's velocity is zero"},
-    {"Force", kPull + "force = [0, 0, 0]\n", "7: pull.0.force = [0, 0, 0]: has no effect: it is zero"},
+    {"Force", kPull + "force = [0, 0, 0]\n", "7: pull.0.force = [0, 0, 0]: has no effect: the force is zero"},
     {"LateStart", kPull + "force = [0, 0, 1]\nstart = 1\n",
      "8: pull.0.start = 1: has no effect: the pull starts after the end of the run"},
     {"LateStop", kPull + "force = [0, 0, 1]\nstop = 1\n",
-     "8: pull.0.stop = 1: has no effect: the run ends before"},
-    {"LateRelease", kPin + "release = 1.5\n", "7: pin.0.release = 1.5: has no effect: the run ends before"},
+     "8: pull.0.stop = 1: has no effect: the run ends before that time"},
+    {"LateRelease", kPin + "release = 1.5\n",
+     "7: pin.0.release = 1.5: has no effect: the run ends before that time"},
     {"EarlyRelease", kPin + "release = 0\n",
      "7: pin.0.release = 0: has no effect: the pin is released before it holds anything"},
     {"Pivot", kPin + "pivot = [0, 0, 1]\n",
-     "7: pin.0.pivot = [0, 0, 1]: has no effect: there is no angular_velocity about it"},
+     "7: pin.0.pivot = [0, 0, 1]: has no effect: there is no angular_velocity"},
     {"VelocityAcross", kPin + "velocity = [1, 0, 0]\ndirections = [\"z\"]\n",
      "7: pin.0.velocity = [1, 0, 0]: has no effect: the pin does not hold x"},
     {"LateKeyframe", kPin + "keyframes = [ { time = 0 }, { time = 1 }, { time = 1.5 } ]\n",
-     "7: pin.0.keyframes.2.time = 1.5: has no effect: the one before is at the end of the run already"},
+     "7: pin.0.keyframes.2.time = 1.5: has no effect: the previous keyframe is not before the end of the run "
+     "or the release"},
     {"ObstacleUnits", kBox + "units = \"cm\"\n",
      "8: obstacle.0.units = \"cm\": has no effect: the obstacle is not from a file"},
     {"ObstacleUp", kBox + "up = \"y\"\n",
      "8: obstacle.0.up = \"y\": has no effect: the obstacle is not from a file"},
     {"Closed", kBox + "closed = true\n",
-     "8: obstacle.0.closed = true: has no effect: the obstacle is no wire"},
+     "8: obstacle.0.closed = true: has no effect: the obstacle is not a wire"},
     {"FeatureAngle", "[[obstacle]]\npoints = [[0, 0, 9]]\nfeature_angle = 20\n",
      "7: obstacle.0.feature_angle = 20: has no effect: the obstacle has no faces"},
-    {"Motion", kBox + "motion = {}\n", "8: obstacle.0.motion = {}: has no effect: it has no velocity"},
+    {"Motion", kBox + "motion = {}\n",
+     "8: obstacle.0.motion = {}: has no effect: the motion has no velocity"},
     {"MotionPivot", kBox + "motion = { velocity = [0, 0, 1], pivot = [1, 1, 1] }\n",
-     "8: obstacle.0.motion.pivot = [1, 1, 1]: has no effect: there is no angular_velocity about it"},
+     "8: obstacle.0.motion.pivot = [1, 1, 1]: has no effect: there is no angular_velocity"},
     {"MotionStart", kBox + "motion = { velocity = [0, 0, 1], start = 1 }\n",
-     "8: obstacle.0.motion.start = 1: has no effect: it starts after the end of the run"},
+     "8: obstacle.0.motion.start = 1: has no effect: the motion starts after the end of the run"},
     {"MotionStop", kBox + "motion = { velocity = [0, 0, 1], stop = 2 }\n",
-     "8: obstacle.0.motion.stop = 2: has no effect: the run ends before"},
+     "8: obstacle.0.motion.stop = 2: has no effect: the run ends before that time"},
     {"LateObstacleKeyframe",
      "[[obstacle]]\nbox = [1, 1, 1]\nkeyframes = [ { time = 1, translate = [0, 0, 9] }, { time = 2 } ]\n",
-     "7: obstacle.0.keyframes.1.time = 2: has no effect: the one before is at the end of the run already"},
+     "7: obstacle.0.keyframes.1.time = 2: has no effect: the previous keyframe is not before the end of the "
+     "run"},
     {"Formats", "[output]\nframes_per_second = 0\nformats = [\"obj\"]\n",
-     "7: output.formats = [\"obj\"]: has no effect: with frames_per_second = 0 there are no frames to make "
-     "them from"},
+     "7: output.formats = [\"obj\"]: has no effect: with frames_per_second = 0 there are no frames to "
+     "export"},
     {"LongStep", "[time]\nstep = 0.1\n[output]\nframes_per_second = 20\n",
-     "6: time.step = 0.1: acts as 0.05 s: steps end on frames and on the duration"},
+     "6: time.step = 0.1: is shortened to 0.05 s: steps end at frames and at the duration"},
     {"OverlappingPins", kPin + "velocity = [0, 0, 1]\n[[pin]]\nmaterial = [[0, 0], [1, 0]]\n",
-     "9: pin.1.material = [[0, 0], [1, 0]]: holds 3 vertex directions that pin.0 holds too; there pin.1 "
-     "alone decides"},
+     "9: pin.1.material = [[0, 0], [1, 0]]: holds 3 position components that pin.0 also holds; pin.1 alone "
+     "moves them"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Scene, IneffectiveKeyTest, ::testing::ValuesIn(kIneffectiveKeys),
@@ -140,7 +144,7 @@ TEST(SceneWarnings, TellOfAClothWhoseSizeIsNoCloths)
     EXPECT_THAT(of_file(square_obj("500"), "units = \"mm\"\n"), IsEmpty());
     EXPECT_THAT(of_file(square_obj("0.5"), "units = \"mm\"\n"),
                 ElementsAre(HasSubstr("the cloth is 0.0005 x 0.0005 m")));
-    EXPECT_THAT(of_file(square_obj("500", "500"), ""), ElementsAre(HasSubstr("UVs, where it has them")));
+    EXPECT_THAT(of_file(square_obj("500", "500"), ""), ElementsAre(HasSubstr("UVs are always in metres")));
     EXPECT_THAT(of_file(square_obj("500", "0.5"), "units = \"mm\"\n"), IsEmpty());
 
     const auto of_size = [](const std::string& size, const std::string& resolution) {
@@ -163,9 +167,10 @@ TEST(SceneWarnings, TellOfAMeshThatResolvesTheBendsOfItsCloth)
     // T = .05 kg/m^2 * 9.81 m/s^2 * 1 m; 16 cells' mean edge is .0505 m: T h^2 = 1.25e-3 J.
     const std::string stiff = "cloth.material.bending_stiffness=";
     EXPECT_THAT(of({stiff + "1.2e-3", "cloth.resolution=[16,16]", "gravity={}"}), IsEmpty());
-    EXPECT_THAT(of({stiff + "1.3e-3", "cloth.resolution=[16,16]", "gravity={}"}),
-                ElementsAre(AllOf(HasSubstr("cloth.material.bending_stiffness=1.3e-3: edges of 0.0505 m"),
-                                  HasSubstr("eol.enabled = false"))));
+    EXPECT_THAT(
+        of({stiff + "1.3e-3", "cloth.resolution=[16,16]", "gravity={}"}),
+        ElementsAre(AllOf(HasSubstr("cloth.material.bending_stiffness=1.3e-3: the mean edge of 0.0505 m"),
+                          HasSubstr("eol.enabled = false"))));
     EXPECT_THAT(of({stiff + "1.2e-3", "cloth.resolution=[32,32]", "gravity={}"}), ::testing::SizeIs(1));
     EXPECT_THAT(of({stiff + "1.3e-3", "cloth.resolution=[16,16]", "gravity={}", "eol.enabled=false"}),
                 IsEmpty());
@@ -182,7 +187,7 @@ TEST(SceneWarnings, TellOfFacesThatAreThinAndWhatToDo)
     // Of a cell's four faces those on its long sides have atan(width / height) at their ends.
     EXPECT_THAT(of_cells("[12, 1]"),
                 ElementsAre(AllOf(HasSubstr("cloth.resolution=[12, 1]: 24 of 48 faces have an angle below 5 "
-                                            "degrees, the least 4.8 at "),
+                                            "degrees, the least 4.8 degrees at "),
                                   HasSubstr("cells with more even sides"))));
     EXPECT_THAT(of_cells("[11, 1]"), IsEmpty());
     EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.resolution=[12, 1]", kMoving}}).warnings,
@@ -195,8 +200,8 @@ TEST(SceneWarnings, TellOfFacesThatAreThinAndWhatToDo)
     EXPECT_THAT(
         load_scene(dir / "s.toml", {kMoving}).warnings,
         ElementsAre(AllOf(HasSubstr("cloth.file = \"c.obj\": 1 of 2 faces have an angle below 5 degrees, "
-                                    "the least 1.1 at "),
-                          HasSubstr("mesh the file anew"))));
+                                    "the least 1.1 degrees at "),
+                          HasSubstr("remesh the file"))));
 }
 
 TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
@@ -208,7 +213,7 @@ TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
     const RunConfig config = load("1");
     ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
     EXPECT_THAT(config.warnings[0],
-                ::testing::HasSubstr("cloth.material.thickness = 1: is more than an edge"));
+                ::testing::HasSubstr("cloth.material.thickness = 1: exceeds the mean edge"));
     EXPECT_THAT(load("0.4").warnings, ::testing::IsEmpty());
 }
 
@@ -220,7 +225,8 @@ TEST(SceneWarnings, TellOfAModulusInPascal)
     };
     const RunConfig config = load("2e9");
     ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
-    EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("youngs_modulus = 2e9: is in N/m"));
+    EXPECT_THAT(config.warnings[0],
+                ::testing::HasSubstr("youngs_modulus = 2e9: exceeds that of any cloth: the unit is N/m"));
     EXPECT_THAT(load("1e5").warnings, ::testing::IsEmpty());
 }
 
@@ -233,7 +239,7 @@ TEST(SceneWarnings, TellOfATurnThatSlerpCannotMean)
     };
     const RunConfig config = load_scene(SceneSource{"s.toml", turned("360"), {kMoving}});
     ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
-    EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("turns by 360 degrees"));
+    EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("rotates by 360 degrees"));
     EXPECT_THAT(load_scene(SceneSource{"s.toml", turned("180"), {kMoving}}).warnings, ::testing::IsEmpty());
 }
 

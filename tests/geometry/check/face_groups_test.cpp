@@ -10,7 +10,7 @@
 namespace arris {
 namespace {
 
-/// Unit squares of a board in random order.
+/// Unit squares of a chessboard in random order.
 std::vector<Box3> shuffled_board(int side)
 {
     std::vector<Box3> boxes;
@@ -41,7 +41,7 @@ TEST(FaceGroups, LieClose)
     for (std::size_t first = 0; first < order.size(); first += kGroup) {
         Box3 group;
         for (int k = 0; k < kGroup; ++k) group.extend(boxes[order[first + k]]);
-        EXPECT_EQ(group.sizes().x() * group.sizes().y(), 16.0);  // 4 x 4 squares and no gap
+        EXPECT_EQ(group.sizes().x() * group.sizes().y(), 16.0);  // 4 x 4 squares without gaps
     }
 }
 

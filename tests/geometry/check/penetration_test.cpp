@@ -17,7 +17,7 @@
 namespace arris {
 namespace {
 
-// What the header promises of the depth.
+// Relative accuracy of the depth promised by the header.
 constexpr double kAccuracy = 0.01;
 
 Obstacle obstacle_of(const ObstacleMesh& mesh)
@@ -30,7 +30,7 @@ struct Cloth {
     std::vector<Face> faces;
 };
 
-/// n x n cells over the parallelogram from `corner` along `u` and `v`.
+/// Cloth of n x n cells over the parallelogram from `corner` along `u` and `v`.
 Cloth cloth(int n, const Vec3& corner, const Vec3& u, const Vec3& v)
 {
     Cloth made;
@@ -45,7 +45,7 @@ Cloth cloth(int n, const Vec3& corner, const Vec3& u, const Vec3& v)
     return made;
 }
 
-/// Square to z, of half-width `half` about the z axis.
+/// Level cloth of half-width `half` about the z axis.
 Cloth level(int n, double z, double half)
 {
     return cloth(n, {-half, -half, z}, {2 * half, 0, 0}, {0, 2 * half, 0});
@@ -61,7 +61,7 @@ Penetration penetration_of(const Obstacle& obstacle, const Cloth& cloth)
     return find_penetration(obstacle, cloth.positions, cloth.faces);
 }
 
-// Oracles by the definitions, face by face.
+// Oracles: the definitions evaluated face by face.
 double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c)
 {
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
@@ -178,8 +178,9 @@ TEST(WindingNumber, PointsOfTheSurfaceHaveNone)
 
 TEST(WindingNumber, AWayOutThroughEdgesAndCornersIsTakenAnother)
 {
-    // The first way out from the origin, found by what lies on it: a sheet fixes the bounds, and boxes are
-    // put with an edge or a corner on the way, which a count of crossings takes for one too many or few.
+    // The winding number is first counted along one ray from the origin. The test finds that ray's direction:
+    // a sheet fixes the bounds, and boxes have an edge or a corner exactly on the ray. There a count of
+    // crossings is wrong by one.
     const double z = 1.0 - 1.0 / 64, r = std::sqrt(1.0 - z * z);
     ObstacleMesh frame = samples::box({-10, -10, -10}, {10, 10, 10});
     frame.faces.pop_back();
@@ -189,7 +190,7 @@ TEST(WindingNumber, AWayOutThroughEdgesAndCornersIsTakenAnother)
         for (const double flip : {0.0, 1.0}) {
             const Vec3 begin = on + low + flip * Vec3(0, 0.5, 0);
             ObstacleMesh box = samples::box(begin, begin + Vec3(1, 1, 1));
-            for (Vec3& p : box.points)  // what should be at the point is exactly there
+            for (Vec3& p : box.points)  // puts these coordinates exactly on the point
                 for (int k = 0; k < 3; ++k)
                     if (std::abs(p[k] - on[k]) < 1e-9) p[k] = on[k];
             EXPECT_EQ(winding_number(obstacle_of(samples::together(frame, box)), {0, 0, 0}), 0)
@@ -226,7 +227,7 @@ TEST(Penetration, TouchingIsFoundAndHasNoDepth)
     EXPECT_EQ(corner.depth, 0.0);
     EXPECT_LT((corner.place - Vec3(1, 1, 1)).norm(), 1e-12);
 
-    // Over an edge, the cloth's plane through it.
+    // The cloth is over an edge, and its plane contains the edge.
     const Penetration edge = penetration_of(box, triangle({1, -3, 1}, {1, 3, 1}, {3, 0, 2}));
     EXPECT_EQ(edge.faces, 1);
     EXPECT_EQ(edge.depth, 0.0);
@@ -249,10 +250,11 @@ TEST(Penetration, ALevelClothInsideIsAsDeepAsItLies)
 
 TEST(Penetration, AClothFaceIsDeeperInItsMiddleThanAtItsCorners)
 {
-    // Corners near the walls: only the face's middle is far from them.
+    // The face's corners are near the walls; only its middle is far from them.
     const Penetration found =
         penetration_of(obstacle_of(kBox), triangle({-.99, -.99, 0}, {.99, -.99, 0}, {0, .99, 0}));
-    // The largest circle in the square that has its centre in the triangle: the square's.
+    // The depth is the radius of the largest circle in the square with its centre in the triangle: the
+    // square's own.
     EXPECT_EQ(found.faces, 0);
     EXPECT_LE(found.depth, 1.0);
     EXPECT_GE(found.depth, 1.0 - kAccuracy);
@@ -264,14 +266,14 @@ TEST(Penetration, AClothThatHangsIntoASolidIsAsDeepAsItReaches)
         const Penetration found =
             penetration_of(obstacle_of(kBox), cloth(3, {-.2, .1, 1.0 - depth}, {.4, 0, 0}, {0, .1, 2}));
         EXPECT_NEAR(found.depth, depth, 1e-15 + 1e-9 * depth);
-        EXPECT_EQ(found.faces, 6);  // the lowest row: its other two rows are 2/3 above
+        EXPECT_EQ(found.faces, 6);  // the lowest row; the other two rows are 2/3 higher
     }
 }
 
 TEST(Penetration, ACornerThatPokesThroughAFace)
 {
-    // A plane at `height` below the corner, square to its diagonal: the centre of the cut is height / sqrt(3)
-    // from each of the three sides.
+    // A plane at `height` below the corner, perpendicular to its diagonal. The centre of the cut is height /
+    // sqrt(3) from each of the three sides.
     const Obstacle box = obstacle_of(kBox);
     const Vec3 axis = Vec3(1, 1, 1).normalized();
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
@@ -295,7 +297,7 @@ TEST(Penetration, ACornerPokesInAnyDirectionAndAsDeepAsItsHeight)
     for (int i = 0; i < 40; ++i) {
         const Vec3 axis = Vec3(number(random), number(random), number(random)).normalized();
         const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
-        double share = 0.0;  // of the height
+        double share = 0.0;  // depth over height
         for (const double height : {0.05, 1e-2, 1e-4, 1e-6, 1e-8}) {
             const Vec3 centre = Vec3(1, 1, 1) - height * axis + 0.2 * u - 0.3 * v;
             const Penetration found =
@@ -309,8 +311,8 @@ TEST(Penetration, ACornerPokesInAnyDirectionAndAsDeepAsItsHeight)
 
 TEST(Penetration, AnEdgeThatPokesThroughAFace)
 {
-    // A plane that leaves a strip between the two sides of an edge, at angles a and b to them: as wide as
-    // height (cot a + cot b); the deepest line is where w sin a = (width - w) sin b.
+    // The plane cuts a strip between the two sides of an edge, at angles a and b to them. The strip's width
+    // is height (cot a + cot b). The deepest line is where w sin a = (width - w) sin b.
     for (const double degrees : {45.0, 20.0, 5.0})
         for (const double height : {0.1, 1e-2, 1e-3, 1e-5, 1e-7}) {
             const double a = degrees * std::numbers::pi / 180, b = std::numbers::pi / 2 - a;
@@ -322,7 +324,7 @@ TEST(Penetration, AnEdgeThatPokesThroughAFace)
             const double width = height * (1 / std::tan(a) + 1 / std::tan(b));
             const double expected = width * std::sin(a) * std::sin(b) / (std::sin(a) + std::sin(b));
             EXPECT_LE(found.depth, expected * (1 + 1e-6) + 1e-15) << degrees << " " << height;
-            // Along 1e4 times the depth nothing is promised but that it is seen.
+            // For cloth longer than 1e4 times the depth only detection is promised.
             EXPECT_GE(found.depth, expected * (height > 1e-3 ? 1 - kAccuracy : 0.5))
                 << degrees << " " << height;
         }
@@ -358,7 +360,7 @@ TEST(Penetration, DepthIsThatOfDenseSamplesOnRandomTriangles)
                 for (int k = 0; j + k <= kSamples; ++k)
                     deepest = std::max(deepest, depth_of(mesh, t[0] + (t[1] - t[0]) * j / kSamples +
                                                                    (t[2] - t[0]) * k / kSamples));
-            // Depth changes by no more than the way to the next sample.
+            // The depth is 1-Lipschitz, so between samples it changes by at most their spacing.
             const double spacing = std::max((t[1] - t[0]).norm(), (t[2] - t[0]).norm()) / kSamples;
             ASSERT_GE(found.depth, deepest * (1 - kAccuracy) - 1e-12) << i;
             ASSERT_LE(found.depth, deepest + spacing) << i;
@@ -372,7 +374,7 @@ TEST(Penetration, DepthIsThatOfDenseSamplesOnRandomTriangles)
 
 TEST(Penetration, EachPieceOfClothIsToldByItself)
 {
-    Cloth pieces = level(2, 5.0, 1.0);  // clear
+    Cloth pieces = level(2, 5.0, 1.0);  // cloth outside the box
     const Cloth inside = level(2, 0.75, 0.25);
     const int n = static_cast<int>(pieces.positions.size());
     const int first = static_cast<int>(pieces.faces.size());
@@ -391,7 +393,8 @@ TEST(Penetration, AClothInACavityIsOutsideAndOneInTheWallIsNot)
     EXPECT_FALSE(penetration_of(hollow, level(3, 0.1, 0.4)).is_any());
     EXPECT_NEAR(penetration_of(hollow, level(3, 0.8, 0.4)).depth, 0.2, 1e-12);
     EXPECT_NEAR(penetration_of(hollow, level(3, 0.6, 0.4)).depth, 0.1, 1e-12);
-    // Through the walls: half of their thickness, though the middle is far from everything.
+    // The cloth passes through the walls: half of their thickness, although the cloth's middle is in the
+    // cavity.
     const double through = penetration_of(hollow, level(1, 0.0, 5)).depth;
     EXPECT_LE(through, 0.25 * (1 + 1e-9) * std::sqrt(2.0) * 2 / (1 + std::sqrt(2.0)));
     EXPECT_GE(through, 0.25 * (1 - kAccuracy));
@@ -407,7 +410,7 @@ TEST(Penetration, SheetsAreCutButHaveNoInside)
     EXPECT_NEAR(cut.place.z(), 0.0, 1e-12);
     EXPECT_FALSE(penetration_of(sheet, level(4, 1e-300, 3)).is_any());
     EXPECT_TRUE(penetration_of(sheet, level(4, 0.0, 3)).is_any());
-    // A box without its lid, from within.
+    // A box without a lid, with cloth inside.
     ObstacleMesh open = kBox;
     open.faces.resize(open.faces.size() - 1);
     EXPECT_FALSE(penetration_of(obstacle_of(open), level(3, 0.1, 0.4)).is_any());
@@ -420,8 +423,8 @@ TEST(Penetration, WiresAndNailsThroughTheCloth)
     EXPECT_EQ(through.faces, 1);
     EXPECT_EQ(through.depth, 0.0);
     EXPECT_LT((through.place - Vec3(0.1, 0.2, 0.5)).norm(), 1e-12);
-    EXPECT_TRUE(penetration_of(wire, level(3, 1.0, 2)).is_any());   // in the wire's plane
-    EXPECT_TRUE(penetration_of(wire, level(3, -1.0, 2)).is_any());  // its end
+    EXPECT_TRUE(penetration_of(wire, level(3, 1.0, 2)).is_any());   // cloth in the wire's plane
+    EXPECT_TRUE(penetration_of(wire, level(3, -1.0, 2)).is_any());  // cloth at the wire's end
     EXPECT_FALSE(penetration_of(wire, level(3, std::nextafter(1.0, 2), 2)).is_any());
     EXPECT_FALSE(penetration_of(wire, level(3, std::nextafter(-1.0, -2), 2)).is_any());
 
@@ -430,13 +433,14 @@ TEST(Penetration, WiresAndNailsThroughTheCloth)
     EXPECT_EQ(pricked.faces, 1);
     EXPECT_EQ(pricked.place, Vec3(0.5, 0.25, 1));
     EXPECT_FALSE(penetration_of(nail, level(1, std::nextafter(1.0, 2), 2)).is_any());
-    EXPECT_EQ(penetration_of(nail, cloth(2, {-.5, -.75, 1}, {2, 0, 0}, {0, 2, 0})).faces, 6);  // at a vertex
+    // A nail at a vertex.
+    EXPECT_EQ(penetration_of(nail, cloth(2, {-.5, -.75, 1}, {2, 0, 0}, {0, 2, 0})).faces, 6);
 }
 
 TEST(Penetration, ClothFacesWithoutAreaAreLinesAndPoints)
 {
     const Obstacle box = obstacle_of(kBox);
-    // From outside to 0.3 below the top, and to the point there.
+    // The cloth reaches from outside to 0.3 below the top, and the point is there.
     EXPECT_NEAR(penetration_of(box, triangle({0, 0, 2}, {0, 0, .7}, {0, 0, 1.5})).depth, 0.3, 1e-12);
     EXPECT_NEAR(penetration_of(box, triangle({0, 0, .7}, {0, 0, .7}, {0, 0, .7})).depth, 0.3, 1e-12);
     EXPECT_FALSE(penetration_of(box, triangle({0, 0, 2}, {0, 0, 1.1}, {0, 0, 1.5})).is_any());
@@ -452,7 +456,7 @@ TEST(Penetration, ScalesAndMovesWithTheScene)
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u), centre = Vec3(1, 1, 1) - 0.1 * axis;
     const std::array<Vec3, 3> t = {centre + 5 * u, centre - 3 * u + 5 * v, centre - 3 * u - 5 * v};
     for (const double size : {1e-6, 1.0, 1e6})
-        for (const double offset : {0.0, 1e6}) {  // in sizes
+        for (const double offset : {0.0, 1e6}) {  // in units of the obstacle's size
             const auto map = [&](const Vec3& p) { return Vec3(size * (p + Vec3::Constant(offset))); };
             const Penetration found = penetration_of(obstacle_of(samples::moved(kBox, map)),
                                                      triangle(map(t[0]), map(t[1]), map(t[2])));
@@ -486,7 +490,7 @@ double milliseconds(const Obstacle& obstacle, const Cloth& cloth, Penetration& f
 
 TEST(Penetration, EndsInTimeOnFineObstacles)
 {
-    // Bounds that a shared machine keeps and a search without end does not.
+    // Time limits that hold on a shared machine, but not for an unbounded search.
     constexpr double kLongClear = 2000.0, kLongInside = 60000.0;
     const Obstacle sphere = obstacle_of(samples::sphere(160, 316));
     const Obstacle box = obstacle_of(kBox);
@@ -494,7 +498,7 @@ TEST(Penetration, EndsInTimeOnFineObstacles)
     const Cloth near = level(100, 1.0 + 1e-4, 1.0);
     const double clear_sphere = milliseconds(sphere, near, found);
     EXPECT_FALSE(found.is_any());
-    // All around the upper half of the sphere, where its box is no help.
+    // The cloth surrounds the upper half of the sphere, where the sphere's bounding box does not help.
     Cloth drape = level(100, 0.0, 1.0);
     for (Vec3& p : drape.positions) {
         const double radius = p.head<2>().cwiseAbs().maxCoeff(), angle = radius * std::numbers::pi / 2;

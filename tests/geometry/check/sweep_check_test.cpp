@@ -30,7 +30,7 @@ Obstacle make_obstacle(const ObstacleMesh& mesh)
     return Obstacle("obstacle", mesh, Placement{}, RigidMotion{}, 30.0);
 }
 
-/// A mesh of cloth and its way.
+/// A cloth mesh and its motion.
 struct Cloth {
     std::vector<Face> faces;
     MeshTopology topology;
@@ -46,7 +46,7 @@ struct Cloth {
     SweepReport check(const Obstacle& obstacle) const { return check_sweep(obstacle, motion, kThickness); }
 };
 
-/// The square [0, 1]^2 in z = 0, `cells` a side.
+/// The square [0, 1]^2 in z = 0 with `cells` along each side.
 ClothMesh square(int cells, GridPattern pattern = GridPattern::Alternating)
 {
     ClothGrid grid;
@@ -84,7 +84,8 @@ Vec3 cloth_point(const ObstacleContact& contact, const std::vector<Vec3>& positi
     return sum;
 }
 
-/// A contact that forbids where the step ended, allows where it began, and asks for no more than it had.
+/// Checks that a contact excludes the step's end, allows its begin, and requires no larger gap than at the
+/// begin.
 void expect_mends(const ObstacleContact& c, const ClothMotion& motion)
 {
     const double scale = (cloth_point(c, motion.begin) - c.point).norm() + 1e-12;
@@ -94,7 +95,7 @@ void expect_mends(const ObstacleContact& c, const ClothMotion& motion)
     EXPECT_GT(c.least_gap, 0.0);
     EXPECT_LE(c.least_gap, kThickness);
     EXPECT_LT(after, c.least_gap);
-    EXPECT_GE(before, c.least_gap - 1e-9 * scale);  // rounding of the touch's point
+    EXPECT_GE(before, c.least_gap - 1e-9 * scale);  // rounding of the touching point
     double sum = 0.0;
     for (int i = 0; i < 3; ++i) {
         EXPECT_GE(c.weights[i], 0.0);
@@ -123,9 +124,10 @@ void expect_clean(const SweepReport& report)
     EXPECT_EQ(report.intersections, 0);
 }
 
-// ---- What a step must not do
+// ---- Motions that must be reported
 
-/// The cloth passes wholly through: nothing of it is in the way at the end, and yet it is reported.
+/// The cloth passes completely through the obstacle. At the end nothing intersects, but the motion must be
+/// reported.
 void expect_tunnel_is_seen(const ObstacleMesh& mesh)
 {
     const Obstacle obstacle = make_obstacle(mesh);
@@ -140,7 +142,7 @@ void expect_tunnel_is_seen(const ObstacleMesh& mesh)
     }
 }
 
-/// So that nothing lines up with the cloth's mesh.
+/// Tilts the mesh so that it is not aligned with the cloth's mesh.
 ObstacleMesh tilted(const ObstacleMesh& mesh)
 {
     const Mat3 turn = Eigen::AngleAxisd(0.2, Vec3(1.0, 0.7, 0.3).normalized()).toRotationMatrix();
@@ -184,10 +186,10 @@ TEST(SweepCheck, OfAPlateAVertexIsHeldByTheSideItMetFirst)
 
 TEST(SweepCheck, SeesATunnelThroughAWire)
 {
-    // Its ends are beside the cloth: only edges meet.
+    // The wire's ends are beside the cloth: only edges meet.
     expect_tunnels_are_seen(samples::wire({Vec3(-1, 0.4, 0), Vec3(2, 0.43, 0.1)}, false));
     expect_tunnels_are_seen(samples::wire({Vec3(-1, 0.4, 0), Vec3(0.5, 0.43, 0), Vec3(2, 0.4, 0.1)}, false));
-    // A small ring inside one face: its edges meet no edge of the cloth, its points meet the face.
+    // A small ring inside one face: its edges meet no cloth edge, and its points meet the face.
     std::vector<Vec3> ring;
     for (int i = 0; i < 7; ++i)
         ring.push_back(Vec3(0.56 + 0.01 * std::cos(0.9 * i), 0.53 + 0.01 * std::sin(0.9 * i), 0.0));
@@ -197,7 +199,7 @@ TEST(SweepCheck, SeesATunnelThroughAWire)
 TEST(SweepCheck, SeesATunnelThroughANail)
 {
     expect_tunnels_are_seen(samples::nails({Vec3(0.41, 0.37, 0.0)}));
-    // Exactly at a vertex, on an edge, on the cloth's border.
+    // The nail is exactly at a vertex, on an edge, or on the cloth's border.
     expect_tunnel_is_seen(samples::nails({Vec3(1.0, 0.0, 0.0)}));
     expect_tunnel_is_seen(samples::nails({Vec3(0.5, 0.5, 0.0)}));
     expect_tunnel_is_seen(samples::nails({Vec3(0.75, 0.0, 0.0)}));
@@ -205,7 +207,7 @@ TEST(SweepCheck, SeesATunnelThroughANail)
 
 TEST(SweepCheck, SeesAFastNailInAThinStrip)
 {
-    // 20 m/s for 5 ms across a strip 1 cm wide that moves edge on.
+    // The cloth crosses a 1 cm wide strip edge-on at 20 m/s in 5 ms.
     const Obstacle obstacle = make_obstacle(samples::nails({Vec3(0.05, 0.5, 0.0)}));
     const Cloth flat = moving(
         square(4), [](const Vec3& p) { return Vec3(0.01 * p.x(), p.y(), 0.0); },
@@ -218,7 +220,7 @@ TEST(SweepCheck, SeesWhereItEndsInside)
     const Obstacle obstacle = make_obstacle(samples::box(Vec3(-1, -1, -1), Vec3(2, 2, 0)));
     const Cloth cloth = falling(4, 0.1, -0.1);
     const SweepReport report = cloth.check(obstacle);
-    EXPECT_EQ(report.intersections, 0);  // wholly inside
+    EXPECT_EQ(report.intersections, 0);  // the cloth is completely inside
     EXPECT_EQ(report.faces.size(), cloth.faces.size());
     expect_mended(report, cloth);
     for (const ObstacleContact& c : report.violations) {
@@ -245,7 +247,7 @@ TEST(SweepCheck, SeesATouchAtTheEnd)
 
 TEST(SweepCheck, SeesWhatStandsInTheWayAtRest)
 {
-    // Nothing moves, but the cloth is cut by the box, a wire, a nail: not free to begin with.
+    // Nothing moves, but the box, a wire or a nail cuts the cloth already at the begin.
     const ObstacleMesh box = samples::box(Vec3(0.2, 0.2, -0.1), Vec3(0.4, 0.4, 0.1));
     const ObstacleMesh wire = samples::wire({Vec3(0.7, 0.7, -1), Vec3(0.71, 0.72, 1)}, false);
     const ObstacleMesh nail = samples::nails({Vec3(0.9, 0.3, 0)});
@@ -294,10 +296,10 @@ TEST(SweepCheck, OnAFineObstacleACoarseFaceKeepsItsDeepest)
     double deepest = 0.0;
     for (const ObstacleContact& c : report.violations)
         deepest = std::max(deepest, c.normal.dot(c.point - cloth_point(c, cloth.motion.end)));
-    EXPECT_NEAR(deepest, 0.05, 1e-9);  // the ball's top, a point of its mesh
+    EXPECT_NEAR(deepest, 0.05, 1e-9);  // the ball's top, a mesh point
 }
 
-// ---- What a step may do
+// ---- Motions that must not be reported
 
 TEST(SweepCheck, PassingBesideIsClean)
 {
@@ -324,17 +326,17 @@ TEST(SweepCheck, RestingAndSlidingAtAnyGapIsClean)
 
 TEST(SweepCheck, SlidingOverARimIsClean)
 {
-    // A strip bent over the edge of a box, 0.1 mm off, that slides round it: vertices pass from the top to
-    // the side.
+    // A strip bent over a box's edge, 0.1 mm off, slides around the edge: vertices pass from the top to the
+    // side.
     const Obstacle obstacle = make_obstacle(samples::box(Vec3(-2, -1, -2), Vec3(0, 2, 0)));
     const auto bent = [](double slid) -> Map {
         return [slid](const Vec3& p) {
             constexpr double kGap = 1e-4;
-            const double s = p.x() - 0.5 + slid;  // past the edge
+            const double s = p.x() - 0.5 + slid;  // distance past the edge
             return s < 0.0 ? Vec3(s + kGap, p.y(), kGap) : Vec3(kGap, p.y(), kGap - s);
         };
     };
-    // The mesh has lines at the edge at begin and at end, as vertices that stay on it have.
+    // The mesh has lines at the edge at begin and at end, as EOL vertices on the edge would give.
     expect_clean(moving(square(10), bent(0.0), bent(0.0)).check(obstacle));
     const ClothMesh mesh = square(10);
     std::vector<Vec3> end = mapped(mesh.world, bent(0.05));
@@ -349,10 +351,10 @@ TEST(SweepCheck, EmptyClothIsClean)
     expect_clean(Cloth({}, {}, {}).check(obstacle));
 }
 
-// ---- Against all pairs
+// ---- Comparison with all pairs
 
 struct Pairs {
-    std::set<int> vertices, edges, faces;  ///< of the cloth, that met something
+    std::set<int> vertices, edges, faces;  ///< cloth elements that met the obstacle
     int count() const { return static_cast<int>(vertices.size() + edges.size() + faces.size()); }
 };
 
@@ -418,7 +420,7 @@ std::set<int> touching_at(const Obstacle& obstacle, const ClothMotion& motion, d
 
 using Generator = std::mt19937_64;
 
-/// A crumpled cloth near a mixture of things, that moves by about `motion`; free of them at begin.
+/// Crumpled cloth near a mixture of obstacles that moves by about `motion`, free of them at begin.
 Cloth draw_cloth(Generator& random, const Obstacle& obstacle, double motion)
 {
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -475,7 +477,7 @@ TEST(SweepCheck, AgreesWithAllPairsOnRandomMotions)
     EXPECT_GT(through, 20);
 }
 
-// The sweeps' own account of the way is not trusted here: positions in between are, by exact predicates.
+// An independent test: exact predicates at intermediate positions, not the sweeps' own result.
 TEST(SweepCheck, WhatTouchesOnTheWayIsReported)
 {
     Generator random(2);
@@ -494,7 +496,8 @@ TEST(SweepCheck, WhatTouchesOnTheWayIsReported)
     EXPECT_GT(touched, 50);
 }
 
-// A contact with its plane kept by all, the same step is clean of what it was: rows of the check do mend.
+// After all vertices are moved to the free sides of their contacts' planes, the check finds nothing. So rows
+// from the check do resolve its violations.
 TEST(SweepCheck, MovingViolatorsOutMendsAFallOnABox)
 {
     const Obstacle obstacle = make_obstacle(samples::box(Vec3(-1, -1, -1), Vec3(2, 2, 0)));
@@ -507,7 +510,7 @@ TEST(SweepCheck, MovingViolatorsOutMendsAFallOnABox)
     expect_clean(cloth.check(obstacle));
 }
 
-// ---- The same whatever the circumstances
+// ---- Invariance
 
 void expect_same(const SweepReport& a, const SweepReport& b, double scale = 1.0,
                  const Vec3& shift = Vec3::Zero())
@@ -549,7 +552,7 @@ TEST(SweepCheck, IsTheSameWithAnyNumberOfThreads)
 TEST(SweepCheck, IsTheSameFarAwayAndAtAnySize)
 {
     Generator random(3);
-    // In units of 2^-30, so that moving everything by 2^20 m, about 1e6, rounds nothing.
+    // Coordinates are in units of 2^-30, so that a shift by 2^20 m, about 1e6, is exact.
     const auto snap = [](const Vec3& p) {
         return Vec3(Vec3(p * std::ldexp(1.0, 30)).array().round().matrix() * std::ldexp(1.0, -30));
     };

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kThickness = 1e-3;
 
-/// One cloth triangle over a large sheet in z = 0 (whose face 0 is above the origin or not: planes are
-/// alike), of which vertex 0 moves.
+/// One cloth triangle over a large sheet in z = 0; its vertex 0 moves. The sheet's two faces have one plane,
+/// so either may be above the origin.
 struct Meeting {
     Obstacle obstacle{"sheet",
                       samples::moved(samples::sheet(1, 1, [](int, int) { return 0.0; }),
@@ -57,7 +57,8 @@ TEST(SweepViolation, TheStandOffIsNoMoreThanTheGapAtBegin)
     EXPECT_EQ(Meeting(Vec3(0, 0, 1e-6), Vec3(0, 0, -1)).contact(Vec3::UnitZ())->least_gap, 1e-6);
 }
 
-// At a face's rim, from the side: the face's plane tells nothing and holds nothing back.
+// At a face's rim, for a motion from the side, the face's plane neither gives a side nor restrains the
+// vertex.
 TEST(SweepViolation, AVertexThatComesAlongTheFaceGetsThePlaneOfTheTouch)
 {
     const Meeting meeting(Vec3(1, 0, 1e-6), Vec3(-1, 0, -1));
@@ -74,8 +75,8 @@ TEST(SweepViolation, WhereNoPlaneServesItIsAcrossTheWay)
 {
     const Meeting meeting(Vec3(1, 0, 0), Vec3(-1, 0, 0));
     EXPECT_EQ(meeting.normal(Vec3::Zero()), Vec3::UnitX());
-    EXPECT_EQ(meeting.normal(-Vec3::UnitX()), Vec3::UnitX());  // began behind it
-    EXPECT_EQ(meeting.normal(Vec3::UnitY()), Vec3::UnitX());   // along it
+    EXPECT_EQ(meeting.normal(-Vec3::UnitX()), Vec3::UnitX());  // the vertex began behind this plane
+    EXPECT_EQ(meeting.normal(Vec3::UnitY()), Vec3::UnitX());   // the vertex moves along this plane
 }
 
 TEST(SweepViolation, WhatDoesNotMoveGetsNone)

@@ -22,7 +22,7 @@ Vec3 direction(double polar, double azimuth)
     return {std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), -std::cos(polar)};
 }
 
-/// Around -z: ridges at these angles from it, evenly about it.
+/// A cone around -z with ridges at these angles from -z, evenly spaced in azimuth.
 std::vector<FaceSector> make_cone(const std::vector<double>& polar)
 {
     const std::size_t n = polar.size();
@@ -40,7 +40,7 @@ double room_of(const std::vector<FaceSector>& sectors, const Vec3& at)
     return room;
 }
 
-/// Pleated at random: between 10 and 100 degrees from -z.
+/// A randomly pleated cone with ridges between 10 and 100 degrees from -z.
 std::vector<FaceSector> random_cone(std::mt19937& random)
 {
     std::uniform_real_distribution<double> polar(0.17, 1.75);
@@ -49,7 +49,7 @@ std::vector<FaceSector> random_cone(std::mt19937& random)
     return make_cone(ridges);
 }
 
-/// By points of the face itself, however far away.
+/// Brute force by sample directions in the face.
 double sampled_sine(const FaceSector& sector, const Vec3& at)
 {
     double nearest = 1.0;
@@ -78,13 +78,13 @@ TEST(SineToSector, IsThatToTheNearestDirectionInIt)
 
 TEST(ConeAxis, OfFlatClothIsItsNormalHoweverObliqueItIsSeen)
 {
-    constexpr double kAlmost = 0.05;  // rad: by the last thousandth of the room nothing is turned
+    constexpr double kAlmost = 0.05;  // rad: the axis is not turned for the last 0.1 % of room
     const std::vector<FaceSector> flat = make_cone(std::vector<double>(6, M_PI / 2.0));
     for (const double polar : {0.0, 0.3, 0.8, 1.4, 1.55})
         EXPECT_LT((find_cone_axis(flat, direction(polar, 0.4)) + Vec3::UnitZ()).norm(), kAlmost) << polar;
 }
 
-/// Towards the side of -z, all as seen along the cone's turn.
+/// Normals of the faces towards -z, in the order around the cone.
 std::vector<Vec3> find_inward(const std::vector<FaceSector>& cone)
 {
     std::vector<Vec3> inward;
@@ -103,7 +103,7 @@ TEST(ConeAxis, WithoutPleatsIsTheMiddleOfTheNormals)
 
 TEST(ConeAxis, OfAPleatedConeHasRoomWhereItsNormalsHaveNoMiddle)
 {
-    // Four pleats, each laid a little over the next.
+    // Four pleats, each partly over the next.
     std::vector<FaceSector> cone;
     for (int k = 0; k < 4; ++k) {
         const double at = 0.5 * M_PI * k;
@@ -140,7 +140,8 @@ TEST(ConeAxis, NeverHasLessRoomAndNoFaceIsOnTheWay)
 
 TEST(ConeAxis, HasTheMostRoomOfWhatIsAroundIt)
 {
-    constexpr double kShare = 0.02;  // of the room, that may be missing: turns end where they gain little
+    // Share of the room that may be missing, as turns end where the gain is small.
+    constexpr double kShare = 0.02;
     std::mt19937 random(5);
     int worse = 0;
     for (int trial = 0; trial < 200; ++trial) {

@@ -77,7 +77,7 @@ TEST(SpreadOverFaces, IsTheSameLoadByFaces)
     const MaterialBox boxes[] = {
         {{0, 0}, {1, 1}},         {{0.2, 0.3}, {0.7, 0.4}}, {{-3, -3}, {7, 7}},
         {{0.3, 0.2}, {0.3, 0.9}}, {{0.5, 0.5}, {0.5, 0.5}}, {{0.21, 0.4}, {0.21, 0.4}},
-        {{-1, 0.2}, {0, 0.7}},    {{1, 1}, {2, 2}}};  // the last two touch from outside
+        {{-1, 0.2}, {0, 0.7}},    {{1, 1}, {2, 2}}};  // the last two boxes touch the cloth from outside
     for (const ClothMesh& mesh : cloths())
         for (const MaterialBox& box : boxes) {
             std::vector<double> by_vertex(mesh.material.size(), 0.0);
@@ -144,7 +144,7 @@ TEST(SpreadOverBox, AtAPointTakesTheNearestVertex)
     const auto at = [&](double u, double v) { return spread_over_box(mesh, {{u, v}, {u, v}}); };
     ASSERT_EQ(at(0.3, 0.1).size(), 1u);
     EXPECT_EQ(at(0.3, 0.1)[0].vertex, 1);
-    EXPECT_EQ(at(0.25, 0.0)[0].vertex, 0);  // a tie
+    EXPECT_EQ(at(0.25, 0.0)[0].vertex, 0);  // equally near vertices
     EXPECT_EQ(at(1.0, 1.0)[0].vertex, 8);
     EXPECT_EQ(at(1.0 + 1e-10, 1.0)[0].vertex, 8);  // within the tolerance
     EXPECT_THAT(at(1.01, 1.0), IsEmpty());
@@ -160,7 +160,7 @@ TEST(SpreadOverBox, ThatOnlyTouchesTheClothIsALineOrAPoint)
 
 TEST(SpreadOverBox, TouchingASlantOrAHoleFromOutside)
 {
-    // An L: the box fills the notch and meets the cloth along two of its sides only.
+    // An L-shaped cloth: the box fills its notch and touches the cloth along two of the box's sides only.
     ClothMesh mesh;
     mesh.material = {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}, {0, 1}};
     mesh.faces = {{0, 1, 4}, {0, 4, 7}, {1, 2, 3}, {1, 3, 4}, {7, 4, 5}, {7, 5, 6}};

@@ -44,7 +44,7 @@ bool has_side(const Face& face, int a, int b)
     return (face[0] == a && face[1] == b) || (face[1] == a && face[2] == b) || (face[2] == a && face[0] == b);
 }
 
-// The face with a -> b, by trying all.
+// The face with the half-edge a -> b, by brute force.
 int face_left_of(const ClothMesh& mesh, int a, int b)
 {
     for (int f = 0; f < mesh.face_count(); ++f)
@@ -114,7 +114,7 @@ TEST(MeshTopology, HingeNamesItsFacesCorners)
     const MeshTopology topology = make_topology(4, square().faces);
     ASSERT_EQ(topology.hinges.size(), 1u);
     const Hinge& h = topology.hinges[0];
-    // Edge 0 -> 2 runs in face 1 = (0, 2, 3); 2 -> 0 in face 0 = (0, 1, 2).
+    // Half-edge 0 -> 2 is in face 1 = (0, 2, 3), half-edge 2 -> 0 in face 0 = (0, 1, 2).
     EXPECT_EQ(std::tuple(h.a, h.b, h.c, h.d, h.face_c, h.face_d), std::tuple(0, 2, 3, 1, 1, 0));
 }
 
@@ -212,7 +212,8 @@ TEST(Validate, NamesABowTieOfAClosedAndAnOpenFan)
 
 TEST(Validate, OrientationIsExact)
 {
-    // c is off the line through a and b by one unit in the last place: plain doubles see none of it.
+    // c is one unit in the last place off the line through a and b, which plain double arithmetic does not
+    // resolve.
     const Vec2 a(12.0, 12.0);
     const Vec2 b(24.0, 24.0);
     const double next = std::nextafter(0.5, 1.0);

@@ -15,7 +15,7 @@ TEST(SubMesh, HasTheFacesAskedForInTheirOrder)
     ClothGrid grid;
     grid.resolution = {4, 4};
     const ClothMesh whole = make_cloth_grid(grid);
-    const std::vector<int> faces = {17, 3, 40, 4, 3};  // one twice
+    const std::vector<int> faces = {17, 3, 40, 4, 3};  // face 3 twice
     const SubMesh part = extract_faces(whole, faces);
     ASSERT_EQ(part.mesh.faces.size(), faces.size());
     ASSERT_EQ(part.mesh.world.size(), part.vertices.size());

@@ -20,9 +20,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr double kRounding = 1e-15;  // of coordinates about 1
+constexpr double kRounding = 1e-15;  // for coordinates of about 1
 
-// A folder of its own for each test.
+// Each test has its own folder.
 class ClothFileTest : public ::testing::Test {
   protected:
     ClothFileTest()
@@ -105,7 +105,7 @@ TEST_F(ClothFileTest, UpAxisIsTurnedToZ)
     EXPECT_EQ(world('y')[3], Vec3(0, -3, 0));
     EXPECT_EQ(world('x')[2], Vec3(0, 2, 1));
     EXPECT_EQ(world('x')[3], Vec3(-3, 0, 0));
-    // No mirror among them: the volume of a frame keeps its sign.
+    // The axis conversion is no reflection: the volume of a frame keeps its sign.
     for (const char up : {'x', 'y', 'z'}) {
         Mat3 frame;
         frame << world(up)[1], world(up)[2], world(up)[3];
@@ -118,7 +118,7 @@ TEST_F(ClothFileTest, FlatMeshWithoutUvsIsItsOwnChart)
     const ClothFile flat = read("v 0.25 0.5 2\nv 1 0.5 2\nv 1 1 2\nv 0.25 1 2\nf 1 2 3 4\n");
     EXPECT_EQ(validate(flat.mesh), "");
     for (int v = 0; v < 4; ++v) EXPECT_EQ(flat.mesh.material[v], Vec2(flat.mesh.world[v].head<2>()));
-    // Seen from below it is turned over, and on a slant it keeps its lengths.
+    // A chart seen from below is turned over; on a slant it keeps its lengths.
     for (const char* text : {"v 0 0 0\nv 0 1 0\nv 1 1 0\nv 1 0 0\nf 1 2 3 4\n",
                              "v 0 0 0\nv 0.6 0 0.8\nv 0.6 1 0.8\nv 0 1 0\nf 1 2 3 4\n",
                              "v 0 0 0\nv 0 1 0\nv 0 1 1\nv 0 0 1\nf 1 2 3 4\n"}) {
@@ -196,7 +196,7 @@ TEST_F(ClothFileTest, CountsWhatItDrops)
     EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("2 lines and points")));
 }
 
-// Seventeen digits, which tell every double apart.
+// Seventeen digits distinguish every double.
 std::string digits(double value)
 {
     return fmt::format("{:.17g}", value);
@@ -231,7 +231,7 @@ TEST_F(ClothFileTest, PinBoxHoldsTheVerticesOfItsNumbers)
 
 TEST_F(ClothFileTest, PlacesOfOneSingleAndTwoDoublesStayApart)
 {
-    // All corners are the same in single precision.
+    // All corners coincide in single precision.
     const std::vector<Vec3> corners = {
         {1, 1, 0}, {1 + 1e-12, 1, 0}, {1 + 1e-12, 1 + 1e-12, 0}, {1, 1 + 1e-12, 0}};
     std::string text;
@@ -277,7 +277,7 @@ TEST_F(ClothFileTest, WeightDividesAndColourDoesNot)
     EXPECT_EQ(file.mesh.world[1], Vec3(2, 0, 0));
 }
 
-// What cannot be cloth: the text of a file, and what the error must say.
+// Files that cannot be cloth: the text of the file, and a part of the error message.
 struct Defect {
     const char* name;
     std::string text;

@@ -128,7 +128,8 @@ TEST(FoldCloth, CrossingFoldsMustNotStretch)
     const Fold along_v{{Vec2(0.5, 0), Vec2(0.5, 1)}, 90.0};
     const Fold along_u{{Vec2(0, 0.5), Vec2(1, 0.5)}, 90.0};
     EXPECT_THROW(fold_grid({along_v, along_u}), InputError);
-    // By nothing, a line may be crossed; folded flat onto itself, too: its line stays straight.
+    // Fold lines may cross if one has angle 0, or is folded flat onto itself, because the other line then
+    // stays straight.
     expect_isometric(fold_grid({{along_v.line, 0.0}, along_u}));
     expect_isometric(fold_grid({{along_v.line, 180.0}, along_u}));
     EXPECT_THROW(fold_grid({{along_v.line, 1.0}, along_u}), InputError);
@@ -149,7 +150,7 @@ TEST(FoldCloth, NeedsItsLineInTheMesh)
     };
     refuses({0.4, 0}, {0.4, 1});
     refuses({2, 0}, {2, 1});
-    refuses({-1, 1}, {1, -1});  // touches a corner only
+    refuses({-1, 1}, {1, -1});  // touches only a corner
     refuses({0.5, 0.5}, {0.5, 0.5});
     refuses({std::nan(""), 0}, {0.5, 0.5});
     EXPECT_THROW(fold_cloth({{{Vec2(0, 0), Vec2(1, 1)}, std::nan("")}}, mesh), InputError);

@@ -19,14 +19,16 @@ namespace {
 
 constexpr double kAreaTolerance = 1e-12;  // relative
 
-// Measured over sizes 1x1 to 100x3 cells and angles 0, 7, ..., 90 and 0.5, 1, ..., 90: 29.8 degrees.
+// Least angle measured over sizes 1x1 to 100x3 cells and angles 0, 7, ..., 90 and 0.5, 1, ..., 90: 29.8
+// degrees.
 constexpr double kTurnedFloor = 29.0;
-// Measured over 1600 random lines that keep 1.5 cells from corners: one 28.0, two that cross 27.4.
+// Least angle measured over 1600 random lines at least 1.5 cells from corners: 28.0 for one line, 27.4 for
+// two crossing lines.
 constexpr double kFoldedFloor = 25.0;
-// Cells of aspect 2 and 1/3, angles measured where cells are squares (the rectangle's own corners are 37
-// there).
+// For cells of aspect 2 and 1/3, angles are measured in a scale in which cells are squares. The rectangle's
+// own corners have 37 degrees there.
 constexpr double kLongCellFloor = 20.0;
-// CGAL's guarantee.
+// Least angle guaranteed by CGAL.
 constexpr double kRefinedFloor = 20.7;
 
 constexpr std::array kRegular = {GridPattern::Diagonal, GridPattern::Alternating, GridPattern::Cross};
@@ -51,7 +53,7 @@ double area_of(const ClothMesh& mesh)
     return area;
 }
 
-// Degrees, after a linear map of material space.
+// Least angle in degrees, after a linear map of material space.
 double least_angle(const ClothMesh& mesh, const Mat2& map = Mat2::Identity())
 {
     double least = 180.0;
@@ -74,7 +76,7 @@ double mean_edge(const ClothMesh& mesh)
     return sum / static_cast<double>(topology.edges.size());
 }
 
-// Border vertices are on the rectangle exactly, and it is walked round once.
+// Border vertices are exactly on the rectangle, and the border is one closed loop around it.
 void expect_border(const ClothMesh& mesh, const Vec2& size)
 {
     const MeshTopology topology = make_topology(mesh.vertex_count(), mesh.faces);
@@ -183,7 +185,7 @@ TEST(TurnedPattern, HasNoSliversAtAnyAngle)
 
 TEST(TurnedPattern, IsMostlyThePatternItself)
 {
-    // Faces of a 60 x 60 cloth whose angles are those of half a square.
+    // Number of faces of a 60 x 60 cloth with the angles of half a square.
     for (const GridPattern pattern : kRegular) {
         const ClothMesh mesh = make_cloth_grid(make_grid({6, 6}, {60, 60}, pattern, 23.0));
         int count = 0;
@@ -206,7 +208,7 @@ TEST(TurnedPattern, ByAQuarterIsTheSamePatternOnASquare)
         EXPECT_EQ(mesh.vertex_count(), pattern == GridPattern::Cross ? 145 : 81);
         EXPECT_NEAR(least_angle(mesh), 45.0, 1e-10);
     }
-    // And by a whole turn it is the very same mesh.
+    // After a turn by 360 degrees the mesh is identical.
     EXPECT_TRUE(are_equal(make_cloth_grid(make_grid({1, 2}, {3, 4}, GridPattern::Diagonal, 720.0)),
                           make_cloth_grid(make_grid({1, 2}, {3, 4}, GridPattern::Diagonal))));
 }
@@ -292,7 +294,8 @@ TEST(FoldLines, BetweenThePatternsEdgesAreCutIn)
     for (const GridPattern pattern : kAll) {
         for (double u = 0.501; u < 0.6; u += 0.0077) {
             ClothGrid grid = make_grid({1, 1}, {10, 10}, pattern);
-            grid.folds = {fold_along({u, -3.0}, {u, 0.2})};  // the line, not the piece of it
+            // A fold is the whole line, not only the given segment.
+            grid.folds = {fold_along({u, -3.0}, {u, 0.2})};
             const ClothMesh mesh = make_cloth_grid(grid);
             expect_sound(mesh, grid.size);
             expect_covered(mesh, grid.folds[0], 1.0);
@@ -358,7 +361,8 @@ TEST(FoldLines, NastyOnesAreSoundAtEveryScale)
         ClothGrid grid =
             make_grid({scale, scale * (0.1 + uniform())}, {1 + int(20 * uniform()), 1 + int(20 * uniform())},
                       kAll[k % 4], k % 3 == 0 ? 0.0 : 90.0 * uniform());
-        // A quarter of the coordinates lie on quarters of the cloth: corners, coincident lines, crossings.
+        // A quarter of the coordinates are multiples of a quarter of the cloth: corners, coincident lines,
+        // crossings.
         const auto coordinate = [&] {
             const double c = uniform();
             return uniform() < 0.25 ? std::round(4.0 * c) / 4.0 : c;
@@ -435,9 +439,10 @@ TEST(GridEstimate, IsNearForWhatIsCutOrUnstructured)
             }
         }
     }
-    // Cells so long that the border has more vertices than the pattern.
+    // For such long cells the border has more vertices than the pattern.
     for (const GridPattern pattern : kRegular) expect_near(make_grid({25, 0.01}, {2, 20}, pattern, 30.0));
-    // Narrower than a cell's mean side: sides are halves of halves, so within a factor of the root of 2.
+    // The cloth is narrower than a cell's mean side. Sides are halved repeatedly, so their length is within a
+    // factor of sqrt(2).
     for (const auto& resolution : {std::array{2, 20}, std::array{30, 20}, std::array{100, 100}})
         expect_near(make_grid({25, 0.01}, resolution, GridPattern::Unstructured), 0.4);
 }

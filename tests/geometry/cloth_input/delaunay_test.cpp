@@ -29,7 +29,7 @@ TEST(Refine, IsCompleteWhereThePointsSuffice)
     const RefinedTriangulation refined = refine(square_with_lines(0.01), 0.1, 2000);
     EXPECT_TRUE(refined.is_complete);
     EXPECT_LE(refined.points.size(), 2000u);
-    // As many as are needed are enough.
+    // A limit equal to the number of vertices needed is enough.
     const RefinedTriangulation exact = refine(square_with_lines(0.01), 0.1, refined.points.size());
     EXPECT_TRUE(exact.is_complete);
     EXPECT_EQ(exact.points, refined.points);

@@ -16,7 +16,7 @@ namespace {
 enum class Kind { VertexFace, EdgeEdge, FacePoint };
 constexpr std::array<Kind, 3> kKinds{Kind::VertexFace, Kind::EdgeEdge, Kind::FacePoint};
 
-/// A pair of any kind: as many points of the cloth and of the obstacle as it has.
+/// A pair of any kind, with the corresponding numbers of cloth and obstacle points.
 struct Case {
     Kind kind;
     std::array<Vec3, 3> begin, end, obstacle;
@@ -61,7 +61,7 @@ std::string describe(const Case& c)
     return out.str();
 }
 
-// ---- Pairs that touch at a known time, in integers, so that no rounding is in them.
+// ---- Pairs that touch at a known time, in integers, so that no rounding occurs.
 
 using Generator = std::mt19937_64;
 
@@ -70,7 +70,7 @@ int draw(Generator& random, int least, int most)
     return std::uniform_int_distribution<int>(least, most)(random);
 }
 
-/// Coordinates of sizes from 0 to 1000, so that flat, thin and degenerate elements are frequent.
+/// Coordinates with magnitudes from 0 to 1000, so that flat, thin and degenerate elements are frequent.
 Vec3 draw_vector(Generator& random)
 {
     constexpr std::array<int, 5> kSizes{0, 1, 2, 30, 1000};
@@ -82,7 +82,7 @@ Vec3 draw_vector(Generator& random)
     return v;
 }
 
-/// Points, `count` of them, in whose convex hull the origin is.
+/// `count` points whose convex hull contains the origin.
 std::array<Vec3, 3> draw_around_origin(Generator& random, int count)
 {
     std::array<Vec3, 3> points{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
@@ -138,7 +138,7 @@ TEST(ContinuousCollision, NeverMissesAKnownTouch)
     }
 }
 
-// The same touch in general position, rounded: it may be gone by a rounding error, which `distance` covers.
+// A known touch rotated to general position. Rounding may remove the touch, which `distance` covers.
 TEST(ContinuousCollision, NeverMissesATouchInGeneralPosition)
 {
     Generator random(2);
@@ -153,14 +153,14 @@ TEST(ContinuousCollision, NeverMissesATouchInGeneralPosition)
             c.end[k] = turn * c.end[k];
             c.obstacle[k] = turn * c.obstacle[k];
         }
-        // Coordinates below 2e5, an ulp of which is 3e-11.
+        // Coordinates are below 2e5, where an ulp is 3e-11.
         const std::optional<SweepHit> hit = sweep(c, 1e-9);
         ASSERT_TRUE(hit) << "trial " << trial << ", at " << touch.time << ": " << describe(c);
         ASSERT_LE(hit->time, touch.time + 1e-9) << describe(c);
     }
 }
 
-// ---- An oracle of its own: distances in long double, and bisection by the greatest speed.
+// ---- Independent oracle: distances in long double, and bisection by the greatest speed.
 
 using Real = long double;
 using Real3 = Eigen::Matrix<Real, 3, 1>;
@@ -192,7 +192,7 @@ Real distance_of_segments(const Real3& a, const Real3& b, const Real3& c, const 
                           std::min(distance_to_segment(c, a, b), distance_to_segment(d, a, b)));
     const Real3 normal = (b - a).cross(d - c);
     if (!(normal.norm() > 0)) return least;
-    // Each segment's ends are on either side of the plane through the other along the normal.
+    // The ends of each segment are on either side of the plane through the other segment and the normal.
     const Real3 across_ab = normal.cross(b - a);
     const Real3 across_cd = normal.cross(d - c);
     const bool is_crossed =
@@ -212,7 +212,7 @@ Real distance_at(const Case& c, Real time)
     return distance_of_segments(x[0], x[1], o[0], o[1]);
 }
 
-/// The first time at which the distance is at most `least`, to 1e-9 of the step; nothing where it never is.
+/// The first time at which the distance is at most `least`, to 1e-9 of the step; empty if that never happens.
 std::optional<Real> first_within(const Case& c, Real least, Real from, Real to)
 {
     Real speed = 0;
@@ -247,11 +247,11 @@ void expect_meeting_point(const Case& c, const SweepHit& hit, double tolerance)
     EXPECT_NEAR(hit.normal.norm(), 1.0, 1e-12) << describe(c);
 }
 
-/// Compares with the oracle; returns whether it was a hit. Coordinates of the pair are of order 1.
+/// Compares with the oracle and returns whether the pair met. Coordinates of the pair are of order 1.
 bool expect_oracle_agrees(const Case& c, double distance)
 {
-    constexpr Real kApart = 1e-7L;     // nearer than this, no report is owed, nor a surprise
-    constexpr double kMeeting = 1e-8;  // rounding of the meeting point, and `distance`
+    constexpr Real kApart = 1e-7L;     // within this distance either result is accepted
+    constexpr double kMeeting = 1e-8;  // rounding of the meeting point, plus `distance`
     const std::optional<SweepHit> hit = sweep(c, distance);
     const std::optional<Real> approach = first_within(c, kApart, 0, 1);
     if (!approach) {
@@ -281,7 +281,7 @@ Case draw_case(Generator& random, Kind kind, double motion, double thinness)
         c.obstacle[k] = vector();
         c.end[k] = c.begin[k] + motion * (shared + 0.3 * vector());
     }
-    // Slivers: the last corner nearly on the line of the others.
+    // Slivers: the last corner is nearly on the line of the others.
     if (thinness > 0.0 && kind == Kind::VertexFace)
         c.obstacle[2] = 0.3 * c.obstacle[0] + 0.7 * c.obstacle[1] + thinness * c.obstacle[2];
     if (thinness > 0.0 && kind == Kind::FacePoint) {
@@ -316,7 +316,7 @@ TEST(ContinuousCollision, AgreesWithAnOracleWhereTheMotionIsLong)
     Generator random(5);
     for (int trial = 0; trial < 3000 && !HasFailure(); ++trial) {
         Case c = draw_case(random, kKinds[trial % 3], 1e3, 0.0);
-        for (int k = 0; k < 3; ++k) {  // so that it comes by
+        for (int k = 0; k < 3; ++k) {  // aims near the obstacle
             c.begin[k] -= 0.4 * (c.end[0] - c.begin[0]);
             c.end[k] -= 0.4 * (c.end[0] - c.begin[0]);
         }
@@ -341,7 +341,7 @@ TEST(ContinuousCollision, ResultDoesNotChangeWithThePlace)
             ASSERT_EQ(here->time, there->time);
             ASSERT_EQ(here->weights, there->weights);
         }
-        // Nor, but for the unit, with the size.
+        // The result does not depend on the size either, except for the unit.
         const std::optional<SweepHit> small =
             sweep(mapped(c, std::ldexp(1.0, -20), Vec3::Zero()), std::ldexp(1e-10, -20));
         ASSERT_EQ(here.has_value(), small.has_value());
@@ -361,7 +361,7 @@ TEST(SweepVertexFace, FallingMeetsTheFaceWhereAndWhenItShould)
     EXPECT_NEAR(hit->time, 0.25, 1e-9);
     EXPECT_LT((hit->point - Vec3(0.25, 0.5, 0.0)).norm(), 1e-9);
     EXPECT_LT((hit->normal - Vec3::UnitZ()).norm(), 1e-9);
-    // From below the normal is the other one.
+    // From below the normal has the opposite sign.
     const auto below = sweep_vertex_face({0.25, 0.5, -1.0}, {0.25, 0.5, 3.0}, kTriangle, kDistance);
     ASSERT_TRUE(below);
     EXPECT_LT((below->normal + Vec3::UnitZ()).norm(), 1e-9);
@@ -385,12 +385,12 @@ TEST(SweepVertexFace, TouchingIsAHit)
     EXPECT_EQ(at_begin->time, 0.0);
     EXPECT_TRUE(sweep_vertex_face(on, on, kTriangle, kDistance));
     EXPECT_FALSE(sweep_vertex_face(above, above, kTriangle, kDistance));
-    // Along the face, in its plane, and to its corner.
+    // Motion along the face in its plane, and to the face's corner.
     EXPECT_TRUE(sweep_vertex_face({-1, 0.25, 0}, {2, 0.25, 0}, kTriangle, kDistance));
     EXPECT_TRUE(sweep_vertex_face({1, 0, 1}, {1, 0, -1}, kTriangle, kDistance));
 }
 
-// What is free keeps going however near it is: `distance` must not hold it.
+// A free motion is not a hit at any distance: `distance` must not stop it.
 TEST(SweepVertexFace, SlidingAtATinyGapIsFree)
 {
     for (const double gap : {1e-4, 1e-8, 1e-12, 1e-13}) {
@@ -403,14 +403,14 @@ TEST(SweepVertexFace, SlidingAtATinyGapIsFree)
 
 TEST(SweepVertexFace, SlidingBesideARimAtATinyGapIsFree)
 {
-    // In the face's plane, where volumes tell nothing.
+    // In the face's plane signed volumes are zero and give no information.
     for (const double gap : {1e-8, 1e-10, 1e-12}) {
         EXPECT_FALSE(sweep_vertex_face({0.3, -gap, 0}, {0.6, -gap, 0}, kTriangle, 1e-6)) << gap;
         EXPECT_FALSE(sweep_vertex_face({0.3, -gap, 0}, {0.6, -3 * gap, 0}, kTriangle, 1e-6)) << gap;
         EXPECT_FALSE(sweep_vertex_face({0.3, -gap, 0.1}, {0.6, -gap, -0.1}, kTriangle, 0.5 * gap)) << gap;
         EXPECT_FALSE(sweep_vertex_face({0.3, -gap, 0}, {0.3, -gap, 0}, kTriangle, 1e-6)) << gap;
         EXPECT_TRUE(sweep_vertex_face({0.3, -gap, 0}, {0.6, gap, 0}, kTriangle, 1e-6)) << gap;
-        // Round a corner no plane holds for long.
+        // Around a corner no separating plane is valid for long.
         EXPECT_FALSE(sweep_vertex_face({1 + gap, -gap, 0}, {0.9, 0.5, 0}, kTriangle, 1e-6)) << gap;
     }
 }
@@ -436,7 +436,8 @@ TEST(SweepEdgeEdge, CrossingInTheMiddle)
     EXPECT_LT((hit->normal - Vec3::UnitZ()).norm(), 1e-9);
 }
 
-// At a gap of 0.1 mm one end goes down 10 cm and the other up: no plane holds for long, but it never meets.
+// Over an edge at a small gap, one end moves 10 cm down and the other up. No separating plane is valid for
+// long, but the edges never meet.
 TEST(SweepEdgeEdge, PivotingOverAnEdgeAtATinyGapIsFree)
 {
     const std::array<Vec3, 2> edge{Vec3(-1, 0, 0), Vec3(1, 0, 0)};
@@ -456,14 +457,14 @@ TEST(SweepEdgeEdge, ParallelEdgesMeetAndPass)
     const std::array<Vec3, 2> begin{Vec3(-1, 0, 1), Vec3(1, 0, 1)};
     EXPECT_TRUE(sweep_edge_edge(begin, {Vec3(-1, 0, -1), Vec3(1, 0, -1)}, edge, kDistance));
     EXPECT_FALSE(sweep_edge_edge(begin, {Vec3(-1, 3, -1), Vec3(1, 3, -1)}, edge, kDistance));
-    // In line: end to end.
+    // Collinear edges that meet end to end.
     EXPECT_TRUE(
         sweep_edge_edge({Vec3(2, 0, 0), Vec3(3, 0, 0)}, {Vec3(1, 0, 0), Vec3(2, 0, 0)}, edge, kDistance));
     EXPECT_FALSE(
         sweep_edge_edge({Vec3(2, 0, 0), Vec3(3, 0, 0)}, {Vec3(1.001, 0, 0), Vec3(2, 0, 0)}, edge, kDistance));
 }
 
-// All in one plane the volume is 0 throughout and certifies nothing.
+// With all points in one plane the volume is 0 throughout and certifies nothing.
 TEST(SweepEdgeEdge, PivotingInOnePlaneAtASmallGapIsFree)
 {
     const std::array<Vec3, 2> edge{Vec3(-1, 0, 0), Vec3(0, 0, 0)};
@@ -494,7 +495,7 @@ TEST(SweepFacePoint, TurningThroughEdgeOnStillMeets)
     EXPECT_LT((hit->normal - Vec3::UnitX()).norm(), 1e-6);
 }
 
-// What is not a number is no proof of anything.
+// A motion with NaN must be reported, as it proves nothing.
 TEST(ContinuousCollision, NotANumberIsReported)
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -15,12 +15,12 @@ namespace arris {
 namespace {
 
 constexpr double kThickness = 1e-3;
-constexpr double kRounding = 1e-10;  // of unit directions from differences of 1e-3 of coordinates near 1
-constexpr double kTouch = 1e-5;      // of directions at a touch, found to 1e-6 of the way
+constexpr double kRounding = 1e-10;  // for unit directions from differences of 1e-3 of coordinates near 1
+constexpr double kTouch = 1e-5;      // for directions at a touch, found to 1e-6 of the motion
 
 using Segment = std::array<Vec3, 2>;
 
-// Contacts of edge (0, 1) of a triangle whose third vertex is far off, above.
+// Contacts of the edge (0, 1) of a triangle whose third vertex is far above.
 std::vector<ObstacleContact> contacts_of(const Obstacle& obstacle, const Segment& begin, const Segment& end,
                                          const Vec3& third = Vec3(0.5, 0.5, 50))
 {
@@ -44,7 +44,8 @@ const Obstacle& unit_box()
 
 TEST(EdgeContact, ClothThatSlidesOverAWireUnderItsStandOffStaysAsFarAsItWas)
 {
-    // A slope that slides down over the wire: its point that ends above it began far beside.
+    // Sloping cloth slides down over the wire. The material point that ends above the wire began far beside
+    // the wire.
     const Obstacle wire = samples::make_obstacle(samples::wire({{0, -1, 0}, {0, 1, 0}}, false));
     const Vec3 along = Vec3(1, 0, -0.5).normalized(), across = Vec3(0.5, 0, 1).normalized();
     for (const double share : {0.2, 0.9}) {
@@ -59,7 +60,7 @@ TEST(EdgeContact, ClothThatSlidesOverAWireUnderItsStandOffStaysAsFarAsItWas)
 
 TEST(EdgeContact, AcrossARimIsAPlaneAlongBothEdges)
 {
-    for (const double tilt : {-0.3, -0.1, 0.0}) {  // down beyond the rim x = 1
+    for (const double tilt : {-0.3, -0.1, 0.0}) {  // slope beyond the rim x = 1
         const Segment edge = {Vec3(0.9, 0.5, 1.001 - 0.1 * tilt), Vec3(1.1, 0.53, 1.001 + 0.1 * tilt)};
         const auto contacts = contacts_of(unit_box(), edge);
         ASSERT_EQ(contacts.size(), 1U) << tilt;
@@ -87,15 +88,14 @@ TEST(EdgeContact, FarEndsAndParallelEdgesAreNone)
     EXPECT_TRUE(contacts_of(unit_box(), {Vec3(1.001, 0.5, 1.001), Vec3(1.1, 0.53, 1.3)}).empty());  // its end
     EXPECT_TRUE(contacts_of(unit_box(), {Vec3(1, 0.2, 1.001), Vec3(1.001, 0.8, 1.001)}).empty());
     EXPECT_TRUE(contacts_of(unit_box(), {Vec3(0.5, 0.5, 1.001), Vec3(0.6, 0.7, 1.001)}).empty());  // no rim
-    EXPECT_TRUE(
-        contacts_of(unit_box(), {Vec3(0.999, 0.2, 1.001), Vec3(1.001, 0.8, 1.001)}).empty());  // 0.2 degrees
-    EXPECT_EQ(contacts_of(unit_box(), {Vec3(0.995, 0.2, 1.001), Vec3(1.005, 0.5, 1.001)}).size(),
-              1U);  // 2 degrees
+    // The top's rim at angles of 0.2 and 2 degrees to the cloth edge.
+    EXPECT_TRUE(contacts_of(unit_box(), {Vec3(0.999, 0.2, 1.001), Vec3(1.001, 0.8, 1.001)}).empty());
+    EXPECT_EQ(contacts_of(unit_box(), {Vec3(0.995, 0.2, 1.001), Vec3(1.005, 0.5, 1.001)}).size(), 1U);
 }
 
 TEST(EdgeContact, TouchOnTheWayPointsToWhereTheClothWas)
 {
-    // Two vertices on either side of the box's edge fall past it.
+    // Two vertices on either side of the box's edge fall past that edge.
     const Segment begin = {Vec3(0.8, 0.5, 1.05), Vec3(1.2, 0.5, 1.05)};
     const Segment end = {Vec3(0.8, 0.5, 1.01), Vec3(1.2, 0.5, 0.6)};
     const auto contacts = contacts_of(unit_box(), begin, end);
@@ -107,8 +107,8 @@ TEST(EdgeContact, TouchOnTheWayPointsToWhereTheClothWas)
     EXPECT_GT(contacts[0].normal.z(), 0.7);
 }
 
-// What slides over the box's top and sinks into it on its way meets the edge from inside. A direction from
-// there would hold the cloth under the edge, with the full weight of what slides.
+// A cloth edge that slides over the box's top and sinks into it meets the box's edge from inside. A normal
+// from that meeting would hold the cloth under the edge, against the full weight of the sliding cloth.
 TEST(EdgeContact, WhatRunsThroughAFaceOnItsWayStaysOutside)
 {
     const Segment begin = {Vec3(0.935, 0.53, 1.012), Vec3(0.9945, 0.51, 1.0002)};
@@ -136,7 +136,7 @@ TEST(EdgeContact, WireTunnelledFromAnySideIsHeldOnThatSide)
             const auto contacts = is_swapped ? contacts_of(wire, {begin[1], begin[0]}, {end[1], end[0]})
                                              : contacts_of(wire, begin, end);
             ASSERT_EQ(contacts.size(), 1U);
-            EXPECT_LT((contacts[0].normal - from).norm(), 0.03);  // the edge turns a little
+            EXPECT_LT((contacts[0].normal - from).norm(), 0.03);  // the cloth edge turns a little
             EXPECT_NEAR(contacts[0].least_gap, kThickness, kRounding);
         }
     }
@@ -172,8 +172,8 @@ TEST(EdgeContact, BorderOfASheetIsHeldOnTheSideOfTheCloth)
     }
 }
 
-// A node between two segments of a polyline, seen from outside, belongs to one of them; from every direction
-// there is at least one plane, and none twice.
+// A polyline's node between two segments, approached from outside, belongs to one of the two. From every
+// direction there is at least one plane, and no plane twice.
 TEST(EdgeContact, NodeOfAPolylineIsNeitherLostNorDoubled)
 {
     for (const int sides : {16, 100}) {
@@ -202,7 +202,7 @@ TEST(EdgeContact, NodeOfAPolylineIsNeitherLostNorDoubled)
 TEST(EdgeContact, ClosedLoopIsMetInTwoPlacesAtOnce)
 {
     const Obstacle rim = samples::make_obstacle(samples::cylinder(64), 30.0);
-    // Across the upper rim, resting and falling onto it.
+    // Cloth across the upper rim, resting on the rim and falling onto it.
     const auto resting = contacts_of(rim, {Vec3(-1.5, 0.31, 1.001), Vec3(1.5, 0.32, 1.001)});
     ASSERT_EQ(resting.size(), 2U);
     const auto falling = contacts_of(rim, {Vec3(-1.5, 0.31, 1.03), Vec3(1.5, 0.32, 1.03)},
@@ -216,7 +216,7 @@ TEST(EdgeContact, OfTouchesAlongAFinePolylineTheFirstCounts)
     std::vector<Vec3> arc;
     for (int k = 0; k <= 200; ++k) arc.push_back({std::cos(k * M_PI / 200), std::sin(k * M_PI / 200), 0});
     const Obstacle wire = samples::make_obstacle(samples::wire(arc, false));
-    // An edge in the arc's plane is pushed into it from outside: it meets some seventy segments.
+    // An edge in the arc's plane is pushed into the arc from outside and meets some seventy segments.
     const Segment begin = {Vec3(-0.8, 1.05, 0), Vec3(0.8, 1.051, 0)},
                   end = {Vec3(-0.8, 0.85, 0), Vec3(0.8, 0.851, 0)};
     const auto contacts = contacts_of(wire, begin, end);
@@ -227,7 +227,7 @@ TEST(EdgeContact, OfTouchesAlongAFinePolylineTheFirstCounts)
 
 TEST(EdgeContact, EdgesInOnePlaneAreHeldApartWithinIt)
 {
-    // A node of an octagon, met head on by an edge in its plane.
+    // An edge in an octagon's plane meets one of its nodes head-on.
     std::vector<Vec3> octagon;
     for (int k = 0; k < 8; ++k) octagon.push_back({std::cos(k * M_PI / 4), std::sin(k * M_PI / 4), 0});
     const Obstacle loop = samples::make_obstacle(samples::wire(octagon, true), 50.0);
@@ -253,8 +253,8 @@ TEST(EdgeContact, TouchAtAnEndIsTheVertexMatter)
                     .empty());
 }
 
-// Whatever an edge sweeps through: it began on the free side of every plane, and nearly every normal is in
-// the cone of the two faces' normals, though other edges were met first.
+// For a random sweep, the edge begins on the free side of every plane. Nearly every normal is in the cone of
+// the two faces' normals, even if the edge met other edges first.
 TEST(EdgeContact, SweptPlanesHaveTheBeginInFrontAndNormalsInTheCone)
 {
     std::mt19937 engine(29);
@@ -275,12 +275,12 @@ TEST(EdgeContact, SweptPlanesHaveTheBeginInFrontAndNormalsInTheCone)
         }
     }
     EXPECT_GT(count, 500);
-    EXPECT_LT(outside, count / 2);  // each normal has two chances
+    EXPECT_LT(outside, count / 2);  // each normal is tested against two faces
 }
 
 TEST(EdgeContact, CornersOfPolylinesAreTheFacesMatter)
 {
-    // Beside the box's corner, outside: nearest is the corner itself.
+    // The edge is outside, beside the box's corner, which is the nearest point.
     const Vec3 corner = Vec3(1, 1, 1) + kThickness * Vec3(1, 1, 1).normalized();
     const Vec3 along = Vec3(1, -1, 0).normalized();
     EXPECT_TRUE(contacts_of(unit_box(), {Vec3(corner - 0.1 * along), Vec3(corner + 0.1 * along)}).empty());
@@ -290,12 +290,12 @@ TEST(EdgeContact, ReflexEdgesAndThinWallsAreNone)
 {
     const Obstacle l = samples::make_obstacle(samples::l_prism());
     const Obstacle plate = samples::make_obstacle(samples::box({0, 0, 0}, {1, 1, 1e-4}));
-    // Across both rims of the plate: only the upper one is near by way of the free side.
+    // The edge is across both rims of the plate, but only the upper rim is near on the free side.
     const auto contacts = contacts_of(plate, {Vec3(0.9, 0.5, 1.1e-3), Vec3(1.1, 0.5, 0.9e-3)});
     ASSERT_EQ(contacts.size(), 1U);
     EXPECT_NEAR(contacts[0].point.z(), 1e-4, kRounding);
     for (const FeatureEdge& f : l.features().edges) EXPECT_EQ(f.kind, FeatureKind::Convex);
-    // The inner ridge of a roof 0.1 mm thick, seen from above, by whatever edge of it.
+    // The inner ridge of a roof 0.1 mm thick, approached from above, for every edge of the roof.
     const double t = 1e-4 * std::sqrt(2.0);
     const Obstacle roof = samples::make_obstacle(
         samples::moved(samples::prism({{-1, -1}, {0, 0}, {1, -1}, {1, -1 + t}, {0, t}, {-1, -1 + t}},
@@ -317,7 +317,7 @@ TEST(EdgeContact, ReflexEdgesAndThinWallsAreNone)
 TEST(EdgeContact, PairWithoutSideOrDegenerateIsNone)
 {
     const Obstacle wire = samples::make_obstacle(samples::wire({{0, -1, 0}, {0, 1, 0}}, false));
-    // Resting across the wire itself: no side to be told.
+    // The cloth rests exactly across the wire, so no side is known.
     EXPECT_TRUE(contacts_of(wire, {Vec3(-1, 0, 0), Vec3(1, 0, 0)}).empty());
     EXPECT_TRUE(contacts_of(wire, {Vec3(0, 0.1, 0), Vec3(0, 0.1, 0)}).empty());
 }
@@ -326,7 +326,7 @@ TEST(EdgeContact, PlaneBehindWhichItBeganIsNone)
 {
     const Obstacle wire = samples::make_obstacle(samples::wire({{0, -1, 0}, {0, 1, 0}}, false));
     const Segment end = {Vec3(-1, 0.9, -1e-3), Vec3(1, 0.9, -1e-3)};
-    // Around the wire's end, from above to below.
+    // The edge goes around the wire's end, from above to below.
     EXPECT_TRUE(contacts_of(wire, {Vec3(-1, 1.7, 1e-3), Vec3(1, 1.7, 1e-3)}, end).empty());
     EXPECT_EQ(contacts_of(wire, {Vec3(-1, 1.7, -1e-3), Vec3(1, 1.7, -1e-3)}, end).size(), 1U);
     EXPECT_EQ(contacts_of(wire, end).size(), 1U);
@@ -344,7 +344,7 @@ TEST(EdgeContact, ParallelEdgesThatTouchAreHeldApartAlongTheApproach)
 
 TEST(EdgeContact, PairMayBeAnyEdgeOfTheTopology)
 {
-    // A sweep's check asks for the diagonal of the top, too: it is flat, so that its normal is the top's.
+    // The exact check also asks for the diagonal of the top. This edge is flat, so its normal is the top's.
     const ObstacleTopology& topology = unit_box().topology();
     int flat = 0;
     for (int e = 0; e < static_cast<int>(topology.edges.size()); ++e) {
@@ -366,8 +366,8 @@ TEST(EdgeContact, PairMayBeAnyEdgeOfTheTopology)
     EXPECT_EQ(flat, 1);
 }
 
-// Every pair of a cloth edge and a feature edge whose closest points are inside both and a local minimum of
-// the distance has a plane between them, and every plane is at such a place or at a node.
+// A plane exists for every pair of a cloth edge and a feature edge with a local minimum of the distance
+// inside both. Every plane is at such a place or at a node.
 void expect_all_pairs(const ObstacleMesh& mesh, double size, const Vec3& at, double tolerance)
 {
     const Obstacle obstacle = samples::make_obstacle(mesh);

@@ -16,8 +16,8 @@ namespace arris {
 namespace {
 
 constexpr double kThickness = 1e-3;
-constexpr double kRounding = 1e-10;  // of unit directions from differences of 1e-3 of coordinates near 1
-constexpr double kTouch = 1e-5;      // of directions at a touch, found to 1e-6 of the way
+constexpr double kRounding = 1e-10;  // for unit directions from differences of 1e-3 of coordinates near 1
+constexpr double kTouch = 1e-5;      // for directions at a touch, found to 1e-6 of the motion
 
 std::vector<ObstacleContact> contacts_of(const Obstacle& obstacle, const std::vector<Vec3>& begin,
                                          const std::vector<Vec3>& end, const std::vector<Face>& faces)
@@ -26,13 +26,14 @@ std::vector<ObstacleContact> contacts_of(const Obstacle& obstacle, const std::ve
     return find_face_contacts(obstacle, cloth.motion, cloth.motion.end, kThickness);
 }
 
-// One triangle around the origin, at a height.
+// One triangle around the origin, at the given height.
 std::vector<Vec3> flat(double height)
 {
     return {{-0.05, -0.04, height}, {0.05, -0.04, height}, {0.0, 0.06, height}};
 }
 
-// Two, whose common edge (0, 1) runs along x over the origin; `rise` is the height of the outer vertices.
+// Two triangles with the common edge (0, 1) along x over the origin. `rise` is the height of the outer
+// vertices.
 std::vector<Vec3> ridge(double height, double rise)
 {
     return {{-0.05, 0, height}, {0.05, 0, height}, {0, 0.05, height + rise}, {0, -0.05, height + rise}};
@@ -92,26 +93,26 @@ TEST(FaceContact, NailTunnelledIsHeldOnTheSideWhereItWas)
 
 TEST(FaceContact, UnderAnEdgeBetweenFacesIsOneContactOfTheEdge)
 {
-    for (const double rise : {0.0, 0.02}) {  // flat, and a fold that points to the nail
+    for (const double rise : {0.0, 0.02}) {  // flat cloth, and a fold that points to the nail
         const auto contacts = contacts_of(nail(), ridge(kThickness, rise), ridge(kThickness, rise), kRidge);
         ASSERT_EQ(contacts.size(), 1U) << rise;
         EXPECT_EQ(contacts[0].vertices, (std::array<int, 3>{0, 1, -1}));
         EXPECT_LT((contacts[0].normal - Vec3::UnitZ()).norm(), kRounding);
     }
-    for (const double rise : {0.0, 0.02, -0.02}) {  // and a tent that falls on it
+    for (const double rise : {0.0, 0.02, -0.02}) {  // also a tent that falls on the nail
         const auto touched = contacts_of(nail(), ridge(0.02, rise), ridge(-0.02, rise), kRidge);
         ASSERT_EQ(touched.size(), 1U) << rise;
         EXPECT_EQ(touched[0].vertices, (std::array<int, 3>{0, 1, -1}));
         EXPECT_LT((touched[0].normal - Vec3::UnitZ()).norm(), kTouch);
     }
-    // Within a fold it is nearer to both faces.
+    // Within a fold the nail is nearer to both faces than to the edge.
     const auto valley = contacts_of(nail(), ridge(-2e-3, 0.05), ridge(-2e-3, 0.05), kRidge);
     EXPECT_EQ(valley.size(), 2U);
 }
 
 TEST(FaceContact, AcrossAFoldNothingIsLost)
 {
-    // A nail under a ridge, moved sideways in small steps: there is always a plane, at most two.
+    // A nail under a ridge of cloth is moved sideways in small steps: there is always one plane, at most two.
     for (const double rise : {0.0, -0.001, -0.03}) {
         for (int k = -200; k <= 200; ++k) {
             const Obstacle point = nail({0.003, k * 1e-5, 0});
@@ -135,7 +136,7 @@ TEST(FaceContact, BesideTheBorderPushesAlongTheCloth)
     ASSERT_EQ(rest.size(), 1U);
     EXPECT_LT((rest[0].normal - Vec3::UnitY()).norm(), kRounding);
     EXPECT_EQ(rest[0].vertices, (std::array<int, 3>{0, 1, -1}));
-    // Pushed onto it in the cloth's plane.
+    // The border is pushed onto the nail in the cloth's plane.
     const Obstacle before = nail({0, -0.05, 0});
     const auto pushed = contacts_of(before, flat(0), samples::shifted(flat(0), {0, -0.03, 0}), {{0, 1, 2}});
     ASSERT_EQ(pushed.size(), 1U);
@@ -152,7 +153,7 @@ TEST(FaceContact, AtAClothVertexIsTheVertexMatter)
 TEST(FaceContact, CornerOfABoxUnderACloth)
 {
     const Obstacle box = samples::make_obstacle(samples::box({-1, -1, -1}, {0, 0, 0}));
-    // Draped over the corner.
+    // The cloth is draped over the corner.
     const std::vector<Vec3> cloth = {{-0.05, -0.05, 0.02}, {0.05, -0.03, -0.03}, {-0.02, 0.06, -0.03}};
     auto above = samples::shifted(cloth, {0.01, 0.01, 0.012});
     const auto contacts = contacts_of(box, above, above, {{0, 1, 2}});
@@ -163,17 +164,17 @@ TEST(FaceContact, CornerOfABoxUnderACloth)
     const auto resting = contacts_of(box, near, near, {{0, 1, 2}});
     ASSERT_EQ(resting.size(), 1U);
     EXPECT_LT((resting[0].normal - normal).norm(), kRounding);
-    // Flat on the top beyond the corner: the top's plane.
+    // Cloth lies flat on the top beyond the corner: the plane is the top's.
     std::vector<Vec3> level = {{-0.05, -0.05, 1e-3}, {0.05, -0.03, 1e-3}, {-0.02, 0.06, 1e-3}};
     ASSERT_EQ(contacts_of(box, level, level, {{0, 1, 2}}).size(), 1U);
-    // Standing on end across the corner's inner side there is no minimum of the distance.
+    // For upright cloth across the corner's inner side, the distance has no minimum at the corner.
     const std::vector<Vec3> upright = {{0.001, -0.05, -0.05}, {0.001, 0.05, -0.05}, {-0.001, 0.0, 0.05}};
     for (const auto& c : contacts_of(box, upright, upright, {{0, 1, 2}})) EXPECT_GT(c.normal.x(), 0.9);
 }
 
 TEST(FaceContact, NodeOfAnArchedWireCarriesAFace)
 {
-    // An arch whose nodes turn by 10 degrees: no corners but its ends. One node is on top.
+    // An arch with bends of 10 degrees has no corners except its ends. One node is on top.
     std::vector<Vec3> arch;
     for (int k = 0; k <= 18; ++k)
         arch.push_back({0.1 * std::cos(k * M_PI / 18), 0, 0.1 * std::sin(k * M_PI / 18)});
@@ -185,7 +186,7 @@ TEST(FaceContact, NodeOfAnArchedWireCarriesAFace)
         EXPECT_EQ(contacts[0].element, 9);
         EXPECT_LT((contacts[0].normal - Vec3::UnitZ()).norm(), kTouch);
     }
-    // Laid flat, a round rim carries what lies on it by the vertices and edges alone.
+    // On a level round rim, cloth is carried by contacts of vertices and edges alone.
     const Obstacle table = samples::make_obstacle(samples::cylinder(64));
     const std::vector<Vec3> level = samples::shifted(flat(1.0 + kThickness), {1, 0, 0});
     EXPECT_TRUE(contacts_of(table, level, level, {{0, 1, 2}}).empty());
@@ -202,7 +203,7 @@ TEST(FaceContact, CornerBehindAThinWallIsNone)
     const auto contacts = contacts_of(hollow, cloth, cloth, {{0, 1, 2}});
     ASSERT_EQ(contacts.size(), 1U);
     EXPECT_LT(contacts[0].point.norm(), kRounding);
-    // Whatever point is asked for.
+    // The result holds for every point of the obstacle.
     const samples::ClothWay way(cloth, cloth, {{0, 1, 2}});
     int count = 0;
     for (int p = 0; p < static_cast<int>(hollow.mesh().points.size()); ++p)
@@ -213,13 +214,13 @@ TEST(FaceContact, CornerBehindAThinWallIsNone)
 TEST(FaceContact, FlatOnANailWithoutASideIsNone)
 {
     EXPECT_TRUE(contacts_of(nail(), flat(0.0), flat(0.0), {{0, 1, 2}}).empty());
-    const std::vector<Vec3> line = {{-1, 0, 1e-3}, {1, 0, 1e-3}, {0, 0, 1e-3}};  // without area
+    const std::vector<Vec3> line = {{-1, 0, 1e-3}, {1, 0, 1e-3}, {0, 0, 1e-3}};  // a face without area
     for (const auto& c : contacts_of(nail(), line, line, {{0, 1, 2}})) EXPECT_TRUE(c.normal.allFinite());
 }
 
 TEST(FaceContact, PlaneBehindWhichItBeganIsNone)
 {
-    // From above to below, beside the nail.
+    // The cloth moves from above to below, beside the nail.
     const auto below = flat(-1e-3);
     EXPECT_TRUE(contacts_of(nail(), samples::shifted(flat(1e-3), {0.5, 0, 0}), below, {{0, 1, 2}}).empty());
     EXPECT_EQ(contacts_of(nail(), samples::shifted(flat(-1e-3), {0.5, 0, 0}), below, {{0, 1, 2}}).size(), 1U);
@@ -234,8 +235,8 @@ TEST(FaceContact, SideIsKnownFromTheBeginWhereTheEndLiesOnThePoint)
     }
 }
 
-// Against brute force: a point whose nearest point on the whole cloth is within reach and no vertex has a
-// plane there.
+// Comparison with brute force. An obstacle point has a plane if its nearest point on the whole cloth is
+// within reach and is no vertex.
 void expect_all_points(double size, const Vec3& far, double tolerance)
 {
     const double thickness = 0.01 * size;
@@ -306,7 +307,8 @@ TEST(FaceContact, SortedAndTheSameForAnyNumberOfThreads)
     }
 }
 
-// A face slides over a box's corner, and a part of it sinks into the box on the way: its plane leads in.
+// A face slides over a box's corner, and a part of the face sinks into the box meanwhile. The plane of the
+// face then points into the box.
 TEST(FaceContact, WhatRunsThroughAFaceOnItsWayStaysOutside)
 {
     const Obstacle box = samples::make_obstacle(samples::box({0, 0, 0}, {1, 1, 1}));

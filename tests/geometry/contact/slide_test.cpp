@@ -16,7 +16,7 @@ namespace arris {
 namespace {
 
 constexpr double kThickness = 1e-3;
-constexpr double kRounding = 1e-12;  // of coordinates near 1
+constexpr double kRounding = 1e-12;  // for coordinates near 1
 
 Vec3 slide_one(const Obstacle& obstacle, const Vec3& begin, const Vec3& end, double thickness = kThickness)
 {
@@ -34,7 +34,7 @@ TEST(Slide, StopsAFallThroughAThinPlateAboveIt)
 {
     const Obstacle plate = samples::make_obstacle(samples::box({-1, -1, 0}, {1, 1, 1e-3}));
     const Vec3 end = slide_one(plate, {0.11, 0.23, 0.06}, {0.13, 0.20, -0.04});
-    EXPECT_NEAR(end.x(), 0.13, kRounding);  // all of the way along the plate
+    EXPECT_NEAR(end.x(), 0.13, kRounding);  // the whole motion along the plate
     EXPECT_NEAR(end.y(), 0.20, kRounding);
     EXPECT_NEAR(end.z(), 2e-3, kRounding);  // at the stand-off
 }
@@ -47,7 +47,7 @@ TEST(Slide, GlidesOnATopAtItsOwnHeight)
         EXPECT_NEAR(end.z() - 1.0, height, kRounding);
         EXPECT_LT((end - Vec3(0.3, 0.25, end.z())).norm(), kRounding);
     }
-    // Over the rim it goes on straight ahead.
+    // Beyond the rim the motion continues straight ahead.
     EXPECT_LT((slide_one(box, {0.9, 0.5, 1.001}, {1.2, 0.5, 0.99}) - Vec3(1.2, 0.5, 1.001)).norm(),
               kRounding);
 }
@@ -58,7 +58,7 @@ TEST(Slide, MeetsASideRatherThanTheRimInWhosePlaneItMoves)
     const Obstacle straight = samples::make_obstacle(mesh);
     std::reverse(mesh.faces.begin(), mesh.faces.end());
     const Obstacle reversed = samples::make_obstacle(mesh);
-    for (const double turn : {0.0, 0.5, 1.0, 1.5}) {  // each of the four sides, whatever the order of faces
+    for (const double turn : {0.0, 0.5, 1.0, 1.5}) {  // each of the four sides, for any order of faces
         const Mat3 rotation = Eigen::AngleAxisd(turn * M_PI, Vec3::UnitZ()).toRotationMatrix();
         const Vec3 centre(0.5, 0.5, 0);
         const auto turned = [&](double x, double y, double z) {
@@ -80,7 +80,7 @@ TEST(Slide, KeepsToItsSideOfASheet)
         const Vec3 end = slide_one(sheet, {1.2, 1.3, 0.1 * side}, {1.25, 1.3, -0.2 * side});
         EXPECT_NEAR(end.z(), kThickness * side, kRounding);
         EXPECT_NEAR(end.x(), 1.25, kRounding);
-        // Head on against the rim there is no side.
+        // Head-on against the rim no side is preferred.
         const Vec3 before = slide_one(sheet, {-0.5, 1.3, 0.0}, {0.5, 1.3, 0.0});
         EXPECT_LT(before.x(), 0.0);
         EXPECT_GT(before.x(), -2.0 * kThickness);
@@ -103,7 +103,7 @@ TEST(Slide, EndsInAReflexCorner)
 
 TEST(Slide, GoesAlongAnAcuteReflexEdge)
 {
-    // A valley of 40 degrees along y; the way down leads into it, and a little along.
+    // A valley of 40 degrees along y. The motion leads into the valley and a little along it.
     const double w = std::tan(20.0 * M_PI / 180.0);
     const Obstacle valley =
         samples::make_obstacle(samples::sheet(2, 3, [&](int i, int) { return std::abs(i - 1) / w; }));
@@ -129,7 +129,7 @@ TEST(Slide, SlidesInABowlAndOverABall)
 
 enum class Free { Outside, Inside };
 
-// A place on the free side of a closed surface stays there, and never comes onto the surface.
+// A place on the free side of a closed surface must stay there and never reach the surface.
 void expect_never_through(const ObstacleMesh& mesh, int count, Free side = Free::Outside)
 {
     const bool is_cavity = side == Free::Inside;
@@ -147,7 +147,7 @@ void expect_never_through(const ObstacleMesh& mesh, int count, Free side = Free:
         if (samples::is_inside(mesh, p) != is_cavity) continue;
         begin.push_back(p);
         end.push_back(anywhere());
-        // And starting barely above the surface.
+        // The start may also be barely above the surface.
         const Vec3 q = samples::nearest_point(mesh, p);
         const Vec3 close = q + 1e-9 * (p - q);
         if (samples::is_inside(mesh, close) != is_cavity) continue;

@@ -15,7 +15,7 @@ namespace arris {
 namespace {
 
 constexpr double kThickness = 1e-3;
-constexpr double kRounding = 1e-10;  // of unit directions from differences of 1e-3 of coordinates near 1
+constexpr double kRounding = 1e-10;  // for unit directions from differences of 1e-3 of coordinates near 1
 const double kCos20 = std::cos(20.0 * M_PI / 180.0);
 
 std::vector<ObstacleContact> contacts_at(const Obstacle& obstacle, const Vec3& begin, const Vec3& end,
@@ -87,7 +87,7 @@ TEST(VertexContact, OnTheRimItselfIsOnePlaneOutOfTheSolid)
 
 TEST(VertexContact, BarelyOnATopItIsTheTopsPlaneAlone)
 {
-    // It came from beside, but where it lies now a face tells the direction.
+    // The vertex came from the side, but the top's face is nearest to its present place and gives the normal.
     const auto contacts = contacts_at(unit_box(), {1.002, 0.5, 0.9995}, {1.0 - 1e-9, 0.5, 1.0 + 1e-7});
     ASSERT_EQ(contacts.size(), 1U);
     EXPECT_LT((contacts[0].normal - Vec3::UnitZ()).norm(), kRounding);
@@ -97,7 +97,7 @@ TEST(VertexContact, FarFromTheObstacleIsNone)
 {
     EXPECT_TRUE(contacts_at(unit_box(), {0.5, 0.5, 1.0031}).empty());
     EXPECT_TRUE(contacts_at(unit_box(), {50, 0.5, 1}).empty());
-    // A quarter of the way is in reach, where nothing is nearer.
+    // The reach is a quarter of the motion if nothing is nearer.
     EXPECT_EQ(contacts_at(unit_box(), {0.3, 0.5, 1.02}, {0.5, 0.5, 1.02}).size(), 1U);
     EXPECT_TRUE(contacts_at(unit_box(), {0.47, 0.5, 1.02}, {0.5, 0.5, 1.02}).empty());
 }
@@ -109,7 +109,7 @@ TEST(VertexContact, GapMayCloseToTheThicknessAndASmallerOneNoFurther)
     };
     EXPECT_NEAR(least_gap(2e-3, 0.1e-3), kThickness, kRounding);
     EXPECT_NEAR(least_gap(0.3e-3, 0.1e-3), 0.3e-3, kRounding);
-    // What comes out may be pulled back to where it was: it is not held to its speed.
+    // A vertex that moves outward keeps only its former gap: the contact must not maintain its speed.
     EXPECT_NEAR(least_gap(0.3e-3, 0.7e-3), 0.3e-3, kRounding);
     EXPECT_NEAR(least_gap(0.3e-3, 2e-3), 0.3e-3, kRounding);
 }
@@ -151,7 +151,7 @@ TEST(VertexContact, ThinPlateIsSeenFromItsOwnSideOnly)
 
 TEST(VertexContact, BehindAReflexEdgeIsTheOuterEdgeOnly)
 {
-    // A roof of sheet metal, 1e-4 thick: its ridge is convex outside and reflex inside.
+    // A thin roof, 1e-4 thick: its ridge is convex outside and reflex inside.
     const double t = 1e-4 * std::sqrt(2.0);
     const Obstacle roof = samples::make_obstacle(
         samples::moved(samples::prism({{-1, -1}, {0, 0}, {1, -1}, {1, -1 + t}, {0, t}, {-1, -1 + t}},
@@ -168,13 +168,13 @@ TEST(VertexContact, SheetIsSeenFromBothSides)
 {
     const Obstacle sheet = samples::make_obstacle(samples::sheet(2, 2, [](int, int) { return 0.0; }));
     for (const double side : {1.0, -1.0}) {
-        for (const double height : {1e-3, 1e-9, 0.0}) {  // what lies on it is where it was
+        for (const double height : {1e-3, 1e-9, 0.0}) {  // the vertex rests on the roof
             const auto contacts = contacts_at(sheet, {0.3, 0.4, side * 0.01}, {0.3, 0.4, side * height});
             ASSERT_EQ(contacts.size(), 1U);
             EXPECT_LT((contacts[0].normal - side * Vec3::UnitZ()).norm(), kRounding);
         }
     }
-    // Beside its border.
+    // The vertex is beside the sheet's border.
     const auto beside = contacts_at(sheet, {-1e-3, 0.5, 0});
     ASSERT_EQ(beside.size(), 1U);
     EXPECT_LT((beside[0].normal + Vec3::UnitX()).norm(), kRounding);
@@ -186,15 +186,15 @@ TEST(VertexContact, WireIsSeenFromAllAround)
     for (int k = 0; k < 36; ++k) {
         const double a = k * M_PI / 18.0;
         const Vec3 direction(0, std::cos(a), std::sin(a));
-        for (const double x : {0.0, 0.4}) {  // its end, too
+        for (const double x : {0.0, 0.4}) {  // on the wire and at its end
             const auto contacts = contacts_at(wire, Vec3(x, 0, 0) + kThickness * direction);
             ASSERT_EQ(contacts.size(), 1U);
             EXPECT_LT((contacts[0].normal - direction).norm(), kRounding);
         }
-        // At the bend: one plane on each side.
+        // At the bend there is one plane on each side.
         EXPECT_EQ(contacts_at(wire, Vec3(1, 0, 0) + kThickness * direction).size(), 1U);
     }
-    // Within a sharp bend it is between two.
+    // Inside a sharp bend the vertex is between two segments.
     const Obstacle bend = samples::make_obstacle(samples::wire({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, false));
     EXPECT_EQ(contacts_at(bend, {0.999, 1e-3, 0}).size(), 2U);
 }
@@ -215,7 +215,8 @@ TEST(VertexContact, NailPushesAway)
 
 TEST(VertexContact, PlaneBehindWhichItBeganIsNone)
 {
-    // Beside a wire, a nail and a sheet's border the cloth may be caught: what falls past is not held below.
+    // Cloth may fall past a wire, a nail or a sheet's border. A vertex that has passed must not be held below
+    // it.
     const Obstacle wire = samples::make_obstacle(samples::wire({{0, -1, 0}, {0, 1, 0}}, false));
     const Obstacle nails = samples::make_obstacle(samples::nails({{0, 0, 0}}));
     const Obstacle sheet = samples::make_obstacle(samples::sheet(2, 2, [](int, int) { return 0.0; }));
@@ -228,10 +229,10 @@ TEST(VertexContact, PlaneBehindWhichItBeganIsNone)
     for (const Obstacle* thin : {&wire, &nails})
         EXPECT_TRUE(contacts_at(*thin, {1e-3, 0, 2e-3}, {1e-3, 0, -1e-3}).empty());
     EXPECT_TRUE(contacts_at(sheet, {-1e-3, 1, 2e-3}, {-1e-3, 1, -1e-3}).empty());
-    // Over a table's rim and down its side.
+    // The vertex moves over a table's rim and down its side.
     EXPECT_TRUE(contacts_at(unit_box(), {0.97, 0.5, 1.001}, {1.001, 0.5, 0.98}).empty());
     EXPECT_EQ(contacts_at(unit_box(), {1.001, 0.5, 1.001}, {1.001, 0.5, 0.98}).size(), 1U);
-    // Around something round it is held.
+    // Moving around a round obstacle, the vertex is still held.
     const Obstacle ball = samples::make_obstacle(samples::sphere(51, 100));
     for (const double turn : {0.1, 0.3, 0.45})
         EXPECT_EQ(contacts_at(ball, {0, 0, 1.0 + kThickness},
@@ -242,7 +243,7 @@ TEST(VertexContact, PlaneBehindWhichItBeganIsNone)
 
 TEST(VertexContact, SmoothFineSurfaceIsOnePlane)
 {
-    // 10 000 faces that turn by 3 degrees and less: a normal is radial within that.
+    // Neighbours among 10 000 faces differ by at most 3 degrees, so normals are radial to within that angle.
     const ObstacleMesh mesh = samples::sphere(51, 100);
     const Obstacle ball = samples::make_obstacle(mesh),
                    bowl = samples::make_obstacle(samples::inside_out(mesh));
@@ -268,7 +269,7 @@ TEST(VertexContact, SmoothFineSurfaceIsOnePlane)
 
 TEST(VertexContact, WhatSlidesUnderItsStandOffStaysAsFarAsItWas)
 {
-    // Its free way leads out, and along what it is on by much more than the stand-off.
+    // The free motion leads outward, and along the obstacle by much more than the stand-off.
     const Obstacle wire = samples::make_obstacle(samples::wire({{-1, 0, 0}, {1, 0, 0}}, false));
     for (const Obstacle* obstacle : {&wire, &unit_box()})
         for (const double share : {0.0, 0.4, 0.99}) {
@@ -282,7 +283,7 @@ TEST(VertexContact, WhatSlidesUnderItsStandOffStaysAsFarAsItWas)
 
 TEST(VertexContact, WhatSlidesOverARimStaysAsFarAsItWas)
 {
-    // From the side of the box to above its rim: seen from the plane there it began below.
+    // The vertex moves from beside the box to above its rim. At begin it was below the final plane.
     const double gap = 0.6 * kThickness;
     const Vec3 up = Vec3(1, 0, 1).normalized();
     const auto contacts = contacts_at(unit_box(), Vec3(1 + gap, 0.5, 0.9995), Vec3(1, 0.5, 1) + 2 * gap * up);
@@ -341,7 +342,7 @@ std::vector<Vec3> places_near(const ObstacleMesh& mesh, double reach, int count,
     return places;
 }
 
-// All minima of the distance within reach, by brute force, that are not seen through the solid.
+// Brute force: all local minima of the distance within reach that are not behind the solid's surface.
 std::vector<Vec3> brute_minima(const ObstacleMesh& mesh, const Vec3& y, double reach, bool has_inside,
                                double tolerance)
 {
@@ -358,7 +359,7 @@ std::vector<Vec3> brute_minima(const ObstacleMesh& mesh, const Vec3& y, double r
     return minima;
 }
 
-// Against brute force; `size` is the mesh's scale, `rounding` that of directions.
+// Comparison with brute force. `size` is the mesh's scale, `rounding` that of directions.
 void expect_all_minima(const Sample& sample, double size, double rounding)
 {
     const double thickness = 0.02 * size, reach = 3.0 * thickness;
@@ -372,9 +373,9 @@ void expect_all_minima(const Sample& sample, double size, double rounding)
             if (c.vertices[0] == v) contacts.push_back(c);
         const Vec3& y = places[v];
         const Vec3 nearest = samples::nearest_point(sample.mesh, y);
-        if ((nearest - y).norm() < 1e-2 * thickness) continue;  // directions are poor there
+        if ((nearest - y).norm() < 1e-2 * thickness) continue;  // directions are inaccurate there
 
-        // The nearest is one of them, all are minima, and no two alike.
+        // The nearest point is among the contacts, all contacts are local minima, and their normals differ.
         EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(),
                                 [&](const ObstacleContact& c) {
                                     return std::abs(c.normal.dot(y - c.point) - (nearest - y).norm()) <=
@@ -394,7 +395,7 @@ void expect_all_minima(const Sample& sample, double size, double rounding)
                 }
             }
         }
-        // Whatever is a minimum has a plane of its direction, unless three are nearer.
+        // Every minimum has a contact with its direction, unless there are three nearer ones.
         for (const Vec3& m : brute_minima(sample.mesh, y, 0.999 * reach, has_inside, 1e-6)) {
             const Vec3 direction = (y - m).normalized();
             EXPECT_TRUE(contacts.size() == 3 ||
@@ -418,7 +419,8 @@ TEST(VertexContact, AgreesWithBruteForceTinyHugeAndFar)
             sample.mesh = samples::moved(mesh, [&](const Vec3& p) { return Vec3(size * p); });
             expect_all_minima(sample, size, 1e-9);
         }
-        if (std::string(sample.name) == "sliver") continue;  // 1e-6 wide: not in coordinates of 1e-10
+        // The sliver is 1e-6 wide, too thin for coordinates accurate to 1e-10.
+        if (std::string(sample.name) == "sliver") continue;
         sample.mesh = samples::moved(mesh, [](const Vec3& p) { return Vec3(p + Vec3(1e6, -1e6, 1e6)); });
         expect_all_minima(sample, 1.0, 1e-7);
     }

@@ -35,7 +35,7 @@ int find_corner(const Obstacle& obstacle, const Vec3& place)
     return -1;
 }
 
-/// A wedge along y whose tip at the origin points up, its sides turned by `half_angle` from straight down.
+/// A wedge along y. Its tip at the origin points up, and its sides are `half_angle` from straight down.
 Obstacle wedge(double half_angle)
 {
     const double x = std::tan(half_angle);
@@ -106,7 +106,7 @@ TEST(FeatureFrame, OfAWireFollowsTheClothAtEveryTurn)
         const double half = 0.5 * turn * M_PI / 180.0;
         const Vec3 d1(-std::cos(half), 0, -std::sin(half)), d2(std::cos(half), 0, -std::sin(half));
         const Vec3 n1(-std::sin(half), 0, std::cos(half)), n2(std::sin(half), 0, std::cos(half));
-        for (const double orientation : {1.0, -1.0}) {  // of the cloth's faces
+        for (const double orientation : {1.0, -1.0}) {  // orientation of the cloth's faces
             const auto frame = find_edge_frame(wire, 0, Vec3(0, 0.2, 1e-3),
                                                {orientation * (n1 + n2), d1 + d2, Vec3(0, 0, 1)});
             ASSERT_TRUE(frame);

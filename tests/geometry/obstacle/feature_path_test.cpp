@@ -11,7 +11,7 @@
 namespace arris {
 namespace {
 
-constexpr double kRoundOff = 1e-12;  // of lengths of about 1 m, added up
+constexpr double kRoundOff = 1e-12;  // for sums of lengths of about 1 m
 
 Obstacle make_polyline(const std::vector<Vec3>& points, bool is_closed)
 {
@@ -26,7 +26,7 @@ Obstacle make_polygon(int count)
     return make_polyline(points, true);
 }
 
-/// Turns little at (1, 0, 0), ends at (0, 0, 0) and (3, .1, 0).
+/// A wire with a small bend at (1, 0, 0), and ends at (0, 0, 0) and (3, .1, 0).
 Obstacle make_bent()
 {
     return make_polyline({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}, {3, 0.1, 0}}, false);
@@ -65,7 +65,7 @@ TEST(FollowPolyline, ExactlyAtANodeStaysWhereItWas)
 
 TEST(FollowPolyline, DoesNotJumpToAStrandNearby)
 {
-    // A hairpin: the second leg is a millimetre beside the first.
+    // A hairpin: the second leg is 1 mm beside the first.
     std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}};
     for (int k = 1; k < 8; ++k)
         points.emplace_back(1.0 + 5e-4 * std::sin(M_PI * k / 8), 5e-4 * (1.0 - std::cos(M_PI * k / 8)), 0.0);
@@ -124,7 +124,7 @@ TEST(MissedByChord, IsTheHeightOfTheTurnOverItWhereBothEdgesAreAsLong)
         }
         EXPECT_EQ(missed_by_chord(wire, at, 0.51), 0.0) << "the edge after it is shorter";
     }
-    // A circle of short edges is a curve to what reaches farther.
+    // A circle of short edges is a smooth curve for a long reach.
     EXPECT_EQ(missed_by_chord(make_polygon(200), *find_bend(make_polygon(200), 7), 0.05), 0.0);
 }
 

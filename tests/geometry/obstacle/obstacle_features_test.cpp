@@ -39,7 +39,7 @@ std::vector<int> corner_points(const ObstacleFeatures& features)
     return points;
 }
 
-/// How many edges each polyline has, ascending.
+/// Number of edges of each polyline, ascending.
 std::vector<int> polyline_lengths(const ObstacleFeatures& features)
 {
     std::vector<int> lengths(features.polyline_count, 0);
@@ -74,7 +74,8 @@ TEST(ObstacleFeatures, BoxHasTwelveConvexEdgesAndEightCornersOfThreePlanes)
         const std::array<int, 2>& ends = topology.edges[edge.edge].points;
         const Vec3 middle = (kBox.points[ends[0]] + kBox.points[ends[1]]) / 2;
         for (const Vec3& normal : edge.normals) {
-            // The box is centred, so both normals point the way the edge lies, and across it.
+            // The box is centred, so both normals have a positive component towards the edge and none along
+            // it.
             EXPECT_DOUBLE_EQ(normal.norm(), 1.0);
             EXPECT_GT(normal.dot(middle), 0.5);
             EXPECT_EQ(normal.dot(kBox.points[ends[1]] - kBox.points[ends[0]]), 0.0);
@@ -95,7 +96,7 @@ TEST(ObstacleFeatures, BoxAtItsOwnAngleHasNoSharpEdgesButCorners)
     for (const double angle : {90.0, 91.0, 179.0}) {
         const ObstacleFeatures features = features_of(kBox, angle);
         EXPECT_THAT(features.edges, IsEmpty()) << angle;
-        EXPECT_THAT(features.corners, SizeIs(8)) << angle;  // an angle defect of 90 degrees each
+        EXPECT_THAT(features.corners, SizeIs(8)) << angle;  // each has an angle defect of 90 degrees
         EXPECT_EQ(patch_count(features), 6) << angle;
     }
     EXPECT_THAT(features_of(kBox, 89.999).edges, SizeIs(12));
@@ -118,7 +119,7 @@ TEST(ObstacleFeatures, CountsAreThoseOfTheShapeAtAnySizeAndPlace)
 {
     const Mat3 rotation = some_rotation();
     for (const double size : {1e-6, 1.0, 1e6})
-        for (const double offset : {0.0, 1e6}) {  // in sizes
+        for (const double offset : {0.0, 1e6}) {  // in units of the obstacle's size
             const auto map = [&](const Vec3& p) {
                 return Vec3(size * (rotation * p + Vec3::Constant(offset)));
             };
@@ -172,7 +173,7 @@ TEST(ObstacleFeatures, InsideOutAllEdgesAreReflexAndPitsAreNoCorners)
     EXPECT_THAT(cavity.corners, IsEmpty());
     EXPECT_THAT(features_of(samples::inside_out(samples::l_prism())).edges, SizeIs(3));
     EXPECT_THAT(features_of(samples::inside_out(samples::cone(64, 0.3))).corners, IsEmpty());
-    // A hollow box: those of its outside.
+    // A hollow box has the features of its outside.
     const ObstacleFeatures hollow = features_of(
         samples::together(kBox, samples::inside_out(samples::box({-.5, -.5, -.5}, {.5, .5, .5}))));
     EXPECT_THAT(hollow.edges, SizeIs(12));
@@ -185,14 +186,14 @@ TEST(ObstacleFeatures, AConesApexIsACornerThoughNoEdgeThereIsSharp)
     EXPECT_THAT(corner_points(features), ElementsAre(100));
     EXPECT_THAT(features.corners[0].normals, SizeIs(100));
     EXPECT_THAT(polyline_lengths(features), ElementsAre(100));
-    // A defect of 360 (1 - r / sqrt(r^2 + 1)): 57.1 degrees at r = 1.56, 62.9 at r = 1.44.
+    // The angle defect is 360 (1 - r / sqrt(r^2 + 1)) degrees: 57.1 at r = 1.56, 62.9 at r = 1.44.
     EXPECT_THAT(features_of(samples::cone(100, 1.56)).corners, IsEmpty());
     EXPECT_THAT(features_of(samples::cone(100, 1.44)).corners, SizeIs(1));
 }
 
 TEST(ObstacleFeatures, ConesThatShareTheirApexAreAFanEach)
 {
-    // An hourglass: the angles around its waist sum up to far more than one cone's.
+    // An hourglass: the angles around its waist sum up to far more than those of one cone.
     const ObstacleMesh up = samples::cone(40, 1.0);
     ObstacleMesh mesh = samples::together(
         up, samples::moved(up, [](const Vec3& p) { return Vec3(p.x(), -p.y(), 2.0 - p.z()); }));
@@ -215,11 +216,13 @@ TEST(ObstacleFeatures, PointsOnTheLineOfAnEdgeChain)
 
 TEST(ObstacleFeatures, RidgesOfTeethAreSharpAndValleysAreNot)
 {
-    // Along y: 5 tips, the 2 ends of the row above and 2 below; on either side 10 slopes, 5 + 2 of the slab.
+    // Along y there are 5 tips, 2 ends of the row above and 2 below. On either side there are 10 slopes and 5
+    // + 2 edges of the slab.
     const ObstacleFeatures features = features_of(samples::teeth(5));
     EXPECT_EQ(count(features, FeatureKind::Convex), 9 + 2 * 17);
     EXPECT_THAT(features.edges, SizeIs(9 + 2 * 17));
-    // Tips, valleys (two slopes that turn) and the slab's four; points within its under side are none.
+    // Corners are at tips, valleys (where two slopes meet) and the slab's four. Points inside its under side
+    // are no corners.
     EXPECT_THAT(features.corners, SizeIs(2 * (5 + 6 + 2)));
 }
 
@@ -240,14 +243,14 @@ TEST(ObstacleFeatures, FlatSheetHasItsBorder)
 
 TEST(ObstacleFeatures, EveryCreaseOfASheetIsOneWhicheverWayItTurns)
 {
-    // Up and down again: creases at i = 1, 2, 3, of which the middle one turns the other way.
+    // The sheet goes up and down: creases at i = 1, 2, 3, with the middle one in the opposite direction.
     const ObstacleFeatures features = features_of(samples::sheet(4, 2, [](int i, int) { return i % 2; }));
     EXPECT_EQ(count(features, FeatureKind::Convex), 6);
     EXPECT_EQ(count(features, FeatureKind::Border), 12);
     EXPECT_THAT(features.corners, SizeIs(4 + 6));
     EXPECT_EQ(features.polyline_count, 3 + 2 + 8);
     EXPECT_EQ(patch_count(features), 4);
-    // Inside out it has the same ones.
+    // Inside out, the sheet has the same number of feature edges.
     EXPECT_THAT(
         features_of(samples::inside_out(samples::sheet(4, 2, [](int i, int) { return i % 2; }))).edges,
         SizeIs(18));
@@ -278,7 +281,7 @@ TEST(ObstacleFeatures, AKnifesEdgeIsConvexAndItsNotchReflexByTheExactSign)
     for (const double half : {1e-3, 1e-9, 1e-15}) {
         const ObstacleMesh knife = samples::prism({{-1, 0}, {0, -half}, {1, 0}, {0, half}}, {0.0, 1.0});
         const ObstacleFeatures features = features_of(knife);
-        // The two edges of the blade; beside the caps' eight.
+        // The two edges of the blade, besides the caps' eight.
         EXPECT_EQ(count(features, FeatureKind::Convex), 10) << half;
         EXPECT_THAT(features_of(samples::inside_out(knife)).edges, IsEmpty()) << half;
     }
@@ -298,8 +301,8 @@ TEST(ObstacleFeatures, NoiseOnFlatSidesMakesNoFeatures)
     EXPECT_THAT(features.corners, SizeIs(8));
 }
 
-/// A box of which the edge from 4 to 5 has a point 8 beside it that belongs to its upper face alone, and a
-/// triangle over the gap that is as flat as the point is near.
+/// A box with a point 8 beside its edge from 4 to 5. Only the upper face uses this point; a triangle closes
+/// the gap. The triangle is as flat as the point is near.
 ObstacleMesh box_with_cap(const Vec3& off)
 {
     ObstacleMesh mesh = samples::box({0, 0, 0}, {1, 1, 1});
@@ -333,14 +336,14 @@ TEST(ObstacleFeatures, ASliverBentByRoundingIsNoEdgeOfItsOwn)
 
 TEST(ObstacleFeatures, ASmallFacetIsOneOfItsOwn)
 {
-    // A chamfer twice as high as what counts as rounding.
+    // A chamfer twice as high as the bound for rounding.
     const ObstacleFeatures features = features_of(box_with_cap(1e-6 * Vec3(0, 1, 1).normalized()));
     EXPECT_THAT(features.edges, SizeIs(14));
 }
 
 TEST(ObstacleFeatures, AThinPlateKeepsItsEdges)
 {
-    // A million to one, the side faces lower than rounding in single precision would leave them.
+    // Proportions are 1e6 to 1: the side faces are lower than rounding in single precision.
     EXPECT_THAT(features_of(samples::box({0, 0, 0}, {1, 1, 1e-6})).edges, SizeIs(12));
     EXPECT_THAT(features_of(samples::box({0, 0, 0}, {1, 1e-6, 1e-6})).edges, SizeIs(12));
 }
@@ -377,7 +380,7 @@ TEST(ObstacleFeatures, AClosedSmoothWireIsOnePolylineWithoutCorners)
     const ObstacleFeatures features = features_of(samples::wire(circle, true));
     EXPECT_THAT(polyline_lengths(features), ElementsAre(32));
     EXPECT_THAT(features.corners, IsEmpty());
-    // A nail on it cuts it.
+    // A nail on a wire divides the polyline.
     ObstacleMesh nailed = samples::wire(circle, true);
     nailed.lone_points = {7};
     EXPECT_THAT(corner_points(features_of(nailed)), ElementsAre(7));
@@ -397,12 +400,13 @@ TEST(ObstacleFeatures, AWireTurnsAtMoreThanSixtyDegrees)
 
 TEST(ObstacleFeatures, PolylinesAreOfOneKind)
 {
-    // A crease from a sheet's rim that ends in its middle, from where a wire goes straight on.
+    // A crease leads from a sheet's rim and ends in the sheet's middle; from there a wire continues straight
+    // on.
     constexpr int kRim = 16;
     ObstacleMesh mesh;
     mesh.points = {{0, 0, 0}, {0, -1, 0}};
     for (int i = 0; i < kRim; ++i) {
-        const double angle = 2 * std::numbers::pi * i / kRim;  // from the crease
+        const double angle = 2 * std::numbers::pi * i / kRim;  // measured from the crease
         mesh.points.emplace_back(-std::sin(angle), std::cos(angle), -1.2 * std::sin(angle / 2));
         mesh.faces.push_back({0, 2 + i, 2 + (i + 1) % kRim});
     }
@@ -431,7 +435,7 @@ TEST(ObstacleFeatures, NothingHasNone)
     EXPECT_THAT(features.edges, IsEmpty());
     EXPECT_THAT(features.corners, IsEmpty());
     EXPECT_THAT(features.patch, IsEmpty());
-    // Points that belong to nothing are no lone points.
+    // Unused points are no lone points.
     ObstacleMesh stray;
     stray.points = {{1, 2, 3}};
     EXPECT_THAT(features_of(stray).corners, IsEmpty());
@@ -439,7 +443,8 @@ TEST(ObstacleFeatures, NothingHasNone)
 
 TEST(ObstacleFeatures, AFineSheetThatCurvesIsNotOnePatch)
 {
-    // A turn of 0.8e-6 at each row, each within the tolerance of the next: 20 rows turn by 16e-6 in all.
+    // The normal turns by 0.8e-6 at each row. Each row is within the tolerance of the next, but 20 rows turn
+    // by 16e-6 in total.
     const ObstacleMesh mesh = samples::sheet(20, 1, [](int i, int) { return 0.4e-6 * i * i; });
     const ObstacleFeatures features = features_of(mesh);
     EXPECT_GE(patch_count(features), 8);
@@ -456,13 +461,14 @@ TEST(ObstacleFeatures, ParallelTerracesAreAPatchEach)
 {
     const ObstacleMesh stairs = samples::sheet(6, 1, [](int i, int) { return i / 2; });
     const ObstacleFeatures features = features_of(stairs);
-    EXPECT_EQ(patch_count(features), 6);  // treads 0-1, 2-3, 4-5 and the risers behind them
+    EXPECT_EQ(patch_count(features), 6);  // treads 0-1, 2-3, 4-5 and the risers behind
     EXPECT_NE(features.patch[0], features.patch[4]);
 }
 
 TEST(ObstacleFeatures, ASpiralRampIsNotOnePatch)
 {
-    // So gentle that all its normals agree, but three turns up it is 2.7e-6 of its diagonal above its foot.
+    // The ramp is so gentle that all its normals agree. Three turns up it is 2.7e-6 of its diagonal above its
+    // foot.
     constexpr int kPerTurn = 64;
     ObstacleMesh ramp = samples::sheet(3 * kPerTurn, 1, [](int, int) { return 0.0; });
     for (Vec3& p : ramp.points) {

@@ -30,7 +30,7 @@ ObstacleTouch touches_of(const Obstacle& obstacle, const Triangle& triangle)
     return found;
 }
 
-// An oracle in whole numbers, which are exact: shapes with corners on a small lattice.
+// An exact oracle in integers: shapes with corners on a small lattice.
 using Lattice = Eigen::Matrix<long, 3, 1>;
 
 long orientation(const Lattice& a, const Lattice& b, const Lattice& c, const Lattice& d)
@@ -129,7 +129,7 @@ TEST(ObstacleTouch, IsThatOfWholeNumbersOnALatticeWhereNothingIsInGeneralPositio
 
 TEST(ObstacleTouch, NamesEdgesOfTheTopologyAndPointsOfTheMesh)
 {
-    // A wire and a nail behind a box, whose edges and corners are features before theirs.
+    // A wire and a nail are listed after a box, whose edges and corners come first among the features.
     const ObstacleMesh wire = samples::wire({{5, 0, 0}, {6, 0, 0}, {7, 1, 0}}, false);
     const ObstacleMesh nail = samples::nails({{9, 0, 0}});
     const Obstacle obstacle =
@@ -142,7 +142,7 @@ TEST(ObstacleTouch, NamesEdgesOfTheTopologyAndPointsOfTheMesh)
     EXPECT_THAT(touches_of(obstacle, across(9)).lone_points, ElementsAre(11));
     EXPECT_FALSE(touches_of(obstacle, across(3)).is_any());
     EXPECT_TRUE(touches_of(obstacle, across(0.5)).is_any());
-    // Ends of wires and corners of boxes are touched as edges and faces, not as points.
+    // Contacts at ends of wires and corners of boxes are reported as edges and faces, not as points.
     EXPECT_THAT(touches_of(obstacle, across(5)).lone_points, IsEmpty());
     EXPECT_THAT(touches_of(obstacle, across(5)).segments, ElementsAre(first));
 }
@@ -183,7 +183,8 @@ TEST(ObstacleTouch, MiddleIsOnBothAtAnySizeAndPlace)
                 const Vec3 middle = middle_of_touch(triangles[0], triangles[1]);
                 for (const Triangle& t : triangles) {
                     const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-                    // 1e-9 of triangles of this size, rounding of their coordinates, and needles.
+                    // The tolerance is 1e-9 of the triangles' size; coordinates have rounding, and some
+                    // triangles are needles.
                     EXPECT_NEAR(normal.dot(middle - t[0]), 0.0, size * (1e-8 + 1e-11 * offset));
                 }
             }

@@ -74,7 +74,7 @@ class ObstacleFileTest : public ::testing::Test {
         return request;
     }
 
-    // The one line of the error, which begins with the file's name; without that.
+    // The one-line error without the file's name, with which the error must begin.
     static std::string refusal(const ObstacleFileRequest& request)
     {
         const std::string error = error_of([&] { read_obstacle_file(request); });
@@ -87,7 +87,7 @@ class ObstacleFileTest : public ::testing::Test {
         return refusal(request_of(write(name, bytes)));
     }
 
-    // What becomes of an importer that behaves like this.
+    // The error for an importer process that behaves as the argument says.
     std::string fate_of(std::vector<std::string> mode,
                         std::chrono::milliseconds timeout = std::chrono::seconds(60))
     {
@@ -190,7 +190,7 @@ TEST_F(ObstacleFileTest, BrokenFilesAreOneClearLine)
     write("buffer.bin", mesh_files::gltf_buffer(m));
     write("short.bin", mesh_files::gltf_buffer(m).substr(0, 50));
     const Case cases[] = {
-        // Nothing there, or something else.
+        // The file is missing or is no file.
         {"empty.obj", "", "empty"},
         {"empty.stl", "", "empty"},
         {"empty.glb", "", "empty"},
@@ -210,7 +210,7 @@ TEST_F(ObstacleFileTest, BrokenFilesAreOneClearLine)
         {"obj.3mf", obj, "not a 3MF file"},
         {"obj.fbx", obj, "cannot be imported"},
         {"old.glb", with_header_count(glb, 4, 1), "glTF version 1; allowed: 2"},
-        // Without faces, lines and points.
+        // The file has no faces, lines or points.
         {"vertices.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n",
          "no faces ('f'), lines ('l') or points ('p') among 3"},
         {"none.stl", "solid x\nendsolid x\n", "no faces"},
@@ -219,7 +219,7 @@ TEST_F(ObstacleFileTest, BrokenFilesAreOneClearLine)
          "no vertices"},
         {"none.dae", replaced(dae, "<instance_geometry url=\"#g\"/>", ""), "no faces, lines or points"},
         {"none.gltf", R"({"asset":{"version":"2.0"}})", "No scene"},
-        // Not finite, or out of this world.
+        // Coordinates are not finite or too large.
         {"nan.obj", replaced(obj, "v 0 0 0", "v 0 nan 0"), "line 1: 'v 0 nan 0'"},
         {"inf.obj", replaced(obj, "v 0 0 0", "v 0 0 inf"), "line 1"},
         {"overflow.obj", replaced(obj, "v 0 0 0", "v 0 0 1e999"), "line 1"},
@@ -231,7 +231,7 @@ TEST_F(ObstacleFileTest, BrokenFilesAreOneClearLine)
         {"nan.ply", with_header_count(ply, ply.find("end_header\n") + 11, 0x7fc00000),
          "vertex 1 (nan, 0, 0)"},
         {"nan.gltf", replaced(gltf, "buffer.bin", "nan.bin"), "is not finite"},
-        // Indices.
+        // Invalid indices.
         {"beyond.obj", obj + "f 1 2 9\n", "line 21: it names vertex 9, but there are 8"},
         {"zero.obj", obj + "f 0 1 2\n", "line 21: 'f 0 1 2': vertex 0 out of range"},
         {"negative.obj", obj + "f -1 -2 -9\n", "vertex -9 out of range"},
@@ -249,7 +249,7 @@ TEST_F(ObstacleFileTest, BrokenFilesAreOneClearLine)
         {"nan.fbx", mesh_files::fbx(nan, 2, 100), "is not finite"},
         {"nan.3mf", mesh_files::three_mf(nan, ""), "vertex 3 (1, nan, 0)"},
         {"nan.3ds", mesh_files::three_ds(nan), "is not finite"},
-        // Truncated.
+        // Truncated files.
         {"cut.obj", "v 0 0 0\nv 1 0 0\nv 0 1", "line 3: 'v 0 1': a vertex has 3 numbers"},
         {"cut.stl", stl.substr(0, stl.size() - 1), "truncated"},
         {"half.stl", cut(stl, 0.5), "truncated"},
@@ -270,7 +270,7 @@ TEST_F(ObstacleFileTest, BrokenFilesAreOneClearLine)
         {"cut.fbx", cut(fbx, 0.6), "unexpected end of file"},
         {"cut.3ds", cut(three_ds, 0.7), "truncated: its main chunk says"},
         {"cut.3mf", cut(three_mf, 0.7), "no whole ZIP archive"},
-        // Headers that lie.
+        // Headers that contradict the content.
         {"more.stl", with_header_count(stl, 80, 13),
          "its header counts 13 faces, 734 bytes, but the file has 684"},
         {"less.stl", with_header_count(stl, 80, 11), "its header counts 11 faces"},
@@ -290,7 +290,7 @@ TEST_F(ObstacleFileTest, BrokenFilesAreOneClearLine)
         {"axis.fbx", mesh_files::fbx(m, 7, 100), "state the up axis"},
         {"unit.fbx", mesh_files::fbx(m, 2, -1), "state the units"},
         {"unit.dae", mesh_files::dae(m, "<unit name=\"nil\" meter=\"0\"/>"), "its unit is 0 m"},
-        // Nothing is left.
+        // Nothing is left after repair.
         {"flat.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n",
          "nothing is left of it: removed 1 faces without area"},
         {"point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "nothing is left of it"},
@@ -321,21 +321,21 @@ TEST_F(ObstacleFileTest, WhatIsNoRegularFileIsRefusedAtOnce)
 TEST_F(ObstacleFileTest, FilesThatAreTooLargeAreRefusedUnread)
 {
     const std::string path = write("large.obj", "");
-    std::filesystem::resize_file(path, (std::uintmax_t{2} << 30) + 1);  // a hole: no disk is used
+    std::filesystem::resize_file(path, (std::uintmax_t{2} << 30) + 1);  // a sparse file: no disk is used
     EXPECT_THAT(refusal(request_of(path)), HasSubstr("2147483649 bytes; allowed are at most 2147483648"));
 }
 
 #if !defined(__SANITIZE_ADDRESS__)  // address sanitizers reserve all addresses: no limit holds
 TEST_F(ObstacleFileTest, SmallFilesOfEndlessContentAreStopped)
 {
-    // Each node names the next ten times: 1e9 triangles in a kilobyte.
+    // Each node refers to the next one ten times: 1e9 triangles in a kilobyte.
     std::string nodes;
     for (int k = 1; k < 10; ++k)
         nodes += fmt::format(R"({{"children":[{0},{0},{0},{0},{0},{0},{0},{0},{0},{0}]}},)", k);
     const std::string tree = replaced(mesh_files::gltf_json(box(), "buffer.bin"), R"([{"mesh":0}])",
                                       "[" + nodes + R"({"mesh":0}])");
     write("buffer.bin", mesh_files::gltf_buffer(box()));
-    // Each level of brackets is a call of the parser.
+    // Each level of brackets is a recursive call of the parser.
     const std::string deep = R"({"asset":{"version":"2.0"},"x":)" + std::string(2000000, '[');
     for (const std::string& text : {tree, deep}) {
         ObstacleFileRequest request = request_of(write("small.gltf", text));
@@ -346,7 +346,7 @@ TEST_F(ObstacleFileTest, SmallFilesOfEndlessContentAreStopped)
 }
 #endif
 
-// Cut anywhere, or a bit turned: whatever comes of it, it is a mesh or one line.
+// A file truncated anywhere or with a flipped bit must give a mesh or a one-line error.
 TEST_F(ObstacleFileTest, AnyDamageEndsInAMeshOrOneLine)
 {
     const ObstacleMesh m = box();
@@ -440,7 +440,7 @@ TEST_F(ObstacleFileTest, ImporterThatIsNotThereIsSaidSo)
 
 TEST_F(ObstacleFileTest, ChildHasNoDescriptorsButItsOwn)
 {
-    // One without close-on-exec, as a careless library would open it.
+    // A descriptor without close-on-exec, as a careless library would open.
     const int leaked = ::open("/dev/zero", O_RDONLY);
     ASSERT_GE(leaked, 0);
     EXPECT_THAT(fate_of({"descriptors"}), HasSubstr("descriptors 0 1 2 3, no input"));
@@ -449,7 +449,7 @@ TEST_F(ObstacleFileTest, ChildHasNoDescriptorsButItsOwn)
 
 TEST_F(ObstacleFileTest, WorksWithoutStandardInput)
 {
-    // Then the pipe gets number 0.
+    // The pipe then gets descriptor 0.
     const int kept = ::fcntl(0, F_DUPFD_CLOEXEC, 10);
     ::close(0);
     EXPECT_THAT(fate_of({"descriptors"}), HasSubstr("descriptors 0 1 2 3, no input"));

@@ -26,7 +26,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr double kSingle = 2e-7;  // single precision of coordinates about 3
+constexpr double kSingle = 2e-7;  // single precision for coordinates of about 3
 
 class ObstacleImport : public ::testing::Test {
   protected:
@@ -64,7 +64,7 @@ class ObstacleImport : public ::testing::Test {
     std::filesystem::path folder_;
 };
 
-// The importer takes no word for a number that begins with its point, and leaves such a vertex out.
+// The importer does not accept numbers that begin with the decimal point, and skips such a vertex.
 TEST_F(ObstacleImport, ObjNumbersMayBeginWithTheirPoint)
 {
     const ObstacleFile plain = import("plain.obj", "v 0 0 0\nv 0.5 0 0\nv 1 1 0.25\nv 0 1 0\nf 1 2 3 4\n");
@@ -78,7 +78,7 @@ TEST_F(ObstacleImport, ObjNumbersMayBeginWithTheirPoint)
     }
 }
 
-// Its sides tell axes apart.
+// The three sides have different lengths, which identify the axes.
 const Vec3 kSizes(1, 2, 3);
 
 ObstacleMesh brick()
@@ -108,7 +108,7 @@ void expect_box(const ObstacleFile& file, const Vec3& a, const Vec3& b, const st
     EXPECT_THAT(file.notes, Each(HasSubstr("welded"))) << what;
 }
 
-// Where a file's brick is with y or x up.
+// Position of a file's brick with y or x up.
 const Vec3 kYUp(1, -3, 2);
 const Vec3 kXUp(-3, 2, 1);
 
@@ -152,7 +152,7 @@ TEST_F(ObstacleImport, PlainFormatsGiveNoWarning)
     EXPECT_THAT(import("a.obj", mesh_files::obj(mesh)).warnings, IsEmpty());
     EXPECT_THAT(import("a.ply", mesh_files::binary_ply(mesh)).warnings, IsEmpty());
     EXPECT_THAT(import("a.glb", mesh_files::glb(mesh)).warnings, IsEmpty());
-    // (One without a material, at that.)
+    // (This file has no material.)
     EXPECT_THAT(import("a.dae", mesh_files::dae(mesh, "")).warnings, IsEmpty());
     EXPECT_THAT(import("a.3mf", mesh_files::three_mf(mesh, "")).warnings, IsEmpty());
 }
@@ -170,7 +170,7 @@ TEST_F(ObstacleImport, DeclaredUnitsAndAxesAreApplied)
          0.01 * kSizes},
         {"inch_y.dae", mesh_files::dae(m, "<unit name=\"inch\" meter=\"0.0254\"/><up_axis>Y_UP</up_axis>"),
          0.0254 * kYUp},
-        {"none.dae", mesh_files::dae(m, ""), kYUp},  // the format's default
+        {"none.dae", mesh_files::dae(m, ""), kYUp},  // y up is the format's default
         {"cm_y.fbx", mesh_files::fbx(m, 1, 1.0), 0.01 * kYUp},
         {"m_z.fbx", mesh_files::fbx(m, 2, 100.0), kSizes},
         {"inch_z.fbx", mesh_files::fbx(m, 2, 2.54), 0.0254 * kSizes},
@@ -231,7 +231,7 @@ TEST_F(ObstacleImport, BuffersBesideTheMeshAreRead)
     write("parts/buffer.bin", mesh_files::gltf_buffer(brick()));
     expect_box(import("below.gltf", mesh_files::gltf_json(brick(), "parts/buffer.bin")), Vec3::Zero(), kYUp,
                "below");
-    // A link that stays inside.
+    // A link to a file inside the folder.
     std::filesystem::create_symlink("parts/buffer.bin", folder_ / "link.bin");
     expect_box(import("link.gltf", mesh_files::gltf_json(brick(), "link.bin")), Vec3::Zero(), kYUp, "link");
 }
@@ -245,7 +245,7 @@ TEST_F(ObstacleImport, MeshMayItselfBeALink)
 
 TEST_F(ObstacleImport, NothingOutsideTheFolderIsOpened)
 {
-    // The mesh lies in a folder below; what it asks for is beside that folder and would be fine.
+    // The mesh is in a subfolder. The file it refers to is beside that folder, and would be valid.
     const std::filesystem::path inner = folder_ / "inner";
     std::filesystem::create_directories(inner);
     write("out.bin", mesh_files::gltf_buffer(brick()));
@@ -258,7 +258,7 @@ TEST_F(ObstacleImport, NothingOutsideTheFolderIsOpened)
         const std::string error = refusal("inner/a.gltf", mesh_files::gltf_json(brick(), uri));
         EXPECT_THAT(error, HasSubstr("the mesh's own folder")) << uri;
     }
-    // Materials do not matter: the mesh is read without them.
+    // The mesh is read without its materials.
     std::filesystem::create_symlink(folder_ / "out.mtl", inner / "link.mtl");
     for (const std::string name : {"../out.mtl", "link.mtl", "/etc/passwd"}) {
         const ObstacleFile file =
@@ -281,7 +281,7 @@ TEST_F(ObstacleImport, LinesAndPointsAreKept)
     EXPECT_EQ(lines.mesh.points, wire.points);
     EXPECT_EQ(lines.mesh.segments, wire.segments);
     EXPECT_THAT(lines.warnings, IsEmpty());
-    // One statement, several vertices.
+    // One statement with several vertices.
     EXPECT_EQ(import("chain.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nl 1 2 3 4 1\n").mesh.segments.size(),
               4u);
 
@@ -297,7 +297,7 @@ TEST_F(ObstacleImport, PolygonsAreTriangulated)
     constexpr int kCorners = 200;
     std::string text, face = "f";
     for (int k = 0; k < kCorners; ++k) {
-        const double radius = k % 2 == 0 ? 1.0 : 0.5;  // a star: concave at every other corner
+        const double radius = k % 2 == 0 ? 1.0 : 0.5;  // a star, concave at every second corner
         const double angle = 2.0 * M_PI * k / kCorners;
         text += fmt::format("v {} {} 0\n", radius * std::cos(angle), radius * std::sin(angle));
         face += fmt::format(" {}", k + 1);
@@ -307,7 +307,7 @@ TEST_F(ObstacleImport, PolygonsAreTriangulated)
     EXPECT_EQ(star.mesh.faces.size(), static_cast<std::size_t>(kCorners - 2));
     EXPECT_THAT(star.notes, ElementsAre("open: 200 border edges, two-sided"));
 
-    // A quadrilateral that crosses itself is not silently something else.
+    // A self-crossing quadrilateral must not be changed silently.
     const ObstacleFile bowtie = import("bow.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n");
     EXPECT_EQ(validate(bowtie.mesh), "");
     EXPECT_THAT(bowtie.warnings, Not(IsEmpty()));

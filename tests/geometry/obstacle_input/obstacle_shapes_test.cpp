@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 1e-13;  // of volumes about 1
+constexpr double kRounding = 1e-13;  // for volumes of about 1
 
 double volume(const ObstacleMesh& mesh)
 {
@@ -36,7 +36,7 @@ Eigen::AlignedBox3d bounds(const ObstacleMesh& mesh)
     return box;
 }
 
-// Valid, without borders, in one piece.
+// Checks that the mesh is valid, closed and connected.
 void expect_one_solid(const ObstacleMesh& mesh)
 {
     ASSERT_EQ(validate(mesh), "");
@@ -111,11 +111,11 @@ TEST(WireShape, NamesThePointsThatCannotBe)
     EXPECT_THAT(error_of([&] { make_wire({a, b, b, c}, false); }), HasSubstr("points 2 and 3"));
     EXPECT_THAT(error_of([&] { make_wire({a, b, c, a}, true); }), HasSubstr("points 4 and 1"));
     EXPECT_THAT(error_of([&] { make_wire({a, {kInf, 0, 0}}, false); }), HasSubstr("point 2"));
-    // The same place again, but not in a row, is a crossing.
+    // A repeated place that is not adjacent in the chain is a crossing.
     EXPECT_EQ(error_of([&] { make_wire({a, b, c, a}, false); }), "");
 }
 
-// The area of the profile, slab and teeth, times the width.
+// The volume is the area of the profile, slab and teeth, times the width.
 double teeth_volume(const TeethShape& t)
 {
     const double half_base = t.height * std::tan(0.5 * t.tip_degrees * std::numbers::pi / 180.0);
@@ -163,7 +163,7 @@ TEST(TeethShape, TipsArePitchApartAndAsSharpAsAsked)
 
 TEST(TeethShape, ValleysOfNoWidthAreOneEdge)
 {
-    // 90 degrees, pitch twice the height: tan(45 degrees) is not quite 1 in double precision.
+    // 90 degrees with a pitch of twice the height: tan(45 degrees) is not exactly 1 in double precision.
     const ObstacleMesh mesh = make_teeth({3, 2.0, 1.0, 1.0, 90.0});
     expect_one_solid(mesh);
     EXPECT_EQ(mesh.points.size(), 4u * 7u);  // the ends, three tips, two valleys

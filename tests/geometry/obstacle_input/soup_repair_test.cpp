@@ -27,7 +27,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRounding = 1e-12;  // of volumes about 1
+constexpr double kRounding = 1e-12;  // for volumes of about 1
 
 ObstacleMesh unit_box(const Vec3& low = Vec3::Zero())
 {
@@ -41,7 +41,7 @@ double volume(const ObstacleMesh& mesh)
     return six / 6.0;
 }
 
-// Each face with points of its own, as STL has them, moved by up to `noise`.
+// Gives each face points of its own, as in STL, moved by up to `noise`.
 ObstacleMesh unwelded(const ObstacleMesh& mesh, double noise = 0.0)
 {
     std::mt19937 random(1);
@@ -126,7 +126,8 @@ TEST(SoupRepair, WeldsAnUnweldedSoup)
 
 TEST(SoupRepair, WeldsWhatRoundingMovedApart)
 {
-    constexpr double kNoise = 1e-7;  // of a box whose diagonal is 1.7: welded up to 1.7e-6
+    // For a box with the diagonal 1.7, where points up to 1.7e-6 apart are welded.
+    constexpr double kNoise = 1e-7;
     const RepairedSoup repaired = repair_soup(unwelded(unit_box(), kNoise));
     expect_box(repaired, 10 * kNoise);
     EXPECT_THAT(repaired.warnings,
@@ -157,14 +158,14 @@ TEST(SoupRepair, WeldsFarFromTheOrigin)
 
 TEST(SoupRepair, ThinPlateKeepsItsSides)
 {
-    // The tolerance, 1.4e-6, is more than its thickness.
+    // The tolerance, 1.4e-6, exceeds the plate's thickness.
     const RepairedSoup repaired = repair_soup(samples::box(Vec3::Zero(), Vec3(1, 1, 1e-6)));
     EXPECT_THAT(repaired.warnings, IsEmpty());
     EXPECT_EQ(repaired.mesh.points.size(), 8u);
     EXPECT_NEAR(volume(repaired.mesh), 1e-6, 1e-6 * kRounding);
 }
 
-// Every pair, the slow way.
+// Brute force over all pairs.
 int near_pairs(const std::vector<Vec3>& points, double tolerance)
 {
     int pairs = 0;
@@ -174,7 +175,7 @@ int near_pairs(const std::vector<Vec3>& points, double tolerance)
     return pairs;
 }
 
-// First come, first kept: each point joins the first kept one within the tolerance.
+// Each point joins the first kept point within the tolerance, or is kept itself.
 std::vector<Vec3> welded_slowly(const std::vector<Vec3>& points, double tolerance)
 {
     std::vector<Vec3> kept;
@@ -189,7 +190,7 @@ TEST(SoupWeld, GridFindsWhatAllPairsFind)
 {
     std::mt19937 random(7);
     for (const double spread : {1e-6, 3e-6, 1e-5, 1e-4}) {
-        // Tight clusters, among them chains across cells of the grid, in a box of diagonal sqrt(3).
+        // Tight clusters, including chains across cells of the grid, in a box of diagonal sqrt(3).
         std::vector<Vec3> points = {{0, 0, 0}, {1, 1, 1}};
         const auto draw = [&] { return static_cast<double>(random()) / 4294967295.0; };
         for (int cluster = 0; cluster < 20; ++cluster) {
@@ -252,8 +253,8 @@ TEST(SoupRepair, DropsStrayFacesWithoutArea)
     EXPECT_THAT(repaired.warnings, ElementsAre("removed 2 faces without area"));
 }
 
-// A box of which one edge has a vertex on its middle that only one side knows; a face without area closes the
-// gap, as exporters of boolean operations write it.
+// One edge of a box has a vertex on its middle that only one side uses. A face without area closes the gap,
+// as exporters of boolean operations write it.
 ObstacleMesh box_with_cap(double t)
 {
     ObstacleMesh box = unit_box();
@@ -310,7 +311,7 @@ TEST(SoupRepair, SheetsFacesAgreeWithEachOther)
     const RepairedSoup repaired = repair_soup(sheet);
     EXPECT_EQ(validate(repaired.mesh), "");
     EXPECT_THAT(repaired.warnings, ElementsAre(HasSubstr("turned 1 of 8 faces round")));
-    // A sheet has two sides: which of them the faces are seen from is the file's business.
+    // A sheet has two sides, and the file's face orientation is kept.
     for (Face& face : sheet.faces) turn(face);
     turn(sheet.faces[3]);
     turn(sheet.faces[3]);
@@ -355,7 +356,7 @@ TEST(SoupRepair, WhatFloatsInACavityIsSolidAgain)
 
 TEST(SoupRepair, ShellsThatCrossAreSolidsSideBySide)
 {
-    // A corner of the second lies inside the first, which does not make it a cavity.
+    // A corner of the second shell is inside the first, but the second shell is no cavity.
     const ObstacleMesh crossing = samples::together(unit_box(), unit_box(Vec3::Constant(0.5)));
     const RepairedSoup repaired = repair_soup(crossing);
     EXPECT_EQ(validate(repaired.mesh), "");
@@ -401,7 +402,7 @@ TEST(SoupRepair, FinOnASolidIsCutOff)
 
 TEST(SoupRepair, MoebiusStripIsCutOpen)
 {
-    // A band of quads with a half turn: no orientation agrees all round.
+    // A Moebius band of quads: no orientation is consistent all around.
     ObstacleMesh band;
     constexpr int kCount = 12;
     for (int k = 0; k < kCount; ++k) {
@@ -429,7 +430,7 @@ TEST(SoupRepair, MoebiusStripIsCutOpen)
 
 TEST(SoupRepair, CountsFacesThatCross)
 {
-    // Two triangles through each other.
+    // Two triangles that cross each other.
     ObstacleMesh crossing;
     crossing.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, -1}, {0.2, 0.2, 1}, {0.3, 0.3, 1}};
     crossing.faces = {{0, 1, 2}, {3, 4, 5}};
@@ -502,7 +503,7 @@ TEST(SoupRepair, RandomSoupsBecomeValidMeshesAlwaysTheSame)
 {
     std::mt19937 random(3);
     for (int round = 0; round < 300; ++round) {
-        // Few points on a coarse lattice: every degeneracy there is.
+        // Few points on a coarse lattice, so that every kind of degeneracy occurs.
         ObstacleMesh soup;
         const int points = 4 + static_cast<int>(random() % 12);
         for (int p = 0; p < points; ++p)
@@ -530,7 +531,7 @@ TEST(SoupRepair, RandomSoupsBecomeValidMeshesAlwaysTheSame)
 
 TEST(SoupRepair, CostsAsMuchAsThereIs)
 {
-    // CPU seconds, against each other: the machine has other work.
+    // CPU times are compared with each other, because the machine may be busy.
     const auto cost_of = [](int rings, std::size_t faces) {
         const ObstacleMesh soup = unwelded(samples::sphere(rings, rings));
         EXPECT_GT(soup.faces.size(), faces);
@@ -541,7 +542,8 @@ TEST(SoupRepair, CostsAsMuchAsThereIs)
     };
     const double few = cost_of(71, 9900), many = cost_of(224, 99000);
     RecordProperty("ratio", std::to_string(many / few));
-    EXPECT_LT(many, 40.0 * few);  // ten times as many, measured at 10 to 11 times; pairs would be a hundred
+    // Ten times the points take 10 to 11 times as long; all pairs would take 100 times.
+    EXPECT_LT(many, 40.0 * few);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// X + (0, 0, X.x * X.y): no plane, so that interpolation can be told from guessing.
+// X + (0, 0, X.x * X.y) is not a plane, so interpolation can be verified.
 ClothSurgery make(const std::vector<Vec2>& material, const std::vector<Face>& faces)
 {
     ClothMesh mesh{material, {}, faces};
@@ -171,7 +171,7 @@ TEST(ClothSurgery, ArgumentsThatAreNoInnerPointAreRefused)
 TEST(ClothSurgery, SplitSoCloseThatAFaceWouldVanishIsRefused)
 {
     ClothSurgery surgery = three_by_three();
-    // 1 + 1e-300 is 1: the new vertex would be vertex 4.
+    // 1 + 1e-300 is 1, so the new vertex would coincide with vertex 4.
     EXPECT_EQ(surgery.commit(surgery.propose_edge_split(4, 8, 1e-300)), Verdict::Orientation);
 }
 
@@ -221,15 +221,15 @@ TEST(ClothSurgery, CornersAndTheBordersPolygonStay)
     EXPECT_EQ(move(surgery, 0, Vec2(0.1, 0)), Verdict::Fixed);
     EXPECT_EQ(move(surgery, 1, Vec2(1, 0.1)), Verdict::Border);
     EXPECT_EQ(move(surgery, 1, Vec2(1, -1e-13)), Verdict::Border);
-    EXPECT_EQ(move(surgery, 1, Vec2(2, 0)), Verdict::Border);  // onto the corner
-    EXPECT_EQ(move(surgery, 1, Vec2(3, 0)), Verdict::Border);  // and past it
+    EXPECT_EQ(move(surgery, 1, Vec2(2, 0)), Verdict::Border);  // moves onto the corner
+    EXPECT_EQ(move(surgery, 1, Vec2(3, 0)), Verdict::Border);  // moves past the corner
     EXPECT_EQ(move(surgery, 1, Vec2(1.2, 0)), Verdict::Done);
     EXPECT_EQ(collapse(surgery, 1, 2), Verdict::Done);
 }
 
 TEST(ClothSurgery, BordersThatMeetAtAVertexAreNotJoinedAcross)
 {
-    // A strip one face wide: the inner edge 1-3 joins border to border.
+    // In a strip one face wide, the inner edge 1-3 joins border to border.
     ClothSurgery surgery =
         make({{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}}, {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {2, 5, 4}});
     EXPECT_EQ(collapse(surgery, 1, 3), Verdict::Border);
@@ -240,7 +240,8 @@ TEST(ClothSurgery, BordersThatMeetAtAVertexAreNotJoinedAcross)
 
 TEST(ClothSurgery, CollapseThatWouldJoinAnEdgeTwiceIsRefused)
 {
-    // v = 3 and w = 4 share neighbours 0, 1 (their edge's) and 2 through the triangle (0, 1, 2)'s inside.
+    // v = 3 and w = 4 share the neighbours 0, 1 (of their edge's faces) and 2 through the inside of triangle
+    // (0, 1, 2).
     ClothSurgery surgery = make({{0, 0}, {4, 0}, {2, 4}, {2, 0.5}, {2, 1.5}},
                                 {{0, 1, 3}, {1, 4, 3}, {0, 3, 4}, {1, 2, 4}, {0, 4, 2}});
     EXPECT_EQ(collapse(surgery, 3, 4), Verdict::Done);
@@ -248,7 +249,7 @@ TEST(ClothSurgery, CollapseThatWouldJoinAnEdgeTwiceIsRefused)
     EXPECT_EQ(collapse(surgery, 4, 0), Verdict::Done);
     EXPECT_EQ(surgery.result().mesh.face_count(), 1);
     EXPECT_EQ(collapse(surgery, 0, 1), Verdict::Fixed);
-    // An inner vertex of degree 3 beside v: v -> w would fold its faces.
+    // With an inner vertex of degree 3 beside v, collapsing v to w would fold its faces.
     ClothSurgery other = make({{0, 0}, {4, 0}, {2, 4}, {2, 1}, {2, 0.4}},
                               {{0, 1, 4}, {1, 3, 4}, {3, 0, 4}, {1, 2, 3}, {2, 0, 3}});
     EXPECT_EQ(collapse(other, 3, 0), Verdict::Topology);
@@ -259,11 +260,11 @@ TEST(ClothSurgery, ChangesThatTurnAFaceAreRefusedExactly)
 {
     ClothSurgery surgery = three_by_three();
     EXPECT_EQ(move(surgery, 4, Vec2(0.5, 2.5)), Verdict::Orientation);
-    // On the line 0-1-2 the face (0, 1, 4) has no area; the next double above it, it has.
+    // On the line 0-1-2 the face (0, 1, 4) has area 0; at the next double above, the area is positive.
     EXPECT_EQ(move(surgery, 4, Vec2(1, 0)), Verdict::Orientation);
     EXPECT_EQ(move(surgery, 4, Vec2(1, std::numeric_limits<double>::denorm_min())), Verdict::Done);
     EXPECT_EQ(validate(surgery.result().mesh), "");
-    EXPECT_EQ(flip(surgery, 1, 4), Verdict::Orientation);  // vertex 4 is a bay of the two faces
+    EXPECT_EQ(flip(surgery, 1, 4), Verdict::Orientation);  // vertex 4 is a concave corner of the two faces
 }
 
 TEST(ClothSurgery, FlipTurnsAnEdgeAndBack)
@@ -283,7 +284,7 @@ TEST(ClothSurgery, MovedVertexStaysOnTheSurfaceUnlessItsPlaceIsGiven)
 {
     ClothSurgery surgery = three_by_three();
     ASSERT_EQ(move(surgery, 4, Vec2(1.25, 1.5)), Verdict::Done);
-    // In the face (4, 8, 7), at 1/2 4 + 1/4 8 + 1/4 7: heights 1, 4, 2.
+    // The place is in the face (4, 8, 7) with weights 1/2, 1/4, 1/4; the heights are 1, 4, 2.
     EXPECT_EQ(surgery.world(4), Vec3(1.25, 1.5, 2.0));
     ASSERT_EQ(surgery.commit(surgery.propose_moves({{4, {1.0, 1.0}, true}})), Verdict::Done);
     EXPECT_EQ(surgery.world(4), Vec3(1.25, 1.5, 2.0));
@@ -298,7 +299,7 @@ TEST(ClothSurgery, VerticesMoveTogetherWhereOneAloneCouldNot)
     const VertexId b = nearest_vertex(surgery, {0.5, 0.6});
     const Vec2 up(0.0, 0.11);
     EXPECT_EQ(move(surgery, a, surgery.material(a) + up), Verdict::Orientation);
-    // b is in the way of a; together they only meet the next one.
+    // b is in the way of a. Moved together, they only approach the next vertex.
     EXPECT_EQ(surgery.commit(surgery.propose_moves(
                   {{a, surgery.material(a) + Vec2(0.0, 0.09)}, {b, surgery.material(b) + Vec2(0.0, 0.09)}})),
               Verdict::Done);
@@ -318,7 +319,7 @@ TEST(ClothSurgery, TraceIsCollapsedOnlyAlongItself)
     EXPECT_EQ(collapse(surgery, b, c), Verdict::Fixed);
     surgery.set_role(b, TraceRole::OnTrace, 5);
     surgery.set_edge_tag(b, c, 6);
-    EXPECT_EQ(collapse(surgery, b, c), Verdict::Trace);  // where two features meet
+    EXPECT_EQ(collapse(surgery, b, c), Verdict::Trace);  // a vertex where two features meet
     surgery.set_edge_tag(b, c, 5);
     EXPECT_EQ(collapse(surgery, b, c), Verdict::Done);
     EXPECT_EQ(surgery.edge_tag(a, c), 5);
@@ -354,7 +355,7 @@ TEST(ClothSurgery, ReleaseLeavesOrdinaryVertices)
     surgery.take_touched();
     surgery.release_vertex(4);
     EXPECT_EQ(surgery.role(4), TraceRole::Free);
-    EXPECT_EQ(surgery.role(5), TraceRole::Free);  // no edge of the trace is left at it
+    EXPECT_EQ(surgery.role(5), TraceRole::Free);  // vertex 5 has no trace edge left
     EXPECT_EQ(surgery.role(3), TraceRole::Node);
     EXPECT_TRUE(surgery.result().tagged_edges.empty());
     EXPECT_EQ(surgery.take_touched(), (std::vector<VertexId>{3, 4, 5}));
@@ -430,7 +431,7 @@ struct Fuzz {
 
     VertexId vertex(const std::vector<VertexId>& ids) { return ids[below(ids.size())]; }
 
-    // Fractions from the middle to as near to the end as doubles go.
+    // Fractions from the middle to as near the end as doubles allow.
     double fraction() { return unit() < 0.7 ? unit() : std::pow(10.0, -20.0 * unit()); }
 
     SurgeryProposal propose(const ClothSurgery& surgery, const std::vector<VertexId>& ids, double cell)
@@ -487,7 +488,7 @@ TEST(ClothSurgery, RandomOperationsNeverMakeAnInvalidMesh)
         std::map<Verdict, int> verdicts;
         for (int k = 0; k < 1500; ++k) {
             const std::vector<VertexId> ids = surgery.result().ids;
-            // Marks now and then, so that traces are met.
+            // Some vertices are marked as trace.
             const VertexId v = fuzz.vertex(ids);
             const VertexId w = surgery.ring(v).vertices[0];
             if (k % 50 == 0) mark_trace(surgery, {v, w}, k % 3);
@@ -504,7 +505,7 @@ TEST(ClothSurgery, RandomOperationsNeverMakeAnInvalidMesh)
     }
 }
 
-// Runs both from the same random numbers; the second is taken apart and put together again at every step.
+// Runs two surgeries with equal random numbers. The second is taken apart and reassembled at every step.
 TEST(ClothSurgery, RebuiltFromItsResultGoesOnAlike)
 {
     const SurgeryCloth cloth = square_cloth(6, 0.3);
@@ -521,7 +522,7 @@ TEST(ClothSurgery, RebuiltFromItsResultGoesOnAlike)
     EXPECT_GT(whole.result().next_id, 300u);
 }
 
-// A random walk of events, replayed on arrays: what the events say is what happened.
+// A random walk of operations whose events are replayed on arrays: the events must describe what happened.
 TEST(ClothSurgery, EventsTellAllThatHappened)
 {
     const SurgeryCloth cloth = square_cloth(6, 0.3);

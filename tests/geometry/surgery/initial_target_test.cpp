@@ -14,7 +14,7 @@
 namespace arris {
 namespace {
 
-// Cells that grow from left to right nearly threefold.
+// Cells that grow nearly threefold from left to right.
 SurgeryCloth graded_cloth(int n)
 {
     SurgeryCloth cloth = square_cloth(n);

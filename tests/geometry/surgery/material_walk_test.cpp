@@ -60,7 +60,7 @@ TEST(MaterialWalk, ALineThroughVerticesIsFollowed)
         EXPECT_FALSE(leads_off(surgery, middle, tiny * Vec2(1.0, -0.7))) << tiny;
 }
 
-// Rounding puts the border's vertices beside the line along which they go.
+// Rounding moves the border's vertices off the line of the walk.
 TEST(MaterialWalk, OnTheBorderItLeadsOffAtTheNextFixedVertex)
 {
     const SurgeryCloth cloth = turned_cloth(8);

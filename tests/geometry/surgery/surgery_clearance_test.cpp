@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Operations of the surgery past nails, wires and the corners of boxes. The oracle: with one vertex moving
-// straight, a face sweeps the tetrahedron of its two other corners and that vertex's way.
+// Operations of mesh surgery near nails, wires and corners of boxes. The oracle: when one vertex moves
+// straight, a face sweeps the tetrahedron of its three old corners and the vertex's new place.
 #include "geometry/surgery/surgery_clearance.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace arris {
 namespace {
 
 constexpr double kThickness = 1e-3;
-constexpr double kClear = 1e-7;  // in barycentric coordinates: nearer to a side the oracle does not judge
+constexpr double kClear = 1e-7;  // barycentric: the oracle does not judge points nearer to a side
 
 using Tetrahedron = std::array<Vec3, 4>;
 
@@ -23,14 +23,14 @@ double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
     return (b - a).cross(c - a).dot(d - a);
 }
 
-/// A way within the face that it sweeps.
+/// Whether the vertex moves within the face's plane, so that the tetrahedron has no volume.
 bool is_flat(const Tetrahedron& t)
 {
-    constexpr double kFlat = 1e-12;  // of the cube of a cell of 0.25 m
+    constexpr double kFlat = 1e-12;  // relative to the cube of a cell of 0.25 m
     return std::abs(volume(t[0], t[1], t[2], t[3])) < kFlat;
 }
 
-/// Least of the barycentric coordinates of p: positive inside. Flat ones hold nothing: -1.
+/// Least barycentric coordinate of p: positive inside. Flat tetrahedra contain nothing: -1.
 double depth(const Tetrahedron& t, const Vec3& p)
 {
     if (is_flat(t)) return -1.0;
@@ -46,7 +46,7 @@ double depth(const std::vector<Tetrahedron>& swept, const Vec3& p)
     return deepest;
 }
 
-/// The faces of `before` at `vertex`, which goes to `end`.
+/// Tetrahedra swept by the old faces at `vertex`, which moves to `end`.
 std::vector<Tetrahedron> sweep(const SurgeryEvent& event, VertexId vertex, const Vec3& end)
 {
     std::vector<Tetrahedron> swept;
@@ -73,7 +73,7 @@ std::vector<Tetrahedron> swept_by(const ClothSurgery& cloth, const SurgeryEvent&
     }
 }
 
-/// A cloth whose folds are as sharp as its cells, and some of each operation on it.
+/// A cloth with folds as sharp as its cells, and operations of each kind on the cloth.
 struct Setting {
     ClothSurgery cloth;
     std::vector<SurgeryEvent> events;
@@ -112,7 +112,7 @@ Obstacle place(ObstacleMesh mesh, const Placement& placement = {})
     return Obstacle("it", std::move(mesh), placement, {}, 30.0);
 }
 
-/// Whether a segment goes through a face as it was.
+/// Whether a segment passes through an old face.
 bool pierces(const SurgeryEvent& event, const Vec3& p, const Vec3& q)
 {
     return std::any_of(event.before.begin(), event.before.end(), [&](const PatchFace& face) {
@@ -123,7 +123,7 @@ bool pierces(const SurgeryEvent& event, const Vec3& p, const Vec3& q)
     });
 }
 
-/// A point of one of the tetrahedra, or, as often, somewhere around.
+/// A random point: in one of the tetrahedra or, equally often, in their neighbourhood.
 Vec3 some_point(const std::vector<Tetrahedron>& swept, std::mt19937& random)
 {
     std::exponential_distribution<double> part(1.0);
@@ -186,7 +186,8 @@ TEST(SurgeryClearance, AWireIsInTheWayWhereAnyPointOfItIs)
                 std::normal_distribution<double> normal;
                 const Vec3 half = 0.05 * Vec3(normal(random), normal(random), normal(random));
                 constexpr int kSamples = 4000;
-                constexpr double kBetween = 2e-3;  // barycentric, that a wire can enter and leave unseen
+                // Barycentric: a shallower passage of a wire may be missed by the samples.
+                constexpr double kBetween = 2e-3;
                 double deepest = -1.0;
                 for (int i = 0; i <= kSamples; ++i)
                     deepest = std::max(deepest, depth(swept, middle + (2.0 * i / kSamples - 1.0) * half));
@@ -216,7 +217,7 @@ TEST(SurgeryClearance, ABoxIsInTheWayWhereItsCornerIs)
             const Vec3 corner = some_point(swept, random);
             const double depth_of_corner = depth(swept, corner);
             const Mat3 turn = rotation_about(Vec3(1, 2, 3), 360.0 * seed);
-            constexpr double kSide = 1e-5;  // m: too small to reach what the corner is clear of
+            constexpr double kSide = 1e-5;  // m: so small that only the corner matters
             const Obstacle box =
                 place(make_box({kSide, kSide, kSide}), {turn, corner - turn * Vec3::Constant(0.5 * kSide)});
             if (std::abs(depth_of_corner) < 1e-2) continue;
@@ -240,8 +241,8 @@ TEST(SurgeryClearance, NothingAroundIsFree)
 
 TEST(SurgeryClearance, OnlyWhatIsPassedCountsNotWhatIsNearerThanTheThickness)
 {
-    // Flat cloth sweeps nothing: a nail a micrometre above it is free though the thickness is a millimetre,
-    // one in it is not.
+    // Operations on flat cloth sweep nothing. A nail 1 micrometre above the cloth is free, although the
+    // thickness is 1 mm. A nail in the cloth is not free.
     const Setting setting(2, 0.0);
     for (const SurgeryEvent& event : setting.events) {
         const Vec3 middle = (event.after[0].world[0] + event.after[0].world[1] + event.after[0].world[2]) / 3;
@@ -253,7 +254,7 @@ TEST(SurgeryClearance, OnlyWhatIsPassedCountsNotWhatIsNearerThanTheThickness)
 
 TEST(SurgeryClearance, AnswersAlikeWhereverThePairIs)
 {
-    // The obstacle's placement and the cloth moved together, far from the origin.
+    // The obstacle's placement and the cloth are moved together, far from the origin.
     const Placement away = {rotation_about(Vec3(3, -1, 2), 77.0), Vec3(-800, 300, 1e3)};
     int in_way = 0, beside = 0;
     for (unsigned seed = 5; seed <= 6; ++seed) {
@@ -271,7 +272,7 @@ TEST(SurgeryClearance, AnswersAlikeWhereverThePairIs)
             const std::vector<Tetrahedron> swept = swept_by(setting.cloth, event);
             const Vec3 nail = some_point(swept, random);
             const double depth_of_nail = depth(swept, nail);
-            if (std::abs(depth_of_nail) < 1e-6) continue;  // rounding at 1e3 m, of cells of 0.25 m
+            if (std::abs(depth_of_nail) < 1e-6) continue;  // rounding at 1e3 m, for cells of 0.25 m
             const Obstacle there = place(make_points({nail}), away);
             EXPECT_EQ(is_free(moved, there, away, kThickness), depth_of_nail < 0.0) << depth_of_nail;
             (depth_of_nail > 0.0 ? in_way : beside) += 1;
@@ -283,7 +284,7 @@ TEST(SurgeryClearance, AnswersAlikeWhereverThePairIs)
 
 TEST(SurgeryClearance, AMoveThroughTheMaterialAloneSweepsTheFacesOnly)
 {
-    // Flow: the vertex keeps its place in the world, so nothing is passed.
+    // Pure flow: the vertex keeps its place in the world, so the cloth sweeps no volume.
     const Setting setting(3);
     for (const VertexId v : {7u, 12u, 17u}) {
         const SurgeryProposal flow =

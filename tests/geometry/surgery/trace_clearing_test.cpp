@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kAngle = 15.0;
 
-// Cuts a polyline in; the vertices at its corners. Fails the test where it is refused.
+// Inserts a polyline and returns the vertices at its corners. Fails the test if the insertion is refused.
 std::vector<VertexId> cut(ClothSurgery& surgery, const MeshTarget& target, const std::vector<Vec2>& line,
                           int tag)
 {
@@ -38,7 +38,7 @@ std::vector<VertexId> cut(ClothSurgery& surgery, const MeshTarget& target, const
     return nodes;
 }
 
-// All trace vertices of a tag, moved by the same vector.
+// All trace vertices of a tag, moved by one vector.
 std::vector<VertexMove> shifted(const ClothSurgery& surgery, int tag, const Vec2& by)
 {
     std::vector<VertexMove> moves;
@@ -61,10 +61,10 @@ VertexId trace_vertex(const ClothSurgery& surgery, const Vec2& near)
     return v;
 }
 
-// What a sweep is judged by.
+// Measures for a sweep of the trace.
 struct SweepFigures {
     int most_vertices = 0;
-    std::vector<double> least_angles;  // one a step, degrees, of the whole mesh
+    std::vector<double> least_angles;  // least angle of the whole mesh after each step, degrees
 
     void add(const ClothSurgery& surgery)
     {
@@ -101,11 +101,11 @@ TEST(ClearAhead, LeavesRoomForTheWholeWay)
             advances.push_back({move.vertex, {0, way}});
         EXPECT_TRUE(clear_ahead(surgery, target, advances).blocked.empty());
         EXPECT_EQ(check.find_wrong(surgery), "");
-        // At least 0.3 of the target length is clear, and the way; and on the way nothing turns over.
+        // At least the way and 30 % of the target length are clear. On this way no face is inverted.
         const double clear = std::max(way, 0.3 * 1.14 * cloth.cell);
         for (const double part : {0.1, 0.5, 0.99})
             EXPECT_TRUE(surgery.propose_moves(shifted(surgery, 1, {0, part * clear})).is_legal()) << way;
-        // A motion by 0.3 of what is clear takes less than about that share of any face's area.
+        // A motion by 30 % of the clear distance takes at most about 30 % of any face's area.
         const SurgeryProposal proposal = surgery.propose_moves(shifted(surgery, 1, {0, 0.3 * clear}));
         for (std::size_t f = 0; f < proposal.event.before.size(); ++f) {
             const auto area = [](const PatchFace& face) {
@@ -171,7 +171,7 @@ TEST(ClearAhead, WhatItCallsClearIsClearForRandomTracesAndWays)
         const SurgeryCheck check(surgery);
         const MeshTarget target = target_of(cloth);
         const std::vector<Vec2> line = {inside(), inside(), inside()};
-        // A bend sharper than the mesh resolves is another test's.
+        // Bends sharper than the mesh resolves are tested elsewhere.
         if ((line[0] - line[1]).norm() < 0.15 || (line[2] - line[1]).norm() < 0.15 ||
             (line[0] - line[1]).normalized().dot((line[2] - line[1]).normalized()) > 0.5)
             continue;
@@ -194,7 +194,8 @@ TEST(ClearAhead, WhatItCallsClearIsClearForRandomTracesAndWays)
     EXPECT_EQ(blocked, 0);
 }
 
-/// The corner of an L goes along one of its arms, whose own vertices hardly move and so are in its way.
+/// The corner of an L moves along one of its arms. The arm's own vertices hardly move, so they are in the
+/// corner's way.
 std::vector<VertexMove> corner_moves(const ClothSurgery& surgery, const Vec2& way)
 {
     std::vector<VertexMove> moves;
@@ -224,7 +225,7 @@ TEST(ClearAhead, ACornerThatSlidesAlongItsEdgeTakesInTheVerticesOfTheEdge)
     EXPECT_NE(surgery.edge_tag(corner, end), kNoTag);
     EXPECT_TRUE(surgery.propose_moves(corner_moves(surgery, way)).is_legal());
 
-    // The same as a motion; the nodes at both ends stay.
+    // The trace is now moved this way; the nodes at both ends stay.
     ClothSurgery moved = cloth.surgery();
     cut(moved, target, {{0.25, 0.5}, {0.5, 0.5}, {0.5, 0.25}}, 1);
     EXPECT_EQ(move_trace(moved, target, corner_moves(moved, way)).verdict, Verdict::Done);
@@ -239,7 +240,8 @@ TEST(ClearAhead, ACornerThatSlidesAlongItsEdgeTakesInTheVerticesOfTheEdge)
 
 TEST(ClearAhead, LeavesNoFaceOfWhichRoundingDecidesWhichSideIsUp)
 {
-    // Of three vertices in a line, but for rounding, no face is made, though one way up it would be legal.
+    // Three vertices that are collinear up to rounding must not become a face, even if rounding makes its
+    // area positive.
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     double least = 180.0;
@@ -272,15 +274,15 @@ TEST(ClearAhead, NamesWhatItCannotClear)
     EXPECT_TRUE(clear_ahead(surgery, target, {{node, {0.0, -0.1}}}).blocked.empty());
     EXPECT_EQ(clear_ahead(surgery, target, {{node, {0.0, -0.13}}}).blocked, (std::vector<VertexId>{node}));
     EXPECT_EQ(check.find_wrong(surgery), "");
-    // Not by what is beyond the least of its way.
+    // Beyond the required share of its way nothing needs to be cleared.
     EXPECT_TRUE(clear_ahead(surgery, target, {{node, {0.0, -0.2}, 0.5}}).blocked.empty());
     EXPECT_EQ(clear_ahead(surgery, target, {{node, {0.0, -0.26}, 0.5}}).blocked,
               (std::vector<VertexId>{node}));
-    // A vertex that rests threatens nothing.
+    // A vertex at rest needs no clearing.
     EXPECT_EQ(clear_ahead(surgery, target, {{node, {0.0, 0.0}}}).operations, 0);
 }
 
-// The room that nothing needs is not looked for beyond the border, whose vertices would be merged for it.
+// Room beyond the border is not needed, so no vertex of the border is merged to make room.
 TEST(ClearAhead, TheBorderStaysAsItIsWhereATraceComesNearIt)
 {
     for (const SurgeryCloth& cloth : {square_cloth(8), turned_cloth(8)}) {
@@ -292,7 +294,7 @@ TEST(ClearAhead, TheBorderStaysAsItIsWhereATraceComesNearIt)
         const int vertices = surgery.vertex_count();
         std::vector<TraceAdvance> advances;
         for (const VertexMove& move : shifted(surgery, 1, {0, 0})) {
-            // Beyond the border, too, where only a share of the way that is on the cloth must be clear.
+            // Some ways lead beyond the border, where only the share of the way on the cloth must be clear.
             const bool is_tip = advances.size() % 2 == 1;
             advances.push_back({move.vertex, (is_tip ? -0.04 : -0.02) * v, is_tip ? 0.5 : 1.0});
         }
@@ -335,7 +337,7 @@ TEST(ClearAhead, TracesNearerThanTheRoomAheadAreInEachOthersWayOnlyWhereTheyMeet
 {
     const SurgeryCloth cloth = square_cloth(16);
     const MeshTarget target = target_of(cloth);
-    constexpr double kGap = 0.01;  // half of the room that is cleared however small the step
+    constexpr double kGap = 0.01;  // half of the room that is cleared at any step size
     for (const double way : {1e-9, 0.3 * kGap, 0.7 * kGap}) {
         ClothSurgery surgery = cloth.surgery();
         const SurgeryCheck check(surgery);
@@ -351,7 +353,7 @@ TEST(ClearAhead, TracesNearerThanTheRoomAheadAreInEachOthersWayOnlyWhereTheyMeet
         EXPECT_EQ(cleared.blocked.empty(), 2.0 * way < kGap) << way;
         EXPECT_EQ(check.find_wrong(surgery), "");
         if (2.0 * way > kGap) continue;
-        EXPECT_EQ(shifted(surgery, 1, {0, 0}).size(), low.size()) << way;  // none is merged
+        EXPECT_EQ(shifted(surgery, 1, {0, 0}).size(), low.size()) << way;  // no vertex is merged
         EXPECT_EQ(shifted(surgery, 2, {0, 0}).size(), high.size()) << way;
     }
 }
@@ -401,7 +403,7 @@ TEST(MoveTrace, ChordFromBorderToBorderSlidesAlongIt)
     EXPECT_GT(figures.percentile(0.05), 10.0);
 }
 
-// Every new place on a slanted border is off it by rounding: the border must not wander.
+// Every new place on a slanted border is off the border by rounding, but the border must not drift.
 TEST(MoveTrace, ChordSlidesAlongASlantedBorder)
 {
     for (const Vec2& offset : {Vec2(0, 0), Vec2(1000, 1000)}) {
@@ -467,7 +469,7 @@ TEST(MoveTrace, WorldPositionsStayWhereTheyAreGiven)
     EXPECT_LT((surgery.material(node) - Vec2(0.25, 0.7)).norm(), 1e-15);
 }
 
-// Three features from one corner, 20 degrees apart, sliding, turning and jumping by up to two cells.
+// Three traces from one corner, 20 degrees apart, slide, turn and jump by up to two cells.
 TEST(MoveTrace, CornerOfThreeFeaturesWandersOverTheCloth)
 {
     const SurgeryCloth cloth = square_cloth(30, 0.2);
@@ -513,7 +515,7 @@ TEST(MoveTrace, StaysValidUnderAGuardThatRefusesAtRandom)
         const SurgeryCheck check(surgery);
         const MeshTarget target = target_of(cloth);
         cut(surgery, target, {{0.2, 0.3}, {0.5, 0.36}, {0.8, 0.3}}, 1);
-        // Motion itself is the time step's: it is not refused.
+        // Motion is decided by the time step, so the guard does not refuse it.
         surgery.set_guard([&](const SurgeryEvent& event) {
             return event.operation == SurgeryOperation::Move || unit(random) >= refused;
         });
@@ -531,7 +533,7 @@ TEST(MoveTrace, StaysValidUnderAGuardThatRefusesAtRandom)
     }
 }
 
-// Another trace a thousandth of a cell behind, along, to and fro.
+// A second trace follows close behind the first, to and fro.
 TEST(MoveTrace, TwoTracesCloseTogetherSlideTogether)
 {
     const SurgeryCloth cloth = square_cloth(16);
@@ -579,7 +581,7 @@ TEST(MoveTrace, IsTheSameFromAMeshRebuiltEveryStep)
     }
 }
 
-// --- traces cut anew at every step, as for an obstacle that sweeps across the whole cloth
+// --- traces inserted anew at every step, as for an obstacle that sweeps across the whole cloth
 
 TEST(TraceSweep, CutAnewAtEveryStepInSixDirections)
 {
@@ -613,7 +615,7 @@ TEST(TraceSweep, CutAnewAtEveryStepInSixDirections)
     }
 }
 
-// Where a line through the unit square comes in and goes out, exactly on its border.
+// The points at which a line enters and leaves the unit square, exactly on its border.
 std::array<Vec2, 2> chord(const Vec2& middle, const Vec2& along)
 {
     std::array<Vec2, 2> ends;
@@ -666,7 +668,7 @@ TEST(TraceSweep, ChordsFromBorderToBorderCutAnew)
         EXPECT_GT(figures.percentile(0.05), 13.0);
     }
     for (const auto& [verdict, count] : verdicts) fmt::print("  {} {}\n", to_string(verdict), count);
-    // Refused only beside the cloth's corners.
+    // Insertion may be refused only beside the cloth's corners.
     EXPECT_GT(verdicts[Verdict::Done], 570);
 }
 
@@ -677,7 +679,7 @@ TEST(MoveTrace, TakesAsManyOperationsOnALargeMeshAsOnASmallOne)
         const SurgeryCloth cloth = square_cloth(n, 0.2);
         ClothSurgery surgery = cloth.surgery();
         const MeshTarget target = target_of(cloth);
-        // As many cells long on every mesh.
+        // The trace has the same length in cells on every mesh.
         const double half = 7.5 * cloth.cell;
         cut(surgery, target, {{0.5 - half, 0.5}, {0.5 + half, 0.52}}, 1);
         clean_up(surgery, target);

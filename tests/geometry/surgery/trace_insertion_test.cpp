@@ -29,7 +29,7 @@ TraceInsertion insert(ClothSurgery& surgery, const MeshTarget& target, const Vec
     return insert_trace_point(surgery, target, X, nearest_vertex(surgery, X), {TraceRole::Node, tag});
 }
 
-// Both ends, and the line between them.
+// Inserts both ends and joins them by a straight trace.
 TraceJoin cut(ClothSurgery& surgery, const MeshTarget& target, const Vec2& from, const Vec2& to, int tag = 1)
 {
     const TraceInsertion a = insert(surgery, target, from, tag);
@@ -47,7 +47,7 @@ void release_all(ClothSurgery& surgery)
         if (result.roles[k] != TraceRole::Free) surgery.release_vertex(result.ids[k]);
 }
 
-// A join that is done is a path of tagged edges, from end to end and on the straight line.
+// Checks a completed join: a path of tagged edges from end to end on the straight line.
 void expect_on_line(const ClothSurgery& surgery, const TraceJoin& join, int tag, double tolerance)
 {
     ASSERT_EQ(join.verdict, Verdict::Done) << to_string(join.verdict);
@@ -146,8 +146,8 @@ TEST(InsertEdgeCrossing, BesideAVertexThatTheGuardKeepsSplitsWhereTheTraceDoesNo
         EXPECT_EQ(insert_with({0.0, -1.0}, 1.0 - s), Verdict::Done) << s;
     }
     EXPECT_EQ(insert_with({0.0, 1.0}, 0.0005), Verdict::Quality);
-    // Ahead of the trace it may stay where it is not reached, and not nearer than a tenth of the target
-    // length.
+    // A vertex ahead of the trace may stay if the trace does not reach it, but not nearer than 10 % of the
+    // target length.
     const double cell = 0.125;
     EXPECT_EQ(insert_with({0.0, -0.19 * cell}, 0.2), Verdict::Done);
     EXPECT_EQ(insert_with({0.0, -0.21 * cell}, 0.2), Verdict::Guard);
@@ -183,7 +183,7 @@ TEST(InsertFacePoint, LiesWhereItWasAskedFor)
         const TraceInsertion made = insert(surgery, target_of(cloth), X);
         ASSERT_EQ(SurgeryCheck(cloth.surgery()).find_wrong(surgery), "");
         if (made.verdict != Verdict::Done) {
-            // Only beside the border, where nothing can give way.
+            // Insertion may fail only beside the border, where no vertex can be moved.
             EXPECT_LT(std::min({X.x(), X.y(), 1 - X.x(), 1 - X.y()}), 1e-9) << X.transpose();
             continue;
         }
@@ -210,7 +210,7 @@ TEST(InsertFacePoint, BesideACornerThatTheGuardKeepsSplitsWhereTheTraceLeavesItB
 
 TEST(InsertFacePoint, ANodeIsNotWhatSlidesAlongItsTraceAndTheTraceGoesThroughIt)
 {
-    // Beside an edge of its own trace, and near one of its ends.
+    // The new node is beside an edge of its own trace and near one of its ends.
     const SurgeryCloth cloth = square_cloth(8);
     ClothSurgery surgery = cloth.surgery();
     const MeshTarget target = target_of(cloth);
@@ -310,7 +310,7 @@ TEST(JoinTraceVertices, EndsOnVerticesEdgesBorderAndCorner)
     const SurgeryCloth cloth = square_cloth(8);
     for (const Vec2& a : ends)
         for (const Vec2& b : ends) {
-            // Not along the border.
+            // Lines along the border are excluded.
             if (a == b || (a.y() == b.y() && (a.y() == 0.0 || a.y() == 1.0))) continue;
             ClothSurgery surgery = cloth.surgery();
             const TraceJoin join = cut(surgery, target_of(cloth), a, b);
@@ -320,7 +320,7 @@ TEST(JoinTraceVertices, EndsOnVerticesEdgesBorderAndCorner)
                 expect_on_line(surgery, join, 1, kStraight);
             }
         }
-    // A corner of the cloth is never taken; an edge next to it is.
+    // A corner of the cloth is never used, but an edge next to the corner is.
     ClothSurgery surgery = cloth.surgery();
     EXPECT_EQ(cut(surgery, target_of(cloth), {0.0, 0.0}, {0.5, 0.4}).verdict, Verdict::Fixed);
     EXPECT_EQ(cut(surgery, target_of(cloth), {1e-6, 0.0}, {0.0, 1e-6}).verdict, Verdict::Quality);
@@ -346,7 +346,7 @@ TEST(JoinTraceVertices, DoesNotLeaveTheCloth)
         ClothSurgery surgery = cloth.surgery();
         const SurgeryCheck check(surgery);
         EXPECT_EQ(cut(surgery, target_of(cloth), {0.15, 0.55}, {0.85, 0.52}).verdict, Verdict::Border);
-        // Nothing is left of the attempt but its ends.
+        // Only the ends of the failed attempt remain.
         EXPECT_TRUE(surgery.result().tagged_edges.empty());
         EXPECT_EQ(check.find_wrong(surgery), "");
         EXPECT_EQ(cut(surgery, target_of(cloth), {0.1, 0.18}, {0.9, 0.12}).verdict, Verdict::Done);
@@ -366,7 +366,7 @@ TEST(JoinTraceVertices, DoesNotCrossAnotherTraceButAtACommonNode)
     EXPECT_EQ(surgery.result().tagged_edges.size(), edges);
     EXPECT_EQ(check.find_wrong(surgery), "");
     release_all(surgery);
-    // Through a node of both, at their crossing.
+    // The traces may cross at a common node.
     const TraceInsertion node = insert(surgery, target, {0.51, 0.51}, 3);
     for (const Vec2& end : {Vec2(0.2, 0.5), Vec2(0.8, 0.52), Vec2(0.5, 0.2), Vec2(0.53, 0.8)}) {
         const TraceInsertion far = insert(surgery, target, end, 3);
@@ -414,7 +414,7 @@ TEST(JoinTraceVertices, ThreeFeaturesAtTwentyDegrees)
     EXPECT_GT(least_material_angle(surgery.result().mesh), 7.0);
 }
 
-// Inside an ordinary mesh there is always a way, whatever vertices lie beside the line and its ends.
+// Inside an ordinary mesh a join always succeeds, wherever vertices are near the line and its ends.
 TEST(JoinTraceVertices, LinesInsideAnIrregularMeshAreNotRefused)
 {
     std::mt19937 random(21);
@@ -476,7 +476,7 @@ TEST(JoinTraceVertices, RandomLinesInTurnKeepMeshAndVertexCount)
         std::map<Verdict, int> verdicts;
         int most = 0;
         for (int k = 0; k < 300; ++k) {
-            // From the mesh's own vertices, off by next to nothing or by anything.
+            // The ends are at distances from tiny to arbitrary from the mesh's own vertices.
             const SurgeryResult now = surgery.result();
             const auto pick = [&]() -> Vec2 {
                 const std::size_t v =

@@ -11,8 +11,8 @@ namespace {
 
 TEST(VertexTable, FindsWhatAMapFindsWhileIdsComeAndGo)
 {
-    // Steps between ids from none to those that multiply to the same places; many more than there was room
-    // for.
+    // Steps between ids range from 1 to values that hash to equal slots. There are many more ids than initial
+    // slots.
     for (const std::uint32_t widest : {1u, 5u, 1000u, 1u << 20}) {
         std::mt19937 random(widest);
         VertexTable table(10);

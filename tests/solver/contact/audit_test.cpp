@@ -38,12 +38,11 @@ TEST(Audit, FreeClothHasNone)
 
 TEST(Audit, FindsTheObstacleTheClothIsDeepestIn)
 {
-    Laid laid(0.09);  // 1 cm inside the table, however it came there
+    Laid laid(0.09);  // 1 cm inside the table
     const Audit first = audit(laid.scene, laid.state.mesh, laid.state.time);
     EXPECT_EQ(first.obstacle, 0);
     EXPECT_NEAR(first.found.depth, 0.01, 1e-4);
-    laid.state.time =
-        0.875;  // the lid reaches from 0.025 to 0.225: the cloth is 0.05 m inside from its sides
+    laid.state.time = 0.875;  // the lid reaches from 0.025 to 0.225, so its sides are 0.05 m from the cloth
     const Audit second = audit(laid.scene, laid.state.mesh, laid.state.time);
     EXPECT_EQ(second.obstacle, 1);
     EXPECT_NEAR(second.found.depth, 0.05, 1e-3);

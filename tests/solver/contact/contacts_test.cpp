@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What becomes of contacts once they are found: room that is shared, stand-offs that yield, history that is
-// flattened. Planes and points are placed by hand; the truth is written down.
+// Processing of contacts after the search: sharing of room, yielding stand-offs, flattening of history.
+// Planes and points are placed by hand, and the expected results are written out.
 #include "solver/contact/contacts.h"
 
 #include <gtest/gtest.h>
@@ -14,9 +14,9 @@ namespace arris {
 namespace {
 
 constexpr double kThickness = 1e-3;
-constexpr double kRoundOff = 1e-15;  // m, m/s: of numbers about 1
+constexpr double kRoundOff = 1e-15;  // m, m/s: for values of about 1
 
-/// Vertices near obstacles that do not move unless told, at the start of a step.
+/// Vertices near obstacles at rest (unless a motion is given), at the start of a step.
 struct Setting {
     Prediction prediction;
     std::vector<ObstacleStep> steps;
@@ -171,8 +171,8 @@ TEST(YieldStandOff, RefusesWhatKeepsNothing)
     }
 }
 
-/// A vertex that has met a floor in the last step: it came down at 2 m/s and along at 3 m/s, and stands at
-/// its stand-off now, still going along. The floor's upper side is z = 0 at the step's start.
+/// A vertex that met a floor in the last step. It came down at 2 m/s while moving along at 3 m/s. Now it is
+/// at its stand-off and still moves along. The floor's upper side is z = 0 at the step's start.
 struct Landed {
     static constexpr double kStep = 0.005, kDown = 2.0, kAlong = 3.0;
     Scene scene;
@@ -185,7 +185,7 @@ struct Landed {
     {
         RigidMotion motion;
         motion.velocity = Vec3(0, 0, rising);
-        const Vec3 at(0, 0, -rising * kStep);  // it is at z = 0 at the time of the state
+        const Vec3 at(0, 0, -rising * kStep);  // the floor is at z = 0 at the state's time
         scene.obstacles.push_back(Obstacle("floor", make_floor().mesh(), {Mat3::Identity(), at}, motion, 30));
         const Vec3 now(0.2, 0, kThickness);
         state.time = state.previous_dt = kStep;
@@ -244,7 +244,8 @@ TEST(FlattenHistory, IsRelativeToAnObstacleThatMoves)
         Landed landed(rising);
         landed.touch({1.0, 0.0}, true);
         EXPECT_TRUE(landed.flatten());
-        // As if it had ridden on the floor for two steps: x + (x - x_before) / 3 with both on it.
+        // The result is that of riding on the floor for two steps: x + (x - x_before) / 3, with both
+        // positions on the floor.
         EXPECT_NEAR(landed.prediction.position[0].z(), kThickness + rising * Landed::kStep / 3.0, kRoundOff);
         EXPECT_NEAR(landed.prediction.velocity[0].z(), rising, kRoundOff);
     }

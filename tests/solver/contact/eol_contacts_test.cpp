@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the bound of an EOL vertex covers: no row holds it a second time, and what is elsewhere keeps its row.
+// The bound of an EOL vertex replaces rows that would hold the vertex a second time. Contacts elsewhere keep
+// their rows.
 #include "solver/contact/eol_contacts.h"
 
 #include <gtest/gtest.h>
@@ -14,11 +15,11 @@
 namespace arris {
 namespace {
 
-constexpr double kRoundOff = 1e-15;  // m: of numbers about 1
+constexpr double kRoundOff = 1e-15;  // m: for values of about 1
 
 TEST(EolContacts, WhatIsOnItsWayOutIsNotHeldToItsSpeed)
 {
-    // On a ridge of 60 degrees the stand-off is two thicknesses; the vertex is one away from it.
+    // On a ridge of 60 degrees the stand-off is two thicknesses; the vertex is one thickness away.
     for (const double outward : {-0.1, 0.0, 0.1, 10.0}) {
         testing::EolCloth cloth = testing::lying(0.0, 0.5 * testing::kLyingCell);
         for (Vec3& v : cloth.state.velocity) v = Vec3(0.0, 0.0, outward);
@@ -48,7 +49,8 @@ TEST(EolContacts, WhatIsOnItsWayOutIsNotHeldToItsSpeed)
 
 TEST(EolContacts, GoAlongWithAVertexThatSlidesAlongItsFeature)
 {
-    // In a step it goes four stand-offs along: what its bound holds is not held a second time by a row there.
+    // In the step the vertex slides four stand-offs along its feature. No row at the new place may hold the
+    // vertex a second time.
     for (const bool is_wire : {false, true}) {
         testing::EolCloth cloth = testing::lying(0.0, 0.5 * testing::kLyingCell);
         if (is_wire) {
@@ -80,8 +82,8 @@ TEST(EolContacts, GoAlongWithAVertexThatSlidesAlongItsFeature)
 
 TEST(EolContacts, OnAWiresEndCoverItsShaftOnlyNearby)
 {
-    // Cloth that hangs from the wire's end and swings against the wire far below it: that is a row of its
-    // own.
+    // Cloth hangs from the wire's end and swings against the wire. A contact far below the end needs a row of
+    // its own.
     for (const double below : {0.005, 0.1}) {
         testing::EolCloth cloth(
             Obstacle("needle", make_wire({Vec3::Zero(), {0.0, 0.0, -1.0}}, false), {}, {}, 30.0),

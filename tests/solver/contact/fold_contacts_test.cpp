@@ -24,15 +24,15 @@ using testing::make_draped;
 
 constexpr int kCells = 16;
 constexpr double kCell = 0.4 / kCells;  // m
-constexpr double kSame = 1e-9;          // m, of material
+constexpr double kSame = 1e-9;          // m, of material coordinates
 
 Obstacle make_line(const std::vector<Vec3>& points = {{0, -1, 0}, {0, 1, 0}}, const RigidMotion& motion = {})
 {
     return Obstacle("wire", make_wire(points, false), {}, motion, 30.0);
 }
 
-/// Cloth folded over a wire by `fold` (degrees, 180 is flat), a stand-off above it, with EOL vertices on it
-/// where their material coordinate along it is less than `end`.
+/// Cloth folded over a wire to the angle `fold` (degrees, 180 is flat), at its stand-off above the wire.
+/// Vertices on the wire are EOL if their material coordinate along the wire is less than `end`.
 EolCloth make_folded(double fold, double end = 1.0, Obstacle wire = make_line())
 {
     EolCloth cloth(std::move(wire), make_draped({kCells, 0.0, fold}));
@@ -87,7 +87,7 @@ TEST(FoldContacts, KeepEachSideOfAFoldOnItsSide)
 
 TEST(FoldContacts, AreNoneOfAVertexThatIsHeldElsewhere)
 {
-    // On a nail beside the fold.
+    // The vertex is EOL on a nail beside the fold.
     EolCloth cloth = make_folded(20.0);
     const auto is_of = [&](int v) {
         const std::vector<FoldContact> found = find(cloth);
@@ -107,14 +107,15 @@ TEST(FoldContacts, AreNoneWhereTheClothIsFarFromThePlane)
 {
     EXPECT_TRUE(find(make_folded(180.0)).empty());
     EXPECT_TRUE(find(make_folded(20.0, -1.0)).empty()) << "no vertex is on the wire";
-    // Nor beyond the end of a trace, on the fold's line.
+    // There are no fold contacts beyond the end of a trace, on the fold's line.
     const EolCloth ending = make_folded(20.0, 0.2);
     for (const FoldContact& contact : find(ending)) EXPECT_GT(std::abs(along_x(ending, contact)), kSame);
 }
 
 TEST(FoldContacts, AreNoneOfWhatHangsDownPastTheWiresEnd)
 {
-    // The fold goes on past the end, where its line hangs down in the very plane behind what is on the wire.
+    // The fold continues past the wire's end. There its line hangs down in the fold plane of the vertices on
+    // the wire.
     EolCloth cloth = make_folded(20.0, 0.2 - 0.5 * kCell, make_line({{0, -1, 0}, {0, 0, 0}}));
     for (int v = 0; v < cloth.state.mesh.vertex_count(); ++v) {
         const Vec2 past = cloth.state.mesh.material[v] - Vec2(0.2, 0.2);
@@ -128,7 +129,8 @@ TEST(FoldContacts, AreNoneOfWhatHangsDownPastTheWiresEnd)
 
 TEST(FoldContacts, DoNotLearnTheirSideFromWhatIsHeldAtTheWiresEnd)
 {
-    for (const double aside : {-1e-5, 1e-5}) {  // m, of what is held: it has no side
+    // Offset of the held vertex, m; this vertex is on neither side of the fold.
+    for (const double aside : {-1e-5, 1e-5}) {
         EolCloth cloth = make_folded(20.0, 0.2 - 0.5 * kCell, make_line({{0, -1, 0}, {0, 0.3 * kCell, 0}}));
         const int held = cloth.vertex_at(0.2, 0.2);
         cloth.state.mesh.world[held].x() += aside;
@@ -152,7 +154,7 @@ TEST(FoldContacts, ReachAsFarAsFlowBringsClothSoonOnAWireAtRest)
 {
     RigidMotion turning;
     turning.angular_velocity = Vec3(0.0, 0.0, 1.0);
-    for (const auto& [motion, time] : {std::pair(RigidMotion(), 1.0), {turning, 0.2}}) {  // s
+    for (const auto& [motion, time] : {std::pair(RigidMotion(), 1.0), {turning, 0.2}}) {  // time in s
         EolCloth cloth = make_folded(20.0, 1.0, make_line({{0, -1, 0}, {0, 1, 0}}, motion));
         const auto farthest = [&] {
             double most = 0.0;
@@ -169,8 +171,8 @@ TEST(FoldContacts, ReachAsFarAsFlowBringsClothSoonOnAWireAtRest)
     }
 }
 
-/// Steps that halve where they have to; each is checked by what knows nothing of it. Returns into how many
-/// parts they were made.
+/// Makes one step, halved where necessary. An independent penetration check follows each part. Returns the
+/// number of parts.
 int advance(EolCloth& cloth, Workspace& work, double dt, int steps)
 {
     int parts = 0;

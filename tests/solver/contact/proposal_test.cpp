@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is done to a proposal by hand: pushed out to its stand-off, put back on its way.
+// Corrections of a proposal outside the velocity solve: pushing out to the stand-off, and rewinding.
 #include "solver/contact/proposal.h"
 
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ TEST(Rewind, PutsBackWhatPassedAPlate)
 {
     const Placement far{rotation_about(Vec3(1, 2, 3), 40.0), Vec3(1e3, -2e3, 5e2)};
     for (const Placement& place : {Placement(), far})
-        for (const double down : {0.006, 0.05, 3.0}) {  // into it, through it, far beyond it
+        for (const double down : {0.006, 0.05, 3.0}) {  // into the plate, through it, far beyond it
             Above above({}, place);
             above.propose(place.rotation * Vec3(0, 0, -down));
             ASSERT_FALSE(above.is_clean());
@@ -118,7 +118,7 @@ TEST(Rewind, LeavesClothThatIsNowhereNear)
 TEST(Rewind, RidesOnAPlateThatComesUp)
 {
     RigidMotion up;
-    up.velocity = Vec3(0, 0, 10.0);  // 5 cm in the step, through the sheet, which stays
+    up.velocity = Vec3(0, 0, 10.0);  // 5 cm in the step, through the sheet at rest
     Above above(up);
     ASSERT_FALSE(above.is_clean());
     ASSERT_TRUE(above.put_back());

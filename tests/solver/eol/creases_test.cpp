@@ -14,13 +14,13 @@ ClothElements elements_of(const ClothMesh& mesh)
     return make_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
 }
 
-/// Draped cloth with EOL vertices on the ridge at `count` neighbouring places.
+/// Draped cloth with EOL vertices at `count` neighbouring places on the ridge.
 EolCloth draped_with(int count)
 {
     const Drape drape;
     EolCloth cloth(make_ridge(90.0), make_draped(drape));
     cloth.scene.gravity = Gravity{};
-    cloth.scene.material.bending_stiffness = 1e-6;  // of 0.4 m at this density bent within millimetres
+    cloth.scene.material.bending_stiffness = 1e-6;  // this cloth bends within millimetres
     const int tip = tip_of(cloth.scene.obstacles[0]);
     for (int k = 0; k < count; ++k)
         cloth.add_eol(cloth.vertex_at(0.2, 0.1 + k * 0.4 / drape.cells), false, tip);

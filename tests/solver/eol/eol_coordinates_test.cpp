@@ -28,7 +28,7 @@ double radians(double degrees)
     return degrees * std::numbers::pi / 180.0;
 }
 
-/// Cloth of this shape on a ridge of 60 degrees.
+/// Cloth of the given shape on a ridge of `tip` degrees.
 EolCloth on_ridge(const Drape& shape, double tip = 60.0)
 {
     return EolCloth(make_ridge(tip), make_draped(shape));
@@ -40,7 +40,7 @@ EolCloth on_wire(const Drape& shape)
                     make_draped(shape));
 }
 
-/// The vertex in the middle as EOL on the ridge's tip (or the wire), placed.
+/// Makes the vertex in the middle EOL on the ridge's tip (or the wire) and places it.
 EolPlacing place_middle(EolCloth cloth, bool is_wire = false)
 {
     const int v = cloth.vertex_at(0.2, 0.2);
@@ -54,7 +54,7 @@ void expect_parallel(const Vec2& a, const Vec2& b)
     EXPECT_NEAR(std::abs(a.dot(b)), 1.0, kRoundOff) << a.transpose() << " and " << b.transpose();
 }
 
-/// Kinetic energy when the vertex alone moves, at this rate.
+/// Kinetic energy when the vertex alone moves, with its coordinates changing at this rate.
 double energy_of(EolCloth cloth, const EolCoordinates& at, const Vec3& u)
 {
     cloth.state.velocity[at.vertex] = at.basis * u;
@@ -64,7 +64,7 @@ double energy_of(EolCloth cloth, const EolCoordinates& at, const Vec3& u)
 
 TEST(EolCoordinates, OnAnEdgeAreOutwardAlongAndTheFlowAcross)
 {
-    for (const double tip : {5.0, 60.0, 120.0})  // a knife, too
+    for (const double tip : {5.0, 60.0, 120.0})  // 5 degrees: a knife
         for (const double fold : {tip, 180.0}) {
             const EolPlacing placing = place_middle(on_ridge({8, 0.0, fold}, tip));
             ASSERT_TRUE(placing.coordinates) << tip;
@@ -89,7 +89,7 @@ TEST(EolCoordinates, OnAWireAreOutwardWhereTheClothIs)
         EXPECT_LT((placing.coordinates->basis.col(0) - Vec3(0, 0, side)).norm(), kRoundOff);
         expect_parallel(placing.coordinates->material_basis.col(2), Vec2::UnitX());
     }
-    // Folded over it by more than a right angle the cloth itself tells the side.
+    // Where the cloth is folded over the wire by more than a right angle, the fold itself decides the side.
     EolCloth hanging = on_wire({8, 0.0, 20.0});
     const int v = hanging.vertex_at(0.2, 0.2);
     hanging.state.eol[hanging.add_eol(v, false, 0)].outward = Vec3(0, 0, -1);
@@ -100,7 +100,7 @@ TEST(EolCoordinates, OnAWireAreOutwardWhereTheClothIs)
 
 TEST(EolCoordinates, OnAWireOutwardTurnsEvenlyAndDoesNotDependOnTheMesh)
 {
-    // However the cloth's mesh is turned against the wire, from flat to folded together.
+    // For any direction of the mesh relative to the wire, from flat to completely folded cloth.
     for (const double turn : {0.0, 17.0, 30.0, 45.0})
         for (const double fold : {180.0, 150.0, 100.0, 95.0, 90.0, 85.0, 80.0, 30.0, 2.0}) {
             EolCloth cloth = on_wire({8, turn, fold});
@@ -109,7 +109,7 @@ TEST(EolCoordinates, OnAWireOutwardTurnsEvenlyAndDoesNotDependOnTheMesh)
             const EolPlacing placing = cloth.place(v);
             ASSERT_TRUE(placing.coordinates) << turn << ' ' << fold;
             const double off = std::acos(std::min(placing.coordinates->basis(2, 0), 1.0));
-            // A turned mesh has faces that the wire's line cuts: they are of neither side.
+            // A turned mesh has faces cut by the wire's line; they belong to neither side.
             EXPECT_LT(off, turn == 0.0 ? 1e-6 : radians(12.0)) << turn << ' ' << fold;
         }
 }
@@ -117,7 +117,7 @@ TEST(EolCoordinates, OnAWireOutwardTurnsEvenlyAndDoesNotDependOnTheMesh)
 TEST(EolCoordinates, OnAWireTheSideIsRememberedWhereTheFoldDoesNotShowIt)
 {
     for (const int side : {1, -1}) {
-        EolCloth flat = on_wire({8, 0.0, 0.0});  // folded together: its normals cancel
+        EolCloth flat = on_wire({8, 0.0, 0.0});  // completely folded: the normals cancel
         const int v = flat.vertex_at(0.2, 0.2);
         flat.state.eol[flat.add_eol(v, false, 0)].side = side;
         const EolPlacing placing = flat.place(v);
@@ -146,7 +146,7 @@ TEST(EolCoordinates, OnAWireTheVertexFollowsIntoTheOutwardPlane)
     EXPECT_LT(std::abs(placing.coordinates->carried.x()), 0.6e-4);
     EXPECT_NEAR(placing.coordinates->carried.y(), cloth.state.mesh.world[v].y(), kRoundOff);
     EXPECT_NEAR(placing.coordinates->carried.z(), 1e-3, 1e-5);
-    // In no time it stays, and its way out is where it is from the wire.
+    // In a step of length 0 the vertex stays, and outward points from the wire to the vertex.
     EXPECT_LT((place_in(0.0).coordinates->carried - cloth.state.mesh.world[v]).norm(), kRoundOff);
     EXPECT_LT(place_in(0.0).coordinates->basis.col(0).cross(Vec3(0.1, 0.0, 1.0)).norm(), kRoundOff);
 }
@@ -172,7 +172,8 @@ TEST(EolCoordinates, WhatHasLeftAWireIsNotCarriedRoundIt)
 
 TEST(EolCoordinates, WhereAWireTurnsAreOutwardAndFlowBothWays)
 {
-    // Held there, and the frame halfway between both edges; folded over it as over a straight one.
+    // The vertex is held at the bend, with a frame halfway between those of the two edges. The cloth is
+    // folded as over a straight wire.
     for (const double fold : {180.0, 90.0, 20.0}) {
         EolCloth cloth(
             Obstacle("wire", make_wire({{0.1, -1, 0}, {0, 0, 0}, {0.1, 1, 0}}, false), {}, {}, 30.0),
@@ -216,7 +217,8 @@ TEST(EolCoordinates, OnACornerAreOutwardAndAnyFlow)
     EXPECT_GT(std::abs(flow.determinant()), 0.5) << "the material flows any way";
 }
 
-/// A tent on a nail, its top a thickness from that in this direction, its sides steep but for one.
+/// A tent on a nail. Its top is a thickness from the nail in the direction `top`; all but one of its sides
+/// are steep.
 EolCloth on_nail(const Vec3& top)
 {
     EolCloth cloth(Obstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0), make_draped({8, 0.0, 180.0}));
@@ -228,7 +230,7 @@ EolCloth on_nail(const Vec3& top)
     return cloth;
 }
 
-/// Sine of the angle between the faces around the vertex and the nail's tip seen from there.
+/// Sine of the angle between the faces around the vertex and the direction from `place` to the nail's tip.
 double room_at(const EolCloth& cloth, int v, const Vec3& place)
 {
     const ClothStars stars = cloth.stars();
@@ -245,7 +247,7 @@ double room_at(const EolCloth& cloth, int v, const Vec3& place)
 
 TEST(EolCoordinates, OnANailTheVertexGoesRoundItToWhereItsClothHasRoomForIt)
 {
-    constexpr double kStep = 5e-3;  // s: in which .1 m/s is half a thickness
+    constexpr double kStep = 5e-3;  // s: half a thickness at 0.1 m/s
     for (const Vec3& top : {Vec3(0.0, 0.0, 1.0), Vec3(0.1, 0.4, 0.9), Vec3(-0.3, -0.1, 0.9)}) {
         EolCloth cloth = on_nail(top.normalized());
         const int v = cloth.vertex_at(0.2, 0.2);
@@ -262,7 +264,8 @@ TEST(EolCoordinates, OnANailTheVertexGoesRoundItToWhereItsClothHasRoomForIt)
             EXPECT_NEAR((at.basis.col(0) - at.carried.normalized()).norm(), 0.0, 1e-9);
             EXPECT_TRUE(at.basis.rightCols<2>().isZero());
             place = at.carried;
-            for (Vec3& x : cloth.state.mesh.world) x += place - cloth.state.mesh.world[v];  // its cone stays
+            for (Vec3& x : cloth.state.mesh.world)
+                x += place - cloth.state.mesh.world[v];  // translated, so that its cone keeps its shape
         }
         EXPECT_GT(room_at(cloth, v, place), 1.05 * room);
         EXPECT_GT((place - before).norm(), 0.1 * kThickness);
@@ -306,7 +309,8 @@ TEST(EolCoordinates, TraceIsWhatTheDeformationMapsToTheTangentWhereNoNeighbourTe
     for (const double turn : {10.0, 45.0, -70.0}) {
         const EolPlacing flat = place_middle(on_ridge({8, turn, 180.0}));
         ASSERT_TRUE(flat.coordinates);
-        // The material direction (sin, cos) lies along the ridge, so what flows over it is (cos, -sin).
+        // The material direction (sin, cos) is along the ridge, so material flows over the ridge along (cos,
+        // -sin).
         expect_parallel(flat.coordinates->material_basis.col(2),
                         Vec2(std::cos(radians(turn)), -std::sin(radians(turn))));
     }
@@ -323,7 +327,7 @@ TEST(EolCoordinates, TraceIsWhatTheDeformationMapsToTheTangentWhereNoNeighbourTe
 
 TEST(EolCoordinates, TraceFollowsTheEdgesToNeighboursOnTheFeature)
 {
-    // The material is turned by 10 degrees, so F says otherwise.
+    // The mesh's edges along the ridge differ by 10 degrees from the direction given by F.
     for (const int neighbours : {1, 2}) {
         EolCloth cloth = on_ridge({8, 10.0, 180.0});
         const int tip = testing::tip_of(cloth.scene.obstacles[0]);
@@ -335,7 +339,8 @@ TEST(EolCoordinates, TraceFollowsTheEdgesToNeighboursOnTheFeature)
         ASSERT_TRUE(placing.coordinates);
         expect_parallel(placing.coordinates->material_basis.col(2), Vec2::UnitX());
     }
-    // A bent trace: the mean of both ways, each in the same sense. One goes up, one down a diagonal.
+    // A bent trace: the mean of both directions, each taken in the same sense. One edge goes up, the other
+    // down a diagonal.
     EolCloth cloth = on_ridge({8, 20.0, 180.0});
     const int tip = testing::tip_of(cloth.scene.obstacles[0]);
     const int v = cloth.vertex_at(0.2, 0.2);
@@ -398,7 +403,7 @@ TEST(EolCoordinates, OpeningHasTheLeastKineticEnergy)
                 const double up = energy_of(cloth, at, at.opening + change);
                 const double down = energy_of(cloth, at, at.opening - change);
                 EXPECT_GT(std::min(up, down), least);
-                // A parabola with its foot there.
+                // The energy is a parabola with its minimum at the opening.
                 EXPECT_NEAR(up, down, 1e-9 * (up + down)) << k << " by " << size << " in " << i;
             }
     }
@@ -435,7 +440,7 @@ TEST(EolPlacing, WhereTheTraceMeetsTheBorderAtLessThan20Degrees)
 {
     for (const double turn : {-19.0, 0.0, 19.0, 21.0, -21.0}) {
         EolCloth cloth = on_ridge({8, turn, 180.0});
-        const int v = cloth.vertex_at(0.0, 0.2);  // the ridge runs at `turn` to this border
+        const int v = cloth.vertex_at(0.0, 0.2);  // the ridge meets this border at `turn` degrees
         cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
         const EolPlacing placing = cloth.place(v);
         ASSERT_EQ(placing.coordinates.has_value(), std::abs(turn) > 20.0) << turn;
@@ -445,8 +450,8 @@ TEST(EolPlacing, WhereTheTraceMeetsTheBorderAtLessThan20Degrees)
     }
 }
 
-// Cloth that has left the ridge and turned over it: in the material its trace is across the border, in the
-// world the border runs along the ridge, and the vertex could flow along it at any speed without moving
+// Cloth has left the ridge and turned. In the material its trace crosses the border, but in the world the
+// border is parallel to the ridge. There the vertex could flow along the border at any speed without moving
 // cloth.
 TEST(EolPlacing, WhereTheBorderHasTurnedAlongTheFeature)
 {
@@ -466,11 +471,11 @@ TEST(EolPlacing, WhereTheBorderHasTurnedAlongTheFeature)
     }
 }
 
-// Both sides of a fold that is all but shut have the border lead along the wire, and up from it on one side,
-// down on the other: across it goes as far, if nowhere in the sum.
+// On both sides of an almost closed fold the border leads along the wire, up on one side and down on the
+// other. The border therefore crosses the wire, although the two directions cancel in the sum.
 TEST(EolPlacing, IsNoneWhereTheBorderOfAFoldCrossesAWireObliquely)
 {
-    for (const double shift : {0.05, 0.1, 0.15})  // along the border, of where the fold crosses it
+    for (const double shift : {0.05, 0.1, 0.15})  // position along the border at which the fold crosses it
         for (const double fold : {2.0, 30.0, 90.0}) {
             EolCloth cloth = on_wire({8, std::atan2(shift, 0.2) * 180.0 / std::numbers::pi, fold});
             const int v = cloth.vertex_at(0.2 + shift, 0.4);
@@ -491,7 +496,7 @@ TEST(EolPlacing, OfACornerOnTheBorder)
 
 TEST(EolPlacing, OfFlatClothThatAllButContainsTheOutwardDirection)
 {
-    for (const double lean : {0.0, 9.0, 11.0, 45.0}) {  // from standing on the ridge
+    for (const double lean : {0.0, 9.0, 11.0, 45.0}) {  // angle from cloth that stands upright on the ridge
         EolCloth cloth = on_ridge({8, 0.0, 180.0});
         const Mat3 turn = rotation_about(Vec3::UnitY(), 90.0 - lean);
         for (Vec3& x : cloth.state.mesh.world) x = turn * x;
@@ -501,14 +506,14 @@ TEST(EolPlacing, OfFlatClothThatAllButContainsTheOutwardDirection)
             EXPECT_EQ(placing.refusal, RowCause::EdgeOn);
         }
     }
-    // Cloth that is folded there is not edge-on, however it stands.
+    // Cloth that is folded at the ridge is never edge-on.
     EXPECT_TRUE(place_middle(on_ridge({8, 0.0, 1.0}, 0.5)).coordinates);
 }
 
 TEST(EolPlacing, OfCollapsedClothAndOfAWireWhoseClothTellsNoSide)
 {
     EolCloth wire = on_wire({8, 0.0, 180.0});
-    for (Vec3& x : wire.state.mesh.world) x = Vec3(0, x.y(), 0);  // all of it in the wire's line
+    for (Vec3& x : wire.state.mesh.world) x = Vec3(0, x.y(), 0);  // all cloth collapsed to the wire's line
     EXPECT_EQ(place_middle(wire, true).refusal, RowCause::NoDirection);
     EXPECT_FALSE(place_middle(wire, true).coordinates);
 
@@ -521,7 +526,7 @@ TEST(EolPlacing, OfCollapsedClothAndOfAWireWhoseClothTellsNoSide)
     EXPECT_FALSE(place_middle(broken).coordinates);
 }
 
-/// A vertex on the feature's middle, or the corner.
+/// Places the vertex at the corner, or at the middle of the feature's edge.
 PlacedEol placed_on(const Obstacle& obstacle, const EolVertex& eol)
 {
     const ObstacleFeatures& features = obstacle.features();
@@ -557,7 +562,7 @@ TEST(TraceEdge, JoinsVerticesOfOneStretchAndItsEnds)
         const auto& ends = ridge.topology().edges[features.edges[f].edge].points;
         const int point = features.corners[end].point;
         EXPECT_EQ(is_joined(ridge, at_end, other), ends[0] == point || ends[1] == point);
-        // Both its ends are corners: the feature runs from one to the other.
+        // If both ends of the edge are corners, they are joined too.
         for (int c = 0; c < static_cast<int>(features.corners.size()); ++c) {
             const int at = features.corners[c].point;
             if (at == point) continue;
@@ -577,7 +582,7 @@ Obstacle make_loop(int count)
     return Obstacle("loop", make_wire(points, true), {}, {}, 30.0);
 }
 
-/// On the loop's wire at this angle.
+/// A vertex on the loop's wire at this angle.
 PlacedEol on_loop(const EolVertex& eol, double degrees)
 {
     const Vec3 at(std::cos(radians(degrees)), std::sin(radians(degrees)), 0.0);
@@ -624,7 +629,7 @@ TEST(FollowFeatures, VerticesPassOnFromSegmentToSegment)
         follow_features(cloth.scene.obstacles, cloth.state);
         EXPECT_EQ(cloth.state.eol[0].on.index, edge_at(loop, degrees)) << degrees;
     }
-    // Where its wire ends it stays on the last segment.
+    // At the wire's end the vertex stays on the last segment.
     EolCloth open(Obstacle("wire", make_wire({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}}, false), {}, {}, 30.0),
                   make_draped({8, 0.0, 180.0}));
     open.add_eol(v, false, 0);

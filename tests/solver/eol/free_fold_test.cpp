@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A fold off its edge goes on along the cloth that comes to it, and comes back to where it has left.
+// A free fold moves on in the direction of the arriving cloth, and returns to the place where it left its
+// edge.
 #include "solver/eol/free_fold.h"
 
 #include <gtest/gtest.h>
@@ -15,9 +16,9 @@ namespace {
 constexpr double kThickness = 1e-3;  // m
 constexpr double kFlow = 2.0;        // m/s
 constexpr double kRoundOff =
-    1e-12;  // of vectors of length 1, an edge through `far` 1e3 m from the origin apart
+    1e-12;  // for unit vectors, except for edges through `far`, 1e3 m from the origin
 
-/// A convex edge through `point`, anywhere, with `tip` (rad) between its faces.
+/// A convex edge through a random `point`, with the angle `tip` (rad) between its faces.
 struct Edge {
     Mat3 turn;
     Vec3 point;
@@ -39,7 +40,7 @@ struct Edge {
         feature.kind = FeatureKind::Convex;
         frame = {point, turn.col(1), at(0.0, 1.0), std::min(1.0 / std::sin(0.5 * tip), 2.0)};
     }
-    /// A direction or way across the edge: along its bisector and aside.
+    /// A vector perpendicular to the edge, from its components along the bisector and perpendicular to it.
     Vec3 at(double aside, double out) const { return turn * Vec3(aside, 0.0, out); }
     Vec3 held() const { return point + frame.mitre * kThickness * frame.outward; }
 
@@ -49,7 +50,7 @@ struct Edge {
     }
 };
 
-const double kTips[] = {0.1, 1.0, 0.5 * M_PI, 2.0, 2.5};  // rad, from a knife to what is hardly an edge
+const double kTips[] = {0.1, 1.0, 0.5 * M_PI, 2.0, 2.5};  // rad, from a knife to a very blunt edge
 
 TEST(FreeFold, OnItsEdgeIsNotTurned)
 {
@@ -71,7 +72,7 @@ TEST(FreeFold, GoesOnAlongTheFaceOnWhichArrivingClothLies)
                 for (const double out : {0.01, 0.1}) {
                     const FeatureFrame free = edge.free(
                         edge.held() + out * edge.onward[k] + 0.3 * edge.frame.tangent, -edge.onward[k]);
-                    const double both = tip < 0.4 ? tip : 0.0;  // a knife's faces are each other's
+                    const double both = tip < 0.4 ? tip : 0.0;  // a knife's two faces are almost one
                     EXPECT_LT((free.outward - edge.onward[k]).norm(), both + kRoundOff) << tip << " " << k;
                 }
             }
@@ -86,10 +87,10 @@ TEST(FreeFold, ComesBackToWhereTheEdgeHeldIt)
             const Edge edge(tip, static_cast<unsigned>(k));
             const Vec3 way = (any(random) * edge.onward[0] + any(random) * edge.onward[1]).normalized();
             const double out = 0.02 + 0.1 * any(random);
-            // Cloth that stands off both faces, or does not flow, tells no face.
+            // Cloth that lies along neither face, or does not flow, selects no face.
             for (const auto& [arriving, flow] :
                  {std::pair(Vec3(-edge.frame.outward), kFlow), std::pair(Vec3(-edge.onward[0]), 0.0)}) {
-                if (tip < 0.8 && flow > 0.0) continue;  // a knife's bisector is along its faces
+                if (tip < 0.8 && flow > 0.0) continue;  // a knife's bisector is nearly along its faces
                 const FeatureFrame free = edge.free(edge.held() + out * way, arriving, flow);
                 EXPECT_LT((free.outward - way).norm(), 1e3 * kRoundOff) << tip;
             }
@@ -121,13 +122,15 @@ TEST(FreeFold, NeverMovesTowardsAFace)
                 k % 9 == 0 ? Vec3::Zero() : Vec3(edge.at(any(random), any(random)).normalized());
             const FeatureFrame free = edge.free(place, arriving, 3.0 * std::abs(any(random)));
             EXPECT_NEAR(free.outward.norm(), 1.0, kRoundOff);
-            EXPECT_NEAR(free.outward.dot(free.tangent), 0.0, 1e-9);  // a point 1e3 m away, to 1e-13 of it
+            // The edge's point may be 1e3 m away, known to 1e-13 relative.
+            EXPECT_NEAR(free.outward.dot(free.tangent), 0.0, 1e-9);
             EXPECT_GT(free.mitre, -kRoundOff);
             for (const Vec3& normal : edge.feature.normals) EXPECT_GT(free.outward.dot(normal), -1e-9) << k;
         }
 }
 
-// Else the projection on other coordinates would take energy wherever flow chatters.
+// A jump of the direction would project velocities onto other coordinates and dissipate energy wherever flow
+// oscillates.
 TEST(FreeFold, TurnsEvenlyAsItLeavesAndAsFlowTurns)
 {
     const Edge edge(0.5 * M_PI, 5);
@@ -139,18 +142,20 @@ TEST(FreeFold, TurnsEvenlyAsItLeavesAndAsFlowTurns)
         for (double x = from; x < to; x += step)
             ASSERT_LT((turned(x + step) - turned(x)).norm(), steepest * step) << x;
     };
-    // 45 degrees over half a stand-off, over a flow of kFreeFlow, and over 6 degrees.
+    // The direction turns by 45 degrees over half a stand-off, over a change of flow by kFreeFlow, and over 6
+    // degrees of tilt.
     expect_even([&](double out) { return outward(out, kFlow, 0.0); }, -2e-3, 4e-3, 1e-6, 3e3);
     expect_even([&](double flow) { return outward(0.02, flow, 0.0); }, 0.0, 1.5, 1e-3, 3.0);
     expect_even([&](double tilt) { return outward(0.02, kFlow, tilt); }, -0.6, 0.6, 1e-3, 30.0);
 }
 
-// Along the bisector its bound would hold it up there, and what is between it and the edge would stay slack.
+// Along the bisector the fold's bound would hold the fold above the face, and the cloth between fold and edge
+// would stay slack.
 TEST(FreeFold, ComesDownOnTheFaceOverWhichItHasComeBack)
 {
     for (const double tip : {0.5 * M_PI, 2.0, 2.5})
         for (const int k : {0, 1})
-            for (const double inside : {0.002, 0.005}) {  // less than it is high
+            for (const double inside : {0.002, 0.005}) {  // m, less than its height
                 const Edge edge(tip, 9);
                 const Vec3& normal = edge.feature.normals[k];
                 const Vec3 place = edge.point + 0.008 * normal - inside * edge.onward[k];

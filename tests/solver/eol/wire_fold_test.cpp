@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sides of cloth over a wire keep off the half plane behind its vertex: then no edge of it meets the
-// wire.
+// The sides of cloth over a wire keep off the fold plane behind the EOL vertex. Then no edge of that vertex
+// meets the wire.
 #include "solver/eol/wire_fold.h"
 
 #include <gtest/gtest.h>
@@ -17,10 +17,10 @@ namespace {
 constexpr double kHeight = 1e-3;     // m, of the vertex over the wire
 constexpr double kSpeed = 0.1;       // m/s, of the vertex around it
 constexpr double kLeast = 5e-3;      // rad, between a side and the plane
-constexpr double kRoundOff = 1e-12;  // of lengths and angles of order 1
+constexpr double kRoundOff = 1e-12;  // for lengths and angles of order 1
 
-/// A wire through `point`, anywhere; `at(angle, way, along)` is a place behind the vertex, which is straight
-/// out of the wire.
+/// A wire through a random `point`, with a vertex straight outward of the wire. `at(angle, way, along)` is a
+/// place behind that vertex.
 struct Wire {
     Mat3 turn;
     Vec3 point;
@@ -86,7 +86,7 @@ TEST(TurnOutward, StaysOffTheClothsSides)
     std::uniform_real_distribution<double> any(-1.0, 1.0);
     for (unsigned trial = 0; trial < 2000; ++trial) {
         const Wire wire(trial, trial % 3 == 0 ? 1e3 : 0.0);
-        // Sides that are nearly closed, wide open, or nearer than they may get.
+        // Sides that are nearly closed, wide open, or nearer to the plane than allowed.
         const double width = std::pow(10.0, 4.0 * any(random) - 3.5);
         std::vector<Vec3> beside;
         for (int k = 0; k < 5; ++k)
@@ -98,14 +98,15 @@ TEST(TurnOutward, StaysOffTheClothsSides)
         after.outward = turned;
         for (const Vec3& w : beside) {
             const double was = angle_behind(before, w), is = angle_behind(after, w);
-            if (std::abs(was - is) > 3.0) continue;  // round the wire's front
+            if (std::abs(was - is) > 3.0) continue;  // passed the discontinuity at the wire's front
             EXPECT_GE(was * is, 0.0) << "to the other side";
             EXPECT_GE(std::abs(is), std::min(std::abs(was), kLeast) - 1e-9) << was << " rad before";
         }
     }
 }
 
-/// How near the edge from the vertex to a place that a bound just keeps comes to the wire, over its height.
+/// Least distance between the wire and the edge from the vertex to the place `begin`, moved onto its bound;
+/// over the vertex's height.
 double find_nearest(const FoldBound& bound, const Wire& wire, const Vec3& begin, double height)
 {
     const Vec3 kept = begin - (bound.normal.dot(begin - wire.point) - bound.least_gap) * bound.normal;
@@ -137,14 +138,15 @@ TEST(FoldBound, KeepsTheEdgeOffTheWire)
 TEST(FoldBound, LetsWhatIsNearerGetNoNearer)
 {
     const Wire wire(5);
-    for (const double share : {0.5, 1e-3, -0.5, -20.0}) {  // of the least angle; negative: on the wrong side
+    // Angles over the least angle; negative: on the wrong side.
+    for (const double share : {0.5, 1e-3, -0.5, -20.0}) {
         const Vec3 begin = wire.at(share * kLeast, 0.1);
         const int side = angle_behind(wire.frame(), wire.at(0.1, 0.1)) > 0.0 ? 1 : -1;
         const FoldBound bound = find_fold_bound(wire.frame(), begin, side);
         EXPECT_NEAR(bound.least_gap, 0.1 * std::sin(share * kLeast), kRoundOff);
         EXPECT_NEAR(bound.wanted, kLeast * 0.1 * std::cos(share * kLeast), kRoundOff);
     }
-    // In front of the wire there is no plane to keep off.
+    // There is no fold plane in front of the wire.
     EXPECT_EQ(find_fold_bound(wire.frame(), wire.at(2.0, 0.1), 1).wanted, 0.0);
 }
 

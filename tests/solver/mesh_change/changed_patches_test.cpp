@@ -39,7 +39,7 @@ bool holds(const ClothMesh& mesh, const Face& face, const Vec2& X)
                      twice_area(at[a], at[b], X)}) >= -1e-9 * area;
 }
 
-/// By looking at every face of both meshes.
+/// Brute force: compares every face of both meshes.
 std::vector<ChangedPatch> search_all(const State& before, const State& after)
 {
     std::set<std::array<VertexId, 3>> old;
@@ -145,7 +145,7 @@ TEST(ChangedPatches, AreThoseThatASearchOfTheWholeMeshFinds)
         const EolCloth cloth(make_ridge(60.0), make_draped({20, 0.0, 180.0}));
         ClothSurgery surgery(cloth.state.mesh, cloth.state.ids, cloth.state.next_id);
         std::mt19937 random(seed);
-        // Bursts of operations at a place each, so that faces vanish whose vertices all have gone.
+        // Bursts of operations at one place each, so that some faces vanish with all their vertices.
         for (unsigned place = 0; place < 1 + seed % 4; ++place) {
             VertexId v = static_cast<VertexId>(random() % cloth.state.ids.size());
             for (int k = 0; k < 12; ++k) {
@@ -185,7 +185,7 @@ TEST(ChangedPatches, WhereNothingHasChangedThereAreNone)
     const EolCloth cloth(make_ridge(60.0), make_draped({8, 0.0, 180.0}));
     EXPECT_TRUE(find(cloth.state, cloth.state, {}).empty());
 
-    // There and back: the faces are what they were.
+    // After the inverse operation the faces are the original ones.
     ClothSurgery surgery(cloth.state.mesh, cloth.state.ids, cloth.state.next_id);
     const VertexId a = cloth.state.ids[cloth.vertex_at(0.2, 0.2)];
     const auto flip = [&](VertexId from, VertexId to) {

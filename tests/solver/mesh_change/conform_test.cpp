@@ -33,9 +33,9 @@ using testing::make_ridge;
 using testing::press_edges;
 using testing::take;
 
-constexpr double kOnFeature = 1e-9;  // m: crossings of straight lines at 1 m
+constexpr double kOnFeature = 1e-9;  // m: accuracy of crossings of straight lines of 1 m
 
-/// A point of the obstacle presses into the face around it.
+/// Lets a point of the obstacle press on the face above it.
 void press_point(EolCloth& cloth, int point)
 {
     const Vec3& at = cloth.scene.obstacles[0].mesh().points[point];
@@ -53,7 +53,7 @@ void press_point(EolCloth& cloth, int point)
     }
 }
 
-/// The corner at the ridge's end.
+/// Lets the corner at the ridge's end press.
 void press_corner(EolCloth& cloth)
 {
     const Obstacle& ridge = cloth.scene.obstacles[0];
@@ -65,7 +65,7 @@ std::optional<ConformedMesh> conform(const EolCloth& cloth, const FailedFlow& fa
     return testing::conform_cloth(cloth, failed).mesh;
 }
 
-/// EOL vertices in the order in which they are along the ridge.
+/// EOL vertices in their order along the ridge.
 std::vector<int> along_ridge(const State& state)
 {
     std::vector<int> row;
@@ -119,14 +119,14 @@ TEST(Conform, RowsOnAnEdgeBecomeVerticesOnItWithEdgesAlongIt)
             EXPECT_FALSE(e.on.is_corner());
             EXPECT_EQ(e.idle, 0);
         }
-        // It reaches from border to border, but for what is too near a corner of the cloth.
+        // The trace reaches from border to border, except near a corner of the cloth.
         EXPECT_GT(state.mesh.world[row.back()].y() - state.mesh.world[row.front()].y(),
                   0.4 - 2.2 * kLyingCell);
         EXPECT_GT(least_material_angle(state.mesh), 5.0);
     }
 }
 
-/// Flat cloth at the thickness' height over wires; rows where its edges cross them.
+/// Flat cloth one thickness above wires, with rows where its edges cross them.
 EolCloth lying_on(const Obstacle& wires, double turn)
 {
     EolCloth cloth(wires, make_draped({7, turn, 180.0}));
@@ -191,7 +191,7 @@ TEST(Conform, AWireThatBendsWithinACellHasATrace)
     }
 }
 
-/// The least distance of a vertex that is held at a turn from where it is to be; 1 m where there is none.
+/// Least distance from `place` of a vertex that is locked at a bend; 1 m if there is none.
 double held_off(const State& state, const Vec3& place)
 {
     double nearest = 1.0;
@@ -201,7 +201,7 @@ double held_off(const State& state, const Vec3& place)
     return nearest;
 }
 
-/// A wire over the cloth's middle that turns at (0, `y`, 0) by `degrees`.
+/// A wire under the cloth's middle with a bend of `degrees` at (0, `y`, 0).
 Obstacle make_turning(double y, double degrees)
 {
     const double aside = -0.3 * std::tan(degrees * M_PI / 360.0);
@@ -211,7 +211,7 @@ Obstacle make_turning(double y, double degrees)
 
 TEST(Conform, WhereAWireTurnsItsTraceHasAVertexThatIsHeldThere)
 {
-    // It is not pressed there: the chord over the turn would miss it by more than a thickness.
+    // No contact presses at the bend, but the chord would pass it by more than a thickness.
     for (const double degrees : {15.0, 30.0, 45.0})
         for (const double turn : {0.0, 10.0, 20.0, 33.0, 45.0}) {
             const double y = 0.01;
@@ -223,7 +223,7 @@ TEST(Conform, WhereAWireTurnsItsTraceHasAVertexThatIsHeldThere)
             for (std::size_t k = 1; k < row.size(); ++k)
                 EXPECT_TRUE(has_edge(cloth.state, row[k - 1], row[k])) << degrees << ", " << turn;
             EXPECT_GT(least_material_angle(cloth.state.mesh), 3.0) << degrees << ", " << turn;
-            // And it stays there: no clean-up merges it into others.
+            // Clean-up must not merge this vertex.
             cloth.state.active.clear();
             const std::optional<ConformedMesh> again = conform(cloth);
             EXPECT_FALSE(again && !again->events.empty()) << degrees << ", " << turn;
@@ -240,7 +240,7 @@ TEST(Conform, WhereAWireHardlyTurnsItsTraceSlides)
 
 TEST(Conform, OnAWireOfShortEdgesItsTraceSlides)
 {
-    // An arc of edges of a third of a cell that turns by 12 degrees from each to the next.
+    // An arc of edges, each a third of a cell long, with bends of 12 degrees.
     std::vector<Vec3> points;
     Vec3 at(-0.06, -0.18, 0);
     for (int k = -9; k <= 9; ++k, at += 0.02 * Vec3(-std::sin(0.1 * k), std::cos(0.1 * k), 0))
@@ -259,7 +259,7 @@ TEST(Conform, ATurnThatPressesTakesTheVertexThatSlidesBesideIt)
     for (EolVertex& e : cloth.state.eol) e.on = FeatureId::edge(e.on.obstacle, e.on.index);
     const std::size_t count = cloth.state.eol.size();
     cloth.state.active.clear();
-    for (Vec3& x : cloth.state.mesh.world) x.y() += 0.01;  // it has slid along
+    for (Vec3& x : cloth.state.mesh.world) x.y() += 0.01;  // the cloth has slid along the wire
     press_point(cloth, 1);
     ASSERT_EQ(cloth.state.active.size(), 1u);
     take(cloth);
@@ -303,8 +303,8 @@ TEST(Conform, WhereAWireEndsInTheMiddleOfTheClothTheTraceDoes)
 
 TEST(Conform, WhatIsNotOnTheSideToWhichAWirePressesIsNoVertexOfIt)
 {
-    // Cloth that hangs beside a wire is pressed aside a little above one of its vertices: that is near
-    // enough, but below the wire, and to be pressed down from there would be against what presses above it.
+    // Cloth hangs beside a wire, which presses it aside just above one of its vertices. That vertex is near
+    // enough, but below the wire. As an EOL vertex it would be pressed down, against the contact above.
     for (const double below : {0.0, 0.5, 2.0}) {
         EolCloth cloth(Obstacle("wire", make_wire({{0, -0.5, 0}, {0, 0.5, 0}}, false), {}, {}, 30.0),
                        make_draped({7, 0.0, 180.0}));
@@ -339,7 +339,7 @@ TEST(Conform, NeighboursOnTheFeatureAreJoinedAcrossAnEdgeThatDidNotPress)
     std::erase_if(cloth.state.active, [&](const ActiveContact& contact) {
         const Vec2 way = cloth.state.mesh.material[cloth.state.index_of(contact.vertex_ids[1])] -
                          cloth.state.mesh.material[cloth.state.index_of(contact.vertex_ids[0])];
-        return std::abs(way.x() * way.y()) > 1e-9;  // the diagonals
+        return std::abs(way.x() * way.y()) > 1e-9;  // removes the diagonals
     });
     ASSERT_EQ(cloth.state.active.size(), 8u);
     const ConformedMesh made = take(cloth);
@@ -365,12 +365,12 @@ TEST(Conform, WhereNothingHasChangedTheSecondTimeChangesNothing)
                                           Vec3::UnitZ(),
                                           1e-6});
         EXPECT_FALSE(conform(cloth)) << "nothing flows";
-        // Rows beside it again, whose places are EOL vertices already.
+        // Rows beside the trace press again where EOL vertices already are.
         press_edges(cloth);
         const std::optional<ConformedMesh> again = conform(cloth);
         EXPECT_FALSE(again) << turn << ": " << (again ? again->events.size() : 0) << " operations, "
                             << (again ? again->report.inserted : 0) << " inserted";
-        // What flows a little may have something of its way cleared: once each way, not again.
+        // A small flow may have its way cleared once in each direction, but not again.
         int passes = 0;
         for (int k = 0; k < 12; ++k) {
             for (const EolVertex& e : cloth.state.eol)
@@ -392,7 +392,7 @@ TEST(Conform, WhereNothingHasChangedTheSecondTimeChangesNothing)
 
 TEST(Conform, NearABorderThatRunsAlongARowStaysARow)
 {
-    for (const double cells : {0.1, 0.28, 0.32, 0.6}) {  // from the border x = -0.2 of the cloth
+    for (const double cells : {0.1, 0.28, 0.32, 0.6}) {  // cells from the border x = -0.2 of the cloth
         EolCloth cloth = lying(0.0, 0.2 - cells * kLyingCell);
         press_edges(cloth);
         ASSERT_GT(cloth.state.active.size(), 6u);
@@ -406,7 +406,7 @@ TEST(Conform, NearABorderThatRunsAlongARowStaysARow)
 
 TEST(Conform, WhereTheClothComesFastItWouldHaveToGoAtOnce)
 {
-    // 0.6 cells (34 mm) of material are left, of which one step uses up 5 mm for each m/s.
+    // 0.6 cells (34 mm) of material are left; one step uses up 5 mm for each m/s.
     for (const double speed : {0.0, 0.1, 2.0, 20.0}) {
         EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
         for (Vec3& v : cloth.state.velocity) v = Vec3(speed, 0, 0);
@@ -435,15 +435,15 @@ TEST(Conform, WhereTheBorderComesAtOnceTheTraceGoesAndTheBorderStays)
     EXPECT_EQ(validate(made->surgery.mesh), "");
 }
 
-/// Cloth folded along a mesh line that has come a millimetre and a half off the ridge; its faces are those of
-/// cloth folded on it. Beside the fold its edges press on the ridge.
+/// Cloth folded along a mesh line, moved 1.5 mm off the ridge along one of its sides. Near the fold its edges
+/// press on the ridge.
 EolCloth folded_beside(double speed)
 {
     EolCloth cloth(make_ridge(60.0), make_draped({8, 0.0, 110.0}));
     cloth.scene.eol = uniform_target(0.05, 10.0);
     cloth.scene.material.youngs_modulus = 2000.0;
     const double half = 55.0 * M_PI / 180.0;
-    const Vec3 way(std::sin(half), 0.0, std::cos(half));  // the left side's, upwards
+    const Vec3 way(std::sin(half), 0.0, std::cos(half));  // upwards along the left side
     for (std::size_t v = 0; v < cloth.state.ids.size(); ++v) {
         Vec3& x = cloth.state.mesh.world[v];
         cloth.state.velocity[v] =
@@ -456,7 +456,7 @@ EolCloth folded_beside(double speed)
 
 TEST(Conform, BesideAFoldThatHasLeftTheFeatureAVertexIsPutWhereTheFoldGoesOn)
 {
-    // The cloth slides on: the fold is behind, and left where it is.
+    // The cloth slides on: the fold is behind the ridge and left in place.
     const EolCloth leaving = folded_beside(0.3);
     ASSERT_GT(leaving.state.active.size(), 5u);
     const std::optional<ConformedMesh> on = conform(leaving);
@@ -473,17 +473,18 @@ TEST(Conform, BesideAFoldThatHasLeftTheFeatureAVertexIsPutWhereTheFoldGoesOn)
     }
     EXPECT_EQ(validate(on->surgery.mesh), "");
 
-    // It comes back: the fold would be run into at once, and where it is it is in the way.
+    // The cloth slides back: the old fold would reach the ridge at once, and it leaves no room for a new
+    // vertex.
     EolCloth returning = folded_beside(-0.3);
     const std::optional<ConformedMesh> made = conform(returning);
     EXPECT_TRUE(!made || made->eol.empty());
 }
 
-/// Flat cloth of which a fold that was on the ridge has gone on by some cells, while material flows through
-/// it; rows where cloth edges cross the ridge, with that normal.
+/// Flat cloth whose trace has moved some cells off the ridge while material flows through it. Rows with the
+/// given normal press where cloth edges cross the ridge.
 EolCloth flown_off(double cells, const Vec3& normal)
 {
-    constexpr double kFlow = 2.0;  // m/s: more than any fold stays on its edge with
+    constexpr double kFlow = 2.0;  // m/s: too fast for a fold to stay on its edge
     EolCloth cloth = lying(0.0);
     press_edges(cloth);
     take(cloth);
@@ -591,7 +592,8 @@ TEST(Conform, WhatHasNotPressedForThreeStepsIsReleased)
     for (EolVertex& e : cloth.state.eol) e.idle = 2;
     EXPECT_FALSE(conform(cloth)) << "two steps are not for long";
 
-    // One in the middle leaves no hole; the last one along the ridge may go.
+    // An idle vertex in the middle stays, so that the trace gets no hole. The last one along the ridge may be
+    // released.
     std::vector<std::pair<double, std::size_t>> along;
     for (std::size_t k = 0; k < count; ++k) {
         const int v = cloth.state.index_of(cloth.state.eol[k].vertex_id);
@@ -686,7 +688,7 @@ TEST(Conform, WhereANewVertexHadNotEnoughMaterialNoneIsMadeAndOthersAre)
     EXPECT_EQ(validate(second->surgery.mesh), "");
 }
 
-/// Cloth whose trace flows at cells that are held, by `share` of the way to them in a step.
+/// Conforms cloth whose trace flows towards held vertices, by `share` of the distance to them in a step.
 std::optional<ConformedMesh> flow_at_held(EolCloth cloth, double share)
 {
     take(cloth);
@@ -729,7 +731,7 @@ TEST(Conform, WithoutATargetOrWithoutContactsThereIsNothingToDo)
     EXPECT_FALSE(conform(cloth));
 }
 
-/// How far above the cloth a point is, m; 0 where there is none below or above it.
+/// Height of a point above the cloth, m; 0 if no cloth is above or below the point.
 double height_over(const ClothMesh& mesh, const Vec3& point)
 {
     for (const Face& f : mesh.faces) {
@@ -745,7 +747,8 @@ double height_over(const ClothMesh& mesh, const Vec3& point)
 
 TEST(Conform, NothingOfAnObstacleGetsThroughTheCloth)
 {
-    // Wavy cloth that gives way to anything; nails 10 micrometres from its faces.
+    // Wavy, very soft cloth, so that no strain prevents mesh changes. Nails are 10 micrometres from its
+    // faces.
     EolCloth cloth = lying(17.0);
     cloth.scene.gravity = Gravity{};
     cloth.scene.material.youngs_modulus = 1e-3;
@@ -774,7 +777,7 @@ TEST(Conform, NothingOfAnObstacleGetsThroughTheCloth)
     EXPECT_EQ(count_passed(made->surgery.mesh), 0);
 }
 
-/// Steps with gravity and all: cloth that falls on a ridge and hangs down on both sides.
+/// Complete steps with gravity: cloth falls on a ridge and hangs down on both sides.
 TEST(ConformedSteps, ClothThatFallsOnARidgeBendsOnVerticesOfIt)
 {
     for (const double turn : {0.0, 17.0}) {
@@ -801,7 +804,8 @@ TEST(ConformedSteps, ClothThatFallsOnARidgeBendsOnVerticesOfIt)
             most = std::max(most, static_cast<int>(state.eol.size()));
             for (const EolVertex& e : state.eol) {
                 const Vec3& x = state.mesh.world[state.index_of(e.vertex_id)];
-                EXPECT_NEAR(x.x(), 0.0, 0.1 * kThickness) << state.time;  // the plane in which it may move
+                // The vertex may move in the plane x = 0.
+                EXPECT_NEAR(x.x(), 0.0, 0.1 * kThickness) << state.time;
             }
         }
         EXPECT_GT(steps_with_eol, 15) << turn;
@@ -821,7 +825,7 @@ TEST(Conform, OnARimWhatSlidesBesideABendThatPressesGoesThere)
         ASSERT_GE(cloth.state.eol.size(), 1u) << point;
         const EolVertex made = cloth.state.eol[0];
         const std::size_t count = cloth.state.eol.size();
-        // The cloth goes along the edge that the vertex is on, away from the bend.
+        // The cloth moves along the vertex's edge, away from the bend.
         const auto [a, b] = feature_segment(disk, made.on.index);
         const bool is_from = (a - disk.mesh().points[point]).norm() < 1e-9;
         const Vec3 way = (is_from ? b - a : a - b).normalized();
@@ -853,7 +857,8 @@ TEST(ConformedSteps, WhatOverrunsInEveryAttemptBecomesRowsInAFew)
     State& state = cloth.state;
     const std::size_t count = state.eol.size();
     ASSERT_GT(count, 5u);
-    // Nothing flows, so that no way is blocked, but by its history all would flow metres in the next step.
+    // The present flow is zero, so no way is blocked. The history extrapolates to a flow of metres in the
+    // next step.
     state.previous_dt = kStep;
     state.previous_world = state.mesh.world;
     state.previous_velocity = state.velocity;

@@ -20,7 +20,7 @@ using testing::EolCloth;
 using testing::make_draped;
 using testing::make_ridge;
 
-/// Cloth folded over the ridge, far above it, whose vertices on the fold are a trace.
+/// Cloth folded over the ridge, but far above it. Its vertices on the fold form a trace.
 struct Folded {
     EolCloth cloth;
     ClothSurgery surgery;
@@ -33,7 +33,7 @@ struct Folded {
 
     VertexId at(double u, double v) const { return cloth.state.ids[cloth.vertex_at(u, v)]; }
 
-    /// Stretch, bending and gravity energy of the whole cloth, as a step has it.
+    /// Stretch, bending and gravity energy of the whole cloth, computed as in a step.
     double energy(const Terms& terms) const
     {
         const SurgeryResult made = surgery.result();
@@ -79,7 +79,7 @@ TEST(SurgeryEnergy, IsTheRiseThatTheStepWillFind)
             };
             const double rise = energy(event.after) - energy(event.before), before = cloth.energy(terms);
             ASSERT_EQ(surgery.commit(proposal), Verdict::Done) << what;
-            constexpr double kRoundOff = 1e-12;  // J, of 0.3 J
+            constexpr double kRoundOff = 1e-12;  // J, for energies of 0.3 J
             EXPECT_NEAR(rise, cloth.energy(terms) - before, kRoundOff) << what << ", " << stiffness;
             greatest = std::max(greatest, std::abs(rise));
         };
@@ -98,8 +98,8 @@ TEST(SurgeryEnergy, IsTheRiseThatTheStepWillFind)
 
 TEST(EolGuard, DoesNotLetStiffClothBeBent)
 {
-    // A fold's edge is flipped, so that the fold goes zigzag; the cloth is so soft that what that stretches
-    // is not seen.
+    // Flipping an edge of the fold makes the fold a zigzag. The cloth is so soft that the stretch has no
+    // noticeable energy.
     for (const auto& [stiffness, is_allowed] : {std::pair(1e-9, true), {1e-1, false}})
         for (const StrainLimit limit : {StrainLimit::AsMade, StrainLimit::Forced}) {
             Folded cloth(160.0);
@@ -118,7 +118,7 @@ TEST(EolGuard, DoesNotLetStiffClothBeBent)
 
 TEST(EolGuard, DoesNotLetClothBeLifted)
 {
-    // Soft cloth that sags: a vertex of the valley goes, and what lay in it is lifted to the chord.
+    // Soft cloth sags. Collapsing a vertex of the valley lifts the cloth around it to the chord.
     for (const bool is_heavy : {false, true}) {
         Folded cloth(180.0);
         State& state = cloth.cloth.state;
@@ -139,7 +139,8 @@ TEST(EolGuard, DoesNotLetClothBeLifted)
 
 TEST(EolGuard, WithCareNothingCountsOnClothThatGivesWay)
 {
-    // Rough cloth: of the edges that strain it where they are flipped those for which it gives way.
+    // On rough cloth, selects the edges whose flip strains the cloth but is allowed because the cloth gives
+    // way.
     Folded cloth(180.0, 1e-3);
     cloth.cloth.scene.gravity.reset();
     RelaxationMemo relaxations;

@@ -20,9 +20,9 @@ using testing::make_draped;
 using testing::make_ridge;
 using testing::momentum_of;
 
-constexpr double kStep = 0.005;  // s, of the history
+constexpr double kStep = 0.005;  // s, step of the history
 
-/// Velocities and positions of about 1 m/s and 1 m, through the fit's normal equations.
+/// Round-off of velocities and positions of about 1 m/s and 1 m, through the fit's normal equations.
 constexpr double kRoundOff = 1e-10;
 
 void set_history(State& state)
@@ -43,7 +43,7 @@ void shake(State& state, double speed, std::mt19937& random)
     set_history(state);
 }
 
-/// A cloth far above the ridge whose bending gives no cause to move anything.
+/// Cloth far above the ridge without bending stiffness, so that relaxation moves nothing.
 EolCloth free_cloth(unsigned seed, double fold = 180.0, double rough = 0.0)
 {
     EolCloth cloth(make_ridge(60.0), make_draped({8, 0.0, fold}));
@@ -68,7 +68,7 @@ ConformedMesh conformed(const ClothSurgery& surgery, std::vector<EolVertex> eol)
     return {surgery.result(), surgery.events(), std::move(eol), {}};
 }
 
-/// Kinetic, J.
+/// Gain of kinetic energy, J.
 double energy_gain(const EolCloth& cloth, const State& after)
 {
     return kinetic_energy_of(cloth.scene, after) - kinetic_energy_of(cloth.scene, cloth.state);
@@ -89,8 +89,8 @@ CornerVelocities corners_of(const State& state)
     return compute_corner_velocities(elements, state.mesh.world, state.velocity, state.material_velocity);
 }
 
-/// Greatest difference, m/s, between how fast the material moves before and after, at points inside every
-/// new face, by looking for the old face that each is in.
+/// Greatest difference between the material's velocity before and after, m/s, at points inside every new
+/// face. The old face of each point is found by search.
 double field_difference(const State& before, const State& after)
 {
     const CornerVelocities old = corners_of(before), now = corners_of(after);
@@ -143,7 +143,7 @@ TEST(MeshTransfer, ASplitLeavesTheFieldAsItIsEverywhere)
         const EolCloth cloth = free_cloth(seed, 100.0, 0.01);
         ClothSurgery surgery = operate(cloth.state);
         std::mt19937 random(seed);
-        for (int k = 0; k < 6; ++k) {  // splits of what was split, too
+        for (int k = 0; k < 6; ++k) {  // some faces are split repeatedly
             const auto v = static_cast<VertexId>(random() % 81);
             const auto face = surgery.faces_at(v)[0];
             const bool is_edge = k % 2 == 0;
@@ -158,7 +158,7 @@ TEST(MeshTransfer, ASplitLeavesTheFieldAsItIsEverywhere)
         for (std::size_t v = 0; v < after.ids.size(); ++v) {
             EXPECT_TRUE(after.material_velocity[v].isZero());
             EXPECT_EQ(after.previous_material[v], after.mesh.material[v]);
-            // History was taken back along each velocity, which is linear on the split faces.
+            // The history was extrapolated back by each velocity, which is linear on the split faces.
             EXPECT_LT((after.previous_world[v] - (after.mesh.world[v] - kStep * after.velocity[v])).norm(),
                       kRoundOff);
             EXPECT_LT((after.previous_velocity[v] - after.velocity[v]).norm(), kRoundOff);
@@ -167,7 +167,7 @@ TEST(MeshTransfer, ASplitLeavesTheFieldAsItIsEverywhere)
     }
 }
 
-/// Cloth that slides over the ridge at `speed`: nothing moves in the world where it bends.
+/// Cloth that slides over the ridge at `speed`; the fold is at rest in the world.
 EolCloth sliding_cloth(double speed)
 {
     EolCloth cloth(make_ridge(60.0), make_draped({8, 0.0, 60.0}));
@@ -212,9 +212,9 @@ TEST(MeshTransfer, AVertexMadeOnATraceFlowsLikeItsNeighbours)
     EXPECT_LT(field_difference(cloth.state, after), kRoundOff);
 }
 
-const Vec3 kDown(0.5, 0, -std::sqrt(0.75));  // a flank of the 60 degrees
+const Vec3 kDown(0.5, 0, -std::sqrt(0.75));  // down a flank of the 60-degree ridge
 
-/// The cloth with a vertex more, halfway from its fold to the next vertex, and its index.
+/// Splits an edge halfway from the fold to the next vertex. Returns the state and the new vertex's index.
 std::pair<State, int> split_beside_fold(const EolCloth& cloth)
 {
     ClothSurgery surgery = operate(cloth.state);
@@ -229,7 +229,7 @@ std::pair<State, int> split_beside_fold(const EolCloth& cloth)
 
 TEST(MeshTransfer, AVertexMadeBesideATraceIsOfTheMaterialAndAlwaysWas)
 {
-    // The fold's vertices rest and the material flows through them: halfway to the next vertex it moves.
+    // The fold's vertices rest while material flows through them; the new vertex moves with the material.
     const double speed = 0.7;
     const EolCloth cloth = sliding_cloth(speed);
     const auto [after, v] = split_beside_fold(cloth);
@@ -244,7 +244,8 @@ TEST(MeshTransfer, AVertexMadeBesideATraceIsOfTheMaterialAndAlwaysWas)
 
 TEST(MeshTransfer, AVertexWhoseFacesWereNoFacesAStepAgoHasMovedAsItMovesNow)
 {
-    // Through the fold a cell of material flows in a step: a step ago the faces ahead of it were lines.
+    // A cell of material flows through the fold in a step, so one step ago the faces ahead of the fold were
+    // degenerate.
     for (const double cells : {1.0, 1.0 - 1e-14, 1.0 - 1e-9, 1.0 - 1e-3, 1.0 + 1e-14, 1.0 + 1e-3, 1.5, 3.0}) {
         SCOPED_TRACE(cells);
         const double speed = cells * 0.05 / kStep;
@@ -290,7 +291,7 @@ TEST(MeshTransfer, FlatClothInUniformMotionKeepsItWhereAVertexBecomesEol)
     }
 }
 
-/// Flat cloth that moves over the ridge as one, with a vertex that stays on the ridge.
+/// Flat cloth that moves uniformly over the ridge, with one EOL vertex that stays on the ridge.
 constexpr std::array<double, 3> kUniform = {0.5, 0.1, 0.2};  // m/s
 EolCloth flat_cloth_through(double u, double v)
 {
@@ -306,7 +307,7 @@ EolCloth flat_cloth_through(double u, double v)
 
 TEST(MeshTransfer, AReleasedVertexIsOfTheMaterialAgain)
 {
-    // Of cloth that is flat nothing changes.
+    // On flat cloth the velocity field does not change.
     const EolCloth flat = flat_cloth_through(0.2, 0.2);
     const Vec3 uniform(kUniform.data());
     const int middle = flat.vertex_at(0.2, 0.2);
@@ -321,7 +322,7 @@ TEST(MeshTransfer, AReleasedVertexIsOfTheMaterialAgain)
     EXPECT_LT((after.previous_world[middle] - (after.mesh.world[middle] - kStep * uniform)).norm(),
               kRoundOff);
 
-    // On a fold the field must change, but neither momentum nor, upwards, energy.
+    // On a fold the velocity field must change, but momentum is kept and energy does not rise.
     const EolCloth folded = sliding_cloth(0.7);
     surgery = operate(folded.state);
     std::vector<EolVertex> eol = folded.state.eol;
@@ -343,7 +344,7 @@ TEST(MeshTransfer, WhatCanHaveNoCoordinatesAnyMoreIsOfTheMaterialThoughItsEntryI
     const int at_border = flat.vertex_at(0.2, 0.0);
     ASSERT_TRUE(flat.place(at_border).coordinates);
     std::vector<EolVertex> eol = flat.state.eol;
-    // A corner, for which the cloth's border is no place.
+    // A vertex on the cloth's border cannot be EOL on a corner.
     eol[0].on = FeatureId::corner(0, testing::end_of(flat.scene.obstacles[0]));
     const State after = carry(flat, conformed(operate(flat.state), eol));
     ASSERT_EQ(after.eol.size(), 1u);
@@ -356,7 +357,7 @@ TEST(MeshTransfer, WhatCanHaveNoCoordinatesAnyMoreIsOfTheMaterialThoughItsEntryI
 
 TEST(MeshTransfer, FitsNothingWhereAPatchIsStrainedByMoreThanItMay)
 {
-    // At rest and without weight nothing may strain the cloth; a fold that is cut off at two places does.
+    // Cloth at rest without weight may not be strained. Cutting off a fold at two places strains it.
     EolCloth cloth(make_ridge(60.0), make_draped({16, 0.0, 90.0}));
     for (Vec3& x : cloth.state.mesh.world) x.z() += 1.0;
     set_history(cloth.state);
@@ -391,7 +392,8 @@ TEST(MeshTransfer, FarFromThePatchNoBitChanges)
     for (int i = 0; i < after.mesh.vertex_count(); ++i) {
         const bool is_same = is_same_vertex(after, i, cloth.state, cloth.state.index_of(after.ids[i]));
         changed += is_same ? 0 : 1;
-        // The star and two rings around it, whose border is held, of cells of 0.05 m.
+        // Only the vertex's star and two rings around it may change; their outer border is held. Cells are
+        // 0.05 m.
         if ((after.mesh.material[i] - Vec2(0.05, 0.05)).cwiseAbs().maxCoeff() > 0.101) {
             ++far;
             EXPECT_TRUE(is_same) << after.mesh.material[i].transpose();
@@ -406,7 +408,7 @@ TEST(MeshTransfer, MomentumOfFreeClothIsKeptAndEnergyNeverRises)
     double worst_gain = -1.0, worst_momentum = 0.0;
     for (unsigned seed = 1; seed <= 90; ++seed) {
         EolCloth cloth = free_cloth(seed, seed % 2 == 0 ? 90.0 : 180.0, 0.008);
-        if (seed > 30) {  // a smooth field instead of noise: it turns, or ripples
+        if (seed > 30) {  // a smooth field instead of noise: rotation or ripples
             const Vec3 spin(3, seed, -2);
             for (std::size_t v = 0; v < cloth.state.ids.size(); ++v) {
                 const Vec3& x = cloth.state.mesh.world[v];
@@ -517,7 +519,7 @@ TEST(MeshTransfer, WhatGivesWayIsNeverWhatIsOnAFeature)
 
 TEST(MeshTransfer, StiffClothIsNotStrainedByAChangeOfItsMesh)
 {
-    // A vertex is taken out of the top of a round fold: the chord is shorter than the cloth.
+    // A vertex is removed from the top of a round fold, whose chord is shorter than the cloth.
     const EolCloth cloth = bent_cloth();
     ClothSurgery surgery = operate(cloth.state);
     const VertexId v = cloth.state.ids[cloth.vertex_at(0.2, 0.2)];

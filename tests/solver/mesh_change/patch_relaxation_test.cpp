@@ -22,9 +22,9 @@ using testing::elastic_energy_of;
 using testing::EolCloth;
 using testing::make_draped;
 
-constexpr double kHeight = 1.0;  // m, of the cloth above the obstacle
+constexpr double kHeight = 1.0;  // m, height of the cloth above the obstacle
 
-/// Flat cloth of 0.4 m whose inner vertices are out of place, far from its obstacle.
+/// Flat cloth of 0.4 m, far from its obstacle; its inner vertices are displaced.
 struct Setting {
     EolCloth cloth;
     RelaxedPatch patch;
@@ -76,14 +76,14 @@ TEST(PatchRelaxation, RelaxesUnderAGravityOfNothingAsWithout)
     EXPECT_EQ(nothing.cloth.state.mesh.world, without.cloth.state.mesh.world);
 }
 
-/// A square of 3 x 3 free vertices, or with `count` 4 of them alike and apart, so that none feels another.
-/// They are out of place, and every second one keeps its height where they touch.
+/// A square of 3 x 3 displaced free vertices, or for `count` 4 four equal squares that do not interact. With
+/// `is_touching` every second vertex keeps its height.
 Setting make_squares(int count, bool is_touching)
 {
     Setting setting(0.0);
     setting.cloth.scene.gravity = Gravity{};
-    setting.cloth.scene.material.youngs_modulus = 5.0;     // so soft that it takes some steps
-    setting.cloth.scene.material.bending_stiffness = 0.0;  // hinges reach from one to the next
+    setting.cloth.scene.material.youngs_modulus = 5.0;     // so soft that relaxation takes several steps
+    setting.cloth.scene.material.bending_stiffness = 0.0;  // hinges would couple the squares
     std::mt19937 random(4);
     std::normal_distribution<double> shift(0.0, 5e-3);
     std::array<Vec3, 16> shifts;
@@ -103,7 +103,7 @@ Setting make_squares(int count, bool is_touching)
 
 TEST(PatchRelaxation, APartMovesAsWithOthersLikeIt)
 {
-    // One has 27 unknowns and four have 108, which are solved in another way.
+    // One square has 27 unknowns and four have 108, which another solver handles.
     for (const bool is_touching : {false, true}) {
         Setting one = make_squares(1, is_touching), four = make_squares(4, is_touching);
         const double drop = 0.9 * one.energy();
@@ -176,7 +176,8 @@ TEST(PatchRelaxation, StopsAtWhatIsWanted)
     EXPECT_EQ(relaxed.relax(), relaxed.energy());
     EXPECT_EQ(relaxed.cloth.state.mesh.world, before.mesh.world) << "it is relaxed enough";
 
-    // What strain the cloth had before is not taken from it: a push the other way.
+    // Relaxation stops at the wanted energy and keeps the strain that the cloth had before: too much
+    // relaxation would push the cloth the other way.
     for (const double share : {0.99, 0.9, 0.5}) {
         Setting partly(5e-3);
         const double wanted = share * partly.energy();
@@ -189,7 +190,7 @@ TEST(PatchRelaxation, StopsAtWhatIsWanted)
 
 TEST(PatchRelaxation, CanRelaxByWhatItRelaxesBy)
 {
-    // Under gravity steps are short: what is soft takes all of them.
+    // Under gravity the steps are short, so soft cloth uses all of them.
     int yes = 0, no = 0;
     for (const double stiffness : {5.0, 50.0, 5e4})
         for (const double bending : {0.0, 1e-5, 1e-2})
@@ -215,7 +216,8 @@ TEST(PatchRelaxation, CanRelaxByWhatItRelaxesBy)
 
 TEST(PatchRelaxation, KeepsTheHeightOfWhatTouches)
 {
-    constexpr double kHeld = 1e-6;  // of the way: the spring that holds it is that much stiffer
+    // Motion along the normal over the total motion: the holding spring is stiffer by this factor.
+    constexpr double kHeld = 1e-6;
     Setting setting(5e-3);
     for (std::size_t v = 0; v < setting.patch.normals.size(); ++v)
         if (v % 2 == 0) setting.patch.normals[v] = Vec3(1, 2, 2) / 3.0;
@@ -233,7 +235,8 @@ TEST(PatchRelaxation, KeepsTheHeightOfWhatTouches)
 
 TEST(PatchRelaxation, NeverPassesAnObstacle)
 {
-    // A vertex is drawn out over a nail, a wire and a box on the way back; one corner of a box is beside it.
+    // A displaced vertex relaxes towards a nail, a wire and a box that are under it; the last box has a
+    // corner beside its path.
     const Vec3 above(0, 0, kHeight + 0.02);
     int stopped = 0;
     for (int kind = 0; kind < 4; ++kind) {
@@ -255,14 +258,15 @@ TEST(PatchRelaxation, NeverPassesAnObstacle)
         EXPECT_LE(after, before);
         EXPECT_NEAR(after, setting.energy(), 1e-12 * before);
         EXPECT_EQ(audit(setting.cloth.scene, state.mesh, 0.0).obstacle, -1) << kind;
-        // What was under the tent's top still is.
+        // The obstacle that was under the tent's top must still be there.
         EXPECT_GT(state.mesh.world[middle].z(), above.z()) << kind;
         stopped += state.mesh.world[middle].z() > kHeight + 0.005 ? 1 : 0;
     }
     EXPECT_EQ(stopped, 4);
 }
 
-// Cloth whose border lies too low over a table, and whose middle would come down to the same height.
+// The cloth's border is nearer to a table than its stand-off, and the middle would relax to the border's
+// height.
 TEST(PatchRelaxation, ComesNoNearerToAnObstacleThanItsStandOff)
 {
     ObstacleMesh table = make_box({2.0, 2.0, 0.1});
@@ -283,8 +287,9 @@ TEST(PatchRelaxation, ComesNoNearerToAnObstacleThanItsStandOff)
     }
 }
 
-/// Cloth that hangs from y = 0.4 at rest, stretched by its own weight, nu = 0: u(s) = rho g (L s - s^2 / 2) /
-/// E at s below. Its border is held. Returns how far it hangs down at most.
+/// Sets cloth hanging at rest from y = 0.4, stretched by its own weight with nu = 0. Its displacement at s
+/// below the edge is u(s) = rho g (L s - s^2 / 2) / E. Its border is held. Returns the greatest displacement
+/// relative to the border, m.
 double hang(Setting& setting)
 {
     constexpr double kLength = 0.4;
@@ -298,13 +303,14 @@ double hang(Setting& setting)
         const double s = kLength - X.y();
         state.mesh.world[v] = {X.x(), 0.0, kHeight - s - rate * (kLength * s - 0.5 * s * s)};
     }
-    return 0.125 * rate * kLength * kLength;  // of the middle, below halfway
+    // Sag of the middle relative to the borders.
+    return 0.125 * rate * kLength * kLength;
 }
 
 TEST(PatchRelaxation, DoesNotLiftWhatHangsFromAnEdge)
 {
     for (const double stiffness : {50.0, 2e3, 2e5})
-        for (const double rough : {0.0, 0.02}) {  // of how far it hangs down
+        for (const double rough : {0.0, 0.02}) {  // noise over the depth
             Setting setting(0.0);
             setting.cloth.scene.material.youngs_modulus = stiffness;
             const double depth = hang(setting);
@@ -315,11 +321,12 @@ TEST(PatchRelaxation, DoesNotLiftWhatHangsFromAnEdge)
             for (std::size_t v = 0; v < hanging.ids.size(); ++v)
                 if (setting.patch.is_free[v] != 0) setting.cloth.state.mesh.world[v].z() += shift(random);
             const double begun = find_patch_energy(setting.cloth.scene, {}, setting.cloth.state.mesh);
-            setting.patch.wanted = at_rest - setting.energy();  // as far as it goes
+            // An unreachable energy, so that the cloth relaxes as far as it can.
+            setting.patch.wanted = at_rest - setting.energy();
             const double reached = setting.relax();
             EXPECT_LE(reached, begun) << stiffness;
-            // Lumping and the mesh's diagonals are off by a few hundredths; all of it would be lifted without
-            // gravity.
+            // Lumping and the mesh's diagonals cause errors of a few per cent. Without gravity in the
+            // relaxation the whole depth would be lifted.
             constexpr double kLift = 0.1;
             for (std::size_t v = 0; v < hanging.ids.size(); ++v)
                 EXPECT_LT(setting.cloth.state.mesh.world[v].z() - hanging.mesh.world[v].z(), kLift * depth)
@@ -332,13 +339,13 @@ TEST(PatchRelaxation, WhatFallsIsNotPaidByFallingForItsStrain)
     Setting setting(0.0);
     Scene& scene = setting.cloth.scene;
     scene.gravity = Gravity{};
-    scene.material.bending_stiffness = 0.0;  // so that nothing holds a single vertex up
+    scene.material.bending_stiffness = 0.0;  // so that no bending supports a single vertex
     const State before = setting.cloth.state;
     const double weight = scene.material.density * 0.16 * 9.81;
-    setting.patch.wanted = find_patch_energy(scene, {}, before.mesh) - 0.05 * weight;  // if it fell by 5 cm
+    // The energy after a fall by 5 cm.
+    setting.patch.wanted = find_patch_energy(scene, {}, before.mesh) - 0.05 * weight;
     setting.relax();
-    // Twice, as with a consistent mass the inertia of a vertex whose neighbours are held is half of its
-    // weight.
+    // The factor 2: with a consistent mass, a vertex with held neighbours has an inertia of half its weight.
     const double most = 2.0 * 0.01 * scene.eol->mean_length;
     double fallen = 0.0;
     for (std::size_t v = 0; v < before.ids.size(); ++v)
@@ -362,7 +369,7 @@ TEST(PatchRelaxation, APatchHasTheEnergyThatTheStepFinds)
     ASSERT_EQ(creases.edges.size(), 3u);
     constexpr double kRoundOff = 1e-12;
     EXPECT_NEAR(find_patch_energy(cloth.scene, creases, state.mesh), truth, kRoundOff);
-    // In another order of faces, and so of vertices.
+    // The energy must not depend on the order of faces and vertices.
     std::vector<int> faces(state.mesh.faces.size());
     std::iota(faces.begin(), faces.end(), 0);
     std::reverse(faces.begin(), faces.end());
@@ -372,7 +379,7 @@ TEST(PatchRelaxation, APatchHasTheEnergyThatTheStepFinds)
 
 TEST(PatchRelaxation, FoldsItsCreasesAsTheStepDoes)
 {
-    // Half of the cloth is held, and faces are of many sizes.
+    // Half of the cloth is held, and the faces have different sizes.
     Setting setting(5e-3);
     Scene& scene = setting.cloth.scene;
     scene.material.youngs_modulus = 5.0;

@@ -15,7 +15,7 @@ using testing::EolCloth;
 using testing::make_draped;
 using testing::make_ridge;
 
-/// Flat cloth, a vertex of which is out of place and may move.
+/// Flat cloth with one displaced vertex, which is free.
 LoosePatch make_patch(const EolCloth& cloth)
 {
     LoosePatch patch{cloth.state.mesh, {}, {}, {}};
@@ -27,10 +27,10 @@ LoosePatch make_patch(const EolCloth& cloth)
     return patch;
 }
 
-/// What of a question may differ from another's.
+/// A change that makes the question a new one.
 struct Change {
     std::string name;
-    std::function<void(LoosePatch&, int)> make;  ///< at that vertex
+    std::function<void(LoosePatch&, int)> make;  ///< changes the patch at the given vertex
 };
 
 TEST(RelaxationMemo, AnswersWhateverHasChangedAsIfItHadNotBeenAskedBefore)

@@ -20,9 +20,9 @@ using testing::kStep;
 using testing::lying;
 using testing::press_edges;
 
-/// A trace half a cell beside a row of vertices that stands up, as a pleat does, and behind which a pin holds
-/// the cloth: merged into the trace it would leave the cloth too short, by 5 %. The trace flows towards it, a
-/// quarter of a cell a step.
+/// A trace half a cell beside a raised row of vertices, as in a pleat, with a pin behind the row. Merging the
+/// row into the trace would shorten the cloth by 5 %. The trace flows towards the row by a quarter of a cell
+/// a step.
 EolCloth heading_for_pleat(double youngs_modulus)
 {
     EolCloth cloth = lying(0.0);
@@ -53,7 +53,7 @@ EolCloth heading_for_pleat(double youngs_modulus)
 
 TEST(StepMesh, ClearsATracesWayByForceWhereThatStrainsLittle)
 {
-    // By .047 and .2 of what moves the cloth around; kTraceStrain is .06.
+    // The two cases strain the cloth by 4.7 % and 20 % of its energy scale; kTraceStrain is 6 %.
     for (const double youngs_modulus : {200.0, 800.0}) {
         EolCloth cloth = heading_for_pleat(youngs_modulus);
         for (const StrainLimit limit : {StrainLimit::GivesWay, StrainLimit::AsMade})
@@ -83,8 +83,8 @@ TEST(StepMesh, ClearsATracesWayByForceWhereThatStrainsLittle)
 constexpr int kCells = 21;
 constexpr double kCell = 0.4 / kCells;  // m
 
-/// As above, half a cell beside a pleat at either end of the trace, without a pin. Between them it rests, or
-/// flows as well.
+/// Like heading_for_pleat, but with a pleat at either end of the trace and without a pin. Between the pleats
+/// the trace rests or also flows.
 EolCloth heading_for_two_pleats(double youngs_modulus, double turn, const std::array<double, 2>& heights,
                                 bool rests_between)
 {
@@ -119,7 +119,8 @@ EolCloth heading_for_two_pleats(double youngs_modulus, double turn, const std::a
 
 TEST(StepMesh, IsMadeWithCareOnlyWhereItStrainsTheCloth)
 {
-    // Both pleats are cleared where the cloth gives way. At the higher one it cannot: by .3 of what moves it.
+    // With StrainLimit::GivesWay both pleats are cleared. At the higher one the cloth stays strained by 30 %
+    // of its energy scale.
     EolCloth cloth = heading_for_two_pleats(100.0, -0.5, {0.2, 0.3}, true);
     const auto count_low = [](const std::vector<EolVertex>& eol, const std::vector<VertexId>& ids,
                               const std::vector<Vec2>& material) {

@@ -36,7 +36,7 @@ void take_without_rows(EolCloth& cloth)
     cloth.state.active.clear();
 }
 
-/// Holds the vertices between these material coordinates u.
+/// Pins the vertices between these material coordinates u.
 void hold(EolCloth& cloth, double from, double to)
 {
     Pin pin;
@@ -80,7 +80,7 @@ TEST(RowCause, EveryRowNearABorderIsCounted)
 
 TEST(RowCause, WhatComesFastToABorderIsNotNearItYet)
 {
-    // 34 mm are left, of which four steps use up 20 mm for each m/s; not where it goes away.
+    // 34 mm of material are left; four steps use up 20 mm for each m/s. Negative speed moves the border away.
     for (const double speed : {1.5, 2.0, -2.0}) {
         EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
         for (Vec3& v : cloth.state.velocity) v = Vec3(speed, 0, 0);
@@ -97,7 +97,7 @@ TEST(RowCause, WhereTheBorderRunsAlongTheFeatureItIsNotTried)
     for (const double turn : {8.0, 17.0, 23.0, 40.0}) {
         EolCloth cloth = lying(turn, 0.2);
         press_edges(cloth);
-        std::erase_if(cloth.state.active, [&](const ActiveContact& row) {  // edges of the border stay
+        std::erase_if(cloth.state.active, [&](const ActiveContact& row) {  // keeps only edges of the border
             const auto is_on_border = [&](std::uint32_t id) {
                 return cloth.state.mesh.material[cloth.state.index_of(id)].x() < 1e-9;
             };
@@ -154,7 +154,7 @@ TEST(RowCause, WhatIsReleasedIsCountedWithItsReason)
             };
             return y(a) < y(b);
         });
-    last->idle = kIdleSteps;  // an end of the trace: nothing holds it between
+    last->idle = kIdleSteps;  // an end of the trace: it is not between two firm vertices
     const ConformOutcome idle = conform_cloth(cloth);
     ASSERT_EQ(idle.refused.size(), 1u);
     EXPECT_EQ(idle.refused[0].cause, RowCause::Released);
@@ -165,7 +165,8 @@ TEST(RowCause, WhatIsReleasedIsCountedWithItsReason)
 
 TEST(RowCause, WhatLiesBetweenPressingContactsIsNoContact)
 {
-    // Two contacts near the border, and all that is between them: none becomes EOL, two are counted.
+    // Two contacts press near the border, with other crossings between them. None becomes EOL, and only the
+    // two contacts are counted.
     EolCloth cloth = lying(0.0, 0.2 - 0.1 * kLyingCell);
     press_edges(cloth);
     ASSERT_GT(cloth.state.active.size(), 6u);
@@ -175,13 +176,13 @@ TEST(RowCause, WhatLiesBetweenPressingContactsIsNoContact)
 
 TEST(RowCause, WhatHasNoCoordinatesSaysWhy)
 {
-    // Cloth upright over the ridge: its plane contains the outward direction.
+    // Upright cloth over the ridge: its plane contains the outward direction.
     EolCloth upright = lying(0.0);
     for (Vec3& x : upright.state.mesh.world) x = Vec3(0.0, x.y(), x.x() + 0.3);
     upright.add_eol(upright.vertex_at(0.2, 0.2), false, testing::tip_of(upright.scene.obstacles[0]));
     EXPECT_EQ(count(conform_cloth(upright), RowCause::EdgeOn), 1);
 
-    // A border along the ridge, and the cloth's corner.
+    // A border along the ridge, and a corner of the cloth.
     EolCloth along = lying(0.0, 0.2);
     along.add_eol(along.vertex_at(0.0, 0.2), false, testing::tip_of(along.scene.obstacles[0]));
     EXPECT_EQ(count(conform_cloth(along), RowCause::AlongBorder), 1);
@@ -202,7 +203,7 @@ TEST(RowCause, WhatHasNoCoordinatesSaysWhy)
 
 TEST(RowCause, WhereHeldVerticesLeaveNoPlaceTheMeshIsTheReason)
 {
-    // The ridge is a fiftieth of a cell beside a row of vertices that a pin holds.
+    // The ridge is 2 % of a cell beside a row of pinned vertices.
     EolCloth cloth = lying(0.0, 0.2 - 3.02 * kLyingCell);
     hold(cloth, 3.0 * kLyingCell - 1e-6, 3.0 * kLyingCell + 1e-6);
     press_edges(cloth);
@@ -211,8 +212,8 @@ TEST(RowCause, WhereHeldVerticesLeaveNoPlaceTheMeshIsTheReason)
     EXPECT_EQ(count(outcome, RowCause::Guard), 0);
 }
 
-/// A trace that flows towards a held row, which is half a cell away: it is there before the four steps that
-/// are cleared.
+/// A trace flows towards a pinned row half a cell away. It would arrive within the four steps for which its
+/// way is cleared.
 EolCloth heading_for_held_row()
 {
     EolCloth cloth = lying(0.0);
@@ -272,8 +273,9 @@ TEST(RowCause, WhatIsMadeAndFindsNoWayIsCountedAsTheContactItWas)
 
 TEST(RowCause, StiffClothThatWouldBeStrainedIsGuarded)
 {
-    // A crease along the row of vertices beside the ridge, which would have to move down its slope. Nearer
-    // than a tenth of the target length there is no place for another row of them.
+    // The cloth has a crease along the row of vertices beside the ridge. Moved onto the ridge, these vertices
+    // would strain the cloth. If the row is nearer than 10 % of the target length, another row does not fit
+    // between.
     for (const double cells : {0.04, 0.15}) {
         const double beside = cells * kLyingCell;
         EolCloth cloth = lying(0.0, 0.2 - 3.0 * kLyingCell + beside);
@@ -297,7 +299,7 @@ TEST(RowCause, StiffClothThatWouldBeStrainedIsGuarded)
 
 TEST(RowCause, WhatSurgeryBesideItMovesOffThePlaneIsCounted)
 {
-    // Material lines are wavy across the ridge and the cloth gives way to anything.
+    // Material lines are wavy across the ridge, and the cloth is so soft that strain prevents no mesh change.
     EolCloth cloth = lying(17.0);
     cloth.scene.material.youngs_modulus = 1e-9;
     cloth.scene.gravity = Gravity{};

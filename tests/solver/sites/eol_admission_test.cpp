@@ -8,7 +8,7 @@
 namespace arris {
 namespace {
 
-/// Whether a vertex at `off` (m, across) from the tip of a ridge of 60 degrees may be EOL there.
+/// Whether a vertex at the offset `off` (m) from the tip of a ridge of 60 degrees may be EOL there.
 bool may_be_at(const Vec3& off)
 {
     testing::EolCloth cloth = testing::lying(0.0, 0.5 * testing::kLyingCell);
@@ -28,8 +28,8 @@ TEST(EolAdmission, OnAnEdgeOnlyInThePlaneInWhichAVertexMayMove)
     EXPECT_FALSE(may_be_at(Vec3(0.5 * kNear, 0.0, kNear)));
 }
 
-// A fold that has left goes on beyond both faces. A vertex beside one of them is of no fold: held to the
-// edge there it holds the cloth around it, as a pleat at a table's corner, which then caught on it.
+// A free fold is beyond both faces of its edge. A vertex beside one of the faces belongs to no fold. Held to
+// the edge as an EOL vertex, it made a pleat at a table's corner snag.
 TEST(EolAdmission, OfWhatHasLeftAnEdgeOnlyBeyondBothItsFaces)
 {
     constexpr double kFar = 20.0 * testing::kThickness;

@@ -20,8 +20,8 @@ using testing::EolCloth;
 
 constexpr double kSpeed = 1.5;  // m/s
 
-/// Cloth that flows over a ridge, all of it as fast, with EOL vertices where it is folded, and its middle
-/// one.
+/// Cloth flows over a ridge at uniform speed, with EOL vertices along its fold; `middle` is the one in the
+/// middle.
 struct FlowingCloth {
     EolCloth cloth;
     int middle, entry;
@@ -94,7 +94,7 @@ TEST(EolRetention, ComesAtTheLatestACellFromTheFeatureHoweverFastItFlows)
         }
 }
 
-// What flows fast over a flat fold comes to it along neither face of the ridge.
+// Cloth that flows fast over a flat fold arrives along neither face of the ridge.
 TEST(EolRetention, ComesBeforeThatWhereAFastFoldIsLedOtherwiseThanItsClothComes)
 {
     for (const auto& [fold, speed, is_astray] :
@@ -118,7 +118,7 @@ TEST(EolRetention, OfATentThatIsOffItsNailComesWhereTheNailPressesOnAnotherFace)
             const int v = cloth.vertex_at(0.2, 0.2);
             const int entry = cloth.add_eol(v, true, 1);
             cloth.state.eol[entry].idle = kIdleSteps;
-            // Of another nail, and, perhaps, of its own.
+            // A contact with another nail presses and, if `is_pressing`, one with the vertex's own nail.
             for (const int nail : {0, 1})
                 if (nail == 0 || is_pressing)
                     cloth.state.active.push_back(
@@ -157,8 +157,8 @@ TEST(EolRetention, OfATentThatIsOffACornerComesWhereThatPressesOnAnotherFace)
     }
 }
 
-/// What becomes of the holds of a row of EOL vertices along the ridge, F, L or N each, in the material's
-/// order.
+/// Result of retain_between for a row of EOL vertices along the ridge: F (firm), L (loose) or N (none) for
+/// each, in material order.
 std::string retain_between_of(const std::string& along)
 {
     const FlowingCloth flowing(90.0, 0.0);

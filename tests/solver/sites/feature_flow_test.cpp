@@ -16,11 +16,11 @@ using testing::EolCloth;
 using testing::make_draped;
 using testing::make_ridge;
 
-constexpr double kRoundOff = 1e-12;  // m/s, at 1 m/s
+constexpr double kRoundOff = 1e-12;  // m/s, for speeds of 1 m/s
 
 enum class On { Edge, EdgeAtBorder, Corner };
 
-/// At a vertex of the cloth on the ridge.
+/// The flow at the cloth's vertex nearest to (u, v), taken as a site on the ridge.
 Vec2 flow_at(const EolCloth& cloth, double u, double v, On on)
 {
     const int near = cloth.vertex_at(u, v);
@@ -34,13 +34,13 @@ Vec2 flow_at(const EolCloth& cloth, double u, double v, On on)
     return find_feature_flow(cloth.scene, cloth.state, cloth.stars(), site);
 }
 
-/// Of all of it, as on a corner.
+/// The flow in both directions, as at a corner.
 Vec2 flow_at_middle(const EolCloth& cloth)
 {
     return flow_at(cloth, 0.2, 0.2, On::Corner);
 }
 
-/// Cloth that slides over the ridge with `speed` towards x > 0, as it is folded.
+/// Cloth that slides over the ridge at `speed` towards x > 0, each side along its own plane.
 EolCloth sliding(double turn, double fold, double speed)
 {
     EolCloth cloth(make_ridge(60.0), make_draped({8, turn, fold}));
@@ -67,7 +67,7 @@ TEST(FeatureFlow, OverAnEdgeIsThatOfEitherSide)
         const double angle = turn * std::numbers::pi / 180.0;
         const Vec2 across(std::cos(angle), -std::sin(angle));
         const Vec2 flow = flow_at_middle(sliding(turn, 90.0, 0.7));
-        // Of the vertices in the fold, on the mesh that is not turned, some have either side's velocity.
+        // On the mesh that is not turned, each vertex in the fold has the velocity of one side.
         EXPECT_LT(flow.dot(across), -0.4);
         EXPECT_LT(std::abs(across.x() * flow.y() - across.y() * flow.x()), 0.1);
     }
@@ -83,7 +83,7 @@ TEST(FeatureFlow, IsRelativeToTheObstacleAndCountsWhatFlowsAlready)
     EXPECT_LT((flow_at_middle(cloth) - Vec2(0.3, 0.2)).norm(), kRoundOff);
     for (Vec3& v : cloth.state.velocity) v = motion.velocity;
     EXPECT_LT(flow_at_middle(cloth).norm(), kRoundOff);
-    // Vertices that ride on the obstacle, with material flowing through them.
+    // Vertices move with the obstacle while material flows through them.
     for (Vec2& V : cloth.state.material_velocity) V = Vec2(-0.4, 0.5);
     EXPECT_LT((flow_at_middle(cloth) - Vec2(-0.4, 0.5)).norm(), kRoundOff);
 }

@@ -25,7 +25,8 @@ std::vector<MeshEdge> edges_of(const State& state)
     return make_topology(state.mesh.vertex_count(), state.mesh.faces).edges;
 }
 
-/// Flat cloth on a ridge, its mesh turned against it; every edge that crosses the tip, in its order along it.
+/// Flat cloth on a ridge, its mesh turned relative to the ridge. `crossing` lists the edges that cross the
+/// tip, in order along it.
 struct RidgeCloth {
     EolCloth cloth;
     std::vector<std::pair<double, MeshEdge>> crossing;  ///< y and edge
@@ -76,7 +77,7 @@ struct RidgeCloth {
         return find_feature_sites(cloth.scene, cloth.state, cloth.stars());
     }
 
-    /// Whether there is a site on the k-th edge, one.
+    /// Number of sites on each crossing edge; 1 where there is a site.
     std::vector<char> is_site() const
     {
         std::vector<char> is(crossing.size(), 0);
@@ -87,7 +88,7 @@ struct RidgeCloth {
     }
 };
 
-constexpr double kTurn = 17.0;  // no vertex is over the ridge then
+constexpr double kTurn = 17.0;  // degrees: for this turn no vertex is over the ridge
 
 TEST(FeatureSites, AreWhereEdgesPressAndAllBetween)
 {
@@ -127,11 +128,11 @@ TEST(FeatureSites, DoNotBridgeWhatIsOffTheFeature)
     for (std::size_t k = 0; k < is_site.size(); ++k) EXPECT_EQ(is_site[k], k == 3 || k == 8) << k;
 }
 
-// What touched has kept its gap, and is where it has slid to.
+// A contact that pressed is looked for at its gap, where it has slid to.
 TEST(FeatureSites, AreWhereWhatPressedHasTurnedAsItSlid)
 {
-    constexpr double kHeight = 6.0, kSlide = 20.0, kDt = 5e-3;  // thicknesses; s
-    const double turn = 20.0 * M_PI / 180.0;                    // of the cloth in the step
+    constexpr double kHeight = 6.0, kSlide = 20.0, kDt = 5e-3;  // kHeight, kSlide: thicknesses; kDt: s
+    const double turn = 20.0 * M_PI / 180.0;                    // turn of the cloth in the step
     const auto count_sites = [&](double height, double turned, const Vec3& way) {
         RidgeCloth ridge(kTurn);
         State& state = ridge.cloth.state;
@@ -153,10 +154,10 @@ TEST(FeatureSites, AreWhereWhatPressedHasTurnedAsItSlid)
 
 TEST(FeatureSites, GoOnFromTheEndOfATrace)
 {
-    RidgeCloth ridge(0.0);  // seven columns: none over the ridge; eight cells would be
+    RidgeCloth ridge(0.0);  // with seven columns of cells no vertex is over the ridge
     ridge.press(4);
     State& state = ridge.cloth.state;
-    // A vertex put onto the tip.
+    // Moves a vertex onto the tip.
     const MeshEdge& edge = ridge.crossing[9].second;
     const int v = edge.a;
     const double s =
@@ -181,7 +182,7 @@ TEST(FeatureSites, GoOnFromTheEndOfATrace)
 TEST(FeatureSites, AreAtAVertexThatIsAllButInThePlaneWhereTheClothEndsThere)
 {
     for (const double off :
-         {0.0, 0.05, -0.05, 0.09, 0.11, 0.3}) {  // thicknesses from the border to the plane
+         {0.0, 0.05, -0.05, 0.09, 0.11, 0.3}) {  // thicknesses from the border to the ridge's plane
         EolCloth cloth = testing::lying(0.0, 0.2 + off * kThickness);
         const int inside = cloth.vertex_at(testing::kLyingCell, 0.2), border = cloth.vertex_at(0.0, 0.2);
         const int tip = testing::tip_of(cloth.scene.obstacles[0]);
@@ -204,11 +205,11 @@ TEST(FeatureSites, AreAtAVertexThatIsAllButInThePlaneWhereTheClothEndsThere)
     }
 }
 
-/// Of which a corner is the origin, its first point.
+/// Obstacles with a corner at the origin, which is their first point.
 std::vector<ObstacleMesh> make_tips()
 {
     const Vec3 tip = Vec3::Zero();
-    ObstacleMesh star = make_wire({tip, {0.4, 0.0, -0.3}}, false);  // wires that meet
+    ObstacleMesh star = make_wire({tip, {0.4, 0.0, -0.3}}, false);  // three wires that meet
     for (const Vec3& end : {Vec3(-0.2, 0.3, -0.3), Vec3(-0.2, -0.3, -0.3)}) {
         star.segments.push_back({0, static_cast<int>(star.points.size())});
         star.points.push_back(end);
@@ -219,7 +220,7 @@ std::vector<ObstacleMesh> make_tips()
 
 TEST(FeatureSites, OnATipIsAVertexThatIsOnItAlreadyWhateverFaceOfItPresses)
 {
-    // A vertex a thickness above the tip, or farther, and each face around it.
+    // A vertex at several heights above the tip; each face around it presses in turn.
     for (const ObstacleMesh& mesh : make_tips())
         for (const double height : {0.2, 1.0, 2.4, 2.6}) {
             EolCloth cloth(Obstacle("tip", mesh, {}, {}, 30.0), testing::make_draped({8, 0.0, 180.0}));
@@ -244,8 +245,8 @@ TEST(FeatureSites, OnATipIsAVertexThatIsOnItAlreadyWhateverFaceOfItPresses)
 
 TEST(FeatureSites, AreOnTheNextEdgeWhereOneEndsBetweenItsNearestPointAndThePlane)
 {
-    // A plane of cloth a thickness off the tip, aslant: it passes through the ridge's plane .84 of that
-    // beyond where it is nearest. At `end`, in thicknesses from there, is a vertex.
+    // A sloping plane of cloth is one thickness off the tip. It meets the ridge's plane 0.84 thicknesses
+    // beyond the point nearest to the tip. A vertex is at `end`, in thicknesses from that point.
     const double slope = 40.0 * M_PI / 180.0;
     const Vec3 normal(std::sin(slope), 0.0, std::cos(slope)), down(std::cos(slope), 0.0, -std::sin(slope));
     for (const double end : {-0.2, -0.4, -0.9}) {
@@ -291,7 +292,7 @@ TEST(FeatureSites, AreStraightOutwardOfWhereARimBendsUnderAFace)
             if (p.z() < -0.05) continue;
             testing::press_faces_on(point, state);
             const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, state, cloth.stars());
-            // A bisector rises at 45 degrees: it meets the cloth sqrt(2) times as far away as that is high.
+            // The bisector rises at 45 degrees, so it meets the cloth at sqrt(2) times the cloth's height.
             if (std::sqrt(2.0) * height > kOnFeature) {
                 EXPECT_TRUE(sites.empty()) << height;
                 continue;
@@ -306,7 +307,7 @@ TEST(FeatureSites, AreStraightOutwardOfWhereARimBendsUnderAFace)
                 EXPECT_LT((place - p).cross(side + Vec3::UnitZ()).norm(), 1e-9) << height;
                 EXPECT_GT((place - p).dot(side + Vec3::UnitZ()), 0.0);
             }
-            // A vertex comes of it, on that edge.
+            // Conforming inserts a vertex on that edge.
             const ConformOutcome outcome = testing::conform_cloth(cloth);
             ASSERT_TRUE(outcome.mesh) << point;
             ASSERT_GE(outcome.mesh->eol.size(), 1u) << point;

@@ -28,7 +28,7 @@ struct Trace {
         places.push_back(place);
     }
 
-    /// Of vertex ids, the lower first.
+    /// Pairs of vertex ids, the lower id first.
     Pairs neighbours() const
     {
         std::vector<PlacedEol> placed;
@@ -110,7 +110,7 @@ TEST(TraceOrder, AFoldThatHasFlownOffAnEdgeAndTheTraceBehindItAreNotMixed)
         const Pairs two = {{10, 11}, {11, 12}, {12, 13}, {20, 21}, {21, 22}, {22, 23}};
         EXPECT_EQ(trace.neighbours(), off > 0.0 ? two : one) << off;
     }
-    // A fold of which some has flown off, up to 31 degrees from the edge, is one.
+    // A fold that has partly left its edge, up to 31 degrees from it, is one strand.
     trace.eol.clear();
     trace.places.clear();
     for (const int k : {0, 1, 2, 3})

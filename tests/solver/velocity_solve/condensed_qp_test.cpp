@@ -11,7 +11,7 @@
 namespace arris {
 namespace {
 
-constexpr double kComplementary = 1e-11;  // of the largest |q|; conditions are below 1e3
+constexpr double kComplementary = 1e-11;  // over the largest |q|; condition numbers are below 1e3
 
 CondensedQp make_random_qp(int size, std::mt19937& random)
 {
@@ -40,7 +40,7 @@ void expect_solved(const CondensedQp& qp, const std::optional<CondensedAnswer>& 
         EXPECT_TRUE(answer->stand[i] == Stand::Between ? answer->w[i] <= 0.0 : answer->z[i] <= 0.0);
 }
 
-/// From the empty set, exchanging all that is wrong goes {} -> {1,3} -> {0,1,2,3} -> {0,1} -> {} for ever.
+/// Exchanging all wrong members at once cycles from the empty set: {} -> {1,3} -> {0,1,2,3} -> {0,1} -> {}.
 CondensedQp make_cycling_qp()
 {
     const Eigen::Matrix4d s{{58, -2, 33, -16}, {-2, 7, 3, -9}, {33, 3, 28, -24}, {-16, -9, -24, 34}};
@@ -82,8 +82,8 @@ TEST(CondensedQp, PivotingLeavesACycleOfBlockExchanges)
 
 TEST(CondensedQp, UnitsChangeNothing)
 {
-    // Multipliers of 1e-12 N s and bounds of 1e12 are as exact as those of 1; NLopt alone takes 1e-8 for
-    // zero.
+    // Multipliers of 1e-12 N s and bounds of 1e12 are as exact as those of order 1. NLopt alone treats 1e-8
+    // as zero.
     std::mt19937 random(4);
     for (const double unit : {1e-150, 1e-12, 1e-7, 1e7, 1e12, 1e150}) {
         const CondensedQp qp = make_random_qp(20, random);
@@ -106,7 +106,7 @@ TEST(CondensedQp, NLoptFindsTheSetSoThatPivotingHasNothingLeft)
     const auto answer = solve_condensed_qp(qp, Eigen::VectorXd::Zero(60));
     ASSERT_TRUE(answer);
     EXPECT_LE(answer->nlopt_evaluations, 4 * 60 + 100);
-    // Started from its own answer it has nothing to do.
+    // Started from its own solution, the solver needs no iteration.
     const auto again = solve_condensed_qp(qp, answer->z);
     ASSERT_TRUE(again);
     EXPECT_LE(again->nlopt_evaluations, 5);
@@ -124,7 +124,7 @@ TEST(CondensedQp, IsDecidedWithoutNLoptWhereNothingIsBelowItsBound)
 
 TEST(CondensedQp, LivesWithTwoEqualBounds)
 {
-    // S is singular: the multipliers are not unique, what they do is.
+    // S is singular: the multipliers are not unique, but their effect is.
     const CondensedQp qp = {Eigen::Matrix2d::Ones(), Eigen::Vector2d(-1.0, -1.0)};
     const auto answer = solve_condensed_qp(qp, Eigen::Vector2d::Zero());
     ASSERT_TRUE(answer);
@@ -147,7 +147,7 @@ TEST(CondensedQp, RejectsWhatIsNotFiniteOrNotPositive)
     EXPECT_FALSE(solve_by_pivoting({indefinite, q}, {Stand::Between, Stand::Between}));
 }
 
-/// w = S z + q as the stands and caps ask for, to `precision` of the largest q.
+/// Checks w = S z + q against the stands and caps, to `precision` of the largest q.
 void expect_solved_with_caps(const CondensedQp& qp, const std::optional<CondensedAnswer>& answer,
                              double precision)
 {
@@ -185,7 +185,7 @@ TEST(CondensedQp, KeepsToItsCaps)
 
 TEST(CondensedQp, IsSolvedWhereConstraintsDependOnEachOther)
 {
-    // S = G^T G of more columns than rows, some of them opposite or nearly equal: without caps unbounded.
+    // S = G^T G with more columns than rows, some opposite or nearly equal: unbounded without caps.
     std::mt19937 random(7);
     std::normal_distribution<double> normal;
     for (int trial = 0; trial < 100; ++trial) {
@@ -199,7 +199,7 @@ TEST(CondensedQp, IsSolvedWhereConstraintsDependOnEachOther)
                           Eigen::VectorXd::NullaryExpr(size, [&] { return normal(random); }),
                           Eigen::VectorXd::Constant(size, 100.0)};
         const auto answer = solve_condensed_qp(qp, Eigen::VectorXd::Zero(size));
-        expect_solved_with_caps(qp, answer, 1e-8);  // what is known of w is 1e-15 of S z, with z up to 100
+        expect_solved_with_caps(qp, answer, 1e-8);  // w is accurate to 1e-15 of S z, with z up to 100
         expect_solved_with_caps(qp, solve_by_descent(qp, Eigen::VectorXd::Zero(size), qp.linear), 1e-8);
     }
 }

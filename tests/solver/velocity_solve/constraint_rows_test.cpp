@@ -19,7 +19,7 @@ using testing::OwnedProblem;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kCertified = 1e-9;  // Settings::tolerance
-constexpr double kAccurate = 1e-12;  // what the solver reaches for before it is content
+constexpr double kAccurate = 1e-12;  // residual down to which the solver refines
 
 VelocitySolution solve(const VelocityProblem& problem)
 {
@@ -47,7 +47,7 @@ ConstraintRow make_row(std::initializer_list<std::pair<int, double>> entries, do
     return row;
 }
 
-/// G G^T / size + 0.1: well conditioned; bounds on some, some fixed.
+/// Matrix G G^T / size + 0.1, well conditioned; some coordinates have bounds, some are fixed.
 OwnedProblem make_random_problem(int vertices, std::mt19937& random)
 {
     std::normal_distribution<double> normal;
@@ -65,7 +65,7 @@ OwnedProblem make_random_problem(int vertices, std::mt19937& random)
     return owned;
 }
 
-/// Up to six entries anywhere, the same coordinate twice at times; what it asks for is met by `feasible`.
+/// A row with up to six random entries, sometimes with a repeated coordinate. `feasible` satisfies the row.
 ConstraintRow make_random_row(const VelocityProblem& problem, const Eigen::VectorXd& feasible,
                               std::mt19937& random)
 {
@@ -85,7 +85,7 @@ ConstraintRow make_random_row(const VelocityProblem& problem, const Eigen::Vecto
     return row;
 }
 
-/// A point that meets all bounds, and rows that it meets too.
+/// A point that satisfies all bounds, and rows that this point satisfies too.
 OwnedProblem make_feasible_problem(int vertices, int rows, std::mt19937& random)
 {
     OwnedProblem owned = make_random_problem(vertices, random);
@@ -158,7 +158,7 @@ TEST(ConstraintRows, ThatCannotBeMetEqualTheElasticReference)
     EXPECT_LT(infeasible, 160);
 }
 
-/// A cloth on its floor, what it does there, and rows about that.
+/// Cloth on its floor, its velocity without rows, and rows near that velocity.
 struct ClothWithRows {
     testing::ClothShape shape;
     OwnedProblem owned;
@@ -179,7 +179,7 @@ struct ClothWithRows {
             owned.problem.rows.push_back(row);
     }
 
-    /// A row at the middle of a face that asks for `speed` more than the resting cloth does.
+    /// A row at the middle of a face that requires `speed` more than the resting cloth's velocity.
     ConstraintRow row_at(int face, double speed, double sign = 1.0) const
     {
         ConstraintRow row = testing::make_point_row(testing::grid_faces(shape.side)[face], {0.3, 0.3, 0.4},
@@ -373,7 +373,7 @@ TEST(ConstraintRows, AgainstAnActiveBoundOfTheSameVertexGiveWay)
 
 TEST(ConstraintRows, OnPinnedCoordinatesAloneReleaseThem)
 {
-    // Every vertex pinned at rest by the guess; rows lift some faces.
+    // The guess pins every vertex at rest; rows lift some faces.
     ClothWithRows cloth(8);
     VelocityProblem& problem = cloth.owned.problem;
     for (int i = 0; i < problem.lower.size(); ++i) problem.lower[i] = 0.0;
@@ -395,8 +395,8 @@ TEST(ConstraintRows, OnPinnedCoordinatesAloneReleaseThem)
 
 TEST(ConstraintRows, HoldWhatIsAtRestThoughNothingMoves)
 {
-    // Gravity on a cloth that lies still: pins carry all but one vertex, a row carries that. Every velocity
-    // is zero, the impulses are not.
+    // Gravity acts on cloth at rest. Pins carry all but one vertex, and a row carries that one. All
+    // velocities are zero, but the impulses are not.
     testing::ClothShape shape{.side = 9};
     const testing::ClothSystem cloth = testing::make_cloth_system(shape);
     Eigen::VectorXd fall = Eigen::VectorXd::Zero(cloth.mass.size());
@@ -419,7 +419,7 @@ TEST(ConstraintRows, HoldWhatIsAtRestThoughNothingMoves)
 
 TEST(ConstraintRows, CarryAWholeClothOnOnePoint)
 {
-    // The greatest multiplier there is to be: far below the cap.
+    // The greatest multiplier that occurs, far below the cap.
     testing::ClothShape shape{.side = 20};
     const testing::ClothSystem cloth = testing::make_cloth_system(shape);
     Eigen::VectorXd fall = Eigen::VectorXd::Zero(cloth.mass.size());
@@ -451,7 +451,7 @@ TEST(ConstraintRows, OfFixedCoordinatesAreMetOrImpossible)
     EXPECT_EQ(met.velocity, none.velocity);
     problem.rows.push_back(make_row({{2, 1.0}}, 0.1));
     problem.rows.push_back(make_row({}, 0.1));
-    problem.rows.push_back(make_row({{9, 0.1}, {9, 0.2}, {9, -0.3}}, 0.1));  // cancels but for round-off
+    problem.rows.push_back(make_row({{9, 0.1}, {9, 0.2}, {9, -0.3}}, 0.1));  // coefficients cancel
     const VelocitySolution impossible = solve(problem);
     EXPECT_EQ(impossible.status, SolveStatus::Infeasible);
     EXPECT_EQ(impossible.infeasible_rows, (std::vector<int>{6, 7, 8}));
@@ -483,8 +483,8 @@ TEST(ConstraintRows, AppendedAreResumedWithoutAFactorisation)
     VelocitySolution first = solver.solve(problem, Settings());
     ASSERT_EQ(first.factorisations, 1);
     for (unsigned round = 1; round <= 4; ++round) {
-        if (round != 3) cloth.add(testing::RowPattern::Spread, 40, round);  // in the third nothing is new
-        VelocityProblem appended = problem;                                 // the last problem may be gone
+        if (round != 3) cloth.add(testing::RowPattern::Spread, 40, round);  // the third round adds no row
+        VelocityProblem appended = problem;  // a copy, as the last problem may be destroyed
         if (round == 4) appended.row_guess = {0, 5, 100};
         const VelocitySolution resumed = solver.resume(appended, Settings());
         const VelocitySolution scratch = solve(appended);
@@ -550,7 +550,7 @@ TEST(ConstraintRows, ThatAreNotFiniteAreSaidToBe)
 
 TEST(ConstraintRows, ThatAskForTooMuchDoNotSpoilTheRest)
 {
-    // Of a row whose weight is nearly all on a fixed vertex, the rest would have to move at 1e9 m/s.
+    // Nearly all of the row's weight is on a fixed vertex; its other vertices would have to move at 1e9 m/s.
     ClothWithRows cloth(6);
     VelocityProblem& problem = cloth.owned.problem;
     problem.is_fixed[0] = problem.is_fixed[1] = problem.is_fixed[2] = 1;
@@ -570,7 +570,7 @@ TEST(ConstraintRows, FindTheFreeSpeedWithinAnOrderOfMagnitude)
             const testing::ClothSystem cloth = testing::make_cloth_system(shape);
             OwnedProblem owned(cloth.matrix * unit, 0.3 * unit * cloth.mass);
             const double speed =
-                solve(owned.problem).velocity.lpNorm<Eigen::Infinity>();  // nothing constrains it
+                solve(owned.problem).velocity.lpNorm<Eigen::Infinity>();  // unconstrained solution
             EXPECT_GE(estimate_free_speed(owned.problem), 0.1 * speed);
             EXPECT_LE(estimate_free_speed(owned.problem), 10.0 * speed);
         }

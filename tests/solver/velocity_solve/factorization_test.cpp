@@ -12,7 +12,7 @@
 namespace arris {
 namespace {
 
-constexpr double kSolved = 1e-12;  // relative; conditions are below 1e3
+constexpr double kSolved = 1e-12;  // relative; condition numbers are below 1e3
 
 Eigen::SparseMatrix<double> cloth_matrix(int side)
 {
@@ -30,7 +30,7 @@ std::vector<char> pin_every(int stride, Eigen::Index size)
     return is_pinned;
 }
 
-/// Rows and columns of the pinned replaced by a diagonal of ones.
+/// The matrix with the rows and columns of pinned coordinates replaced by those of the identity.
 Eigen::MatrixXd pinned_densely(const Eigen::SparseMatrix<double>& matrix, const std::vector<char>& is_pinned)
 {
     Eigen::MatrixXd dense = testing::dense_symmetric(matrix);
@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(Factorization, EveryOrdering,
 
 TEST(Factorization, SeesThatThePatternChanged)
 {
-    // Lower triangles with as many entries in each column: only the row indices tell.
+    // Both lower triangles have equally many entries in each column, so only the row indices differ.
     Eigen::MatrixXd a = Eigen::MatrixXd::Identity(12, 12), b = a;
     a(3, 0) = 0.5;
     b(6, 0) = 0.5;
@@ -122,7 +122,7 @@ TEST(Factorization, SaysWhereAMatrixIsNotPositiveDefinite)
     factorization.analyse(matrix);
     matrix.coeffRef(20, 20) = -1.0;
     EXPECT_FALSE(factorization.factorise(matrix, pin_every(0, matrix.rows())));
-    // Pinned, a coordinate's own stiffness does not matter.
+    // The stiffness of a pinned coordinate does not matter.
     std::vector<char> is_pinned = pin_every(0, matrix.rows());
     is_pinned[20] = 1;
     ASSERT_TRUE(factorization.factorise(matrix, is_pinned));

@@ -16,8 +16,7 @@ SparseVector random_column(int unknowns, std::mt19937& random)
 {
     std::normal_distribution<double> normal;
     SparseVector column;
-    const int entries =
-        static_cast<int>(random() % 8);  // an empty one happens: all its neighbours are pinned
+    const int entries = static_cast<int>(random() % 8);  // possibly empty: all its neighbours are pinned
     for (int k = 0; k < entries; ++k)
         column.emplace_back(static_cast<int>(random() % unknowns), normal(random));
     return column;
@@ -36,7 +35,7 @@ class ForwardColumnsOfACloth : public ::testing::Test {
         unknowns = static_cast<int>(matrix.rows());
     }
 
-    /// In batches that are smaller and larger than a panel; `dense` is the same by full forward solves.
+    /// Compares batches smaller and larger than a panel with `dense`, the result of full forward solves.
     void fill(ForwardColumns& columns)
     {
         std::mt19937 random(1);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A = 2 I, b = (2, -4, 6), u = (1, 0, 3), the second resting on 0 with lambda = 4.
+/// A = 2 I, b = (2, -4, 6), u = (1, 0, 3); the second coordinate is on its bound 0 with lambda = 4.
 struct Certified {
     testing::OwnedProblem owned{testing::lower_blocks(2.0 * Eigen::Matrix3d::Identity()),
                                 Eigen::Vector3d(2, -4, 6)};
@@ -54,7 +54,7 @@ TEST(KktCertificate, IsAWrongSignRelativeToTheGreatestMultiplier)
 TEST(KktCertificate, IsComplementarityRelativeToBoth)
 {
     Certified c;
-    c.owned.problem.lower[0] = -2.0;  // gap 3 of 3, multiplier 1 of 4
+    c.owned.problem.lower[0] = -2.0;  // relative gap 3 / 3, relative multiplier 1 / 4
     c.multipliers[0] = 1.0;
     c.owned.rhs[0] = 1.0;
     EXPECT_DOUBLE_EQ(c.residual(), 0.25);
@@ -109,7 +109,7 @@ TEST(KktCertificate, DoesNotOverflowOrVanishInExtremeUnits)
     }
 }
 
-/// A = 2 I, b = (2, -4, 6); the row 2 u_1 + 4 u_2 >= 12 holds its mean up: u = (1, 0, 3) + C^T lambda / 2.
+/// A = 2 I, b = (2, -4, 6); the row is 2 u_1 + 4 u_2 >= 12, so u = (1, 0, 3) + C^T lambda / 2.
 struct WithRow {
     testing::OwnedProblem owned{testing::lower_blocks(2.0 * Eigen::Matrix3d::Identity()),
                                 Eigen::Vector3d(2, -4, 6)};
@@ -127,7 +127,8 @@ struct WithRow {
         row.coefficient[1] = 4.0;
         row.lower = 12.0;
         owned.problem.rows = {row};
-        // Scaled (1/2, 1), lower 3: at u = (1, -2, 3) the gap is -1; lambda = 8/5 closes it.
+        // The row scaled to (1/2, 1) has the bound 3: at u = (1, -2, 3) the gap is -1, which lambda = 8/5
+        // closes.
         velocity = Eigen::Vector3d(1, -1.6, 3.8);
         row_multipliers[0] = 1.6;
         constraints = scale_rows(owned.problem, 1.0);
@@ -143,7 +144,7 @@ TEST(KktCertificate, TakesInRows)
     EXPECT_LE(WithRow().residual(), 1e-15);
     WithRow stationarity, violation, sign, complementarity;
     stationarity.row_multipliers[0] = 1.0;
-    EXPECT_NEAR(stationarity.residual(), 0.6 / 14.6, 1e-6);  // 1e-6 of it: the least speed
+    EXPECT_NEAR(stationarity.residual(), 0.6 / 14.6, 1e-6);  // tolerance 1e-6: the least speed in the scale
     violation.velocity = Eigen::Vector3d(1, -2, 3);
     violation.row_multipliers[0] = 0.0;
     EXPECT_DOUBLE_EQ(violation.residual(), 1.0 / 3.0);
@@ -152,7 +153,8 @@ TEST(KktCertificate, TakesInRows)
     sign.velocity = Eigen::Vector3d(1, -2.25, 2.5);
     sign.row_multipliers[0] = -1.0;
     EXPECT_GE(sign.residual(), 1.0);
-    complementarity.owned.problem.rows[0].lower = 8.0;  // gap 1 of 3.8, its multiplier the largest
+    // The relative gap is 1 / 3.8; the row's multiplier is the largest.
+    complementarity.owned.problem.rows[0].lower = 8.0;
     complementarity.constraints = scale_rows(complementarity.owned.problem, 1.0);
     EXPECT_NEAR(complementarity.residual(), 1.0 / 3.8, 1e-12);
 }
@@ -165,7 +167,7 @@ TEST(KktCertificate, LetsARowGiveWayAtItsCapAlone)
     EXPECT_NEAR(row.residual(), 1.0 / 3.8, 1e-12);
     row.constraints.rows[0].cap = 1.6;
     EXPECT_LE(row.residual(), 1e-15);
-    row.constraints.rows[0].cap = 1.5;  // more than it may
+    row.constraints.rows[0].cap = 1.5;  // the multiplier exceeds this cap
     EXPECT_GE(row.residual(), 0.06);
     row.constraints.rows[0].cap = 1.7;
     EXPECT_NEAR(row.residual(), 1.0 / 3.8, 1e-12);

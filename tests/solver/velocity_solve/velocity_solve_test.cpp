@@ -18,14 +18,14 @@ using testing::OwnedProblem;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kCertified = 1e-9;  // Settings::tolerance
-constexpr double kAccurate = 1e-12;  // what the solver reaches for before it is content
+constexpr double kAccurate = 1e-12;  // residual down to which the solver refines
 
 VelocitySolution solve(const VelocityProblem& problem)
 {
     return VelocitySolver().solve(problem, Settings());
 }
 
-/// G G^T / size + 0.1: well conditioned; every entry stored.
+/// Matrix G G^T / size + 0.1: well conditioned, every entry stored.
 OwnedProblem make_random_problem(int vertices, std::mt19937& random)
 {
     std::normal_distribution<double> normal;
@@ -54,7 +54,7 @@ std::vector<int> make_guess(Guess kind, const Eigen::VectorXd& multipliers, std:
         if (kind == Guess::Nearly && chance(random) < 0.1) is_in = !is_in;
         if (kind == Guess::Random) is_in = chance(random) < 0.5;
         if (kind == Guess::Opposite) is_in = !is_in;
-        if (is_in) guess.push_back(i);  // those without a bound and the fixed too: they must be ignored
+        if (is_in) guess.push_back(i);  // also coordinates without a bound and fixed ones: to be ignored
     }
     return guess;
 }
@@ -71,7 +71,7 @@ TEST(VelocitySolve, EqualsADenseReferenceFromAnyGuess)
             const VelocitySolution solution = solve(owned.problem);
             ASSERT_EQ(solution.status, SolveStatus::Certified) << trial;
             ASSERT_LE(testing::dense_kkt_residual(owned.problem, solution), kAccurate) << trial;
-            // Condition below 1e2, precision 1e-12.
+            // The condition number is below 1e2, the precision 1e-12.
             ASSERT_LE((solution.velocity - reference.velocity).lpNorm<Eigen::Infinity>(), 1e-10 * scale)
                 << trial;
             ASSERT_LE((solution.multipliers - reference.multipliers).lpNorm<Eigen::Infinity>(), 1e-9 * scale)
@@ -83,10 +83,10 @@ TEST(VelocitySolve, EqualsADenseReferenceFromAnyGuess)
 struct Family {
     const char* name;
     testing::ClothShape shape;
-    double congruence;  ///< coordinates are scaled by up to this
+    double congruence;  ///< greatest factor by which coordinates are scaled
 };
 
-/// Families on which plain primal-dual active sets were seen to cycle.
+/// Families of problems on which plain primal-dual active sets cycle.
 std::vector<Family> cycling_families(int side)
 {
     testing::ClothShape soft, stiff, bending, slivers;
@@ -104,7 +104,7 @@ std::vector<Family> cycling_families(int side)
     return families;
 }
 
-/// T A T with random diagonal T, random b, one to three bounds on each of some vertices.
+/// Matrix T A T with random diagonal T, random b, and one to three bounds on each of some vertices.
 OwnedProblem make_hard_problem(const Family& family, unsigned seed)
 {
     testing::ClothShape shape = family.shape;
@@ -137,7 +137,7 @@ TEST(VelocitySolve, EqualsADenseReferenceOnMatricesThatMakeActiveSetsCycle)
             const testing::DenseAnswer reference = testing::solve_densely(owned.problem);
             const VelocitySolution solution = solve(owned.problem);
             ASSERT_EQ(solution.status, SolveStatus::Certified) << family.name << seed;
-            // Soft modes are judged by energy: |u - v|_A.
+            // Soft modes are compared in the energy norm |u - v|_A.
             const Eigen::MatrixXd a = testing::dense_symmetric(owned.matrix);
             const Eigen::VectorXd error = solution.velocity - reference.velocity;
             const double energy = reference.velocity.dot(a * reference.velocity);
@@ -168,7 +168,7 @@ TEST(VelocitySolve, NeverCyclesWhereActiveSetsDo)
     EXPECT_LE(factorisations, 2 * trials);
 }
 
-/// Cold, this overflows the working set, so that predictions and further bases take part.
+/// From a cold start this problem overflows the working set, so predictions and further bases are used.
 TEST(VelocitySolve, FindsTheSameAnswerColdWarmAndFromNonsense)
 {
     testing::ClothShape shape;
@@ -245,7 +245,7 @@ TEST(VelocitySolve, LeavesTheFixedAtRestWhateverTheirBound)
 
 TEST(VelocitySolve, PushesWhereTheBoundIsAboveRest)
 {
-    // An obstacle that rises through a resting cloth: b = 0, and each bound is active.
+    // An obstacle rises through resting cloth: b = 0, and every bound is active.
     testing::ClothShape shape;
     shape.side = 8;
     OwnedProblem owned = testing::make_resting_cloth(shape, 0.5);
@@ -264,7 +264,7 @@ TEST(VelocitySolve, PushesWhereTheBoundIsAboveRest)
 
 TEST(VelocitySolve, LivesWithMultipliersThatAreExactlyZero)
 {
-    // b = A u with u on its bounds: active or not is the same.
+    // b = A u with u on its bounds: whether a bound is active makes no difference.
     std::mt19937 random(13);
     for (int trial = 0; trial < 100; ++trial) {
         OwnedProblem owned = make_random_problem(4, random);
@@ -297,7 +297,7 @@ TEST(VelocitySolve, FindsMultipliersFarSmallerThanTheForcesTheyComeFrom)
         owned.rhs = testing::dense_symmetric(owned.matrix) * planted - multipliers;
         const VelocitySolution solution = solve(owned.problem);
         ASSERT_EQ(solution.status, SolveStatus::Certified);
-        // Round-off of |A||u| + |b|, about 20, over and over.
+        // Accumulated round-off of |A||u| + |b|, about 20.
         EXPECT_LE((solution.multipliers - multipliers).lpNorm<Eigen::Infinity>(), 5e-14);
     }
 }
@@ -322,7 +322,7 @@ TEST(VelocitySolve, UnitsChangeNothing)
 
 TEST(VelocitySolve, IsCertifiedOnNearlyDependentBounds)
 {
-    // Neighbours joined so stiffly that their bounds are the same to eight digits.
+    // Neighbours are coupled so stiffly that their bounds agree to eight digits.
     std::mt19937 random(23);
     testing::ClothShape shape;
     shape.side = 6;
@@ -379,7 +379,7 @@ TEST(VelocitySolve, SaysNotConvergedForAnIndefiniteMatrix)
 
 TEST(VelocitySolve, ReturnsFromAnIndefiniteMatrixHiddenByPins)
 {
-    // With all pinned the factor is a diagonal; only the released coordinates show it.
+    // With all coordinates pinned the factor is diagonal; only released coordinates show an error.
     std::mt19937 random(37);
     for (int trial = 0; trial < 100; ++trial) {
         OwnedProblem owned = make_random_problem(5, random);
@@ -421,7 +421,7 @@ TEST(VelocitySolve, IsBitIdenticalWhateverWasSolvedBefore)
     testing::ClothShape shape;
     VelocitySolver used;
     for (int trial = 0; trial < 40; ++trial) {
-        shape.side = 3 + static_cast<int>(random() % 12);  // the pattern changes, or not
+        shape.side = 3 + static_cast<int>(random() % 12);  // the pattern may change
         shape.seed = static_cast<unsigned>(trial);
         OwnedProblem owned = testing::make_resting_cloth(shape, 0.5);
         if (trial % 5 == 4) owned.rhs[0] = std::numeric_limits<double>::quiet_NaN();
@@ -435,7 +435,7 @@ TEST(VelocitySolve, IsBitIdenticalWhateverWasSolvedBefore)
 TEST(VelocitySolve, SeesAPatternOfTheSameSizeThatChanged)
 {
     Eigen::MatrixXd a = 2.0 * Eigen::MatrixXd::Identity(12, 12), b = a;
-    a(3, 0) = 1.0;  // lower triangles with as many entries in each column: only the row indices tell
+    a(3, 0) = 1.0;  // equally many entries in each column: only the row indices differ
     b(6, 0) = 1.0;
     VelocitySolver used;
     for (const Eigen::MatrixXd& dense : {a, b, a}) {

@@ -13,8 +13,8 @@
 namespace arris {
 namespace {
 
-/// A small cloth on its floor, with half of its active bounds pinned, some that are not active pinned too,
-/// and one vertex fixed.
+/// A small cloth on its floor. Half of its active bounds and some inactive ones are pinned; one vertex is
+/// fixed.
 class WorkingSetOfACloth : public ::testing::Test {
   protected:
     void SetUp() override
