@@ -109,7 +109,7 @@ TEST(CommandLine, WhatIsNoRunIsToldWithWhatWouldBeOne)
     write_bytes(folder / "kept/steps.csv", "");
     EXPECT_EQ(
         line_of({"run", scene, "-o", folder / "kept", "--overwrite"}),
-        "arris: -o " + (folder / "kept") + ": its viewer.html cannot be replaced: Directory not empty\n");
+        "arris: -o " + (folder / "kept") + ": file viewer.html cannot be replaced: Directory not empty\n");
 }
 
 TEST(CommandLine, HelpAndVersionAreNoErrors)

@@ -26,7 +26,7 @@ struct Place {
     int bend;    ///< point of the obstacle's mesh where it is held, or -1
 };
 
-struct Turn {
+struct WireBend {
     double along;
     int point;
     FeatureBend bend;
@@ -48,7 +48,7 @@ class BendFinder {
     void find(int polyline, const std::vector<FeatureSite>& sites, std::vector<FeatureSite>& found) const
     {
         const Polyline traced = trace_polyline(obstacle_, polyline);
-        const std::vector<Turn> bends = bends_of(traced);
+        const std::vector<WireBend> bends = bends_of(traced);
         if (bends.empty()) return;
         const std::vector<Place> places = places_on(traced, sites);
         for (std::size_t i = 0; i < places.size(); ++i) {
@@ -62,9 +62,9 @@ class BendFinder {
     }
 
   private:
-    std::vector<Turn> bends_of(const Polyline& polyline) const
+    std::vector<WireBend> bends_of(const Polyline& polyline) const
     {
-        std::vector<Turn> bends;
+        std::vector<WireBend> bends;
         for (const PolylineEdge& edge : polyline.edges) {
             const int point = point_at(obstacle_, {edge.feature, edge.is_forward ? 0 : 1});
             if (const auto bend = find_bend(obstacle_, point)) bends.push_back({edge.begin, point, *bend});
@@ -119,14 +119,14 @@ class BendFinder {
     }
 
     /// The bend between two neighbours that their chord misses most. `length`: of the polyline, m.
-    std::optional<FeatureSite> between(const Place& p, const Place& q, const std::vector<Turn>& bends,
+    std::optional<FeatureSite> between(const Place& p, const Place& q, const std::vector<WireBend>& bends,
                                        double length) const
     {
         const double cell = scene_.eol->length(p.material);
         if (!((p.material - q.material).norm() < kLongEdge * cell)) return std::nullopt;
-        const Turn* worst = nullptr;
+        const WireBend* worst = nullptr;
         double most = kMissedByChord * scene_.material.thickness;
-        for (const Turn& bend : bends)
+        for (const WireBend& bend : bends)
             for (const double along : {bend.along, bend.along + length}) {
                 if (!(along > p.along && along < q.along) || bend.point == p.bend || bend.point == q.bend ||
                     !locks_at_bend(scene_, obstacle_, bend.bend, p.material))
@@ -141,7 +141,7 @@ class BendFinder {
     }
 
     /// Site where the cloth around two vertices is nearest to a bend.
-    std::optional<FeatureSite> nearest_to(const Turn& bend, const std::array<int, 2>& around) const
+    std::optional<FeatureSite> nearest_to(const WireBend& bend, const std::array<int, 2>& around) const
     {
         const Vec3& point = obstacle_.mesh().points[static_cast<std::size_t>(bend.point)];
         double least = kOnFeature * scene_.material.thickness;

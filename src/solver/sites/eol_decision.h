@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Decides which contacts with sharp features are EOL vertices. `EolAdmission::find_refusal` decides whether a
 // site gets one, `refuse_inserted` whether an inserted vertex becomes one, and `find_releases` which ones of
-// the state are released. Thresholds to enter and to stay stand side by side in model/eol_limits.h. The
-// census (feature_census.h) only reports the causes that are found here.
+// the state are released. Thresholds to enter and to stay stand side by side in model/eol_limits.h;
+// numbers that one question alone asks are beside that question in eol_decision.cpp. The census
+// (feature_census.h) only reports the causes that are found here.
+//
+// What may still turn a site down is not a question of whether, but of whether it can be done: the mesh
+// (mesh_change/site_insertion), coordinates (eol/eol_coordinates), and failed attempts (retry_policy).
 //
 // Entering: the cloth must lie over the feature and remain there for a few steps. Borders of the cloth, other
 // traces and free folds must not be near.

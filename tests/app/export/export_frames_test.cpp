@@ -87,7 +87,7 @@ TEST(ExportFrames, RefusesReportsThatAreNone)
         return error_of([&] { read_export_options(dir.path()); });
     };
     for (const char* report : {"", "{", "[]", "3", "{}", R"({"scene": 3})", "\xff\xfe"})
-        EXPECT_THAT(error_in(report), HasSubstr("report.json: not a run's report")) << report;
+        EXPECT_THAT(error_in(report), HasSubstr("report.json: is not the report of a run")) << report;
     EXPECT_THAT(error_in(R"({"scene": {}})"), HasSubstr("frames_per_second"));
     EXPECT_THAT(error_in(R"({"scene": {"output": 3}})"), HasSubstr("frames_per_second"));
     EXPECT_THAT(error_in(R"({"scene": {"output": {"frames_per_second": "24"}}})"), HasSubstr("not a number"));

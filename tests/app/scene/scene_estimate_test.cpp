@@ -102,7 +102,7 @@ TEST(SceneEstimate, RefusesMoreMemoryThanThereIs)
     ASSERT_TRUE(excess);
     EXPECT_EQ(excess->wrong, "the run would take about " + human_bytes(estimate.memory_bytes) +
                                  " of memory for 4000000 vertices");
-    EXPECT_EQ(excess->allowed, "at most the 2 GB this machine has");
+    EXPECT_EQ(excess->allowed, "at most the 2 GB of this machine");
     EXPECT_GT(machine_memory_bytes(), 1e8);
 }
 
