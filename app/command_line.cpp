@@ -82,8 +82,9 @@ CLI::App* add_resume(CLI::App& app, ResumeRequest& request)
 {
     CLI::App* command = app.add_subcommand("resume", "Continue a run from its last checkpoint");
     command->add_option("dir", request.directory, "Folder of the run")->required();
-    CLI::Option* until_option =
-        command->add_option("--until", request.until, "End at this time (s) instead of the scene's duration");
+    command->add_option_function<double>(
+        "--until", [&request](double time) { request.until = time; },
+        "End at this time (s) instead of the scene's duration");
     command->add_option("--threads", request.threads, "Number of threads; default: all that the machine has")
         ->check(CLI::Range(1, 1024));
     command->add_flag("--quiet", request.is_quiet, "Print only warnings and errors");

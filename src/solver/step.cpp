@@ -17,8 +17,8 @@
 #include "solver/step.h"
 
 #include <algorithm>
-#include <cassert>
 #include <optional>
+#include <utility>
 
 #include "solver/commit.h"
 #include "solver/contact/constraints.h"
@@ -32,6 +32,7 @@
 #include "solver/model/stopwatch.h"
 #include "solver/overconstrained.h"
 #include "solver/relinearization.h"
+#include "solver/yielding.h"
 
 namespace arris {
 
@@ -168,35 +169,6 @@ std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
                 if (named < 0) named = state.ids[v];
             }
     return named;
-}
-
-/// Lets contacts that cannot be met together keep less than their stand-off, in a new system. False where
-/// none can yield. The velocity found is then discarded: impulses of rows that cannot be met are no contact
-/// forces.
-bool yield_infeasible(const Scene& scene, Workspace& work)
-{
-    bool is_changed = false;
-    for (Contact& contact : work.contacts) {
-        const std::vector<int>& rows = work.solution.infeasible_rows;
-        if (contact.row < 0 || std::find(rows.begin(), rows.end(), contact.row) == rows.end()) continue;
-        if (!yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, contact)) continue;
-        ++work.yielded;
-        is_changed = true;
-    }
-    work.has_system = work.has_system && !is_changed;
-    return is_changed;
-}
-
-/// Lets fold planes at wires yield where they press cloth against another obstacle, in a new system. False
-/// where none does so.
-bool yield_folds(const Scene& scene, Workspace& work)
-{
-    bool is_changed = false;
-    for (const int fold : find_overconstraining_folds(work))
-        is_changed |=
-            yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, work.contacts[fold]);
-    work.has_system = work.has_system && !is_changed;
-    return is_changed;
 }
 
 /// Whether an EOL vertex has gone round its wire or tip with the cloth.

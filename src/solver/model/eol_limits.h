@@ -9,8 +9,8 @@ namespace arris {
 
 // ---- Thresholds to become and to stay an EOL vertex (sites/eol_decision.h) ----
 
-/// Room, in cells, along the trace from a vertex to the cloth's border. An EOL vertex stays with half the
-/// room that a new one needs, so that it does not come and go. Raising either leaves more rows near borders.
+/// Room, in cells, along the trace from a vertex to the cloth's border. An EOL vertex stays with less
+/// room than a new one needs, so that it does not come and go. Raising either leaves more rows near borders.
 struct BorderRoom {
     double sliding;  ///< for a vertex that slides along its feature
     double fixed;    ///< for a vertex at a corner or a bend of a wire, near borders on any side

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/yielding.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "solver/contact/contacts.h"
+#include "solver/overconstrained.h"
+
+namespace arris {
+
+bool yield_infeasible(const Scene& scene, Workspace& work)
+{
+    bool is_changed = false;
+    for (Contact& contact : work.contacts) {
+        const std::vector<int>& rows = work.solution.infeasible_rows;
+        if (contact.row < 0 || std::find(rows.begin(), rows.end(), contact.row) == rows.end()) continue;
+        if (!yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, contact)) continue;
+        ++work.yielded;
+        is_changed = true;
+    }
+    work.has_system = work.has_system && !is_changed;
+    return is_changed;
+}
+
+bool yield_folds(const Scene& scene, Workspace& work)
+{
+    bool is_changed = false;
+    for (const int fold : find_overconstraining_folds(work))
+        is_changed |=
+            yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, work.contacts[fold]);
+    work.has_system = work.has_system && !is_changed;
+    return is_changed;
+}
+
+}  // namespace arris
