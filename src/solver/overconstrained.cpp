@@ -52,21 +52,21 @@ std::vector<int> find_unmet_vertices(const State& state, const Workspace& work)
 
 }  // namespace
 
-std::vector<int> find_overpressed_vertices(const Workspace& work)
+std::vector<int> find_overconstrained_by_work(const Workspace& work)
 {
     // Sum of impulses over the part that moves the vertex: 2 in a groove of 60 degrees.
     constexpr double kInVain = 2.0;
     constexpr double kWork = 0.1;  // share of the energy scale
-    std::vector<int> overpressed;
+    std::vector<int> overconstrained;
     const double least = kWork * energy_scale(work);
-    if (!(work.energies.solved.sum() - work.energies.start.sum() > least)) return overpressed;
+    if (!(work.energies.solved.sum() - work.energies.start.sum() > least)) return overconstrained;
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
     for (const EolCoordinates& eol : work.eol) {
         const Press press = sum_contacts(eol.vertex, multiplier, work);
         if (press.work > least && press.impulse > kInVain * (eol.basis.transpose() * press.net).norm())
-            overpressed.push_back(eol.vertex);
+            overconstrained.push_back(eol.vertex);
     }
-    return overpressed;
+    return overconstrained;
 }
 
 std::vector<int> find_overconstraining_folds(const Workspace& work)
@@ -97,7 +97,7 @@ std::vector<int> find_overconstrained_vertices(const State& state, const Workspa
                                                const StepReport& report)
 {
     if (report.status != StepStatus::Infeasible) return {};
-    return work.solution.infeasible_rows.empty() ? find_overpressed_vertices(work)
+    return work.solution.infeasible_rows.empty() ? find_overconstrained_by_work(work)
                                                  : find_unmet_vertices(state, work);
 }
 

@@ -16,14 +16,14 @@ namespace arris {
 /// EOL vertices whose contacts push against each other, or against the feature that holds the vertex: most of
 /// their impulse cancels. These contacts also do work on the vertex, of more than 10 % of the energy scale.
 /// The cloth's energy must rise by more than 10 % of that scale, too. Call measure_proposal_energy first.
-std::vector<int> find_overpressed_vertices(const Workspace& work);
+std::vector<int> find_overconstrained_by_work(const Workspace& work);
 
 /// Contacts (indices) of fold planes that press cloth against another obstacle. A fold plane is no surface,
 /// so it can yield.
 std::vector<int> find_overconstraining_folds(const Workspace& work);
 
 /// Overconstrained EOL vertices of an infeasible step: vertices in contacts that no velocity meets, or else
-/// the result of `find_overpressed_vertices`. Empty if the status is not Infeasible.
+/// the result of `find_overconstrained_by_work`. Empty if the status is not Infeasible.
 std::vector<int> find_overconstrained_vertices(const State& state, const Workspace& work,
                                                const StepReport& report);
 

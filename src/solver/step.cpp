@@ -266,7 +266,7 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     const Violations violations = propose_and_check(scene, end - state.time, growth, work);
     // A clean proposal may still be refused: EOL vertices pressed from both sides, or too much energy.
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
-    if (is_done && !find_overpressed_vertices(work).empty()) {
+    if (is_done && !find_overconstrained_by_work(work).empty()) {
         report.status = StepStatus::Infeasible;
         report.seconds.check += watch.lap();
         return false;

@@ -207,11 +207,11 @@ const std::vector<Shape> kShapes = {
      [](Generator& g, auto& x) {
          for (Vec3& p : x) p = 3.0 * p + random_vector(g, 0.1);
      }},
-    {"overpressed 0.5 x", true,
+    {"compressed 0.5 x", true,
      [](Generator& g, auto& x) {
          for (Vec3& p : x) p = 0.5 * p + random_vector(g, 0.02);
      }},
-    {"overpressed along one direction", true,
+    {"compressed along one direction", true,
      [](Generator& g, auto& x) {
          for (Vec3& p : x) {
              p.x() *= 0.4;

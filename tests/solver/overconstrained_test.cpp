@@ -41,20 +41,20 @@ Workspace make_vise(double angle, bool is_together)
     return work;
 }
 
-TEST(SqueezedVertices, AreThoseWhoseContactsPushAgainstEachOther)
+TEST(OverconstrainedVertices, AreThoseWhoseContactsPushAgainstEachOther)
 {
-    EXPECT_EQ(find_overpressed_vertices(make_vise(170.0, false)), std::vector{7});
-    EXPECT_TRUE(find_overpressed_vertices(make_vise(90.0, false)).empty()) << "a groove";
-    EXPECT_TRUE(find_overpressed_vertices(make_vise(170.0, true)).empty()) << "carried by both";
+    EXPECT_EQ(find_overconstrained_by_work(make_vise(170.0, false)), std::vector{7});
+    EXPECT_TRUE(find_overconstrained_by_work(make_vise(90.0, false)).empty()) << "a groove";
+    EXPECT_TRUE(find_overconstrained_by_work(make_vise(170.0, true)).empty()) << "carried by both";
     Workspace resting = make_vise(170.0, false);
     resting.energies.solved.kinetic = resting.energies.start.kinetic;
-    EXPECT_TRUE(find_overpressed_vertices(resting).empty()) << "nothing is gained";
+    EXPECT_TRUE(find_overconstrained_by_work(resting).empty()) << "nothing is gained";
     Workspace ordinary = make_vise(170.0, false);
     ordinary.eol.clear();
-    EXPECT_TRUE(find_overpressed_vertices(ordinary).empty()) << "it may slip out";
+    EXPECT_TRUE(find_overconstrained_by_work(ordinary).empty()) << "it may slip out";
 }
 
-TEST(SqueezedVertices, AreThoseWhoseContactIsAcrossTheirWay)
+TEST(OverconstrainedVertices, AreThoseWhoseContactIsAcrossTheirWay)
 {
     // The vertex can move in one direction only, at the angle `lean` to the contact's normal.
     for (const double lean : {85.0, 20.0}) {
@@ -62,11 +62,11 @@ TEST(SqueezedVertices, AreThoseWhoseContactIsAcrossTheirWay)
         work.contacts.pop_back();
         work.eol[0].basis = Mat3::Zero();
         work.eol[0].basis.col(0) = rotation_about(Vec3::UnitZ(), lean) * Vec3::UnitX();
-        EXPECT_EQ(find_overpressed_vertices(work).empty(), lean < 60.0) << lean;
+        EXPECT_EQ(find_overconstrained_by_work(work).empty(), lean < 60.0) << lean;
     }
 }
 
-TEST(SqueezingFolds, ArePlanesThatPressClothAgainstAnotherObstacle)
+TEST(OverconstrainingFolds, ArePlanesThatPressClothAgainstAnotherObstacle)
 {
     const auto make_fold = [](double angle) {
         Workspace work = make_vise(angle, false);
@@ -96,7 +96,7 @@ TEST(SqueezingFolds, ArePlanesThatPressClothAgainstAnotherObstacle)
     EXPECT_TRUE(find_overconstraining_folds(both).empty()) << "two planes";
 }
 
-TEST(PinchedVertices, AreOfAnInfeasibleStepOnly)
+TEST(OverconstrainedVertices, AreOfAnInfeasibleStepOnly)
 {
     const Workspace work = make_vise(170.0, false);
     StepReport report;

@@ -125,8 +125,8 @@ const std::vector<Shape> kNastyShapes = {
      [](const Vec3& x, Generator&) -> Vec3 {
          return {x.x(), 0.0, 0.0};
      }},
-    {"overpressed to 1e-4", [](const Vec3& x, Generator&) -> Vec3 { return 1e-4 * x; }},
-    {"overpressed along u to 1e-4",
+    {"compressed to 1e-4", [](const Vec3& x, Generator&) -> Vec3 { return 1e-4 * x; }},
+    {"compressed along u to 1e-4",
      [](const Vec3& x, Generator&) -> Vec3 {
          return {1e-4 * x.x(), x.y(), 0.0};
      }},

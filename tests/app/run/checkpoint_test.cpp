@@ -140,8 +140,10 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("EOL vertex", [](Checkpoint& c) { c.state.eol[1].vertex_id = 99; });
     refused("EOL direction", [&](Checkpoint& c) { c.state.eol[0].outward.x() = kNan; });
     refused("EOL side", [](Checkpoint& c) { c.state.eol[0].side = 2; });
-    refused("EOL turn", [](Checkpoint& c) { c.state.eol[0].on.end = 2; });
-    refused("EOL turn of a corner", [](Checkpoint& c) { c.state.eol[1].on.end = 0; });
+    refused("EOL end", [](Checkpoint& c) { c.state.eol[0].on.end = 2; });
+    refused("EOL kind", [](Checkpoint& c) { c.state.eol[0].on.kind = static_cast<FeatureId::Kind>(3); });
+    refused("EOL bend without an end", [](Checkpoint& c) { c.state.eol[0].on.end = -1; });
+    refused("EOL end of a corner", [](Checkpoint& c) { c.state.eol[1].on.end = 0; });
     refused("EOL count", [](Checkpoint& c) { c.state.eol[0].idle = -1; });
     refused("crossings", [](Checkpoint& c) { c.state.crossings = -1; });
 }
