@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <tuple>
 
+#include "geometry/obstacle/feature_path.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/eol/eol_features.h"
@@ -195,6 +197,33 @@ TEST(EolRetention, HoldsNothingBetweenThatIsOffTheFeature)
     const double thickness = still.cloth.scene.material.thickness;
     for (Vec3& x : still.cloth.state.mesh.world) x.z() += 3.0 * thickness;
     EXPECT_EQ(still.hold(), EolRetention::None);
+}
+
+// A vertex at a bend of a wire is fixed, and needs the room of one at a corner: with that of a sliding vertex
+// it would stay where none is inserted, and be released and inserted in turn.
+TEST(EolRetention, AtABendOfAWireNeedsTheRoomOfACorner)
+{
+    constexpr double kCell = 0.05;
+    const auto is_kept = [&](bool is_bend, double cells) {
+        EolCloth cloth(
+            Obstacle("wire", make_wire({{-0.05, -1, 0}, {-0.15, 0, 0}, {-0.05, 1, 0}}, false), {}, {}, 30.0),
+            testing::make_draped({8, 0.0, 180.0}));
+        const int v = cloth.vertex_at(kCell, 0.2);
+        cloth.state.mesh.world[v] = Vec3(-0.15, 0.0, 0.0);
+        cloth.state.mesh.material[v].x() = cells * kCell;
+        const std::optional<FeatureBend> bend = find_bend(cloth.scene.obstacles[0], 1);
+        EXPECT_TRUE(bend.has_value());
+        EolVertex& eol = cloth.state.eol[cloth.add_eol(v, false, bend->feature)];
+        eol.outward = Vec3::UnitZ();
+        if (is_bend) eol.on = FeatureId::bend(0, bend->feature, bend->end);
+        const std::vector<EolRelease> released = find_releases(cloth.scene, cloth.state, cloth.stars());
+        if (!released.empty()) EXPECT_EQ(released[0].cause, RowCause::NearBorder);
+        return released.empty();
+    };
+    EXPECT_TRUE(is_kept(true, kRoomToStay.fixed + 0.05));
+    EXPECT_FALSE(is_kept(true, kRoomToStay.fixed - 0.05));
+    EXPECT_TRUE(is_kept(false, kRoomToStay.fixed - 0.05));
+    EXPECT_FALSE(is_kept(false, kRoomToStay.sliding - 0.05));
 }
 
 }  // namespace
