@@ -73,7 +73,7 @@ class PlyCheck {
     }
 
   private:
-    // Header
+    // Reading the header, line by line
 
     std::string_view take_line()
     {

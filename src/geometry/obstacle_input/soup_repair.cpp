@@ -55,7 +55,8 @@ void require_sound(const ObstacleMesh& soup)
         require_index("lone point", i, soup.lone_points[i]);
 }
 
-// Records which point each copy by orient_polygon_soup comes from.
+// CGAL's orient_polygon_soup copies a point where two surfaces touch in it. Records the original of each
+// copy.
 struct CopyListener : PMP::Default_orientation_visitor {
     explicit CopyListener(std::vector<int>* origin) : origin_of(origin) {}
     void duplicated_vertex(std::size_t original, std::size_t copy)

@@ -48,7 +48,7 @@ class SurgeryMesh {
     void set_role(VertexId v, TraceRole role, int tag);
     int edge_tag(Halfedge h) const { return edge_tag_[mesh_.edge(h)]; }
     void set_edge_tag(Halfedge h, int tag) { edge_tag_[mesh_.edge(h)] = tag; }
-    /// The neighbours along tagged edges, in the ring's order.
+    /// The neighbours of v along its trace, that is along edges with a tag, in the order of the ring of v.
     std::vector<VertexId> trace_neighbours(VertexId v) const;
 
     void move(VertexId v, const Vec2& material, const Vec3& world);

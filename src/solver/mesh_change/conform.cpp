@@ -111,7 +111,8 @@ class Conforming {
     {
         ways_.set_inserting(true);
         for (const FeatureSite& site : sites) {
-            // Insert nothing once attempts have given vertices up, nor where an inserted vertex has failed.
+            // Once failed attempts at the step have demoted EOL vertices, none is inserted any more; nor is
+            // one inserted where an inserted vertex has failed.
             const bool has_failed = !failed_.given_up.empty() || has_failed_near(site.material);
             const std::optional<RowCause> cause =
                 has_failed ? RowCause::GivenUp : insertion_.try_insert(site);

@@ -128,7 +128,7 @@ class PatchFitter {
         return area;
     }
 
-    /// Kinetic energy of a patch plus its weight over one cell, J.
+    /// Kinetic energy of a patch plus the work of its weight when it falls by one cell's length, J.
     double moving_energy(double kinetic, double area, double cell) const
     {
         return kinetic + weight_over(scene_, area, cell);

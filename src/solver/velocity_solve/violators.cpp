@@ -8,7 +8,8 @@
 namespace arris {
 namespace {
 
-/// Signs are trusted down to this share of the largest speed, or of the terms summed into a multiplier.
+/// Values nearer to 0 are rounding, and tell no sign: of a gap, as a share of the largest speed; of a
+/// multiplier, as a share of the terms that are summed into it.
 constexpr double kSignTolerance = 1e-13;
 
 /// The greatest error in the set's rows: the violation of rows below their cap, or the gap of pressing rows.
