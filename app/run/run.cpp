@@ -6,10 +6,8 @@
 #include <oneapi/tbb/info.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "app/export/export_frames.h"
@@ -29,9 +27,7 @@
 #include "app/text/error_line.h"
 #include "app/text/printable.h"
 #include "app/text/version.h"
-#include "geometry/cloth/mesh_quality.h"
 #include "geometry/input_error.h"
-#include "physics/inertia.h"
 #include "solver/advance.h"
 #include "solver/contact/audit.h"
 #include "solver/model/stopwatch.h"

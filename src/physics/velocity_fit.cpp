@@ -341,15 +341,6 @@ std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old
         fit.velocity.push_back(patch.drift[v] + patch.basis[v] * (*u)[v]);
         fit.material_velocity.push_back(patch.material_drift[v] + patch.material_basis[v] * (*u)[v]);
     }
-    fit.energy_gain = -compute_kinetic_energy(density, old);
-    for (std::size_t f = 0; f < patch.faces.size(); ++f) {
-        std::array<Vec3, 3> corner;
-        for (int i = 0; i < 3; ++i) {
-            const int v = patch.faces[f][i];
-            corner[i] = fit.velocity[v] - faces[f].F * fit.material_velocity[v];
-        }
-        fit.energy_gain += energy_of(faces[f].mass, corner);
-    }
     return fit;
 }
 

@@ -38,7 +38,6 @@ struct FitPatch {
 struct VelocityFit {
     std::vector<Vec3> velocity;           ///< xdot, m/s
     std::vector<Vec2> material_velocity;  ///< Xdot, m/s
-    double energy_gain = 0.0;             ///< kinetic, J, after minus before
 };
 
 /// Minimises the integral of density / 2 |new - old|^2 over the patch, subject to equal linear momentum.

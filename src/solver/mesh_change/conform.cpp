@@ -81,10 +81,10 @@ class Conforming {
         // Insert new vertices, join them along features, and clean up around all of them.
         insert(changes.sites);
         join();
-        report_.operations += clean_up(surgery_, target_).operations();
+        clean_up(surgery_, target_);
         if (insertion_.inserted() > 0) {  // the ways of new vertices must be clear, too
             clear_ways();
-            report_.operations += clean_up(surgery_, target_).operations();
+            clean_up(surgery_, target_);
         }
         report_.inserted = insertion_.inserted();
         if (surgery_.events().empty() && report_.released == 0 && report_.inserted == 0) return std::nullopt;
@@ -100,7 +100,6 @@ class Conforming {
         const std::vector<TraceAdvance> advances = ways_.find_advances();
         if (advances.empty()) return;
         const ClearanceReport cleared = ways_.clear(advances);
-        report_.operations += cleared.operations;
         // Only the blocked vertex itself becomes a row: the rest of its trace carries the cloth on.
         for (const VertexId v : cleared.blocked) demote_to_row(v, RowCause::Blocked);
         blocked_ += static_cast<int>(cleared.blocked.size());

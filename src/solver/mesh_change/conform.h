@@ -22,7 +22,7 @@
 namespace arris {
 
 struct ConformReport {
-    int inserted = 0, released = 0, operations = 0;
+    int inserted = 0, released = 0;
 };
 
 /// The mesh after surgery, and its EOL vertices.

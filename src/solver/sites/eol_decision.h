@@ -5,8 +5,9 @@
 // numbers that one question alone asks are beside that question in eol_decision.cpp. The census
 // (feature_census.h) only reports the causes that are found here.
 //
-// What may still turn a site down is not a question of whether, but of whether it can be done: the mesh
-// (mesh_change/site_insertion), coordinates (eol/eol_coordinates), and failed attempts (retry_policy).
+// An admitted site may still stay a row for three reasons: the mesh has no place
+// (mesh_change/site_insertion), a vertex there has no coordinates (eol/eol_coordinates), or attempts at the
+// step failed (retry_policy).
 //
 // Entering: the cloth must lie over the feature and remain there for a few steps. Borders of the cloth, other
 // traces and free folds must not be near.
