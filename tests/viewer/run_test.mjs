@@ -5,7 +5,8 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { test } from "node:test";
 import { deflateSync, inflateSync } from "node:zlib";
-import { BrokenData, Run, normalGroups } from "../../viewer/src/run.js";
+import { BrokenData } from "../../viewer/src/blocks.js";
+import { Run, normalGroups } from "../../viewer/src/run.js";
 import { documentOf, makeRun, pageOf, readPly } from "./support.mjs";
 
 const kFloatRounding = 1e-7; // single precision, relative to the run's extent

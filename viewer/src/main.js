@@ -9,7 +9,8 @@ import {
   addNotice, firstStrainTop, hideMessage, showAxes, showFacts, showHeading, showLegend, showMessage, showMoment,
 } from "./panels.js";
 import { Obstacles } from "./obstacles.js";
-import { BrokenData, Run } from "./run.js";
+import { BrokenData } from "./blocks.js";
+import { Run } from "./run.js";
 import { Stage } from "./stage.js";
 
 const kModes = ["none", "strain", "contact"];

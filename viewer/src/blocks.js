@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Decodes the blocks of data in the page: base64 of zlib of differences and planes of bytes. The layout is described
+// in ../README.md.
+
+/** An error in the data, in words for the person who opened the page. */
+export class BrokenData extends Error {}
+
+export function require(condition, what) {
+  if (!condition) throw new BrokenData(what);
+}
+
+function fromBase64(text) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+  const binary = atob(text);
+  const bytes = new Uint8Array(binary.length);
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
+  return bytes;
+}
+
+/** Decompresses `compressed`, which must hold exactly `length` bytes. */
+async function inflate(compressed, length) {
+  const bytes = new Uint8Array(length);
+  const stream = new Blob([compressed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const reader = stream.getReader();
+  let filled = 0;
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    require(filled + value.length <= length, "it holds more than its list says");
+    bytes.set(value, filled);
+    filled += value.length;
+  }
+  require(filled === length, "it holds less than its list says");
+  return bytes;
+}
+
+export async function readBlock(document, id, length) {
+  const element = document.getElementById(id);
+  require(element, "its data are missing; the file may be cut off");
+  return inflate(fromBase64(element.textContent), length);
+}
+
+/** Decodes 16-bit numbers stored as differences, with all high bytes before all low bytes. */
+export function unpack16(bytes, offset, count, result) {
+  let value = 0;
+  for (let i = 0; i < count; ++i) {
+    value = (value + ((bytes[offset + i] << 8) | bytes[offset + count + i])) & 0xffff;
+    result[i] = value;
+  }
+}
+
+/** Decodes 32-bit numbers stored in four planes of bytes, the highest first. */
+export function unpack32(bytes, count) {
+  const result = new Uint32Array(count);
+  for (let i = 0; i < count; ++i)
+    result[i] = (bytes[i] << 24) | (bytes[count + i] << 16) | (bytes[2 * count + i] << 8) | bytes[3 * count + i];
+  return result;
+}
+
+/** Decodes vertex numbers stored as zigzag differences. */
+export function unpackIndices(bytes, count) {
+  const result = unpack32(bytes, count);
+  let value = 0;
+  for (let i = 0; i < count; ++i) {
+    value += (result[i] >>> 1) ^ -(result[i] & 1);
+    result[i] = value;
+  }
+  return result;
+}
