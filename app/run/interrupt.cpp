@@ -16,7 +16,7 @@ void on_signal(int signal)
     interrupted = 1;
     std::signal(signal, SIG_DFL);
     constexpr char kMessage[] =
-        "\narris: stopping after this step; a second Ctrl-C stops at once (arris resume continues in both "
+        "\narris: stopping; a second Ctrl-C stops at once (arris resume continues in both "
         "cases)\n";
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
 }

@@ -4,7 +4,7 @@
 namespace arris {
 
 /// Installs signal handlers. The first Ctrl-C (or SIGTERM, SIGHUP) makes is_interrupted() true, so that the
-/// run stops after its step, and prints a message. A second signal ends the process at once; the last
+/// run stops within its step, and prints a message. A second signal ends the process at once; the last
 /// checkpoint remains.
 void watch_for_interrupt();
 

@@ -78,7 +78,8 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     ++run.at.rows;
 }
 
-/// Makes one planned step and writes a row for each part; an opening has no row of its own.
+/// Makes one planned step and writes a row for each part; an opening has no row of its own. Throws
+/// Interrupted.
 std::optional<RunEnding> advance(Run& run)
 {
     State& state = run.at.state;
@@ -95,8 +96,10 @@ std::optional<RunEnding> advance(Run& run)
         return run.audited.obstacle < 0;
     };
     const double end = run.timeline.next_end(run.at.position);
+    Settings settings = run.config.settings;
+    settings.is_interrupted = is_interrupted;
     if (const std::optional<StepReport> failed =
-            advance(run.config.scene, run.config.settings, end, state, run.work, accept)) {
+            advance(run.config.scene, settings, end, state, run.work, accept)) {
         if (run.opening) {  // the rest of this step has failed
             Stopwatch watch;
             write_outputs(run, *std::exchange(run.opening, std::nullopt), watch, true);
@@ -122,9 +125,16 @@ RunEnding simulate(Run& run, bool is_quiet)
             ending = {RunStatus::Interrupted, fmt::format("stopped at t = {:.6g} s", run.at.state.time)};
             break;
         }
-        if (const std::optional<RunEnding> failed = advance(run)) {
-            ending = *failed;
-            break;
+        const Checkpoint before = run.at;
+        try {
+            if (const std::optional<RunEnding> failed = advance(run)) {
+                ending = *failed;
+                break;
+            }
+        } catch (const Interrupted&) {  // a resumed run makes the whole planned step again
+            run.at = before;
+            run.opening.reset();
+            continue;
         }
         unsaved += watch.lap();
         if (unsaved > kCheckpointSeconds || run.timeline.frame_at(run.at.state.time) >= 0) {

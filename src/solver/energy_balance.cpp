@@ -160,7 +160,7 @@ double energy_scale(const Workspace& work)
         exchanged += std::abs(b - a);
         size += std::abs(a) + std::abs(b);
     }
-    return before.kinetic + exchanged + kRoundOff * size;
+    return work.energies.floor + before.kinetic + exchanged + kRoundOff * size;
 }
 
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work)
@@ -202,6 +202,14 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
 
 void measure_start_energy(const Scene& scene, const State& state, Workspace& work)
 {
+    // Share of m g L that counts as a change: cloth at rest moves by round-off and as rows give way, by up to
+    // 1e-7 of its size. Without it, changes at rest would be compared with themselves.
+    constexpr double kRest = 1e-6;
+    double area = 0.0;
+    for (const FaceElement& face : work.mesh.elements.faces) area += face.area;
+    work.energies.floor = scene.gravity ? kRest * scene.material.density * area *
+                                              scene.gravity->acceleration.norm() * std::sqrt(area)
+                                        : 0.0;
     const bool is_known = work.energies.known_at.world == state.mesh.world &&
                           work.energies.known_at.material == state.mesh.material &&
                           work.energies.known_at.velocity.world == state.velocity &&

@@ -39,7 +39,7 @@ class Census {
         const int entry =
             contact.is_vertex() ? state_.eol_entry(state_.ids[contact.in_frame.vertices[0]]) : -1;
         if (entry >= 0) return of_eol_vertex(entry, contact);
-        if (!contact.was_active) return RowCause::New;
+        if (!contact.was_active()) return RowCause::New;
         const Beside beside = find_beside(contact);
         if (beside.is_at) return beside.refusal ? *beside.refusal : RowCause::AtEol;
         const auto refused = std::find_if(work_.mesh.refused.begin(), work_.mesh.refused.end(),
@@ -54,7 +54,7 @@ class Census {
     RowCause of_eol_vertex(int entry, const Contact& contact) const
     {
         if (const std::optional<RowCause> refusal = find_refusal(entry)) return *refusal;
-        if (!contact.was_active) return RowCause::New;
+        if (!contact.was_active()) return RowCause::New;
         return contact.obstacle == state_.eol[entry].on.obstacle ? RowCause::OtherFeature
                                                                  : RowCause::OtherObstacle;
     }

@@ -233,6 +233,7 @@ bool add_violations(const Scene& scene, const State& state, const Violations& vi
 bool solve_and_check(const Scene& scene, const Settings& settings, double end, const State& state,
                      Attempt attempt, Workspace& work, StepReport& report)
 {
+    settings.stop_if_interrupted();
     Stopwatch watch;
 
     // 4. A and b in coordinates of the vertices, in which contacts are bounds or rows.

@@ -16,7 +16,7 @@ State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity);
 
 /// Advances `state` to `end` (s, after its time). Leaves the state unchanged unless the report's status is
 /// Done. (At time 0, `state.active` may be set even so.) Call `restart` first where the input jumps at the
-/// step's start.
+/// step's start. Throws Interrupted.
 StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
                 Attempt attempt = Attempt::Ordinary);
 

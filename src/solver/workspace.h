@@ -23,6 +23,7 @@ struct ClothEnergy {
 
 /// The cloth's energy during one step, as `energy_balance` measures it.
 struct StepEnergies {
+    double floor = 0.0;  ///< least scale of changes: smaller ones are round-off, or rows that give way
     ClothEnergy start;
     ClothEnergy solved;    ///< of the proposal before cloth is pushed out to its stand-off
     ClothEnergy proposed;  ///< of the proposal after cloth is pushed out

@@ -45,7 +45,8 @@ struct Solved {
         contact.in_frame.normal = Vec3::UnitZ();
         contact.in_frame.point = Vec3(0, 0.1, 0);
         contact.obstacle = 0;
-        contact.was_active = was_active;
+        contact.normal = Vec3::UnitZ();
+        contact.last_multiplier = was_active ? 1.0 : 0.0;
         contact.eol = -1;
         work.contacts.push_back(contact);
         multiplier.push_back(pressing);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/velocity_solve/constraint_rows.h"
+
 namespace arris::testing {
 namespace {
 
@@ -105,37 +107,45 @@ std::vector<ConstraintRow> make_rows(const ClothShape& shape, const Eigen::Vecto
     return rows;
 }
 
-HildrethAnswer solve_by_hildreth(const VelocityProblem& problem, const Eigen::VectorXd& row_caps)
+Eigen::VectorXd find_gives(const VelocityProblem& problem)
 {
+    const ConstraintRows constraints = scale_rows(problem, estimate_free_speed(problem));
+    Eigen::VectorXd gives(static_cast<Eigen::Index>(problem.rows.size()));
+    for (Eigen::Index k = 0; k < gives.size(); ++k)
+        gives[k] = constraints.rows[k].give * constraints.rows[k].scale * constraints.rows[k].scale;
+    return gives;
+}
+
+HildrethAnswer solve_by_hildreth(const VelocityProblem& problem)
+{
+    const Vector gives = find_gives(problem).cast<Real>();
     std::vector<int> free, bounded;
     for (int i = 0; i < problem.lower.size(); ++i)
         if (!problem.is_fixed[i]) free.push_back(i);
     for (const int i : free)
         if (std::isfinite(problem.lower[i])) bounded.push_back(i);
     const Matrix a = dense_symmetric(*problem.matrix).cast<Real>()(free, free);
-    const Eigen::Index bounds = static_cast<Eigen::Index>(bounded.size()), rows = row_caps.size();
+    const Eigen::Index bounds = static_cast<Eigen::Index>(bounded.size()), rows = gives.size();
     Matrix c = Matrix::Zero(bounds + rows, problem.rhs->size());
-    Vector lower(bounds + rows), cap = Vector::Constant(bounds + rows, std::numeric_limits<Real>::infinity());
+    Vector lower(bounds + rows);
     for (Eigen::Index k = 0; k < bounds; ++k) {
         c(k, bounded[k]) = 1;
         lower[k] = problem.lower[bounded[k]];
     }
     c.bottomRows(rows) = dense_rows(problem);
-    for (Eigen::Index k = 0; k < rows; ++k) {
-        lower[bounds + k] = problem.rows[k].lower;
-        cap[bounds + k] = row_caps[k];
-    }
+    for (Eigen::Index k = 0; k < rows; ++k) lower[bounds + k] = problem.rows[k].lower;
     const Matrix g = c(Eigen::all, free);
     const Eigen::LLT<Matrix> cholesky(a);
     const Matrix moved = cholesky.solve(Matrix(g.transpose()));
     const Vector start = cholesky.solve(Vector(problem.rhs->cast<Real>()(free)));
-    const Matrix s = g * moved;
+    Matrix s = g * moved;
+    s.diagonal().tail(rows) += gives;
     Vector z = Vector::Zero(bounds + rows), w = g * start - lower;
     for (int sweep = 0; sweep < 4000000; ++sweep) {
         Real change = 0;
         for (Eigen::Index k = 0; k < z.size(); ++k) {
-            if (!(s(k, k) > 0)) continue;
-            const Real next = std::clamp(z[k] - w[k] / s(k, k), Real(0), cap[k]), step = next - z[k];
+            if (!g.row(k).any()) continue;
+            const Real next = std::max(z[k] - w[k] / s(k, k), Real(0)), step = next - z[k];
             z[k] = next;
             w += step * s.col(k);
             change = std::max(change, std::abs(step) * std::sqrt(s(k, k)));
@@ -151,9 +161,9 @@ HildrethAnswer solve_by_hildreth(const VelocityProblem& problem, const Eigen::Ve
     return answer;
 }
 
-double dense_kkt_residual_of_rows(const VelocityProblem& problem, const VelocitySolution& solution,
-                                  const std::vector<int>& gives_way)
+double dense_kkt_residual_of_rows(const VelocityProblem& problem, const VelocitySolution& solution)
 {
+    const Vector gives = find_gives(problem).cast<Real>();
     const Matrix a = dense_symmetric(*problem.matrix).cast<Real>(), c = dense_rows(problem);
     const Vector u = solution.velocity.cast<Real>(), b = problem.rhs->cast<Real>(),
                  force = solution.multipliers.cast<Real>(), z = solution.row_multipliers.cast<Real>();
@@ -182,8 +192,8 @@ double dense_kkt_residual_of_rows(const VelocityProblem& problem, const Velocity
         count_pair(u[i] - problem.lower[i], force[i]);
     }
     for (Eigen::Index k = 0; k < z.size(); ++k)
-        if (size[k] > 0 && !std::count(gives_way.begin(), gives_way.end(), static_cast<int>(k)))
-            count_pair((c.row(k).dot(u) - problem.rows[k].lower) / size[k], z[k] * size[k]);
+        if (size[k] > 0)
+            count_pair((c.row(k).dot(u) - problem.rows[k].lower + gives[k] * z[k]) / size[k], z[k] * size[k]);
     return static_cast<double>(worst);
 }
 

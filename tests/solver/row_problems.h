@@ -23,21 +23,22 @@ ConstraintRow make_point_row(const std::array<int, 3>& face, const std::array<do
 std::vector<ConstraintRow> make_rows(const ClothShape& shape, const Eigen::VectorXd& velocity,
                                      RowPattern pattern, int count, double speed, unsigned seed);
 
+/// Ways of the rows' springs per multiplier, in the units of the rows as given.
+Eigen::VectorXd find_gives(const VelocityProblem& problem);
+
 /// The vertices of the grid's faces, two faces for each cell.
 std::vector<std::array<int, 3>> grid_faces(int side);
 
 /// The unique velocity and multipliers by an independent method: Hildreth's (1957) successive projections on
-/// the dual, in extended precision. Bounds and rows with multipliers up to `row_caps` are supported. For
+/// the dual, in extended precision, with bounds and springy rows. For
 /// problems of a few well-conditioned unknowns.
 struct HildrethAnswer {
     Eigen::VectorXd velocity, multipliers, row_multipliers;
 };
-HildrethAnswer solve_by_hildreth(const VelocityProblem& problem, const Eigen::VectorXd& row_caps);
+HildrethAnswer solve_by_hildreth(const VelocityProblem& problem);
 
 /// The KKT residual, computed in extended precision from the dense matrix and the rows as given. Each row's
-/// gap and multiplier are scaled by its largest coefficient of a free coordinate. Rows in `gives_way` may be
-/// violated.
-double dense_kkt_residual_of_rows(const VelocityProblem& problem, const VelocitySolution& solution,
-                                  const std::vector<int>& gives_way = {});
+/// gap, its spring's way included, and multiplier are scaled by its largest coefficient of a free coordinate.
+double dense_kkt_residual_of_rows(const VelocityProblem& problem, const VelocitySolution& solution);
 
 }  // namespace arris::testing

@@ -126,6 +126,34 @@ TEST(Step, AFailedStepLeavesTheStateAsItWas)
     expect_same(state, before);
 }
 
+int calls_left = 0;  // of an interrupt that comes after so many questions
+
+TEST(Step, InterruptedAnywhereLeavesTheStateAsItWas)
+{
+    Scene scene;
+    scene.material = soft_cloth();
+    scene.gravity = Gravity{};
+    Settings settings;
+    settings.is_interrupted = [] { return calls_left-- <= 0; };
+    State state = make_state(scene, make_sheet(Vec2(1, 1), {4, 4}), Vec3::Zero());
+    Workspace work;
+    const std::vector<Vec3> before = state.mesh.world;
+    bool is_done = false;
+    int questions = 0;
+    for (; !is_done && questions < 100; ++questions) {
+        calls_left = questions;
+        try {
+            EXPECT_EQ(step(scene, settings, 0.005, state, work).status, StepStatus::Done);
+            is_done = true;
+        } catch (const Interrupted&) {
+            EXPECT_EQ(state.mesh.world, before);
+            EXPECT_EQ(state.time, 0.0);
+        }
+    }
+    EXPECT_TRUE(is_done);
+    EXPECT_GT(questions, 2) << "a step asks before each solve and before each factorisation";
+}
+
 TEST(Step, PinsAreExactlyWhereTheirMotionSays)
 {
     Scene scene;

@@ -149,6 +149,7 @@ void expect_no_rebound(Ground ground, const std::string& name)
     Table table(name, {"integrator", "V", "gravity", "rebound / V", "off the stand-off", "penetration",
                        "rise of kinetic energy"});
     constexpr double kRoundOff = 1e-13;  // m, for positions of about 1 m
+    constexpr double kGive = 1e-5;       // share of the way of a step by which rows give way
     for (const Integrator integrator : kIntegrators)
         for (const bool has_gravity : {false, true})
             for (const double speed : {0.1, 1.0, 5.0}) {
@@ -162,8 +163,10 @@ void expect_no_rebound(Ground ground, const std::string& name)
                     worst.energy_rise = std::max(worst.energy_rise, impact.energy_rise);
                 }
                 EXPECT_LT(worst.rebound, 0.01);
-                EXPECT_LT(worst.penetration, kRoundOff);
-                EXPECT_LT(worst.jump, kRoundOff);
+                // On an imported mesh edges and faces touch, too; their contacts are rows.
+                const double give = ground == Ground::ImportedTable ? kGive * speed * 0.005 : 0.0;
+                EXPECT_LT(worst.penetration, kRoundOff + give);
+                EXPECT_LT(worst.jump, kRoundOff + give);
                 if (!has_gravity) {
                     EXPECT_LT(worst.energy_rise, 1e-12);
                 }

@@ -83,7 +83,8 @@ std::vector<std::size_t> order_of(const std::vector<Contact>& contacts)
 {
     std::vector<std::size_t> order(contacts.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_partition(order.begin(), order.end(), [&](std::size_t c) { return contacts[c].was_active; });
+    std::stable_partition(order.begin(), order.end(),
+                          [&](std::size_t c) { return contacts[c].was_active(); });
     return order;
 }
 
@@ -91,7 +92,7 @@ std::vector<std::size_t> order_of(const std::vector<Contact>& contacts)
 bool is_expected(const Contact& contact, const Prediction& prediction, const State& state)
 {
     const double closing = contact.normal.dot(contact.in_frame.at(state.velocity));
-    return contact.was_active || contact.is_pressing || contact.gap + prediction.gamma * closing < 0.0;
+    return contact.was_active() || contact.is_pressing || contact.gap + prediction.gamma * closing < 0.0;
 }
 
 void add_row(const Prediction& prediction, const Linearization& at, Contact& contact,
@@ -99,6 +100,7 @@ void add_row(const Prediction& prediction, const Linearization& at, Contact& con
 {
     ConstraintRow row;
     row.lower = -contact.gap / prediction.gamma;
+    row.expected = contact.last_multiplier;
     const ObstacleContact& local = contact.in_frame;
     for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
         const int v = local.vertices[i];

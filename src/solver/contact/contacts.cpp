@@ -121,7 +121,7 @@ RiddenHistory find_ridden(const Obstacle& obstacle, const ObstacleStep& step, co
 bool runs_into(const ObstacleStep& step, const Contact& contact, double shift)
 {
     const ObstacleContact& local = contact.in_frame;
-    if (contact.was_active) return true;
+    if (contact.was_active()) return true;
     const double now = local.normal.dot(local.at(step.motion.begin) - local.point);
     const double end = local.normal.dot(local.at(step.motion.end) - local.point);
     return now + shift < local.least_gap && end < local.least_gap;
@@ -189,7 +189,7 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
     return steps;
 }
 
-bool was_active(const State& state, const Contact& contact)
+double find_last_multiplier(const State& state, const Contact& contact)
 {
     constexpr double kSameNormal = 0.7;
     const VertexIds ids = ids_of(state, contact.in_frame.vertices);
@@ -202,8 +202,8 @@ bool was_active(const State& state, const Contact& contact)
         if (active->kind == contact.in_frame.kind &&
             (contact.is_vertex() ? active->normal.dot(contact.in_frame.normal) > kSameNormal
                                  : active->element == contact.in_frame.element))
-            return true;
-    return false;
+            return active->multiplier;
+    return 0.0;
 }
 
 double way_along(const ObstacleStep& step, const Contact& contact)
@@ -215,7 +215,7 @@ double way_along(const ObstacleStep& step, const Contact& contact)
 Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
                       const Prediction& prediction)
 {
-    Contact placed{contact, obstacle, step.end.rotation * contact.normal, 0.0, false};
+    Contact placed{contact, obstacle, step.end.rotation * contact.normal, 0.0};
     update_gap(step, prediction, placed);
     return placed;
 }
@@ -244,7 +244,7 @@ std::vector<Contact> find_contacts(const Scene& scene, const State& state, const
         found.insert(found.begin(), of_vertices.begin(), of_vertices.end());
         for (const ObstacleContact& contact : found) {
             contacts.push_back(place_contact(contact, static_cast<int>(o), steps[o], prediction));
-            contacts.back().was_active = was_active(state, contacts.back());
+            contacts.back().last_multiplier = find_last_multiplier(state, contacts.back());
         }
     }
     return contacts;

@@ -35,15 +35,16 @@ struct Contact {
     int obstacle;  ///< index in the scene
     Vec3 normal;   ///< at the step's end
     double gap;    ///< distance of q~ beyond the gap to be kept at the step's end, m; negative inside
-    bool was_active;
-    bool is_pressing = false;  ///< in the last solve of this step, at an earlier linearization
-    bool may_grow = true;      ///< whether its gap may grow to the stand-off; false where it has yielded
-    double mitre = 1.0;        ///< stand-off over thickness
-    int eol = -1;              ///< index of the EOL coordinates whose first one it bounds; else -1
-    int bound = -1;            ///< coordinate of the velocity solve, 3 a vertex; -1 where it is a row
-    int row = -1;              ///< row of the velocity solve, or -1
+    double last_multiplier = 0.0;  ///< N s, of the last step; 0 where it did not press
+    bool is_pressing = false;      ///< in the last solve of this step, at an earlier linearization
+    bool may_grow = true;          ///< whether its gap may grow to the stand-off; false where it has yielded
+    double mitre = 1.0;            ///< stand-off over thickness
+    int eol = -1;                  ///< index of the EOL coordinates whose first one it bounds; else -1
+    int bound = -1;                ///< coordinate of the velocity solve, 3 a vertex; -1 where it is a row
+    int row = -1;                  ///< row of the velocity solve, or -1
 
     bool is_vertex() const { return in_frame.kind == ContactKind::Vertex; }
+    bool was_active() const { return last_multiplier > 0.0; }
     bool is_fold() const { return is_vertex() && in_frame.element == kFoldElement; }
 };
 
@@ -58,9 +59,9 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
 std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
                                    std::vector<ObstacleStep>& steps);
 
-/// Whether the contact is one of `state.active`. For an edge or face, the obstacle's element must match. For
-/// a vertex, which slides from face to face, the normals must be close.
-bool was_active(const State& state, const Contact& contact);
+/// The contact's multiplier (N s) in `state.active`; 0 where it is not there. For an edge or face, the
+/// obstacle's element must match. For a vertex, which slides from face to face, the normals must be close.
+double find_last_multiplier(const State& state, const Contact& contact);
 
 /// Distance, m, by which the obstacle at the contact moves along the contact's normal in the step.
 double way_along(const ObstacleStep& step, const Contact& contact);

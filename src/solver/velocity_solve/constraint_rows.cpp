@@ -11,9 +11,17 @@
 namespace arris {
 namespace {
 
-/// Cap of a multiplier in units of free speed / (g^T D^-1 g). Multipliers of rows that can be met stay below
-/// 0.1; others grow without limit. Stationarity loses as many digits as this number has.
-constexpr double kCap = 1e3;
+/// Stiffness of a row, in units of 1 / (g^T D^-1 g). With 1e3, cloth on a knife's edge slips between its
+/// rows; with 1e5, the matrix of dependent rows is so badly conditioned that more steps are halved.
+constexpr double kStiffness = 1e4;
+
+/// Share of the free speed by which a row gives way that cannot be met. Multipliers of rows that can be met
+/// stay below 0.1 free speed / (g^T D^-1 g), so these give way by less than 1e-5 of the speed.
+constexpr double kUnmet = 1e-2;
+
+/// Largest speed that a row may ask of what can move, over the free speed. A row of which only a tiny part
+/// can move may ask for any speed; its spring would throw that part.
+constexpr double kMostSpeed = 10.0;
 
 /// Round-off of a sum of 18 terms, relative to its largest term.
 constexpr double kRoundOff = 1e-14;
@@ -89,6 +97,7 @@ ScaledRow scale_row(const VelocityProblem& problem, const Eigen::VectorXd& diago
         value /= scaled.scale;
         scaled.compliance += value * value / diagonal[coordinate];
     }
+    scaled.give = scaled.compliance / kStiffness;
     return scaled;
 }
 
@@ -114,10 +123,16 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
         if (can_move) speed = std::max(speed, row.lower / largest_coefficient(row));
     }
     result.least_speed = kLeastSpeed * speed;
-    for (ScaledRow& row : result.rows) {
-        row.cap = kCap * speed / row.compliance;
+    result.unmet_speed = kUnmet * speed;
+    for (std::size_t k = 0; k < result.rows.size(); ++k) {
+        ScaledRow& row = result.rows[k];
         if (row.entries.empty()) continue;
-        result.is_finite = result.is_finite && std::isfinite(row.cap) && std::isfinite(row.lower);
+        if (row.lower > kMostSpeed * speed) {
+            row.lower = kMostSpeed * speed;
+            result.impossible.push_back(static_cast<int>(k));
+        }
+        row.lower += std::min(row.give * problem.rows[k].expected * row.scale, result.unmet_speed);
+        result.is_finite = result.is_finite && std::isfinite(1.0 / row.give) && std::isfinite(row.lower);
     }
     return result;
 }
@@ -158,9 +173,9 @@ double estimate_free_speed(const VelocityProblem& problem)
     return unit * largest;
 }
 
-double gap(const ScaledRow& row, const Eigen::VectorXd& velocity)
+double gap(const ScaledRow& row, const Eigen::VectorXd& velocity, double multiplier)
 {
-    double value = 0.0;
+    double value = row.give * multiplier;
     for (const auto& [coordinate, coefficient] : row.entries) value += coefficient * velocity[coordinate];
     return value - row.lower;
 }

@@ -13,20 +13,22 @@ namespace arris {
 /// and its multiplier an impulse in N s, whatever the scale of the given row.
 struct ScaledRow {
     SparseVector entries;     ///< g, by ascending coordinate; empty where the row constrains nothing
-    double lower = 0.0;       ///< m/s
+    double lower = 0.0;       ///< m/s: the given one, and the way that the expected multiplier presses
     double scale = 1.0;       ///< given row = scale * g; given multiplier = multiplier / scale
     double compliance = 1.0;  ///< g^T D^-1 g, D = diag A, 1/kg: gap opened by a unit impulse without coupling
-    double cap = 0.0;         ///< largest multiplier, N s
+    double give = 0.0;        ///< 1/kg: speed by which the row gives way to a unit multiplier
     int group = 0;
 };
 
-/// The rows of a problem. With multipliers in [0, cap] the problem always has an answer. Where the rows
-/// cannot all be met, the answer minimises the energy plus the sum of cap * violation (exact L1 penalty, e.g.
-/// Nocedal and Wright 2006, sec. 17.2). The rows that are not met have multipliers at their caps.
+/// The rows of a problem. Each is a stiff spring that only pushes: multiplier = max(0, lower - g^T u) / give.
+/// The problem is then min 1/2 u^T A u - b^T u + sum_k max(0, lower_k - g_k^T u)^2 / (2 give_k). It is
+/// strictly convex, so it has one answer, however many rows repeat or contradict each other. Rows that can be
+/// met give way by less than 1e-5 of the free speed.
 struct ConstraintRows {
     std::vector<ScaledRow> rows;  ///< one per row of the problem
-    std::vector<int> impossible;  ///< rows without a coordinate that can move, where 0 < lower
+    std::vector<int> impossible;  ///< rows that ask for too much of what can move, or for motion of nothing
     double least_speed = 0.0;     ///< m/s: least scale of relative errors
+    double unmet_speed = 0.0;     ///< m/s: a row that gives way by more cannot be met
     bool is_finite = true;        ///< false with a NaN, or a bound of +infinity, which nothing can meet
 };
 
@@ -34,12 +36,12 @@ struct ConstraintRows {
 /// of the row's largest one, fixed coordinates included, count as 0.
 ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed);
 
-/// Largest speed, m/s, without bounds and rows, within an order of magnitude. Caps are relative to this
-/// speed, as the constrained speed may vanish. Depends only on A, b and the fixed coordinates; costs a few
-/// products with A.
+/// Largest speed, m/s, without bounds and rows, within an order of magnitude. What cannot be
+/// met is relative to this speed, as the constrained speed may vanish. Depends only on A, b and the fixed
+/// coordinates; costs a few products with A.
 double estimate_free_speed(const VelocityProblem& problem);
 
-/// g^T u - lower.
-double gap(const ScaledRow& row, const Eigen::VectorXd& velocity);
+/// g^T u - lower + give * multiplier: 0 for a row that presses.
+double gap(const ScaledRow& row, const Eigen::VectorXd& velocity, double multiplier);
 
 }  // namespace arris

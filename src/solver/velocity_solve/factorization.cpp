@@ -229,6 +229,11 @@ double Factorization::nonzeros() const
     return static_cast<double>(impl_->factor->xsize);
 }
 
+double Factorization::flops() const
+{
+    return impl_->common.fl;
+}
+
 Supernode Factorization::supernode(int index) const
 {
     const cholmod_factor& factor = *impl_->factor;

@@ -51,6 +51,7 @@ class Factorization {
     int supernode_of(int position) const;
     int parent(int supernode) const;  ///< in the elimination tree; -1 at a root
     double nonzeros() const;          ///< stored entries of L
+    double flops() const;             ///< floating-point operations of `factorise`
 
   private:
     struct Impl;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "solver/velocity_solve/symmetric_product.h"
 
@@ -28,10 +27,6 @@ double largest(const Eigen::VectorXd& values)
     for (const double value : values) result = worse(result, std::abs(value));
     return result;
 }
-
-/// Relative distance from its cap within which a multiplier counts as at the cap: undoing the row's scale
-/// rounds.
-constexpr double kAtCap = 1e-12;
 
 double stationarity(const VelocityProblem& problem, const ConstraintRows& constraints,
                     const Eigen::VectorXd& velocity, const Eigen::VectorXd& multipliers,
@@ -58,13 +53,10 @@ double stationarity(const VelocityProblem& problem, const ConstraintRows& constr
 }
 
 /// Violation, sign and complementarity of one constraint.
-double pair_residual(double gap, double multiplier, double cap, double speed, double impulse)
+double pair_residual(double gap, double multiplier, double speed, double impulse)
 {
-    const bool gives_way = gap < 0.0 && multiplier >= (1.0 - kAtCap) * cap;
-    double result = gives_way ? 0.0 : relative(-gap, speed);
-    result = worse(result, relative(-multiplier, impulse));
-    if (multiplier > cap) result = worse(result, relative(multiplier - cap, impulse));
-    const double force = std::abs(gives_way ? cap - multiplier : multiplier);
+    double result = worse(relative(-gap, speed), relative(-multiplier, impulse));
+    const double force = std::abs(multiplier);
     // (lambda / max|lambda|) (gap / max|u|): neither product can overflow.
     if (!(force <= 0.0)) result = worse(result, relative(force, impulse) * relative(std::abs(gap), speed));
     return result;
@@ -81,16 +73,14 @@ double kkt_residual(const VelocityProblem& problem, const ConstraintRows& constr
     double result = worse(stationarity(problem, constraints, velocity, multipliers, row_multipliers),
                           std::isnan(speed + impulse) ? speed + impulse : 0.0);
     for (int i = 0; i < velocity.size(); ++i)
-        result = worse(result, problem.is_fixed[i]
-                                   ? relative(std::abs(velocity[i]), speed)
-                                   : pair_residual(velocity[i] - problem.lower[i], multipliers[i],
-                                                   std::numeric_limits<double>::infinity(), speed, impulse));
+        result = worse(result, problem.is_fixed[i] ? relative(std::abs(velocity[i]), speed)
+                                                   : pair_residual(velocity[i] - problem.lower[i],
+                                                                   multipliers[i], speed, impulse));
     for (std::size_t k = 0; k < constraints.rows.size(); ++k) {
         const ScaledRow& row = constraints.rows[k];
         if (row.entries.empty()) continue;
-        result =
-            worse(result, pair_residual(gap(row, velocity), row_multipliers[static_cast<Eigen::Index>(k)],
-                                        row.cap, speed, impulse));
+        const double multiplier = row_multipliers[static_cast<Eigen::Index>(k)];
+        result = worse(result, pair_residual(gap(row, velocity, multiplier), multiplier, speed, impulse));
     }
     return result;
 }

@@ -10,12 +10,11 @@ namespace arris {
 /// alone: the greatest of
 ///   stationarity     |A u - b - C^T lambda|_i / (|A||u| + |b| + |C^T||lambda|)_i     where not fixed
 ///   primal violation max(lower - C u, 0) / max|u|, and |u| / max|u| where fixed
-///   wrong sign       max(-lambda, lambda - cap, 0) / max|lambda|
+///   wrong sign       max(-lambda, 0) / max|lambda|
 ///   complementarity  |lambda (C u - lower)| / (max|lambda| max|u|)
-/// where C holds the bounds and the scaled rows. For a violated row with its multiplier at its cap,
-/// complementarity is |(cap - lambda)(C u - lower)|, and the violation is not counted. With rows, max|u| is
-/// at least their least speed, and diag(A) times that speed is added to the scale of stationarity. 0/0 counts
-/// as 0. NaN where anything is NaN; infinite where a coordinate without a bound has a multiplier.
+/// where C holds the bounds and the scaled rows; C u - lower of a row includes give * lambda. With rows,
+/// max|u| is at least their least speed, and diag(A) times that speed is added to the scale of stationarity.
+/// 0/0 counts as 0. NaN where anything is NaN; infinite where a coordinate without a bound has a multiplier.
 /// `row_multipliers` belong to the scaled rows.
 double kkt_residual(const VelocityProblem& problem, const ConstraintRows& constraints,
                     const Eigen::VectorXd& velocity, const Eigen::VectorXd& multipliers,

@@ -1,21 +1,65 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/velocity_solve/pinned_base.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/velocity_solve/symmetric_product.h"
 
 namespace arris {
 
-void evaluate_gradient(const VelocityProblem& problem, const ConstraintRows& constraints, Iterate& iterate)
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+/// The stored value at (row, column); null where the pattern has none.
+double* find_entry(Matrix& matrix, int row, int column)
 {
+    const int *begin = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column],
+              *end = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column + 1];
+    const int* at = std::lower_bound(begin, end, row);
+    return at == end || *at != row ? nullptr : matrix.valuePtr() + (at - matrix.innerIndexPtr());
+}
+
+bool is_one_vertex(int a, int b)
+{
+    return a / 3 == b / 3;
+}
+
+/// Adds g g^T / give to the lower triangle and the whole diagonal blocks.
+void add_spring(const ScaledRow& row, Matrix& matrix)
+{
+    for (const auto& [i, a] : row.entries)
+        for (const auto& [j, b] : row.entries)
+            if (i >= j || is_one_vertex(i, j)) *find_entry(matrix, i, j) += a * b / row.give;
+}
+
+}  // namespace
+
+bool has_room_for(const Matrix& matrix, const ScaledRow& row)
+{
+    for (const auto& [i, a] : row.entries)
+        for (const auto& [j, b] : row.entries)
+            if (i > j && find_entry(const_cast<Matrix&>(matrix), i, j) == nullptr) return false;
+    return true;
+}
+
+void evaluate_gradient(const PinnedBase& base, Iterate& iterate)
+{
+    const VelocityProblem& problem = *base.problem;
+    const std::vector<ScaledRow>& rows = base.constraints->rows;
+    for (std::size_t k = 0; k < base.is_pressing.size(); ++k)
+        if (base.is_pressing[k])
+            iterate.row_multipliers[static_cast<Eigen::Index>(k)] =
+                -gap(rows[k], iterate.velocity, 0.0) / rows[k].give;
     SymmetricProduct product = symmetric_product_with_magnitude(*problem.matrix, iterate.velocity);
     iterate.gradient = std::move(product.value) - *problem.rhs;
     iterate.magnitude = std::move(product.magnitude) + problem.rhs->cwiseAbs();
-    for (std::size_t k = 0; k < constraints.rows.size(); ++k) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
         const double multiplier = iterate.row_multipliers[static_cast<Eigen::Index>(k)];
-        if (multiplier <= 0.0) continue;
-        for (const auto& [coordinate, coefficient] : constraints.rows[k].entries) {
+        if (!(std::abs(multiplier) > 0.0)) continue;
+        for (const auto& [coordinate, coefficient] : rows[k].entries) {
             iterate.gradient[coordinate] -= coefficient * multiplier;
             iterate.magnitude[coordinate] += std::abs(coefficient * multiplier);
         }
@@ -29,24 +73,41 @@ std::vector<char> find_pinned(const VelocityProblem& problem, const std::vector<
     return is_pinned;
 }
 
-PinnedBase solve_pinned(const VelocityProblem& problem, const ConstraintRows& constraints,
-                        const std::vector<char>& is_active, const Factorization& factorization)
+std::optional<PinnedBase> solve_pinned(const VelocityProblem& problem, const ConstraintRows& constraints,
+                                       const std::vector<char>& is_active, std::vector<char> is_pressing,
+                                       Factorization& factorization)
 {
-    PinnedBase base = {&problem, &constraints, &factorization, find_pinned(problem, is_active), {}, {}};
+    PinnedBase base = {&problem,
+                       &constraints,
+                       &factorization,
+                       std::move(is_pressing),
+                       {},
+                       find_pinned(problem, is_active),
+                       {},
+                       {}};
+    Eigen::VectorXd rhs = *problem.rhs;
+    for (std::size_t k = 0; k < base.is_pressing.size(); ++k) {
+        if (!base.is_pressing[k]) continue;
+        const ScaledRow& row = constraints.rows[k];
+        if (base.with_rows.size() == 0) base.with_rows = *problem.matrix;
+        add_spring(row, base.with_rows);
+        for (const auto& [coordinate, value] : row.entries) rhs[coordinate] += value * row.lower / row.give;
+    }
+    if (!factorization.factorise(base.matrix(), base.is_pinned)) return std::nullopt;
+
     Eigen::VectorXd held = Eigen::VectorXd::Zero(problem.rhs->size());
     for (int i = 0; i < held.size(); ++i)
         if (is_active[i]) held[i] = problem.lower[i];
-    Eigen::VectorXd rhs = *problem.rhs - symmetric_product(*problem.matrix, held);
+    rhs -= symmetric_product(base.matrix(), held);
     for (int i = 0; i < held.size(); ++i)
         if (base.is_pinned[i]) rhs[i] = 0.0;
-
     base.forward = factorization.solve_forward(rhs);
     base.iterate = {factorization.solve_backward(base.forward) + held,
                     is_active,
                     Eigen::VectorXd::Zero(static_cast<Eigen::Index>(constraints.rows.size())),
                     {},
                     {}};
-    evaluate_gradient(problem, constraints, base.iterate);
+    evaluate_gradient(base, base.iterate);
     return base;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+
 #include "solver/velocity_solve/constraint_rows.h"
 #include "solver/velocity_solve/factorization.h"
 #include "solver/velocity_solve/velocity_solve.h"
@@ -11,31 +13,45 @@ namespace arris {
 struct Iterate {
     Eigen::VectorXd velocity;
     std::vector<char> is_active;      ///< u = lower, by coordinate
-    Eigen::VectorXd row_multipliers;  ///< of the scaled rows, in [0, cap]
+    Eigen::VectorXd row_multipliers;  ///< of the scaled rows; a base's pressing rows may pull (< 0)
     Eigen::VectorXd gradient;         ///< A u - b - C^T lambda: the multiplier where active, else a residual
     Eigen::VectorXd magnitude;        ///< |A||u| + |b| + |C^T||lambda|: scale of the round-off in `gradient`
 };
 
-/// The problem with chosen bounds pinned and no row, solved by one factorisation:
-/// u = lower where pinned, 0 where fixed, and A_FF u_F = b_F - A_FP u_P on the free coordinates F.
+/// The problem with chosen bounds pinned and chosen rows pressing, solved by one factorisation: u = lower
+/// where pinned, 0 where fixed, and A'_FF u_F = b'_F - A'_FP u_P on the free coordinates F. The springs of
+/// the pressing rows S are part of the matrix: A' = A + sum_S g g^T / give, b' = b + sum_S g lower / give.
 struct PinnedBase {
     const VelocityProblem* problem;
     const ConstraintRows* constraints;
     const Factorization* factorization;
+    std::vector<char> is_pressing;          ///< by row: whether it is in S
+    Eigen::SparseMatrix<double> with_rows;  ///< A'; empty where S is
     std::vector<char> is_pinned;  ///< a bound guessed active or a fixed coordinate: not in the factor
     Eigen::VectorXd forward;      ///< f = L^-1 P (b_F - A_FP u_P)
     Iterate iterate;
+
+    const Eigen::SparseMatrix<double>& matrix() const
+    {
+        return with_rows.size() > 0 ? with_rows : *problem->matrix;
+    }
 };
 
-/// Sets gradient and magnitude of `iterate` from its velocity and row multipliers.
-void evaluate_gradient(const VelocityProblem& problem, const ConstraintRows& constraints, Iterate& iterate);
+/// Sets the multipliers of the base's pressing rows, then gradient and magnitude of `iterate`, from its
+/// velocity and its other row multipliers.
+void evaluate_gradient(const PinnedBase& base, Iterate& iterate);
 
 /// The coordinates that the factor leaves out when these bounds are active: their coordinates and the fixed
 /// ones.
 std::vector<char> find_pinned(const VelocityProblem& problem, const std::vector<char>& is_active);
 
-/// `factorization` must be that of the matrix with `find_pinned(problem, is_active)` pinned.
-PinnedBase solve_pinned(const VelocityProblem& problem, const ConstraintRows& constraints,
-                        const std::vector<char>& is_active, const Factorization& factorization);
+/// Whether the matrix has an entry for each pair of the row's coordinates, so that its spring fits.
+bool has_room_for(const Eigen::SparseMatrix<double>& matrix, const ScaledRow& row);
+
+/// Factorises and solves a base. Its iterate is not finite where the matrix is not; nothing where it is not
+/// positive definite. There must be room for the pressing rows.
+std::optional<PinnedBase> solve_pinned(const VelocityProblem& problem, const ConstraintRows& constraints,
+                                       const std::vector<char>& is_active, std::vector<char> is_pressing,
+                                       Factorization& factorization);
 
 }  // namespace arris

@@ -10,14 +10,16 @@
 
 namespace arris {
 
-/// sum_k coefficient_k u_(coordinate_k) >= lower. Entries of fixed coordinates are ignored.
+/// sum_k coefficient_k u_(coordinate_k) >= lower. Entries of fixed coordinates are ignored. The row gives way
+/// a little: it holds exactly where its multiplier is the expected one.
 struct ConstraintRow {
     static constexpr int kMostEntries = 18;  ///< two faces of three vertices
     std::array<int, kMostEntries> coordinate{};
     std::array<double, kMostEntries> coefficient{};
     int count = 0;
-    double lower = 0.0;  ///< m/s where the coefficients are weights
-    int group = 0;       ///< one per cloth face: only the worst row of a group joins at a time
+    double lower = 0.0;     ///< m/s where the coefficients are weights
+    double expected = 0.0;  ///< multiplier, N s where the coefficients are weights
+    int group = 0;          ///< one per cloth face: only the worst row of a group joins at a time
 };
 
 /// min 1/2 u^T A u - b^T u subject to u >= lower, u = 0 where fixed, and rows. Three unknowns a vertex.
@@ -39,8 +41,8 @@ struct VelocitySolution {
     SolveStatus status = SolveStatus::NotConverged;
     Eigen::VectorXd velocity;          ///< u
     Eigen::VectorXd multipliers;       ///< lambda >= 0, one a coordinate, 0 where no bound is active
-    Eigen::VectorXd row_multipliers;   ///< in [0, cap], one a row
-    std::vector<int> infeasible_rows;  ///< at their cap and not met; the others hold as well as possible
+    Eigen::VectorXd row_multipliers;   ///< >= 0, one a row
+    std::vector<int> infeasible_rows;  ///< not met; all hold as well as possible
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;

@@ -12,15 +12,14 @@ namespace {
 /// multiplier, as a share of the terms that are summed into it.
 constexpr double kSignTolerance = 1e-13;
 
-/// The greatest error in the set's rows: the violation of rows below their cap, or the gap of pressing rows.
+/// The greatest error in the set's rows: the violation of free ones, or the gap of pressing ones.
 double error_of_members(const ConstraintRows& constraints, const Iterate& iterate, const WorkingSet& set)
 {
     double error = 0.0;
     for (std::size_t k = 0; k < constraints.rows.size(); ++k) {
         if (!set.contains_row(static_cast<int>(k))) continue;
         const double multiplier = iterate.row_multipliers[static_cast<Eigen::Index>(k)];
-        if (multiplier >= constraints.rows[k].cap) continue;
-        const double left = gap(constraints.rows[k], iterate.velocity);
+        const double left = gap(constraints.rows[k], iterate.velocity, multiplier);
         error = std::max(error, multiplier > 0.0 ? std::abs(left) : -left);
     }
     return error;
@@ -29,17 +28,18 @@ double error_of_members(const ConstraintRows& constraints, const Iterate& iterat
 /// Violation by which rows are compared, scaled to unit compliance.
 double weighed_violation(const ScaledRow& row, const Eigen::VectorXd& velocity)
 {
-    return -gap(row, velocity) / std::sqrt(row.compliance);
+    return -gap(row, velocity, 0.0) / std::sqrt(row.compliance);
 }
 
-std::vector<int> find_rows(const ConstraintRows& constraints, const Iterate& iterate, const WorkingSet& set,
+std::vector<int> find_rows(const PinnedBase& base, const Iterate& iterate, const WorkingSet& set,
                            double margin)
 {
+    const ConstraintRows& constraints = *base.constraints;
     std::map<int, std::pair<double, int>> worst;  // by group
     for (int k = 0; k < static_cast<int>(constraints.rows.size()); ++k) {
         const ScaledRow& row = constraints.rows[k];
-        if (row.entries.empty() || set.contains_row(k)) continue;
-        if (gap(row, iterate.velocity) >= -margin) continue;
+        if (row.entries.empty() || set.contains_row(k) || base.is_pressing[k]) continue;
+        if (gap(row, iterate.velocity, 0.0) >= -margin) continue;
         const double violation = weighed_violation(row, iterate.velocity);
         const auto [at, is_new] = worst.try_emplace(row.group, violation, k);
         if (!is_new && violation > at->second.first) at->second = {violation, k};
@@ -66,7 +66,11 @@ Violators find_violators(const PinnedBase& base, const Iterate& iterate, const W
     }
     const double least = kSignTolerance * base.constraints->least_speed;
     const double error = error_of_members(*base.constraints, iterate, set);
-    violators.rows = find_rows(*base.constraints, iterate, set, std::max({margin, least, 2.0 * error}));
+    const double row_margin = std::max({margin, least, 2.0 * error});
+    violators.rows = find_rows(base, iterate, set, row_margin);
+    for (int k = 0; k < static_cast<int>(base.is_pressing.size()); ++k)
+        if (base.is_pressing[k] && gap(base.constraints->rows[k], iterate.velocity, 0.0) > row_margin)
+            violators.pulling.push_back(k);
     return violators;
 }
 

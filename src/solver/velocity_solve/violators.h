@@ -11,8 +11,9 @@ namespace arris {
 struct Violators {
     std::vector<int>
         coordinates;  ///< free and below their bound, or active and pulling (negative multiplier); ascending
-    std::vector<int> rows;  ///< the worst violated row of each group
-    bool empty() const { return coordinates.empty() && rows.empty(); }
+    std::vector<int> rows;     ///< the worst violated row of each group
+    std::vector<int> pulling;  ///< rows of the base whose springs pull; ascending
+    bool empty() const { return coordinates.empty() && rows.empty() && pulling.empty(); }
 };
 
 /// The violators outside `set`. NaN counts as a violation. A row is a violator only if its violation exceeds

@@ -12,13 +12,6 @@ namespace arris {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-namespace {
-
-/// Relative diagonal shift with which the refinement's elimination can handle dependent rows.
-constexpr double kRowShift = 1e-12;
-
-}  // namespace
-
 WorkingSet::WorkingSet(const PinnedBase& base)
     : base_(&base),
       is_member_(base.is_pinned.size(), 0),
@@ -115,7 +108,7 @@ void WorkingSet::add_row(int member, const std::vector<int>& place, SparseVector
 /// One pass over the lower triangle finds A_RR and the columns of all pins released from member `first` on.
 void WorkingSet::add_released(int first, const std::vector<int>& place, std::vector<SparseVector>& columns)
 {
-    const Matrix& matrix = *base_->problem->matrix;
+    const Matrix& matrix = base_->matrix();
     const auto enter_column = [&](int released, int other, double value) {
         if (released >= first && !base_->is_pinned[other])
             columns[released - first].emplace_back(other, value);
@@ -144,8 +137,11 @@ std::optional<CondensedQp> WorkingSet::condense() const
     const Eigen::MatrixXd& gram = columns_.gram();
     std::vector<int> released, stopped;  // rows count as stopped
     for (int k = 0; k < size(); ++k) (members_[k].kind == Kind::Released ? released : stopped).push_back(k);
-    CondensedQp qp = {gram, Eigen::VectorXd(size()), caps()};
-    for (const int k : stopped) qp.linear[k] = gap_of(members_[k], base_->iterate.velocity);
+    CondensedQp qp = {gram, Eigen::VectorXd(size())};
+    for (const int k : stopped) {
+        qp.hessian(k, k) += give_of(members_[k]);
+        qp.linear[k] = gap_of(members_[k], base_->iterate);
+    }
     if (released.empty()) return qp;
 
     Eigen::VectorXd gradient(static_cast<Eigen::Index>(released.size()));
@@ -169,29 +165,19 @@ std::optional<CondensedQp> WorkingSet::condense() const
     return qp;
 }
 
-/// u - lower or g^T u - lower.
-double WorkingSet::gap_of(const Member& member, const Eigen::VectorXd& velocity) const
+/// u - lower, or g^T u - lower + give * multiplier.
+double WorkingSet::gap_of(const Member& member, const Iterate& iterate) const
 {
-    if (member.kind == Kind::Row) return gap(row_of(member), velocity);
-    return velocity[member.index] - base_->problem->lower[member.index];
+    if (member.kind == Kind::Row)
+        return gap(row_of(member), iterate.velocity, iterate.row_multipliers[member.index]);
+    return iterate.velocity[member.index] - base_->problem->lower[member.index];
 }
 
-/// Cap of each member's multiplier; empty without rows.
-Eigen::VectorXd WorkingSet::caps() const
-{
-    Eigen::VectorXd result;
-    if (row_count_ == 0) return result;
-    result.setConstant(size(), std::numeric_limits<double>::infinity());
-    for (int k = 0; k < size(); ++k)
-        if (members_[k].kind == Kind::Row) result[k] = row_of(members_[k]).cap;
-    return result;
-}
-
-bool WorkingSet::solve(Iterate& iterate, int& nlopt_evaluations)
+bool WorkingSet::solve(Iterate& iterate, int& nlopt_evaluations, DenseBudget& budget)
 {
     const std::optional<CondensedQp> qp = condense();
     if (!qp) return false;
-    const std::optional<CondensedAnswer> answer = solve_condensed_qp(*qp, multipliers_);
+    const std::optional<CondensedAnswer> answer = solve_condensed_qp(*qp, multipliers_, budget);
     if (!answer) return false;
     nlopt_evaluations += answer->nlopt_evaluations;
     multipliers_ = answer->z;
@@ -207,40 +193,13 @@ bool WorkingSet::solve(Iterate& iterate, int& nlopt_evaluations)
     return true;
 }
 
-bool WorkingSet::correct(Iterate& iterate)
-{
-    const std::optional<CondensedQp> qp = condense();
-    if (!qp) return false;
-    Eigen::VectorXd multipliers(size()), gaps(size());
-    for (int k = 0; k < size(); ++k) {
-        const auto [kind, i] = members_[k];
-        multipliers[k] = kind == Kind::Row      ? iterate.row_multipliers[i]
-                         : iterate.is_active[i] ? iterate.gradient[i]
-                                                : 0.0;
-        gaps[k] = gap_of(members_[k], iterate.velocity);
-    }
-    const std::optional<CondensedAnswer> answer = solve_by_descent(*qp, multipliers, gaps);
-    if (!answer) return false;
-    multipliers_ = answer->z;
-
-    Eigen::VectorXd coefficients(size());
-    for (int k = 0; k < size(); ++k)
-        coefficients[k] =
-            members_[k].kind == Kind::Released ? gaps[k] - answer->w[k] : answer->z[k] - multipliers[k];
-    Eigen::VectorXd forward = Eigen::VectorXd::Zero(base_->forward.size());
-    columns_.accumulate(coefficients, forward);
-    const Eigen::VectorXd change = base_->factorization->solve_backward(forward);
-    set_members(*answer, iterate.velocity + change, iterate);
-    return true;
-}
-
 void WorkingSet::set_members(const CondensedAnswer& answer, const Eigen::VectorXd& free,
                              Iterate& iterate) const
 {
     for (int i = 0; i < free.size(); ++i)
         if (!base_->is_pinned[i]) iterate.velocity[i] = free[i];
     for (int k = 0; k < size(); ++k) set_member(k, answer, iterate);
-    evaluate_gradient(*base_->problem, *base_->constraints, iterate);
+    evaluate_gradient(*base_, iterate);
 }
 
 void WorkingSet::set_member(int k, const CondensedAnswer& answer, Iterate& iterate) const
@@ -250,7 +209,7 @@ void WorkingSet::set_member(int k, const CondensedAnswer& answer, Iterate& itera
         iterate.row_multipliers[i] = answer.z[k];
         return;
     }
-    iterate.is_active[i] = answer.stand[k] == Stand::Between;
+    iterate.is_active[i] = answer.is_positive[k];
     if (kind == Kind::Released || iterate.is_active[i]) {
         const double gap = iterate.is_active[i] ? 0.0 : answer.w[k];
         iterate.velocity[i] = base_->problem->lower[i] + gap;
@@ -258,13 +217,12 @@ void WorkingSet::set_member(int k, const CondensedAnswer& answer, Iterate& itera
 }
 
 /// Whether refinement treats the member as an equation: pins that are free now, coordinates stopped now, and
-/// rows between 0 and their cap.
+/// rows that press.
 bool WorkingSet::is_equation(const Member& member, const Iterate& iterate) const
 {
     if (member.kind != Kind::Row)
         return (member.kind == Kind::Released) != (iterate.is_active[member.index] != 0);
-    const double multiplier = iterate.row_multipliers[member.index];
-    return multiplier > 0.0 && multiplier < row_of(member).cap;
+    return iterate.row_multipliers[member.index] > 0.0;
 }
 
 /// With r = -gradient on the free coordinates: L f = P r, then (dR, lambda_a), then one backward solve.
@@ -297,9 +255,9 @@ bool WorkingSet::refine(Iterate& iterate) const
         if (member.kind == Kind::Released) iterate.velocity[member.index] += change;
         if (member.kind != Kind::Row) continue;
         double& multiplier = iterate.row_multipliers[member.index];
-        multiplier = std::clamp(multiplier + change, 0.0, row_of(member).cap);
+        multiplier = std::max(multiplier + change, 0.0);
     }
-    evaluate_gradient(*base_->problem, *base_->constraints, iterate);
+    evaluate_gradient(*base_, iterate);
     return true;
 }
 
@@ -312,24 +270,20 @@ Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Ite
     if (count == 0) return {};
     const Eigen::VectorXd product = columns_.dot(forward);
     Eigen::MatrixXd matrix(count, count);
-    Eigen::VectorXd rhs(count), scale(count), shift = Eigen::VectorXd::Zero(count);
+    Eigen::VectorXd rhs(count), scale(count);
     for (Eigen::Index i = 0; i < count; ++i) {
         const int k = equations[i];
         const Member& member = members_[k];
-        double size = std::abs(mixed(k, k)), known = 0.0;
+        double known = 0.0;
         if (member.kind == Kind::Released) known = -iterate.gradient[member.index];
-        if (member.kind == Kind::Row) {
-            known = -gap_of(member, iterate.velocity);
-            size = std::max(size, row_of(member).compliance);  // 0 for a row on pins alone
-            shift[i] = kRowShift;
-        }
-        scale[i] = 1.0 / std::sqrt(size);
+        if (member.kind == Kind::Row) known = -gap_of(member, iterate);
         rhs[i] = known - product[k];
         for (Eigen::Index j = 0; j < count; ++j) matrix(i, j) = mixed(k, equations[j]);
+        matrix(i, i) += give_of(member);
+        scale[i] = 1.0 / std::sqrt(std::abs(matrix(i, i)));
     }
     // Members have different units: scale to a unit diagonal first.
     matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
-    if (row_count_ > 0) matrix.diagonal() += shift;
     return scale.cwiseProduct(matrix.partialPivLu().solve(scale.cwiseProduct(rhs)));
 }
 

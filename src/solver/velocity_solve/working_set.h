@@ -8,15 +8,15 @@
 namespace arris {
 
 /// The constraints U that may have to change sides relative to the base: pins to be released (R), free
-/// coordinates to be stopped and rows (together a). The base's factor eliminates everything else. With W =
-/// L^-1 P A_FR and Y = L^-1 P g_F, where g is a row's coefficients or a unit vector, the base's solution
-/// changes by
+/// coordinates to be stopped and rows (together a). The base's factor eliminates everything else. With A
+/// the base's matrix, W = L^-1 P A_FR and Y = L^-1 P g_F, where g is a row's coefficients or a unit vector,
+/// the base's solution changes by
 ///   gradient_R = gradient0_R + C dR + B lambda_a,   C = A_RR - W^T W  (compliance^-1 of the released)
 ///   gap_a      = gap0_a - B^T dR + Y^T Y lambda_a,   B = W^T Y - g_R
 /// with dR = u_R - lower_R. `columns_` holds the Gram matrix of W and Y. Solved for (dR, gap_a) this is the
-/// condensed problem w = S lambda + q with S = g^T (A_F+R)^-1 g. S is SPD except for rows that depend on
-/// others. U only grows. A row brings the release of the pins among its coordinates: S_kk of a row on pinned
-/// coordinates alone would be zero.
+/// condensed problem w = S lambda + q with S = g^T (A_F+R)^-1 g + diag(give). S is SPD. U only grows. A row
+/// brings the release of the pins among its coordinates: without them a row on pinned coordinates alone would
+/// only give way.
 class WorkingSet {
   public:
     explicit WorkingSet(const PinnedBase& base);
@@ -35,15 +35,12 @@ class WorkingSet {
     void see_new_rows();
 
     /// Finds multipliers on U and the velocity that they give. False where the dense problem is not positive
-    /// definite to working precision or does not end; the working set is then useless.
-    bool solve(Iterate& iterate, int& nlopt_evaluations);
+    /// definite to working precision or does not end within `budget`, which its work reduces; the working
+    /// set is then useless.
+    bool solve(Iterate& iterate, int& nlopt_evaluations, DenseBudget& budget);
 
     /// One step of iterative refinement of the equations of the current active set; false as for `solve`.
     bool refine(Iterate& iterate) const;
-
-    /// Solves for U once more from a refined `iterate`, relative to its true gaps and multipliers, which
-    /// corrects wrong signs due to round-off in S. For working sets with rows; false as for `solve`.
-    bool correct(Iterate& iterate);
 
   private:
     enum class Kind { Released, Stopped, Row };
@@ -60,8 +57,11 @@ class WorkingSet {
     const ScaledRow& row_of(const Member& member) const { return base_->constraints->rows[member.index]; }
 
     std::optional<CondensedQp> condense() const;
-    Eigen::VectorXd caps() const;
-    double gap_of(const Member& member, const Eigen::VectorXd& velocity) const;
+    double give_of(const Member& member) const
+    {
+        return member.kind == Kind::Row ? row_of(member).give : 0.0;
+    }
+    double gap_of(const Member& member, const Iterate& iterate) const;
     void set_member(int k, const CondensedAnswer& answer, Iterate& iterate) const;
     void set_members(const CondensedAnswer& answer, const Eigen::VectorXd& free, Iterate& iterate) const;
     double mixed(int i, int j) const;

@@ -215,7 +215,7 @@ struct Landed {
         contact.point = Vec3(0, 0, 0);
         contact.least_gap = kThickness;
         contacts.push_back(place_contact(contact, 0, steps[0], prediction));
-        contacts.back().was_active = was_active;
+        contacts.back().last_multiplier = was_active ? 1.0 : 0.0;
     }
 
     bool flatten() { return flatten_history(scene, state, steps, {}, 0, contacts, prediction); }

@@ -26,15 +26,6 @@ VelocitySolution solve(const VelocityProblem& problem)
     return VelocitySolver().solve(problem, Settings());
 }
 
-Eigen::VectorXd caps_given(const VelocityProblem& problem)
-{
-    const ConstraintRows constraints = scale_rows(problem, estimate_free_speed(problem));
-    Eigen::VectorXd caps(static_cast<Eigen::Index>(problem.rows.size()));
-    for (Eigen::Index k = 0; k < caps.size(); ++k)
-        caps[k] = constraints.rows[k].cap / constraints.rows[k].scale;
-    return caps;
-}
-
 ConstraintRow make_row(std::initializer_list<std::pair<int, double>> entries, double lower, int group = 0)
 {
     ConstraintRow row;
@@ -114,7 +105,7 @@ TEST(ConstraintRows, EqualADenseReferenceFromAnyGuess)
     for (int trial = 0; trial < 300; ++trial) {
         const int rows = 1 + trial % 9;
         OwnedProblem owned = make_feasible_problem(1 + trial % 7, rows, random);
-        const auto reference = testing::solve_by_hildreth(owned.problem, caps_given(owned.problem));
+        const auto reference = testing::solve_by_hildreth(owned.problem);
         pressing += static_cast<int>((reference.row_multipliers.array() > 0.0).count());
         const double scale = std::max(reference.velocity.lpNorm<Eigen::Infinity>(), 1e-3);
         for (int guess = 0; guess < 4; ++guess) {
@@ -142,7 +133,7 @@ TEST(ConstraintRows, ThatCannotBeMetEqualTheElasticReference)
             owned.problem.rows.push_back(make_random_row(owned.problem, nothing, random));
             owned.problem.rows.back().lower = std::abs(owned.problem.rows.back().coefficient[0]);
         }
-        const auto reference = testing::solve_by_hildreth(owned.problem, caps_given(owned.problem));
+        const auto reference = testing::solve_by_hildreth(owned.problem);
         const VelocitySolution solution = solve(owned.problem);
         ASSERT_TRUE(solution.status == SolveStatus::Certified || solution.status == SolveStatus::Infeasible)
             << trial << " " << solution.kkt_residual;
@@ -150,9 +141,7 @@ TEST(ConstraintRows, ThatCannotBeMetEqualTheElasticReference)
         infeasible += solution.status == SolveStatus::Infeasible;
         const double scale = std::max(reference.velocity.lpNorm<Eigen::Infinity>(), 1e-3);
         EXPECT_LE((solution.velocity - reference.velocity).lpNorm<Eigen::Infinity>(), 1e-8 * scale) << trial;
-        EXPECT_LE(testing::dense_kkt_residual_of_rows(owned.problem, solution, solution.infeasible_rows),
-                  kCertified)
-            << trial;
+        EXPECT_LE(testing::dense_kkt_residual_of_rows(owned.problem, solution), kCertified) << trial;
     }
     EXPECT_GT(infeasible, 40);
     EXPECT_LT(infeasible, 160);
@@ -212,14 +201,14 @@ TEST(ConstraintRows, TakeOneFactorisationFromAnyGuess)
          {testing::RowPattern::Spread, testing::RowPattern::Patch, testing::RowPattern::Clusters,
           testing::RowPattern::NearlyEqual}) {
         ClothWithRows cloth(20);
-        cloth.add(pattern, 200, 1);
+        cloth.add(pattern, 140, 1);
         const VelocitySolution cold = solve(cloth.owned.problem);
         ASSERT_EQ(cold.status, SolveStatus::Certified) << cold.kkt_residual;
         ASSERT_GT(pressing(cold).size(), 5u);
         EXPECT_EQ(cold.factorisations, 1);
         EXPECT_LE(cold.kkt_residual, kAccurate);
         for (const double share : {0.0, 0.5, 1.0}) {
-            cloth.owned.problem.row_guess = random_subset(200, share, random);
+            cloth.owned.problem.row_guess = random_subset(140, share, random);
             cloth.owned.problem.guess = testing::spoil_guess(
                 cloth.owned.problem, testing::active_coordinates(cold), 0.1 * share, random);
             const VelocitySolution warm = solve(cloth.owned.problem);
@@ -227,6 +216,30 @@ TEST(ConstraintRows, TakeOneFactorisationFromAnyGuess)
             EXPECT_EQ(warm.factorisations, 1);
             expect_same_velocity(warm, cold);
         }
+    }
+}
+
+TEST(ConstraintRows, OfWhichManyPressTakeFewFactorisationsFromAnyGuess)
+{
+    // Each guess is more than the working set starts with, so the rows are springs in the matrix.
+    std::mt19937 random(4);
+    for (const testing::RowPattern pattern :
+         {testing::RowPattern::Spread, testing::RowPattern::Clusters, testing::RowPattern::NearlyEqual}) {
+        ClothWithRows cloth(20);
+        cloth.add(pattern, 700, 1);
+        const VelocitySolution cold = solve(cloth.owned.problem);
+        ASSERT_EQ(cold.status, SolveStatus::Certified) << cold.kkt_residual;
+        for (const double share : {0.3, 1.0}) {
+            cloth.owned.problem.row_guess = random_subset(700, share, random);
+            const VelocitySolution warm = solve(cloth.owned.problem);
+            ASSERT_EQ(warm.status, SolveStatus::Certified) << warm.kkt_residual;
+            EXPECT_LE(warm.factorisations, 20);
+            EXPECT_LE(warm.kkt_residual, kAccurate);
+            expect_same_velocity(warm, cold);
+            EXPECT_EQ(pressing(warm), pressing(cold));
+        }
+        cloth.owned.problem.row_guess = pressing(cold);
+        EXPECT_LE(solve(cloth.owned.problem).factorisations, 2);
     }
 }
 
@@ -272,6 +285,9 @@ TEST(ConstraintRows, OfWhichTheCoefficientsAreScaledSayTheSame)
     }
 }
 
+/// Repeated rows are stiffer: they give way less than one, which gives way by less than this share.
+constexpr double kGive = 1e-4;
+
 TEST(ConstraintRows, RepeatedAreWorthOne)
 {
     for (const bool share_a_group : {true, false})
@@ -290,8 +306,9 @@ TEST(ConstraintRows, RepeatedAreWorthOne)
             cloth.owned.problem.row_guess = random_subset(500, guessed, random);
             const VelocitySolution often = solve(cloth.owned.problem);
             ASSERT_EQ(often.status, SolveStatus::Certified) << often.kkt_residual;
-            EXPECT_LE(often.factorisations, 2);
-            expect_same_velocity(often, once);
+            EXPECT_LE(often.factorisations, 8);
+            EXPECT_LE((often.velocity - once.velocity).lpNorm<Eigen::Infinity>(),
+                      kGive * once.velocity.lpNorm<Eigen::Infinity>());
         }
 }
 
@@ -314,7 +331,7 @@ TEST(ConstraintRows, ThatAreNearlyTheSameAreCertifiedInBoundedWork)
         const VelocitySolution solution = solve(cloth.owned.problem);
         EXPECT_EQ(solution.status, SolveStatus::Certified) << difference << " " << solution.kkt_residual;
         EXPECT_LE(testing::dense_kkt_residual_of_rows(cloth.owned.problem, solution), kCertified);
-        EXPECT_LE(solution.factorisations, 2);
+        EXPECT_LE(solution.factorisations, 8);
     }
 }
 
@@ -336,9 +353,7 @@ TEST(ConstraintRows, ThatOpposeEachOtherAreNamedAndNoOthers)
         const VelocitySolution solution = solve(cloth.owned.problem);
         EXPECT_EQ(solution.status, SolveStatus::Infeasible) << solution.kkt_residual;
         EXPECT_EQ(solution.infeasible_rows, (std::vector<int>{60, 61, 62, 63, 64, 65}));
-        EXPECT_LE(
-            testing::dense_kkt_residual_of_rows(cloth.owned.problem, solution, solution.infeasible_rows),
-            kCertified);
+        EXPECT_LE(testing::dense_kkt_residual_of_rows(cloth.owned.problem, solution), kCertified);
     }
 }
 
@@ -361,7 +376,7 @@ TEST(ConstraintRows, AgainstAnActiveBoundOfTheSameVertexGiveWay)
             if (is_guessed) owned.problem.row_guess = {30, 31};
             const VelocitySolution equal = solve(owned.problem);
             EXPECT_EQ(equal.status, SolveStatus::Certified) << equal.kkt_residual;
-            EXPECT_NEAR(equal.velocity[bounded], lower, 1e-11);
+            EXPECT_NEAR(equal.velocity[bounded], lower, kGive * std::abs(lower));
             owned.problem.rows.push_back(down);
             if (is_guessed) owned.problem.row_guess = {30, 31, 32};
             const VelocitySolution solution = solve(owned.problem);
@@ -411,15 +426,15 @@ TEST(ConstraintRows, HoldWhatIsAtRestThoughNothingMoves)
     for (int guess = 0; guess < 2; ++guess) {
         const VelocitySolution solution = solve(owned.problem);
         EXPECT_EQ(solution.status, SolveStatus::Certified);
-        EXPECT_LE(solution.velocity.lpNorm<Eigen::Infinity>(), 1e-12);
-        EXPECT_NEAR(solution.row_multipliers[0], -fall[2], 1e-9 * -fall[2]);
+        EXPECT_LE(solution.velocity.lpNorm<Eigen::Infinity>(), kGive * 9.81 * shape.step);
+        EXPECT_NEAR(solution.row_multipliers[0], -fall[2], kGive * -fall[2]);
         owned.problem.row_guess = {0};
     }
 }
 
 TEST(ConstraintRows, CarryAWholeClothOnOnePoint)
 {
-    // The greatest multiplier that occurs, far below the cap.
+    // The greatest multiplier that occurs, far below that of a row that cannot be met.
     testing::ClothShape shape{.side = 20};
     const testing::ClothSystem cloth = testing::make_cloth_system(shape);
     Eigen::VectorXd fall = Eigen::VectorXd::Zero(cloth.mass.size());
@@ -428,9 +443,14 @@ TEST(ConstraintRows, CarryAWholeClothOnOnePoint)
     owned.problem.rows = {make_row({{3 * 210 + 2, 1.0}}, 0.0)};
     const VelocitySolution solution = solve(owned.problem);
     EXPECT_EQ(solution.status, SolveStatus::Certified);
-    EXPECT_NEAR(solution.velocity[3 * 210 + 2], 0.0, 1e-13);
     const ConstraintRows constraints = scale_rows(owned.problem, estimate_free_speed(owned.problem));
-    EXPECT_LT(solution.row_multipliers[0], 0.1 * constraints.rows[0].cap);
+    const double give = constraints.rows[0].give * solution.row_multipliers[0];
+    EXPECT_NEAR(solution.velocity[3 * 210 + 2], -give, 1e-9 * give);
+    EXPECT_LT(give, 0.01 * constraints.unmet_speed);
+    // Told of its multiplier, the row holds exactly.
+    owned.problem.rows[0].expected = solution.row_multipliers[0];
+    const VelocitySolution held = solve(owned.problem);
+    EXPECT_NEAR(held.velocity[3 * 210 + 2], 0.0, 1e-4 * give);
 }
 
 TEST(ConstraintRows, OfFixedCoordinatesAreMetOrImpossible)
@@ -472,7 +492,7 @@ TEST(ConstraintRows, CountNothingWhereTheyTouchTheFixed)
     const VelocitySolution solution = solve(problem);
     EXPECT_EQ(solution.status, SolveStatus::Certified);
     expect_same_velocity(solution, solve(without.problem));
-    EXPECT_NEAR(0.5 * solution.velocity[5] + 0.5 * solution.velocity[8], 0.3, 1e-12);
+    EXPECT_NEAR(0.5 * solution.velocity[5] + 0.5 * solution.velocity[8], 0.3, kGive * 0.3);
 }
 
 TEST(ConstraintRows, AppendedAreResumedWithoutAFactorisation)
@@ -559,7 +579,9 @@ TEST(ConstraintRows, ThatAskForTooMuchDoNotSpoilTheRest)
     const VelocitySolution solution = solve(problem);
     EXPECT_EQ(solution.status, SolveStatus::Infeasible) << solution.kkt_residual;
     EXPECT_EQ(solution.infeasible_rows, (std::vector<int>{20}));
-    EXPECT_LE(testing::dense_kkt_residual_of_rows(problem, solution, solution.infeasible_rows), kCertified);
+    EXPECT_LE(solution.kkt_residual, kCertified);
+    EXPECT_LE(solution.velocity.lpNorm<Eigen::Infinity>(),
+              1e2 * cloth.resting.velocity.lpNorm<Eigen::Infinity>());
 }
 
 TEST(ConstraintRows, FindTheFreeSpeedWithinAnOrderOfMagnitude)

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The working-set method. A base pins the bounds expected active and factorises once. Violated bounds and
+// rows, and pins with a negative multiplier, form a working set U. NLopt solves the dense problem condensed
+// on U, and one backward solve gives the velocity. New violators join U until there are none. Few rows
+// expected active start in U. Many become springs in the matrix of the base (Newton's method for the
+// springs): then no dense problem is as large as their number. All bases together are at most kMostBases, and
+// the dense work is bounded too. If the guess is too far off for a small U, NLopt on the sparse problem
+// predicts the next base's guess. Whatever happened, the certificate judges the answer.
+#include "solver/velocity_solve/active_set_search.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "solver/model/stopwatch.h"
+#include "solver/velocity_solve/kkt_certificate.h"
+#include "solver/velocity_solve/primal_prediction.h"
+
+namespace arris {
+namespace {
+
+/// Answers certified at 1e-9 can still differ in soft modes; below this residual they do not.
+constexpr double kAccurate = 1e-12;
+
+/// KKT residual at which infeasible rows are reported. Larger than the tolerance for velocities, as the
+/// multipliers of rows that cannot be met are far larger than others.
+constexpr double kNaming = 1e-6;
+
+constexpr int kRefinements = 2;
+
+/// Size of U beyond which a new factorisation is cheaper than the dense work; the last extension may exceed
+/// this by half. If the violators exceed kHopeless times this number, solving for the worst of them does not
+/// pay.
+constexpr int kWorkingSetCap = 400;
+constexpr int kHopeless = 3;
+
+/// Bases that may end by exceeding the cap; after them U may grow to kLargestWorkingSet.
+constexpr int kCappedBases = 20;
+constexpr int kLargestWorkingSet = 2000;
+constexpr int kMostBases = 30;
+
+/// Largest number of rows in U; if more press, they become part of the base.
+constexpr int kMostRows = 400;
+
+/// Rows that start in U: at most this number, and this share of the vertices. More become part of the base.
+constexpr int kFewRows = 150;
+constexpr double kFewShare = 0.01;
+
+/// Bases whose rows may change sides all at once (Newton's method), until at most kFewChanges remain. After
+/// these bases, a row that has pulled in one is not part of a later one: U decides about it.
+constexpr int kNewtonBases = 8;
+constexpr int kFewChanges = 30;
+
+/// Floating-point operations on dense problems in one solve: as many as this number of factorisations take,
+/// and kLeastFlops, about a second's work.
+constexpr double kMostFactorisations = 30.0;
+constexpr double kLeastFlops = 2e9;
+
+std::vector<char> active_by_guess(const VelocityProblem& problem)
+{
+    std::vector<char> is_active(problem.is_fixed.size(), 0);
+    for (const int i : problem.guess) {
+        assert(i >= 0 && i < problem.rhs->size());
+        is_active[i] = !problem.is_fixed[i] && std::isfinite(problem.lower[i]);
+    }
+    return is_active;
+}
+
+std::vector<int> pressing_rows(const Iterate& iterate)
+{
+    std::vector<int> rows;
+    for (int k = 0; k < iterate.row_multipliers.size(); ++k)
+        if (iterate.row_multipliers[k] > 0.0) rows.push_back(k);
+    return rows;
+}
+
+/// A factorised base with its working set and current iterate.
+
+}  // namespace
+
+VelocitySolution make_zero_solution(const VelocityProblem& problem)
+{
+    VelocitySolution solution;
+    solution.velocity = solution.multipliers = Eigen::VectorXd::Zero(problem.rhs->size());
+    solution.row_multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.rows.size()));
+    return solution;
+}
+
+ActiveSetSearch::ActiveSetSearch(const VelocityProblem& problem, Factorization& factorization,
+                                 const ConstraintRows& constraints, std::optional<BaseInUse>& in_use,
+                                 const Settings& settings)
+    : problem_(problem),
+      factorization_(factorization),
+      constraints_(constraints),
+      in_use_(in_use),
+      settings_(settings)
+{
+    best_ = make_zero_solution(problem);
+    best_.kkt_residual = std::numeric_limits<double>::infinity();
+    has_pulled_.assign(problem.rows.size(), 0);
+    budget_ = {kLeastFlops + kMostFactorisations * factorization.flops(), &settings};
+}
+
+VelocitySolution ActiveSetSearch::run()
+{
+    is_active_ = active_by_guess(problem_);
+    choose_rows(rows_of_guess());
+    return run_bases();
+}
+
+std::vector<int> ActiveSetSearch::rows_of_guess() const
+{
+    std::vector<int> rows;
+    for (const int k : problem_.row_guess) {
+        assert(k >= 0 && k < static_cast<int>(constraints_.rows.size()));
+        const bool is_known = in_use_ && (in_use_->set.contains_row(k) || in_use_->base.is_pressing[k] != 0);
+        if (!is_known && !constraints_.rows[k].entries.empty()) rows.push_back(k);
+    }
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    return rows;
+}
+
+VelocitySolution ActiveSetSearch::run_bases()
+{
+    for (int base = 0; base < kMostBases && budget_.flops > 0.0 && !is_over_; ++base)
+        run_base(base < kCappedBases ? kWorkingSetCap : kLargestWorkingSet);
+    best_.infeasible_rows = find_infeasible_rows();
+    for (std::size_t k = 0; k < constraints_.rows.size(); ++k)
+        best_.row_multipliers[static_cast<Eigen::Index>(k)] /= constraints_.rows[k].scale;
+    if (best_.infeasible_rows.empty()) {
+        if (best_.kkt_residual <= settings_.tolerance) best_.status = SolveStatus::Certified;
+    } else if (best_.kkt_residual <= std::max(settings_.tolerance, kNaming)) {
+        best_.status = SolveStatus::Infeasible;
+    }
+    return best_;
+}
+
+VelocitySolution ActiveSetSearch::resume()
+{
+    PinnedBase& base = in_use_->base;
+    base.problem = &problem_;
+    base.is_pressing.resize(problem_.rows.size(), 0);
+    base.iterate.row_multipliers.conservativeResizeLike(best_.row_multipliers);
+    in_use_->set.see_new_rows();
+    in_use_->iterate = base.iterate;
+    rows_ = rows_of_guess();
+    if (start_rows()) run_rounds(kWorkingSetCap);
+    return run_bases();
+}
+
+/// Ends with `is_over_`, or with the next base's pins in `is_active_` and its rows chosen.
+void ActiveSetSearch::run_base(int cap)
+{
+    settings_.stop_if_interrupted();
+    Stopwatch watch;
+    in_use_.reset();
+    std::optional<PinnedBase> base =
+        solve_pinned(problem_, constraints_, is_active_, is_pressing_, factorization_);
+    best_.factorise_seconds += watch.lap();
+    ++best_.factorisations;
+    is_over_ = !base;  // not positive definite: NotConverged
+    if (is_over_) return;
+    if (!base->iterate.velocity.allFinite()) {
+        best_.status = SolveStatus::NotFinite;
+        is_over_ = true;
+        return;
+    }
+    in_use_.emplace(std::move(*base));
+    if (start_rows()) run_rounds(cap);
+}
+
+/// Divides the rows expected to press between the next base and its working set.
+void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
+{
+    rows_.clear();
+    is_pressing_.assign(problem_.rows.size(), 0);
+    const double few =
+        std::max<double>(kFewRows, kFewShare / 3.0 * static_cast<double>(problem_.lower.size()));
+    const bool is_few = static_cast<double>(expected.size()) <= few;
+    for (const int k : expected) {
+        if (is_few || has_pulled_[k] || !has_room_for(*problem_.matrix, constraints_.rows[k]))
+            rows_.push_back(k);
+        else
+            is_pressing_[k] = 1;
+    }
+}
+
+/// Solves for the working set with the rows expected active. False: the next base goes without these rows.
+bool ActiveSetSearch::start_rows()
+{
+    in_use_->set.extend({}, rows_);
+    rows_.clear();
+    if (in_use_->set.size() == 0) return true;
+    if (in_use_->set.solve(in_use_->iterate, best_.nlopt_evaluations, budget_)) return true;
+    is_active_ = in_use_->base.iterate.is_active;
+    return false;
+}
+
+void ActiveSetSearch::run_rounds(int cap)
+{
+    auto& [base, set, iterate] = *in_use_;
+    for (;;) {  // ends: U grows by at least one member per round, up to the cap
+        Violators violators = find_violators(base, iterate, set);
+        if (violators.empty()) {
+            if (finish()) return;
+            continue;
+        }
+        if (!violators.pulling.empty() || has_many_changes(violators))
+            return rebase_with_violated_rows(violators);
+        const int count = static_cast<int>(violators.coordinates.size()),
+                  row_count = static_cast<int>(violators.rows.size());
+        const int room = cap + cap / 2 - set.coordinate_count(), row_room = kMostRows - set.row_count();
+        if (count > kHopeless * cap) return rebase_by_prediction();
+        if (count > 0 && set.coordinate_count() >= cap) return rebase_with_changed(violators);
+        if (row_count > 0 && row_room == 0) return rebase_with_changed(violators);
+        if (count > room) keep_worst_coordinates(base, iterate, room, violators.coordinates);
+        if (row_count > row_room) keep_worst_rows(base, iterate, row_room, violators.rows);
+        set.extend(violators.coordinates, violators.rows);
+        if (!set.solve(iterate, best_.nlopt_evaluations, budget_)) return rebase_by_prediction();
+    }
+}
+
+void ActiveSetSearch::rebase_by_prediction()
+{
+    const Iterate& iterate = in_use_->iterate;
+    ActivePrediction prediction = predict_active_bounds(problem_, constraints_, iterate);
+    best_.nlopt_evaluations += prediction.nlopt_evaluations;
+    is_active_ = std::move(prediction.is_active);
+    choose_rows(pressing_rows(iterate));
+}
+
+/// Whether so many rows change sides that another base costs less than U, at a base that has rows.
+bool ActiveSetSearch::has_many_changes(const Violators& violators) const
+{
+    const std::vector<char>& in_base = in_use_->base.is_pressing;
+    return best_.factorisations <= kNewtonBases && static_cast<int>(violators.rows.size()) > kFewChanges &&
+           std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
+}
+
+/// Newton's step: all rows violated now press in the next base, and no others.
+void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
+{
+    const Iterate& iterate = in_use_->iterate;
+    std::vector<int> violated;
+    for (int k = 0; k < static_cast<int>(constraints_.rows.size()); ++k) {
+        const ScaledRow& row = constraints_.rows[k];
+        if (!row.entries.empty() && gap(row, iterate.velocity, 0.0) < 0.0) violated.push_back(k);
+    }
+    if (best_.factorisations > kNewtonBases)
+        for (const int k : violators.pulling) has_pulled_[k] = 1;
+    rebase_with_changed(violators);
+    choose_rows(violated);
+}
+
+/// Most of the work is done: the remaining violators change sides without a solve for them.
+void ActiveSetSearch::rebase_with_changed(const Violators& violators)
+{
+    is_active_ = in_use_->iterate.is_active;
+    for (const int i : violators.coordinates) is_active_[i] = !is_active_[i];
+    choose_rows(pressing_rows(in_use_->iterate));
+}
+
+/// No violator is left: accepts, refines, or factorises once more with exactly these bounds pinned. False
+/// where refinement has revealed new violators.
+bool ActiveSetSearch::finish()
+{
+    auto& [base, set, iterate] = *in_use_;
+    is_over_ = certify();
+    refine();
+    if (is_over_) return true;
+    if (set.row_count() > 0 && !find_violators(base, iterate, set).empty()) return false;
+    is_active_ = iterate.is_active;
+    choose_rows(pressing_rows(iterate));
+    const bool is_new_base = set.row_count() == 0 ? set.size() > 0 : is_active_ != base.iterate.is_active;
+    is_over_ = !is_new_base || (has_rebased_for_accuracy_ && best_.kkt_residual <= settings_.tolerance);
+    has_rebased_for_accuracy_ = true;
+    return true;
+}
+
+void ActiveSetSearch::refine()
+{
+    for (int step = 0; step < kRefinements && !is_over_; ++step) {
+        if (!in_use_->set.refine(in_use_->iterate)) break;
+        is_over_ = certify();
+    }
+}
+
+/// Keeps the iterate if it is the best so far; true where it is accurate enough.
+bool ActiveSetSearch::certify()
+{
+    const Iterate& iterate = in_use_->iterate;
+    Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(iterate.velocity.size());
+    for (int i = 0; i < multipliers.size(); ++i)
+        if (iterate.is_active[i]) multipliers[i] = std::max(iterate.gradient[i], 0.0);
+    Eigen::VectorXd row_multipliers = iterate.row_multipliers.cwiseMax(0.0);
+    const double residual =
+        kkt_residual(problem_, constraints_, iterate.velocity, multipliers, row_multipliers);
+    if (residual < best_.kkt_residual) {
+        best_.kkt_residual = residual;
+        best_.velocity = iterate.velocity;
+        best_.multipliers = std::move(multipliers);
+        best_.row_multipliers = std::move(row_multipliers);
+    }
+    return residual <= kAccurate;
+}
+
+/// Rows that give way further than rows that can be met, and rows without a movable coordinate.
+std::vector<int> ActiveSetSearch::find_infeasible_rows() const
+{
+    std::vector<int> infeasible = constraints_.impossible;
+    for (std::size_t k = 0; k < constraints_.rows.size(); ++k) {
+        const ScaledRow& row = constraints_.rows[k];
+        if (row.entries.empty()) continue;
+        if (row.give * best_.row_multipliers[static_cast<Eigen::Index>(k)] > constraints_.unmet_speed)
+            infeasible.push_back(static_cast<int>(k));
+    }
+    std::sort(infeasible.begin(), infeasible.end());
+    infeasible.erase(std::unique(infeasible.begin(), infeasible.end()), infeasible.end());
+    return infeasible;
+}
+
+}  // namespace arris

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "solver/velocity_solve/factorization.h"
+#include "solver/velocity_solve/pinned_base.h"
+#include "solver/velocity_solve/violators.h"
+#include "solver/velocity_solve/working_set.h"
+
+namespace arris {
+
+/// A factorised base with its working set and current iterate.
+struct BaseInUse {
+    PinnedBase base;
+    WorkingSet set;
+    Iterate iterate;
+
+    explicit BaseInUse(PinnedBase solved) : base(std::move(solved)), set(base), iterate(base.iterate) {}
+    BaseInUse(const BaseInUse&) = delete;  // the set refers to the base
+    BaseInUse& operator=(const BaseInUse&) = delete;
+};
+
+/// No motion and no multipliers.
+VelocitySolution make_zero_solution(const VelocityProblem& problem);
+
+/// One solve: its rounds and the best answer so far.
+class ActiveSetSearch {
+  public:
+    ActiveSetSearch(const VelocityProblem& problem, Factorization& factorization,
+                    const ConstraintRows& constraints, std::optional<BaseInUse>& in_use,
+                    const Settings& settings);
+
+    VelocitySolution run();
+
+    /// Goes on from the base in use, which belongs to this problem with fewer rows.
+    VelocitySolution resume();
+
+  private:
+    VelocitySolution run_bases();
+    void run_base(int cap);
+    void run_rounds(int cap);
+    bool start_rows();
+    void choose_rows(const std::vector<int>& expected);
+    bool has_many_changes(const Violators& violators) const;
+    void rebase_by_prediction();
+    void rebase_with_changed(const Violators& violators);
+    void rebase_with_violated_rows(const Violators& violators);
+    bool finish();
+    void refine();
+    bool certify();
+    std::vector<int> rows_of_guess() const;
+    std::vector<int> find_infeasible_rows() const;
+
+    const VelocityProblem& problem_;
+    Factorization& factorization_;
+    const ConstraintRows& constraints_;
+    std::optional<BaseInUse>& in_use_;
+    const Settings& settings_;
+    VelocitySolution best_;          ///< row multipliers belong to the scaled rows until the end
+    std::vector<char> is_active_;    ///< pins of the next base
+    std::vector<int> rows_;          ///< rows with which the next base's working set starts
+    std::vector<char> is_pressing_;  ///< by row: part of the next base
+    std::vector<char> has_pulled_;   ///< by row: not to be part of a base any more
+    DenseBudget budget_ = {0.0};
+    bool has_rebased_for_accuracy_ = false;
+    bool is_over_ = false;
+};
+
+}  // namespace arris
