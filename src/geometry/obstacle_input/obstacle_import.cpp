@@ -26,7 +26,6 @@
 #include "geometry/obstacle_input/import_log.h"
 #include "geometry/obstacle_input/mesh_file_check.h"
 #include "geometry/obstacle_input/mesh_folder_io.h"
-#include "geometry/obstacle_input/obj_numbers.h"
 #include "geometry/obstacle_input/obstacle_reply.h"
 #include "geometry/obstacle_input/soup_repair.h"
 #include "geometry/obstacle_input/soup_weld.h"
@@ -108,10 +107,9 @@ class ObstacleImporter {
         if (std::find(known.begin(), known.end(), extension_) == known.end())
             throw InputError(fmt::format("unknown format '.{}'; allowed: .{}", one_line(extension_),
                                          fmt::join(known, ", .")));
-        std::string bytes = read_regular_file(path_, kLargestFile);
+        const std::string bytes = canonical_bytes(extension_, read_regular_file(path_, kLargestFile));
         warnings_ = check_mesh_bytes(extension_, bytes);
         if (extension_ == "3mf") declared_unit_ = three_mf_unit(bytes);
-        if (extension_ == "obj") bytes = spell_out_numbers(bytes);
         load(bytes);
         place();
         warn_where_far();
