@@ -28,7 +28,7 @@
 #include "geometry/obstacle_input/obstacle_reply.h"
 #include "geometry/obstacle_input/soup_repair.h"
 #include "geometry/obstacle_input/soup_weld.h"
-#include "geometry/obstacle_input/three_mf_unit.h"
+#include "geometry/obstacle_input/three_mf_file.h"
 
 // The importer gets the reader of one format, no post-processing, and a file system of one folder. Its own
 // checks, its joining of vertices (within 1e-5, whatever the unit), its triangulation (which depends on a
@@ -85,8 +85,10 @@ class ObstacleImporter {
                                          fmt::join(known, ", .")));
         const std::string bytes = canonical_bytes(extension_, read_regular_file(path_, kLargestFile));
         warnings_ = check_mesh_bytes(extension_, bytes);
-        if (extension_ == "3mf") declared_unit_ = three_mf_unit(bytes);
-        load("mesh." + extension_, bytes);
+        if (extension_ == "3mf")
+            take_package(bytes);
+        else
+            load("mesh." + extension_, bytes);
         place();
         if (cutter_.crossing_count() > 0) warnings_.push_back(cutter_.tell_crossing(soup_.points));
         warn_where_far();
@@ -98,6 +100,15 @@ class ObstacleImporter {
     }
 
   private:
+    // The import library reads one part of a 3MF package, and drops what refers to others.
+    void take_package(const std::string& bytes)
+    {
+        ThreeMfFile file = read_three_mf(bytes, kMostFaces);
+        soup_ = std::move(file.soup);
+        declared_unit_ = file.metres_per_unit;
+        warnings_.insert(warnings_.end(), file.warnings.begin(), file.warnings.end());
+    }
+
     std::filesystem::path folder() const
     {
         const std::filesystem::path parent = std::filesystem::path(path_).parent_path();
@@ -293,7 +304,7 @@ class ObstacleImporter {
         for (const int p : soup_.lone_points) extend(p);
         const double offset = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
         const double size = (high - low).norm();
-        if (offset > kFarFromOrigin * size && size > 0.0)
+        if (extension_ != "3mf" && offset > kFarFromOrigin * size && size > 0.0)
             warnings_.push_back(fmt::format(
                 "it lies {:.3g} times its size from the origin: single precision moves its points by up to "
                 "{:.2g} m; move it near the origin",
