@@ -22,6 +22,7 @@
 #include "geometry/input_limits.h"
 #include "geometry/obstacle_input/face_cutter.h"
 #include "geometry/obstacle_input/format_reader.h"
+#include "geometry/obstacle_input/gltf_file.h"
 #include "geometry/obstacle_input/import_log.h"
 #include "geometry/obstacle_input/mesh_file_check.h"
 #include "geometry/obstacle_input/mesh_folder_io.h"
@@ -83,10 +84,12 @@ class ObstacleImporter {
         if (std::find(known.begin(), known.end(), extension_) == known.end())
             throw InputError(fmt::format("unknown format '.{}'; allowed: .{}", one_line(extension_),
                                          fmt::join(known, ", .")));
-        const std::string bytes = canonical_bytes(extension_, read_regular_file(path_, kLargestFile));
+        std::string bytes = canonical_bytes(extension_, read_regular_file(path_, kLargestFile));
         warnings_ = check_mesh_bytes(extension_, bytes);
         if (extension_ == "3mf")
             take_package(bytes);
+        else if (extension_ == "gltf" || extension_ == "glb")
+            take_gltf(std::move(bytes));
         else
             load("mesh." + extension_, bytes);
         place();
@@ -107,6 +110,13 @@ class ObstacleImporter {
         soup_ = std::move(file.soup);
         declared_unit_ = file.metres_per_unit;
         warnings_.insert(warnings_.end(), file.warnings.begin(), file.warnings.end());
+    }
+
+    void take_gltf(std::string bytes)
+    {
+        GltfFile file = prepare_gltf(extension_ == "glb", std::move(bytes), folder());
+        warnings_.insert(warnings_.end(), file.warnings.begin(), file.warnings.end());
+        load(file.is_binary ? "mesh.glb" : "mesh.gltf", file.bytes);
     }
 
     std::filesystem::path folder() const
