@@ -57,7 +57,8 @@ std::uint32_t crc32(const std::string& bytes)
     return ~crc;
 }
 
-// The archive stores files uncompressed.
+}  // namespace
+
 std::string zip(const std::vector<std::pair<std::string, std::string>>& files)
 {
     std::string bytes, directory;
@@ -86,8 +87,6 @@ std::string zip(const std::vector<std::pair<std::string, std::string>>& files)
     append(end, std::uint16_t{0});
     return bytes + directory + end;
 }
-
-}  // namespace
 
 std::string obj(const ObstacleMesh& mesh)
 {

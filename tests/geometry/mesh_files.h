@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/obstacle/obstacle_mesh.h"
@@ -34,6 +35,9 @@ std::string dae(const ObstacleMesh& mesh, const std::string& asset, const std::s
 std::string fbx(const ObstacleMesh& mesh, int up_axis, double centimetres_per_unit);
 
 std::string three_ds(const ObstacleMesh& mesh);
+
+/// An archive of files (name, content), not compressed.
+std::string zip(const std::vector<std::pair<std::string, std::string>>& files);
 
 /// A 3MF file as an uncompressed archive; `attributes` of its model, such as " unit=\"inch\"".
 std::string three_mf(const ObstacleMesh& mesh, const std::string& attributes);

@@ -1,28 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/cloth_input/cloth_file.h"
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <assimp/Importer.hpp>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <map>
 #include <tuple>
 
 #include "geometry/cgal.h"
 #include "geometry/cloth/material_box.h"
 #include "geometry/cloth/mesh_topology.h"
-#include "geometry/cloth_input/assimp_log.h"
 #include "geometry/cloth_input/chart_overlap.h"
 #include "geometry/cloth_input/obj_outline.h"
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
+#include "geometry/polygon.h"
 
 namespace arris {
 namespace {
@@ -45,36 +40,6 @@ struct FileMesh {
     bool has_uv = false;
 };
 
-// assimp reorders vertices and rounds to float. UVs carry each corner's number, in two exact parts.
-constexpr int kNumberBase = 1 << 12;
-
-// The outline's faces as text for assimp, near the origin so that single precision keeps vertices apart.
-std::string numbered_text(const ObjOutline& outline)
-{
-    const Vec3 origin = outline.vertices[outline.corners.front().vertex].place;
-    std::string text;
-    for (const ObjCorner& corner : outline.corners) {
-        const Vec3 p = outline.vertices[corner.vertex].place - origin;
-        fmt::format_to(std::back_inserter(text), "v {} {} {}\n", p.x(), p.y(), p.z());
-    }
-    const int count = static_cast<int>(outline.corners.size());
-    for (int c = 0; c < count; ++c)
-        fmt::format_to(std::back_inserter(text), "vt {} {}\n", c % kNumberBase, c / kNumberBase);
-    int corner = 0;
-    for (const int corners : outline.corner_counts) {
-        text += 'f';
-        for (int k = 0; k < corners; ++k, ++corner)
-            fmt::format_to(std::back_inserter(text), " {}/{}", corner + 1, corner + 1);
-        text += '\n';
-    }
-    return text;
-}
-
-int number_of_corner(const aiVector3D& uv)
-{
-    return static_cast<int>(uv.x) + kNumberBase * static_cast<int>(uv.y);
-}
-
 class ClothReader {
   public:
     ClothReader(const std::string& path, double unit_in_metres, char up)
@@ -89,7 +54,7 @@ class ClothReader {
         outline_ = read_obj_outline(path_);
         file_.has_uv = outline_.corners.front().uv >= 0;
         for (const ObjCorner& corner : outline_.corners) require_finite(corner);
-        import();
+        collect();
         warn_about_dropped();
         require_single_uvs();
         place_in_world();
@@ -128,42 +93,43 @@ class ClothReader {
         if (extension != ".obj") refuse(fmt::format("cloth is read from .obj files, not '{}'", extension));
     }
 
-    // Imports triangles, welding only equal vertices; assimp itself would weld any within 1e-5.
-    void import()
-    {
-        AssimpLog log;
-        Assimp::Importer importer;
-        const std::string text = numbered_text(outline_);
-        const aiScene* scene = importer.ReadFileFromMemory(
-            text.data(), text.size(), aiProcess_Triangulate | aiProcess_ValidateDataStructure, "obj");
-        if (scene == nullptr) refuse(std::string("cannot be imported: ") + importer.GetErrorString());
-        warnings_ = log.lines;
-        collect(*scene);
-        const std::size_t expected = outline_.corners.size() - 2 * outline_.corner_counts.size();
-        if (file_.faces.size() != expected)
-            refuse(fmt::format(
-                "its polygons should make {} triangles but made {}: one crosses itself or has no area",
-                expected, file_.faces.size()));
-    }
-
-    void collect(const aiScene& scene)
+    // Cuts the faces into triangles, and joins vertices of equal place and UV.
+    void collect()
     {
         std::map<decltype(FileVertex().key()), int> index;
-        for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-            const aiMesh& part = *scene.mMeshes[m];
-            for (unsigned f = 0; f < part.mNumFaces; ++f) {
-                Face face;
-                int line = 0;
-                for (unsigned k = 0; k < 3; ++k) {
-                    const aiVector3D& number = part.mTextureCoords[0][part.mFaces[f].mIndices[k]];
-                    const ObjCorner& corner = outline_.corners[number_of_corner(number)];
-                    face[k] = weld(corner, index);
-                    line = corner.line;
-                }
-                file_.faces.push_back(face);
+        std::size_t first = 0;
+        for (const int count : outline_.corner_counts) {
+            std::vector<int> vertices;
+            for (int k = 0; k < count; ++k) vertices.push_back(weld(outline_.corners[first + k], index));
+            const int line = outline_.corners[first].line;
+            for (const auto& [a, b, c] : cut(vertices, line)) {
+                file_.faces.push_back({vertices[a], vertices[b], vertices[c]});
                 file_.lines.push_back(line);
             }
+            first += static_cast<std::size_t>(count);
         }
+    }
+
+    // Triangles of a face's corners, cut in the material if the file has UVs, else in the face's own plane.
+    std::vector<Face> cut(const std::vector<int>& vertices, int line) const
+    {
+        if (vertices.size() == 3) return {{0, 1, 2}};
+        std::vector<Vec2> uvs;
+        std::vector<Vec3> places;
+        for (const int v : vertices) {
+            uvs.push_back(file_.vertices[v].uv);
+            places.push_back(file_.vertices[v].position);
+        }
+        const PolygonTriangles triangles =
+            file_.has_uv ? triangulate_polygon(uvs) : triangulate_polygon(places);
+        const char* where = file_.has_uv ? " in material space" : "";
+        if (triangles.defect == PolygonDefect::CrossesItself)
+            refuse_line(line,
+                        fmt::format("its polygon crosses itself{}; allowed: corners in their order around it",
+                                    where));
+        if (triangles.defect == PolygonDefect::NoArea)
+            refuse_line(line, fmt::format("its polygon has no area{}", where));
+        return triangles.faces;
     }
 
     FileVertex vertex_at(const ObjCorner& corner) const

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "geometry/input_error.h"
+#include "geometry/mesh_text.h"
 
 namespace arris {
 namespace {
@@ -32,8 +33,11 @@ class OutlineReader {
     {
         std::ifstream file(path_, std::ios::binary);
         if (!file) throw InputError(path_ + ": cannot be opened");
-        for (std::string line; read_statement(file, line);) take(line);
+        std::ostringstream bytes;
+        bytes << file.rdbuf();
         if (file.bad()) throw InputError(path_ + ": cannot be read to its end");
+        std::istringstream text(canonical_text(bytes.str()));
+        for (std::string line; std::getline(text, line); take(line)) ++line_;
         if (outline_.corner_counts.empty()) refuse_without_faces();
         // A face may name vertices that follow it.
         std::vector<char> is_used(outline_.vertices.size(), 0);
@@ -46,26 +50,18 @@ class OutlineReader {
     }
 
   private:
-    // Reads one statement: a line, and the lines that follow after a backslash. `line_` is the number of the
-    // first.
-    bool read_statement(std::istream& file, std::string& statement)
+    std::string canonical_text(const std::string& bytes) const
     {
-        statement.clear();
-        line_ = lines_read_ + 1;
-        for (std::string line; std::getline(file, line);) {
-            ++lines_read_;
-            if (!line.empty() && line.back() == '\r') line.pop_back();
-            const bool is_continued = !line.empty() && line.back() == '\\';
-            if (is_continued) line.back() = ' ';
-            statement += line;
-            if (!is_continued) return true;
+        try {
+            return canonical_obj(bytes);
+        } catch (const InputError& error) {
+            throw InputError(path_ + ": " + error.what());
         }
-        return !statement.empty();
     }
 
     void take(const std::string& statement)
     {
-        statement_ = statement.substr(0, statement.find('#'));
+        statement_ = statement;
         std::istringstream words(statement_);
         std::string word;
         if (!(words >> word)) return;
@@ -77,7 +73,7 @@ class OutlineReader {
             take_face(words);
         else if (word == "l" || word == "p")
             ++outline_.line_and_point_count;
-        else
+        else if (word != "#")
             ++other_statements_;
     }
 
@@ -101,14 +97,12 @@ class OutlineReader {
 
     double read_number(std::string_view word, const char* allowed) const
     {
-        const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
-        double number = 0.0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-        if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
+        const ParsedNumber number = parse_number(word);
+        if (number.error == NumberError::NoNumber)
             refuse(fmt::format("'{}' is no number", word.substr(0, kLongestQuote)), allowed);
-        if (error == std::errc::result_out_of_range)
+        if (number.error == NumberError::TooLarge)
             refuse(fmt::format("'{}' is beyond double precision", word.substr(0, kLongestQuote)), allowed);
-        return number;
+        return number.value;
     }
 
     std::vector<double> read_numbers(std::istringstream& words, const char* allowed) const
@@ -194,7 +188,6 @@ class OutlineReader {
     ObjOutline outline_;
     std::string statement_;
     int line_ = 0;
-    int lines_read_ = 0;
     int other_statements_ = 0;
 };
 

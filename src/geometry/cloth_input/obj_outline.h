@@ -37,11 +37,11 @@ struct ObjOutline {
     int line_and_point_count = 0;    ///< `l` and `p` elements
 };
 
-/// Reads the file's statements. Throws InputError naming the file, the line, the statement and what is
-/// allowed:
+/// Reads the file's statements, in every spelling that canonical_obj allows. Throws InputError naming the
+/// file, the line, the statement and what is allowed:
 ///  - a `v` or `vt` without its numbers; a face of fewer than three corners;
 ///  - an index that is not a number, zero or out of range (a negative one counts back from the last vertex);
-///  - faces with and without UVs in one file; a file without faces.
+///  - faces with and without UVs in one file; a file without faces; text in UTF-16.
 /// Numbers may be infinite or NaN, as a vertex that no face names does no harm. Numbers are correctly
 /// rounded: one written with 17 digits is read back unchanged.
 ObjOutline read_obj_outline(const std::string& path);

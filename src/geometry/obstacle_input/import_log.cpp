@@ -29,12 +29,12 @@ bool is_damage(const std::string& line)
                           "Chunk overflow", "nexpected EOF"});
 }
 
-// Messages on materials and textures, and the 3MF reader's complaints about parts that every archive has.
+// Messages on materials and textures.
 bool is_noise(std::string line)
 {
     std::transform(line.begin(), line.end(), line.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return has_any(line, {"material", "texture", "ignored file of un"});
+    return has_any(line, {"material", "texture"});
 }
 
 }  // namespace

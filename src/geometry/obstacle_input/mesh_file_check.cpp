@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "geometry/input_error.h"
+#include "geometry/mesh_text.h"
 #include "geometry/obstacle_input/ply_check.h"
 
 namespace arris {
@@ -53,21 +54,12 @@ class ObjCheck {
   public:
     explicit ObjCheck(std::string_view text) : text_(text) {}
 
-    void run()
+    std::vector<std::string> run()
     {
-        if (text_.find('\0') != std::string_view::npos)
-            throw InputError("not the text of an OBJ file (it holds a zero byte)");
         for (std::string_view rest = text_; !rest.empty();) {
-            const int first = line_ + 1;
             statement_ = take_line(rest);
             ++line_;
-            // A backslash continues a statement on the next line.
-            while (statement_.ends_with('\\') && !rest.empty()) {
-                statement_.back() = ' ';
-                statement_ += take_line(rest);
-                ++line_;
-            }
-            check_statement(first);
+            check_statement();
         }
         if (elements_ == 0)
             throw InputError(
@@ -75,43 +67,45 @@ class ObjCheck {
         if (greatest_index_ > vertices_)
             throw InputError(fmt::format("line {}: it names vertex {}, but there are {}", greatest_line_,
                                          greatest_index_, vertices_));
+        if (free_forms_ == 0) return {};
+        return {
+            fmt::format("its {} free-form curves and surfaces ('curv', 'surf') are not read", free_forms_)};
     }
 
   private:
-    [[noreturn]] void refuse(int line, const std::string& why) const
+    [[noreturn]] void refuse(const std::string& why) const
     {
-        std::string quote = statement_.substr(0, kLongestQuote);
+        std::string quote(statement_.substr(0, kLongestQuote));
         if (quote.size() < statement_.size()) quote += "...";
-        throw InputError(fmt::format("line {}: '{}': {}", line, quote, why));
+        throw InputError(fmt::format("line {}: '{}': {}", line_, quote, why));
     }
 
-    void check_statement(int line)
+    void check_statement()
     {
-        std::string_view words = std::string_view(statement_).substr(0, statement_.find('#'));
+        std::string_view words = statement_;
         const std::string_view keyword = take_word(words);
-        if (keyword == "v") check_vertex(words, line);
-        if (keyword == "f") check_element(words, line, 3);
-        if (keyword == "l") check_element(words, line, 2);
-        if (keyword == "p") check_element(words, line, 1);
+        if (keyword == "v") check_vertex(words);
+        if (keyword == "f") check_element(words, 3);
+        if (keyword == "l") check_element(words, 2);
+        if (keyword == "p") check_element(words, 1);
+        if (keyword == "surf" || keyword == "curv") ++free_forms_;
     }
 
-    void check_vertex(std::string_view words, int line)
+    void check_vertex(std::string_view words)
     {
         ++vertices_;
         for (int axis = 0; axis < 3; ++axis) {
-            std::string_view word = take_word(words);
-            if (word.starts_with('+')) word.remove_prefix(1);
-            double value = 0.0;
-            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-            if (word.empty()) refuse(line, "a vertex has 3 numbers");
-            if (error == std::errc::invalid_argument || end != word.data() + word.size())
-                refuse(line, fmt::format("'{}' is no number", word.substr(0, kLongestQuote)));
-            if (error != std::errc() || !std::isfinite(value))
-                refuse(line, "the vertex is not finite or beyond double precision");
+            const std::string_view word = take_word(words);
+            if (word.empty()) refuse("a vertex has 3 numbers");
+            const ParsedNumber number = parse_number(word);
+            if (number.error == NumberError::NoNumber)
+                refuse(fmt::format("'{}' is no number", word.substr(0, kLongestQuote)));
+            if (number.error != NumberError::None || !std::isfinite(number.value))
+                refuse("the vertex is not finite or beyond double precision");
         }
     }
 
-    void check_element(std::string_view words, int line, int least)
+    void check_element(std::string_view words, int least)
     {
         int corners = 0;
         for (std::string_view word = take_word(words); !word.empty(); word = take_word(words), ++corners) {
@@ -119,26 +113,27 @@ class ObjCheck {
             const std::string_view digits = word.substr(0, word.find('/'));
             const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
             if (error != std::errc() || end != digits.data() + digits.size())
-                refuse(line, fmt::format("'{}' is no index of a vertex", digits.substr(0, kLongestQuote)));
+                refuse(fmt::format("'{}' is no index of a vertex", digits.substr(0, kLongestQuote)));
             if (index == 0 || index < -vertices_)
-                refuse(line,
-                       fmt::format("vertex {} out of range: there are {} so far, counted from 1 (or back "
-                                   "from -1)",
-                                   index, vertices_));
+                refuse(
+                    fmt::format("vertex {} out of range: there are {} so far, counted from 1 (or back "
+                                "from -1)",
+                                index, vertices_));
             if (index > greatest_index_) {
                 greatest_index_ = index;
-                greatest_line_ = line;
+                greatest_line_ = line_;
             }
         }
-        if (corners < least) refuse(line, fmt::format("{} corners; at least {} are needed", corners, least));
+        if (corners < least) refuse(fmt::format("{} corners; at least {} are needed", corners, least));
         ++elements_;
     }
 
     std::string_view text_;
-    std::string statement_;
+    std::string_view statement_;
     int line_ = 0;
     long long vertices_ = 0;
     long long elements_ = 0;
+    long long free_forms_ = 0;
     long long greatest_index_ = 0;
     int greatest_line_ = 0;
 };
@@ -148,25 +143,34 @@ class ObjCheck {
 constexpr std::size_t kStlHeader = 84;  // 80 bytes of comment, 4 of face count
 constexpr std::size_t kStlFace = 50;
 
+// Checks the numbers of a vertex.
+void check_stl_vertex(std::string_view words, std::size_t facet, std::size_t corner)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string_view word = take_word(words);
+        const bool is_number = !word.empty() && parse_number(word).error == NumberError::None;
+        if (!is_number)
+            throw InputError(fmt::format("face {}, vertex {}: '{}' is no number; a vertex has 3", facet,
+                                         corner, word.substr(0, kLongestQuote)));
+    }
+}
+
 void check_ascii_stl(std::string_view text)
 {
-    if (text.find('\0') != std::string_view::npos)
-        throw InputError("neither a binary STL file (its length does not fit its count) nor the text of one");
     std::size_t facets = 0;
     std::size_t corners = 0;
     bool is_open = false;
-    std::string_view last_line;
+    std::string_view last_word;
     for (std::string_view rest = text; !rest.empty();) {
         std::string_view words = take_line(rest);
-        const std::string_view line = words;
         const std::string_view word = take_word(words);
-        if (!word.empty()) last_line = line;
+        if (!word.empty()) last_word = word;
         if (word == "facet") {
             ++facets;
             is_open = true;
             corners = 0;
         } else if (word == "vertex") {
-            ++corners;
+            check_stl_vertex(words, facets, ++corners);
         } else if (word == "endfacet") {
             if (!is_open || corners != 3)
                 throw InputError(fmt::format("face {} has {} vertices instead of 3", facets, corners));
@@ -175,7 +179,7 @@ void check_ascii_stl(std::string_view text)
     }
     if (is_open) throw InputError(fmt::format("truncated: face {} has no end", facets));
     if (facets == 0) throw InputError("no faces");
-    if (take_word(last_line) != "endsolid")
+    if (last_word != "endsolid")
         throw InputError(fmt::format("truncated: no 'endsolid' after face {}", facets));
 }
 
@@ -188,9 +192,7 @@ void check_stl(std::string_view bytes)
             return;
         }
     }
-    std::string_view start = bytes;
-    const bool is_text = take_word(start) == "solid" && bytes.find('\0') == std::string_view::npos;
-    if (is_text) return check_ascii_stl(bytes);
+    if (is_text_stl(bytes)) return check_ascii_stl(bytes);
     if (bytes.size() < kStlHeader)
         throw InputError(fmt::format("truncated: {} bytes are less than an STL file's header", bytes.size()));
     const std::uint64_t count = number_at<std::uint32_t>(bytes, 80);
@@ -240,8 +242,6 @@ void check_3ds(std::string_view bytes)
 
 void require_start(std::string_view bytes, std::string_view start, const char* what)
 {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
     if (!take_word(bytes).starts_with(start)) throw InputError(fmt::format("not {} file", what));
 }
 
@@ -254,10 +254,20 @@ const std::vector<std::string>& mesh_extensions()
     return kExtensions;
 }
 
+std::string canonical_bytes(const std::string& extension, std::string bytes)
+{
+    if (extension == "obj") return canonical_obj(bytes);
+    if (extension == "stl") return is_text_stl(bytes) ? canonical_stl(bytes) : std::move(bytes);
+    const bool is_text =
+        extension == "ply" || extension == "gltf" || extension == "dae" || extension == "fbx";
+    if (is_text) return std::string(skip_byte_order_mark(bytes));
+    return bytes;
+}
+
 std::vector<std::string> check_mesh_bytes(const std::string& extension, std::string_view bytes)
 {
     if (bytes.empty()) throw InputError("empty");
-    if (extension == "obj") ObjCheck(bytes).run();
+    if (extension == "obj") return ObjCheck(bytes).run();
     if (extension == "stl") check_stl(bytes);
     if (extension == "ply") return check_ply(bytes);
     if (extension == "glb") check_glb(bytes);

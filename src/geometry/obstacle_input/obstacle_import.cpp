@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/obstacle_input/obstacle_import.h"
 
-#include <assimp/BaseImporter.h>
 #include <assimp/config.h>
-#include <assimp/importerdesc.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -23,19 +20,21 @@
 
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
+#include "geometry/obstacle_input/face_cutter.h"
+#include "geometry/obstacle_input/format_reader.h"
+#include "geometry/obstacle_input/gltf_file.h"
 #include "geometry/obstacle_input/import_log.h"
 #include "geometry/obstacle_input/mesh_file_check.h"
 #include "geometry/obstacle_input/mesh_folder_io.h"
-#include "geometry/obstacle_input/obj_numbers.h"
 #include "geometry/obstacle_input/obstacle_reply.h"
 #include "geometry/obstacle_input/soup_repair.h"
 #include "geometry/obstacle_input/soup_weld.h"
-#include "geometry/obstacle_input/three_mf_unit.h"
+#include "geometry/obstacle_input/three_mf_file.h"
 
-// The importer gets the reader of one format, no post-processing but triangulation, and a file system of one
-// folder. Its own checks, its joining of vertices (within 1e-5, whatever the unit) and its flattening of the
-// node tree (in single precision) are not used. So positions leave the importer as the file has them, and are
-// double from there.
+// The importer gets the reader of one format, no post-processing, and a file system of one folder. Its own
+// checks, its joining of vertices (within 1e-5, whatever the unit), its triangulation (which depends on a
+// polygon's starting corner) and its flattening of the node tree (in single precision) are not used. So
+// positions leave the importer as the file has them, and are double from there.
 namespace arris {
 namespace {
 
@@ -48,29 +47,6 @@ constexpr std::size_t kMostNodes = 1'000'000;
 constexpr double kFarFromOrigin = 1e4;
 
 using Placement4 = Eigen::Matrix4d;
-
-// Leaves `importer` only the reader of files with this extension.
-void keep_reader_of(const std::string& extension, Assimp::Importer& importer)
-{
-    std::vector<Assimp::BaseImporter*> others;
-    bool is_kept = false;
-    for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
-        const aiImporterDesc& about = *importer.GetImporterInfo(i);
-        const std::string extensions = fmt::format(" {} ", about.mFileExtensions);
-        // Skip the reader of glTF version 1, which is obsolete.
-        const bool is_reader = extensions.find(" " + extension + " ") != std::string::npos &&
-                               std::string_view(about.mName) != "glTF Importer";
-        if (is_reader && !is_kept)
-            is_kept = true;
-        else
-            others.push_back(importer.GetImporter(i));
-    }
-    if (!is_kept) throw InputError(fmt::format("the import library cannot read .{} files", extension));
-    for (Assimp::BaseImporter* other : others) {
-        importer.UnregisterLoader(other);
-        const std::unique_ptr<Assimp::BaseImporter> owned(other);
-    }
-}
 
 // The shortest decimal number that rounds to `value` in single precision: 0.01f gives 0.01.
 double decimal(float value)
@@ -108,12 +84,16 @@ class ObstacleImporter {
         if (std::find(known.begin(), known.end(), extension_) == known.end())
             throw InputError(fmt::format("unknown format '.{}'; allowed: .{}", one_line(extension_),
                                          fmt::join(known, ", .")));
-        std::string bytes = read_regular_file(path_, kLargestFile);
+        std::string bytes = canonical_bytes(extension_, read_regular_file(path_, kLargestFile));
         warnings_ = check_mesh_bytes(extension_, bytes);
-        if (extension_ == "3mf") declared_unit_ = three_mf_unit(bytes);
-        if (extension_ == "obj") bytes = spell_out_numbers(bytes);
-        load(bytes);
+        if (extension_ == "3mf")
+            take_package(bytes);
+        else if (extension_ == "gltf" || extension_ == "glb")
+            take_gltf(std::move(bytes));
+        else
+            load("mesh." + extension_, bytes);
         place();
+        if (cutter_.crossing_count() > 0) warnings_.push_back(cutter_.tell_crossing(soup_.points));
         warn_where_far();
         // Readers of all other formats give each face its own points, even where the file shares them.
         if (extension_ != "stl" && extension_ != "ply") join_equal_points(soup_);
@@ -123,14 +103,34 @@ class ObstacleImporter {
     }
 
   private:
-    void load(const std::string& bytes)
+    // The import library reads one part of a 3MF package, and drops what refers to others.
+    void take_package(const std::string& bytes)
     {
-        const std::string name = "mesh." + extension_;
-        const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+        ThreeMfFile file = read_three_mf(bytes, kMostFaces);
+        soup_ = std::move(file.soup);
+        declared_unit_ = file.metres_per_unit;
+        warnings_.insert(warnings_.end(), file.warnings.begin(), file.warnings.end());
+    }
+
+    void take_gltf(std::string bytes)
+    {
+        GltfFile file = prepare_gltf(extension_ == "glb", std::move(bytes), folder());
+        warnings_.insert(warnings_.end(), file.warnings.begin(), file.warnings.end());
+        load(file.is_binary ? "mesh.glb" : "mesh.gltf", file.bytes);
+    }
+
+    std::filesystem::path folder() const
+    {
+        const std::filesystem::path parent = std::filesystem::path(path_).parent_path();
+        return parent.empty() ? "." : parent;
+    }
+
+    void load(const std::string& name, const std::string& bytes)
+    {
         ImportLog log;
         Assimp::Importer importer;
         keep_reader_of(extension_, importer);
-        auto owned_files = std::make_unique<MeshFolderIo>(name, bytes, folder.empty() ? "." : folder);
+        auto owned_files = std::make_unique<MeshFolderIo>(name, bytes, folder());
         const MeshFolderIo& files = *owned_files;
         importer.SetIOHandler(owned_files.release());  // the importer takes ownership
         // Stop assimp from adding a mesh of the nodes to a scene without a mesh.
@@ -141,15 +141,7 @@ class ObstacleImporter {
         log.require_no_damage();
         read_declared(*scene);
         for (unsigned m = 0; m < scene->mNumMeshes; ++m) check(*scene->mMeshes[m], m, *scene);
-        const std::size_t expected = count_triangles(*scene);
-        const aiScene* triangulated = importer.ApplyPostProcessing(aiProcess_Triangulate);
-        if (triangulated == nullptr) refuse_import(importer.GetErrorString(), {});
-        if (const std::size_t made = count_triangles(*triangulated); made < expected)
-            warnings_.push_back(
-                fmt::format("{} triangles are missing: polygons that cross themselves could not "
-                            "be cut into triangles",
-                            expected - made));
-        collect(*triangulated);
+        collect(*scene);
         log.append_to(warnings_);
         for (const std::string& refusal : files.refusals()) warnings_.push_back(refusal);
     }
@@ -229,16 +221,6 @@ class ObstacleImporter {
         }
     }
 
-    static std::size_t count_triangles(const aiScene& scene)
-    {
-        std::size_t count = 0;
-        for (unsigned m = 0; m < scene.mNumMeshes; ++m)
-            for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
-                if (const unsigned corners = scene.mMeshes[m]->mFaces[f].mNumIndices; corners > 2)
-                    count += corners - 2;
-        return count;
-    }
-
     // The node tree
 
     void collect(const aiScene& scene)
@@ -282,13 +264,25 @@ class ObstacleImporter {
             const auto point = [&](unsigned k) { return base + static_cast<int>(face.mIndices[k]); };
             if (face.mNumIndices == 1) soup_.lone_points.push_back(point(0));
             if (face.mNumIndices == 2) soup_.segments.push_back({point(0), point(1)});
-            if (face.mNumIndices != 3) continue;
-            soup_.faces.push_back({point(0), point(is_mirrored ? 2 : 1), point(is_mirrored ? 1 : 2)});
+            for (const auto& [a, b, c] : cut(mesh, face, base))
+                soup_.faces.push_back({point(a), point(is_mirrored ? c : b), point(is_mirrored ? b : c)});
         }
         // A PLY file with vertices only is a point cloud.
         if (mesh.mNumFaces == 0 && extension_ == "ply")
             for (unsigned v = 0; v < mesh.mNumVertices; ++v)
                 soup_.lone_points.push_back(base + static_cast<int>(v));
+    }
+
+    // Triangles of corners. Cuts polygons where the file states them: a placement would round their corners.
+    std::vector<Face> cut(const aiMesh& mesh, const aiFace& face, int base)
+    {
+        if (face.mNumIndices < 3) return {};
+        std::vector<Vec3> corners;
+        for (unsigned k = 0; k < face.mNumIndices; ++k) {
+            const aiVector3D& p = mesh.mVertices[face.mIndices[k]];
+            corners.emplace_back(p.x, p.y, p.z);
+        }
+        return cutter_.cut(corners, base + static_cast<int>(face.mIndices[0]));
     }
 
     // Conversion from the file's unit and axes to metres and +z up
@@ -320,7 +314,7 @@ class ObstacleImporter {
         for (const int p : soup_.lone_points) extend(p);
         const double offset = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
         const double size = (high - low).norm();
-        if (offset > kFarFromOrigin * size && size > 0.0)
+        if (extension_ != "3mf" && offset > kFarFromOrigin * size && size > 0.0)
             warnings_.push_back(fmt::format(
                 "it lies {:.3g} times its size from the origin: single precision moves its points by up to "
                 "{:.2g} m; move it near the origin",
@@ -334,6 +328,7 @@ class ObstacleImporter {
     double declared_unit_ = 1.0;  // m
     char declared_up_ = 'z';
     ObstacleMesh soup_;
+    FaceCutter cutter_;
     std::vector<std::string> warnings_;
 };
 

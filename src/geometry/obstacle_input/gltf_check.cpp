@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/obstacle_input/gltf_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string_view>
+
+#include "geometry/input_error.h"
+#include "geometry/obstacle_input/gltf_document.h"
+#include "geometry/obstacle_input/obstacle_reply.h"
+
+namespace arris {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kLongestQuote = 60;
+
+constexpr std::array<std::string_view, 2> kRead = {"KHR_draco_mesh_compression", "KHR_mesh_quantization"};
+
+// Extensions that leave shapes as they are, by what follows the vendor in their names. Those of the second
+// list add data that a reader of shapes does not need; the node that has MSFT_lod is the finest of its
+// levels.
+constexpr std::array<std::string_view, 12> kAppearances = {"materials", "texture",     "lights",  "light",
+                                                           "image",     "environment", "xmp",     "audio",
+                                                           "animation", "packing",     "sampler", "cameras"};
+constexpr std::array<std::string_view, 10> kShapeless = {
+    "FB_ngon_encoding",      "CESIUM_primitive_outline", "EXT_mesh_features",
+    "EXT_instance_features", "EXT_structural_metadata",  "MSFT_lod",
+    "KHR_techniques_webgl",  "KHR_interactivity",        "KHR_node_selectability",
+    "KHR_node_hoverability"};
+
+template <class Names>
+bool is_in(const Names& names, std::string_view name)
+{
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool changes_no_shape(std::string_view name)
+{
+    if (is_in(kShapeless, name)) return true;
+    const std::size_t vendor = name.find('_');
+    if (vendor == std::string_view::npos) return false;
+    const std::string_view rest = name.substr(vendor + 1);
+    return std::any_of(kAppearances.begin(), kAppearances.end(), [&](std::string_view word) {
+        return rest.starts_with(word) && (rest.size() == word.size() || rest[word.size()] == '_');
+    });
+}
+
+std::string quote(const json& value)
+{
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    return one_line(text.substr(0, kLongestQuote));
+}
+
+class GltfCheck {
+  public:
+    explicit GltfCheck(const json& file) : file_(file) {}
+
+    std::vector<std::string> run()
+    {
+        for (const json& name : gltf_member(file_, "extensionsRequired")) check_required(quote(name));
+        for_each("nodes", "node", [&](const json& node, const std::string& what) { check_node(node, what); });
+        for_each("meshes", "mesh",
+                 [&](const json& mesh, const std::string& what) { check_mesh(mesh, what); });
+        for_each("bufferViews", "buffer view",
+                 [&](const json& view, const std::string& what) { check_view(view, what); });
+        for_each("accessors", "accessor",
+                 [&](const json& accessor, const std::string& what) { note_unknown(accessor, what); });
+        return std::move(warnings_);
+    }
+
+  private:
+    template <class Action>
+    void for_each(const char* array, const char* what, Action action)
+    {
+        const json& elements = gltf_member(file_, array);
+        for (std::size_t i = 0; i < elements.size(); ++i)
+            if (elements.is_array()) action(elements[i], fmt::format("{} {}", what, i));
+    }
+
+    static void check_required(const std::string& name)
+    {
+        if (is_in(kRead, name) || changes_no_shape(name)) return;
+        throw InputError(fmt::format(
+            "it requires the glTF extension '{}', which is not read; allowed: {}, and extensions that "
+            "change materials, textures or lights only",
+            name, fmt::join(kRead, ", ")));
+    }
+
+    void note_unknown(const json& object, const std::string& what)
+    {
+        const json& extensions = gltf_member(object, "extensions");
+        if (!extensions.is_object()) return;
+        for (const auto& [name, unused] : extensions.items()) {
+            const bool is_known = is_in(kRead, name) || changes_no_shape(name) || is_meshopt(name) ||
+                                  name == "KHR_node_visibility";
+            if (!is_known && unknown_.insert(name).second)
+                warnings_.push_back(
+                    fmt::format("the glTF extension '{}' (first at {}) is not read", quote(name), what));
+        }
+    }
+
+    static bool is_meshopt(std::string_view name)
+    {
+        return name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression";
+    }
+
+    void check_node(const json& node, const std::string& what)
+    {
+        const json& extensions = gltf_member(node, "extensions");
+        if (!gltf_member(extensions, "EXT_mesh_gpu_instancing").is_null())
+            throw InputError(what +
+                             " places instances of its mesh (EXT_mesh_gpu_instancing), which are not read; "
+                             "allowed: one node for each");
+        if (gltf_member(gltf_member(extensions, "KHR_node_visibility"), "visible") == false)
+            throw InputError(what +
+                             " is hidden (KHR_node_visibility), which is not read; allowed: visible nodes");
+        check_weights(node, what);
+        if (!gltf_member(node, "skin").is_null() && !gltf_member(node, "mesh").is_null())
+            warnings_.push_back(
+                what + " has a skin, which is not applied: its mesh keeps the pose in which it is stored");
+        note_unknown(node, what);
+    }
+
+    // Morph targets move vertices by their weights.
+    static void check_weights(const json& object, const std::string& what)
+    {
+        for (const json& weight : gltf_member(object, "weights"))
+            if (weight != 0)
+                throw InputError(
+                    fmt::format("{} morphs its mesh (weight {}), which is not read; allowed: weights 0", what,
+                                quote(weight)));
+    }
+
+    void check_mesh(const json& mesh, const std::string& what)
+    {
+        check_weights(mesh, what);
+        note_unknown(mesh, what);
+        const json& primitives = gltf_member(mesh, "primitives");
+        for (std::size_t i = 0; i < primitives.size(); ++i)
+            check_primitive(primitives[i], fmt::format("{}, primitive {}", what, i));
+    }
+
+    void check_primitive(const json& primitive, const std::string& what)
+    {
+        note_unknown(primitive, what);
+        constexpr int kTriangleFan = 6;
+        const json& mode = gltf_member(primitive, "mode");
+        if (!mode.is_null() && (!mode.is_number_unsigned() || mode > kTriangleFan))
+            throw InputError(
+                fmt::format("{}: its mode is {}; allowed: 0 to {}", what, quote(mode), kTriangleFan));
+        const bool is_packed =
+            !gltf_member(gltf_member(primitive, "extensions"), "KHR_draco_mesh_compression").is_null();
+        const json& position = gltf_member(gltf_member(primitive, "attributes"), "POSITION");
+        if (position.is_null()) throw InputError(what + " has no positions");
+        require_data(position, is_packed, what);
+        if (const json& indices = gltf_member(primitive, "indices"); !indices.is_null())
+            require_data(indices, is_packed, what);
+    }
+
+    // Without a buffer view, numbers of an accessor are zero.
+    void require_data(const json& index, bool is_packed, const std::string& what) const
+    {
+        const json& accessor = gltf_element(file_, "accessors", index);
+        const bool has_data = is_packed || !gltf_member(accessor, "bufferView").is_null() ||
+                              !gltf_member(accessor, "sparse").is_null();
+        if (!has_data) throw InputError(fmt::format("{}: its accessor {} has no data", what, quote(index)));
+    }
+
+    // Uncompressed data, if any, are in the buffer that the view names.
+    void check_view(const json& view, const std::string& what)
+    {
+        note_unknown(view, what);
+        const json& extensions = gltf_member(view, "extensions");
+        if (!extensions.is_object()) return;
+        const json& index = gltf_member(view, "buffer");
+        const json& buffer = gltf_element(file_, "buffers", index);
+        // Buffer 0 may be the binary chunk of a .glb file.
+        const bool is_empty = gltf_member(buffer, "uri").is_null() && index != 0;
+        for (const auto& [name, unused] : extensions.items()) {
+            const json& of_buffer = gltf_member(gltf_member(buffer, "extensions"), name.c_str());
+            const bool is_fallback = gltf_member(of_buffer, "fallback") == true;
+            if (is_meshopt(name) && (is_fallback || is_empty))
+                throw InputError(fmt::format(
+                    "{} is compressed ({}), which is not read; allowed: uncompressed data", what, name));
+        }
+    }
+
+    const json& file_;
+    std::set<std::string> unknown_;
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace
+
+std::vector<std::string> check_gltf(const json& file)
+{
+    return GltfCheck(file).run();
+}
+
+}  // namespace arris

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Polygons in files of every format that has them.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+#include "geometry/cloth_input/cloth_file.h"
+#include "geometry/obstacle/obstacle_topology.h"
+#include "tests/geometry/imported_file.h"
+
+namespace arris {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double kSingle = 1e-6;  // relative
+
+using Polygons = std::vector<std::vector<int>>;
+
+struct Prism {
+    std::vector<Vec3> points;
+    Polygons faces;
+};
+
+// A prism over an outline in the plane y = 0, whose two ends are polygons that start at the given corner.
+Prism prism(const std::vector<Vec2>& outline, std::size_t start)
+{
+    Prism made;
+    const int n = static_cast<int>(outline.size());
+    for (const double y : {0.0, 1.5})
+        for (const Vec2& p : outline) made.points.emplace_back(p.x(), y, p.y());
+    std::vector<int> front, back;
+    for (int k = 0; k < n; ++k) {
+        front.push_back((n - 1 - k + static_cast<int>(start)) % n);
+        back.push_back(n + (k + static_cast<int>(start)) % n);
+        made.faces.push_back({k, (k + 1) % n, n + (k + 1) % n, n + k});
+    }
+    made.faces.push_back(front);
+    made.faces.push_back(back);
+    return made;
+}
+
+std::string indices(const std::vector<int>& face, int first)
+{
+    std::string text;
+    for (const int p : face) text += fmt::format(" {}", p + first);
+    return text;
+}
+
+std::string obj(const Prism& prism)
+{
+    std::string text;
+    for (const Vec3& p : prism.points) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
+    for (const std::vector<int>& face : prism.faces) text += "f" + indices(face, 1) + "\n";
+    return text;
+}
+
+std::string ply(const Prism& prism)
+{
+    std::string text = fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        prism.points.size(), prism.faces.size());
+    for (const Vec3& p : prism.points) text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+    for (const std::vector<int>& face : prism.faces)
+        text += fmt::format("{}{}\n", face.size(), indices(face, 0));
+    return text;
+}
+
+std::string dae(const Prism& prism)
+{
+    std::string numbers, counts, corners;
+    for (const Vec3& p : prism.points) numbers += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
+    for (const std::vector<int>& face : prism.faces) {
+        counts += fmt::format("{} ", face.size());
+        corners += indices(face, 0);
+    }
+    return fmt::format(
+        R"(<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="s"><float_array id="a" count="{}">{}</float_array><technique_common>
+<accessor source="#a" count="{}" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#s"/></vertices>
+<polylist count="{}"><input semantic="VERTEX" source="#v" offset="0"/><vcount>{}</vcount><p>{}</p></polylist>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="w"><node id="n"><instance_geometry url="#g"/></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#w"/></scene></COLLADA>
+)",
+        3 * prism.points.size(), numbers, prism.points.size(), prism.faces.size(), counts, corners);
+}
+
+std::string fbx(const Prism& prism)
+{
+    std::string places, corners;
+    for (const Vec3& p : prism.points) places += fmt::format("{},{},{},", p.x(), p.y(), p.z());
+    int count = 0;
+    for (const std::vector<int>& face : prism.faces)
+        for (std::size_t k = 0; k < face.size(); ++k, ++count)
+            corners += fmt::format("{},", k + 1 < face.size() ? face[k] : -face[k] - 1);
+    places.pop_back();
+    corners.pop_back();
+    return fmt::format(
+        R"(; FBX 7.3.0 project file
+FBXHeaderExtension:  {{
+	FBXHeaderVersion: 1003
+	FBXVersion: 7300
+}}
+GlobalSettings:  {{
+	Version: 1000
+	Properties70:  {{
+		P: "UpAxis", "int", "Integer", "",2
+		P: "UpAxisSign", "int", "Integer", "",1
+		P: "UnitScaleFactor", "double", "Number", "",100
+	}}
+}}
+Documents:  {{
+	Count: 1
+	Document: 1, "", "Scene" {{
+		RootNode: 0
+	}}
+}}
+Definitions:  {{
+	Version: 100
+	Count: 0
+}}
+Objects:  {{
+	Geometry: 10, "Geometry::prism", "Mesh" {{
+		Vertices: *{} {{
+			a: {}
+		}}
+		PolygonVertexIndex: *{} {{
+			a: {}
+		}}
+		GeometryVersion: 124
+	}}
+	Model: 20, "Model::prism", "Mesh" {{
+		Version: 232
+		Properties70:  {{
+		}}
+	}}
+}}
+Connections:  {{
+	C: "OO",20,0
+	C: "OO",10,20
+}}
+)",
+        3 * prism.points.size(), places, count, corners);
+}
+
+struct Outline {
+    const char* name;
+    std::vector<Vec2> corners;  // clockwise seen along +y
+    double area;
+};
+
+std::vector<Outline> outlines()
+{
+    return {
+        {"square", {{0, 0}, {0, 1}, {1, 1}, {1, 0}}, 1.0},
+        {"two steps", {{0, 0}, {0, 0.1}, {0.08, 0.1}, {0.08, 0.05}, {0.16, 0.05}, {0.16, 0}}, 0.012},
+        {"three steps", {{0, 0}, {0, 3}, {1, 3}, {1, 2}, {2, 2}, {2, 1}, {3, 1}, {3, 0}}, 6.0},
+        {"U", {{0, 0}, {0, 3}, {1, 3}, {1, 1}, {2, 1}, {2, 3}, {3, 3}, {3, 0}}, 7.0},
+        {"plus",
+         {{1, 0}, {1, 1}, {0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}, {2, 2}, {3, 2}, {3, 1}, {2, 1}, {2, 0}},
+         5.0},
+        {"corners on sides", {{0, 0}, {0, 1}, {0, 2}, {1, 2}, {2, 2}, {2, 1}, {2, 0}, {1, 0}}, 4.0},
+        {"dart", {{0, 0}, {1, 1}, {0, 2}, {3, 1}}, 2.0},
+    };
+}
+
+TEST(ObstaclePolygons, EveryFormatAndStartGivesTheSameSolid)
+{
+    const struct {
+        const char* file;
+        std::string (*write)(const Prism&);
+    } formats[] = {{"prism.obj", obj}, {"prism.ply", ply}, {"prism.dae", dae}, {"prism.fbx", fbx}};
+    for (const Outline& outline : outlines())
+        for (std::size_t start = 0; start < outline.corners.size(); ++start)
+            for (const auto& format : formats) {
+                SCOPED_TRACE(fmt::format("{}, start {}, {}", outline.name, start, format.file));
+                const ObstacleFile file = imported(format.file, format.write(prism(outline.corners, start)));
+                EXPECT_EQ(validate(file.mesh), "");
+                EXPECT_EQ(file.mesh.points.size(), 2 * outline.corners.size());
+                EXPECT_EQ(file.mesh.faces.size(), 4 * outline.corners.size() - 4);
+                EXPECT_NEAR(volume_of(file.mesh), 1.5 * outline.area, kSingle * outline.area);
+                double area = 0.0;
+                double expected = 2.0 * outline.area;
+                for (const auto& [a, b, c] : file.mesh.faces) {
+                    const std::vector<Vec3>& p = file.mesh.points;
+                    area += 0.5 * (p[b] - p[a]).cross(p[c] - p[a]).norm();
+                }
+                for (std::size_t k = 0; k < outline.corners.size(); ++k)
+                    expected +=
+                        1.5 * (outline.corners[(k + 1) % outline.corners.size()] - outline.corners[k]).norm();
+                EXPECT_NEAR(area, expected, kSingle * expected);
+                for (const std::string& warning : file.warnings)
+                    EXPECT_TRUE(warning.starts_with("importer: ")) << warning;
+            }
+}
+
+TEST(ObstaclePolygons, MirroredNodesMirrorTheirPolygons)
+{
+    std::string text = dae(prism(outlines()[1].corners, 2));
+    text.insert(text.find("<instance_geometry"), "<scale>-1 1 1</scale>");
+    const ObstacleFile file = imported("mirrored.dae", text);
+    EXPECT_NEAR(volume_of(file.mesh), 1.5 * 0.012, kSingle);
+    for (const std::string& warning : file.warnings)
+        EXPECT_THAT(warning, ::testing::Not(HasSubstr("turned")));
+}
+
+TEST(ObstaclePolygons, HolesMayBeJoinedByABridge)
+{
+    const ObstacleFile file =
+        imported("frame.obj",
+                 "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 1 1 0\nv 1 2 0\nv 2 2 0\nv 2 1 0\n"
+                 "f 1 2 3 4 1 5 6 7 8 5\n");
+    EXPECT_EQ(file.mesh.faces.size(), 8u);
+    EXPECT_THAT(file.warnings, IsEmpty());
+    EXPECT_THAT(file.notes, ElementsAre(HasSubstr("open: 8 border edges")));
+}
+
+TEST(ObstaclePolygons, CrossingPolygonsAreSaidToCross)
+{
+    const struct {
+        const char* name;
+        const char* text;
+        int crossing;
+    } cases[] = {
+        {"bow-tie", "v 0 0 0\nv 1 0 0\nv 0.2 1 0\nv 0.8 1.2 0\nf 1 2 3 4\n", 1},
+        {"symmetric bow-tie", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n", 1},
+        {"two of three", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 3 2 4\nf 1 2 3 4\nf 2 3 4 1\n", 2},
+        {"pentagram", "v 1 0 0\nv -0.8 0.6 0\nv 0.3 -0.95 0\nv 0.3 0.95 0\nv -0.8 -0.6 0\nf 1 2 3 4 5\n", 1},
+    };
+    for (const auto& c : cases)
+        EXPECT_THAT(imported("crossing.obj", c.text).warnings,
+                    ::testing::Contains(HasSubstr(fmt::format("{} polygons cross themselves", c.crossing))))
+            << c.name;
+}
+
+TEST(ObstaclePolygons, RepeatedCornersDoNoHarm)
+{
+    const ObstacleFile file = imported("twice.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 2 3 4 4\n");
+    EXPECT_EQ(file.mesh.faces.size(), 2u);
+    EXPECT_THAT(file.warnings, IsEmpty());
+}
+
+// --- cloth
+
+ClothFile cloth(const std::string& text)
+{
+    const std::string path = ::testing::TempDir() + "arris_obstacle_polygons_cloth.obj";
+    std::ofstream(path, std::ios::binary) << text;
+    return read_cloth_file(path, 1.0, 'z');
+}
+
+// A polygon of cloth that starts at the given corner. With UVs, the world is the material bent about v.
+std::string cloth_text(const std::vector<Vec2>& outline, std::size_t start, bool has_uvs)
+{
+    std::string text, face = "f";
+    for (const Vec2& p : outline) {
+        text += fmt::format("v {} {} {}\n", p.x(), p.y(), has_uvs ? 0.1 * p.x() * p.x() : 0.0);
+        text += fmt::format("vt {} {}\n", p.x(), p.y());
+    }
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+        const std::size_t corner = (k + start) % outline.size() + 1;
+        face += has_uvs ? fmt::format(" {0}/{0}", corner) : fmt::format(" {}", corner);
+    }
+    return text + face + "\n";
+}
+
+TEST(ObstaclePolygons, ClothOfEveryStartHasTheSameMaterial)
+{
+    for (const Outline& outline : outlines())
+        for (const bool is_reversed : {false, true})
+            for (const bool has_uvs : {false, true})
+                for (std::size_t start = 0; start < outline.corners.size(); ++start) {
+                    SCOPED_TRACE(fmt::format("{}, start {}", outline.name, start));
+                    std::vector<Vec2> corners = outline.corners;
+                    if (is_reversed) std::reverse(corners.begin(), corners.end());
+                    const ClothFile file = cloth(cloth_text(corners, start, has_uvs));
+                    EXPECT_EQ(file.mesh.faces.size(), corners.size() - 2);
+                    double area = 0.0;
+                    for (const auto& [a, b, c] : file.mesh.faces) {
+                        const std::vector<Vec2>& X = file.mesh.material;
+                        const Vec2 u = X[b] - X[a], v = X[c] - X[a];
+                        EXPECT_GT(u.x() * v.y() - u.y() * v.x(), 0.0);
+                        area += 0.5 * (u.x() * v.y() - u.y() * v.x());
+                    }
+                    EXPECT_NEAR(area, outline.area, 1e-12 * outline.area);
+                }
+}
+
+TEST(ObstaclePolygons, ClothThatCrossesItselfIsRefused)
+{
+    const std::string corners = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\n";
+    EXPECT_THAT(error_of([&] { cloth(corners + "f 1 2 3 4\n"); }),
+                HasSubstr("line 5: its polygon crosses itself; allowed: corners in their order"));
+    EXPECT_THAT(
+        error_of([&] {
+            cloth("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+        }),
+        HasSubstr("line 9: its polygon crosses itself in material space"));
+    EXPECT_THAT(error_of([&] { cloth("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n"); }),
+                HasSubstr("line 5: its polygon has no area"));
+}
+
+}  // namespace
+}  // namespace arris
