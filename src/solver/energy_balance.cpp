@@ -175,15 +175,13 @@ double find_energy_rise(const Scene& scene, const State& state, const Workspace&
     return rise > allowed ? rise : 0.0;
 }
 
-double find_unforeseen_energy(const Scene& scene, const Workspace& work)
+double find_unforeseen_energy(const Scene& scene, const State& state, const Workspace& work)
 {
     // A third difference over thirds of the way is 4/9 of a fourth-order term and 2/9 of a third-order term.
     // The stretch of cloth that moves across itself is of fourth order.
     constexpr double kFourthOrder = 9.0 / 4.0;
-    const double least = kRise * energy_scale(work);
+    const double least = kRise * energy_scale(work) + round_off_energy(scene, state, work.mesh.elements);
     const Energies &before = work.energies.start.potential, &after = work.energies.solved.potential;
-    const double gained = after.elastic() - before.elastic();
-    if (!(gained > least)) return 0.0;
     const ClothVelocity& from = work.expansion;
     const ClothVelocity to = velocity_of(work.proposal);
     const auto potential_at = [&](const ClothVelocity& velocity) {
@@ -192,7 +190,8 @@ double find_unforeseen_energy(const Scene& scene, const Workspace& work)
     const Energies at_expansion = potential_at(from);
     // Oscillating cloth overshoots at v^ and has up to three times its elastic energy there.
     constexpr double kFarMore = 5.0;
-    if (at_expansion.elastic() > kFarMore * (after.elastic() + before.elastic()) + least) return gained;
+    const double far_more = at_expansion.elastic() - kFarMore * (after.elastic() + before.elastic());
+    if (far_more > least) return far_more;
     const double third = after.sum() - at_expansion.sum() +
                          3.0 * (potential_at(blend(from, to, 1.0 / 3.0)).sum() -
                                 potential_at(blend(from, to, 2.0 / 3.0)).sum());

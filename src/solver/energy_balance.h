@@ -17,7 +17,9 @@
 //
 // Where contact takes energy out, that sum hides excess strain, which throws the cloth in the next step.
 // Stiff cloth that falls flat on an edge is stopped there. A cell of which one side goes on by d is then
-// stretched by d^2 / 2. `find_unforeseen_energy` detects such strain.
+// stretched by d^2 / 2. The linear equations miss energy the other way, too: where cloth slides over a round
+// edge, each step loses what its cells turn by in it, first order in the step. `find_unforeseen_energy`
+// detects both.
 #pragma once
 
 #include <vector>
@@ -51,11 +53,11 @@ double energy_scale(const Workspace& work);
 /// measure_proposal_energy first.
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work);
 
-/// Elastic energy, J, that the proposal has gained and that equations linear around `work.expansion` miss:
-/// the terms above second order in the motion from there. An estimate, and 0 where it is below a share of
-/// `energy_scale`. If the cloth is strained far more at `work.expansion`, all of the gain counts: there,
-/// flattened history strains the cloth beside it. Call measure_proposal_energy first.
-double find_unforeseen_energy(const Scene& scene, const Workspace& work);
+/// Potential energy, J, that equations linear around `work.expansion` miss: the terms above second order in
+/// the motion from there. An estimate, and 0 where it is below a share of `energy_scale`. If the cloth is
+/// strained far more at `work.expansion`, that excess counts: history that ran into an obstacle strains the
+/// cloth beside it. Call measure_proposal_energy first.
+double find_unforeseen_energy(const Scene& scene, const State& state, const Workspace& work);
 
 /// Whether pushing cloth out to its stand-off in `dt` (s) strains it. The push then costs more elastic energy
 /// than the kinetic energy of its speed plus a share of the cloth's energy. Call measure_proposal_energy

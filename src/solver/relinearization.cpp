@@ -66,7 +66,7 @@ bool enforce_energy_balance(const Scene& scene, const State& state, Attempt atte
         return false;
     }
     const bool may_again = report.relinearisations < kMostRelinearisations && may_solve_again;
-    if (may_again && (rise > 0.0 || find_unforeseen_energy(scene, work) > 0.0)) {
+    if (may_again && (rise > 0.0 || find_unforeseen_energy(scene, state, work) > 0.0)) {
         relinearise(scene, !is_first, work,
                     report);  // the first v^ ignores contacts, so its objective is no measure
         return true;

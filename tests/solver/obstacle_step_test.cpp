@@ -70,6 +70,7 @@ struct ObstacleRun {
     State state;
     Workspace work;
     int rewound = 0, yielded = 0, most_solves = 0;
+    int solves = 0;  ///< of all steps
     double worst_gained = 0.0;  ///< J, greatest energy rise reported by an accepted part
     double driven = 0.0;        ///< J, work of moving obstacles and pins so far
     double worst_rise = -1.0;   ///< greatest energy rise of a part beyond that work, over the allowed rise
@@ -90,6 +91,7 @@ struct ObstacleRun {
             rewound += report.rewound;
             yielded += report.yielded;
             most_solves = std::max(most_solves, report.solves);
+            solves += report.solves;
             worst_gained = std::max(worst_gained, report.energy_rise);
             for (const Obstacle& obstacle : scene.obstacles) expect_free(obstacle);
             return true;
@@ -472,7 +474,7 @@ TEST(StiffCloth, ThatOnlyRingsIsLeftAlone)
         for (Vec3& x : run.state.mesh.world)
             x = Vec3((1.0 + stretch) * x.x(), x.y(), stretch > 0.0 ? 0.0 : 0.3 * x.x() * x.x());
         run.advance_all(300);
-        EXPECT_EQ(run.most_solves, 1);
+        EXPECT_LE(run.solves, 330) << "only its fastest steps linearise again";
         EXPECT_LT(run.worst_rise, 1.0);
     }
 }
