@@ -20,6 +20,7 @@
 #include <optional>
 #include <utility>
 
+#include "solver/buckling_seed.h"
 #include "solver/commit.h"
 #include "solver/contact/constraints.h"
 #include "solver/contact/eol_contacts.h"
@@ -311,6 +312,8 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
         work.retry.note(report, attempt, state, start, {});
         return report;
     }
+    // Cloth that is compressed exactly in a plane has no force across it, and could never fold by itself.
+    seed_buckling(scene, start, work.mesh, work.contacts, work.prediction);
     report.seconds.contacts += watch.lap();
 
     // 4 - 6. Solve, propose and check, in bounded rounds: violations become rows. A mesh with EOL vertices
