@@ -111,7 +111,7 @@ std::optional<RunEnding> advance(Run& run)
             Stopwatch watch;
             write_outputs(run, *std::exchange(run.opening, std::nullopt), watch, true);
         }
-        return explain_ending(*failed, run.config.settings.tolerance, state);
+        return explain_ending(*failed, run.config.settings.tolerance, run.config.scene, state);
     }
     if (run.audited.obstacle >= 0) return explain_ending(run.audited, run.config.scene, state);
     run.at.position = run.timeline.advance(run.at.position);
