@@ -84,6 +84,7 @@ const StepColumn kStepColumns[] = {
     {"yielded", [](const StepRow& row) { return cell(row.yielded); }},
     {"energy_rise", [](const StepRow& row) { return cell(row.energy_rise); }},
     {"eol_pressing", [](const StepRow& row) { return cell(row.eol_pressing); }},
+    {"max_strain", [](const StepRow& row) { return cell(row.max_strain); }},
 };  // followed by rows_<cause> for each cause
 
 std::string join(const std::vector<std::string>& cells)

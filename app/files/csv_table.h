@@ -37,6 +37,7 @@ struct StepRow {
     std::optional<std::int64_t> yielded;  ///< contacts that could not keep their stand-off
     std::optional<double> energy_rise;    ///< J, energy rise of a step that no retry could remove; else 0
     std::optional<std::int64_t> eol_pressing;
+    double max_strain = 0.0;                 ///< size of the greatest principal strain of any face
     std::optional<RowCounts> rows_by_cause;  ///< `feature_rows` by cause, columns rows_<cause>
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <tuple>
@@ -26,6 +27,31 @@ void write_vectors(BinaryWriter& out, const std::vector<Vec2>& vectors)
     out.list(vectors, [&](const Vec2& X) {
         for (const double c : X) out.number(c);
     });
+}
+
+/// The peaks in the order of the file.
+template <class Peaks>
+auto peaks_of(Peaks& peaks)
+{
+    return std::array{&peaks.stretch, &peaks.compression, &peaks.in_plane};
+}
+
+void write_peak(BinaryWriter& out, const StrainPeak& peak)
+{
+    out.number(peak.strain);
+    out.number(peak.time);
+    out.vector(peak.world);
+    for (const double c : peak.material) out.number(c);
+}
+
+StrainPeak read_peak(BinaryReader& in)
+{
+    StrainPeak peak;
+    peak.strain = in.number<double>();
+    peak.time = in.number<double>();
+    peak.world = in.vector();
+    for (double& c : peak.material) c = in.number<double>();
+    return peak;
 }
 
 std::vector<Vec2> read_vectors(BinaryReader& in)
@@ -203,8 +229,13 @@ std::string find_defect(const Checkpoint& checkpoint)
     }
     if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) ||
         !std::isfinite(checkpoint.position.begin) || checkpoint.position.begin < 0.0 ||
-        checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1 || state.crossings < 0)
+        checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1 ||
+        checkpoint.strain.plane_rows < 0 || state.crossings < 0)
         return "a time or a count is invalid";
+    for (const StrainPeak* peak : peaks_of(checkpoint.strain))
+        if (!std::isfinite(peak->strain) || !std::isfinite(peak->time) || !peak->world.allFinite() ||
+            !peak->material.allFinite())
+            return "a strain is not finite";
     return validate(state.mesh);
 }
 
@@ -222,6 +253,8 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
     body.number(checkpoint.position.done);
     body.number(checkpoint.frames);
     body.number(checkpoint.rows);
+    for (const StrainPeak* peak : peaks_of(checkpoint.strain)) write_peak(body, *peak);
+    body.number(checkpoint.strain.plane_rows);
 
     write_sealed(path, kKind, body.bytes());
 }
@@ -240,6 +273,8 @@ Checkpoint read_checkpoint(const std::string& path)
     checkpoint.position.done = in.number<std::int64_t>();
     checkpoint.frames = in.number<std::int64_t>();
     checkpoint.rows = in.number<std::int64_t>();
+    for (StrainPeak* peak : peaks_of(checkpoint.strain)) *peak = read_peak(in);
+    checkpoint.strain.plane_rows = in.number<std::int64_t>();
     if (!in.is_at_end()) in.fail("is damaged: it is longer than its counts say");
     if (const std::string defect = find_defect(checkpoint); !defect.empty()) in.fail("is damaged: " + defect);
     return checkpoint;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/run/strain_warnings.h"
 #include "app/run/timeline.h"
 #include "app/scene/run_config.h"
 #include "solver/model/state.h"
@@ -20,6 +21,7 @@ struct Checkpoint {
     TimelinePosition position;
     std::int64_t frames = 0;  ///< written so far
     std::int64_t rows = 0;    ///< rows of steps.csv and probes.csv so far
+    StrainPeaks strain;       ///< of the rows so far
 };
 
 /// Replaces the file atomically. Throws std::system_error naming the path if writing fails.

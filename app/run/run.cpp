@@ -21,6 +21,7 @@
 #include "app/run/run_ending.h"
 #include "app/run/state_readings.h"
 #include "app/run/step_row.h"
+#include "app/run/strain_warnings.h"
 #include "app/run/timeline.h"
 #include "app/scene/run_config.h"
 #include "app/scene/scene_effects.h"
@@ -29,6 +30,7 @@
 #include "app/text/version.h"
 #include "geometry/input_error.h"
 #include "solver/advance.h"
+#include "solver/cloth_strain.h"
 #include "solver/contact/audit.h"
 #include "solver/model/stopwatch.h"
 #include "solver/step.h"
@@ -64,6 +66,11 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     run.audited = is_audited ? audit(run.config.scene, state) : Audit();
     StepRow row = make_step_row(run.config, state, run.work, run.audited, report);
     row.is_halved = is_halved;
+    const MeshCache& mesh = run.work.mesh;
+    const ClothStrain strain =
+        measure_cloth_strain(run.config.scene.material, mesh.elements, mesh.stars, state.mesh.world);
+    row.max_strain = strain.greatest();
+    note_strain(state, strain, run.at.strain);
     if (const std::int64_t index = run.timeline.frame_at(state.time); index >= 0) {
         run.files.write_frame(index, make_frame(run.config.scene.obstacles, state, run.work.mesh.elements,
                                                 run.work.mesh.terms));
@@ -104,7 +111,7 @@ std::optional<RunEnding> advance(Run& run)
             Stopwatch watch;
             write_outputs(run, *std::exchange(run.opening, std::nullopt), watch, true);
         }
-        return explain_ending(*failed, run.config.settings.tolerance, state);
+        return explain_ending(*failed, run.config.settings.tolerance, run.config.scene, state);
     }
     if (run.audited.obstacle >= 0) return explain_ending(run.audited, run.config.scene, state);
     run.at.position = run.timeline.advance(run.at.position);
@@ -161,6 +168,7 @@ RunReport make_report(const Run& run, const RunEnding& ending, double export_sec
     for (const SceneEffect& effect : list_effects(run.config))
         if (effect.is_on) report.effects.push_back(effect.name);
     report.warnings = run.config.warnings;
+    for (std::string& warning : warn_of_strain(run.at.strain)) report.warnings.push_back(std::move(warning));
     report.scene = run.config.as_run;
     report.version = kVersion;
     report.threads = threads;
@@ -186,9 +194,15 @@ RunEnding write_results(const Run& run, RunEnding ending, int threads)
     return ending;
 }
 
+void tell_warnings(const std::vector<std::string>& warnings)
+{
+    for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", printable(warning));
+}
+
 void tell_ending(const Run& run, const RunEnding& ending, bool is_quiet)
 {
     const std::string dir = printable(run.files.path());
+    tell_warnings(warn_of_strain(run.at.strain));
     if (ending.status != RunStatus::Finished)
         fmt::print(stderr, "arris: {}: {}\n", to_string(ending.status), printable(ending.message));
     if (is_quiet) return;
@@ -219,12 +233,6 @@ std::string default_directory(const std::string& scene)
     return (std::filesystem::path("out") / std::filesystem::path(scene).stem()).string();
 }
 
-void tell_warnings(const RunConfig& config)
-{
-    for (const std::string& warning : config.warnings)
-        fmt::print(stderr, "warning: {}\n", printable(warning));
-}
-
 /// Says that a resumed run has no step left.
 void tell_is_over(const Run& run)
 {
@@ -253,7 +261,7 @@ RunStatus run(const RunRequest& request)
     const RunConfig config = load_scene(start.source);
     start.source.path =
         std::filesystem::absolute(start.source.path).string();  // resume may run in another working directory
-    tell_warnings(config);
+    tell_warnings(config.warnings);
     const std::string directory =
         request.directory.empty() ? default_directory(request.scene) : request.directory;
     RunDirectory files = RunDirectory::create(directory, request.is_overwriting, config);
@@ -275,7 +283,7 @@ RunStatus resume(const ResumeRequest& request)
     require_run(request.directory);
     Checkpoint checkpoint = read_checkpoint(checkpoint_file(request.directory));
     const RunConfig config = load_resumed(request.directory, request.until, checkpoint);
-    tell_warnings(config);
+    tell_warnings(config.warnings);
     RunDirectory files = RunDirectory::reopen(request.directory, checkpoint, config);
     Run run(config, std::move(files), std::move(checkpoint));
     if (run.timeline.is_over(run.at.position) && !request.is_quiet) tell_is_over(run);

@@ -12,6 +12,7 @@ namespace {
 /// Describes a vertex by id and place. A vertex that the failed step inserted has only its id.
 std::string name_vertex(const State& state, std::int64_t id)
 {
+    if (id < 0) return "the cloth";
     const auto at = std::lower_bound(state.ids.begin(), state.ids.end(), id);
     if (at == state.ids.end() || *at != id) return fmt::format("vertex {}", id);
     const auto v = static_cast<std::size_t>(at - state.ids.begin());
@@ -21,9 +22,35 @@ std::string name_vertex(const State& state, std::int64_t id)
                        x.y(), x.z(), X.x(), X.y());
 }
 
+/// Says which pin and obstacles a vertex cannot meet together.
+std::string explain_infeasible(const Infeasible& infeasible, const Scene& scene, const State& state,
+                               const std::string& place)
+{
+    const auto name = [&](int obstacle) {
+        return scene.obstacles[static_cast<std::size_t>(obstacle)].name();
+    };
+    const auto [first, second] = infeasible.obstacles;
+    std::string where = "the obstacles",
+                why = "a pin drives the cloth into an obstacle, or two obstacles leave it no room";
+    if (second >= 0) {
+        where = fmt::format("{} and {}", name(first), name(second));
+        why = "these obstacles leave it no room";
+    } else if (first >= 0) {
+        where = name(first);
+        why = "two parts of this obstacle leave it no room";
+    }
+    if (infeasible.pin >= 0 && first >= 0)
+        why = fmt::format(
+            "pin.{} holds the vertex where {} is; change the motion of one of them, or release "
+            "the pin earlier",
+            infeasible.pin, second >= 0 ? "one of them" : name(first));
+    return fmt::format("no velocity keeps {} out of {} {}: {}", name_vertex(state, infeasible.vertex), where,
+                       place, why);
+}
+
 }  // namespace
 
-RunEnding explain_ending(const StepReport& report, double tolerance, const State& state)
+RunEnding explain_ending(const StepReport& report, double tolerance, const Scene& scene, const State& state)
 {
     const std::string place = fmt::format("in the step after t = {} s (step {})", state.time, state.step);
     switch (report.status) {
@@ -35,10 +62,7 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const State
                                                          "can follow {}, even with 64 times smaller steps",
                                                          place)};
         case StepStatus::Infeasible:
-            return {RunStatus::Infeasible,
-                    fmt::format("no velocity keeps {} out of the obstacles {}: a pin drives the vertex into "
-                                "an obstacle, or two obstacles leave it no room",
-                                name_vertex(state, report.infeasible_vertex), place)};
+            return {RunStatus::Infeasible, explain_infeasible(report.infeasible, scene, state, place)};
         case StepStatus::Penetration:
             return {RunStatus::Penetration,
                     fmt::format(

@@ -17,8 +17,9 @@ struct RunEnding {
     std::string message;
 };
 
-/// The ending of a run whose step from `state` has failed. `tolerance` is that of the velocity solve.
-RunEnding explain_ending(const StepReport& report, double tolerance, const State& state);
+/// The ending of a run whose step from `state` has failed. `tolerance` is that of the velocity solve. An
+/// infeasible step names the vertex, the pin by its index (pin.0) and the obstacles by their names.
+RunEnding explain_ending(const StepReport& report, double tolerance, const Scene& scene, const State& state);
 
 /// The ending of a run whose audit has found cloth inside an obstacle. The check of every step excludes this,
 /// so the program has an error.

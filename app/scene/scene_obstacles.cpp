@@ -140,14 +140,19 @@ void check_sizes(const SceneDocument& document, const RunConfig& config)
         document.fail("obstacle", excess->wrong, excess->allowed);
 }
 
-/// Advice for a cloth that starts in obstacle `i`.
-std::string remedy(const RunConfig& config, std::size_t i)
+/// Advice for a cloth that starts in obstacle `i`. `is_enclosed`: the cloth is wholly inside.
+std::string remedy(const RunConfig& config, std::size_t i, bool is_enclosed)
 {
     const auto is_from_file = [](const nlohmann::ordered_json& json) { return json.contains("file"); };
     const bool has_units = is_from_file(config.as_run["obstacle"][i]) || is_from_file(config.as_run["cloth"]);
     return fmt::format(
-        "move the cloth or the obstacle ('translate') until they are at least {:g} m apart, the cloth's "
+        "{}move the cloth or the obstacle ('translate') until they are at least {:g} m apart, the cloth's "
         "thickness{}",
+        is_enclosed
+            ? "the cloth is wholly inside a closed surface, which is solid whichever way its faces "
+              "look; for a room around the cloth, leave out a face, or give the walls an inner and an "
+              "outer surface; else "
+            : "",
         config.scene.material.thickness,
         has_units ? "; a file that is not in metres with z up needs 'units' or 'up'" : "");
 }
@@ -219,7 +224,7 @@ std::vector<std::string> find_intersections(const SceneDocument& document, const
             "{}: at time 0 the cloth {} {}, at [{:.6g}, {:.6g}, {:.6g}] (m); allowed: cloth that starts "
             "clear of every obstacle; {}",
             document.describe(fmt::format("obstacle.{}", i)), how, config.scene.obstacles[i].name(),
-            place.x(), place.y(), place.z(), remedy(config, i)));
+            place.x(), place.y(), place.z(), remedy(config, i, depth > 0.0 && audited.found.faces == 0)));
     }
     return lines;
 }

@@ -12,7 +12,7 @@
 
 #include "app/scene/scene_estimate.h"
 #include "app/scene/still_scene.h"
-#include "app/text/printable.h"
+#include "app/scene/warnings.h"
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/obstacle_input/sheet_opening.h"
@@ -20,37 +20,6 @@
 
 namespace arris {
 namespace {
-
-/// Collects warnings about keys that are written.
-class Warnings {
-  public:
-    explicit Warnings(const SceneDocument& document) : document_(document) {}
-
-    bool is_written(const std::string& key) const { return document_.find(key) != nullptr; }
-
-    void add(const std::string& key, const std::string& why)
-    {
-        if (is_written(key))
-            lines_.push_back(fmt::format("{}: has no effect: {}", document_.describe(key), why));
-    }
-
-    /// For a key that takes effect, but with a surprising result.
-    void note(const std::string& key, const std::string& what)
-    {
-        lines_.push_back(fmt::format("{}: {}", document_.describe(key), what));
-    }
-
-    /// For the scene as a whole.
-    void note(const std::string& what)
-    {
-        lines_.push_back(fmt::format("{}: {}", printable(document_.path()), what));
-    }
-
-    std::vector<std::string> lines_;
-
-  private:
-    const SceneDocument& document_;
-};
 
 // An exact test suffices: these are values of the scene file, where 0 is written as 0.
 bool is_zero(double value)
@@ -95,14 +64,16 @@ void check_cloth_size(const RunConfig& config, Warnings& warnings)
     for (const Vec2& X : config.cloth.material) material.extend(X);
     const Vec2 sides = material.sizes();
     if (sides.maxCoeff() >= kSmallest && sides.maxCoeff() <= kLargest) return;
-    const bool is_from_file = warnings.is_written("cloth.file");
-    warnings.note(
-        is_from_file ? "cloth.file" : "cloth.size",
-        fmt::format(
-            "the cloth is {:.4g} x {:.4g} m: {}", sides.x(), sides.y(),
-            is_from_file
-                ? "a file that is not in metres needs 'units', such as \"mm\"; UVs are always in metres"
-                : "sizes are in metres"));
+    const char* key = "cloth.size";
+    const char* advice = "sizes are in metres";
+    if (warnings.is_written("cloth.units")) {
+        key = "cloth.units";
+        advice = "check this unit; it is that of positions, and UVs are always in metres";
+    } else if (warnings.is_written("cloth.file")) {
+        key = "cloth.file";
+        advice = "a file that is not in metres needs 'units', such as \"mm\"; UVs are always in metres";
+    }
+    warnings.note(key, fmt::format("the cloth is {:.4g} x {:.4g} m: {}", sides.x(), sides.y(), advice));
 }
 
 void check_wind(const RunConfig& config, Warnings& warnings)
@@ -170,21 +141,22 @@ void check_obstacle_motion(const RunConfig& config, const RigidMotion& motion, c
                          "the previous keyframe is not before the end of the run");
 }
 
-/// Warns of a file without units that is far larger or smaller than the cloth: mostly it is not in metres.
+/// Warns of a file that is far larger or smaller than the cloth: mostly its unit is wrong or missing.
 void check_units(const RunConfig& config, std::size_t i, Warnings& warnings)
 {
     constexpr double kSurprising = 100.0;  // a file in millimetres is 1000 times too large
-    const auto& json = config.as_run["obstacle"][i];
-    if (!json.contains("file") || !json["units"].is_null()) return;
+    if (!config.as_run["obstacle"][i].contains("file")) return;
     const Obstacle& obstacle = config.scene.obstacles[i];
     Box3 around_cloth;
     for (const Vec3& x : config.cloth.world) around_cloth.extend(x);
     const double size = obstacle.bounds().diagonal().norm(), cloth = around_cloth.diagonal().norm();
     if (size < kSurprising * cloth && cloth < kSurprising * size) return;
-    warnings.note(fmt::format("obstacle.{}.file", i),
-                  fmt::format("the obstacle is {:.3g} m in size and the cloth {:.3g} m: a file that is not "
-                              "in metres needs 'units' or 'scale'",
-                              size, cloth));
+    const std::string units = fmt::format("obstacle.{}.units", i);
+    const bool has_units = warnings.is_written(units);
+    warnings.note(has_units ? units : fmt::format("obstacle.{}.file", i),
+                  fmt::format("the obstacle is {:.3g} m in size and the cloth {:.3g} m: {}", size, cloth,
+                              has_units ? "check this unit, and 'scale'"
+                                        : "a file that is not in metres needs 'units' or 'scale'"));
 }
 
 /// Warns of a surface that is closed except for a hole: it looks solid, but is a sheet.

@@ -9,6 +9,17 @@ namespace arris {
 
 namespace {
 
+/// Lame constants of the sheet in plane stress, N/m.
+struct Moduli {
+    double mu, lambda;
+};
+
+Moduli find_moduli(double youngs_modulus, double poisson_ratio)
+{
+    return {youngs_modulus / (2.0 * (1.0 + poisson_ratio)),
+            youngs_modulus * poisson_ratio / (1.0 - poisson_ratio * poisson_ratio)};
+}
+
 /// Quantities that determine the energy; symbols as in the class comment.
 struct Invariants {
     Vec3 cross;      ///< f1 x f2
@@ -102,8 +113,8 @@ Mat2 out_of_plane_stiffness(const Mat32& F, const Stretch& s, double mu, double 
 }  // namespace
 
 Membrane::Membrane(double youngs_modulus, double poisson_ratio)
-    : mu_(youngs_modulus / (2.0 * (1.0 + poisson_ratio))),
-      lambda_(youngs_modulus * poisson_ratio / (1.0 - poisson_ratio * poisson_ratio))
+    : mu_(find_moduli(youngs_modulus, poisson_ratio).mu),
+      lambda_(find_moduli(youngs_modulus, poisson_ratio).lambda)
 {
 }
 
@@ -154,6 +165,13 @@ Vec2 principal_stretches(const Mat32& F)
     const Invariants s = find_invariants(F);
     const double difference = std::sqrt(s.squared_difference);
     return {0.5 * (s.S + difference), 0.5 * (s.S - difference)};
+}
+
+Vec2 principal_tensions(const Vec2& stretches, double youngs_modulus, double poisson_ratio)
+{
+    const auto [mu, lambda] = find_moduli(youngs_modulus, poisson_ratio);
+    const Vec2 strains = stretches.array() - 1.0;
+    return 2.0 * mu * strains + Vec2::Constant(lambda * strains.sum());
 }
 
 }  // namespace arris

@@ -38,4 +38,8 @@ class Membrane : public FaceTerm {
 /// Singular values of F, greatest first.
 Vec2 principal_stretches(const Mat32& F);
 
+/// Tensions, N/m, along the principal directions of a face with these principal stretches: dV/ds_i / A.
+/// Negative where the face is compressed. A strip that is compressed by the strain e has -E e.
+Vec2 principal_tensions(const Vec2& stretches, double youngs_modulus, double poisson_ratio);
+
 }  // namespace arris

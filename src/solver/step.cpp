@@ -20,12 +20,14 @@
 #include <optional>
 #include <utility>
 
+#include "solver/buckling_seed.h"
 #include "solver/commit.h"
 #include "solver/contact/constraints.h"
 #include "solver/contact/eol_contacts.h"
 #include "solver/energy_balance.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/eol/eol_features.h"
+#include "solver/infeasible.h"
 #include "solver/material_flow.h"
 #include "solver/mesh_change/step_mesh.h"
 #include "solver/model/eol_limits.h"
@@ -77,7 +79,7 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
     work.yielded = 0;
     if (!overconstrained) return true;
     report.status = StepStatus::Infeasible;
-    report.infeasible_vertex = state.ids[*overconstrained];
+    report.infeasible = name_infeasible(state, work, overconstrained);
     return false;
 }
 
@@ -152,25 +154,6 @@ void propose(const Scene& scene, double growth, Workspace& work)
                       work.proposal);
 }
 
-/// Id of a vertex whose contact no velocity can meet, a pinned one if there is any; -1 without such a
-/// contact.
-std::int64_t find_infeasible_vertex(const State& state, const Workspace& work)
-{
-    const auto is_held = [&](int v) {
-        return std::any_of(work.pin_targets.begin(), work.pin_targets.end(),
-                           [v](const PinTarget& held) { return held.vertex == v; });
-    };
-    std::int64_t named = -1;
-    for (const int row : work.solution.infeasible_rows)
-        for (const Contact& contact : work.contacts)
-            for (const int v : contact.in_frame.vertices) {
-                if (contact.row != row || v < 0) continue;
-                if (is_held(v)) return state.ids[v];
-                if (named < 0) named = state.ids[v];
-            }
-    return named;
-}
-
 /// Whether an EOL vertex has gone round its wire or tip with the cloth.
 bool has_turned(const Workspace& work, const State& state)
 {
@@ -186,7 +169,7 @@ void fail_or_rewind(const Scene& scene, double end, const State& state, Attempt 
                     StepReport& report)
 {
     if (report.status == StepStatus::Infeasible)
-        report.infeasible_vertex = find_infeasible_vertex(state, work);
+        report.infeasible = name_infeasible(state, work);
     else
         report.status = StepStatus::Penetration;
     if (attempt == Attempt::Ordinary) return;
@@ -311,6 +294,8 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
         work.retry.note(report, attempt, state, start, {});
         return report;
     }
+    // Cloth that is compressed exactly in a plane has no force across it, and could never fold by itself.
+    seed_buckling(scene, start, work.mesh, work.contacts, work.prediction);
     report.seconds.contacts += watch.lap();
 
     // 4 - 6. Solve, propose and check, in bounded rounds: violations become rows. A mesh with EOL vertices

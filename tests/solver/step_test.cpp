@@ -252,10 +252,12 @@ TEST(Step, APinThatDrivesClothIntoTheFloorIsInfeasibleAndNamed)
         report = step(scene, Settings(), 0.005 * ++k, state, work);
     ASSERT_EQ(report.status, StepStatus::Infeasible);
     const std::vector<int> held = vertices_in_box(mesh, scene.pins[0].material);
-    EXPECT_TRUE(std::find(held.begin(), held.end(), report.infeasible_vertex) != held.end());
+    EXPECT_TRUE(std::find(held.begin(), held.end(), report.infeasible.vertex) != held.end());
+    EXPECT_EQ(report.infeasible.pin, 0);
+    EXPECT_EQ(report.infeasible.obstacles, (std::array{0, -1}));
     // Held cloth may yield the stand-off, but not the surface.
-    EXPECT_GE(state.mesh.world[report.infeasible_vertex].z(), 0.0);
-    EXPECT_LT(state.mesh.world[report.infeasible_vertex].z(), 0.005);
+    EXPECT_GE(state.mesh.world[report.infeasible.vertex].z(), 0.0);
+    EXPECT_LT(state.mesh.world[report.infeasible.vertex].z(), 0.005);
 }
 
 TEST(Step, AVertexHeldSidewaysStillRestsOnATiltedFloor)

@@ -191,9 +191,11 @@ class ClothReader {
         if (twin == order.end()) return;
         const FileVertex& a = file_.vertices[*twin];
         const FileVertex& b = file_.vertices[*(twin + 1)];
-        refuse(fmt::format("vertex ({}, {}, {}) has two UVs, ({}, {}) and ({}, {}): UV seams are not allowed",
-                           a.position.x(), a.position.y(), a.position.z(), a.uv.x(), a.uv.y(), b.uv.x(),
-                           b.uv.y()));
+        refuse(fmt::format(
+            "vertex ({}, {}, {}) has two UVs, ({}, {}) and ({}, {}): a tube, or panels that share a UV seam, "
+            "cannot be simulated yet; allowed: one UV at each place (open the cloth along its seam, and move "
+            "the two sides apart)",
+            a.position.x(), a.position.y(), a.position.z(), a.uv.x(), a.uv.y(), b.uv.x(), b.uv.y()));
     }
 
     void place_in_world()
@@ -292,7 +294,7 @@ class ClothReader {
         if (clockwise < mesh_.face_count())
             refuse(fmt::format(
                 "{} of {} triangles are clockwise in material space: the chart is folded, or faces "
-                "run in different directions",
+                "run in different directions; a tube cannot be laid out with one UV at each place",
                 clockwise, mesh_.face_count()));
         mirror();
     }

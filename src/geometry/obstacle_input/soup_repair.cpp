@@ -245,10 +245,11 @@ class SoupRepairer {
         warn_of(split_,
                 "split {} vertices where more than two faces meet at an edge, or faces at a point only");
         if (const int turned = count_turned(); turned > 0)
-            warnings_.push_back(
-                fmt::format("turned {} of {} faces round, to agree with their neighbours and "
-                            "to face outward (cavities: inward)",
-                            turned, mesh_.faces.size()));
+            warnings_.push_back(fmt::format(
+                "turned {} of {} faces round, to agree with their neighbours and "
+                "to face outward (cavities: inward){}",
+                turned, mesh_.faces.size(),
+                shells.turned_shells > 0 ? "; a closed surface is solid, whichever way its faces look" : ""));
         if (shells.crossing_pairs > 0) {
             const Vec3& p = shells.crossing_place;
             warnings_.push_back(fmt::format(

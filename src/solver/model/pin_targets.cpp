@@ -35,6 +35,7 @@ std::vector<PinTarget> find_pin_targets(const Scene& scene, const State& state, 
                 slot[v] = static_cast<int>(held.size());
                 held.push_back({v, {false, false, false}, Vec3::Zero()});
             }
+            held[slot[v]].pin = static_cast<int>(p);
             const Vec3 target = then(find_origin(state, p, v, now));
             for (int d = 0; d < 3; ++d) {
                 if (!pin.held[d]) continue;

@@ -14,6 +14,7 @@ struct PinTarget {
     int vertex;
     std::array<bool, 3> held;  ///< x, y, z
     Vec3 target;               ///< m; meaningful in held directions
+    int pin = -1;              ///< index in the scene of the last pin that holds the vertex
 };
 
 /// Vertices held during the step that ends at `end` (s), ascending. Where pins overlap, a direction follows

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "solver/model/row_cause.h"
@@ -29,12 +30,19 @@ struct PhaseSeconds {
 /// any other step or part of one, reported individually.
 enum class StepPart { Ordinary, Opening, Rest };
 
+/// A vertex whose pin and contacts no velocity can meet together; -1 where there is none.
+struct Infeasible {
+    std::int64_t vertex = -1;                 ///< id
+    int pin = -1;                             ///< index in the scene of the pin that holds the vertex
+    std::array<int, 2> obstacles = {-1, -1};  ///< indices in the scene; the second where two leave no room
+};
+
 struct StepReport {
     StepStatus status = StepStatus::Done;
     double dt = 0.0;  ///< s
     StepPart part = StepPart::Ordinary;
-    std::int64_t infeasible_vertex = -1;  ///< id of a vertex whose pins and contacts no velocity can meet
-    int contacts = 0;                     ///< pressing, without fold planes at wires
+    Infeasible infeasible;      ///< of an infeasible step
+    int contacts = 0;           ///< pressing, without fold planes at wires
     int feature_rows = 0;       ///< pressing, at a sharp edge, corner, wire or point, without EOL vertices
     RowCounts rows_by_cause{};  ///< `feature_rows` by cause, in a scene with EOL vertices
     int eol_pressing = 0;       ///< EOL vertices with a positive multiplier

@@ -49,6 +49,7 @@ TEST(CsvTable, HasTheColumnsOfStepsInTheirOrder)
             "solve_s,check_s,advance_s,output_s"));
     EXPECT_THAT(step_header(),
                 ::testing::EndsWith(",output_s,cpu_s,halved,solves,rewound,yielded,energy_rise,eol_pressing,"
+                                    "max_strain,"
                                     "rows_new,rows_not_crossing,rows_at_eol,rows_beside_eol,rows_flat_behind,"
                                     "rows_near_border,rows_border_ahead,"
                                     "rows_guard,rows_quality,rows_off_plane,rows_blocked,"

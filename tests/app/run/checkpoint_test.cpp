@@ -34,6 +34,10 @@ Checkpoint make_checkpoint()
     checkpoint.position = {0.0625, 3};
     checkpoint.frames = 4;
     checkpoint.rows = 18;
+    checkpoint.strain.stretch = {0.25, 0.05, Vec3(1, 2, -0.0), Vec2(0.5, 1e-310)};
+    checkpoint.strain.compression = {-0.5, 0.1, Vec3(4, 5, 6), Vec2(1, 2)};
+    checkpoint.strain.in_plane = {-0.0625, 0.1, Vec3(7, 8, 9), Vec2(3, 4)};
+    checkpoint.strain.plane_rows = 11;
     return checkpoint;
 }
 
@@ -70,6 +74,10 @@ TEST(Checkpoint, ReadsBackToTheSameBytes)
     EXPECT_EQ(read.state.material_velocity[1], Vec2(0.25, -1e-310));
     EXPECT_EQ(read.state.crossings, 3);
     EXPECT_EQ(read.position.done, 3);
+    EXPECT_EQ(read.strain.stretch.material, Vec2(0.5, 1e-310));
+    EXPECT_EQ(read.strain.compression.strain, -0.5);
+    EXPECT_EQ(read.strain.in_plane.world, Vec3(7, 8, 9));
+    EXPECT_EQ(read.strain.plane_rows, 11);
     write_checkpoint(path + "2", read);
     EXPECT_EQ(read_bytes(path), read_bytes(path + "2"));
 }
@@ -145,6 +153,9 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("EOL bend without an end", [](Checkpoint& c) { c.state.eol[0].on.end = -1; });
     refused("EOL end of a corner", [](Checkpoint& c) { c.state.eol[1].on.end = 0; });
     refused("EOL count", [](Checkpoint& c) { c.state.eol[0].idle = -1; });
+    refused("strain", [&](Checkpoint& c) { c.strain.stretch.strain = kNan; });
+    refused("place of a strain", [&](Checkpoint& c) { c.strain.in_plane.world.z() = INFINITY; });
+    refused("rows of plane cloth", [](Checkpoint& c) { c.strain.plane_rows = -1; });
     refused("crossings", [](Checkpoint& c) { c.state.crossings = -1; });
 }
 

@@ -323,8 +323,9 @@ TEST_F(Run, ThatObstaclesCrushNamesAVertexByItsPlace)
     const std::string message = report["message"];
     EXPECT_TRUE(std::regex_search(
         message,
-        std::regex("keeps vertex \\d+, at \\[.*\\] \\(m, material \\[.*\\]\\), out of the obstacles in "
-                   "the step after t = 0.1")))
+        std::regex(
+            "keeps vertex \\d+, at \\[.*\\] \\(m, material \\[.*\\]\\), out of obstacle0 and obstacle1 in "
+            "the step after t = 0.1")))
         << message;
 }
 

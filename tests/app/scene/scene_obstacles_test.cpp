@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -178,7 +179,8 @@ TEST(SceneObstacles, TellOfAFileThatIsMostlyInOtherUnits)
                 ElementsAre(AllOf(HasSubstr("obstacle.0.file"),
                                   HasSubstr("374 m in size and the cloth 1.41 m"), HasSubstr("'units'"))));
     EXPECT_THAT(warnings_of("scale = 1e-3\n"), SizeIs(1));
-    EXPECT_THAT(warnings_of("scale = 100\nunits = \"m\"\n"), IsEmpty());
+    EXPECT_THAT(warnings_of("scale = 100\nunits = \"m\"\n"),
+                ElementsAre(AllOf(HasSubstr("obstacle.0.units"), HasSubstr("check this unit"))));
 }
 
 TEST(SceneObstacles, TellOfASurfaceThatClosesButForAHole)
@@ -357,6 +359,115 @@ TEST(SceneObstacles, BlameTheThicknessWhereItStrainsTheCloth)
     EXPECT_THAT(
         load_with({"cloth.material.thickness=0.07", "cloth.scale=3"}),
         ElementsAre(Not(HasSubstr("is then strained")), HasSubstr("material coordinates are in metres")));
+}
+
+/// A box of half the side `half` about (0.5, 0.5, 0), with faces that look `inward` or outward, and without
+/// its upper side if it `is_open`. `first` is the number of its first vertex.
+std::string room_obj(double half, bool is_inward, bool is_open = false, int first = 1)
+{
+    std::string text;
+    for (int corner = 0; corner < 8; ++corner)
+        text += fmt::format("v {} {} {}\n", 0.5 + (corner & 1 ? half : -half),
+                            0.5 + (corner & 2 ? half : -half), corner & 4 ? half : -half);
+    const std::array<std::array<int, 4>, 6> kSides = {
+        {{0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}, {4, 5, 7, 6}}};
+    for (std::size_t side = 0; side < (is_open ? 5 : 6); ++side) {
+        auto [a, b, c, d] = kSides[side];
+        if (is_inward) std::swap(b, d);
+        text += fmt::format("f {} {} {} {}\n", a + first, b + first, c + first, d + first);
+    }
+    return text;
+}
+
+struct RoomCase {
+    const char* name;
+    std::string obj;
+    const char* error;      ///< part of it; "" where the scene is valid
+    const char* not_error;  ///< what it must not say
+};
+
+constexpr const char* kRoomAdvice =
+    "wholly inside a closed surface, which is solid whichever way its faces look; for a room around the "
+    "cloth, "
+    "leave out a face, or give the walls an inner and an outer surface; else move";
+
+TEST(SceneObstacles, TellWhatARoomNeedsWhereAClosedSurfaceHoldsTheWholeCloth)
+{
+    const RoomCase kRooms[] = {
+        {"faces look inward", room_obj(2, true), kRoomAdvice, "intersects"},
+        {"faces look outward", room_obj(2, false), kRoomAdvice, "intersects"},
+        {"tetrahedron", "v -9 -9 -1\nv 19 -9 -1\nv 0 19 -1\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n",
+         kRoomAdvice, "intersects"},
+        {"open on top", room_obj(2, true, true), "", ""},
+        {"walls with an inner and an outer surface", room_obj(2, true) + room_obj(3, false, false, 9), "",
+         ""},
+        {"both surfaces look outward", room_obj(2, false) + room_obj(3, false, false, 9), "", ""},
+        {"cloth through the wall", room_obj(0.3, true), "deep into", "wholly inside"},
+        {"cloth on the wall", "v 0 0 -1\nv 1 0 -1\nv 0 1 -1\nv 0 0 0\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n",
+         "allowed: cloth that starts clear", "wholly inside"},
+    };
+    for (const RoomCase& one : kRooms) {
+        SCOPED_TRACE(one.name);
+        const TemporaryDirectory dir;
+        write_bytes(dir / "room.obj", one.obj);
+        write_bytes(dir / "s.toml", kBase + "[gravity]\n[[obstacle]]\nfile = \"room.obj\"\n");
+        const std::string error = error_of([&] { load_scene(dir / "s.toml", {}, with_program()); });
+        if (*one.error == '\0') {
+            EXPECT_EQ(error, "");
+        } else {
+            EXPECT_THAT(error,
+                        AllOf(HasSubstr(one.error), Not(HasSubstr(one.not_error)), Not(HasSubstr("\n"))));
+        }
+    }
+}
+
+TEST(SceneObstacles, SayThatASurfaceTurnedInsideOutIsSolid)
+{
+    const TemporaryDirectory dir;
+    write_bytes(dir / "s.toml",
+                kBase + "[gravity]\n[[obstacle]]\nfile = \"room.obj\"\ntranslate = [9, 0, 0]\n");
+    write_bytes(dir / "room.obj", room_obj(2, true));
+    EXPECT_THAT(load_scene(dir / "s.toml", {}, with_program()).warnings,
+                ElementsAre(HasSubstr(
+                    "turned 12 of 12 faces round, to agree with their neighbours and to face outward "
+                    "(cavities: inward); a closed surface is solid, whichever way its faces look")));
+    write_bytes(dir / "room.obj", room_obj(2, false));
+    EXPECT_THAT(load_scene(dir / "s.toml", {}, with_program()).warnings, IsEmpty());
+}
+
+struct UnitCase {
+    const char* keys;
+    double half;          ///< of the box in the file
+    const char* warning;  ///< after "obstacle.0."; "" without one
+};
+
+TEST(SceneObstacles, OfSurprisingSizeBlameTheUnitThatIsWrittenOrMissing)
+{
+    const UnitCase kUnits[] = {
+        {"", 0.2, ""},
+        {"units = \"m\"\n", 0.2, ""},
+        {"units = \"cm\"\n", 20, ""},
+        {"scale = 0.001\n", 200, ""},
+        {"", 200, "file = \"box.obj\": the obstacle is 693 m in size and the cloth 1.41 m: a file that"},
+        {"units = \"m\"\n", 200,
+         "units = \"m\": the obstacle is 693 m in size and the cloth 1.41 m: check this unit, and 'scale'"},
+        {"units = \"cm\"\n", 20000, "units = \"cm\": the obstacle is 693 m"},
+        {"units = \"mm\"\n", 0.2, "units = \"mm\": the obstacle is 0.000693 m in size"},
+        {"units = \"in\"\nscale = 100\n", 80, "units = \"in\": the obstacle is 704 m in size"},
+        {"scale = 0.001\n", 0.2, "file = \"box.obj\": the obstacle is 0.000693 m in size"},
+    };
+    for (const UnitCase& one : kUnits) {
+        SCOPED_TRACE(std::string(one.keys) + std::to_string(one.half));
+        const TemporaryDirectory dir;
+        write_bytes(dir / "box.obj", room_obj(one.half, false));
+        write_bytes(dir / "s.toml", kBase + "[gravity]\n[[obstacle]]\nfile = \"box.obj\"\n" + one.keys +
+                                        "translate = [0, 0, -5000]\n");
+        const std::vector<std::string> warnings = load_scene(dir / "s.toml", {}, with_program()).warnings;
+        if (*one.warning == '\0')
+            EXPECT_THAT(warnings, IsEmpty());
+        else
+            EXPECT_THAT(warnings, ElementsAre(HasSubstr(std::string("obstacle.0.") + one.warning)));
+    }
 }
 
 }  // namespace

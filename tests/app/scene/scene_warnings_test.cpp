@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
+#include <tuple>
 
 #include "tests/app/temporary_directory.h"
 
@@ -146,6 +148,14 @@ TEST(SceneWarnings, TellOfAClothWhoseSizeIsNoCloths)
                 ElementsAre(HasSubstr("the cloth is 0.0005 x 0.0005 m")));
     EXPECT_THAT(of_file(square_obj("500", "500"), ""), ElementsAre(HasSubstr("UVs are always in metres")));
     EXPECT_THAT(of_file(square_obj("500", "0.5"), "units = \"mm\"\n"), IsEmpty());
+    for (const auto& [obj, unit, size] :
+         {std::tuple(square_obj("500"), "m", "500 x 500"), std::tuple(square_obj("60000"), "cm", "600 x 600"),
+          std::tuple(square_obj("1"), "mm", "0.001 x 0.001"),
+          std::tuple(square_obj("0.1"), "in", "0.00254 x 0.00254"),
+          std::tuple(square_obj("500", "500"), "mm", "500 x 500")})
+        EXPECT_THAT(of_file(obj, std::string("units = \"") + unit + "\"\n"),
+                    ::testing::Contains(HasSubstr(std::string("cloth.units = \"") + unit +
+                                                  "\": the cloth is " + size + " m: check this unit")));
 
     const auto of_size = [](const std::string& size, const std::string& resolution) {
         return load_scene(SceneSource{"s.toml",

@@ -377,6 +377,58 @@ TEST_F(ClothFileTest, RefusesWhatCannotBeCloth)
     }
 }
 
+/// A tube of `n` sides about z, or a cone where `tip` < 1, from z = 0 to 1. Its last side ends at the UVs 0
+/// again, or at the circumference where it `has_seam`.
+std::string tube(int n, bool has_seam, double tip = 1.0)
+{
+    const double side = 2.0 * std::sin(std::acos(-1.0) / n);
+    std::string text;
+    for (const double z : {0.0, 1.0})
+        for (int k = 0; k < n; ++k) {
+            const double angle = 2.0 * std::acos(-1.0) * k / n, radius = z > 0.0 ? tip : 1.0;
+            text += fmt::format("v {} {} {}\n", radius * std::cos(angle), radius * std::sin(angle), z);
+        }
+    for (const double v : {0.0, 1.0})
+        for (int k = 0; k <= n; ++k) text += fmt::format("vt {} {}\n", side * k, v);
+    for (int k = 0; k < n; ++k) {
+        const int next = (k + 1) % n, uv = has_seam ? k + 1 : next;
+        text += fmt::format("f {}/{} {}/{} {}/{} {}/{}\n", k + 1, k + 1, next + 1, uv + 1, n + next + 1,
+                            n + uv + 2, n + k + 1, n + k + 2);
+    }
+    return text;
+}
+
+TEST_F(ClothFileTest, SaysOfTubesAndSeamsWhatIsMissingAndWhatIsAllowed)
+{
+    constexpr const char* kSeam =
+        "a tube, or panels that share a UV seam, cannot be simulated yet; allowed: one UV at each place";
+    constexpr const char* kTube = "a tube cannot be laid out with one UV at each place";
+    const std::string panels =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+        "vt 0 1\nvt 5 0\nvt 6 0\nvt 6 1\nvt 5 1\n";
+    const Defect kSeams[] = {
+        {"tube of 3 sides", tube(3, true), kSeam},
+        {"tube of 24 sides", tube(24, true), kSeam},
+        {"cone", tube(12, true, 0.5), kSeam},
+        {"tube with one UV at each place", tube(24, false), kTube},
+        {"panels sewn along a line", panels + "f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8\n", kSeam},
+        {"panels sewn at a corner", panels + "v 2 2 0\nv 1 2 0\nf 1/1 2/2 3/3 4/4\nf 3/5 6/6 7/7 8/8\n",
+         kSeam},
+        {"pillow", panels + "v 0.5 0.5 1\nvt 8 1\nf 1/1 2/2 3/3 4/4\nf 2/5 1/6 9/7\n", ""},
+    };
+    for (const Defect& seam : kSeams) {
+        SCOPED_TRACE(seam.name);
+        EXPECT_THAT(refusal(seam.text), HasSubstr(seam.says));
+    }
+    // The tube that is opened along its seam is cloth.
+    std::string open = tube(24, true);
+    const std::string last = "f 24/24 1/25 25/50 48/49\n";
+    ASSERT_NE(open.find(last), std::string::npos);
+    open.replace(open.find(last), last.size(),
+                 "v 0.999 -0.01 0\nv 0.999 -0.01 1\nf 24/24 49/25 50/50 48/49\n");
+    EXPECT_EQ(read(open).mesh.vertex_count(), 50);
+}
+
 TEST_F(ClothFileTest, RefusesWhatIsNoObjFile)
 {
     EXPECT_THAT(refusal_of((folder_ / "missing.obj").string()), HasSubstr("no such file"));

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "solver/cloth_strain.h"
+#include "solver/model/state.h"
+
+namespace arris {
+
+/// The greatest strain of a run so far, and where it was.
+struct StrainPeak {
+    double strain = 0.0;           ///< stretch - 1
+    double time = 0.0;             ///< s
+    Vec3 world = Vec3::Zero();     ///< m, middle of the face
+    Vec2 material = Vec2::Zero();  ///< m, middle of the face
+};
+
+/// The peaks of a run. A resumed run continues with those of its checkpoint.
+struct StrainPeaks {
+    StrainPeak stretch, compression;
+    StrainPeak in_plane;          ///< compression where the cloth stays plane
+    std::int64_t plane_rows = 0;  ///< rows up to now in which plane cloth was compressed by more than 5 %
+};
+
+/// Takes over the strains of `state` that exceed the peaks so far. Plane cloth counts only after some rows:
+/// it takes cloth some steps to fold.
+void note_strain(const State& state, const ClothStrain& strain, StrainPeaks& peaks);
+
+/// A line for each peak that cloth does not bear: stretch or compression above 20 %, and compression above 5
+/// % where the cloth stays plane.
+std::vector<std::string> warn_of_strain(const StrainPeaks& peaks);
+
+}  // namespace arris

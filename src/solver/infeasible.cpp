@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/infeasible.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace arris {
+
+namespace {
+
+bool has_vertex(const Contact& contact, int vertex)
+{
+    const std::array<int, 3>& vertices = contact.in_frame.vertices;
+    return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
+}
+
+/// Contacts that the step cannot meet, in the order of their rows.
+std::vector<const Contact*> list_unmet(const Workspace& work, const std::optional<int>& overconstrained)
+{
+    std::vector<const Contact*> unmet;
+    if (overconstrained) {
+        for (const Contact& contact : work.contacts)
+            if (contact.is_vertex() && has_vertex(contact, *overconstrained) && !contact.may_grow)
+                unmet.push_back(&contact);
+        return unmet;
+    }
+    for (const int row : work.solution.infeasible_rows)
+        for (const Contact& contact : work.contacts)
+            if (contact.row == row) unmet.push_back(&contact);
+    return unmet;
+}
+
+/// Pin (index) that holds the vertex; -1 without one.
+int find_pin(const Workspace& work, int vertex)
+{
+    for (const PinTarget& held : work.pin_targets)
+        if (held.vertex == vertex) return held.pin;
+    return -1;
+}
+
+/// First pinned vertex of the contacts, else their first vertex; -1 without contacts.
+int find_vertex(const Workspace& work, const std::vector<const Contact*>& unmet)
+{
+    int named = -1;
+    for (const Contact* contact : unmet)
+        for (const int v : contact->in_frame.vertices) {
+            if (v < 0) continue;
+            if (find_pin(work, v) >= 0) return v;
+            if (named < 0) named = v;
+        }
+    return named;
+}
+
+/// Obstacle whose contact faces `unmet` most directly at the vertex; -1 without one. A contact that is a
+/// bound of the velocity solve is never among the unmet rows.
+int find_opponent(const Workspace& work, int vertex, const Contact& unmet)
+{
+    int opponent = -1;
+    double least = 0.0;
+    for (const Contact& contact : work.contacts) {
+        const double cosine = contact.normal.dot(unmet.normal);
+        if (contact.obstacle == unmet.obstacle || !has_vertex(contact, vertex) || !(cosine < least)) continue;
+        opponent = contact.obstacle;
+        least = cosine;
+    }
+    return opponent;
+}
+
+}  // namespace
+
+Infeasible name_infeasible(const State& state, const Workspace& work,
+                           const std::optional<int>& overconstrained)
+{
+    Infeasible named;
+    const std::vector<const Contact*> unmet = list_unmet(work, overconstrained);
+    const int vertex = overconstrained ? *overconstrained : find_vertex(work, unmet);
+    if (vertex < 0) return named;
+    named.vertex = state.ids[vertex];
+    named.pin = find_pin(work, vertex);
+    for (const Contact* contact : unmet) {
+        if (!has_vertex(*contact, vertex)) continue;
+        if (named.obstacles[0] < 0)
+            named.obstacles[0] = contact->obstacle;
+        else if (named.obstacles[1] < 0 && contact->obstacle != named.obstacles[0])
+            named.obstacles[1] = contact->obstacle;
+        if (named.pin < 0 && named.obstacles[1] < 0)
+            named.obstacles[1] = find_opponent(work, vertex, *contact);
+    }
+    return named;
+}
+
+}  // namespace arris

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/run_ending.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "solver/step.h"
+#include "tests/app/program.h"
+
+namespace arris {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+using ::testing::Not;
+
+struct EndingCase {
+    const char* name;
+    std::string text;  ///< after kSheet
+    const char*
+        message;  ///< regular expression after "no velocity keeps vertex .., at [..] (m, ..), out of "
+};
+
+// A sheet of half a metre that falls from z = 0.11.
+constexpr const char* kSheet =
+    "duration = 1\n[cloth]\nsize = [0.5, 0.5]\nresolution = [4, 4]\ntranslate = [-0.25, -0.25, 0.11]\n"
+    "[gravity]\n";
+
+std::string box(const std::string& name, const std::string& sizes, const std::string& more)
+{
+    return "[[obstacle]]\nname = \"" + name + "\"\nbox = " + sizes + "\n" + more + "\n";
+}
+
+std::string pin(const std::string& material, const std::string& more = "")
+{
+    return "[[pin]]\nmaterial = " + material + "\n" + more + "\n";
+}
+
+const std::string kCorner = "[[0.5, 0.5], [0.5, 0.5]]", kMiddle = "[[0.25, 0.25], [0.25, 0.25]]",
+                  kLeft = "[[0, 0], [0, 0.5]]", kRight = "[[0.5, 0], [0.5, 0.5]]";
+
+const EndingCase kEndings[] = {
+    {"a second pin drives cloth into a floor",
+     box("ground", "[3, 3, 0.2]", "") + pin(kCorner) + pin(kLeft, "velocity = [0, 0, -0.2]"),
+     "ground in the step .*: pin.1 holds the vertex where ground is.*"},
+    {"an obstacle is driven into a pin",
+     box("ram", "[3, 3, 0.2]", "motion = { velocity = [0, 0, 0.5] }") + pin(kMiddle),
+     "ram in the step .*: pin.0 holds the vertex where ram is.*"},
+    {"a pin drives cloth into a wall",
+     box("ground", "[3, 3, 0.02]", "translate = [0, 0, -3]") +
+         box("wall", "[0.1, 3, 3]", "translate = [0.5, 0, 0]") + pin(kRight, "velocity = [0.5, 0, 0]"),
+     "wall in the step .*: pin.0 holds the vertex where wall is.*"},
+    {"a wire is driven into a pin",
+     "[[obstacle]]\nname = \"rope\"\nwire = [[-1, 0, 0.4], [1, 0, 0.4]]\nmotion = { velocity = [0, 0, -0.5] "
+     "}\n" +
+         pin(kLeft) + pin(kRight),
+     "rope in the step .*: pin.[01] holds the vertex where rope is.*"},
+    {"a nail is driven into a pin",
+     "[[obstacle]]\nname = \"nail\"\npoints = [[0, 0, 0.4]]\nmotion = { velocity = [0, 0, -0.5] }\n" +
+         pin(kMiddle),
+     "nail in the step .*: pin.0 holds the vertex where nail is.*"},
+    {"two plates meet",
+     box("slab", "[0.3, 0.3, 0.2]", "") +
+         box("lid", "[0.3, 0.3, 0.1]", "translate = [0, 0, 0.3]\nmotion = { velocity = [0, 0, -1] }"),
+     "slab and lid in the step .*: these obstacles leave it no room"},
+    {"plates that meet far from others",
+     box("other", "[0.3, 0.3, 0.1]", "translate = [9, 0, 0]") +
+         box("lid", "[0.3, 0.3, 0.1]", "translate = [0, 0, 0.3]\nmotion = { velocity = [0, 0, -1] }") +
+         box("slab", "[0.3, 0.3, 0.2]", ""),
+     "lid and slab in the step .*: these obstacles leave it no room"},
+};
+
+TEST(RunEnding, NamesThePinAndTheObstaclesThatCannotBeMetTogether)
+{
+    for (const EndingCase& one : kEndings) {
+        SCOPED_TRACE(one.name);
+        const TemporaryDirectory folder;
+        write_bytes(folder / "scene.toml", kSheet + one.text);
+        Program program(folder, {"run", folder / "scene.toml", "-o", folder / "out", "--quiet"});
+        EXPECT_EQ(program.wait(), 1);
+        const nlohmann::json report = nlohmann::json::parse(read_bytes(folder / "out/report.json"));
+        EXPECT_EQ(report["status"], "infeasible");
+        const std::string message = report["message"];
+        EXPECT_THAT(message, MatchesRegex("no velocity keeps vertex [0-9]+, at .*m, material .*, out of " +
+                                          std::string(one.message)));
+        EXPECT_THAT(program.err(), HasSubstr("arris: infeasible: " + message + "\n"));
+    }
+}
+
+TEST(RunEnding, OfAnInfeasibleStepWithoutAVertexOrWithOneObstacleIsAWholeSentence)
+{
+    Scene scene;
+    scene.obstacles.push_back(Obstacle("vee", make_box({1, 1, 1}), {}, {}, 30.0));
+    State state;
+    state.time = 0.5;
+    StepReport report;
+    report.status = StepStatus::Infeasible;
+    EXPECT_THAT(explain_ending(report, 1e-9, scene, state).message,
+                AllOf(HasSubstr("keeps the cloth out of the obstacles in the step after t = 0.5 s"),
+                      Not(HasSubstr("-1"))));
+    report.infeasible = {7, -1, {0, -1}};
+    EXPECT_THAT(explain_ending(report, 1e-9, scene, state).message,
+                AllOf(HasSubstr("keeps vertex 7 out of vee in the step"),
+                      HasSubstr("two parts of this obstacle leave it no room")));
+}
+
+}  // namespace
+}  // namespace arris
