@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kInPlane = 1e-6;  // thicknesses from a feature's plane: counts as in the plane
 constexpr double kAsGood = 0.1;    // thicknesses: for an edge that begins or ends near the plane
+constexpr double kNearer = 1e-6;   // share of a vertex's distance by which an edge must come nearer
 
 }  // namespace
 
@@ -60,6 +61,7 @@ std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const 
                                                const Reach& reach) const
 {
     if (a > b) std::swap(a, b);
+    if (const auto fold = find_fold_around(a, b, feature)) return is_eol(fold->edge[0]) ? std::nullopt : fold;
     const std::optional<double> s = find_share(a, b, feature, reach);
     if (!s || (*s == 0.0 && is_eol(a)) || (*s == 1.0 && is_eol(b))) return std::nullopt;
     const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
@@ -98,6 +100,40 @@ std::optional<double> EdgeCrossings::find_share(int a, int b, int feature, const
     const double along = closest_on_segment(place, segment[0], segment[1]);
     if (!(height >= 0.0 && height <= reach.height && along > 0.0 && along < 1.0)) return std::nullopt;
     return s;
+}
+
+/// Site at an end of the cloth's edge from which the cloth leads past the wire or border on both sides. Each
+/// side has a nearest point of its own, a little way from the fold. A vertex there would be beside the fold, in
+/// cloth that does not bend there, and would leave the fold itself to rows.
+std::optional<FeatureSite> EdgeCrossings::find_fold_around(int a, int b, int feature) const
+{
+    const FeatureEdge& edge = obstacle_.features().edges[feature];
+    if (edge.kind == FeatureKind::Convex) return std::nullopt;
+    const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
+    const Vec3 tangent = (segment[1] - segment[0]).stableNormalized();
+    for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)}) {
+        const Vec3& place = positions_[end];
+        const double along = closest_on_segment(place, segment[0], segment[1]);
+        const Vec3 point = segment[0] + along * (segment[1] - segment[0]);
+        const double height = (place - point).norm();
+        if (!(height <= kOnFeature * thickness_ && along > 0.0 && along < 1.0)) continue;
+        // The side of the wire, 1 or -1, on which an edge from here leads past it; 0 where it leads away.
+        const auto side_of = [&, end = end](int w) {
+            const SegmentPair nearest = closest_between_segments({place, positions_[w]}, segment);
+            if (!((nearest.first - nearest.second).norm() < (1.0 - kNearer) * height)) return 0;
+            return tangent.dot((point - place).cross(positions_[w] - place)) > 0.0 ? 1 : -1;
+        };
+        const int side = side_of(other);
+        if (side == 0) continue;
+        const std::vector<int> around = neighbours(end);
+        if (std::none_of(around.begin(), around.end(), [&](int w) { return side_of(w) == -side; })) continue;
+        FeatureSite site = {FeatureId::edge(o_, feature), state_.mesh.material[end], state_.ids[end],
+                            (place - point) / height};
+        site.edge = {end, end};
+        site.is_on_border = stars_.border_neighbours[end][0] >= 0;
+        return site;
+    }
+    return std::nullopt;
 }
 
 /// Height, m, by which an edge of the cloth that pressed along `normal` may have risen over the feature. The

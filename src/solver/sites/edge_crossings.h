@@ -42,6 +42,7 @@ class EdgeCrossings {
     };
     std::optional<FeatureSite> find(int a, int b, int feature, const Vec3& normal, const Reach& reach) const;
     std::optional<double> find_share(int a, int b, int feature, const Reach& reach) const;
+    std::optional<FeatureSite> find_fold_around(int a, int b, int feature) const;
     double find_rise(int a, int b, int feature, const Vec3& normal) const;
     std::optional<FeatureSite> find_beyond_end(int a, int b, int feature, const Vec3& normal) const;
     bool is_eol(int v) const { return state_.eol_entry(state_.ids[v]) >= 0; }
