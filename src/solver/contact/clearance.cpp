@@ -46,8 +46,8 @@ bool push_out(const ObstacleContact& contact, const ObstacleStep& step, double t
     return true;
 }
 
-/// Folds of the cloth around wires and borders. Both sides of a fold pass the wire nearer than the fold does, and
-/// no motion of single vertices takes it away from the wire without strain. It keeps the gap it has.
+/// Folds of the cloth around wires and borders. Both sides of a fold pass the wire nearer than the fold does,
+/// and no motion of single vertices takes it away from the wire without strain. It keeps the gap it has.
 class FoldsAround {
   public:
     FoldsAround(const Scene& scene, const std::vector<MeshEdge>& edges, int vertex_count)
@@ -59,9 +59,10 @@ class FoldsAround {
         }
     }
 
-    /// Whether a contact is with a wire around which the cloth is folded at a vertex of the contact. `places`: the
-    /// cloth in the obstacle's frame.
-    bool includes(const ObstacleContact& contact, const Obstacle& obstacle, const std::vector<Vec3>& places) const
+    /// Whether a contact is with a wire around which the cloth is folded at a vertex of the contact.
+    /// `places`: the cloth in the obstacle's frame.
+    bool includes(const ObstacleContact& contact, const Obstacle& obstacle,
+                  const std::vector<Vec3>& places) const
     {
         const Box3 box(contact.point.array() - reach_, contact.point.array() + reach_);
         std::vector<int> features;

@@ -19,8 +19,8 @@
 namespace arris {
 
 /// Whether cloth is folded around a wire's `segment` at the vertex `place`: on both sides, an edge from there
-/// passes the segment nearer than the vertex, and within `reach` (m). One of these edges leads to `other`, one to a
-/// vertex of `around`.
+/// passes the segment nearer than the vertex, and within `reach` (m). One of these edges leads to `other`,
+/// one to a vertex of `around`.
 bool is_folded_around(const std::array<Vec3, 2>& segment, const Vec3& place, const Vec3& other,
                       const std::vector<Vec3>& around, double reach);
 

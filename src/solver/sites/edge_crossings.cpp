@@ -73,9 +73,9 @@ std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const 
     return site;
 }
 
-/// Site on a fold of the cloth around a wire or border. Each side of the fold has a nearest point of its own, a
-/// little way from the fold. A vertex there would be in cloth that does not bend there, and would leave the fold
-/// itself to rows.
+/// Site on a fold of the cloth around a wire or border. Each side of the fold has a nearest point of its own,
+/// a little way from the fold. A vertex there would be in cloth that does not bend there, and would leave the
+/// fold itself to rows.
 std::optional<FeatureSite> EdgeCrossings::find_on_fold(const FoldEnd& fold, int feature) const
 {
     const int v = fold.vertex;
@@ -118,8 +118,8 @@ std::optional<double> EdgeCrossings::find_share(int a, int b, int feature, const
     return s;
 }
 
-/// End of the cloth's edge at which the cloth is folded around a wire or border. Only as far from it as a fold is
-/// held that flies off.
+/// End of the cloth's edge at which the cloth is folded around a wire or border. Only so near to it that a
+/// vertex on the wire would crowd the fold.
 std::optional<EdgeCrossings::FoldEnd> EdgeCrossings::find_fold_around(int a, int b, int feature) const
 {
     if (obstacle_.features().edges[feature].kind == FeatureKind::Convex) return std::nullopt;
@@ -128,7 +128,7 @@ std::optional<EdgeCrossings::FoldEnd> EdgeCrossings::find_fold_around(int a, int
         const double along = closest_on_segment(positions_[end], segment[0], segment[1]);
         const Vec3 from = positions_[end] - (segment[0] + along * (segment[1] - segment[0]));
         const double reach =
-            std::max(kOnFeature * thickness_, kFlyingCells * target_.length(state_.mesh.material[end]));
+            std::max(kOnFeature * thickness_, kCrowded * target_.length(state_.mesh.material[end]));
         if (!(along > 0.0 && along < 1.0 && from.norm() <= reach)) continue;
         std::vector<Vec3> around;
         for (const int w : neighbours(end)) around.push_back(positions_[w]);
