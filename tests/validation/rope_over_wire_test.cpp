@@ -19,6 +19,7 @@
 #include "geometry/surgery/initial_target.h"
 #include "grid_patterns.h"
 #include "refinement.h"
+#include "solver/contact/clearance.h"
 #include "solver/eol/eol_features.h"
 
 namespace arris {
@@ -56,13 +57,20 @@ struct RopeCase {
     double stiffness = 2e5;  ///< N/m
     double bending = 1e-7;   ///< J
     double damping = 0.0;    ///< s
+    /// Whether the EOL vertices are given. Otherwise the first step must find them, as in a scene with
+    /// `folds`.
+    bool is_given = true;
+    double height = 0.0;  ///< m, of the fold above the place where it rests on the wire
+    double beside = 0.0;  ///< m, from the wire to the fold, across the wire
 };
 
 std::string describe(const RopeCase& rope)
 {
-    return fmt::format("{} x {} cells, pattern {}, turned by {}, {} segments, {} degrees open, {} N/m, {} s",
-                       rope.cells[0], rope.cells[1], name_of(rope.pattern), rope.pattern_angle, rope.segments,
-                       rope.open_degrees, rope.stiffness, rope.damping);
+    return fmt::format(
+        "{} x {} cells, pattern {}, turned by {}, {} segments, {} degrees open, {} N/m, {} s, {} m above, "
+        "{} m beside",
+        rope.cells[0], rope.cells[1], name_of(rope.pattern), rope.pattern_angle, rope.segments,
+        rope.open_degrees, rope.stiffness, rope.damping, rope.height, rope.beside);
 }
 
 double displacement(double time)
@@ -110,7 +118,7 @@ ObstacleMesh make_wire_of(int segments)
     return make_wire(points, false);
 }
 
-/// A run with the rope folded over the wire and EOL vertices on it.
+/// A run with the rope folded over the wire, with EOL vertices on the wire where they are given.
 ClothRun make_rope_run(const RopeCase& rope)
 {
     const double fold = 0.5 * kLength - kStart;
@@ -124,16 +132,18 @@ ClothRun make_rope_run(const RopeCase& rope)
     const double half = 0.5 * rope.open_degrees * M_PI / 180.0;
     for (std::size_t v = 0; v < mesh.world.size(); ++v) {
         const double along = mesh.material[v].x() - fold;
-        mesh.world[v] = {along * std::sin(half), mesh.material[v].y() - 0.5 * kWidth,
-                         kThickness - std::abs(along) * std::cos(half)};
+        mesh.world[v] = {rope.beside + along * std::sin(half), mesh.material[v].y() - 0.5 * kWidth,
+                         rope.height + kThickness - std::abs(along) * std::cos(half)};
     }
     Scene scene;
     scene.material = {kDensity, rope.stiffness, 0.0, rope.bending, rope.damping, kThickness};
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
     scene.obstacles.push_back(Obstacle("wire", make_wire_of(rope.segments), {}, {}, 10.0));
     scene.eol = make_initial_target(mesh);
+    clear_stand_off(scene, mesh);
     ClothRun run(std::move(scene), std::move(mesh));
     run.settings.integrator = rope.integrator;
+    if (!rope.is_given) return run;
     for (int v = 0; v < run.state.mesh.vertex_count(); ++v)
         if (run.state.mesh.material[v].x() == fold)
             run.state.eol.push_back({run.state.ids[v], FeatureId::edge(0, 0), Vec3::UnitZ(), 0});
@@ -304,6 +314,91 @@ TEST(RopeOverWire, OfFineCellsWantsShortStepsOrSomethingThatStillsIt)
         table.add({fmt::format("{:g}", fine.stiffness), fmt::format("{:g}", fine.bending),
                    fmt::format("{:g}", fine.damping), fmt::format("{:g} ms", 1e3 * fine.step),
                    fmt::format("{} of {}", held, count), percent(worst)});
+    }
+}
+
+/// Displacement of a rope that first falls freely by `height` on the wire. The inextensible rope then keeps
+/// only the difference of its sides' momenta.
+double displacement_after_fall(double time, double height)
+{
+    const double fall = std::sqrt(2.0 * height / kG), rate = std::sqrt(2.0 * kG / kLength);
+    const double speed = kG * fall * 2.0 * kStart / kLength;
+    return kStart * std::cosh(rate * (time - fall)) + speed / rate * std::sinh(rate * (time - fall));
+}
+
+// In a scene, `folds` place the rope and nothing says where its EOL vertices are. The sides of the fold pass
+// the wire within 5e-6 m.
+TEST(RopeOverWire, SlidesWhereverTheSceneFoldsIt)
+{
+    struct Case {
+        const char* name;
+        std::array<int, 2> cells;
+        GridPattern pattern;
+        int segments;
+        double height;  // m
+    };
+    // Relative to y. The fall ends within a step, of which kStep sqrt(2 g / L) / 4 may be missing after 15
+    // mm.
+    constexpr double kFoundError = 1e-3;
+    for (const Case& c : {Case{"four cells", {4, 1}, GridPattern::Cross, 1, 0.0},
+                          {"diagonal", {8, 2}, GridPattern::Diagonal, 1, 0.0},
+                          {"many segments", {8, 2}, GridPattern::Alternating, 37, 0.0},
+                          {"unstructured", {16, 4}, GridPattern::Unstructured, 1, 0.0},
+                          {"fine", {32, 8}, GridPattern::Cross, 1, 0.0},
+                          {"half a thickness above", {16, 4}, GridPattern::Cross, 1, 5e-4},
+                          {"two thicknesses above", {8, 2}, GridPattern::Diagonal, 1, 2e-3},
+                          {"five thicknesses above", {16, 4}, GridPattern::Unstructured, 1, 5e-3},
+                          {"a quarter of a cell above", {16, 4}, GridPattern::Cross, 1, 0.015}}) {
+        SCOPED_TRACE(c.name);
+        RopeCase rope;
+        rope.cells = c.cells;
+        rope.pattern = c.pattern;
+        rope.segments = c.segments;
+        rope.height = c.height;
+        rope.stiffness = 2e4;
+        rope.damping = kDamping;
+        rope.is_given = false;
+        ClothRun run = make_rope_run(rope);
+        const double duration = kShare * kLiftOff;
+        run.advance(duration, kStep);
+        EXPECT_EQ(run.state.crossings, 0);
+        EXPECT_GE(run.state.eol.size(), 2u);
+        EXPECT_NEAR(measure_displacement(run) / displacement_after_fall(duration, c.height), 1.0,
+                    kFoundError);
+    }
+}
+
+// Wider folds have no closed form, as their sides swing shut. Their reference is the rope with given EOL
+// vertices.
+TEST(RopeOverWire, SlidesHoweverWideTheSceneFoldsIt)
+{
+    struct Case {
+        double open_degrees, beside;
+        std::array<int, 2> cells;
+        double allowed;  // relative to the reference's y; more where the fold starts beside the wire
+    };
+    for (const Case& c : {Case{2.0, 0.0, {8, 2}, 1e-3},
+                          {10.0, 0.0, {16, 4}, 1e-3},
+                          {30.0, 0.0, {8, 2}, 1e-3},
+                          {60.0, 0.0, {16, 4}, 1e-3},
+                          {90.0, 0.0, {16, 4}, 1e-3},
+                          {10.0, 7e-5, {8, 2}, 5e-3},
+                          {30.0, 1e-4, {16, 4}, 1e-2},
+                          {90.0, 3e-4, {16, 4}, 2e-2}}) {
+        RopeCase rope;
+        rope.open_degrees = c.open_degrees;
+        rope.cells = c.cells;
+        rope.pattern = GridPattern::Cross;
+        rope.stiffness = 2e4;
+        rope.damping = kDamping;
+        ClothRun given = make_rope_run(rope);
+        rope.is_given = false;
+        rope.beside = c.beside;
+        ClothRun found = make_rope_run(rope);
+        SCOPED_TRACE(describe(rope));
+        for (ClothRun* run : {&given, &found}) run->advance(kShare * kLiftOff, kStep);
+        EXPECT_EQ(found.state.crossings, 0);
+        EXPECT_NEAR(measure_displacement(found) / measure_displacement(given), 1.0, c.allowed);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/closest_point.h"
 #include "solver/model/eol_limits.h"
 
 namespace arris {
@@ -15,6 +16,25 @@ namespace {
 constexpr double kLeastAngle = 5e-3;
 
 }  // namespace
+
+bool is_folded_around(const std::array<Vec3, 2>& segment, const Vec3& place, const Vec3& other,
+                      const std::vector<Vec3>& around, double reach)
+{
+    constexpr double kNearer =
+        1e-6;  // of the vertex's distance; edges along the fold are as far as the vertex
+    const SegmentPair at = closest_between_segments({place, place}, segment);
+    const Vec3 from = at.first - at.second, tangent = segment[1] - segment[0];
+    // The side on which an edge from the vertex passes the segment, 1 or -1; 0 where it does not.
+    const auto side_of = [&](const Vec3& end) {
+        const SegmentPair nearest = closest_between_segments({place, end}, segment);
+        const double gap = (nearest.first - nearest.second).norm();
+        if (!(gap < (1.0 - kNearer) * from.norm() && gap <= reach)) return 0;
+        return tangent.dot((end - place).cross(from)) > 0.0 ? 1 : -1;
+    };
+    const int side = side_of(other);
+    return side != 0 &&
+           std::any_of(around.begin(), around.end(), [&](const Vec3& end) { return side_of(end) == -side; });
+}
 
 double angle_behind(const FeatureFrame& frame, const Vec3& place)
 {

@@ -11,11 +11,18 @@
 //        A  :  B
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "geometry/obstacle/feature_frame.h"
 
 namespace arris {
+
+/// Whether cloth is folded around a wire's `segment` at the vertex `place`: on both sides, an edge from there
+/// passes the segment nearer than the vertex, and within `reach` (m). One of these edges leads to `other`,
+/// one to a vertex of `around`.
+bool is_folded_around(const std::array<Vec3, 2>& segment, const Vec3& place, const Vec3& other,
+                      const std::vector<Vec3>& around, double reach);
 
 /// Direction outward from a wire at the end of a step of `dt` (s). Turns towards `wanted.outward`, as far as
 /// the plane behind stays off the cloth and the vertex moves at most at 0.1 m/s. `place` is the vertex and

@@ -47,7 +47,7 @@ std::optional<RowCause> SiteInsertion::insert_vertex(const FeatureSite& site, co
     }
     EolVertex vertex{made.vertex, site.on, site.outward, 0};
     vertex.side = trace_.side_beside(wanted.tag, site.material);
-    if (const std::optional<RowCause> cause = admission_.refuse_inserted(vertex)) {
+    if (const std::optional<RowCause> cause = admission_.refuse_inserted(vertex, site)) {
         surgery.release_vertex(made.vertex);
         ways_.erase_coming(made.vertex);
         return cause;

@@ -12,6 +12,7 @@
 #include "geometry/obstacle/normal_cone.h"
 #include "geometry/sort_unique.h"
 #include "solver/eol/eol_features.h"
+#include "solver/eol/wire_fold.h"
 
 namespace arris {
 
@@ -29,6 +30,7 @@ EdgeCrossings::EdgeCrossings(const Scene& scene, const State& state, const Cloth
       obstacle_(scene.obstacles[obstacle]),
       o_(obstacle),
       thickness_(scene.material.thickness),
+      target_(*scene.eol),
       positions_(to_frame(obstacle_.at(state.time), state.mesh.world))
 {
 }
@@ -60,6 +62,7 @@ std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const 
                                                const Reach& reach) const
 {
     if (a > b) std::swap(a, b);
+    if (const auto fold = find_fold_around(a, b, feature)) return find_on_fold(*fold, feature);
     const std::optional<double> s = find_share(a, b, feature, reach);
     if (!s || (*s == 0.0 && is_eol(a)) || (*s == 1.0 && is_eol(b))) return std::nullopt;
     const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
@@ -67,6 +70,21 @@ std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const 
     site.edge = {*s < 1.0 ? a : b, *s > 0.0 ? b : a};
     const auto [before, after] = stars_.border_neighbours[site.edge[0]];
     site.is_on_border = site.edge[0] == site.edge[1] ? before >= 0 : before == b || after == b;
+    return site;
+}
+
+/// Site on a fold of the cloth around a wire or border. Each side of the fold has a nearest point of its own,
+/// a little way from the fold. A vertex there would be in cloth that does not bend there, and would leave the
+/// fold itself to rows.
+std::optional<FeatureSite> EdgeCrossings::find_on_fold(const FoldEnd& fold, int feature) const
+{
+    const int v = fold.vertex;
+    if (is_eol(v)) return std::nullopt;
+    FeatureSite site = {FeatureId::edge(o_, feature), state_.mesh.material[v], state_.ids[v],
+                        fold.from.stableNormalized()};
+    site.edge = {v, v};
+    site.is_on_border = stars_.border_neighbours[v][0] >= 0;
+    site.is_on_fold = true;
     return site;
 }
 
@@ -98,6 +116,26 @@ std::optional<double> EdgeCrossings::find_share(int a, int b, int feature, const
     const double along = closest_on_segment(place, segment[0], segment[1]);
     if (!(height >= 0.0 && height <= reach.height && along > 0.0 && along < 1.0)) return std::nullopt;
     return s;
+}
+
+/// End of the cloth's edge at which the cloth is folded around a wire or border. Only so near to it that a
+/// vertex on the wire would crowd the fold.
+std::optional<EdgeCrossings::FoldEnd> EdgeCrossings::find_fold_around(int a, int b, int feature) const
+{
+    if (obstacle_.features().edges[feature].kind == FeatureKind::Convex) return std::nullopt;
+    const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
+    for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)}) {
+        const double along = closest_on_segment(positions_[end], segment[0], segment[1]);
+        const Vec3 from = positions_[end] - (segment[0] + along * (segment[1] - segment[0]));
+        const double reach =
+            std::max(kOnFeature * thickness_, kCrowded * target_.length(state_.mesh.material[end]));
+        if (!(along > 0.0 && along < 1.0 && from.norm() <= reach)) continue;
+        std::vector<Vec3> around;
+        for (const int w : neighbours(end)) around.push_back(positions_[w]);
+        if (is_folded_around(segment, positions_[end], positions_[other], around, kOnFeature * thickness_))
+            return FoldEnd{end, from};
+    }
+    return std::nullopt;
 }
 
 /// Height, m, by which an edge of the cloth that pressed along `normal` may have risen over the feature. The

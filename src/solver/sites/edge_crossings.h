@@ -42,6 +42,12 @@ class EdgeCrossings {
     };
     std::optional<FeatureSite> find(int a, int b, int feature, const Vec3& normal, const Reach& reach) const;
     std::optional<double> find_share(int a, int b, int feature, const Reach& reach) const;
+    struct FoldEnd {
+        int vertex;
+        Vec3 from;  ///< to the vertex, from its nearest point on the feature
+    };
+    std::optional<FoldEnd> find_fold_around(int a, int b, int feature) const;
+    std::optional<FeatureSite> find_on_fold(const FoldEnd& fold, int feature) const;
     double find_rise(int a, int b, int feature, const Vec3& normal) const;
     std::optional<FeatureSite> find_beyond_end(int a, int b, int feature, const Vec3& normal) const;
     bool is_eol(int v) const { return state_.eol_entry(state_.ids[v]) >= 0; }
@@ -51,6 +57,7 @@ class EdgeCrossings {
     const Obstacle& obstacle_;
     std::int32_t o_;
     double thickness_;
+    const MeshTarget& target_;
     std::vector<Vec3> positions_;
 };
 

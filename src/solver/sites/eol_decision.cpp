@@ -205,9 +205,10 @@ std::optional<double> EolAdmission::find_free_fold(const FeatureSite& site) cons
     return least;
 }
 
-std::optional<RowCause> EolAdmission::refuse_inserted(const EolVertex& eol) const
+std::optional<RowCause> EolAdmission::refuse_inserted(const EolVertex& eol, const FeatureSite& site) const
 {
-    return is_in_plane(eol) && is_on_side(eol) ? std::nullopt : std::optional(RowCause::OffPlane);
+    return (site.is_on_fold || is_in_plane(eol)) && is_on_side(eol) ? std::nullopt
+                                                                    : std::optional(RowCause::OffPlane);
 }
 
 bool EolAdmission::is_in_plane(const EolVertex& eol) const

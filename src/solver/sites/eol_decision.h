@@ -51,8 +51,8 @@ class EolAdmission {
 
     /// Cause for which a vertex just inserted does not become EOL; nothing if it does. Surgery at one site
     /// bends the surface slightly at the next. A vertex inserted off its plane or side could not return
-    /// there.
-    std::optional<RowCause> refuse_inserted(const EolVertex& eol) const;
+    /// there. A fold around a wire may come down to the wire later.
+    std::optional<RowCause> refuse_inserted(const EolVertex& eol, const FeatureSite& site) const;
 
     /// Whether the coordinates of an EOL vertex can hold it at its place. On a convex edge this is the plane
     /// in which alone it moves; for a free fold, anywhere beyond both faces of the edge. On other edges it is

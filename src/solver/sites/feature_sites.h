@@ -20,6 +20,7 @@ struct FeatureSite {
     bool is_on_border = false;           ///< of the cloth
     std::array<int, 2> edge = {-1, -1};  ///< edge of the cloth there; twice the same vertex at a vertex
     int contact = -1;                    ///< index in State::active; -1 where it only fills a gap
+    bool is_on_fold = false;             ///< of cloth around a wire or border; may be off the feature
 
     /// Whether the site is in a face, at a bend of a rim.
     bool is_in_face() const { return !on.is_fixed() && edge[0] < 0; }

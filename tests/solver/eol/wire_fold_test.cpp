@@ -46,6 +46,51 @@ struct Wire {
     }
 };
 
+// The angles of two edges that leave the vertex are from the direction straight down to the wire.
+TEST(IsFoldedAround, HoldsWhereBothSidesPassTheWireNearerThanTheVertex)
+{
+    struct Case {
+        const char* name;
+        double left, right;  // rad
+        bool is_folded;
+    };
+    constexpr double kReach = 2.5 * kHeight, kHigh = 20.0 * kHeight;
+    for (const auto& [height, cases] :
+         {std::pair(kHeight, std::vector<Case>{{"nearly shut", 5e-3, 5e-3, true},
+                                               {"right angle", M_PI / 4.0, M_PI / 4.0, true},
+                                               {"uneven", 0.1, 1.5, true},
+                                               {"nearly flat", 1.56, 1.56, true},
+                                               {"flat, the vertex beside the wire", 1.4, M_PI - 1.4, false},
+                                               {"upwards", 0.5, 2.0, false},
+                                               {"both on one side", 0.3, -0.6, false}}),
+          {kHigh, std::vector<Case>{{"nearly shut", 5e-3, 5e-3, true},
+                                    {"one side beyond the reach", 5e-3, 0.5, false},
+                                    {"right angle", M_PI / 4.0, M_PI / 4.0, false}}}})
+        for (const Case& c : cases)
+            for (unsigned seed = 0; seed < 20; ++seed) {
+                const Wire wire(seed, 3.0);
+                const std::array<Vec3, 2> segment = {wire.point - wire.tangent(),
+                                                     wire.point + 2.0 * wire.tangent()};
+                const Vec3 vertex = wire.vertex(height);
+                const auto leaving = [&](double angle, double along) {
+                    return Vec3(vertex + 0.1 * (wire.at(angle, 1.0) - wire.point) + along * wire.tangent());
+                };
+                // Edges along the fold are as far from the wire as the vertex, and on neither side.
+                const Vec3 along = vertex + 0.1 * wire.tangent();
+                for (const bool is_swapped : {false, true}) {
+                    const double first = is_swapped ? -c.right : c.left,
+                                 second = is_swapped ? c.left : -c.right;
+                    EXPECT_EQ(is_folded_around(segment, vertex, leaving(first, 0.03),
+                                               {along, leaving(second, -0.05)}, kReach),
+                              c.is_folded)
+                        << c.name << ", seed " << seed;
+                    EXPECT_FALSE(
+                        is_folded_around(segment, vertex, along, {leaving(first, 0.0), along}, kReach))
+                        << c.name << ", seed " << seed;
+                }
+            }
+}
+
 TEST(AngleBehind, IsTheAngleAroundTheWireWhereverThatIs)
 {
     for (unsigned seed = 0; seed < 20; ++seed) {
