@@ -43,7 +43,7 @@ std::string explain_infeasible(const Infeasible& infeasible, const Scene& scene,
         why = fmt::format(
             "pin.{} holds the vertex where {} is; change the motion of one of them, or release "
             "the pin earlier",
-            infeasible.pin, second >= 0 ? "one of them" : name(first));
+            infeasible.pin, name(first));
     return fmt::format("no velocity keeps {} out of {} {}: {}", name_vertex(state, infeasible.vertex), where,
                        place, why);
 }

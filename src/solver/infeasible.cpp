@@ -79,10 +79,7 @@ Infeasible name_infeasible(const State& state, const Workspace& work,
     named.pin = find_pin(work, vertex);
     for (const Contact* contact : unmet) {
         if (!has_vertex(*contact, vertex)) continue;
-        if (named.obstacles[0] < 0)
-            named.obstacles[0] = contact->obstacle;
-        else if (named.obstacles[1] < 0 && contact->obstacle != named.obstacles[0])
-            named.obstacles[1] = contact->obstacle;
+        if (named.obstacles[0] < 0) named.obstacles[0] = contact->obstacle;
         if (named.pin < 0 && named.obstacles[1] < 0)
             named.obstacles[1] = find_opponent(work, vertex, *contact);
     }

@@ -34,7 +34,7 @@ enum class StepPart { Ordinary, Opening, Rest };
 struct Infeasible {
     std::int64_t vertex = -1;                 ///< id
     int pin = -1;                             ///< index in the scene of the pin that holds the vertex
-    std::array<int, 2> obstacles = {-1, -1};  ///< indices in the scene; the second where two leave no room
+    std::array<int, 2> obstacles = {-1, -1};  ///< indices in the scene; the second where no pin holds it
 };
 
 struct StepReport {

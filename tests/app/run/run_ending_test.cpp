@@ -68,6 +68,14 @@ const EndingCase kEndings[] = {
      box("slab", "[0.3, 0.3, 0.2]", "") +
          box("lid", "[0.3, 0.3, 0.1]", "translate = [0, 0, 0.3]\nmotion = { velocity = [0, 0, -1] }"),
      "slab and lid in the step .*: these obstacles leave it no room"},
+    {"a wire meets a plate",
+     box("slab", "[2, 2, 0.2]", "") + "[[obstacle]]\nname = \"blade\"\nwire = [[-2, 0, 0.4], [2, 0, "
+                                      "0.4]]\nmotion = { velocity = [0, 0, -1] }\n",
+     "blade and slab in the step .*: these obstacles leave it no room"},
+    {"a nail meets a plate",
+     box("slab", "[2, 2, 0.2]", "") +
+         "[[obstacle]]\nname = \"spike\"\npoints = [[0.03, 0.02, 0.4]]\nmotion = { velocity = [0, 0, -1] }\n",
+     "spike and slab in the step .*: these obstacles leave it no room"},
     {"plates that meet far from others",
      box("other", "[0.3, 0.3, 0.1]", "translate = [9, 0, 0]") +
          box("lid", "[0.3, 0.3, 0.1]", "translate = [0, 0, 0.3]\nmotion = { velocity = [0, 0, -1] }") +
