@@ -69,6 +69,13 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
                         "the cloth cannot be kept out of an obstacle {}, even with 64 times smaller steps",
                         place)};
         default:
+            if (!std::isfinite(report.kkt_residual) && report.factorisations > 1)
+                return {RunStatus::NotConverged,
+                        fmt::format(
+                            "the velocity solve found no answer {}, within a bounded number of "
+                            "factorisations, even with 64 times smaller steps: too many contacts depend on "
+                            "each other; use smaller cells or a simpler obstacle",
+                            place)};
             if (!std::isfinite(report.kkt_residual))
                 return {RunStatus::NotConverged,
                         fmt::format(

@@ -73,13 +73,9 @@ struct Sheet {
     void press(const Vec3& along)
     {
         for (int v = 0; v < state.mesh.vertex_count(); ++v) {
-            Contact contact;
-            contact.in_frame = {};
-            contact.in_frame.vertices = {v, -1, -1};
-            contact.in_frame.weights = {1, 0, 0};
-            contact.normal = along;
-            contact.last_multiplier = 1e-6;
-            contacts.push_back(contact);
+            const ObstacleContact in_frame = {
+                {{v, -1, -1}, {1.0, 0.0, 0.0}}, ContactKind::Vertex, -1, along, Vec3::Zero(), 1e-3};
+            contacts.push_back({in_frame, 0, along, 0.0, 1e-6});
         }
     }
 

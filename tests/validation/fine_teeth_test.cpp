@@ -33,6 +33,7 @@ constexpr Landing kLandings[] = {
     {"stiff", 12, 0.006, 50.0, 1e-3, 1e5, GridPattern::Cross, 0.0, true},
     {"soft", 10, 0.005, 50.0, 1e-3, 20.0, GridPattern::Alternating, 0.0, true},
     {"blunt teeth, unstructured", 10, 0.008, 120.0, 1e-3, 300.0, GridPattern::Unstructured, 0.0, true},
+    {"stiff, without EOL vertices", 12, 0.006, 50.0, 1e-3, 2000.0, GridPattern::Cross, 0.0, false},
     {"nearly flat", 12, 0.006, 50.0, 1e-3, 300.0, GridPattern::Diagonal, 0.02, true},
 };
 

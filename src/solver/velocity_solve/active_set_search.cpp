@@ -9,6 +9,7 @@
 #include "solver/velocity_solve/active_set_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -17,6 +18,7 @@
 #include "solver/model/stopwatch.h"
 #include "solver/velocity_solve/kkt_certificate.h"
 #include "solver/velocity_solve/primal_prediction.h"
+#include "solver/velocity_solve/symmetric_product.h"
 
 namespace arris {
 namespace {
@@ -50,7 +52,7 @@ constexpr double kFewShare = 0.01;
 
 /// Bases whose rows may change sides all at once (Newton's method), until at most kFewChanges remain. After
 /// these bases, a row that has pulled in one is not part of a later one: U decides about it.
-constexpr int kNewtonBases = 8;
+constexpr int kNewtonBases = 20;
 constexpr int kFewChanges = 30;
 
 /// Floating-point operations on dense problems in one solve: as many as this number of factorisations take,
@@ -100,6 +102,7 @@ ActiveSetSearch::ActiveSetSearch(const VelocityProblem& problem, Factorization& 
     best_ = make_zero_solution(problem);
     best_.kkt_residual = std::numeric_limits<double>::infinity();
     has_pulled_.assign(problem.rows.size(), 0);
+    is_pressing_.assign(problem.rows.size(), 0);
     budget_ = {kLeastFlops + kMostFactorisations * factorization.flops(), &settings};
 }
 
@@ -145,7 +148,7 @@ VelocitySolution ActiveSetSearch::resume()
     base.iterate.row_multipliers.conservativeResizeLike(best_.row_multipliers);
     in_use_->set.see_new_rows();
     in_use_->iterate = base.iterate;
-    rows_ = rows_of_guess();
+    is_pressing_ = base.is_pressing;  // new rows are found as violators
     if (start_rows()) run_rounds(kWorkingSetCap);
     return run_bases();
 }
@@ -180,10 +183,10 @@ void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
         std::max<double>(kFewRows, kFewShare / 3.0 * static_cast<double>(problem_.lower.size()));
     const bool is_few = static_cast<double>(expected.size()) <= few;
     for (const int k : expected) {
-        if (is_few || has_pulled_[k] || !has_room_for(*problem_.matrix, constraints_.rows[k]))
-            rows_.push_back(k);
-        else
+        if (!is_few && !has_pulled_[k] && has_room_for(*problem_.matrix, constraints_.rows[k]))
             is_pressing_[k] = 1;
+        else if (static_cast<int>(rows_.size()) < kMostRows)  // the others join when they are violated
+            rows_.push_back(k);
     }
 }
 
@@ -214,7 +217,7 @@ void ActiveSetSearch::run_rounds(int cap)
         const int room = cap + cap / 2 - set.coordinate_count(), row_room = kMostRows - set.row_count();
         if (count > kHopeless * cap) return rebase_by_prediction();
         if (count > 0 && set.coordinate_count() >= cap) return rebase_with_changed(violators);
-        if (row_count > 0 && row_room == 0) return rebase_with_changed(violators);
+        if (row_count > 0 && row_room <= 0) return rebase_with_changed(violators);
         if (count > room) keep_worst_coordinates(base, iterate, room, violators.coordinates);
         if (row_count > row_room) keep_worst_rows(base, iterate, row_room, violators.rows);
         set.extend(violators.coordinates, violators.rows);
@@ -239,16 +242,50 @@ bool ActiveSetSearch::has_many_changes(const Violators& violators) const
            std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
 }
 
+/// Share of the way between two velocities at which the energy, with the springs of all rows, is least.
+/// Without it Newton's method goes to and fro where many rows depend on each other.
+double ActiveSetSearch::find_newton_share(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const
+{
+    constexpr int kBisections = 40;
+    const Eigen::VectorXd way = to - from;
+    const double slope = way.dot(symmetric_product(*problem_.matrix, from) - *problem_.rhs),
+                 curvature = way.dot(symmetric_product(*problem_.matrix, way));
+    std::vector<std::array<double, 3>> springs;  // gap at the start, its change, 1 / give
+    for (const ScaledRow& row : constraints_.rows) {
+        if (row.entries.empty()) continue;
+        const double start = gap(row, from, 0.0), end = gap(row, to, 0.0);
+        if (start < 0.0 || end < 0.0) springs.push_back({start, end - start, 1.0 / row.give});
+    }
+    const auto slope_at = [&](double share) {
+        double sum = slope + share * curvature;
+        for (const auto& [start, change, stiffness] : springs)
+            sum += stiffness * change * std::min(start + share * change, 0.0);
+        return sum;
+    };
+    double low = 0.0, high = 1.0;
+    if (!(slope_at(high) > 0.0)) return 1.0;
+    for (int k = 0; k < kBisections; ++k) {
+        const double middle = 0.5 * (low + high);
+        (slope_at(middle) > 0.0 ? high : low) = middle;
+    }
+    return high;
+}
+
 /// Newton's step: all rows violated now press in the next base, and no others.
 void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
 {
-    const Iterate& iterate = in_use_->iterate;
+    const Eigen::VectorXd& velocity = in_use_->iterate.velocity;
+    const bool is_newton = best_.factorisations <= kNewtonBases;
+    if (newton_point_.size() > 0 && is_newton)
+        newton_point_ += find_newton_share(newton_point_, velocity) * (velocity - newton_point_);
+    else
+        newton_point_ = velocity;
     std::vector<int> violated;
     for (int k = 0; k < static_cast<int>(constraints_.rows.size()); ++k) {
         const ScaledRow& row = constraints_.rows[k];
-        if (!row.entries.empty() && gap(row, iterate.velocity, 0.0) < 0.0) violated.push_back(k);
+        if (!row.entries.empty() && gap(row, newton_point_, 0.0) < 0.0) violated.push_back(k);
     }
-    if (best_.factorisations > kNewtonBases)
+    if (!is_newton)
         for (const int k : violators.pulling) has_pulled_[k] = 1;
     rebase_with_changed(violators);
     choose_rows(violated);

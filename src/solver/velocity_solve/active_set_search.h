@@ -47,6 +47,7 @@ class ActiveSetSearch {
     void rebase_by_prediction();
     void rebase_with_changed(const Violators& violators);
     void rebase_with_violated_rows(const Violators& violators);
+    double find_newton_share(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
     bool finish();
     void refine();
     bool certify();
@@ -63,6 +64,7 @@ class ActiveSetSearch {
     std::vector<int> rows_;          ///< rows with which the next base's working set starts
     std::vector<char> is_pressing_;  ///< by row: part of the next base
     std::vector<char> has_pulled_;   ///< by row: not to be part of a base any more
+    Eigen::VectorXd newton_point_;   ///< velocity reached by Newton's method; empty before
     DenseBudget budget_ = {0.0};
     bool has_rebased_for_accuracy_ = false;
     bool is_over_ = false;

@@ -51,12 +51,14 @@ void multiply(const Eigen::MatrixXd& matrix, const double* x, double* product)
 
 struct Objective {
     const Eigen::MatrixXd* hessian;
+    const DenseBudget* budget;
     Eigen::VectorXd linear, product;
 };
 
 double evaluate(const std::vector<double>& x, std::vector<double>& gradient, void* data)
 {
     Objective& objective = *static_cast<Objective*>(data);
+    if (objective.budget->is_interrupted()) throw nlopt::forced_stop();
     const Eigen::Map<const Eigen::VectorXd> point(x.data(), static_cast<Eigen::Index>(x.size()));
     multiply(*objective.hessian, x.data(), objective.product.data());
     const double value = 0.5 * point.dot(objective.product) + point.dot(objective.linear);
@@ -67,11 +69,12 @@ double evaluate(const std::vector<double>& x, std::vector<double>& gradient, voi
 }
 
 /// Minimiser y, computed in units of |q|: the solution of (S, q / unit) is y / unit.
-Eigen::VectorXd minimise(const CondensedQp& qp, const Eigen::VectorXd& start, int& evaluations)
+Eigen::VectorXd minimise(const CondensedQp& qp, const Eigen::VectorXd& start, const DenseBudget& budget,
+                         int& evaluations)
 {
     const int size = static_cast<int>(qp.linear.size());
     const double unit = qp.linear.lpNorm<Eigen::Infinity>() / kTypicalUnknown;
-    Objective objective = {&qp.hessian, qp.linear / unit, Eigen::VectorXd(size)};
+    Objective objective = {&qp.hessian, &budget, qp.linear / unit, Eigen::VectorXd(size)};
     std::vector<double> x(static_cast<std::size_t>(size));
     for (int i = 0; i < size; ++i) x[i] = std::max(start[i] / unit, 0.0);
 
@@ -80,7 +83,8 @@ Eigen::VectorXd minimise(const CondensedQp& qp, const Eigen::VectorXd& start, in
     optimizer.set_lower_bounds(0.0);
     optimizer.set_min_objective(evaluate, &objective);
     optimizer.set_ftol_rel(1e-12);
-    optimizer.set_maxeval(std::min(4 * size + 100, 2000));
+    const double affordable = budget.flops / (2.0 * size * size);
+    optimizer.set_maxeval(std::clamp(static_cast<int>(std::min(affordable, 2000.0)), 1, 4 * size + 100));
     improve(optimizer, x);
     evaluations += optimizer.get_numevals();
     return unit * Eigen::Map<const Eigen::VectorXd>(x.data(), size);
@@ -193,7 +197,7 @@ std::optional<CondensedAnswer> solve_condensed_qp(const CondensedQp& qp, const E
     CondensedAnswer answer = start_from(std::vector<char>(static_cast<std::size_t>(qp.linear.size()), false));
     if (scaled->qp.linear.minCoeff() < 0.0) {  // else z = 0
         const Eigen::VectorXd y =
-            minimise(scaled->qp, start.cwiseQuotient(scaled->scale), answer.nlopt_evaluations);
+            minimise(scaled->qp, start.cwiseQuotient(scaled->scale), budget, answer.nlopt_evaluations);
         if (!budget.spend(2.0 * static_cast<double>(y.size() * y.size()) * answer.nlopt_evaluations))
             return std::nullopt;
         const Eigen::VectorXd gradient = scaled->qp.hessian * y + scaled->qp.linear;

@@ -27,6 +27,8 @@ struct DenseBudget {
     double flops;  ///< floating-point operations left
     const Settings* settings = nullptr;
 
+    bool is_interrupted() const { return settings && settings->is_interrupted && settings->is_interrupted(); }
+
     /// False where nothing is left. Throws Interrupted.
     bool spend(double count)
     {

@@ -19,6 +19,9 @@ constexpr double kStiffness = 1e4;
 /// stay below 0.1 free speed / (g^T D^-1 g), so these give way by less than 1e-5 of the speed.
 constexpr double kUnmet = 1e-2;
 
+/// The same over the greatest share by which softened rows give way that can be met.
+constexpr double kLeastUnmet = 1.0;
+
 /// Largest speed that a row may ask of what can move, over the free speed. A row of which only a tiny part
 /// can move may ask for any speed; its spring would throw that part.
 constexpr double kMostSpeed = 10.0;
@@ -103,7 +106,7 @@ ScaledRow scale_row(const VelocityProblem& problem, const Eigen::VectorXd& diago
 
 }  // namespace
 
-ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
+ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed, double softening)
 {
     ConstraintRows result;
     if (problem.rows.empty()) return result;
@@ -123,7 +126,7 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
         if (can_move) speed = std::max(speed, row.lower / largest_coefficient(row));
     }
     result.least_speed = kLeastSpeed * speed;
-    result.unmet_speed = kUnmet * speed;
+    result.unmet_speed = std::max(kUnmet, kLeastUnmet * softening / kStiffness) * speed;
     for (std::size_t k = 0; k < result.rows.size(); ++k) {
         ScaledRow& row = result.rows[k];
         if (row.entries.empty()) continue;
@@ -131,6 +134,7 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
             row.lower = kMostSpeed * speed;
             result.impossible.push_back(static_cast<int>(k));
         }
+        row.give *= softening;
         row.lower += std::min(row.give * problem.rows[k].expected * row.scale, result.unmet_speed);
         result.is_finite = result.is_finite && std::isfinite(1.0 / row.give) && std::isfinite(row.lower);
     }

@@ -34,7 +34,8 @@ struct ConstraintRows {
 
 /// `free_speed` is `estimate_free_speed` of this problem; unused without rows. Coefficients below round-off
 /// of the row's largest one, fixed coordinates included, count as 0.
-ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed);
+/// `softening`: factor of all gives, at least 1.
+ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed, double softening = 1.0);
 
 /// Largest speed, m/s, without bounds and rows, within an order of magnitude. What cannot be
 /// met is relative to this speed, as the constrained speed may vanish. Depends only on A, b and the fixed

@@ -48,6 +48,13 @@ struct VelocitySolution {
     int nlopt_evaluations = 0;
     double factorise_seconds = 0.0;  ///< wall, numeric factorisation
     double solve_seconds = 0.0;      ///< wall, all else, symbolic analysis included
+
+    void add_cost(const VelocitySolution& other)
+    {
+        factorisations += other.factorisations;
+        nlopt_evaluations += other.nlopt_evaluations;
+        factorise_seconds += other.factorise_seconds;
+    }
 };
 
 /// Solves the constrained velocity step by the working-set method. One sparse factorisation pins the guessed

@@ -175,6 +175,9 @@ double WorkingSet::gap_of(const Member& member, const Iterate& iterate) const
 
 bool WorkingSet::solve(Iterate& iterate, int& nlopt_evaluations, DenseBudget& budget)
 {
+    const double released = static_cast<double>(std::count_if(
+        members_.begin(), members_.end(), [](const Member& m) { return m.kind == Kind::Released; }));
+    if (!budget.spend(2.0 * released * released * static_cast<double>(size()))) return false;
     const std::optional<CondensedQp> qp = condense();
     if (!qp) return false;
     const std::optional<CondensedAnswer> answer = solve_condensed_qp(*qp, multipliers_, budget);

@@ -522,6 +522,24 @@ TEST(ConstraintRows, AppendedAreResumedWithoutAFactorisation)
     expect_same_velocity(infeasible, solve(problem));
 }
 
+TEST(ConstraintRows, AppendedInGreatNumberAreResumed)
+{
+    // More rows than U may start with, most of them guessed, and as many again are appended.
+    std::mt19937 random(12);
+    for (const int count : {300, 700, 1500}) {
+        ClothWithRows cloth(20);
+        VelocityProblem& problem = cloth.owned.problem;
+        cloth.add(testing::RowPattern::Spread, count, 1);
+        problem.row_guess = random_subset(count, 0.8, random);
+        VelocitySolver solver;
+        ASSERT_EQ(solver.solve(problem, Settings()).status, SolveStatus::Certified);
+        cloth.add(testing::RowPattern::Clusters, count, 2);
+        const VelocitySolution resumed = solver.resume(problem, Settings());
+        ASSERT_EQ(resumed.status, SolveStatus::Certified) << resumed.kkt_residual;
+        expect_same_velocity(resumed, solve(problem));
+    }
+}
+
 TEST(ConstraintRows, AreResumedFromNothingAsSolved)
 {
     ClothWithRows cloth(6);
