@@ -310,9 +310,11 @@ std::vector<SceneKey> make_scene_keys()
         number("obstacle[].rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
         number("obstacle[].scale", "", kPositive, "1.0", "Scale of the obstacle about its origin."),
-        number("obstacle[].feature_angle", "degrees", {0.0, 180.0, true}, "30.0",
+        number("obstacle[].feature_angle", "degrees", {0.0, 180.0, true}, "14.0",
                "A convex edge is sharp if the normals of its two faces differ by more than this angle (plus "
-               "1e-6 degrees)."),
+               "0.01 degrees). By default the sides of a cylinder of up to 25 sides are sharp. A smaller "
+               "angle makes "
+               "cloth slide better over finer cylinders, but costs more on spheres and hills."),
         table("obstacle[].motion", "",
               "Rigid motion: p(t) = pivot + velocity tau + R(angular_velocity tau)(p0 - pivot), tau = "
               "clamp(t - start, 0, stop - start)."),

@@ -140,7 +140,7 @@ ClothRun make_rope_run(const RopeCase& rope)
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
     scene.obstacles.push_back(Obstacle("wire", make_wire_of(rope.segments), {}, {}, 10.0));
     scene.eol = make_initial_target(mesh);
-    clear_stand_off(scene, mesh);
+    if (!rope.is_given) clear_stand_off(scene, mesh);
     ClothRun run(std::move(scene), std::move(mesh));
     run.settings.integrator = rope.integrator;
     if (!rope.is_given) return run;

@@ -12,9 +12,9 @@
 namespace arris {
 namespace {
 
-// Absorbs rounding of angles near a threshold, so that a rotated box gets the same features as an upright one
-// at 90 degrees.
-constexpr double kTurnSlack = 1e-6;  // degrees
+// Absorbs rounding of angles near a threshold, so that edges modelled at exactly that angle are all alike.
+// Mesh files have single precision or six digits, which turn a face of 5 mm by up to 8e-3 degrees.
+constexpr double kTurnSlack = 1e-2;  // degrees
 constexpr double kCornerTurn = 30.0;
 constexpr double kWireCornerTurn = 60.0;  // up to this bend a wire's two edges share one plane halfway
                                           // between them

@@ -38,7 +38,7 @@ struct ObstacleFeatures {
 };
 
 /// Finds the features of a mesh that passes `validate`. An edge is sharp where the normals of its faces
-/// differ by more than `feature_angle` (degrees, + 1e-6).
+/// differ by more than `feature_angle` (degrees, + 0.01).
 ///
 /// An exact predicate decides whether a solid's edge is convex or reflex; faces folded flat onto one another
 /// are convex. Reflex edges are no features.

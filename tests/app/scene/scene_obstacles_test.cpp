@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "geometry/input_error.h"
 #include "solver/step.h"
@@ -79,10 +80,80 @@ TEST(SceneObstacles, WritesTheirDefaultsOutAndOnlyThoseOfTheirShape)
         load(kBase + "[[obstacle]]\nbox = [1, 1, 1]\ntranslate = [0, 0, 5]\n").as_run["obstacle"][0];
     EXPECT_EQ(json["name"], "obstacle0");
     EXPECT_EQ(json["scale"], 1.0);
-    EXPECT_EQ(json["feature_angle"], 30.0);
+    EXPECT_EQ(json["feature_angle"], 14.0);
     EXPECT_EQ(json["rotate"]["degrees"], 0.0);
     for (const char* absent : {"file", "units", "up", "closed", "motion", "keyframes", "points"})
         EXPECT_FALSE(json.contains(absent)) << absent;
+}
+
+/// A cylinder around y of radius 0.5 as OBJ text with six digits.
+std::string cylinder_obj(int sides)
+{
+    std::string text;
+    for (const int y : {0, 1})
+        for (int k = 0; k < sides; ++k) {
+            const double angle = 2.0 * M_PI * k / sides;
+            text += fmt::format("v {:.6f} {} {:.6f}\n", 0.5 * std::sin(angle), y, 0.5 * std::cos(angle));
+        }
+    for (int k = 0; k < sides; ++k) {
+        const int next = (k + 1) % sides;
+        text += fmt::format("f {} {} {} {}\n", k + 1, next + 1, next + 1 + sides, k + 1 + sides);
+    }
+    for (const int first : {1, 1 + sides}) {
+        text += "f";
+        for (int k = 0; k < sides; ++k) text += fmt::format(" {}", first + k);
+        text += "\n";
+    }
+    return text;
+}
+
+// 14 degrees is the turn of no regular polygon: 25 sides turn by 14.4 degrees, 26 sides by 13.8.
+TEST(SceneObstacles, SidesOfACylinderAreSharpByDefaultUpToTwentyFive)
+{
+    TemporaryDirectory directory;
+    const std::string path = directory / "cylinder.obj";
+    struct Case {
+        int sides;
+        const char* key;
+        bool are_sharp;
+    };
+    for (const Case& c : {Case{12, "", true},
+                          {24, "", true},
+                          {25, "", true},
+                          {26, "", false},
+                          {32, "", false},
+                          {12, "feature_angle = 29.98\n", true},
+                          {12, "feature_angle = 30\n", false},
+                          {12, "feature_angle = 30.02\n", false},
+                          {24, "feature_angle = 15\n", false}}) {
+        std::ofstream(path) << cylinder_obj(c.sides);
+        const RunConfig config =
+            load(kBase + "[[obstacle]]\nfile = \"" + path + "\"\n" + c.key + "translate = [0, 0, 5]\n");
+        EXPECT_THAT(config.scene.obstacles[0].features().edges, SizeIs((c.are_sharp ? 3 : 2) * c.sides))
+            << c.sides << " sides, " << c.key;
+    }
+}
+
+TEST(SceneObstacles, RidgesOfTeethAreSharpByDefaultAboveFourteenDegrees)
+{
+    struct Case {
+        double tip;  // degrees
+        bool are_sharp;
+    };
+    for (const Case& c : {Case{165.97, true}, {166.0, false}, {166.03, false}, {150.0, true}}) {
+        const RunConfig config = load(
+            kBase + fmt::format("[[obstacle]]\nteeth = {{ count = 3, pitch = 4, height = 0.1, width = 1, "
+                                "tip_degrees = {} }}\ntranslate = [0, 0, -4]\n",
+                                c.tip));
+        const ObstacleFeatures& features = config.scene.obstacles[0].features();
+        const ObstacleMesh& mesh = config.scene.obstacles[0].mesh();
+        int ridges = 0;
+        for (const FeatureEdge& edge : features.edges) {
+            const auto& [a, b] = config.scene.obstacles[0].topology().edges[edge.edge].points;
+            if (mesh.points[a].z() > 0.05 && mesh.points[b].z() > 0.05) ++ridges;
+        }
+        EXPECT_EQ(ridges, c.are_sharp ? 3 : 0) << c.tip << " degrees";
+    }
 }
 
 TEST(SceneObstacles, PlacesThemByScaleRotationAndTranslation)

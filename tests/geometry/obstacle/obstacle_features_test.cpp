@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/obstacle/obstacle_features.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <random>
@@ -99,7 +101,7 @@ TEST(ObstacleFeatures, BoxAtItsOwnAngleHasNoSharpEdgesButCorners)
         EXPECT_THAT(features.corners, SizeIs(8)) << angle;  // each has an angle defect of 90 degrees
         EXPECT_EQ(patch_count(features), 6) << angle;
     }
-    EXPECT_THAT(features_of(kBox, 89.999).edges, SizeIs(12));
+    EXPECT_THAT(features_of(kBox, 89.98).edges, SizeIs(12));
 }
 
 TEST(ObstacleFeatures, RoundingDoesNotDecideAtTheThreshold)
@@ -111,8 +113,40 @@ TEST(ObstacleFeatures, RoundingDoesNotDecideAtTheThreshold)
         const Mat3 rotation = Eigen::AngleAxisd(3.0 * number(random), axis).toRotationMatrix();
         const ObstacleMesh turned = samples::moved(kBox, [&](const Vec3& p) { return Vec3(rotation * p); });
         EXPECT_THAT(features_of(turned, 90.0).edges, IsEmpty());
-        EXPECT_THAT(features_of(turned, 89.999).edges, SizeIs(12));
+        EXPECT_THAT(features_of(turned, 89.98).edges, SizeIs(12));
     }
+}
+
+// Mesh files keep coordinates in single precision, or as text of six digits.
+TEST(ObstacleFeatures, RoundingOfFilesDoesNotDecideAtTheThreshold)
+{
+    const auto to_float = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+    const auto to_six_digits = [](double x) { return std::round(1e6 * x) / 1e6; };
+    const auto exactly = [](double x) { return x; };
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> number(-1.0, 1.0);
+    for (const int sides : {8, 12, 16, 20, 24, 25, 36})
+        for (const double radius : {0.1, 1.0})
+            for (const std::function<double(double)>& rounded :
+                 {std::function<double(double)>(exactly), {to_float}, {to_six_digits}}) {
+                const Vec3 axis = Vec3(number(random), number(random), number(random)).normalized();
+                const Mat3 rotation = Eigen::AngleAxisd(3.0 * number(random), axis).toRotationMatrix();
+                const auto place = [&](const Vec3& p) {
+                    const Vec3 q = rotation * (radius * p) + Vec3(0.3, -0.2, 0.5);
+                    return Vec3(rounded(q.x()), rounded(q.y()), rounded(q.z()));
+                };
+                const double turn = 360.0 / sides;
+                const auto roof = samples::sheet(
+                    2, 1, [&](int i, int) { return i == 1 ? std::tan(0.5 * turn * M_PI / 180.0) : 0.0; });
+                for (const auto& [angle, are_sharp] :
+                     {std::pair(turn - 0.02, true), {turn, false}, {turn + 0.02, false}}) {
+                    SCOPED_TRACE(fmt::format("{} sides, radius {}, {} degrees", sides, radius, angle));
+                    const ObstacleMesh solid = samples::moved(samples::cylinder(sides), place);
+                    EXPECT_THAT(features_of(solid, angle).edges, SizeIs((are_sharp ? 3 : 2) * sides));
+                    const ObstacleMesh sheet = samples::moved(roof, place);
+                    EXPECT_EQ(count(features_of(sheet, angle), FeatureKind::Convex), are_sharp ? 1 : 0);
+                }
+            }
 }
 
 TEST(ObstacleFeatures, CountsAreThoseOfTheShapeAtAnySizeAndPlace)
