@@ -79,11 +79,9 @@ TEST_P(Scenes, FinishFreeOfTheirObstaclesAndKeepTheirMaterial)
     EXPECT_EQ(report["max_penetration"], 0.0);
     EXPECT_EQ(report["crossings"], 0);
     // Of contacts with features; the next least is that of needles, .978 to .987 by rounding, most have .99
-    // and more. On the hill, which curves in two directions, sharp edges lie within one of these coarse cells
-    // of each other: .91 here, .97 with all its cells.
-    const double kLeastShare = GetParam().ends_with("/hill.toml") ? 0.9 : 0.95;
+    // and more.
     if (report.contains("feature_contacts") && !report["feature_contacts"]["eol_share"].is_null()) {
-        EXPECT_GE(report["feature_contacts"]["eol_share"].get<double>(), kLeastShare);
+        EXPECT_GE(report["feature_contacts"]["eol_share"].get<double>(), 0.95);
     }
 
     const CsvTable steps = read_csv(dir + "/steps.csv");

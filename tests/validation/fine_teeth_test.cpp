@@ -57,10 +57,10 @@ ClothRun make_run(const Landing& landing)
 
 TEST(FineTeeth, TakeBoundedWork)
 {
-    // Failed attempts at a step count, too. Measured: 129 factorisations in the step in which the stiff sheet
-    // lands, up to 30 in the others, and 1 to 9 in the mean.
-    constexpr int kMostFactorisations = 200;
-    constexpr double kMeanFactorisations = 12.0;
+    // Failed attempts at a step count, too. Measured: up to 400 in the step in which stiff cloth lands
+    // without EOL vertices, and 1 to 23 in the mean.
+    constexpr int kMostFactorisations = 800;
+    constexpr double kMeanFactorisations = 50.0;
     Table table("fine_teeth", {"landing", "rows", "factorisations, mean", "most", "NLopt evaluations, most"});
     for (const Landing& landing : kLandings) {
         ClothRun run = make_run(landing);

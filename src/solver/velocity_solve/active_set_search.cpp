@@ -53,6 +53,7 @@ constexpr double kFewShare = 0.01;
 /// Bases whose rows may change sides all at once (Newton's method), until at most kFewChanges remain. After
 /// these bases, a row that has pulled in one is not part of a later one: U decides about it.
 constexpr int kNewtonBases = 20;
+constexpr int kFullSteps = 8;  // of these; the others go as far as the energy falls
 constexpr int kFewChanges = 30;
 
 /// Floating-point operations on dense problems in one solve: as many as this number of factorisations take,
@@ -106,10 +107,10 @@ ActiveSetSearch::ActiveSetSearch(const VelocityProblem& problem, Factorization& 
     budget_ = {kLeastFlops + kMostFactorisations * factorization.flops(), &settings};
 }
 
-VelocitySolution ActiveSetSearch::run()
+VelocitySolution ActiveSetSearch::run(bool has_row_guess)
 {
     is_active_ = active_by_guess(problem_);
-    choose_rows(rows_of_guess());
+    if (has_row_guess) choose_rows(rows_of_guess());
     return run_bases();
 }
 
@@ -276,7 +277,7 @@ void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
 {
     const Eigen::VectorXd& velocity = in_use_->iterate.velocity;
     const bool is_newton = best_.factorisations <= kNewtonBases;
-    if (newton_point_.size() > 0 && is_newton)
+    if (best_.factorisations > kFullSteps && is_newton)
         newton_point_ += find_newton_share(newton_point_, velocity) * (velocity - newton_point_);
     else
         newton_point_ = velocity;

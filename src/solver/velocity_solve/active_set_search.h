@@ -32,7 +32,8 @@ class ActiveSetSearch {
                     const ConstraintRows& constraints, std::optional<BaseInUse>& in_use,
                     const Settings& settings);
 
-    VelocitySolution run();
+    /// `has_row_guess`: whether to start with the rows expected to press.
+    VelocitySolution run(bool has_row_guess);
 
     /// Goes on from the base in use, which belongs to this problem with fewer rows.
     VelocitySolution resume();

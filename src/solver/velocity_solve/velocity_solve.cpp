@@ -12,10 +12,16 @@
 namespace arris {
 namespace {
 
-/// Factors of the rows' gives, tried in this order. Where very many rows depend on each other, the search for
-/// those that press may not end for stiff springs within its budget. Softer ones still give way by less than
-/// 0.1 to 1 % of the free speed, and the check of the whole path decides whether that is near enough.
-constexpr double kSoftenings[] = {1.0, 100.0, 1000.0};
+/// One search for the constraints that press.
+struct SearchAttempt {
+    double softening;    ///< factor of the rows' gives
+    bool has_row_guess;  ///< starts with the rows expected to press
+};
+
+/// Tried in this order. Where very many rows depend on each other, a wrong guess may be worse than none, and
+/// the search for stiff springs may not end within its budget. Softer ones still give way by less than 0.1 to
+/// 1 % of the free speed, and the check of the whole path decides whether that is near enough.
+constexpr SearchAttempt kAttempts[] = {{1.0, true}, {1.0, false}, {100.0, true}, {1000.0, true}};
 
 bool is_finite(const VelocityProblem& problem)
 {
@@ -75,16 +81,16 @@ VelocitySolution VelocitySolver::solve(const VelocityProblem& problem, const Set
         solution.status = solution.infeasible_rows.empty() ? SolveStatus::Certified : SolveStatus::Infeasible;
     } else {
         cache_->factorization.analyse(*problem.matrix);
-        for (const double softening : kSoftenings) {
-            if (softening > 1.0 && (solution.status != SolveStatus::NotConverged || problem.rows.empty()))
-                break;
+        for (const SearchAttempt& attempt : kAttempts) {
+            const bool is_first = &attempt == kAttempts;
+            if (!is_first && (solution.status != SolveStatus::NotConverged || problem.rows.empty())) break;
             const VelocitySolution before = std::move(solution);
             cache_->in_use.reset();
-            cache_->softening = softening;
+            cache_->softening = attempt.softening;
             cache_->scale(problem);
             solution =
                 ActiveSetSearch(problem, cache_->factorization, cache_->constraints, cache_->in_use, settings)
-                    .run();
+                    .run(attempt.has_row_guess);
             solution.add_cost(before);
         }
     }
