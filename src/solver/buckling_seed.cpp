@@ -50,17 +50,16 @@ std::vector<char> mark_compressed(const Material& material, const State& state, 
     return is_compressed;
 }
 
-/// Normals of vertices around which the cloth is exactly plane, and is after a further step like the last.
-std::vector<std::optional<Vec3>> find_exact_planes(const State& state, const VertexFaces& stars, double dt)
+/// Drops the normals of vertices around which the cloth is no longer plane after a further step like the
+/// last.
+void drop_bending(const State& state, const VertexFaces& stars, double dt,
+                  std::vector<std::optional<Vec3>>& normals)
 {
-    std::vector<std::optional<Vec3>> now =
-        find_plane_stars(state.mesh.faces, stars, state.mesh.world, kPlane);
     std::vector<Vec3> moved = state.mesh.world;
     for (std::size_t v = 0; v < moved.size(); ++v) moved[v] += dt * state.velocity[v];
     const std::vector<std::optional<Vec3>> then = find_plane_stars(state.mesh.faces, stars, moved, kPlane);
-    for (std::size_t v = 0; v < now.size(); ++v)
-        if (!then[v]) now[v].reset();
-    return now;
+    for (std::size_t v = 0; v < normals.size(); ++v)
+        if (!then[v]) normals[v].reset();
 }
 
 /// Drops the normals of EOL vertices, and of vertices on which gravity or an obstacle acts across the cloth.
@@ -106,10 +105,15 @@ double longest_edge(const State& state, std::span<const int> star, int v)
 void seed_buckling(const Scene& scene, const State& state, const MeshCache& mesh,
                    const std::vector<Contact>& contacts, Prediction& prediction)
 {
+    const VertexFaces& stars = mesh.stars.faces;
+    std::vector<std::optional<Vec3>> normals =
+        find_plane_stars(state.mesh.faces, stars, state.mesh.world, kPlane);
+    const bool is_any_plane =
+        std::any_of(normals.begin(), normals.end(), [](const auto& n) { return n.has_value(); });
+    if (!is_any_plane) return;  // nearly all cloth that moves
     const std::vector<char> is_compressed = mark_compressed(scene.material, state, mesh.elements);
     if (is_compressed.empty()) return;
-    const VertexFaces& stars = mesh.stars.faces;
-    std::vector<std::optional<Vec3>> normals = find_exact_planes(state, stars, prediction.gamma);
+    drop_bending(state, stars, prediction.gamma, normals);
     drop_loaded(scene, state, contacts, normals);
     for (int v = 0; v < state.mesh.vertex_count(); ++v) {
         if (!is_compressed[v] || !is_plane_around(v, state.mesh.faces, stars, normals)) continue;

@@ -112,12 +112,19 @@ std::vector<Vec3> push_velocity(const Workspace& work, double dt)
     return velocity;
 }
 
+double total_area(const ClothElements& elements)
+{
+    double area = 0.0;
+    for (const FaceElement& face : elements.faces) area += face.area;
+    return area;
+}
+
 /// Elastic energy, J, of strains due to round-off alone, for positions as far from the origin as the cloth's.
 double round_off_energy(const Scene& scene, const State& state, const ClothElements& elements)
 {
     constexpr double kRoundOff = 1e-15;  // relative to a coordinate: some units in the last place
-    double area = 0.0, far = 0.0;
-    for (const FaceElement& face : elements.faces) area += face.area;
+    const double area = total_area(elements);
+    double far = 0.0;
     for (const Vec3& x : state.mesh.world) far = std::max(far, x.cwiseAbs().maxCoeff());
     const double squared_length = area / static_cast<double>(elements.faces.size());
     return scene.material.youngs_modulus * area * kRoundOff * kRoundOff * far * far / squared_length;
@@ -204,8 +211,7 @@ void measure_start_energy(const Scene& scene, const State& state, Workspace& wor
     // Share of m g L that counts as a change: cloth at rest moves by round-off and as rows give way, by up to
     // 1e-7 of its size. Without it, changes at rest would be compared with themselves.
     constexpr double kRest = 1e-6;
-    double area = 0.0;
-    for (const FaceElement& face : work.mesh.elements.faces) area += face.area;
+    const double area = total_area(work.mesh.elements);
     work.energies.floor = scene.gravity ? kRest * scene.material.density * area *
                                               scene.gravity->acceleration.norm() * std::sqrt(area)
                                         : 0.0;

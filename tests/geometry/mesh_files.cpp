@@ -24,19 +24,34 @@ void append_floats(std::string& bytes, const Vec3& p, bool is_big_endian = false
     for (const double x : p) append(bytes, static_cast<float>(x), is_big_endian);
 }
 
-std::string numbers(const ObstacleMesh& mesh)
+PolygonMesh to_polygons(const ObstacleMesh& mesh)
+{
+    PolygonMesh polygons = {mesh.points, {}};
+    for (const Face& face : mesh.faces) polygons.faces.emplace_back(face.begin(), face.end());
+    return polygons;
+}
+
+/// The corners of a polygon, each after a blank; the first point of the file has the number `first`.
+std::string indices(const std::vector<int>& face, int first)
 {
     std::string text;
-    for (const Vec3& p : mesh.points) text += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
+    for (const int p : face) text += fmt::format(" {}", p + first);
     return text;
 }
 
-std::string ply_header(const ObstacleMesh& mesh, const std::string& format)
+std::string numbers(const std::vector<Vec3>& points)
+{
+    std::string text;
+    for (const Vec3& p : points) text += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
+    return text;
+}
+
+std::string ply_header(std::size_t points, std::size_t faces, const std::string& format)
 {
     return fmt::format(
         "ply\nformat {} 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
         "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-        format, mesh.points.size(), mesh.faces.size());
+        format, points, faces);
 }
 
 std::string chunk_3ds(std::uint16_t id, const std::string& content)
@@ -88,11 +103,17 @@ std::string zip(const std::vector<std::pair<std::string, std::string>>& files)
     return bytes + directory + end;
 }
 
-std::string obj(const ObstacleMesh& mesh)
+std::string obj(const PolygonMesh& mesh)
 {
     std::string text;
     for (const Vec3& p : mesh.points) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
-    for (const auto& [a, b, c] : mesh.faces) text += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
+    for (const std::vector<int>& face : mesh.faces) text += "f" + indices(face, 1) + "\n";
+    return text;
+}
+
+std::string obj(const ObstacleMesh& mesh)
+{
+    std::string text = obj(to_polygons(mesh));
     for (const auto& [a, b] : mesh.segments) text += fmt::format("l {} {}\n", a + 1, b + 1);
     for (const int p : mesh.lone_points) text += fmt::format("p {}\n", p + 1);
     return text;
@@ -123,17 +144,24 @@ std::string binary_stl(const ObstacleMesh& mesh)
     return bytes;
 }
 
+std::string ascii_ply(const PolygonMesh& mesh)
+{
+    std::string text = ply_header(mesh.points.size(), mesh.faces.size(), "ascii");
+    for (const Vec3& p : mesh.points) text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+    for (const std::vector<int>& face : mesh.faces)
+        text += fmt::format("{}{}\n", face.size(), indices(face, 0));
+    return text;
+}
+
 std::string ascii_ply(const ObstacleMesh& mesh)
 {
-    std::string text = ply_header(mesh, "ascii");
-    for (const Vec3& p : mesh.points) text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
-    for (const auto& [a, b, c] : mesh.faces) text += fmt::format("3 {} {} {}\n", a, b, c);
-    return text;
+    return ascii_ply(to_polygons(mesh));
 }
 
 std::string binary_ply(const ObstacleMesh& mesh, bool is_big_endian)
 {
-    std::string bytes = ply_header(mesh, is_big_endian ? "binary_big_endian" : "binary_little_endian");
+    std::string bytes = ply_header(mesh.points.size(), mesh.faces.size(),
+                                   is_big_endian ? "binary_big_endian" : "binary_little_endian");
     for (const Vec3& p : mesh.points) append_floats(bytes, p, is_big_endian);
     for (const Face& face : mesh.faces) {
         bytes += '\3';
@@ -189,10 +217,12 @@ std::string glb(const ObstacleMesh& mesh, const std::string& node)
     return bytes + std::string("BIN\0", 4) + buffer;
 }
 
-std::string dae(const ObstacleMesh& mesh, const std::string& asset, const std::string& matrix)
+namespace {
+
+/// `faces`: the element that holds them.
+std::string dae(const std::vector<Vec3>& points, const std::string& faces, const std::string& asset,
+                const std::string& matrix)
 {
-    std::string indices;
-    for (const auto& [a, b, c] : mesh.faces) indices += fmt::format("{} {} {} ", a, b, c);
     return fmt::format(
         R"(<?xml version="1.0" encoding="utf-8"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>{}</asset>
@@ -201,22 +231,52 @@ std::string dae(const ObstacleMesh& mesh, const std::string& asset, const std::s
 <accessor source="#a" count="{}" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
 <param name="Z" type="float"/></accessor></technique_common></source>
 <vertices id="v"><input semantic="POSITION" source="#s"/></vertices>
-<triangles count="{}"><input semantic="VERTEX" source="#v" offset="0"/><p>{}</p></triangles>
+{}
 </mesh></geometry></library_geometries>
 <library_visual_scenes><visual_scene id="w"><node id="n">{}<instance_geometry url="#g"/></node></visual_scene>
 </library_visual_scenes><scene><instance_visual_scene url="#w"/></scene></COLLADA>
 )",
-        asset, 3 * mesh.points.size(), numbers(mesh), mesh.points.size(), mesh.faces.size(), indices,
+        asset, 3 * points.size(), numbers(points), points.size(), faces,
         matrix.empty() ? "" : "<matrix>" + matrix + "</matrix>");
 }
 
-std::string fbx(const ObstacleMesh& mesh, int up_axis, double centimetres_per_unit)
+}  // namespace
+
+std::string dae(const PolygonMesh& mesh, const std::string& asset)
 {
-    std::string places, indices;
+    std::string counts, corners;
+    for (const std::vector<int>& face : mesh.faces) {
+        counts += fmt::format("{} ", face.size());
+        corners += indices(face, 0);
+    }
+    return dae(mesh.points,
+               fmt::format(R"(<polylist count="{}"><input semantic="VERTEX" source="#v" offset="0"/>)"
+                           R"(<vcount>{}</vcount><p>{}</p></polylist>)",
+                           mesh.faces.size(), counts, corners),
+               asset, "");
+}
+
+std::string dae(const ObstacleMesh& mesh, const std::string& asset, const std::string& matrix)
+{
+    std::string corners;
+    for (const auto& [a, b, c] : mesh.faces) corners += fmt::format("{} {} {} ", a, b, c);
+    return dae(mesh.points,
+               fmt::format(R"(<triangles count="{}"><input semantic="VERTEX" source="#v" offset="0"/>)"
+                           R"(<p>{}</p></triangles>)",
+                           mesh.faces.size(), corners),
+               asset, matrix);
+}
+
+std::string fbx(const PolygonMesh& mesh, int up_axis, double centimetres_per_unit)
+{
+    std::string places, corners;
+    std::size_t count = 0;
     for (const Vec3& p : mesh.points) places += fmt::format("{},{},{},", p.x(), p.y(), p.z());
-    for (const auto& [a, b, c] : mesh.faces) indices += fmt::format("{},{},{},", a, b, -c - 1);
+    for (const std::vector<int>& face : mesh.faces)
+        for (std::size_t k = 0; k < face.size(); ++k, ++count)
+            corners += fmt::format("{},", k + 1 < face.size() ? face[k] : -face[k] - 1);
     places.pop_back();
-    indices.pop_back();
+    corners.pop_back();
     return fmt::format(
         R"(; FBX 7.3.0 project file
 FBXHeaderExtension:  {{
@@ -262,7 +322,12 @@ Connections:  {{
 	C: "OO",10,20
 }}
 )",
-        up_axis, centimetres_per_unit, 3 * mesh.points.size(), places, 3 * mesh.faces.size(), indices);
+        up_axis, centimetres_per_unit, 3 * mesh.points.size(), places, count, corners);
+}
+
+std::string fbx(const ObstacleMesh& mesh, int up_axis, double centimetres_per_unit)
+{
+    return fbx(to_polygons(mesh), up_axis, centimetres_per_unit);
 }
 
 std::string three_ds(const ObstacleMesh& mesh)

@@ -10,12 +10,20 @@
 
 #include "geometry/obstacle/obstacle_mesh.h"
 
-// Mesh files of triangles as bytes, written from the formats' descriptions.
+// Mesh files as bytes, written from the formats' descriptions.
 namespace arris::mesh_files {
 
+/// A mesh of polygons.
+struct PolygonMesh {
+    std::vector<Vec3> points;
+    std::vector<std::vector<int>> faces;
+};
+
+std::string obj(const PolygonMesh& mesh);
 std::string obj(const ObstacleMesh& mesh);
 std::string ascii_stl(const ObstacleMesh& mesh);
 std::string binary_stl(const ObstacleMesh& mesh);
+std::string ascii_ply(const PolygonMesh& mesh);
 std::string ascii_ply(const ObstacleMesh& mesh);
 std::string binary_ply(const ObstacleMesh& mesh, bool is_big_endian = false);
 
@@ -29,9 +37,11 @@ std::string glb(const ObstacleMesh& mesh, const std::string& node = "");
 
 /// A COLLADA file. `asset` has the lines for unit and up axis; `matrix` is a row-major placement of its node,
 /// or empty.
+std::string dae(const PolygonMesh& mesh, const std::string& asset);
 std::string dae(const ObstacleMesh& mesh, const std::string& asset, const std::string& matrix = "");
 
 /// An FBX file in text form, version 7400, with these global settings.
+std::string fbx(const PolygonMesh& mesh, int up_axis, double centimetres_per_unit);
 std::string fbx(const ObstacleMesh& mesh, int up_axis, double centimetres_per_unit);
 
 std::string three_ds(const ObstacleMesh& mesh);

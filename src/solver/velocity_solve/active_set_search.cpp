@@ -79,8 +79,6 @@ std::vector<int> pressing_rows(const Iterate& iterate)
     return rows;
 }
 
-/// A factorised base with its working set and current iterate.
-
 }  // namespace
 
 VelocitySolution make_zero_solution(const VelocityProblem& problem)
@@ -119,8 +117,7 @@ std::vector<int> ActiveSetSearch::rows_of_guess() const
     std::vector<int> rows;
     for (const int k : problem_.row_guess) {
         assert(k >= 0 && k < static_cast<int>(constraints_.rows.size()));
-        const bool is_known = in_use_ && (in_use_->set.contains_row(k) || in_use_->base.is_pressing[k] != 0);
-        if (!is_known && !constraints_.rows[k].entries.empty()) rows.push_back(k);
+        if (!constraints_.rows[k].entries.empty()) rows.push_back(k);
     }
     rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
     return rows;
@@ -277,7 +274,8 @@ void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
 {
     const Eigen::VectorXd& velocity = in_use_->iterate.velocity;
     const bool is_newton = best_.factorisations <= kNewtonBases;
-    if (best_.factorisations > kFullSteps && is_newton)
+    const bool is_full = best_.factorisations <= kFullSteps || newton_point_.size() == 0;
+    if (is_newton && !is_full)
         newton_point_ += find_newton_share(newton_point_, velocity) * (velocity - newton_point_);
     else
         newton_point_ = velocity;
@@ -288,15 +286,21 @@ void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
     }
     if (!is_newton)
         for (const int k : violators.pulling) has_pulled_[k] = 1;
-    rebase_with_changed(violators);
+    flip_bounds(violators.coordinates);
     choose_rows(violated);
+}
+
+/// The next base pins what is active now, except that these coordinates change sides.
+void ActiveSetSearch::flip_bounds(const std::vector<int>& coordinates)
+{
+    is_active_ = in_use_->iterate.is_active;
+    for (const int i : coordinates) is_active_[i] = !is_active_[i];
 }
 
 /// Most of the work is done: the remaining violators change sides without a solve for them.
 void ActiveSetSearch::rebase_with_changed(const Violators& violators)
 {
-    is_active_ = in_use_->iterate.is_active;
-    for (const int i : violators.coordinates) is_active_[i] = !is_active_[i];
+    flip_bounds(violators.coordinates);
     choose_rows(pressing_rows(in_use_->iterate));
 }
 

@@ -46,6 +46,7 @@ class ActiveSetSearch {
     void choose_rows(const std::vector<int>& expected);
     bool has_many_changes(const Violators& violators) const;
     void rebase_by_prediction();
+    void flip_bounds(const std::vector<int>& coordinates);
     void rebase_with_changed(const Violators& violators);
     void rebase_with_violated_rows(const Violators& violators);
     double find_newton_share(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solver/model/stopwatch.h"
 #include "solver/velocity_solve/active_set_search.h"
@@ -84,14 +85,15 @@ VelocitySolution VelocitySolver::solve(const VelocityProblem& problem, const Set
         for (const SearchAttempt& attempt : kAttempts) {
             const bool is_first = &attempt == kAttempts;
             if (!is_first && (solution.status != SolveStatus::NotConverged || problem.rows.empty())) break;
-            const VelocitySolution before = std::move(solution);
-            cache_->in_use.reset();
-            cache_->softening = attempt.softening;
-            cache_->scale(problem);
-            solution =
+            if (attempt.softening > cache_->softening) {
+                cache_->softening = attempt.softening;
+                cache_->scale(problem);
+            }
+            VelocitySolution found =
                 ActiveSetSearch(problem, cache_->factorization, cache_->constraints, cache_->in_use, settings)
                     .run(attempt.has_row_guess);
-            solution.add_cost(before);
+            found.add_cost(solution);
+            solution = std::move(found);
         }
     }
     solution.solve_seconds = watch.lap() - solution.factorise_seconds;
@@ -114,10 +116,9 @@ VelocitySolution VelocitySolver::resume(const VelocityProblem& problem, const Se
             ActiveSetSearch(problem, cache_->factorization, cache_->constraints, cache_->in_use, settings)
                 .resume();
         if (solution.status == SolveStatus::NotConverged) {  // from the beginning, with a new budget
-            const VelocitySolution before = std::move(solution);
-            solution = solve(problem, settings);
-            solution.add_cost(before);
-            return solution;
+            VelocitySolution again = solve(problem, settings);
+            again.add_cost(solution);
+            solution = std::move(again);
         }
     }
     solution.solve_seconds = watch.lap() - solution.factorise_seconds;

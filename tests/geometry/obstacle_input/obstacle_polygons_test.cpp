@@ -10,6 +10,7 @@
 #include "geometry/cloth_input/cloth_file.h"
 #include "geometry/obstacle/obstacle_topology.h"
 #include "tests/geometry/imported_file.h"
+#include "tests/geometry/mesh_files.h"
 
 namespace arris {
 namespace {
@@ -20,17 +21,12 @@ using ::testing::IsEmpty;
 
 constexpr double kSingle = 1e-6;  // relative
 
-using Polygons = std::vector<std::vector<int>>;
-
-struct Prism {
-    std::vector<Vec3> points;
-    Polygons faces;
-};
+using mesh_files::PolygonMesh;
 
 // A prism over an outline in the plane y = 0, whose two ends are polygons that start at the given corner.
-Prism prism(const std::vector<Vec2>& outline, std::size_t start)
+PolygonMesh prism(const std::vector<Vec2>& outline, std::size_t start)
 {
-    Prism made;
+    PolygonMesh made;
     const int n = static_cast<int>(outline.size());
     for (const double y : {0.0, 1.5})
         for (const Vec2& p : outline) made.points.emplace_back(p.x(), y, p.y());
@@ -45,113 +41,14 @@ Prism prism(const std::vector<Vec2>& outline, std::size_t start)
     return made;
 }
 
-std::string indices(const std::vector<int>& face, int first)
+std::string dae(const PolygonMesh& mesh)
 {
-    std::string text;
-    for (const int p : face) text += fmt::format(" {}", p + first);
-    return text;
+    return mesh_files::dae(mesh, "<up_axis>Z_UP</up_axis>");
 }
 
-std::string obj(const Prism& prism)
+std::string fbx(const PolygonMesh& mesh)
 {
-    std::string text;
-    for (const Vec3& p : prism.points) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
-    for (const std::vector<int>& face : prism.faces) text += "f" + indices(face, 1) + "\n";
-    return text;
-}
-
-std::string ply(const Prism& prism)
-{
-    std::string text = fmt::format(
-        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-        prism.points.size(), prism.faces.size());
-    for (const Vec3& p : prism.points) text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
-    for (const std::vector<int>& face : prism.faces)
-        text += fmt::format("{}{}\n", face.size(), indices(face, 0));
-    return text;
-}
-
-std::string dae(const Prism& prism)
-{
-    std::string numbers, counts, corners;
-    for (const Vec3& p : prism.points) numbers += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
-    for (const std::vector<int>& face : prism.faces) {
-        counts += fmt::format("{} ", face.size());
-        corners += indices(face, 0);
-    }
-    return fmt::format(
-        R"(<?xml version="1.0" encoding="utf-8"?>
-<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><up_axis>Z_UP</up_axis></asset>
-<library_geometries><geometry id="g"><mesh>
-<source id="s"><float_array id="a" count="{}">{}</float_array><technique_common>
-<accessor source="#a" count="{}" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
-<param name="Z" type="float"/></accessor></technique_common></source>
-<vertices id="v"><input semantic="POSITION" source="#s"/></vertices>
-<polylist count="{}"><input semantic="VERTEX" source="#v" offset="0"/><vcount>{}</vcount><p>{}</p></polylist>
-</mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="w"><node id="n"><instance_geometry url="#g"/></node></visual_scene>
-</library_visual_scenes><scene><instance_visual_scene url="#w"/></scene></COLLADA>
-)",
-        3 * prism.points.size(), numbers, prism.points.size(), prism.faces.size(), counts, corners);
-}
-
-std::string fbx(const Prism& prism)
-{
-    std::string places, corners;
-    for (const Vec3& p : prism.points) places += fmt::format("{},{},{},", p.x(), p.y(), p.z());
-    int count = 0;
-    for (const std::vector<int>& face : prism.faces)
-        for (std::size_t k = 0; k < face.size(); ++k, ++count)
-            corners += fmt::format("{},", k + 1 < face.size() ? face[k] : -face[k] - 1);
-    places.pop_back();
-    corners.pop_back();
-    return fmt::format(
-        R"(; FBX 7.3.0 project file
-FBXHeaderExtension:  {{
-	FBXHeaderVersion: 1003
-	FBXVersion: 7300
-}}
-GlobalSettings:  {{
-	Version: 1000
-	Properties70:  {{
-		P: "UpAxis", "int", "Integer", "",2
-		P: "UpAxisSign", "int", "Integer", "",1
-		P: "UnitScaleFactor", "double", "Number", "",100
-	}}
-}}
-Documents:  {{
-	Count: 1
-	Document: 1, "", "Scene" {{
-		RootNode: 0
-	}}
-}}
-Definitions:  {{
-	Version: 100
-	Count: 0
-}}
-Objects:  {{
-	Geometry: 10, "Geometry::prism", "Mesh" {{
-		Vertices: *{} {{
-			a: {}
-		}}
-		PolygonVertexIndex: *{} {{
-			a: {}
-		}}
-		GeometryVersion: 124
-	}}
-	Model: 20, "Model::prism", "Mesh" {{
-		Version: 232
-		Properties70:  {{
-		}}
-	}}
-}}
-Connections:  {{
-	C: "OO",20,0
-	C: "OO",10,20
-}}
-)",
-        3 * prism.points.size(), places, count, corners);
+    return mesh_files::fbx(mesh, 2, 100.0);
 }
 
 struct Outline {
@@ -179,8 +76,11 @@ TEST(ObstaclePolygons, EveryFormatAndStartGivesTheSameSolid)
 {
     const struct {
         const char* file;
-        std::string (*write)(const Prism&);
-    } formats[] = {{"prism.obj", obj}, {"prism.ply", ply}, {"prism.dae", dae}, {"prism.fbx", fbx}};
+        std::string (*write)(const PolygonMesh&);
+    } formats[] = {{"prism.obj", mesh_files::obj},
+                   {"prism.ply", mesh_files::ascii_ply},
+                   {"prism.dae", dae},
+                   {"prism.fbx", fbx}};
     for (const Outline& outline : outlines())
         for (std::size_t start = 0; start < outline.corners.size(); ++start)
             for (const auto& format : formats) {
