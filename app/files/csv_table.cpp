@@ -85,6 +85,11 @@ const StepColumn kStepColumns[] = {
     {"energy_rise", [](const StepRow& row) { return cell(row.energy_rise); }},
     {"eol_pressing", [](const StepRow& row) { return cell(row.eol_pressing); }},
     {"max_strain", [](const StepRow& row) { return cell(row.max_strain); }},
+    {"friction_sweeps", [](const StepRow& row) { return cell(row.friction_sweeps); }},
+    {"friction_residual", [](const StepRow& row) { return cell(row.friction_residual); }},
+    {"friction_work", [](const StepRow& row) { return cell(row.friction_work); }},
+    {"sticking", [](const StepRow& row) { return cell(row.sticking); }},
+    {"sliding", [](const StepRow& row) { return cell(row.sliding); }},
 };  // followed by rows_<cause> for each cause
 
 std::string join(const std::vector<std::string>& cells)

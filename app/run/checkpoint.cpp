@@ -102,6 +102,9 @@ void write_state(BinaryWriter& out, const State& state)
         out.number(contact.element);
         out.vector(contact.normal);
         out.number(contact.multiplier);
+        out.vector(contact.friction.impulse);
+        out.vector(contact.friction.slip);
+        out.number(contact.friction.budget);
     });
     out.number(state.crossings);
 }
@@ -148,7 +151,7 @@ State read_state(BinaryReader& in)
         return anchor;
     });
     constexpr std::size_t kContactBytes =
-        3 * sizeof(std::uint32_t) + 3 * sizeof(std::int32_t) + 4 * sizeof(double);
+        3 * sizeof(std::uint32_t) + 3 * sizeof(std::int32_t) + 11 * sizeof(double);
     state.active = in.list<ActiveContact>(kContactBytes, [&] {
         ActiveContact contact;
         for (std::uint32_t& id : contact.vertex_ids) id = in.number<std::uint32_t>();
@@ -157,6 +160,9 @@ State read_state(BinaryReader& in)
         contact.element = in.number<std::int32_t>();
         contact.normal = in.vector();
         contact.multiplier = in.number<double>();
+        contact.friction.impulse = in.vector();
+        contact.friction.slip = in.vector();
+        contact.friction.budget = in.number<double>();
         return contact;
     });
     state.crossings = in.number<std::int64_t>();
@@ -172,7 +178,10 @@ std::string find_defect(const std::vector<ActiveContact>& contacts, const std::v
     for (std::size_t k = 0; k < contacts.size(); ++k) {
         const ActiveContact& contact = contacts[k];
         if (k > 0 && !(order(contacts[k - 1]) < order(contact))) return "contacts are not in ascending order";
-        if (!contact.normal.allFinite() || !std::isfinite(contact.multiplier))
+        const ContactFriction& friction = contact.friction;
+        if (!contact.normal.allFinite() || !std::isfinite(contact.multiplier) ||
+            !friction.impulse.allFinite() || !friction.slip.allFinite() || !(friction.budget >= 0.0) ||
+            !std::isfinite(friction.budget))
             return fmt::format("contact {} is not finite", k);
         if (contact.kind < ContactKind::Vertex || contact.kind > ContactKind::Triangle)
             return fmt::format("contact {} has an unknown kind", k);

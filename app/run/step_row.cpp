@@ -34,6 +34,13 @@ StepRow make_step_row(const RunConfig& config, const State& state, const Workspa
             row.eol_pressing = report.eol_pressing;
             row.rows_by_cause = report.rows_by_cause;
         }
+        if (scene.friction) {
+            row.friction_sweeps = report.friction_sweeps;
+            row.friction_residual = report.friction_residual;
+            row.friction_work = report.friction_work;
+            row.sticking = report.sticking;
+            row.sliding = report.sliding;
+        }
         row.rewound = report.rewound;
         row.yielded = report.yielded;
     }
@@ -55,6 +62,8 @@ StepReport join_parts(const StepReport& opening, StepReport rest)
     rest.dt += opening.dt;
     rest.energy_rise += opening.energy_rise;
     rest.kkt_residual = std::max(rest.kkt_residual, opening.kkt_residual);
+    rest.friction_residual = std::max(rest.friction_residual, opening.friction_residual);
+    rest.friction_work += opening.friction_work;
     rest.yielded += opening.yielded;
     rest.rewound += opening.rewound;
     rest.add_cost(opening);

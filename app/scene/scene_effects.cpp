@@ -28,6 +28,18 @@ SceneEffect eol_effect(const RunConfig& config)
                                        : "no obstacle has sharp features"};
 }
 
+SceneEffect friction_effect(const RunConfig& config)
+{
+    const std::optional<Friction>& friction = config.scene.friction;
+    if (!friction) return {"friction", false, "no [friction]: the cloth slides freely over obstacles"};
+    std::string coefficients;
+    for (const double coefficient : friction->coefficients)
+        if (coefficients.find(fmt::format("{:g}", coefficient)) == std::string::npos)
+            coefficients += (coefficients.empty() ? "" : ", ") + fmt::format("{:g}", coefficient);
+    if (config.scene.obstacles.empty()) return {"friction", false, "no [[obstacle]] that could rub"};
+    return {"friction", true, "coefficient " + coefficients};
+}
+
 SceneEffect by_table(const RunConfig& config, const std::string& table, bool is_list)
 {
     const bool is_on = config.as_run.contains(table) && !config.as_run[table].empty();
@@ -59,7 +71,7 @@ std::vector<SceneEffect> list_effects(const RunConfig& config)
         eol_effect(config),
         {"remesh", false,
          "not in this version: the mesh changes only near sharp features, with EOL vertices"},
-        {"friction", false, "not in this version: the cloth slides freely over obstacles"},
+        friction_effect(config),
         {"self_contact", false, "not in this version: the cloth may pass through itself"},
     };
 }

@@ -258,7 +258,7 @@ std::vector<SceneKey> make_scene_keys()
         number("pull[].start", "s", kNotNegative, "0.0", "Time at which the force begins."),
         number("pull[].stop", "s", kPositive, kNever, "Time at which the force ends; later than `start`."),
 
-        not_built(table("friction", "", "Switches friction with obstacles on.")),
+        table("friction", "", "Switches friction with obstacles on."),
         number("friction.coefficient", "", {0.0, 100.0}, "0.3",
                "Coefficient of Coulomb friction; an obstacle's own coefficient overrides it."),
 
@@ -337,9 +337,9 @@ std::vector<SceneKey> make_scene_keys()
         axis("obstacle[].keyframes[].rotate.axis"),
         number("obstacle[].keyframes[].rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
-        not_built(number("obstacle[].friction", "", {0.0, 100.0}, "",
-                         "Coefficient of Coulomb friction of this obstacle. Without [friction] this key "
-                         "switches friction on for the obstacle.")),
+        number("obstacle[].friction", "", {0.0, 100.0}, "",
+               "Coefficient of Coulomb friction of this obstacle. Without [friction] this key switches "
+               "friction on for the obstacle."),
 
         tables("probe", "A material point whose position and velocity are written to probes.csv."),
         text("probe[].name", KeyType::Name, {}, kRequired,

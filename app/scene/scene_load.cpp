@@ -85,6 +85,22 @@ Material to_material(const Json& json)
             to_double(json["damping"]),       to_double(json["thickness"])};
 }
 
+/// Nothing where neither [friction] nor an obstacle's own coefficient is given.
+std::optional<Friction> to_friction(const Json& json)
+{
+    const bool is_on = json.contains("friction");
+    const double common = is_on ? to_double(json["friction"]["coefficient"]) : 0.0;
+    Friction friction;
+    bool has_own = false;
+    for (const Json& obstacle : json.value("obstacle", Json::array())) {
+        const bool is_own = obstacle.contains("friction");
+        friction.coefficients.push_back(is_own ? to_double(obstacle["friction"]) : common);
+        has_own = has_own || is_own;
+    }
+    if (!is_on && !has_own) return std::nullopt;
+    return friction;
+}
+
 Scene to_scene(const Json& json)
 {
     Scene scene;
@@ -95,6 +111,7 @@ Scene to_scene(const Json& json)
         scene.pulls.push_back({to_material_box(pull["material"]), to_vec3(pull["force"]),
                                to_double(pull["start"]), to_time(pull["stop"])});
     for (const Json& pin : json.value("pin", Json::array())) scene.pins.push_back(to_pin(json, pin));
+    scene.friction = to_friction(json);
     return scene;
 }
 

@@ -34,7 +34,7 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     report.feature_rows = census.rows;
     report.rows_by_cause = census.by_cause;
     report.eol_pressing = census.eol;
-    state.active = active_contacts(state, work.contacts, multiplier);
+    state.active = active_contacts(state, work.obstacles, work.contacts, multiplier);
     count_idle(work.contacts, work.eol, multiplier, state.eol);
     state.crossings += report.crossings;
     report.contacts = static_cast<int>(state.active.size() -

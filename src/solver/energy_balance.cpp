@@ -23,18 +23,24 @@ constexpr double kRise = 0.003;
 // step. After a jerk forces ebb away, and the work comes out too small: by 6 % where measured.
 constexpr double kDriven = 0.25;
 
-/// Work of pins, J. A u - b is the impulse of all constraints. Without the impulses of rows, the pins'
-/// impulses remain along the pinned coordinates.
+void subtract_row(const ConstraintRow& row, double multiplier, Eigen::VectorXd& impulse)
+{
+    for (int e = 0; e < row.count; ++e) impulse[row.coordinate[e]] -= multiplier * row.coefficient[e];
+}
+
+/// Work of pins, J. A u - b is the impulse of all constraints. Without the impulses of rows and friction, the
+/// pins' impulses remain along the pinned coordinates.
 double work_of_pins(const State& state, const Workspace& work)
 {
     if (work.pin_targets.empty()) return 0.0;
     Eigen::VectorXd impulse =
         symmetric_product(work.mesh.system.matrix(), work.solution.velocity) - work.mesh.system.rhs();
-    for (std::size_t k = 0; k < work.problem.rows.size(); ++k) {
-        const ConstraintRow& row = work.problem.rows[k];
-        const double multiplier = work.solution.row_multipliers[static_cast<Eigen::Index>(k)];
-        for (int e = 0; e < row.count; ++e) impulse[row.coordinate[e]] -= multiplier * row.coefficient[e];
-    }
+    for (std::size_t k = 0; k < work.problem.rows.size(); ++k)
+        subtract_row(work.problem.rows[k], work.solution.row_multipliers[static_cast<Eigen::Index>(k)],
+                     impulse);
+    for (std::size_t p = 0; p < work.problem.friction.size(); ++p)
+        for (int d = 0; d < 2; ++d)
+            subtract_row(work.problem.friction[p].slip[d], work.solution.friction[p][d], impulse);
     double sum = 0.0;
     for (const PinTarget& held : work.pin_targets) {
         int coordinate = 3 * held.vertex;  // pinned axes come first
@@ -82,10 +88,25 @@ double work_of_features(const State& state, const std::vector<double>& multiplie
     return sum / work.prediction.gamma;
 }
 
+/// Work of friction on moving obstacles, J, without EOL vertices, for which `work_of_features` includes it.
+double work_of_friction(const Workspace& work)
+{
+    double sum = 0.0;
+    for (const Rub& rub : work.rubs) {
+        const Contact& contact = work.contacts[rub.contact];
+        if (contact.eol >= 0) continue;
+        const ObstacleStep& step = work.obstacles[contact.obstacle];
+        const Vec3 place = contact.in_frame.at(step.motion.begin);
+        sum += contact.friction.impulse.dot(step.end(place) - step.begin(place));
+    }
+    return sum / work.prediction.gamma;
+}
+
 double work_of_obstacles(const State& state, const Workspace& work)
 {
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
-    return work_of_rows(multiplier, work) + work_of_features(state, multiplier, work);
+    return work_of_rows(multiplier, work) + work_of_friction(work) +
+           work_of_features(state, multiplier, work);
 }
 
 ClothVelocity velocity_of(const Proposal& proposal)

@@ -27,6 +27,7 @@
 #include "solver/energy_balance.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/eol/eol_features.h"
+#include "solver/friction.h"
 #include "solver/infeasible.h"
 #include "solver/material_flow.h"
 #include "solver/mesh_change/step_mesh.h"
@@ -91,6 +92,7 @@ bool assemble(const Scene& scene, double end, const State& state, Workspace& wor
     if (work.has_system) return true;
     build_constraints(work.pin_targets, work.eol, work.prediction, state, work.contacts, work.linearization,
                       work.problem);
+    work.rubs = add_friction_pairs(rubbing_cloth(scene, state, work), work.problem);
     Linearization& at = work.linearization;
     const Prediction& prediction = work.prediction;
     at.begin = state.time;
@@ -107,20 +109,28 @@ bool assemble(const Scene& scene, double end, const State& state, Workspace& wor
 }
 
 /// Stage 5: minimises 1/2 u^T A u - b^T u under bounds and rows. Where only rows were added, the solve
-/// resumes on the existing factorisation.
-void solve_velocity(const Settings& settings, Workspace& work, StepReport& report)
+/// resumes on the existing factorisation. With friction, solves repeat until its budgets agree.
+void solve_velocity(const Scene& scene, const Settings& settings, const State& state, Workspace& work,
+                    StepReport& report)
 {
     work.problem.matrix = &work.mesh.system.matrix();
     work.problem.rhs = &work.mesh.system.rhs();
-    work.solution = work.has_system ? work.solver.resume(work.problem, settings)
-                                    : work.solver.solve(work.problem, settings);
-    work.has_system = true;
+    const auto solve = [&]() -> const VelocitySolution& {
+        work.solution = work.has_system ? work.solver.resume(work.problem, settings)
+                                        : work.solver.solve(work.problem, settings);
+        work.has_system = true;
+        report.factorisations += work.solution.factorisations;
+        report.nlopt_evaluations += work.solution.nlopt_evaluations;
+        report.seconds.factorise += work.solution.factorise_seconds;
+        report.seconds.solve += work.solution.solve_seconds;
+        return work.solution;
+    };
+    if (work.problem.friction.empty())
+        solve();
+    else
+        solve_with_friction(scene, state, solve, work, report);
     ++report.solves;
-    report.factorisations += work.solution.factorisations;
-    report.nlopt_evaluations += work.solution.nlopt_evaluations;
     report.kkt_residual = work.solution.kkt_residual;  // of the last solve, whose velocity is used
-    report.seconds.factorise += work.solution.factorise_seconds;
-    report.seconds.solve += work.solution.solve_seconds;
     switch (work.solution.status) {
         case SolveStatus::Certified:
             report.status = StepStatus::Done;
@@ -228,7 +238,7 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
 
     // 5. The constrained velocity, with its certificate. Contacts that cannot be met together yield, and fold
     // planes yield to other obstacles.
-    solve_velocity(settings, work, report);
+    solve_velocity(scene, settings, state, work, report);
     watch.lap();
     if (report.status == StepStatus::Infeasible && report.solves < kMostSolves &&
         yield_infeasible(scene, work))

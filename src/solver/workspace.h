@@ -7,6 +7,7 @@
 #include "solver/contact/contacts.h"
 #include "solver/contact/proposal.h"
 #include "solver/eol/eol_coordinates.h"
+#include "solver/friction/friction_pairs.h"
 #include "solver/mesh_change/mesh_cache.h"
 #include "solver/retry_policy.h"
 #include "solver/velocity_solve/velocity_solve.h"
@@ -57,6 +58,7 @@ struct Workspace {
     Linearization linearization;
     ClothVelocity expansion;  ///< v^: q^ = q~ + gamma v^ is where forces are linearised
     VelocityProblem problem;
+    std::vector<Rub> rubs;  ///< contacts with friction, one per friction pair of `problem`
     int yielded = 0;
     bool has_system = false;  ///< `problem` belongs to this step's prediction; rows may have been added since
 

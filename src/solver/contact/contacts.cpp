@@ -138,6 +138,11 @@ void shift_along(const std::vector<EolCoordinates>& eol, const Contact& contact,
     material[at.vertex] += amount * (at.material_basis * at.opening);
 }
 
+ContactFriction rotate(const Mat3& rotation, const ContactFriction& friction)
+{
+    return {rotation * friction.impulse, rotation * friction.slip, friction.budget};
+}
+
 /// Shares the room between two contacts of one vertex whose normals are opposite.
 SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction, Contact& a,
                       Contact& b)
@@ -189,7 +194,7 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
     return steps;
 }
 
-double find_last_multiplier(const State& state, const Contact& contact)
+void recall(const State& state, const ObstacleStep& step, Contact& contact)
 {
     constexpr double kSameNormal = 0.7;
     const VertexIds ids = ids_of(state, contact.in_frame.vertices);
@@ -201,9 +206,13 @@ double find_last_multiplier(const State& state, const Contact& contact)
     for (; active != state.active.end() && std::pair(active->vertex_ids, active->obstacle) == key; ++active)
         if (active->kind == contact.in_frame.kind &&
             (contact.is_vertex() ? active->normal.dot(contact.in_frame.normal) > kSameNormal
-                                 : active->element == contact.in_frame.element))
-            return active->multiplier;
-    return 0.0;
+                                 : active->element == contact.in_frame.element)) {
+            contact.last_multiplier = active->multiplier;
+            contact.last_friction = active->friction;
+            if (contact.eol < 0) contact.last_friction = rotate(step.end.rotation, contact.last_friction);
+            contact.friction = contact.last_friction;
+            return;
+        }
 }
 
 double way_along(const ObstacleStep& step, const Contact& contact)
@@ -244,7 +253,7 @@ std::vector<Contact> find_contacts(const Scene& scene, const State& state, const
         found.insert(found.begin(), of_vertices.begin(), of_vertices.end());
         for (const ObstacleContact& contact : found) {
             contacts.push_back(place_contact(contact, static_cast<int>(o), steps[o], prediction));
-            contacts.back().last_multiplier = find_last_multiplier(state, contacts.back());
+            recall(state, steps[o], contacts.back());
         }
     }
     return contacts;
@@ -316,15 +325,19 @@ bool flatten_history(const Scene& scene, const State& state, const std::vector<O
     return is_changed;
 }
 
-std::vector<ActiveContact> active_contacts(const State& state, const std::vector<Contact>& contacts,
+std::vector<ActiveContact> active_contacts(const State& state, const std::vector<ObstacleStep>& steps,
+                                           const std::vector<Contact>& contacts,
                                            const std::vector<double>& multiplier)
 {
     std::vector<ActiveContact> active;
     for (std::size_t c = 0; c < contacts.size(); ++c) {
-        const ObstacleContact& local = contacts[c].in_frame;
-        if (multiplier[c] > 0.0)
-            active.push_back({ids_of(state, local.vertices), local.kind, contacts[c].obstacle, local.element,
-                              local.normal, multiplier[c]});
+        const Contact& contact = contacts[c];
+        const ObstacleContact& local = contact.in_frame;
+        if (!(multiplier[c] > 0.0)) continue;
+        const Mat3 to_frame = contact.eol >= 0 ? Mat3(Mat3::Identity())
+                                               : Mat3(steps[contact.obstacle].end.rotation.transpose());
+        active.push_back({ids_of(state, local.vertices), local.kind, contact.obstacle, local.element,
+                          local.normal, multiplier[c], rotate(to_frame, contact.friction)});
     }
     std::sort(active.begin(), active.end(), [](const ActiveContact& a, const ActiveContact& b) {
         return key_of(a) < key_of(b) || (key_of(a) == key_of(b) && a.multiplier > b.multiplier);

@@ -35,13 +35,15 @@ struct Contact {
     int obstacle;  ///< index in the scene
     Vec3 normal;   ///< at the step's end
     double gap;    ///< distance of q~ beyond the gap to be kept at the step's end, m; negative inside
-    double last_multiplier = 0.0;  ///< N s, of the last step; 0 where it did not press
-    bool is_pressing = false;      ///< in the last solve of this step, at an earlier linearization
-    bool may_grow = true;          ///< whether its gap may grow to the stand-off; false where it has yielded
-    double mitre = 1.0;            ///< stand-off over thickness
-    int eol = -1;                  ///< index of the EOL coordinates whose first one it bounds; else -1
-    int bound = -1;                ///< coordinate of the velocity solve, 3 a vertex; -1 where it is a row
-    int row = -1;                  ///< row of the velocity solve, or -1
+    double last_multiplier = 0.0;   ///< N s, of the last step; 0 where it did not press
+    ContactFriction last_friction;  ///< of the last step, in the world; at EOL vertices see ContactFriction
+    ContactFriction friction;       ///< likewise, of the last solve; before one, of the last step
+    bool is_pressing = false;       ///< in the last solve of this step, at an earlier linearization
+    bool may_grow = true;           ///< whether its gap may grow to the stand-off; false where it has yielded
+    double mitre = 1.0;             ///< stand-off over thickness
+    int eol = -1;                   ///< index of the EOL coordinates whose first one it bounds; else -1
+    int bound = -1;                 ///< coordinate of the velocity solve, 3 a vertex; -1 where it is a row
+    int row = -1;                   ///< row of the velocity solve, or -1
 
     bool is_vertex() const { return in_frame.kind == ContactKind::Vertex; }
     bool was_active() const { return last_multiplier > 0.0; }
@@ -59,9 +61,10 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
 std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
                                    std::vector<ObstacleStep>& steps);
 
-/// The contact's multiplier (N s) in `state.active`; 0 where it is not there. For an edge or face, the
-/// obstacle's element must match. For a vertex, which slides from face to face, the normals must be close.
-double find_last_multiplier(const State& state, const Contact& contact);
+/// Sets the contact's last multiplier and friction from `state.active`, if it pressed. For an edge or face,
+/// the obstacle's element must match. For a vertex, which slides from face to face, the normals must be
+/// close.
+void recall(const State& state, const ObstacleStep& step, Contact& contact);
 
 /// Distance, m, by which the obstacle at the contact moves along the contact's normal in the step.
 double way_along(const ObstacleStep& step, const Contact& contact);
@@ -98,7 +101,8 @@ bool flatten_history(const Scene& scene, const State& state, const std::vector<O
                      std::vector<Contact>& contacts, Prediction& prediction);
 
 /// Pressing contacts, for `State::active`; `multiplier` has one entry a contact (N s).
-std::vector<ActiveContact> active_contacts(const State& state, const std::vector<Contact>& contacts,
+std::vector<ActiveContact> active_contacts(const State& state, const std::vector<ObstacleStep>& steps,
+                                           const std::vector<Contact>& contacts,
                                            const std::vector<double>& multiplier);
 
 }  // namespace arris

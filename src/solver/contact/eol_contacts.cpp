@@ -157,7 +157,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     }
     append_folds(scene, state, stars, prediction, steps, eol, contacts);
     for (std::size_t c = found; c < contacts.size(); ++c)
-        contacts[c].last_multiplier = find_last_multiplier(state, contacts[c]);
+        recall(state, steps[contacts[c].obstacle], contacts[c]);
     return eol;
 }
 

@@ -258,6 +258,7 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
         return finish(star, end, at);
     }
     if (border && leads_along(star, *border, trace, tangent)) return {std::nullopt, RowCause::AlongBorder};
+    at.trace = trace;
     if (eol.on.is_bend()) at.material_basis.col(1) = trace;
     at.material_basis.col(2) = border ? *border : perpendicular(trace);
     return finish(star, end, at);

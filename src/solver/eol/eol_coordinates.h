@@ -25,8 +25,9 @@ struct EolCoordinates {
     Vec3 carried;        ///< its place at the step's end if it rides on the obstacle, world
     Mat3 basis;          ///< first column: the outward direction at the step's end
     Mat23 material_basis;
-    int side;      ///< new value of EolVertex::side
-    Vec3 opening;  ///< change of u, (1, ...), that opens the gap with the least kinetic energy
+    int side;                   ///< new value of EolVertex::side
+    Vec3 opening;               ///< change of u, (1, ...), that opens the gap with the least kinetic energy
+    Vec2 trace = Vec2::Zero();  ///< direction of the feature in the material, as its tangent; zero at corners
 };
 
 /// The coordinates of EOL vertex `entry` of the state, or the reason why it can have none. `positions` are

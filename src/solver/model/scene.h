@@ -27,6 +27,11 @@ struct Pin {
     bool holds_until(double end) const { return end <= release; }
 };
 
+/// Coulomb friction between cloth and obstacles.
+struct Friction {
+    std::vector<double> coefficients;  ///< one per obstacle, >= 0
+};
+
 /// The simulated scene, const while stepping. An absent effect costs nothing.
 struct Scene {
     Material material;
@@ -35,6 +40,7 @@ struct Scene {
     std::vector<Pull> pulls;
     std::vector<Pin> pins;
     std::vector<Obstacle> obstacles;
+    std::optional<Friction> friction;
     std::optional<MeshTarget> eol;  ///< target of the mesh near features; no EOL vertices without it
 };
 

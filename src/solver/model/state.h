@@ -12,6 +12,15 @@
 
 namespace arris {
 
+/// Friction at a contact that presses, in the obstacle's frame. At an EOL vertex: components along the
+/// feature and across, at corners in the material. The impulse tells how far the contact's spring is strained
+/// (velocity_solve/friction_springs.h).
+struct ContactFriction {
+    Vec3 impulse = Vec3::Zero();  ///< N s
+    Vec3 slip = Vec3::Zero();     ///< m/s
+    double budget = 0.0;          ///< N s, greatest impulse
+};
+
 /// A contact that pressed at the end of a step, with its multiplier. The next solve starts from it, and the
 /// next search tests it again.
 struct ActiveContact {
@@ -22,6 +31,7 @@ struct ActiveContact {
     std::int32_t element;   ///< as ObstacleContact's
     Vec3 normal;            ///< in the obstacle's frame
     double multiplier;      ///< N s
+    ContactFriction friction = {};
 };
 
 /// A vertex on a sharp feature of an obstacle, through which the material flows (Eulerian on Lagrangian).

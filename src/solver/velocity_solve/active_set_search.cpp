@@ -13,6 +13,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "solver/model/stopwatch.h"
@@ -56,6 +57,9 @@ constexpr int kNewtonBases = 20;
 constexpr int kFullSteps = 8;  // of these; the others go as far as the energy falls
 constexpr int kFewChanges = 30;
 
+/// Friction pairs that may join U at a time; if more are far from their springs, another base costs less.
+constexpr int kFewPairs = 60;
+
 /// Floating-point operations on dense problems in one solve: as many as this number of factorisations take,
 /// and kLeastFlops, about a second's work.
 constexpr double kMostFactorisations = 30.0;
@@ -71,10 +75,10 @@ std::vector<char> active_by_guess(const VelocityProblem& problem)
     return is_active;
 }
 
-std::vector<int> pressing_rows(const Iterate& iterate)
+std::vector<int> pressing_rows(const ConstraintRows& constraints, const Iterate& iterate)
 {
     std::vector<int> rows;
-    for (int k = 0; k < iterate.row_multipliers.size(); ++k)
+    for (int k = constraints.slip_count(); k < iterate.row_multipliers.size(); ++k)
         if (iterate.row_multipliers[k] > 0.0) rows.push_back(k);
     return rows;
 }
@@ -86,6 +90,8 @@ VelocitySolution make_zero_solution(const VelocityProblem& problem)
     VelocitySolution solution;
     solution.velocity = solution.multipliers = Eigen::VectorXd::Zero(problem.rhs->size());
     solution.row_multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.rows.size()));
+    solution.friction.assign(problem.friction.size(), Eigen::Vector2d::Zero());
+    solution.slip = solution.unlimited = solution.friction;
     return solution;
 }
 
@@ -100,8 +106,10 @@ ActiveSetSearch::ActiveSetSearch(const VelocityProblem& problem, Factorization& 
 {
     best_ = make_zero_solution(problem);
     best_.kkt_residual = std::numeric_limits<double>::infinity();
-    has_pulled_.assign(problem.rows.size(), 0);
-    is_pressing_.assign(problem.rows.size(), 0);
+    best_.row_multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(constraints.rows.size()));
+    has_pulled_.assign(constraints.rows.size(), 0);
+    is_pressing_.assign(constraints.rows.size(), 0);
+    slips_ = starting_springs(problem, constraints);
     budget_ = {kLeastFlops + kMostFactorisations * factorization.flops(), &settings};
 }
 
@@ -115,8 +123,9 @@ VelocitySolution ActiveSetSearch::run(bool has_row_guess)
 std::vector<int> ActiveSetSearch::rows_of_guess() const
 {
     std::vector<int> rows;
-    for (const int k : problem_.row_guess) {
-        assert(k >= 0 && k < static_cast<int>(constraints_.rows.size()));
+    for (const int guessed : problem_.row_guess) {
+        const int k = constraints_.slip_count() + guessed;
+        assert(guessed >= 0 && k < static_cast<int>(constraints_.rows.size()));
         if (!constraints_.rows[k].entries.empty()) rows.push_back(k);
     }
     rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
@@ -130,6 +139,16 @@ VelocitySolution ActiveSetSearch::run_bases()
     best_.infeasible_rows = find_infeasible_rows();
     for (std::size_t k = 0; k < constraints_.rows.size(); ++k)
         best_.row_multipliers[static_cast<Eigen::Index>(k)] /= constraints_.rows[k].scale;
+    for (int p = 0; p < constraints_.pair_count(); ++p) {
+        const double scale = constraints_.rows[2 * p].scale;
+        const Eigen::Vector2d y = slip_of(constraints_, p, best_.velocity);
+        const auto& [first, second] = problem_.friction[p].slip;
+        best_.friction[p] = best_.row_multipliers.segment<2>(2 * p);
+        best_.slip[p] = scale * y - Eigen::Vector2d(first.lower, second.lower);
+        best_.unlimited[p] = unlimited_at(constraints_, p, y) / scale;
+    }
+    best_.row_multipliers =
+        best_.row_multipliers.tail(static_cast<Eigen::Index>(problem_.rows.size())).eval();
     if (best_.infeasible_rows.empty()) {
         if (best_.kkt_residual <= settings_.tolerance) best_.status = SolveStatus::Certified;
     } else if (best_.kkt_residual <= std::max(settings_.tolerance, kNaming)) {
@@ -142,9 +161,10 @@ VelocitySolution ActiveSetSearch::resume()
 {
     PinnedBase& base = in_use_->base;
     base.problem = &problem_;
-    base.is_pressing.resize(problem_.rows.size(), 0);
+    base.is_pressing.resize(constraints_.rows.size(), 0);
     base.iterate.row_multipliers.conservativeResizeLike(best_.row_multipliers);
     in_use_->set.see_new_rows();
+    if (!problem_.friction.empty()) move_springs();
     in_use_->iterate = base.iterate;
     is_pressing_ = base.is_pressing;  // new rows are found as violators
     if (start_rows()) run_rounds(kWorkingSetCap);
@@ -158,7 +178,7 @@ void ActiveSetSearch::run_base(int cap)
     Stopwatch watch;
     in_use_.reset();
     std::optional<PinnedBase> base =
-        solve_pinned(problem_, constraints_, is_active_, is_pressing_, factorization_);
+        solve_pinned(problem_, constraints_, is_active_, is_pressing_, slips_, factorization_);
     best_.factorise_seconds += watch.lap();
     ++best_.factorisations;
     is_over_ = !base;  // not positive definite: NotConverged
@@ -176,7 +196,7 @@ void ActiveSetSearch::run_base(int cap)
 void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
 {
     rows_.clear();
-    is_pressing_.assign(problem_.rows.size(), 0);
+    is_pressing_.assign(constraints_.rows.size(), 0);
     const double few =
         std::max<double>(kFewRows, kFewShare / 3.0 * static_cast<double>(problem_.lower.size()));
     const bool is_few = static_cast<double>(expected.size()) <= few;
@@ -186,6 +206,16 @@ void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
         else if (static_cast<int>(rows_.size()) < kMostRows)  // the others join when they are violated
             rows_.push_back(k);
     }
+}
+
+/// Moves the base's friction springs to the impulses at the present velocity, with the factor as it is.
+void ActiveSetSearch::move_springs()
+{
+    PinnedBase& base = in_use_->base;
+    for (int p = 0; p < constraints_.pair_count(); ++p)
+        base.slips[p] =
+            through(base.slips[p], constraints_, p, slip_of(constraints_, p, in_use_->iterate.velocity));
+    solve_with_forces(base);
 }
 
 /// Solves for the working set with the rows expected active. False: the next base goes without these rows.
@@ -211,13 +241,16 @@ void ActiveSetSearch::run_rounds(int cap)
         if (!violators.pulling.empty() || has_many_changes(violators))
             return rebase_with_violated_rows(violators);
         const int count = static_cast<int>(violators.coordinates.size()),
-                  row_count = static_cast<int>(violators.rows.size());
+                  row_count = static_cast<int>(violators.rows.size()),
+                  pair_count = static_cast<int>(violators.pairs.size());
         const int room = cap + cap / 2 - set.coordinate_count(), row_room = kMostRows - set.row_count();
         if (count > kHopeless * cap) return rebase_by_prediction();
         if (count > 0 && set.coordinate_count() >= cap) return rebase_with_changed(violators);
-        if (row_count > 0 && row_room <= 0) return rebase_with_changed(violators);
+        if (row_count + pair_count > 0 && row_room <= 0) return rebase_with_changed(violators);
         if (count > room) keep_worst_coordinates(base, iterate, room, violators.coordinates);
         if (row_count > row_room) keep_worst_rows(base, iterate, row_room, violators.rows);
+        for (const int pair : violators.pairs)
+            violators.rows.insert(violators.rows.end(), {2 * pair, 2 * pair + 1});
         set.extend(violators.coordinates, violators.rows);
         if (!set.solve(iterate, best_.nlopt_evaluations, budget_)) return rebase_by_prediction();
     }
@@ -229,13 +262,16 @@ void ActiveSetSearch::rebase_by_prediction()
     ActivePrediction prediction = predict_active_bounds(problem_, constraints_, iterate);
     best_.nlopt_evaluations += prediction.nlopt_evaluations;
     is_active_ = std::move(prediction.is_active);
-    choose_rows(pressing_rows(iterate));
+    choose_rows(pressing_rows(constraints_, iterate));
+    slips_ = springs_at(constraints_, iterate.velocity);
 }
 
 /// Whether so many rows change sides that another base costs less than U, at a base that has rows.
 bool ActiveSetSearch::has_many_changes(const Violators& violators) const
 {
     const std::vector<char>& in_base = in_use_->base.is_pressing;
+    if (best_.factorisations <= kNewtonBases && static_cast<int>(violators.pairs.size()) > kFewPairs)
+        return true;
     return best_.factorisations <= kNewtonBases && static_cast<int>(violators.rows.size()) > kFewChanges &&
            std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
 }
@@ -249,15 +285,21 @@ double ActiveSetSearch::find_newton_share(const Eigen::VectorXd& from, const Eig
     const double slope = way.dot(symmetric_product(*problem_.matrix, from) - *problem_.rhs),
                  curvature = way.dot(symmetric_product(*problem_.matrix, way));
     std::vector<std::array<double, 3>> springs;  // gap at the start, its change, 1 / give
-    for (const ScaledRow& row : constraints_.rows) {
+    for (std::size_t k = constraints_.slip_count(); k < constraints_.rows.size(); ++k) {
+        const ScaledRow& row = constraints_.rows[k];
         if (row.entries.empty()) continue;
         const double start = gap(row, from, 0.0), end = gap(row, to, 0.0);
         if (start < 0.0 || end < 0.0) springs.push_back({start, end - start, 1.0 / row.give});
     }
+    std::vector<std::tuple<int, Eigen::Vector2d, Eigen::Vector2d>> slips;  // y at the start, its change
+    for (int p = 0; p < constraints_.pair_count(); ++p)
+        slips.emplace_back(p, slip_of(constraints_, p, from), slip_of(constraints_, p, way));
     const auto slope_at = [&](double share) {
         double sum = slope + share * curvature;
         for (const auto& [start, change, stiffness] : springs)
             sum += stiffness * change * std::min(start + share * change, 0.0);
+        for (const auto& [pair, start, change] : slips)
+            sum -= change.dot(friction_at(constraints_, pair, start + share * change));
         return sum;
     };
     double low = 0.0, high = 1.0;
@@ -279,8 +321,9 @@ void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
         newton_point_ += find_newton_share(newton_point_, velocity) * (velocity - newton_point_);
     else
         newton_point_ = velocity;
+    slips_ = springs_at(constraints_, newton_point_);
     std::vector<int> violated;
-    for (int k = 0; k < static_cast<int>(constraints_.rows.size()); ++k) {
+    for (int k = constraints_.slip_count(); k < static_cast<int>(constraints_.rows.size()); ++k) {
         const ScaledRow& row = constraints_.rows[k];
         if (!row.entries.empty() && gap(row, newton_point_, 0.0) < 0.0) violated.push_back(k);
     }
@@ -301,7 +344,8 @@ void ActiveSetSearch::flip_bounds(const std::vector<int>& coordinates)
 void ActiveSetSearch::rebase_with_changed(const Violators& violators)
 {
     flip_bounds(violators.coordinates);
-    choose_rows(pressing_rows(in_use_->iterate));
+    choose_rows(pressing_rows(constraints_, in_use_->iterate));
+    slips_ = springs_at(constraints_, in_use_->iterate.velocity);
 }
 
 /// No violator is left: accepts, refines, or factorises once more with exactly these bounds pinned. False
@@ -314,7 +358,8 @@ bool ActiveSetSearch::finish()
     if (is_over_) return true;
     if (set.row_count() > 0 && !find_violators(base, iterate, set).empty()) return false;
     is_active_ = iterate.is_active;
-    choose_rows(pressing_rows(iterate));
+    choose_rows(pressing_rows(constraints_, iterate));
+    slips_ = springs_at(constraints_, iterate.velocity);
     const bool is_new_base = set.row_count() == 0 ? set.size() > 0 : is_active_ != base.iterate.is_active;
     is_over_ = !is_new_base || (has_rebased_for_accuracy_ && best_.kkt_residual <= settings_.tolerance);
     has_rebased_for_accuracy_ = true;
@@ -337,6 +382,8 @@ bool ActiveSetSearch::certify()
     for (int i = 0; i < multipliers.size(); ++i)
         if (iterate.is_active[i]) multipliers[i] = std::max(iterate.gradient[i], 0.0);
     Eigen::VectorXd row_multipliers = iterate.row_multipliers.cwiseMax(0.0);
+    const int slips = constraints_.slip_count();  // friction may push both ways
+    row_multipliers.head(slips) = iterate.row_multipliers.head(slips);
     const double residual =
         kkt_residual(problem_, constraints_, iterate.velocity, multipliers, row_multipliers);
     if (residual < best_.kkt_residual) {
@@ -352,11 +399,12 @@ bool ActiveSetSearch::certify()
 std::vector<int> ActiveSetSearch::find_infeasible_rows() const
 {
     std::vector<int> infeasible = constraints_.impossible;
-    for (std::size_t k = 0; k < constraints_.rows.size(); ++k) {
+    const int first = constraints_.slip_count();
+    for (std::size_t k = first; k < constraints_.rows.size(); ++k) {
         const ScaledRow& row = constraints_.rows[k];
         if (row.entries.empty()) continue;
         if (row.give * best_.row_multipliers[static_cast<Eigen::Index>(k)] > constraints_.unmet_speed)
-            infeasible.push_back(static_cast<int>(k));
+            infeasible.push_back(static_cast<int>(k) - first);
     }
     std::sort(infeasible.begin(), infeasible.end());
     infeasible.erase(std::unique(infeasible.begin(), infeasible.end()), infeasible.end());

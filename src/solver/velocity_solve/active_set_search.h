@@ -35,7 +35,8 @@ class ActiveSetSearch {
     /// `has_row_guess`: whether to start with the rows expected to press.
     VelocitySolution run(bool has_row_guess);
 
-    /// Goes on from the base in use, which belongs to this problem with fewer rows.
+    /// Goes on from the base in use, which belongs to this problem with fewer rows or other budgets of
+    /// friction.
     VelocitySolution resume();
 
   private:
@@ -45,6 +46,7 @@ class ActiveSetSearch {
     bool start_rows();
     void choose_rows(const std::vector<int>& expected);
     bool has_many_changes(const Violators& violators) const;
+    void move_springs();
     void rebase_by_prediction();
     void flip_bounds(const std::vector<int>& coordinates);
     void rebase_with_changed(const Violators& violators);
@@ -66,6 +68,7 @@ class ActiveSetSearch {
     std::vector<int> rows_;          ///< rows with which the next base's working set starts
     std::vector<char> is_pressing_;  ///< by row: part of the next base
     std::vector<char> has_pulled_;   ///< by row: not to be part of a base any more
+    std::vector<SlipSpring> slips_;  ///< of the next base, by friction pair
     Eigen::VectorXd newton_point_;   ///< velocity reached by Newton's method; empty before
     DenseBudget budget_ = {0.0};
     bool has_rebased_for_accuracy_ = false;

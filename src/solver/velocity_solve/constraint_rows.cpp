@@ -104,13 +104,52 @@ ScaledRow scale_row(const VelocityProblem& problem, const Eigen::VectorXd& diago
     return scaled;
 }
 
+/// Both rows of a pair get one scale and one give, so that the budget's disc stays a disc. A direction in
+/// which nothing can move keeps an empty row.
+void add_pair(const VelocityProblem& problem, const Eigen::VectorXd& diagonal, const FrictionPair& pair,
+              ConstraintRows& result)
+{
+    std::array<ScaledRow, 2> rows;
+    double scale = 0.0, compliance = 0.0;
+    for (int d = 0; d < 2; ++d) {
+        result.is_finite =
+            result.is_finite && is_well_formed(pair.slip[d]) && std::isfinite(pair.slip[d].lower);
+        rows[d].entries = movable_entries(problem, pair.slip[d]);
+        for (const auto& [coordinate, value] : rows[d].entries) scale = std::max(scale, std::abs(value));
+    }
+    const bool can_move = scale > 0.0;
+    if (!can_move) scale = 1.0;
+    for (ScaledRow& row : rows) {
+        double sum = 0.0;
+        for (auto& [coordinate, value] : row.entries) {
+            value /= scale;
+            sum += value * value / diagonal[coordinate];
+        }
+        compliance = std::max(compliance, sum);
+    }
+    if (!can_move) compliance = 1.0;
+    for (int d = 0; d < 2; ++d) {
+        rows[d].scale = scale;
+        rows[d].compliance = compliance;
+        rows[d].give = compliance / kStiffness;
+        rows[d].lower = pair.slip[d].lower / scale + rows[d].give * pair.slip[d].expected * scale;
+        result.rows.push_back(rows[d]);
+    }
+    result.budgets.push_back(can_move ? pair.budget * scale : 0.0);
+    result.masses.push_back(pair.mass * scale * scale);
+    result.is_finite = result.is_finite && std::isfinite(1.0 / rows[0].give) && std::isfinite(pair.budget);
+}
+
 }  // namespace
 
 ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed, double softening)
 {
     ConstraintRows result;
-    if (problem.rows.empty()) return result;
+    if (problem.rows.empty() && problem.friction.empty()) return result;
     const Eigen::VectorXd diagonal = positive_diagonal(*problem.matrix);
+    for (const FrictionPair& pair : problem.friction) add_pair(problem, diagonal, pair, result);
+    if (!result.is_finite) return result;
+    const std::size_t first = result.rows.size();
     double speed = free_speed;
     for (int i = 0; i < problem.lower.size(); ++i)
         if (!problem.is_fixed[i]) speed = std::max(speed, problem.lower[i]);
@@ -120,15 +159,15 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed, dou
         result.rows.push_back(scale_row(problem, diagonal, row));
         const bool can_move = !result.rows.back().entries.empty();
         if (!can_move && row.lower > 0.0)
-            result.impossible.push_back(static_cast<int>(result.rows.size()) - 1);
+            result.impossible.push_back(static_cast<int>(result.rows.size() - first) - 1);
         // The speed that the row needs over all its coordinates: if only a tiny part can move, that part may
         // need any speed.
         if (can_move) speed = std::max(speed, row.lower / largest_coefficient(row));
     }
     result.least_speed = kLeastSpeed * speed;
     result.unmet_speed = std::max(kUnmet, kLeastUnmet * softening / kStiffness) * speed;
-    for (std::size_t k = 0; k < result.rows.size(); ++k) {
-        ScaledRow& row = result.rows[k];
+    for (std::size_t k = 0; k < problem.rows.size(); ++k) {
+        ScaledRow& row = result.rows[first + k];
         if (row.entries.empty()) continue;
         if (row.lower > kMostSpeed * speed) {
             row.lower = kMostSpeed * speed;

@@ -25,11 +25,17 @@ struct ScaledRow {
 /// strictly convex, so it has one answer, however many rows repeat or contradict each other. Rows that can be
 /// met give way by less than 1e-5 of the free speed.
 struct ConstraintRows {
-    std::vector<ScaledRow> rows;  ///< one per row of the problem
-    std::vector<int> impossible;  ///< rows that ask for too much of what can move, or for motion of nothing
-    double least_speed = 0.0;     ///< m/s: least scale of relative errors
-    double unmet_speed = 0.0;     ///< m/s: a row that gives way by more cannot be met
-    bool is_finite = true;        ///< false with a NaN, or a bound of +infinity, which nothing can meet
+    std::vector<ScaledRow> rows;  ///< two per friction pair, then one per row of the problem
+    std::vector<double> budgets;  ///< N s, in the scale of the rows, one per friction pair
+    std::vector<double> masses;   ///< kg, likewise
+    std::vector<int>
+        impossible;  ///< rows of the problem that ask for too much of what can move, or for motion of nothing
+    double least_speed = 0.0;  ///< m/s: least scale of relative errors
+    double unmet_speed = 0.0;  ///< m/s: a row that gives way by more cannot be met
+    bool is_finite = true;     ///< false with a NaN, or a bound of +infinity, which nothing can meet
+
+    int pair_count() const { return static_cast<int>(budgets.size()); }
+    int slip_count() const { return 2 * pair_count(); }  ///< index of the problem's first row
 };
 
 /// `free_speed` is `estimate_free_speed` of this problem; unused without rows. Coefficients below round-off

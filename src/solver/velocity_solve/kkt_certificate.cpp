@@ -76,7 +76,7 @@ double kkt_residual(const VelocityProblem& problem, const ConstraintRows& constr
         result = worse(result, problem.is_fixed[i] ? relative(std::abs(velocity[i]), speed)
                                                    : pair_residual(velocity[i] - problem.lower[i],
                                                                    multipliers[i], speed, impulse));
-    for (std::size_t k = 0; k < constraints.rows.size(); ++k) {
+    for (std::size_t k = constraints.slip_count(); k < constraints.rows.size(); ++k) {
         const ScaledRow& row = constraints.rows[k];
         if (row.entries.empty()) continue;
         const double multiplier = row_multipliers[static_cast<Eigen::Index>(k)];

@@ -55,7 +55,8 @@ struct VelocitySolver::Cache {
     /// False where rows are not finite.
     bool scale(const VelocityProblem& problem)
     {
-        if (!problem.rows.empty() && !free_speed) free_speed = estimate_free_speed(problem);
+        if ((!problem.rows.empty() || !problem.friction.empty()) && !free_speed)
+            free_speed = estimate_free_speed(problem);
         constraints = scale_rows(problem, free_speed.value_or(0.0), softening);
         return constraints.is_finite;
     }
@@ -105,7 +106,8 @@ VelocitySolution VelocitySolver::resume(const VelocityProblem& problem, const Se
     if (!cache_->in_use) return solve(problem, settings);
     Stopwatch watch;
     assert_shapes(problem);
-    assert(problem.rows.size() >= cache_->constraints.rows.size() && "rows are only appended");
+    assert(2 * problem.friction.size() + problem.rows.size() >= cache_->constraints.rows.size() &&
+           "rows are only appended");
     VelocitySolution solution = make_zero_solution(problem);
     if (!cache_->scale(problem)) {
         cache_->in_use.reset();

@@ -22,7 +22,19 @@ struct ConstraintRow {
     int group = 0;          ///< one per cloth face: only the worst row of a group joins at a time
 };
 
-/// min 1/2 u^T A u - b^T u subject to u >= lower, u = 0 where fixed, and rows. Three unknowns a vertex.
+/// Friction of one contact: an impulse f in the contact's plane, |f| <= budget, which opposes the slip s. The
+/// slip's components are sum_k coefficient_k u_(coordinate_k) - lower in two perpendicular unit directions.
+/// As a row, friction gives way a little: it is a stiff spring, f = expected - s / give, which yields at the
+/// budget. So s is 0 where f is the expected impulse, and f = -budget s / |s| where s is not tiny.
+struct FrictionPair {
+    std::array<ConstraintRow, 2> slip;  ///< `expected`: impulses, N s
+    double budget = 0.0;                ///< N s
+    double mass = 0.0;                  ///< kg, that slips with the contact, nearly
+    std::array<double, 2> last = {};    ///< m/s, the slip to start the search from
+};
+
+/// min 1/2 u^T A u - b^T u + sum_pairs (the friction springs' energy) subject to u >= lower, u = 0 where
+/// fixed, and rows. Strictly convex for given budgets (Tresca's friction). Three unknowns a vertex.
 struct VelocityProblem {
     const Eigen::SparseMatrix<double>* matrix =
         nullptr;                           ///< A, SPD: lower triangle, and whole 3x3 diagonal blocks
@@ -32,6 +44,7 @@ struct VelocityProblem {
     std::vector<int> guess;                ///< coordinates expected active, ascending (warm start)
     std::vector<ConstraintRow> rows;
     std::vector<int> row_guess;  ///< rows expected active, ascending
+    std::vector<FrictionPair> friction;
 };
 
 enum class SolveStatus { Certified, NotConverged, NotFinite, Infeasible };
@@ -39,10 +52,13 @@ enum class SolveStatus { Certified, NotConverged, NotFinite, Infeasible };
 /// The answer and how it was reached. `kkt_residual` is recomputed from A, b and the bounds alone.
 struct VelocitySolution {
     SolveStatus status = SolveStatus::NotConverged;
-    Eigen::VectorXd velocity;          ///< u
-    Eigen::VectorXd multipliers;       ///< lambda >= 0, one a coordinate, 0 where no bound is active
-    Eigen::VectorXd row_multipliers;   ///< >= 0, one a row
-    std::vector<int> infeasible_rows;  ///< not met; all hold as well as possible
+    Eigen::VectorXd velocity;                ///< u
+    Eigen::VectorXd multipliers;             ///< lambda >= 0, one a coordinate, 0 where no bound is active
+    Eigen::VectorXd row_multipliers;         ///< >= 0, one a row
+    std::vector<Eigen::Vector2d> friction;   ///< impulses, N s, one a friction pair
+    std::vector<Eigen::Vector2d> slip;       ///< m/s, one a friction pair
+    std::vector<Eigen::Vector2d> unlimited;  ///< N s, `friction` if the budgets were infinite
+    std::vector<int> infeasible_rows;        ///< not met; all hold as well as possible
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;
@@ -70,8 +86,9 @@ class VelocitySolver {
     VelocitySolution solve(const VelocityProblem& problem, const Settings& settings);
 
     /// `solve` for a problem to which rows were appended since this solver's last call; otherwise only
-    /// row_guess may have changed. Goes on from the last base and working set, which costs some solves and no
-    /// factorisation. Factorises only where so many bounds change sides that `solve` would factorise again.
+    /// row_guess and the friction pairs' budgets may have changed. Goes on from the last base and working
+    /// set, which costs some solves and no factorisation. Factorises only where so many bounds change sides
+    /// that `solve` would factorise again.
     VelocitySolution resume(const VelocityProblem& problem, const Settings& settings);
 
   private:

@@ -16,7 +16,7 @@ constexpr double kSignTolerance = 1e-13;
 double error_of_members(const ConstraintRows& constraints, const Iterate& iterate, const WorkingSet& set)
 {
     double error = 0.0;
-    for (std::size_t k = 0; k < constraints.rows.size(); ++k) {
+    for (std::size_t k = constraints.slip_count(); k < constraints.rows.size(); ++k) {
         if (!set.contains_row(static_cast<int>(k))) continue;
         const double multiplier = iterate.row_multipliers[static_cast<Eigen::Index>(k)];
         const double left = gap(constraints.rows[k], iterate.velocity, multiplier);
@@ -36,7 +36,7 @@ std::vector<int> find_rows(const PinnedBase& base, const Iterate& iterate, const
 {
     const ConstraintRows& constraints = *base.constraints;
     std::map<int, std::pair<double, int>> worst;  // by group
-    for (int k = 0; k < static_cast<int>(constraints.rows.size()); ++k) {
+    for (int k = constraints.slip_count(); k < static_cast<int>(constraints.rows.size()); ++k) {
         const ScaledRow& row = constraints.rows[k];
         if (row.entries.empty() || set.contains_row(k) || base.is_pressing[k]) continue;
         if (gap(row, iterate.velocity, 0.0) >= -margin) continue;
@@ -48,6 +48,24 @@ std::vector<int> find_rows(const PinnedBase& base, const Iterate& iterate, const
     for (const auto& [group, candidate] : worst) rows.push_back(candidate.second);
     std::sort(rows.begin(), rows.end());
     return rows;
+}
+
+/// Pairs outside the set whose impulse is not the law's, and would not soon be by corrections of their
+/// springs.
+std::vector<int> find_pairs(const PinnedBase& base, const Iterate& iterate, const WorkingSet& set)
+{
+    constexpr double kSame = 1e-9;  // of the largest budget
+    const ConstraintRows& constraints = *base.constraints;
+    double largest = 0.0;
+    for (const double budget : constraints.budgets) largest = std::max(largest, budget);
+    std::vector<int> pairs;
+    for (int p = 0; p < constraints.pair_count(); ++p) {
+        if (set.contains_row(2 * p)) continue;
+        const Eigen::Vector2d y = slip_of(constraints, p, iterate.velocity);
+        const double error = (base.slips[p].at(y) - friction_at(constraints, p, y)).norm();
+        if (!(error <= kSame * largest) && !is_near_law(base.slips[p], constraints, p, y)) pairs.push_back(p);
+    }
+    return pairs;
 }
 
 }  // namespace
@@ -71,6 +89,7 @@ Violators find_violators(const PinnedBase& base, const Iterate& iterate, const W
     for (int k = 0; k < static_cast<int>(base.is_pressing.size()); ++k)
         if (base.is_pressing[k] && gap(base.constraints->rows[k], iterate.velocity, 0.0) > row_margin)
             violators.pulling.push_back(k);
+    violators.pairs = find_pairs(base, iterate, set);
     return violators;
 }
 

@@ -13,7 +13,8 @@ struct Violators {
         coordinates;  ///< free and below their bound, or active and pulling (negative multiplier); ascending
     std::vector<int> rows;     ///< the worst violated row of each group
     std::vector<int> pulling;  ///< rows of the base whose springs pull; ascending
-    bool empty() const { return coordinates.empty() && rows.empty() && pulling.empty(); }
+    std::vector<int> pairs;    ///< friction pairs that their springs in the base are far from; ascending
+    bool empty() const { return coordinates.empty() && rows.empty() && pulling.empty() && pairs.empty(); }
 };
 
 /// The violators outside `set`. NaN counts as a violation. A row is a violator only if its violation exceeds

@@ -142,7 +142,10 @@ std::optional<CondensedQp> WorkingSet::condense() const
         qp.hessian(k, k) += give_of(members_[k]);
         qp.linear[k] = gap_of(members_[k], base_->iterate);
     }
-    if (released.empty()) return qp;
+    if (released.empty()) {
+        add_discs(qp);
+        return qp;
+    }
 
     Eigen::VectorXd gradient(static_cast<Eigen::Index>(released.size()));
     for (std::size_t k = 0; k < released.size(); ++k)
@@ -154,7 +157,7 @@ std::optional<CondensedQp> WorkingSet::condense() const
     const Eigen::VectorXd step = stiffness.solve(gradient);
     qp.hessian(released, released) = 0.5 * (compliance + compliance.transpose());
     qp.linear(released) = -step;
-    if (stopped.empty()) return qp;
+    if (stopped.empty()) return qp;  // no slip rows
 
     const Eigen::MatrixXd coupling = gram(released, stopped) - direct_(released, stopped);
     const Eigen::MatrixXd moved = stiffness.solve(coupling);
@@ -162,12 +165,66 @@ std::optional<CondensedQp> WorkingSet::condense() const
     qp.hessian(stopped, released) = -moved.transpose();
     qp.hessian(stopped, stopped) += coupling.transpose() * moved;
     qp.linear(stopped) += coupling.transpose() * step;
+    add_discs(qp);
     return qp;
+}
+
+/// Friction pairs as discs. With w0 = g u - lower, the base's spring gives the force f0 - K (w0 + lower) that
+/// the disc's z replaces: w0 = S (z - f0 + K (w0 + lower)) + q, so w0 = (1 - S K)^-1 (S z + q - S (f0 - K
+/// lower)). Then w = w0 + give z.
+void WorkingSet::add_discs(CondensedQp& qp) const
+{
+    const ConstraintRows& constraints = *base_->constraints;
+    std::vector<std::array<int, 2>> place(constraints.budgets.size(), {-1, -1});
+    for (int k = 0; k < size(); ++k)
+        if (is_slip(members_[k])) place[members_[k].index / 2][members_[k].index % 2] = k;
+    Eigen::MatrixXd spring = Eigen::MatrixXd::Zero(size(), size());
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(size());
+    bool has_spring = false;
+    for (std::size_t p = 0; p < place.size(); ++p) {
+        const auto [i, j] = place[p];
+        if (i < 0) continue;
+        qp.discs.push_back({i, j, constraints.budgets[p]});
+        const SlipSpring& base = base_->slips[p];
+        has_spring = has_spring || base.is_in_matrix();
+        spring({i, j}, {i, j}) = base.stiffness;
+        const Eigen::Vector2d at_lower =
+            base.at({constraints.rows[2 * p].lower, constraints.rows[2 * p + 1].lower});
+        force[i] = at_lower[0];
+        force[j] = at_lower[1];
+    }
+    if (qp.discs.empty()) return;
+    qp.linear -= qp.hessian * force;
+    if (has_spring) {
+        const Eigen::PartialPivLU<Eigen::MatrixXd> without(Eigen::MatrixXd::Identity(size(), size()) -
+                                                           qp.hessian * spring);
+        const Eigen::MatrixXd hessian = without.solve(qp.hessian);
+        qp.hessian = 0.5 * (hessian + hessian.transpose());
+        qp.linear = without.solve(qp.linear).eval();
+    }
+    for (const CondensedDisc& disc : qp.discs)
+        for (const int k : {disc.first, disc.second}) qp.hessian(k, k) += row_of(members_[k]).give;
+}
+
+/// The part of a slip row's impulse that the base's spring already gives: f0 - K y.
+double WorkingSet::spring_share(int k, const CondensedAnswer& answer) const
+{
+    const int pair = members_[k].index / 2, direction = members_[k].index % 2;
+    const SlipSpring& spring = base_->slips[pair];
+    double share = spring.force[direction];
+    for (int l = 0; l < size(); ++l) {
+        if (!is_slip(members_[l]) || members_[l].index / 2 != pair) continue;
+        const ScaledRow& row = row_of(members_[l]);
+        share -= spring.stiffness(direction, members_[l].index % 2) *
+                 (answer.w[l] - row.give * answer.z[l] + row.lower);
+    }
+    return share;
 }
 
 /// u - lower, or g^T u - lower + give * multiplier.
 double WorkingSet::gap_of(const Member& member, const Iterate& iterate) const
 {
+    if (is_slip(member)) return gap(row_of(member), iterate.velocity, 0.0);
     if (member.kind == Kind::Row)
         return gap(row_of(member), iterate.velocity, iterate.row_multipliers[member.index]);
     return iterate.velocity[member.index] - base_->problem->lower[member.index];
@@ -190,6 +247,8 @@ bool WorkingSet::solve(Iterate& iterate, int& nlopt_evaluations, DenseBudget& bu
     Eigen::VectorXd coefficients(size());
     for (int k = 0; k < size(); ++k)
         coefficients[k] = members_[k].kind == Kind::Released ? -answer->w[k] : answer->z[k];
+    for (int k = 0; k < size(); ++k)
+        if (is_slip(members_[k])) coefficients[k] -= spring_share(k, *answer);
     Eigen::VectorXd forward = base_->forward;
     columns_.accumulate(coefficients, forward);
     set_members(*answer, base_->factorization->solve_backward(forward), iterate);
@@ -210,6 +269,7 @@ void WorkingSet::set_member(int k, const CondensedAnswer& answer, Iterate& itera
     const auto [kind, i] = members_[k];
     if (kind == Kind::Row) {
         iterate.row_multipliers[i] = answer.z[k];
+        if (is_slip(members_[k])) iterate.is_exact[i / 2] = 1;
         return;
     }
     iterate.is_active[i] = answer.is_positive[k];
@@ -220,12 +280,12 @@ void WorkingSet::set_member(int k, const CondensedAnswer& answer, Iterate& itera
 }
 
 /// Whether refinement treats the member as an equation: pins that are free now, coordinates stopped now, and
-/// rows that press.
+/// rows that press. Impulses of friction stay as they are.
 bool WorkingSet::is_equation(const Member& member, const Iterate& iterate) const
 {
     if (member.kind != Kind::Row)
         return (member.kind == Kind::Released) != (iterate.is_active[member.index] != 0);
-    return iterate.row_multipliers[member.index] > 0.0;
+    return !is_slip(member) && iterate.row_multipliers[member.index] > 0.0;
 }
 
 /// With r = -gradient on the free coordinates: L f = P r, then (dR, lambda_a), then one backward solve.

@@ -16,7 +16,8 @@ namespace arris {
 /// with dR = u_R - lower_R. `columns_` holds the Gram matrix of W and Y. Solved for (dR, gap_a) this is the
 /// condensed problem w = S lambda + q with S = g^T (A_F+R)^-1 g + diag(give). S is SPD. U only grows. A row
 /// brings the release of the pins among its coordinates: without them a row on pinned coordinates alone would
-/// only give way.
+/// only give way. The two slip rows of a friction pair join together, as a disc. Where the base has a spring
+/// (K, force) of theirs, the spring is taken out of S and q.
 class WorkingSet {
   public:
     explicit WorkingSet(const PinnedBase& base);
@@ -28,7 +29,7 @@ class WorkingSet {
     bool contains_row(int row) const { return is_row_member_[row]; }
 
     /// Adds the coordinates and rows, none of which may be a member yet, and the pins among the rows'
-    /// coordinates.
+    /// coordinates. Slip rows come in pairs.
     void extend(const std::vector<int>& coordinates, const std::vector<int>& rows = {});
 
     /// Call after rows were appended to the base's constraints.
@@ -57,9 +58,15 @@ class WorkingSet {
     const ScaledRow& row_of(const Member& member) const { return base_->constraints->rows[member.index]; }
 
     std::optional<CondensedQp> condense() const;
+    void add_discs(CondensedQp& qp) const;
+    bool is_slip(const Member& member) const
+    {
+        return member.kind == Kind::Row && member.index < base_->constraints->slip_count();
+    }
+    double spring_share(int k, const CondensedAnswer& answer) const;
     double give_of(const Member& member) const
     {
-        return member.kind == Kind::Row ? row_of(member).give : 0.0;
+        return member.kind == Kind::Row && !is_slip(member) ? row_of(member).give : 0.0;
     }
     double gap_of(const Member& member, const Iterate& iterate) const;
     void set_member(int k, const CondensedAnswer& answer, Iterate& iterate) const;

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/friction.h"
+
+#include "solver/friction/friction_budget.h"
+
+namespace arris {
+
+namespace {
+
+/// Stores the solution's friction at the contacts: the next solve starts from it.
+void store(Workspace& work)
+{
+    for (std::size_t r = 0; r < work.rubs.size(); ++r) {
+        const Rub& rub = work.rubs[r];
+        ContactFriction& friction = work.contacts[rub.contact].friction;
+        friction = {Vec3::Zero(), Vec3::Zero(), work.problem.friction[r].budget};
+        for (int d = 0; d < 2; ++d) {
+            friction.impulse += work.solution.friction[r][d] * rub.directions[d];
+            friction.slip += work.solution.slip[r][d] * rub.directions[d];
+        }
+    }
+}
+
+void count(const Workspace& work, StepReport& report)
+{
+    constexpr double kOnRim = 1.0 - 1e-9;
+    report.sticking = report.sliding = 0;
+    report.friction_work = 0.0;
+    for (std::size_t r = 0; r < work.rubs.size(); ++r) {
+        const double budget = work.problem.friction[r].budget;
+        if (!(budget > 0.0)) continue;
+        ++(work.solution.unlimited[r].norm() < kOnRim * budget ? report.sticking : report.sliding);
+        report.friction_work -=
+            work.solution.friction[r].dot(work.solution.slip[r]) * report.dt / work.prediction.gamma;
+    }
+}
+
+}  // namespace
+
+RubbingCloth rubbing_cloth(const Scene& scene, const State& state, const Workspace& work)
+{
+    return {scene,          state,    work.mesh.stars, work.mesh.elements, work.prediction,
+            work.obstacles, work.eol, work.contacts,   work.linearization};
+}
+
+void solve_with_friction(const Scene& scene, const State& state,
+                         const std::function<const VelocitySolution&()>& solve, Workspace& work,
+                         StepReport& report)
+{
+    const auto budgets = [&](const VelocitySolution& solution) {
+        return compute_budgets(rubbing_cloth(scene, state, work), work.mesh.terms, work.rubs, solution);
+    };
+    const FrictionSweeps sweeps = sweep_friction(solve, budgets, work.problem);
+    report.friction_sweeps += sweeps.count;
+    report.friction_residual = sweeps.residual;
+    store(work);
+    count(work, report);
+}
+
+}  // namespace arris

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/friction/friction_pairs.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+namespace arris {
+
+namespace {
+
+/// Mass of each vertex, kg: a third of its faces.
+std::vector<double> lump_masses(double density, const ClothElements& elements)
+{
+    std::vector<double> mass(static_cast<std::size_t>(elements.vertex_count), 0.0);
+    for (const FaceElement& face : elements.faces)
+        for (const int v : face.vertices) mass[v] += density * face.area / 3.0;
+    return mass;
+}
+
+/// Velocity v' with which the vertex rides on the obstacle: its path from the last step's start to this
+/// step's end is then rigid, whatever its history.
+Vec3 riding_velocity(const RubbingCloth& cloth, const ObstacleStep& step, int v)
+{
+    const Prediction& prediction = cloth.prediction;
+    const Vec3& now = cloth.state.mesh.world[v];
+    const Vec3& place = step.motion.begin[v];
+    const Vec3 ridden = now + prediction.forward * (now - step.before(place));
+    return (step.end(place) - ridden) / prediction.gamma;
+}
+
+void add_entry(int coordinate, double coefficient, ConstraintRow& row)
+{
+    row.coordinate[row.count] = coordinate;
+    row.coefficient[row.count++] = coefficient;
+}
+
+/// Slip of a contact's point along a world direction: direction . sum_i w_i (v'_i - v_ride).
+ConstraintRow slip_along(const RubbingCloth& cloth, const Contact& contact, const Vec3& direction)
+{
+    ConstraintRow row;
+    const ObstacleContact& local = contact.in_frame;
+    const ObstacleStep& step = cloth.obstacles[contact.obstacle];
+    for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
+        const int v = local.vertices[i];
+        const Vec3 weighed = local.weights[i] * direction;
+        row.lower -= weighed.dot(cloth.at.drift[v] - riding_velocity(cloth, step, v));
+        const Vec3 gradient = cloth.at.basis[v].transpose() * weighed;
+        for (int d = 0; d < 3; ++d) add_entry(3 * v + d, gradient[d], row);
+    }
+    return row;
+}
+
+/// The way of a material direction over a feature: along its tangent and across it. Both sides count equally.
+Vec2 find_way(const Star& star, const Vec2& trace, const Vec3& tangent, const Vec2& material)
+{
+    Vec2 sum = Vec2::Zero();
+    int sides = 0;
+    for (const double sign : {1.0, -1.0}) {
+        Vec2 side = Vec2::Zero();
+        double area = 0.0;
+        for (const StarFace& face : star.faces) {
+            if (!(sign * (trace.x() * face.middle.y() - trace.y() * face.middle.x()) > 0.0)) continue;
+            const Vec3 way = face.F * material;
+            const double along = tangent.dot(way);
+            side += face.area * Vec2(along, (way - along * tangent).norm());
+            area += face.area;
+        }
+        if (!(area > 0.0)) continue;
+        sum += side / area;
+        ++sides;
+    }
+    const double is_left = trace.x() * material.y() - trace.y() * material.x() > 0.0 ? 1.0 : -1.0;
+    return sides > 0 ? Vec2(sum.x() / sides, is_left * sum.y() / sides) : Vec2(0.0, 0.0);
+}
+
+/// Slip of the material at an EOL vertex, -F V, plus the vertex's own way along the feature.
+std::array<ConstraintRow, 2> slip_over_feature(const RubbingCloth& cloth, const Contact& contact)
+{
+    const EolCoordinates& eol = cloth.eol[contact.eol];
+    const int v = eol.vertex;
+    const Star star = look_around(cloth.state.mesh, cloth.stars.faces[v], v, cloth.state.mesh.world);
+    std::array<ConstraintRow, 2> rows;
+    const FeatureId& on = cloth.state.eol[eol.entry].on;
+    if (on.is_fixed()) {  // the metric C = mean F^T F makes |C^(1/2) V| the material's speed
+        double area = 0.0;
+        for (const StarFace& face : star.faces) area += face.area;
+        const Eigen::SelfAdjointEigenSolver<Mat2> metric(star.squared_F / area);
+        const Mat2 root = metric.operatorSqrt();
+        for (int d = 0; d < 2; ++d)
+            for (int k = 0; k < 3; ++k)
+                add_entry(3 * v + k, -root.row(d).dot(eol.material_basis.col(k)), rows[d]);
+        return rows;
+    }
+    const Vec3 tangent = eol.basis.col(1);
+    const Vec2 way = find_way(star, eol.trace, tangent, eol.material_basis.col(2));
+    const ObstacleStep& step = cloth.obstacles[contact.obstacle];
+    rows[0].lower = -tangent.dot(cloth.at.drift[v] - riding_velocity(cloth, step, v));
+    add_entry(3 * v + 1, 1.0, rows[0]);
+    add_entry(3 * v + 2, -way[0], rows[0]);
+    add_entry(3 * v + 2, -way[1], rows[1]);
+    return rows;
+}
+
+bool can_rub(const RubbingCloth& cloth, const Contact& contact)
+{
+    if (contact.is_fold()) return false;
+    if (contact.eol >= 0) return true;
+    for (const int v : contact.in_frame.vertices)
+        if (v >= 0 && cloth.at.flow && cloth.at.flow->is_eulerian[v]) return false;
+    return true;
+}
+
+}  // namespace
+
+std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& problem)
+{
+    std::vector<Rub> rubs;
+    problem.friction.clear();
+    if (!cloth.scene.friction || cloth.contacts.empty()) return rubs;
+    const std::vector<double> mass = lump_masses(cloth.scene.material.density, cloth.elements);
+    for (std::size_t c = 0; c < cloth.contacts.size(); ++c) {
+        const Contact& contact = cloth.contacts[c];
+        const double coefficient = cloth.scene.friction->coefficients[contact.obstacle];
+        if (!(coefficient > 0.0) || !can_rub(cloth, contact)) continue;
+        Rub rub{static_cast<int>(c), coefficient, {Vec3::UnitX(), Vec3::UnitY()}};
+        FrictionPair pair;
+        if (contact.eol >= 0) {
+            pair.slip = slip_over_feature(cloth, contact);
+        } else {
+            rub.directions[0] = contact.normal.unitOrthogonal();
+            rub.directions[1] = contact.normal.cross(rub.directions[0]);
+            for (int d = 0; d < 2; ++d) pair.slip[d] = slip_along(cloth, contact, rub.directions[d]);
+        }
+        double compliance = 0.0;
+        const ObstacleContact& local = contact.in_frame;
+        for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i)
+            compliance += local.weights[i] * local.weights[i] / mass[local.vertices[i]];
+        pair.mass = 1.0 / compliance;
+        pair.budget = contact.friction.budget;
+        for (int d = 0; d < 2; ++d) {
+            pair.slip[d].expected = rub.directions[d].dot(contact.last_friction.impulse);
+            pair.last[d] = rub.directions[d].dot(contact.friction.slip);
+        }
+        rubs.push_back(rub);
+        problem.friction.push_back(pair);
+    }
+    return rubs;
+}
+
+}  // namespace arris

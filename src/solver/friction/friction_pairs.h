@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "physics/cloth_elements.h"
+#include "physics/linearization.h"
+#include "solver/contact/contacts.h"
+#include "solver/eol/cloth_stars.h"
+#include "solver/velocity_solve/velocity_solve.h"
+
+namespace arris {
+
+/// A contact with friction; the problem's friction pair of the same index belongs to it.
+struct Rub {
+    int contact;  ///< index
+    double coefficient;
+    /// World directions of the pair's two components; at EOL vertices unit vectors X and Y (ContactFriction).
+    std::array<Vec3, 2> directions;
+};
+
+/// The cloth and its contacts in a step, as far as friction needs them.
+struct RubbingCloth {
+    const Scene& scene;
+    const State& state;
+    const ClothStars& stars;
+    const ClothElements& elements;
+    const Prediction& prediction;
+    const std::vector<ObstacleStep>& obstacles;
+    const std::vector<EolCoordinates>& eol;
+    const std::vector<Contact>& contacts;
+    const Linearization& at;
+};
+
+/// Adds to `problem` a friction pair for each contact that can rub, and returns where they are. Slip is
+/// measured against an obstacle's material that moves with a smooth rigid motion, so that sticking cloth
+/// rides on the obstacle exactly. At an EOL vertex the material slips: along the feature by the motion of
+/// vertex and material, across it by the flow. Without friction: folds, and contacts of EOL vertices with
+/// anything but their feature.
+std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& problem);
+
+}  // namespace arris

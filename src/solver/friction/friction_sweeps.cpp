@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/friction/friction_sweeps.h"
+
+#include <algorithm>
+
+namespace arris {
+
+namespace {
+
+constexpr int kMostSweeps = 12;
+
+/// Residual at which sweeps end.
+constexpr double kAgreement = 1e-4;
+
+/// Sweeps after which budgets move only half the way: two contacts may take turns to press.
+constexpr int kFullSweeps = 6;
+
+double residual_of(const VelocitySolution& solution, const std::vector<double>& budgets)
+{
+    double error = 0.0, largest = 0.0;
+    for (std::size_t p = 0; p < budgets.size(); ++p) {
+        const Eigen::Vector2d& free = solution.unlimited[p];
+        const double length = free.norm();
+        const Eigen::Vector2d law = length <= budgets[p] ? free : Eigen::Vector2d(budgets[p] / length * free);
+        error = std::max(error, (solution.friction[p] - law).norm());
+        largest = std::max(largest, budgets[p]);
+    }
+    return error > 0.0 ? error / std::max(largest, error) : 0.0;
+}
+
+}  // namespace
+
+FrictionSweeps sweep_friction(const std::function<const VelocitySolution&()>& solve,
+                              const std::function<std::vector<double>(const VelocitySolution&)>& compute,
+                              VelocityProblem& problem)
+{
+    FrictionSweeps sweeps;
+    for (;;) {
+        const VelocitySolution& solution = solve();
+        ++sweeps.count;
+        if (solution.status != SolveStatus::Certified || problem.friction.empty()) return sweeps;
+        const std::vector<double> budgets = compute(solution);
+        sweeps.residual = residual_of(solution, budgets);
+        if (sweeps.residual <= kAgreement || sweeps.count == kMostSweeps) return sweeps;
+        const double share = sweeps.count <= kFullSweeps ? 1.0 : 0.5;
+        for (std::size_t p = 0; p < budgets.size(); ++p)
+            problem.friction[p].budget += share * (budgets[p] - problem.friction[p].budget);
+    }
+}
+
+}  // namespace arris
