@@ -102,7 +102,7 @@ void write_state(BinaryWriter& out, const State& state)
         out.number(contact.element);
         out.vector(contact.normal);
         out.number(contact.multiplier);
-        out.vector(contact.friction.impulse);
+        out.vector(contact.friction.force);
         out.vector(contact.friction.slip);
         out.number(contact.friction.budget);
     });
@@ -160,7 +160,7 @@ State read_state(BinaryReader& in)
         contact.element = in.number<std::int32_t>();
         contact.normal = in.vector();
         contact.multiplier = in.number<double>();
-        contact.friction.impulse = in.vector();
+        contact.friction.force = in.vector();
         contact.friction.slip = in.vector();
         contact.friction.budget = in.number<double>();
         return contact;
@@ -180,7 +180,7 @@ std::string find_defect(const std::vector<ActiveContact>& contacts, const std::v
         if (k > 0 && !(order(contacts[k - 1]) < order(contact))) return "contacts are not in ascending order";
         const ContactFriction& friction = contact.friction;
         if (!contact.normal.allFinite() || !std::isfinite(contact.multiplier) ||
-            !friction.impulse.allFinite() || !friction.slip.allFinite() || !(friction.budget >= 0.0) ||
+            !friction.force.allFinite() || !friction.slip.allFinite() || !(friction.budget >= 0.0) ||
             !std::isfinite(friction.budget))
             return fmt::format("contact {} is not finite", k);
         if (contact.kind < ContactKind::Vertex || contact.kind > ContactKind::Triangle)

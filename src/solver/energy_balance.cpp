@@ -97,9 +97,9 @@ double work_of_friction(const Workspace& work)
         if (contact.eol >= 0) continue;
         const ObstacleStep& step = work.obstacles[contact.obstacle];
         const Vec3 place = contact.in_frame.at(step.motion.begin);
-        sum += contact.friction.impulse.dot(step.end(place) - step.begin(place));
+        sum += contact.friction.force.dot(step.end(place) - step.begin(place));
     }
-    return sum / work.prediction.gamma;
+    return sum;
 }
 
 double work_of_obstacles(const State& state, const Workspace& work)

@@ -10,12 +10,13 @@ namespace {
 /// Stores the solution's friction at the contacts: the next solve starts from it.
 void store(Workspace& work)
 {
+    const double gamma = work.prediction.gamma;
     for (std::size_t r = 0; r < work.rubs.size(); ++r) {
         const Rub& rub = work.rubs[r];
         ContactFriction& friction = work.contacts[rub.contact].friction;
-        friction = {Vec3::Zero(), Vec3::Zero(), work.problem.friction[r].budget};
+        friction = {Vec3::Zero(), Vec3::Zero(), work.problem.friction[r].budget / gamma};
         for (int d = 0; d < 2; ++d) {
-            friction.impulse += work.solution.friction[r][d] * rub.directions[d];
+            friction.force += work.solution.friction[r][d] / gamma * rub.directions[d];
             friction.slip += work.solution.slip[r][d] * rub.directions[d];
         }
     }

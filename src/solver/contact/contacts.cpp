@@ -140,7 +140,7 @@ void shift_along(const std::vector<EolCoordinates>& eol, const Contact& contact,
 
 ContactFriction rotate(const Mat3& rotation, const ContactFriction& friction)
 {
-    return {rotation * friction.impulse, rotation * friction.slip, friction.budget};
+    return {rotation * friction.force, rotation * friction.slip, friction.budget};
 }
 
 /// Shares the room between two contacts of one vertex whose normals are opposite.
@@ -224,7 +224,8 @@ double way_along(const ObstacleStep& step, const Contact& contact)
 Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
                       const Prediction& prediction)
 {
-    Contact placed{contact, obstacle, step.end.rotation * contact.normal, 0.0};
+    Contact placed = {
+        .in_frame = contact, .obstacle = obstacle, .normal = step.end.rotation * contact.normal, .gap = 0.0};
     update_gap(step, prediction, placed);
     return placed;
 }

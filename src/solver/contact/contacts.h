@@ -35,9 +35,10 @@ struct Contact {
     int obstacle;  ///< index in the scene
     Vec3 normal;   ///< at the step's end
     double gap;    ///< distance of q~ beyond the gap to be kept at the step's end, m; negative inside
-    double last_multiplier = 0.0;   ///< N s, of the last step; 0 where it did not press
-    ContactFriction last_friction;  ///< of the last step, in the world; at EOL vertices see ContactFriction
-    ContactFriction friction;       ///< likewise, of the last solve; before one, of the last step
+    double last_multiplier = 0.0;  ///< N s, of the last step; 0 where it did not press
+    ContactFriction last_friction =
+        {};                         ///< of the last step, in the world; at EOL vertices see ContactFriction
+    ContactFriction friction = {};  ///< likewise, of the last solve; before one, of the last step
     bool is_pressing = false;       ///< in the last solve of this step, at an earlier linearization
     bool may_grow = true;           ///< whether its gap may grow to the stand-off; false where it has yielded
     double mitre = 1.0;             ///< stand-off over thickness

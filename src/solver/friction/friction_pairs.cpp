@@ -136,9 +136,10 @@ std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& 
         for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i)
             compliance += local.weights[i] * local.weights[i] / mass[local.vertices[i]];
         pair.mass = 1.0 / compliance;
-        pair.budget = contact.friction.budget;
+        const double gamma = cloth.prediction.gamma;
+        pair.budget = gamma * contact.friction.budget;
         for (int d = 0; d < 2; ++d) {
-            pair.slip[d].expected = rub.directions[d].dot(contact.last_friction.impulse);
+            pair.slip[d].expected = gamma * rub.directions[d].dot(contact.last_friction.force);
             pair.last[d] = rub.directions[d].dot(contact.friction.slip);
         }
         rubs.push_back(rub);

@@ -13,12 +13,12 @@
 namespace arris {
 
 /// Friction at a contact that presses, in the obstacle's frame. At an EOL vertex: components along the
-/// feature and across, at corners in the material. The impulse tells how far the contact's spring is strained
+/// feature and across, at corners in the material. The force tells how far the contact's spring is strained
 /// (velocity_solve/friction_springs.h).
 struct ContactFriction {
-    Vec3 impulse = Vec3::Zero();  ///< N s
-    Vec3 slip = Vec3::Zero();     ///< m/s
-    double budget = 0.0;          ///< N s, greatest impulse
+    Vec3 force = Vec3::Zero();  ///< N
+    Vec3 slip = Vec3::Zero();   ///< m/s
+    double budget = 0.0;        ///< N, greatest force
 };
 
 /// A contact that pressed at the end of a step, with its multiplier. The next solve starts from it, and the

@@ -208,13 +208,21 @@ void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
     }
 }
 
-/// Moves the base's friction springs to the impulses at the present velocity, with the factor as it is.
+/// Moves the base's friction springs to the impulses at the present velocity, with the factor as it is. Pairs
+/// whose error has not fallen since the last time join the working set.
 void ActiveSetSearch::move_springs()
 {
+    constexpr double kFalling = 0.5;
     PinnedBase& base = in_use_->base;
-    for (int p = 0; p < constraints_.pair_count(); ++p)
-        base.slips[p] =
-            through(base.slips[p], constraints_, p, slip_of(constraints_, p, in_use_->iterate.velocity));
+    for (int p = 0; p < constraints_.pair_count(); ++p) {
+        if (in_use_->set.contains_row(2 * p)) continue;
+        const Eigen::Vector2d y = slip_of(constraints_, p, in_use_->iterate.velocity);
+        const double error = (base.slips[p].at(y) - friction_at(constraints_, p, y)).norm();
+        if (error > kFalling * in_use_->lag[p] && error > kSameFriction * constraints_.largest_budget())
+            rows_.insert(rows_.end(), {2 * p, 2 * p + 1});
+        in_use_->lag[p] = error;
+        base.slips[p] = through(base.slips[p], constraints_, p, y);
+    }
     solve_with_forces(base);
 }
 
@@ -231,7 +239,7 @@ bool ActiveSetSearch::start_rows()
 
 void ActiveSetSearch::run_rounds(int cap)
 {
-    auto& [base, set, iterate] = *in_use_;
+    auto& [base, set, iterate, lag] = *in_use_;
     for (;;) {  // ends: U grows by at least one member per round, up to the cap
         Violators violators = find_violators(base, iterate, set);
         if (violators.empty()) {
@@ -352,7 +360,7 @@ void ActiveSetSearch::rebase_with_changed(const Violators& violators)
 /// where refinement has revealed new violators.
 bool ActiveSetSearch::finish()
 {
-    auto& [base, set, iterate] = *in_use_;
+    auto& [base, set, iterate, lag] = *in_use_;
     is_over_ = certify();
     refine();
     if (is_over_) return true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,8 +17,15 @@ struct BaseInUse {
     PinnedBase base;
     WorkingSet set;
     Iterate iterate;
+    std::vector<double> lag;  ///< N s, by friction pair: error of its spring before the spring last moved
 
-    explicit BaseInUse(PinnedBase solved) : base(std::move(solved)), set(base), iterate(base.iterate) {}
+    explicit BaseInUse(PinnedBase solved)
+        : base(std::move(solved)),
+          set(base),
+          iterate(base.iterate),
+          lag(base.slips.size(), std::numeric_limits<double>::infinity())
+    {
+    }
     BaseInUse(const BaseInUse&) = delete;  // the set refers to the base
     BaseInUse& operator=(const BaseInUse&) = delete;
 };

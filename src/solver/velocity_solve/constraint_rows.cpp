@@ -216,6 +216,13 @@ double estimate_free_speed(const VelocityProblem& problem)
     return unit * largest;
 }
 
+double ConstraintRows::largest_budget() const
+{
+    double largest = 0.0;
+    for (const double budget : budgets) largest = std::max(largest, budget);
+    return largest;
+}
+
 double gap(const ScaledRow& row, const Eigen::VectorXd& velocity, double multiplier)
 {
     double value = row.give * multiplier;

@@ -36,6 +36,7 @@ struct ConstraintRows {
 
     int pair_count() const { return static_cast<int>(budgets.size()); }
     int slip_count() const { return 2 * pair_count(); }  ///< index of the problem's first row
+    double largest_budget() const;                       ///< N s, 0 without pairs
 };
 
 /// `free_speed` is `estimate_free_speed` of this problem; unused without rows. Coefficients below round-off

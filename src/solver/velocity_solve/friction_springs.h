@@ -12,6 +12,9 @@
 
 namespace arris {
 
+/// Impulses of friction that differ by less, relative to the largest budget, are the same.
+inline constexpr double kSameFriction = 1e-9;
+
 /// A linear law f = force - stiffness y in place of a friction pair's law.
 struct SlipSpring {
     Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();  ///< kg

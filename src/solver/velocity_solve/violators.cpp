@@ -54,16 +54,14 @@ std::vector<int> find_rows(const PinnedBase& base, const Iterate& iterate, const
 /// springs.
 std::vector<int> find_pairs(const PinnedBase& base, const Iterate& iterate, const WorkingSet& set)
 {
-    constexpr double kSame = 1e-9;  // of the largest budget
     const ConstraintRows& constraints = *base.constraints;
-    double largest = 0.0;
-    for (const double budget : constraints.budgets) largest = std::max(largest, budget);
+    const double same = kSameFriction * constraints.largest_budget();
     std::vector<int> pairs;
     for (int p = 0; p < constraints.pair_count(); ++p) {
         if (set.contains_row(2 * p)) continue;
         const Eigen::Vector2d y = slip_of(constraints, p, iterate.velocity);
         const double error = (base.slips[p].at(y) - friction_at(constraints, p, y)).norm();
-        if (!(error <= kSame * largest) && !is_near_law(base.slips[p], constraints, p, y)) pairs.push_back(p);
+        if (!(error <= same) && !is_near_law(base.slips[p], constraints, p, y)) pairs.push_back(p);
     }
     return pairs;
 }

@@ -279,13 +279,14 @@ void WorkingSet::set_member(int k, const CondensedAnswer& answer, Iterate& itera
     }
 }
 
-/// Whether refinement treats the member as an equation: pins that are free now, coordinates stopped now, and
-/// rows that press. Impulses of friction stay as they are.
+/// Whether refinement treats the member as an equation: pins that are free now, coordinates stopped now, rows
+/// that press, and friction whose spring the base has. Impulses of friction stay as they are.
 bool WorkingSet::is_equation(const Member& member, const Iterate& iterate) const
 {
     if (member.kind != Kind::Row)
         return (member.kind == Kind::Released) != (iterate.is_active[member.index] != 0);
-    return !is_slip(member) && iterate.row_multipliers[member.index] > 0.0;
+    if (is_slip(member)) return base_->slips[member.index / 2].is_in_matrix();
+    return iterate.row_multipliers[member.index] > 0.0;
 }
 
 /// With r = -gradient on the free coordinates: L f = P r, then (dR, lambda_a), then one backward solve.
@@ -316,7 +317,7 @@ bool WorkingSet::refine(Iterate& iterate) const
         const Member& member = members_[equations[i]];
         const double change = step[static_cast<Eigen::Index>(i)];
         if (member.kind == Kind::Released) iterate.velocity[member.index] += change;
-        if (member.kind != Kind::Row) continue;
+        if (member.kind != Kind::Row || is_slip(member)) continue;
         double& multiplier = iterate.row_multipliers[member.index];
         multiplier = std::max(multiplier + change, 0.0);
     }
@@ -325,7 +326,8 @@ bool WorkingSet::refine(Iterate& iterate) const
 }
 
 /// (dR, lambda_a) from [C, B; -B^T, Y^T Y] (dR; lambda) = (r_R - W^T f; -gap_a - Y^T f). The gap of a bound
-/// is exactly zero.
+/// is exactly zero. Friction in U with a spring K in the base gets lambda = K dy in place of its row, which
+/// takes the spring out: its impulse does not change with dy = Y^T f + [-B^T, Y^T Y] (dR; lambda).
 Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Iterate& iterate,
                                     const Eigen::VectorXd& forward) const
 {
@@ -343,6 +345,19 @@ Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Ite
         rhs[i] = known - product[k];
         for (Eigen::Index j = 0; j < count; ++j) matrix(i, j) = mixed(k, equations[j]);
         matrix(i, i) += give_of(member);
+        if (is_slip(member)) {
+            const double unit = columns_.gram()(k, k);  // 1/kg
+            matrix.row(i).setZero();
+            matrix(i, i) = unit;
+            rhs[i] = 0.0;
+            for (int l = 0; l < size(); ++l) {
+                if (!is_slip(members_[l]) || members_[l].index / 2 != member.index / 2) continue;
+                const double stiffness =
+                    unit * base_->slips[member.index / 2].stiffness(member.index % 2, members_[l].index % 2);
+                rhs[i] += stiffness * product[l];
+                for (Eigen::Index j = 0; j < count; ++j) matrix(i, j) -= stiffness * mixed(l, equations[j]);
+            }
+        }
         scale[i] = 1.0 / std::sqrt(std::abs(matrix(i, i)));
     }
     // Members have different units: scale to a unit diagonal first.

@@ -29,7 +29,7 @@ class WorkingSetOfACloth : public ::testing::Test {
             is_active[i] = reference.multipliers[i] > 0.0 ? i % 2 == 1 : i % 5 == 0;
         }
         factorization.analyse(owned.matrix);
-        base = solve_pinned(owned.problem, constraints, is_active, {}, factorization);
+        base = solve_pinned(owned.problem, constraints, is_active, {}, {}, factorization);
         ASSERT_TRUE(base);
     }
 

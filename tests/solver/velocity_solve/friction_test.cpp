@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Friction in the velocity solve: yielding springs with given budgets (Tresca's friction).
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "solver/velocity_solve/condensed_discs.h"
+#include "solver/velocity_solve/constraint_rows.h"
+#include "solver/velocity_solve/velocity_solve.h"
+#include "tests/solver/cloth_system.h"
+
+namespace arris {
+namespace {
+
+using testing::OwnedProblem;
+
+constexpr double kCloseness = 1e-8;  // of the descent with stiff springs
+
+ConstraintRow unit_row(int coordinate)
+{
+    ConstraintRow row;
+    row.coordinate[0] = coordinate;
+    row.coefficient[0] = 1.0;
+    row.count = 1;
+    return row;
+}
+
+/// Vertices that rest on bounds of their first coordinate and rub along the other two; some pairs and rows
+/// lie across three vertices.
+OwnedProblem make_rubbing_problem(int vertices, std::mt19937& random)
+{
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> chance;
+    const int size = 3 * vertices;
+    const Eigen::MatrixXd g = Eigen::MatrixXd::NullaryExpr(size, size, [&] { return normal(random); });
+    OwnedProblem owned(
+        testing::lower_blocks(g * g.transpose() / size + 0.1 * Eigen::MatrixXd::Identity(size, size)),
+        Eigen::VectorXd::NullaryExpr(size, [&] { return normal(random); }));
+    VelocityProblem& problem = owned.problem;
+    const auto random_row = [&] {
+        ConstraintRow row;
+        for (int k = 0; k < 9 && k < size; ++k) {
+            row.coordinate[row.count] = (7 * k + static_cast<int>(20 * chance(random))) % size;
+            row.coefficient[row.count++] = normal(random);
+        }
+        row.lower = 0.1 * normal(random);
+        return row;
+    };
+    for (int v = 0; v < vertices; ++v) {
+        if (chance(random) < 0.7) problem.lower[3 * v] = 0.3 * normal(random);
+        if (chance(random) < 0.1) problem.is_fixed[3 * v + 1] = 1;
+        if (chance(random) < 0.2) continue;
+        FrictionPair pair;
+        pair.slip = {unit_row(3 * v + 1), unit_row(3 * v + 2)};
+        if (chance(random) < 0.2) pair.slip = {random_row(), random_row()};
+        pair.budget = chance(random) < 0.1 ? 0.0 : std::abs(normal(random));
+        pair.mass = 0.3;
+        for (int d = 0; d < 2; ++d) {
+            pair.slip[d].expected = 0.3 * normal(random);
+            pair.slip[d].lower += 0.1 * normal(random);
+            pair.last[d] = chance(random) < 0.5 ? 0.0 : normal(random);
+        }
+        problem.friction.push_back(pair);
+    }
+    const int rows = static_cast<int>(3 * chance(random));
+    for (int k = 0; k < rows; ++k) {
+        problem.rows.push_back(random_row());
+        problem.rows.back().group = k;
+    }
+    return owned;
+}
+
+/// The answer by projected descent on the dual, one bound, row or pair at a time, each pair by small steps.
+struct Reference {
+    Eigen::VectorXd velocity;
+    std::vector<Eigen::Vector2d> friction;
+};
+
+Reference solve_by_descent(const VelocityProblem& problem)
+{
+    const ConstraintRows rows = scale_rows(problem, estimate_free_speed(problem));
+    const int n = static_cast<int>(problem.rhs->size()), pairs = rows.slip_count(),
+              count = static_cast<int>(rows.rows.size());
+    std::vector<int> bounds;
+    for (int i = 0; i < n; ++i)
+        if (!problem.is_fixed[i] && std::isfinite(problem.lower[i])) bounds.push_back(i);
+    const int m = count + static_cast<int>(bounds.size());
+    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, m);
+    Eigen::VectorXd lower(m), give = Eigen::VectorXd::Zero(m);
+    for (int k = 0; k < count; ++k) {
+        for (const auto& [i, a] : rows.rows[k].entries) C(i, k) = a;
+        lower[k] = rows.rows[k].lower;
+        give[k] = rows.rows[k].give;
+    }
+    for (int k = count; k < m; ++k) {
+        C(bounds[k - count], k) = 1.0;
+        lower[k] = problem.lower[bounds[k - count]];
+    }
+    Eigen::MatrixXd A = testing::dense_symmetric(*problem.matrix);
+    Eigen::VectorXd b = *problem.rhs;
+    for (int i = 0; i < n; ++i) {
+        if (!problem.is_fixed[i]) continue;
+        A.row(i).setZero();
+        A.col(i).setZero();
+        A(i, i) = 1.0;
+        b[i] = 0.0;
+        C.row(i).setZero();
+    }
+    const Eigen::LLT<Eigen::MatrixXd> factor(A);
+    const Eigen::MatrixXd Y = factor.solve(C);
+    Eigen::MatrixXd S = C.transpose() * Y;
+    S.diagonal() += give;
+    const Eigen::VectorXd free = factor.solve(b), q = C.transpose() * free - lower;
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(m);
+    for (int sweep = 0; sweep < 20000; ++sweep) {
+        double change = 0.0;
+        for (int k = 0; k < m; ++k) {
+            if (k < pairs) {
+                if (k % 2 == 1) continue;
+                if (rows.rows[k].entries.empty() && rows.rows[k + 1].entries.empty()) continue;
+                const double step = 1.0 / S.block<2, 2>(k, k).trace();
+                Eigen::Vector2d next = z.segment<2>(k) - step * (S.middleRows<2>(k) * z + q.segment<2>(k));
+                const double length = next.norm(), budget = rows.budgets[k / 2];
+                if (length > budget) next *= budget / length;
+                change = std::max(change, (next - z.segment<2>(k)).norm());
+                z.segment<2>(k) = next;
+                continue;
+            }
+            if (k < count && rows.rows[k].entries.empty()) continue;
+            const double next = std::max(0.0, z[k] - (S.row(k).dot(z) + q[k]) / S(k, k));
+            change = std::max(change, std::abs(next - z[k]));
+            z[k] = next;
+        }
+        if (change < 1e-16) break;
+    }
+    Reference reference;
+    reference.velocity = free + Y * z;
+    for (int p = 0; p < pairs / 2; ++p)
+        reference.friction.push_back(z.segment<2>(2 * p) / rows.rows[2 * p].scale);
+    return reference;
+}
+
+TEST(Friction, EqualsDescentOnTheDual)
+{
+    std::mt19937 random(3);
+    int sticking = 0, sliding = 0;
+    for (int trial = 0; trial < 200; ++trial) {
+        const OwnedProblem owned = make_rubbing_problem(2 + trial % 10, random);
+        const VelocitySolution solution = VelocitySolver().solve(owned.problem, Settings());
+        ASSERT_EQ(solution.status, SolveStatus::Certified) << trial;
+        const Reference reference = solve_by_descent(owned.problem);
+        for (std::size_t p = 0; p < owned.problem.friction.size(); ++p) {
+            // Springs in the base lag behind the law until the next call.
+            const double budget = owned.problem.friction[p].budget;
+            (solution.unlimited[p].norm() < budget ? sticking : sliding) += budget > 0.0;
+        }
+        VelocitySolver solver;
+        VelocitySolution exact = solver.solve(owned.problem, Settings());
+        for (int sweep = 0; sweep < 30; ++sweep) exact = solver.resume(owned.problem, Settings());
+        ASSERT_EQ(exact.status, SolveStatus::Certified) << trial;
+        const double scale = reference.velocity.lpNorm<Eigen::Infinity>();
+        EXPECT_LE((exact.velocity - reference.velocity).lpNorm<Eigen::Infinity>(), kCloseness * scale)
+            << trial;
+        for (std::size_t p = 0; p < reference.friction.size(); ++p)
+            EXPECT_LE((exact.friction[p] - reference.friction[p]).norm(), 1e-5) << trial << " " << p;
+    }
+    EXPECT_GT(sticking, 100);
+    EXPECT_GT(sliding, 100);
+}
+
+TEST(Friction, WithoutBudgetChangesNothing)
+{
+    std::mt19937 random(5);
+    OwnedProblem owned = make_rubbing_problem(8, random);
+    for (FrictionPair& pair : owned.problem.friction) pair.budget = 0.0;
+    const VelocitySolution with = VelocitySolver().solve(owned.problem, Settings());
+    owned.problem.friction.clear();
+    const VelocitySolution without = VelocitySolver().solve(owned.problem, Settings());
+    EXPECT_LE((with.velocity - without.velocity).lpNorm<Eigen::Infinity>(), 1e-12);
+}
+
+TEST(MinimiseInDisc, EqualsAFineSearchOnTheRim)
+{
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    for (int trial = 0; trial < 300; ++trial) {
+        const Eigen::Matrix2d g = Eigen::Matrix2d::NullaryExpr([&] { return normal(random); });
+        const Eigen::Matrix2d S = g * g.transpose() + 1e-3 * Eigen::Matrix2d::Identity();
+        const Eigen::Vector2d q(normal(random), normal(random));
+        const double radius = std::exp(2.0 * normal(random));
+        const Eigen::Vector2d found = minimise_in_disc(S, q, radius);
+        const auto value = [&](const Eigen::Vector2d& z) { return 0.5 * z.dot(S * z) + q.dot(z); };
+        EXPECT_LE(found.norm(), radius * (1.0 + 1e-14));
+        for (int k = 0; k < 360; ++k) {
+            const double angle = k * M_PI / 180.0;
+            for (const double share : {0.2, 0.7, 1.0}) {
+                const Eigen::Vector2d z = share * radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+                EXPECT_LE(value(found), value(z) + 1e-12 * std::abs(value(z)));
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace arris
