@@ -101,6 +101,32 @@ std::array<ConstraintRow, 2> slip_over_feature(const RubbingCloth& cloth, const 
     return rows;
 }
 
+/// Slip, m/s, from which the search starts: that of this step's last solve, if there was one. Else sliding
+/// cloth goes on with the acceleration of the last step until it would turn round, and what stuck goes on
+/// sticking.
+std::array<double, 2> predict_slip(const RubbingCloth& cloth, const Contact& contact, const Rub& rub)
+{
+    const ContactFriction& last = contact.friction;
+    const auto components = [&](const Vec3& slip) {
+        return std::array<double, 2>{rub.directions[0].dot(slip), rub.directions[1].dot(slip)};
+    };
+    constexpr double kSlides = 1.0 - 1e-9;
+    if (!(last.force.norm() >= kSlides * last.budget)) return {0.0, 0.0};
+    if (contact.eol >= 0 || contact.is_pressing || !cloth.prediction.has_history)
+        return components(last.slip);
+    Vec3 slip = Vec3::Zero();
+    const ObstacleContact& local = contact.in_frame;
+    const ObstacleStep& step = cloth.obstacles[contact.obstacle];
+    for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
+        const int v = local.vertices[i];
+        const Vec3& now = cloth.state.velocity[v];
+        const Vec3 end = now + cloth.prediction.ratio * (now - cloth.state.previous_velocity[v]);
+        slip += local.weights[i] * (end - riding_velocity(cloth, step, v));
+    }
+    slip -= contact.normal.dot(slip) * contact.normal;
+    return slip.dot(last.slip) > 0.0 ? components(slip) : std::array<double, 2>{0.0, 0.0};
+}
+
 bool can_rub(const RubbingCloth& cloth, const Contact& contact)
 {
     if (contact.is_fold()) return false;
@@ -140,8 +166,8 @@ std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& 
         pair.budget = gamma * contact.friction.budget;
         for (int d = 0; d < 2; ++d) {
             pair.slip[d].expected = gamma * rub.directions[d].dot(contact.last_friction.force);
-            pair.last[d] = rub.directions[d].dot(contact.friction.slip);
         }
+        pair.last = predict_slip(cloth, contact, rub);
         rubs.push_back(rub);
         problem.friction.push_back(pair);
     }

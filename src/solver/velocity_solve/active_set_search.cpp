@@ -57,8 +57,10 @@ constexpr int kNewtonBases = 20;
 constexpr int kFullSteps = 8;  // of these; the others go as far as the energy falls
 constexpr int kFewChanges = 30;
 
-/// Friction pairs that may join U at a time; if more are far from their springs, another base costs less.
-constexpr int kFewPairs = 60;
+/// Friction pairs that may join U at a time: so many that the dense work, about kPairFlops times the third
+/// power of their number, is that of another base.
+constexpr double kPairFlops = 50.0;
+constexpr int kLeastPairs = 10, kMostPairs = 150;
 
 /// Floating-point operations on dense problems in one solve: as many as this number of factorisations take,
 /// and kLeastFlops, about a second's work.
@@ -136,6 +138,7 @@ VelocitySolution ActiveSetSearch::run_bases()
 {
     for (int base = 0; base < kMostBases && budget_.flops > 0.0 && !is_over_; ++base)
         run_base(base < kCappedBases ? kWorkingSetCap : kLargestWorkingSet);
+    if (in_use_) measure_lag();
     best_.infeasible_rows = find_infeasible_rows();
     for (std::size_t k = 0; k < constraints_.rows.size(); ++k)
         best_.row_multipliers[static_cast<Eigen::Index>(k)] /= constraints_.rows[k].scale;
@@ -209,21 +212,31 @@ void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
 }
 
 /// Moves the base's friction springs to the impulses at the present velocity, with the factor as it is. Pairs
-/// whose error has not fallen since the last time join the working set.
+/// whose lag does not fall join the working set.
 void ActiveSetSearch::move_springs()
 {
-    constexpr double kFalling = 0.5;
     PinnedBase& base = in_use_->base;
     for (int p = 0; p < constraints_.pair_count(); ++p) {
         if (in_use_->set.contains_row(2 * p)) continue;
-        const Eigen::Vector2d y = slip_of(constraints_, p, in_use_->iterate.velocity);
-        const double error = (base.slips[p].at(y) - friction_at(constraints_, p, y)).norm();
-        if (error > kFalling * in_use_->lag[p] && error > kSameFriction * constraints_.largest_budget())
-            rows_.insert(rows_.end(), {2 * p, 2 * p + 1});
-        in_use_->lag[p] = error;
-        base.slips[p] = through(base.slips[p], constraints_, p, y);
+        if (in_use_->is_stalled[p]) rows_.insert(rows_.end(), {2 * p, 2 * p + 1});
+        base.slips[p] =
+            through(base.slips[p], constraints_, p, slip_of(constraints_, p, in_use_->iterate.velocity));
     }
     solve_with_forces(base);
+}
+
+/// Measures how far the base's friction springs are from their law, and whether that is less than the last
+/// time.
+void ActiveSetSearch::measure_lag()
+{
+    constexpr double kFalling = 0.7, kSmall = 3e-5;  // of the largest budget: below what sweeps agree on
+    const double same = kSmall * constraints_.largest_budget();
+    for (int p = 0; p < constraints_.pair_count(); ++p) {
+        const Eigen::Vector2d y = slip_of(constraints_, p, in_use_->iterate.velocity);
+        const double lag = (in_use_->base.slips[p].at(y) - friction_at(constraints_, p, y)).norm();
+        in_use_->is_stalled[p] = lag > same && lag > kFalling * in_use_->lag[p];
+        in_use_->lag[p] = lag;
+    }
 }
 
 /// Solves for the working set with the rows expected active. False: the next base goes without these rows.
@@ -239,7 +252,9 @@ bool ActiveSetSearch::start_rows()
 
 void ActiveSetSearch::run_rounds(int cap)
 {
-    auto& [base, set, iterate, lag] = *in_use_;
+    PinnedBase& base = in_use_->base;
+    WorkingSet& set = in_use_->set;
+    Iterate& iterate = in_use_->iterate;
     for (;;) {  // ends: U grows by at least one member per round, up to the cap
         Violators violators = find_violators(base, iterate, set);
         if (violators.empty()) {
@@ -271,15 +286,17 @@ void ActiveSetSearch::rebase_by_prediction()
     best_.nlopt_evaluations += prediction.nlopt_evaluations;
     is_active_ = std::move(prediction.is_active);
     choose_rows(pressing_rows(constraints_, iterate));
-    slips_ = springs_at(constraints_, iterate.velocity);
+    slips_ = springs_at(constraints_, in_use_->base.slips, iterate.velocity);
 }
 
 /// Whether so many rows change sides that another base costs less than U, at a base that has rows.
 bool ActiveSetSearch::has_many_changes(const Violators& violators) const
 {
     const std::vector<char>& in_base = in_use_->base.is_pressing;
-    if (best_.factorisations <= kNewtonBases && static_cast<int>(violators.pairs.size()) > kFewPairs)
-        return true;
+    const int pairs = static_cast<int>(violators.pairs.size());
+    const int few =
+        std::clamp(static_cast<int>(std::cbrt(factorization_.flops() / kPairFlops)), kLeastPairs, kMostPairs);
+    if (best_.factorisations <= kNewtonBases && pairs > few) return true;
     return best_.factorisations <= kNewtonBases && static_cast<int>(violators.rows.size()) > kFewChanges &&
            std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
 }
@@ -329,7 +346,7 @@ void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
         newton_point_ += find_newton_share(newton_point_, velocity) * (velocity - newton_point_);
     else
         newton_point_ = velocity;
-    slips_ = springs_at(constraints_, newton_point_);
+    slips_ = springs_at(constraints_, in_use_->base.slips, newton_point_);
     std::vector<int> violated;
     for (int k = constraints_.slip_count(); k < static_cast<int>(constraints_.rows.size()); ++k) {
         const ScaledRow& row = constraints_.rows[k];
@@ -353,21 +370,23 @@ void ActiveSetSearch::rebase_with_changed(const Violators& violators)
 {
     flip_bounds(violators.coordinates);
     choose_rows(pressing_rows(constraints_, in_use_->iterate));
-    slips_ = springs_at(constraints_, in_use_->iterate.velocity);
+    slips_ = springs_at(constraints_, in_use_->base.slips, in_use_->iterate.velocity);
 }
 
 /// No violator is left: accepts, refines, or factorises once more with exactly these bounds pinned. False
 /// where refinement has revealed new violators.
 bool ActiveSetSearch::finish()
 {
-    auto& [base, set, iterate, lag] = *in_use_;
+    PinnedBase& base = in_use_->base;
+    WorkingSet& set = in_use_->set;
+    Iterate& iterate = in_use_->iterate;
     is_over_ = certify();
     refine();
     if (is_over_) return true;
     if (set.row_count() > 0 && !find_violators(base, iterate, set).empty()) return false;
     is_active_ = iterate.is_active;
     choose_rows(pressing_rows(constraints_, iterate));
-    slips_ = springs_at(constraints_, iterate.velocity);
+    slips_ = springs_at(constraints_, in_use_->base.slips, iterate.velocity);
     const bool is_new_base = set.row_count() == 0 ? set.size() > 0 : is_active_ != base.iterate.is_active;
     is_over_ = !is_new_base || (has_rebased_for_accuracy_ && best_.kkt_residual <= settings_.tolerance);
     has_rebased_for_accuracy_ = true;

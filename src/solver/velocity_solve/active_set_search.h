@@ -17,13 +17,16 @@ struct BaseInUse {
     PinnedBase base;
     WorkingSet set;
     Iterate iterate;
-    std::vector<double> lag;  ///< N s, by friction pair: error of its spring before the spring last moved
+    std::vector<double>
+        lag;  ///< N s, by friction pair: distance of its spring from its law at the last answer
+    std::vector<char> is_stalled;  ///< by friction pair: that distance has not fallen
 
     explicit BaseInUse(PinnedBase solved)
         : base(std::move(solved)),
           set(base),
           iterate(base.iterate),
-          lag(base.slips.size(), std::numeric_limits<double>::infinity())
+          lag(base.slips.size(), std::numeric_limits<double>::infinity()),
+          is_stalled(base.slips.size(), 0)
     {
     }
     BaseInUse(const BaseInUse&) = delete;  // the set refers to the base
@@ -55,6 +58,7 @@ class ActiveSetSearch {
     void choose_rows(const std::vector<int>& expected);
     bool has_many_changes(const Violators& violators) const;
     void move_springs();
+    void measure_lag();
     void rebase_by_prediction();
     void flip_bounds(const std::vector<int>& coordinates);
     void rebase_with_changed(const Violators& violators);

@@ -52,7 +52,11 @@ SlipSpring tangent_at(const ConstraintRows& constraints, int pair, const Eigen::
 SlipSpring through(const SlipSpring& spring, const ConstraintRows& constraints, int pair,
                    const Eigen::Vector2d& y)
 {
-    return {spring.stiffness, friction_at(constraints, pair, y) + spring.stiffness * y};
+    const Eigen::Vector2d unlimited = unlimited_at(constraints, pair, y);
+    const bool is_sliding = unlimited.norm() > constraints.budgets[pair];
+    const Eigen::Vector2d impulse = project_on_disc(unlimited, constraints.budgets[pair]);
+    return {spring.stiffness, impulse + spring.stiffness * y,
+            is_sliding ? impulse : Eigen::Vector2d(0.0, 0.0)};
 }
 
 bool is_near_law(const SlipSpring& spring, const ConstraintRows& constraints, int pair,
@@ -75,11 +79,15 @@ std::vector<SlipSpring> starting_springs(const VelocityProblem& problem, const C
     return springs;
 }
 
-std::vector<SlipSpring> springs_at(const ConstraintRows& constraints, const Eigen::VectorXd& velocity)
+std::vector<SlipSpring> springs_at(const ConstraintRows& constraints, const std::vector<SlipSpring>& old,
+                                   const Eigen::VectorXd& velocity)
 {
     std::vector<SlipSpring> springs;
-    for (int pair = 0; pair < constraints.pair_count(); ++pair)
-        springs.push_back(tangent_at(constraints, pair, slip_of(constraints, pair, velocity)));
+    for (int pair = 0; pair < constraints.pair_count(); ++pair) {
+        Eigen::Vector2d y = slip_of(constraints, pair, velocity);
+        if (unlimited_at(constraints, pair, y).dot(old[pair].rim) < 0.0) y = lower_of(constraints, pair);
+        springs.push_back(tangent_at(constraints, pair, y));
+    }
     return springs;
 }
 

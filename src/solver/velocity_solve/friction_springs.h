@@ -19,6 +19,7 @@ inline constexpr double kSameFriction = 1e-9;
 struct SlipSpring {
     Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();  ///< kg
     Eigen::Vector2d force = Eigen::Vector2d::Zero();      ///< N s
+    Eigen::Vector2d rim = Eigen::Vector2d::Zero();        ///< N s, the law's impulse where it slides; else 0
 
     bool is_in_matrix() const { return !stiffness.isZero(0.0); }
     Eigen::Vector2d at(const Eigen::Vector2d& y) const { return force - stiffness * y; }
@@ -48,7 +49,9 @@ bool is_near_law(const SlipSpring& spring, const ConstraintRows& constraints, in
 /// Tangents at the slips from which the problem's pairs start.
 std::vector<SlipSpring> starting_springs(const VelocityProblem& problem, const ConstraintRows& constraints);
 
-/// Tangents at a velocity.
-std::vector<SlipSpring> springs_at(const ConstraintRows& constraints, const Eigen::VectorXd& velocity);
+/// Tangents at a velocity that was found with the springs `old`. A pair that slid and is now drawn back the
+/// way it came is taken to stick: tangents would go to and fro between both directions.
+std::vector<SlipSpring> springs_at(const ConstraintRows& constraints, const std::vector<SlipSpring>& old,
+                                   const Eigen::VectorXd& velocity);
 
 }  // namespace arris
