@@ -18,6 +18,7 @@
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "geometry/surgery/initial_target.h"
 #include "grid_patterns.h"
+#include "ode.h"
 #include "refinement.h"
 #include "solver/contact/clearance.h"
 #include "solver/eol/eol_features.h"
@@ -60,8 +61,10 @@ struct RopeCase {
     /// Whether the EOL vertices are given. Otherwise the first step must find them, as in a scene with
     /// `folds`.
     bool is_given = true;
-    double height = 0.0;  ///< m, of the fold above the place where it rests on the wire
-    double beside = 0.0;  ///< m, from the wire to the fold, across the wire
+    double height = 0.0;    ///< m, of the fold above the place where it rests on the wire
+    double beside = 0.0;    ///< m, from the wire to the fold, across the wire
+    double start = kStart;  ///< m, y at the start
+    double friction = 0.0;  ///< coefficient
 };
 
 std::string describe(const RopeCase& rope)
@@ -121,7 +124,7 @@ ObstacleMesh make_wire_of(int segments)
 /// A run with the rope folded over the wire, with EOL vertices on the wire where they are given.
 ClothRun make_rope_run(const RopeCase& rope)
 {
-    const double fold = 0.5 * kLength - kStart;
+    const double fold = 0.5 * kLength - rope.start;
     ClothGrid grid;
     grid.size = Vec2(kLength, kWidth);
     grid.resolution = rope.cells;
@@ -140,6 +143,7 @@ ClothRun make_rope_run(const RopeCase& rope)
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
     scene.obstacles.push_back(Obstacle("wire", make_wire_of(rope.segments), {}, {}, 10.0));
     scene.eol = make_initial_target(mesh);
+    if (rope.friction > 0.0) scene.friction = Friction{{rope.friction}};
     if (!rope.is_given) clear_stand_off(scene, mesh);
     ClothRun run(std::move(scene), std::move(mesh));
     run.settings.integrator = rope.integrator;
@@ -161,6 +165,21 @@ double measure_displacement(const ClothRun& run)
         ++count;
     }
     return sum / count;
+}
+
+/// y of a rope with friction that starts at rest, after `time`. With phi the angle by which the rope turns
+/// and e = exp(mu phi), the tensions beyond rho y'^2 differ by the factor e: y" = g (l2 - e l1 + (e - 1) y'^2
+/// / g) / (l2 + e l1), l1 = L/2 - y, l2 = L/2 + y.
+double rubbed_displacement(const RopeCase& rope, double time)
+{
+    const double e = std::exp(rope.friction * (180.0 - rope.open_degrees) * M_PI / 180.0);
+    const auto slope = [&](double, const Eigen::Vector2d& at) {
+        const double longer = 0.5 * kLength + at[0], shorter = 0.5 * kLength - at[0];
+        const double acceleration =
+            (kG * (longer - e * shorter) + (e - 1.0) * at[1] * at[1]) / (longer + e * shorter);
+        return Eigen::Vector2d(at[1], std::max(acceleration, 0.0));
+    };
+    return integrate_rk4(Eigen::Vector2d(rope.start, 0.0), 0.0, time, 4000, slope)[0];
 }
 
 void expect_sound(const State& state)
@@ -442,6 +461,43 @@ TEST(RopeOverWire, SlidesOffThoughItsSidesClap)
                                fmt::format("{:g}", angle), fmt::format("{}", cells[0]),
                                fmt::format("{:.3f}", share), fmt::format("{:.1e}", std::max(gained, 0.0))});
                 }
+}
+
+/// y at which a rope begins to slide, m.
+double find_onset(double friction, double open_degrees)
+{
+    const double e = std::exp(friction * (180.0 - open_degrees) * M_PI / 180.0);
+    return 0.5 * kLength * (e - 1.0) / (e + 1.0);
+}
+
+TEST(RopeOverWire, SlidesByTheCapstansLaw)
+{
+    constexpr double kDuration = 0.3;  // s
+    constexpr double kError = 5e-3;    // relative to the way
+    for (RopeCase rope : {RopeCase{.friction = 0.1}, RopeCase{.cells = {4, 2}, .friction = 0.3},
+                          RopeCase{.friction = 0.3}, RopeCase{.cells = {16, 2}, .friction = 0.3},
+                          RopeCase{.pattern = GridPattern::Cross, .segments = 37, .friction = 0.3},
+                          RopeCase{.friction = 0.5}}) {
+        rope.start = 1.1 * find_onset(rope.friction, rope.open_degrees);
+        ClothRun run = make_rope_run(rope);
+        run.advance(kDuration, kStep);
+        const double way = rubbed_displacement(rope, kDuration) - rope.start;
+        EXPECT_NEAR((measure_displacement(run) - rope.start) / way, 1.0, kError)
+            << describe(rope) << ", friction " << rope.friction;
+    }
+}
+
+TEST(RopeOverWire, RestsBelowTheOnsetOfTheCapstansLaw)
+{
+    constexpr double kElastic =
+        1e-5;  // m: the rope stretches under its weight, and friction holds its stretch
+    for (const double friction : {0.1, 0.3, 0.5}) {
+        RopeCase rope{.friction = friction};
+        rope.start = 0.98 * find_onset(friction, rope.open_degrees);
+        ClothRun run = make_rope_run(rope);
+        run.advance(0.6, kStep);
+        EXPECT_NEAR(measure_displacement(run), rope.start, kElastic) << friction;
+    }
 }
 
 }  // namespace

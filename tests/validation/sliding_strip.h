@@ -56,6 +56,7 @@ struct StripCase {
     bool has_eol = true;
     Placement place = {};         ///< moves edge, strip and gravity together: must not change the result
     Vec3 carried = Vec3::Zero();  ///< m/s, common velocity of edge and strip: must not change the result
+    double friction = 0.0;        ///< coefficient
 };
 
 /// Distance of `world` from the line of the fold, m, perpendicular to the edge. That line is at the stand-off

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Friction against closed forms: on slopes, over edges, on obstacles that move.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "cloth_run.h"
+#include "geometry/surgery/initial_target.h"
+#include "grid_patterns.h"
+#include "ode.h"
+#include "refinement.h"
+#include "sliding_strip.h"
+#include "solver/advance.h"
+#include "solver/energy_balance.h"
+#include "tests/solver/floor.h"
+
+namespace arris {
+namespace {
+
+constexpr double kG = 9.81, kThickness = 1e-3, kStep = 0.005;
+constexpr double kDegrees = std::numbers::pi / 180.0;
+
+/// A sheet of .4 m that lies on a wide floor under gravity that leans by `slope` (rad) towards x.
+ClothRun make_floor_run(double friction, double slope, GridPattern pattern, const RigidMotion& motion = {})
+{
+    Scene scene;
+    scene.material = {0.15, 2000.0, 0.3, 1e-5, 0.0, kThickness};
+    scene.gravity = Gravity{kG * Vec3(std::sin(slope), 0.0, -std::cos(slope))};
+    const Obstacle floor = make_floor();
+    scene.obstacles.push_back(Obstacle("floor", floor.mesh(), {}, motion, 30.0));
+    scene.friction = Friction{{friction}};
+    ClothMesh mesh = make_sheet({0.4, 0.4}, {4, 4}, pattern);
+    lay(mesh, Vec3(0.2, -0.2, kThickness));
+    return ClothRun(std::move(scene), std::move(mesh));
+}
+
+Vec3 middle_of(const ClothRun& run)
+{
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& x : run.state.mesh.world) sum += x;
+    return sum / static_cast<double>(run.state.mesh.world.size());
+}
+
+Vec3 mean_velocity(const ClothRun& run)
+{
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& v : run.state.velocity) sum += v;
+    return sum / static_cast<double>(run.state.velocity.size());
+}
+
+TEST(FrictionOnASlope, SlidesWithGTimesSinMinusMuCos)
+{
+    constexpr double kDuration = 0.2, kError = 1e-6;  // m/s^2
+    for (const GridPattern pattern : kPatterns)
+        for (const double friction : {0.1, 0.3, 0.5}) {
+            const double slope = std::atan(friction) + 3.0 * kDegrees;
+            ClothRun run = make_floor_run(friction, slope, pattern);
+            run.advance(kDuration, kStep);
+            EXPECT_NEAR(mean_velocity(run).x() / kDuration,
+                        kG * (std::sin(slope) - friction * std::cos(slope)), kError)
+                << name_of(pattern) << " " << friction;
+            EXPECT_NEAR(mean_velocity(run).y(), 0.0, kError);
+        }
+}
+
+TEST(FrictionOnASlope, BeginsToSlideAtTheAngleOfFriction)
+{
+    constexpr double kAngle = 0.05 * kDegrees;
+    constexpr double kSprings = 1e-8;  // m: friction's springs give way while the load comes on them
+    for (const double friction : {0.1, 0.3, 0.5}) {
+        ClothRun below = make_floor_run(friction, std::atan(friction) - kAngle, GridPattern::Cross),
+                 above = make_floor_run(friction, std::atan(friction) + kAngle, GridPattern::Cross);
+        const double start = middle_of(below).x();
+        below.advance(1.0, kStep);
+        EXPECT_NEAR(middle_of(below).x(), start, kSprings) << friction;
+        const double rest = middle_of(below).x();
+        below.advance(1.0, kStep);
+        EXPECT_NEAR(middle_of(below).x(), rest, 1e-12) << friction;  // no creep
+        above.advance(1.0, kStep);
+        EXPECT_GT(middle_of(above).x(), start + 1e-3) << friction;
+    }
+}
+
+TEST(FrictionOnMovingObstacles, LagsBehindAFloorThatJumpsByVSquaredOver2MuG)
+{
+    constexpr double kError = 2e-5;  // m
+    const double friction = 0.3, speed = 0.5, lag = speed * speed / (2.0 * friction * kG);
+    RigidMotion motion;
+    motion.velocity = Vec3(speed, 0.0, 0.0);
+    ClothRun run = make_floor_run(friction, 0.0, GridPattern::Cross, motion);
+    const double start = middle_of(run).x();
+    run.advance(1.0, kStep);
+    EXPECT_NEAR(start + speed * 1.0 - middle_of(run).x(), lag, kError);
+    const double settled = middle_of(run).x() - speed * run.state.time;
+    run.advance(1.0, kStep);
+    EXPECT_NEAR(middle_of(run).x() - speed * run.state.time, settled, 1e-13);
+}
+
+TEST(FrictionOnMovingObstacles, RidesOnATurntableWithoutCreep)
+{
+    const double friction = 0.5, rate = 3.0;  // rad/s: friction holds up to .54 m from the axis
+    RigidMotion motion;
+    motion.angular_velocity = Vec3(0.0, 0.0, rate);
+    ClothRun run = make_floor_run(friction, 0.0, GridPattern::Cross, motion);
+    const auto on_table = [&] {
+        const Mat3 back = Eigen::AngleAxisd(-rate * run.state.time, Vec3::UnitZ()).toRotationMatrix();
+        return Vec3(back * middle_of(run));
+    };
+    run.advance(0.5, kStep);
+    const Vec3 stuck = on_table();
+    run.advance(2.0, kStep);
+    EXPECT_LT((on_table() - stuck).norm(), 1e-12);  // m
+}
+
+/// Strip over an edge: x" (x + e (L - x)) = g (x (sin b - mu cos b) + e (L - x) (sin a - mu cos a)) + (e - 1)
+/// x'^2 with e = exp(mu (b - a)); on a slope beyond the vertical nothing presses.
+double rubbed_length_after(const StripCase& strip, double time)
+{
+    const double a = strip.slopes.before, b = strip.slopes.after, mu = strip.friction, L = strip.length;
+    const double e = std::exp(mu * (b - a));
+    const auto slope = [&](double, const Eigen::Vector2d& at) {
+        const double x = at[0], rest = e * (L - x);
+        const double force = kG * (x * (std::sin(b) - mu * std::max(std::cos(b), 0.0)) +
+                                   rest * (std::sin(a) - mu * std::cos(a)));
+        return Eigen::Vector2d(at[1], (force + (e - 1.0) * at[1] * at[1]) / (x + rest));
+    };
+    return integrate_rk4(Eigen::Vector2d(strip.start, 0.0), 0.0, time, 4000, slope)[0];
+}
+
+/// Share of a strip beyond the edge at which it begins to slide.
+double find_onset(const StripCase& strip)
+{
+    const double a = strip.slopes.before, b = strip.slopes.after, mu = strip.friction;
+    const double e = std::exp(mu * (b - a));
+    const double pulls = std::sin(b) - mu * std::max(std::cos(b), 0.0),
+                 holds = e * (mu * std::cos(a) - std::sin(a));
+    return holds / (pulls + holds);
+}
+
+double way_over_edge(const StripCase& strip, double duration, double step)
+{
+    ClothRun run = make_strip_run(strip);
+    run.advance(duration, step);
+    return (measure_length_after(strip, run) - strip.start) /
+           (rubbed_length_after(strip, duration) - strip.start);
+}
+
+TEST(FrictionOverAnEdge, SlidesByTheCapstansLawOnAnyMesh)
+{
+    constexpr double kDuration = 0.3, kError = 1e-3, kAgree = 2e-4;  // sweeps end where forces agree to 1e-4
+    std::vector<StripCase> cases;
+    for (const int cells : {4, 8, 16, 32}) cases.push_back({.cells = {cells, 2}});
+    for (const GridPattern pattern : kPatterns) cases.push_back({.pattern = pattern, .pattern_angle = 17.0});
+    double least = 2.0, greatest = 0.0;
+    Table table("friction_over_an_edge", {"cells", "pattern", "way / closed form"});
+    for (StripCase& strip : cases) {
+        strip.friction = 0.3;
+        strip.start = 1.1 * find_onset(strip);
+        const double share = way_over_edge(strip, kDuration, kStep);
+        EXPECT_NEAR(share, 1.0, kError) << strip.cells[0] << " " << name_of(strip.pattern);
+        least = std::min(least, share);
+        greatest = std::max(greatest, share);
+        table.add({fmt::format("{}", strip.cells[0]), std::string(name_of(strip.pattern)),
+                   fmt::format("{:.5f}", share)});
+    }
+    EXPECT_LT(greatest - least, kAgree);
+}
+
+TEST(FrictionOverAnEdge, SlidesOnSlopesThatRub)
+{
+    constexpr double kError = 1e-3;
+    for (const auto& [before, after] : {std::pair(0.0, 60.0), {20.0, 65.0}, {-20.0, 45.0}, {-30.0, 90.0}}) {
+        StripCase strip{.slopes = {before * kDegrees, after * kDegrees}, .friction = 0.3};
+        strip.start = std::max(0.1, 1.1 * find_onset(strip));
+        EXPECT_NEAR(way_over_edge(strip, 0.3, kStep), 1.0, kError) << before << " " << after;
+    }
+}
+
+TEST(FrictionOverAnEdge, HasTheIntegratorsOrder)
+{
+    StripCase strip{.friction = 0.3};
+    strip.start = 1.1 * find_onset(strip);
+    std::vector<double> steps = {0.01, 0.005, 0.0025}, errors;
+    for (const double step : steps) errors.push_back(std::abs(way_over_edge(strip, 0.6, step) - 1.0));
+    EXPECT_NEAR(order_of(steps, errors), 2.0, 0.3);
+}
+
+TEST(FrictionOverAnEdge, RestsBelowTheOnsetAndGoesAboveIt)
+{
+    constexpr double kElastic = 2e-6;  // m
+    for (const double friction : {0.1, 0.3, 0.5}) {
+        StripCase strip{.friction = friction};
+        strip.start = 0.98 * find_onset(strip);
+        ClothRun run = make_strip_run(strip);
+        run.advance(0.6, kStep);
+        EXPECT_NEAR(measure_length_after(strip, run), strip.start, kElastic) << friction;
+        strip.start = 1.02 * find_onset(strip);
+        EXPECT_NEAR(way_over_edge(strip, 0.6, kStep), 1.0, 0.01) << friction;
+    }
+}
+
+TEST(FrictionOnATable, BringsADroppedClothToRest)
+{
+    ClothMesh mesh = make_sheet({1.0, 1.0}, {10, 10}, GridPattern::Cross, 10.0);
+    lay(mesh, Vec3(-0.5, -0.5, 0.02));
+    Scene scene = make_table_scene(mesh, {0.15, 500.0, 0.3, 1e-4, 0.02, kThickness}, Vec3(0.7, 0.7, 0.3),
+                                   Vec3(0.0, 0.0, -0.15));
+    scene.friction = Friction{{0.3}};
+    const double mass = 0.15;
+    ClothRun run(std::move(scene), std::move(mesh));
+    double energy = measure_energy(run).sum(), rise = 0.0;
+    const double first = energy;
+    run.advance(6.0, kStep, [&](const StepReport& report) {
+        const double now = measure_energy(run).sum();
+        rise = std::max(rise, now - energy);
+        energy = std::min(energy, now);
+        EXPECT_GE(report.friction_work, -1e-9);
+    });
+    EXPECT_LT(rise, 1e-3 * (first - energy));
+    EXPECT_LT(measure_energy(run).kinetic / mass, 1e-6);
+}
+
+}  // namespace
+}  // namespace arris
