@@ -15,22 +15,23 @@ void store(Workspace& work)
         const Rub& rub = work.rubs[r];
         ContactFriction& friction = work.contacts[rub.contact].friction;
         friction = {Vec3::Zero(), Vec3::Zero(), work.problem.friction[r].budget / gamma};
+        const bool is_sliding = work.solution.unlimited[r].norm() > work.problem.friction[r].budget;
         for (int d = 0; d < 2; ++d) {
             friction.force += work.solution.friction[r][d] / gamma * rub.directions[d];
-            friction.slip += work.solution.slip[r][d] * rub.directions[d];
+            if (is_sliding) friction.slip += work.solution.slip[r][d] * rub.directions[d];
         }
     }
 }
 
 void count(const Workspace& work, StepReport& report)
 {
-    constexpr double kOnRim = 1.0 - 1e-9;
+    
     report.sticking = report.sliding = 0;
     report.friction_work = 0.0;
     for (std::size_t r = 0; r < work.rubs.size(); ++r) {
         const double budget = work.problem.friction[r].budget;
         if (!(budget > 0.0)) continue;
-        ++(work.solution.unlimited[r].norm() < kOnRim * budget ? report.sticking : report.sliding);
+        ++(work.solution.unlimited[r].norm() <= budget ? report.sticking : report.sliding);
         report.friction_work -=
             work.solution.friction[r].dot(work.solution.slip[r]) * report.dt / work.prediction.gamma;
     }

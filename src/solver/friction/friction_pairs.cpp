@@ -110,8 +110,6 @@ std::array<double, 2> predict_slip(const RubbingCloth& cloth, const Contact& con
     const auto components = [&](const Vec3& slip) {
         return std::array<double, 2>{rub.directions[0].dot(slip), rub.directions[1].dot(slip)};
     };
-    constexpr double kSlides = 1.0 - 1e-9;
-    if (!(last.force.norm() >= kSlides * last.budget)) return {0.0, 0.0};
     if (contact.eol >= 0 || contact.is_pressing || !cloth.prediction.has_history)
         return components(last.slip);
     Vec3 slip = Vec3::Zero();

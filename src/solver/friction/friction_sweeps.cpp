@@ -41,10 +41,11 @@ FrictionSweeps sweep_friction(const std::function<const VelocitySolution&()>& so
         if (solution.status != SolveStatus::Certified || problem.friction.empty()) return sweeps;
         const std::vector<double> budgets = compute(solution);
         sweeps.residual = residual_of(solution, budgets);
-        if (sweeps.residual <= kAgreement || sweeps.count == kMostSweeps) return sweeps;
-        const double share = sweeps.count <= kFullSweeps ? 1.0 : 0.5;
+        const bool is_last = sweeps.residual <= kAgreement || sweeps.count == kMostSweeps;
+        const double share = is_last || sweeps.count <= kFullSweeps ? 1.0 : 0.5;
         for (std::size_t p = 0; p < budgets.size(); ++p)
             problem.friction[p].budget += share * (budgets[p] - problem.friction[p].budget);
+        if (is_last) return sweeps;
     }
 }
 

@@ -17,7 +17,7 @@ namespace arris {
 /// (velocity_solve/friction_springs.h).
 struct ContactFriction {
     Vec3 force = Vec3::Zero();  ///< N
-    Vec3 slip = Vec3::Zero();   ///< m/s
+    Vec3 slip = Vec3::Zero();   ///< m/s; zero where it sticks
     double budget = 0.0;        ///< N, greatest force
 };
 

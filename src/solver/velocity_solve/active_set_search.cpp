@@ -229,8 +229,8 @@ void ActiveSetSearch::move_springs()
 /// time.
 void ActiveSetSearch::measure_lag()
 {
-    constexpr double kFalling = 0.7, kSmall = 3e-5;  // of the largest budget: below what sweeps agree on
-    const double same = kSmall * constraints_.largest_budget();
+    constexpr double kFalling = 0.7;
+    const double same = kSameFriction * constraints_.largest_budget();
     for (int p = 0; p < constraints_.pair_count(); ++p) {
         const Eigen::Vector2d y = slip_of(constraints_, p, in_use_->iterate.velocity);
         const double lag = (in_use_->base.slips[p].at(y) - friction_at(constraints_, p, y)).norm();
