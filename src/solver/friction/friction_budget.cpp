@@ -16,6 +16,11 @@ namespace {
 /// A side of the cloth lies on a face of the obstacle where their normals differ by less than this angle.
 const double kCosOnFace = std::cos(5.0 * M_PI / 180.0);
 
+/// Largest budget on a feature, relative to mu times its normal impulse. By the capstan's law it is at most
+/// pi / 2 for cloth that turns by 180 degrees, and 1 / cos 45 degrees for cloth pressed on one face of a
+/// right angle. The sides' impulses alone would give friction to a vertex that is about to lift off.
+constexpr double kMostShare = 2.0;
+
 /// One side of the cloth at a feature: unit directions in the plane across it, and its impulses, N s.
 struct Side {
     Vec3 normal;   ///< outwards
@@ -128,9 +133,10 @@ std::vector<double> compute_budgets(const RubbingCloth& cloth, const Terms& term
                 budget *= cap_factor(cloth, at);
             } else {
                 const Eigen::Vector2d& force = solution.friction[r];
-                budget =
+                budget = std::min(
+                    kMostShare * budget,
                     capstan_budget(find_sides(cloth, at, sides[slot[r]]), cloth.at.basis[at.vertex].col(0),
-                                   mu, force.norm() > 0.0 ? force : Eigen::Vector2d(-solution.slip[r]));
+                                   mu, force.norm() > 0.0 ? force : Eigen::Vector2d(-solution.slip[r])));
             }
         }
         budgets.push_back(budget);

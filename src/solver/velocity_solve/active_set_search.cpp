@@ -112,6 +112,7 @@ ActiveSetSearch::ActiveSetSearch(const VelocityProblem& problem, Factorization& 
     has_pulled_.assign(constraints.rows.size(), 0);
     is_pressing_.assign(constraints.rows.size(), 0);
     slips_ = starting_springs(problem, constraints);
+    best_exact_.assign(problem.friction.size(), 0);
     budget_ = {kLeastFlops + kMostFactorisations * factorization.flops(), &settings};
 }
 
@@ -148,7 +149,12 @@ VelocitySolution ActiveSetSearch::run_bases()
         const auto& [first, second] = problem_.friction[p].slip;
         best_.friction[p] = best_.row_multipliers.segment<2>(2 * p);
         best_.slip[p] = scale * y - Eigen::Vector2d(first.lower, second.lower);
-        best_.unlimited[p] = unlimited_at(constraints_, p, y) / scale;
+        // The law is solved for the impulse: 1 / give would magnify the slip's round-off.
+        constexpr double kInside = 1.0 - 1e-9;
+        const bool sticks =
+            best_exact_[p] && best_.friction[p].norm() < kInside * constraints_.budgets[p] / scale;
+        best_.unlimited[p] =
+            sticks ? best_.friction[p] : Eigen::Vector2d(unlimited_at(constraints_, p, y) / scale);
     }
     best_.row_multipliers =
         best_.row_multipliers.tail(static_cast<Eigen::Index>(problem_.rows.size())).eval();
@@ -418,6 +424,7 @@ bool ActiveSetSearch::certify()
         best_.velocity = iterate.velocity;
         best_.multipliers = std::move(multipliers);
         best_.row_multipliers = std::move(row_multipliers);
+        best_exact_ = iterate.is_exact;
     }
     return residual <= kAccurate;
 }

@@ -76,6 +76,7 @@ class ActiveSetSearch {
     std::optional<BaseInUse>& in_use_;
     const Settings& settings_;
     VelocitySolution best_;          ///< row multipliers belong to the scaled rows until the end
+    std::vector<char> best_exact_;   ///< by friction pair: Iterate::is_exact of `best_`
     std::vector<char> is_active_;    ///< pins of the next base
     std::vector<int> rows_;          ///< rows with which the next base's working set starts
     std::vector<char> is_pressing_;  ///< by row: part of the next base
