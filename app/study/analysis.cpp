@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/study/analysis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace arris {
+namespace {
+
+/// Different values that a key takes in a study, as text.
+std::set<std::string> values_of(const Study& study, const std::string& key)
+{
+    std::set<std::string> values;
+    for (const std::vector<Setting>& run : study.runs) {
+        const Setting* setting = find_setting(run, key);
+        values.insert(setting ? setting->toml : "");
+    }
+    return values;
+}
+
+bool is_numeric(const Study& study, const std::string& key)
+{
+    return std::all_of(study.runs.begin(), study.runs.end(), [&](const std::vector<Setting>& run) {
+        const Setting* setting = find_setting(run, key);
+        return setting && setting->number;
+    });
+}
+
+int rank_of(const std::string& key)
+{
+    return key == "cloth.resolution" ? 0 : key == "time.step" ? 1 : 2;
+}
+
+std::string axis_label(const std::string& key)
+{
+    if (key == "cloth.resolution") return "cells along the cloth's longer side";
+    if (key == "time.step") return "time step (s)";
+    return key;
+}
+
+std::string join_words(const std::vector<std::string>& words)
+{
+    return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// Words for the varied settings of a run that `take` accepts.
+template <class Take>
+std::string name_settings(const Study& study, const StudyRun& run, const Take& take)
+{
+    std::vector<std::string> words;
+    for (const std::string& key : study.keys) {
+        const Setting* setting = find_setting(run.settings, key);
+        if (setting && values_of(study, key).size() > 1 && take(key))
+            words.push_back(label_setting(*setting));
+    }
+    return join_words(words);
+}
+
+double number_of(const RunOutcome& outcome, const std::string& key)
+{
+    return *find_setting(outcome.run.settings, key)->number;
+}
+
+// Of log error by log number; without errors, of log CPU time.
+std::optional<double> slope_of(const std::vector<RunOutcome>& outcomes, const StudyCurve& curve,
+                               const std::string& key, bool has_error)
+{
+    std::vector<double> x, y;
+    for (const std::size_t i : curve.runs) {
+        const RunOutcome& outcome = outcomes[i];
+        if (has_error ? !is_compared(outcome) : !outcome.is_finished()) continue;
+        x.push_back(number_of(outcome, key));
+        y.push_back(has_error ? outcome.error->value : *outcome.cpu_median());
+    }
+    return fit_slope(x, y);
+}
+
+bool dominates(const RunOutcome& a, const RunOutcome& b)
+{
+    const double cost_a = *a.cpu_median(), cost_b = *b.cpu_median();
+    return a.run.problem == b.run.problem && cost_a <= cost_b && a.error->value <= b.error->value &&
+           (cost_a < cost_b || a.error->value < b.error->value);
+}
+
+std::string tell_run(const RunOutcome& outcome)
+{
+    const std::string settings =
+        outcome.run.settings.empty() ? "the scene as it is" : list_settings(outcome.run.settings);
+    return fmt::format("{} (error {:.2g} %, {:.3g} CPU s)", settings, 100.0 * *outcome.error->relative(),
+                       *outcome.cpu_median());
+}
+
+std::string tell_reference(const Study& study, const std::vector<RunOutcome>& outcomes)
+{
+    const ErrorRule& rule = *study.error;
+    std::vector<std::string> references;
+    for (const RunOutcome& outcome : outcomes)
+        if (outcome.is_reference) references.push_back(list_settings(outcome.run.settings));
+    const std::string runs =
+        references.empty() ? "no run: it has not finished" : fmt::format("{}", fmt::join(references, "; "));
+    switch (rule.reference) {
+        case ErrorRule::Reference::None:
+            return "without a reference: the value itself";
+        case ErrorRule::Reference::Formula:
+            return "against " + rule.formula;
+        case ErrorRule::Reference::File:
+            return "against the file " + rule.formula;
+        case ErrorRule::Reference::Finest:
+            return "against the finest finished run of the same problem (most cells, then the least step, "
+                   "then "
+                   "the first): " +
+                   runs;
+        case ErrorRule::Reference::Run:
+            return "against a further run: " + runs;
+    }
+    return "";
+}
+
+std::string tell_quantity(const ErrorRule& rule)
+{
+    using Norm = ErrorRule::Norm;
+    if (rule.quantity == ErrorRule::Quantity::Shape)
+        return fmt::format("{} distance (m) at equal material points in {}",
+                           rule.norm == Norm::Max ? "greatest" : "mean",
+                           rule.is_over_all_frames ? "all frames" : "the last frame");
+    const std::string norm = rule.norm == Norm::Max   ? "greatest error over time of "
+                             : rule.norm == Norm::Rms ? "root-mean-square error over time of "
+                                                      : "error at the end of ";
+    if (rule.quantity == ErrorRule::Quantity::Column) return norm + rule.column;
+    return fmt::format("{}the displacement (m) of probe {} along {}", norm, rule.probe, "xyz"[rule.axis]);
+}
+
+}  // namespace
+
+std::vector<NumericKey> list_numeric_keys(const Study& study)
+{
+    std::vector<NumericKey> keys;
+    for (const std::string& key : study.keys)
+        if (is_numeric(study, key) && values_of(study, key).size() > 1)
+            keys.push_back({key, axis_label(key)});
+    std::stable_sort(keys.begin(), keys.end(), [](const NumericKey& a, const NumericKey& b) {
+        return rank_of(a.key) < rank_of(b.key);
+    });
+    return keys;
+}
+
+std::string name_method(const Study& study, const StudyRun& run)
+{
+    return name_settings(study, run, [&](const std::string& key) { return !is_numeric(study, key); });
+}
+
+std::vector<StudyCurve> make_curves(const Study& study, const std::vector<RunOutcome>& outcomes,
+                                    const std::string& key)
+{
+    std::vector<StudyCurve> curves;
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+        const StudyRun& run = outcomes[i].run;
+        if (run.is_further) continue;
+        const std::string name =
+            name_settings(study, run, [&](const std::string& other) { return other != key; });
+        auto curve =
+            std::find_if(curves.begin(), curves.end(), [&](const auto& c) { return c.name == name; });
+        if (curve == curves.end()) curve = curves.insert(curve, {name_method(study, run), name, {}, {}});
+        curve->runs.push_back(i);
+    }
+    for (StudyCurve& curve : curves) {
+        std::stable_sort(curve.runs.begin(), curve.runs.end(), [&](std::size_t a, std::size_t b) {
+            return number_of(outcomes[a], key) < number_of(outcomes[b], key);
+        });
+        curve.slope = slope_of(outcomes, curve, key, study.error.has_value());
+    }
+    return curves;
+}
+
+std::optional<double> fit_slope(const std::vector<double>& x, const std::vector<double>& y)
+{
+    std::vector<double> u, v;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (x[i] > 0.0 && y[i] > 0.0) {
+            u.push_back(std::log(x[i]));
+            v.push_back(std::log(y[i]));
+        }
+    if (u.empty()) return std::nullopt;
+    const double count = static_cast<double>(u.size());
+    const double mean_u = std::accumulate(u.begin(), u.end(), 0.0) / count;
+    const double mean_v = std::accumulate(v.begin(), v.end(), 0.0) / count;
+    double squares = 0.0, products = 0.0;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        squares += (u[i] - mean_u) * (u[i] - mean_u);
+        products += (u[i] - mean_u) * (v[i] - mean_v);
+    }
+    constexpr double kLeastSpread = 1e-12;  // of squared logarithms: below it all x are the same
+    if (!(squares > kLeastSpread)) return std::nullopt;
+    return products / squares;
+}
+
+bool is_compared(const RunOutcome& outcome)
+{
+    return outcome.is_finished() && outcome.error && !outcome.is_reference && !outcome.cpu_seconds.empty();
+}
+
+std::vector<std::size_t> find_pareto_front(const std::vector<RunOutcome>& outcomes)
+{
+    std::vector<std::size_t> front;
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+        if (!is_compared(outcomes[i])) continue;
+        const bool is_beaten = std::any_of(outcomes.begin(), outcomes.end(), [&](const RunOutcome& other) {
+            return is_compared(other) && dominates(other, outcomes[i]);
+        });
+        if (!is_beaten) front.push_back(i);
+    }
+    std::sort(front.begin(), front.end(), [&](std::size_t a, std::size_t b) {
+        return *outcomes[a].cpu_median() < *outcomes[b].cpu_median();
+    });
+    return front;
+}
+
+std::vector<std::string> list_problems(const std::vector<RunOutcome>& outcomes)
+{
+    std::vector<std::string> problems;
+    for (const RunOutcome& outcome : outcomes)
+        if (std::find(problems.begin(), problems.end(), outcome.run.problem) == problems.end())
+            problems.push_back(outcome.run.problem);
+    return problems;
+}
+
+std::vector<CheapestRun> find_cheapest(const std::vector<RunOutcome>& outcomes, const std::string& problem)
+{
+    const auto has_share = [&](const RunOutcome& outcome) {
+        return is_compared(outcome) && outcome.run.problem == problem && outcome.error->relative();
+    };
+    if (std::none_of(outcomes.begin(), outcomes.end(), has_share)) return {};
+    std::vector<CheapestRun> found = {{0.1, {}}, {0.01, {}}, {0.001, {}}};
+    for (CheapestRun& cheapest : found)
+        for (std::size_t i = 0; i < outcomes.size(); ++i) {
+            if (!has_share(outcomes[i]) || *outcomes[i].error->relative() > cheapest.share) continue;
+            if (!cheapest.run || *outcomes[i].cpu_median() < *outcomes[*cheapest.run].cpu_median())
+                cheapest.run = i;
+        }
+    return found;
+}
+
+std::string tell_cheapest(const Study& study, const std::vector<RunOutcome>& outcomes)
+{
+    if (!study.error) return "The study measures times alone: it names no error.";
+    const std::vector<std::string> problems = list_problems(outcomes);
+    std::vector<std::string> parts;
+    for (const std::string& problem : problems) {
+        for (const CheapestRun& cheapest : find_cheapest(outcomes, problem))
+            parts.push_back(fmt::format(
+                "{:g} %{}: {}", 100.0 * cheapest.share, problems.size() > 1 ? " with " + problem : "",
+                cheapest.run ? tell_run(outcomes[*cheapest.run]) : "no run of the study"));
+    }
+    if (parts.empty())
+        return study.error->reference == ErrorRule::Reference::None
+                   ? "The error has no reference, so no share of it can be given: see the table."
+                   : "No run could be compared with the reference.";
+    return fmt::format("The cheapest setting that reaches an error of {}; per cent of {}.",
+                       fmt::join(parts, "; of "), describe_scale(*study.error));
+}
+
+std::string tell_error(const Study& study, const std::vector<RunOutcome>& outcomes)
+{
+    if (!study.error) return "";
+    return fmt::format("Error: {}, {}.", tell_quantity(*study.error), tell_reference(study, outcomes));
+}
+
+}  // namespace arris
