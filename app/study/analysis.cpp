@@ -31,13 +31,49 @@ bool is_numeric(const Study& study, const std::string& key)
     });
 }
 
+/// Settings of a run without one key, as text.
+std::string without(const std::vector<Setting>& run, const std::string& key)
+{
+    std::string text;
+    for (const Setting& setting : run)
+        if (setting.key != key) text += assignment(setting) + "\n";
+    return text;
+}
+
+/// Whether runs of the study differ in this key alone, with numbers.
+bool is_axis(const Study& study, const std::string& key)
+{
+    if (!is_numeric(study, key)) return false;
+    std::map<std::string, std::set<std::string>> values;  // by all other settings
+    for (const std::vector<Setting>& run : study.runs)
+        values[without(run, key)].insert(find_setting(run, key)->toml);
+    return std::any_of(values.begin(), values.end(),
+                       [](const auto& entry) { return entry.second.size() > 1; });
+}
+
+/// Whether a number follows from the settings that are no numbers, as a stiffness that is chosen by pattern.
+bool is_determined(const Study& study, const std::string& key)
+{
+    if (!is_numeric(study, key)) return false;
+    std::map<std::string, std::set<std::string>> values;
+    for (const std::vector<Setting>& run : study.runs) {
+        std::string words;
+        for (const Setting& setting : run)
+            if (!setting.number) words += assignment(setting) + "\n";
+        values[words].insert(find_setting(run, key)->toml);
+    }
+    return std::all_of(values.begin(), values.end(),
+                       [](const auto& entry) { return entry.second.size() == 1; });
+}
+
 int rank_of(const std::string& key)
 {
     return key == "cloth.resolution" ? 0 : key == "time.step" ? 1 : 2;
 }
 
-std::string axis_label(const std::string& key)
+std::string axis_label(const std::string& key, bool has_error)
 {
+    if (key == "cloth.resolution" && !has_error) return "vertices of the cloth";
     if (key == "cloth.resolution") return "cells along the cloth's longer side";
     if (key == "time.step") return "time step (s)";
     return key;
@@ -55,7 +91,7 @@ std::string name_settings(const Study& study, const StudyRun& run, const Take& t
     std::vector<std::string> words;
     for (const std::string& key : study.keys) {
         const Setting* setting = find_setting(run.settings, key);
-        if (setting && values_of(study, key).size() > 1 && take(key))
+        if (setting && values_of(study, key).size() > 1 && !is_determined(study, key) && take(key))
             words.push_back(label_setting(*setting));
     }
     return join_words(words);
@@ -66,7 +102,6 @@ double number_of(const RunOutcome& outcome, const std::string& key)
     return *find_setting(outcome.run.settings, key)->number;
 }
 
-// Of log error by log number; without errors, of log CPU time.
 std::optional<double> slope_of(const std::vector<RunOutcome>& outcomes, const StudyCurve& curve,
                                const std::string& key, bool has_error)
 {
@@ -74,8 +109,8 @@ std::optional<double> slope_of(const std::vector<RunOutcome>& outcomes, const St
     for (const std::size_t i : curve.runs) {
         const RunOutcome& outcome = outcomes[i];
         if (has_error ? !is_compared(outcome) : !outcome.is_finished()) continue;
-        x.push_back(number_of(outcome, key));
-        y.push_back(has_error ? outcome.error->value : *outcome.cpu_median());
+        x.push_back(abscissa(outcome, key, has_error));
+        y.push_back(has_error ? outcome.error->value : cpu_seconds_a_step(outcome));
     }
     return fit_slope(x, y);
 }
@@ -93,6 +128,22 @@ std::string tell_run(const RunOutcome& outcome)
         outcome.run.settings.empty() ? "the scene as it is" : list_settings(outcome.run.settings);
     return fmt::format("{} (error {:.2g} %, {:.3g} CPU s)", settings, 100.0 * *outcome.error->relative(),
                        *outcome.cpu_median());
+}
+
+/// "10 and 1 %: SETTINGS", one part for each run.
+std::vector<std::string> tell_thresholds(const std::vector<RunOutcome>& outcomes,
+                                         const std::vector<CheapestRun>& found)
+{
+    std::vector<std::string> parts;
+    for (std::size_t first = 0, next = 0; first < found.size(); first = next) {
+        std::vector<std::string> shares;
+        while (next < found.size() && found[next].run == found[first].run)
+            shares.push_back(fmt::format("{:g}", 100.0 * found[next++].share));
+        parts.push_back(
+            fmt::format("{} %: {}", fmt::join(shares, " % and "),
+                        found[first].run ? tell_run(outcomes[*found[first].run]) : "no run of the study"));
+    }
+    return parts;
 }
 
 std::string tell_reference(const Study& study, const std::vector<RunOutcome>& outcomes)
@@ -137,12 +188,22 @@ std::string tell_quantity(const ErrorRule& rule)
 
 }  // namespace
 
+double abscissa(const RunOutcome& outcome, const std::string& key, bool has_error)
+{
+    return !has_error && key == "cloth.resolution" ? outcome.vertices : number_of(outcome, key);
+}
+
+double cpu_seconds_a_step(const RunOutcome& outcome)
+{
+    return outcome.steps > 0 ? *outcome.cpu_median() / static_cast<double>(outcome.steps) : 0.0;
+}
+
 std::vector<NumericKey> list_numeric_keys(const Study& study)
 {
     std::vector<NumericKey> keys;
     for (const std::string& key : study.keys)
         if (is_numeric(study, key) && values_of(study, key).size() > 1)
-            keys.push_back({key, axis_label(key)});
+            keys.push_back({key, axis_label(key, study.error.has_value())});
     std::stable_sort(keys.begin(), keys.end(), [](const NumericKey& a, const NumericKey& b) {
         return rank_of(a.key) < rank_of(b.key);
     });
@@ -151,7 +212,7 @@ std::vector<NumericKey> list_numeric_keys(const Study& study)
 
 std::string name_method(const Study& study, const StudyRun& run)
 {
-    return name_settings(study, run, [&](const std::string& key) { return !is_numeric(study, key); });
+    return name_settings(study, run, [&](const std::string& key) { return !is_axis(study, key); });
 }
 
 std::vector<StudyCurve> make_curves(const Study& study, const std::vector<RunOutcome>& outcomes,
@@ -250,18 +311,15 @@ std::string tell_cheapest(const Study& study, const std::vector<RunOutcome>& out
     if (!study.error) return "The study measures times alone: it names no error.";
     const std::vector<std::string> problems = list_problems(outcomes);
     std::vector<std::string> parts;
-    for (const std::string& problem : problems) {
-        for (const CheapestRun& cheapest : find_cheapest(outcomes, problem))
-            parts.push_back(fmt::format(
-                "{:g} %{}: {}", 100.0 * cheapest.share, problems.size() > 1 ? " with " + problem : "",
-                cheapest.run ? tell_run(outcomes[*cheapest.run]) : "no run of the study"));
-    }
+    for (const std::string& problem : problems)
+        for (const std::string& part : tell_thresholds(outcomes, find_cheapest(outcomes, problem)))
+            parts.push_back(problems.size() > 1 ? fmt::format("with {} {}", problem, part) : part);
     if (parts.empty())
         return study.error->reference == ErrorRule::Reference::None
                    ? "The error has no reference, so no share of it can be given: see the table."
                    : "No run could be compared with the reference.";
-    return fmt::format("The cheapest setting that reaches an error of {}; per cent of {}.",
-                       fmt::join(parts, "; of "), describe_scale(*study.error));
+    return fmt::format("The cheapest setting with an error of at most {}. Per cent are of {}.",
+                       fmt::join(parts, "; "), describe_scale(*study.error));
 }
 
 std::string tell_error(const Study& study, const std::vector<RunOutcome>& outcomes)

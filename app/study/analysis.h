@@ -9,7 +9,7 @@
 
 namespace arris {
 
-/// A varied key whose values are numbers, at least two of them different.
+/// A varied key whose values are numbers, and in which alone some runs differ.
 struct NumericKey {
     std::string key;
     std::string label;  ///< for an axis
@@ -20,7 +20,8 @@ struct StudyCurve {
     std::string method;             ///< the settings that are no numbers; empty if there are none
     std::string name;               ///< method and the other numbers
     std::vector<std::size_t> runs;  ///< indices of outcomes, finished or not
-    std::optional<double> slope;    ///< of log error by log number; of log CPU time in a study without error
+    std::optional<double>
+        slope;  ///< of log error by log abscissa; of log CPU time a step in a study without error
 };
 
 /// The cheapest finished run with at most this error.
@@ -28,6 +29,13 @@ struct CheapestRun {
     double share = 0.0;  ///< of the reference's scale
     std::optional<std::size_t> run;
 };
+
+/// Where a run stands on a numeric key's axis: at its number; in a study without error, which measures cost,
+/// cloth.resolution stands for the cloth's vertices.
+double abscissa(const RunOutcome& outcome, const std::string& key, bool has_error);
+
+/// 0 without a step.
+double cpu_seconds_a_step(const RunOutcome& outcome);
 
 /// The numeric keys that a study varies: cloth.resolution first, then time.step, then the others in order.
 std::vector<NumericKey> list_numeric_keys(const Study& study);

@@ -13,7 +13,7 @@
 namespace arris {
 namespace {
 
-constexpr double kLeft = 64, kRight = 12, kTop = 34, kPlotHeight = 290, kAxisHeight = 42, kLine = 17;
+constexpr double kLeft = 78, kRight = 12, kTop = 34, kPlotHeight = 290, kAxisHeight = 42, kLine = 17;
 constexpr double kBottom = kTop + kPlotHeight;
 constexpr std::array<const char*, 10> kColours = {"#2a6fdb", "#e07b00", "#189a63", "#c2306e", "#7a56c8",
                                                   "#0e98a8", "#a8820c", "#d9534f", "#74808f", "#8a5a44"};

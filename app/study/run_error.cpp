@@ -114,7 +114,7 @@ RunError measure_error(const ErrorRule& rule, const std::string& run, const std:
 std::string describe_scale(const ErrorRule& rule)
 {
     if (rule.quantity == ErrorRule::Quantity::Shape) return "the diagonal of the reference cloth's box";
-    return "the reference's range over the run (its size where it does not change)";
+    return "the reference's range over the run, or of its size where it does not change";
 }
 
 }  // namespace arris

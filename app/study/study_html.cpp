@@ -98,7 +98,7 @@ std::string slopes_html(const Study& study, const std::vector<RunOutcome>& outco
         "-2 is second "
         "order.</p>\n<table><thead><tr><th>by</th><th>curve</th><th>slope</th></tr></thead><tbody>\n{}"
         "</tbody></table></section>",
-        study.error ? "error" : "CPU time", rows);
+        study.error ? "error" : "CPU time of a step", rows);
 }
 
 std::string counts_text(const Study& study, const std::vector<RunOutcome>& outcomes)

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -13,16 +14,6 @@ namespace arris {
 namespace {
 
 constexpr std::size_t kMostSharePanels = 4;
-
-double number_of(const RunOutcome& outcome, const std::string& key)
-{
-    return *find_setting(outcome.run.settings, key)->number;
-}
-
-double milliseconds_a_step(const RunOutcome& outcome)
-{
-    return outcome.steps > 0 ? 1e3 * *outcome.cpu_median() / static_cast<double>(outcome.steps) : 0.0;
-}
 
 /// Colours curves by method, and dashes those of one method by their order.
 class CurveStyles {
@@ -49,14 +40,16 @@ std::string slope_text(const StudyCurve& curve, const std::string& key, bool has
 {
     if (!curve.slope) return "";
     const double sign = has_error && key == "cloth.resolution" ? -1.0 : 1.0;
-    return fmt::format(" ({} {:.2f})", has_error ? "order" : "exponent", sign * *curve.slope);
+    const double rounded = 0.01 * std::round(100.0 * sign * *curve.slope) + 0.0;  // no minus before a zero
+    return fmt::format(" ({} {:.2f})", has_error ? "order" : "exponent", rounded);
 }
 
-std::vector<double> different_numbers(const std::vector<RunOutcome>& outcomes, const std::string& key)
+std::vector<double> different_numbers(const std::vector<RunOutcome>& outcomes, const std::string& key,
+                                      bool has_error)
 {
     std::vector<double> numbers;
     for (const RunOutcome& outcome : outcomes)
-        if (!outcome.run.is_further) numbers.push_back(number_of(outcome, key));
+        if (!outcome.run.is_further) numbers.push_back(abscissa(outcome, key, has_error));
     std::sort(numbers.begin(), numbers.end());
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
     return numbers;
@@ -134,7 +127,7 @@ LogPanel number_panel(const Study& study, const std::vector<RunOutcome>& outcome
     panel.title = has_error ? "Error against " + key.label : "CPU time of a step against " + key.label;
     panel.x_label = key.label;
     panel.y_label = has_error ? error_unit(*study.error) : "CPU time of a step (ms)";
-    panel.named_x = different_numbers(outcomes, key.key);
+    panel.named_x = different_numbers(outcomes, key.key, has_error);
     CurveStyles styles;
     for (const StudyCurve& curve : make_curves(study, outcomes, key.key)) {
         PanelCurve drawn;
@@ -142,10 +135,10 @@ LogPanel number_panel(const Study& study, const std::vector<RunOutcome>& outcome
         styles.apply(curve.method, drawn);
         for (const std::size_t i : curve.runs) {
             const RunOutcome& outcome = outcomes[i];
-            if (!outcome.is_finished()) panel.failed_x.push_back(number_of(outcome, key.key));
+            if (!outcome.is_finished()) panel.failed_x.push_back(abscissa(outcome, key.key, has_error));
             if (has_error ? !is_compared(outcome) : !outcome.is_finished()) continue;
-            drawn.x.push_back(number_of(outcome, key.key));
-            drawn.y.push_back(has_error ? outcome.error->value : milliseconds_a_step(outcome));
+            drawn.x.push_back(abscissa(outcome, key.key, has_error));
+            drawn.y.push_back(has_error ? outcome.error->value : 1e3 * cpu_seconds_a_step(outcome));
         }
         panel.curves.push_back(std::move(drawn));
     }

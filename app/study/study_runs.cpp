@@ -44,8 +44,12 @@ std::string make_name(const std::vector<Setting>& settings)
     return is_exact ? name : fmt::format("{}-{}", name.substr(0, kMostNameBytes), fingerprint({exact}));
 }
 
-std::string problem_of(const std::vector<Setting>& settings)
+// Of references that are runs each problem has its own; another reference holds for all runs.
+std::string problem_of(const Study& study, const std::vector<Setting>& settings)
 {
+    const bool is_run = study.error && (study.error->reference == ErrorRule::Reference::Finest ||
+                                        study.error->reference == ErrorRule::Reference::Run);
+    if (!is_run) return "";
     std::vector<Setting> physical;
     for (const Setting& setting : settings)
         if (!is_numerical_key(setting.key)) physical.push_back(setting);
@@ -158,7 +162,7 @@ std::vector<StudyRun> list_runs(const Study& study)
         StudyRun run;
         run.settings = settings;
         run.name = make_name(settings);
-        run.problem = problem_of(settings);
+        run.problem = problem_of(study, settings);
         run.scene = complete(study, scene, run);
         require_quantity(study, run);
         runs.push_back(std::move(run));

@@ -14,8 +14,9 @@ struct StudyRun {
     std::string name;               ///< of its folder; depends on its settings alone
     std::vector<Setting> settings;  ///< of the varied keys; of a further run also those of the reference
     bool is_further = false;        ///< runs only as a reference
-    std::string problem;            ///< settings that change the problem: runs compare only with equal ones
-    nlohmann::ordered_json scene;   ///< as run, defaults included, before rules between keys
+    std::string
+        problem;  ///< settings that change the problem, where the reference is a run: only equal ones compare
+    nlohmann::ordered_json scene;  ///< as run, defaults included, before rules between keys
 };
 
 /// Fineness of a run: "finest" is the greatest.

@@ -85,10 +85,10 @@ TEST_F(StudyAnalysis, TellsTheCheapestSettingForEachError)
     EXPECT_EQ(cheapest[0].run, 2u) << "0.9 of 10 is 9 %";
     EXPECT_EQ(cheapest[1].run, 1u);
     EXPECT_FALSE(cheapest[2].run);
-    EXPECT_THAT(tell_cheapest(study_, outcomes_),
-                HasSubstr("10 %: time.step = 0.400000, eol.enabled = true (error 9 %, 1 CPU s)"));
-    EXPECT_THAT(tell_cheapest(study_, outcomes_),
-                HasSubstr("0.1 %: no run of the study; per cent of the reference"));
+    const std::string sentence = tell_cheapest(study_, outcomes_);
+    EXPECT_THAT(sentence,
+                HasSubstr("10 %: time.step = 0.400000, eol.enabled = true (error 9 %, 1 CPU s); 1 %: "));
+    EXPECT_THAT(sentence, HasSubstr("; 0.1 %: no run of the study. Per cent are of the reference"));
 }
 
 TEST_F(StudyAnalysis, ARunIsNeverComparedWithItself)
