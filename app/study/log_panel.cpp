@@ -137,7 +137,9 @@ std::string draw_curve(const PanelCurve& curve, const LogAxis& x, const LogAxis&
         data += fmt::format("{}{:.1f} {:.1f}", data.empty() ? "M" : "L", at_x, at_y);
         markers += marker(at_x, at_y, curve.dash);
     }
-    if (data.empty()) return "";
+    for (const double value : curve.zero_x)
+        if (value > 0.0)
+            markers += fmt::format("<path d=\"M{:.1f} {:.1f}h9l-4.5 8z\"/>", x(value) - 4.5, kBottom - 9);
     return fmt::format("<path class=\"curve\" {} d=\"{}\"/><g fill=\"{}\">{}</g>\n",
                        line_style(curve.colour, curve.dash), data, kColours[curve.colour % kColours.size()],
                        markers);
@@ -200,8 +202,10 @@ std::vector<double> all_values(const LogPanel& panel, std::vector<double> PanelC
 
 PanelDrawing draw_panel(const LogPanel& panel)
 {
-    const LogAxis x =
-        make_axis(all_values(panel, &PanelCurve::x, panel.failed_x), kLeft, kPanelWidth - kRight);
+    std::vector<double> at_border = panel.failed_x;
+    for (const PanelCurve& curve : panel.curves)
+        at_border.insert(at_border.end(), curve.zero_x.begin(), curve.zero_x.end());
+    const LogAxis x = make_axis(all_values(panel, &PanelCurve::x, at_border), kLeft, kPanelWidth - kRight);
     const LogAxis y = make_axis(all_values(panel, &PanelCurve::y, {}), kBottom, kTop);
     std::string svg = draw_y_axis(y) + draw_x_axis(x, panel.named_x, panel.x_label) +
                       draw_frame(panel.title, panel.y_label);

@@ -12,6 +12,7 @@ struct PanelCurve {
     int colour = 0;
     int dash = 0;  ///< line and marker: curves of one colour differ in it
     std::vector<double> x, y;
+    std::vector<double> zero_x;  ///< points with y = 0: triangles at the lower border
 };
 
 /// A drawing with two logarithmic axes, 560 x 400 units, with its legend below.

@@ -74,11 +74,23 @@ void add_notes(const std::vector<RunOutcome>& outcomes, LogPanel& panel)
     const auto exact = std::count_if(outcomes.begin(), outcomes.end(), [](const RunOutcome& outcome) {
         return is_compared(outcome) && !(outcome.error->value > 0.0);
     });
-    if (exact > 0) panel.notes.push_back(fmt::format("{} runs without any error are not drawn", exact));
+    if (exact > 0)
+        panel.notes.push_back(fmt::format("{} runs without any error: triangles at the lower border", exact));
     const auto references = std::count_if(outcomes.begin(), outcomes.end(),
                                           [](const RunOutcome& outcome) { return outcome.is_reference; });
     if (references > 0)
-        panel.notes.push_back(fmt::format("{} run(s) taken as reference are not drawn", references));
+        panel.notes.push_back(fmt::format("not drawn: {} taken as reference",
+                                          references == 1 ? "the run" : fmt::format("{} runs", references)));
+}
+
+void add_point(double x, double y, PanelCurve& curve)
+{
+    if (!(y > 0.0)) {
+        curve.zero_x.push_back(x);
+        return;
+    }
+    curve.x.push_back(x);
+    curve.y.push_back(y);
 }
 
 std::vector<StudyCurve> curves_or_one(const Study& study, const std::vector<RunOutcome>& outcomes,
@@ -107,8 +119,7 @@ LogPanel cost_panel(const Study& study, const std::vector<RunOutcome>& outcomes,
         styles.apply(curve.method, drawn);
         for (const std::size_t i : curve.runs) {
             if (!is_compared(outcomes[i])) continue;
-            drawn.x.push_back(*outcomes[i].cpu_median());
-            drawn.y.push_back(outcomes[i].error->value);
+            add_point(*outcomes[i].cpu_median(), outcomes[i].error->value, drawn);
         }
         panel.curves.push_back(std::move(drawn));
     }
@@ -137,8 +148,8 @@ LogPanel number_panel(const Study& study, const std::vector<RunOutcome>& outcome
             const RunOutcome& outcome = outcomes[i];
             if (!outcome.is_finished()) panel.failed_x.push_back(abscissa(outcome, key.key, has_error));
             if (has_error ? !is_compared(outcome) : !outcome.is_finished()) continue;
-            drawn.x.push_back(abscissa(outcome, key.key, has_error));
-            drawn.y.push_back(has_error ? outcome.error->value : 1e3 * cpu_seconds_a_step(outcome));
+            add_point(abscissa(outcome, key.key, has_error),
+                      has_error ? outcome.error->value : 1e3 * cpu_seconds_a_step(outcome), drawn);
         }
         panel.curves.push_back(std::move(drawn));
     }
