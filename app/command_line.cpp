@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -112,12 +111,14 @@ CLI::App* add_study(CLI::App& app, StudyRequest& request)
     command->add_option("-o,--output", request.directory, "Folder for the results; default out/<study>");
     command->add_option("--jobs", request.jobs, "Runs at a time, each with one thread; default: one a core")
         ->check(CLI::Range(1, 1024));
-    const std::map<std::string, StudyEngine> engines = {{"local", StudyEngine::Local},
-                                                        {"slurm", StudyEngine::Slurm}};
-    command->add_option("--engine", request.engine, "local, or slurm: a Slurm job array")
-        ->transform(CLI::Transformer(engines))
-        ->check(CLI::IsMember(engines))
-        ->type_name("ENGINE");
+    command
+        ->add_option_function<std::string>(
+            "--engine",
+            [&request](const std::string& name) {
+                request.engine = name == "slurm" ? StudyEngine::Slurm : StudyEngine::Local;
+            },
+            "local, or slurm: a Slurm job array")
+        ->check(CLI::IsMember({"local", "slurm"}));
     command->add_flag("--quick", request.is_quick, "The study's coarse variant, its table quick");
     command->add_flag("--overwrite", request.is_overwriting, "Run again what has finished");
     command->add_flag("--quiet", request.is_quiet, "Print only failed runs and errors");

@@ -12,65 +12,6 @@
 namespace arris {
 namespace {
 
-/// Different values that a key takes in a study, as text.
-std::set<std::string> values_of(const Study& study, const std::string& key)
-{
-    std::set<std::string> values;
-    for (const std::vector<Setting>& run : study.runs) {
-        const Setting* setting = find_setting(run, key);
-        values.insert(setting ? setting->toml : "");
-    }
-    return values;
-}
-
-bool is_numeric(const Study& study, const std::string& key)
-{
-    return std::all_of(study.runs.begin(), study.runs.end(), [&](const std::vector<Setting>& run) {
-        const Setting* setting = find_setting(run, key);
-        return setting && setting->number;
-    });
-}
-
-/// Settings of a run without one key, as text.
-std::string without(const std::vector<Setting>& run, const std::string& key)
-{
-    std::string text;
-    for (const Setting& setting : run)
-        if (setting.key != key) text += assignment(setting) + "\n";
-    return text;
-}
-
-/// Whether runs of the study differ in this key alone, with numbers.
-bool is_axis(const Study& study, const std::string& key)
-{
-    if (!is_numeric(study, key)) return false;
-    std::map<std::string, std::set<std::string>> values;  // by all other settings
-    for (const std::vector<Setting>& run : study.runs)
-        values[without(run, key)].insert(find_setting(run, key)->toml);
-    return std::any_of(values.begin(), values.end(),
-                       [](const auto& entry) { return entry.second.size() > 1; });
-}
-
-/// Whether a number follows from the settings that are no numbers, as a stiffness that is chosen by pattern.
-bool is_determined(const Study& study, const std::string& key)
-{
-    if (!is_numeric(study, key)) return false;
-    std::map<std::string, std::set<std::string>> values;
-    for (const std::vector<Setting>& run : study.runs) {
-        std::string words;
-        for (const Setting& setting : run)
-            if (!setting.number) words += assignment(setting) + "\n";
-        values[words].insert(find_setting(run, key)->toml);
-    }
-    return std::all_of(values.begin(), values.end(),
-                       [](const auto& entry) { return entry.second.size() == 1; });
-}
-
-int rank_of(const std::string& key)
-{
-    return key == "cloth.resolution" ? 0 : key == "time.step" ? 1 : 2;
-}
-
 std::string axis_label(const std::string& key, bool has_error)
 {
     if (key == "cloth.resolution" && !has_error) return "vertices of the cloth";
@@ -84,15 +25,19 @@ std::string join_words(const std::vector<std::string>& words)
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
-/// Words for the varied settings of a run that `take` accepts.
+bool is_axis(const Study& study, const std::string& key)
+{
+    return std::find(study.axis_keys.begin(), study.axis_keys.end(), key) != study.axis_keys.end();
+}
+
+/// Words for the telling settings of a run that `take` accepts.
 template <class Take>
 std::string name_settings(const Study& study, const StudyRun& run, const Take& take)
 {
     std::vector<std::string> words;
-    for (const std::string& key : study.keys) {
+    for (const std::string& key : study.telling_keys) {
         const Setting* setting = find_setting(run.settings, key);
-        if (setting && values_of(study, key).size() > 1 && !is_determined(study, key) && take(key))
-            words.push_back(label_setting(*setting));
+        if (setting && take(key)) words.push_back(label_setting(*setting));
     }
     return join_words(words);
 }
@@ -122,16 +67,18 @@ bool dominates(const RunOutcome& a, const RunOutcome& b)
            (cost_a < cost_b || a.error->value < b.error->value);
 }
 
-std::string tell_run(const RunOutcome& outcome)
+std::string tell_run(const Study& study, const RunOutcome& outcome)
 {
-    const std::string settings =
-        outcome.run.settings.empty() ? "the scene as it is" : list_settings(outcome.run.settings);
-    return fmt::format("{} (error {:.2g} %, {:.3g} CPU s)", settings, 100.0 * *outcome.error->relative(),
-                       *outcome.cpu_median());
+    std::vector<Setting> telling;
+    for (const std::string& key : study.telling_keys)
+        if (const Setting* setting = find_setting(outcome.run.settings, key)) telling.push_back(*setting);
+    return fmt::format("{} (error {:.2g} %, {:.3g} CPU s)",
+                       telling.empty() ? "the scene as it is" : list_settings(telling),
+                       100.0 * *outcome.error->relative(), *outcome.cpu_median());
 }
 
 /// "10 and 1 %: SETTINGS", one part for each run.
-std::vector<std::string> tell_thresholds(const std::vector<RunOutcome>& outcomes,
+std::vector<std::string> tell_thresholds(const Study& study, const std::vector<RunOutcome>& outcomes,
                                          const std::vector<CheapestRun>& found)
 {
     std::vector<std::string> parts;
@@ -139,9 +86,9 @@ std::vector<std::string> tell_thresholds(const std::vector<RunOutcome>& outcomes
         std::vector<std::string> shares;
         while (next < found.size() && found[next].run == found[first].run)
             shares.push_back(fmt::format("{:g}", 100.0 * found[next++].share));
-        parts.push_back(
-            fmt::format("{} %: {}", fmt::join(shares, " % and "),
-                        found[first].run ? tell_run(outcomes[*found[first].run]) : "no run of the study"));
+        parts.push_back(fmt::format(
+            "{} %: {}", fmt::join(shares, " % and "),
+            found[first].run ? tell_run(study, outcomes[*found[first].run]) : "no run of the study"));
     }
     return parts;
 }
@@ -201,12 +148,8 @@ double cpu_seconds_a_step(const RunOutcome& outcome)
 std::vector<NumericKey> list_numeric_keys(const Study& study)
 {
     std::vector<NumericKey> keys;
-    for (const std::string& key : study.keys)
-        if (is_numeric(study, key) && values_of(study, key).size() > 1)
-            keys.push_back({key, axis_label(key, study.error.has_value())});
-    std::stable_sort(keys.begin(), keys.end(), [](const NumericKey& a, const NumericKey& b) {
-        return rank_of(a.key) < rank_of(b.key);
-    });
+    for (const std::string& key : study.axis_keys)
+        keys.push_back({key, axis_label(key, study.error.has_value())});
     return keys;
 }
 
@@ -312,7 +255,7 @@ std::string tell_cheapest(const Study& study, const std::vector<RunOutcome>& out
     const std::vector<std::string> problems = list_problems(outcomes);
     std::vector<std::string> parts;
     for (const std::string& problem : problems)
-        for (const std::string& part : tell_thresholds(outcomes, find_cheapest(outcomes, problem)))
+        for (const std::string& part : tell_thresholds(study, outcomes, find_cheapest(outcomes, problem)))
             parts.push_back(problems.size() > 1 ? fmt::format("with {} {}", problem, part) : part);
     if (parts.empty())
         return study.error->reference == ErrorRule::Reference::None

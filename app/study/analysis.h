@@ -9,7 +9,7 @@
 
 namespace arris {
 
-/// A varied key whose values are numbers, and in which alone some runs differ.
+/// An axis key of a study.
 struct NumericKey {
     std::string key;
     std::string label;  ///< for an axis
@@ -37,10 +37,10 @@ double abscissa(const RunOutcome& outcome, const std::string& key, bool has_erro
 /// 0 without a step.
 double cpu_seconds_a_step(const RunOutcome& outcome);
 
-/// The numeric keys that a study varies: cloth.resolution first, then time.step, then the others in order.
+/// The axis keys of a study: cloth.resolution first, then time.step, then the others in order.
 std::vector<NumericKey> list_numeric_keys(const Study& study);
 
-/// Settings of a run that are no numbers and vary in the study, as words.
+/// Telling settings of a run that are no axes, as words.
 std::string name_method(const Study& study, const StudyRun& run);
 
 /// Curves over a numeric key, without further runs.

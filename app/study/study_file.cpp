@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "app/study/reference_formula.h"
+#include "app/study/study_axes.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -59,6 +60,7 @@ class StudyReader {
         read_runs();
         read_error();
         read_repeats();
+        find_axes(study_);
         return study_;
     }
 

@@ -45,6 +45,8 @@ struct Study {
     std::vector<Setting> common;             ///< of every run
     std::vector<std::string> keys;           ///< that are varied
     std::vector<std::vector<Setting>> runs;  ///< settings of varied keys, in the order of `keys`
+    std::vector<std::string> telling_keys;   ///< keys without those whose values the others determine
+    std::vector<std::string> axis_keys;      ///< telling keys in which alone some runs differ, with numbers
     std::optional<ErrorRule> error;
     int repeats = 1;
     bool is_quick = false;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/study/study_axes.h"
 #include "app/study/study_panels.h"
 
 namespace arris {
@@ -32,6 +33,7 @@ class StudyAnalysis : public ::testing::Test {
         if (status == "finished") outcome.error = RunError{error, 10.0, {}, {}};
         study_.runs.push_back(outcome.run.settings);
         outcomes_.push_back(outcome);
+        find_axes(study_);
     }
     void SetUp() override
     {

@@ -55,6 +55,28 @@ TEST(StudyFile, KeysInTablesAreDottedKeysAndValuesAreTomlAgain)
     EXPECT_EQ(study.runs[0][0].number, 16.0) << "the number of a resolution is that of its longer side";
 }
 
+TEST(StudyFile, AxesAreNumbersThatVaryAloneAndNamesLeaveOutWhatFollows)
+{
+    const Study grid = read(
+        "scene = 's.toml'\n"
+        "vary = { \"time.step\" = [0.1, 0.2], \"eol.enabled\" = [true, false], \"cloth.resolution\" = [[4, "
+        "4], [8, 8]], "
+        "\"solver.tolerance\" = [1e-9] }\n");
+    EXPECT_THAT(grid.axis_keys, ElementsAre("cloth.resolution", "time.step"));
+    EXPECT_THAT(grid.telling_keys, ElementsAre("time.step", "eol.enabled", "cloth.resolution"));
+    // The stiffness follows from the pattern, the size from the resolution.
+    const Study list = read(
+        "scene = 's.toml'\nruns = [\n"
+        "{ cloth.pattern = 'cross', cloth.material.bending_stiffness = 1, cloth.resolution = [4, 1], "
+        "cloth.size = [2, 1] },\n"
+        "{ cloth.pattern = 'cross', cloth.material.bending_stiffness = 1, cloth.resolution = [8, 1], "
+        "cloth.size = [2, 2] },\n"
+        "{ cloth.pattern = 'diagonal', cloth.material.bending_stiffness = 3, cloth.resolution = [4, 1], "
+        "cloth.size = [2, 1] }]\n");
+    EXPECT_THAT(list.telling_keys, ElementsAre("cloth.pattern", "cloth.resolution"));
+    EXPECT_THAT(list.axis_keys, ElementsAre("cloth.resolution"));
+}
+
 TEST(StudyFile, QuickKeysReplaceOnlyWhatTheyName)
 {
     const std::string text =

@@ -126,7 +126,7 @@ TEST_F(StudyCommand, RunsOnlyWhatHasChanged)
     write("vary = { \"time.step\" = [0.02, 0.01] }\n");
     ASSERT_EQ(run(), 0) << err_;
     EXPECT_THAT(out_, HasSubstr("   2/2  finished"));
-    ASSERT_EQ(run(), 0) << err_;
+    ASSERT_EQ(run({"--engine", "local"}), 0) << err_;
     EXPECT_THAT(out_, HasSubstr("2 of 2 runs are done already"));
     write("vary = { \"time.step\" = [0.02, 0.01, 0.04] }\n");
     ASSERT_EQ(run(), 0) << err_;
