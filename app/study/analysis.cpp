@@ -60,6 +60,12 @@ std::optional<double> slope_of(const std::vector<RunOutcome>& outcomes, const St
     return fit_slope(x, y);
 }
 
+/// Whether an error can be judged. Without a reference a small value is not better than a large one.
+bool has_reference(const RunOutcome& outcome)
+{
+    return is_compared(outcome) && outcome.error->scale.has_value();
+}
+
 bool dominates(const RunOutcome& a, const RunOutcome& b)
 {
     const double cost_a = *a.cpu_median(), cost_b = *b.cpu_median();
@@ -103,7 +109,7 @@ std::string tell_reference(const Study& study, const std::vector<RunOutcome>& ou
         references.empty() ? "no run: it has not finished" : fmt::format("{}", fmt::join(references, "; "));
     switch (rule.reference) {
         case ErrorRule::Reference::None:
-            return "without a reference: the value itself";
+            return "";
         case ErrorRule::Reference::Formula:
             return "against " + rule.formula;
         case ErrorRule::Reference::File:
@@ -126,11 +132,19 @@ std::string tell_quantity(const ErrorRule& rule)
         return fmt::format("{} distance (m) at equal material points in {}",
                            rule.norm == Norm::Max ? "greatest" : "mean",
                            rule.is_over_all_frames ? "all frames" : "the last frame");
-    const std::string norm = rule.norm == Norm::Max   ? "greatest error over time of "
-                             : rule.norm == Norm::Rms ? "root-mean-square error over time of "
-                                                      : "error at the end of ";
-    if (rule.quantity == ErrorRule::Quantity::Column) return norm + rule.column;
-    return fmt::format("{}the displacement (m) of probe {} along {}", norm, rule.probe, "xyz"[rule.axis]);
+    const std::string quantity =
+        rule.quantity == ErrorRule::Quantity::Column
+            ? rule.column
+            : fmt::format("the displacement (m) of probe {} along {}", rule.probe, "xyz"[rule.axis]);
+    if (rule.reference == ErrorRule::Reference::None)
+        return (rule.norm == Norm::Max   ? "greatest size over time of "
+                : rule.norm == Norm::Rms ? "root mean square over time of "
+                                         : "size at the end of ") +
+               quantity;
+    return (rule.norm == Norm::Max   ? "greatest error over time of "
+            : rule.norm == Norm::Rms ? "root-mean-square error over time of "
+                                     : "error at the end of ") +
+           quantity;
 }
 
 }  // namespace
@@ -176,7 +190,8 @@ std::vector<StudyCurve> make_curves(const Study& study, const std::vector<RunOut
         std::stable_sort(curve.runs.begin(), curve.runs.end(), [&](std::size_t a, std::size_t b) {
             return number_of(outcomes[a], key) < number_of(outcomes[b], key);
         });
-        curve.slope = slope_of(outcomes, curve, key, study.error.has_value());
+        if (!study.error || study.error->reference != ErrorRule::Reference::None)
+            curve.slope = slope_of(outcomes, curve, key, study.error.has_value());
     }
     return curves;
 }
@@ -212,9 +227,9 @@ std::vector<std::size_t> find_pareto_front(const std::vector<RunOutcome>& outcom
 {
     std::vector<std::size_t> front;
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
-        if (!is_compared(outcomes[i])) continue;
+        if (!has_reference(outcomes[i])) continue;
         const bool is_beaten = std::any_of(outcomes.begin(), outcomes.end(), [&](const RunOutcome& other) {
-            return is_compared(other) && dominates(other, outcomes[i]);
+            return has_reference(other) && dominates(other, outcomes[i]);
         });
         if (!is_beaten) front.push_back(i);
     }
@@ -261,13 +276,18 @@ std::string tell_cheapest(const Study& study, const std::vector<RunOutcome>& out
         return study.error->reference == ErrorRule::Reference::None
                    ? "The error has no reference, so no share of it can be given: see the table."
                    : "No run could be compared with the reference.";
+    const auto compared = std::find_if(outcomes.begin(), outcomes.end(), is_compared);
+    const ErrorScale kind = compared == outcomes.end() ? ErrorScale::Range : compared->error->scale_kind;
     return fmt::format("The cheapest setting with an error of at most {}. Per cent are of {}.",
-                       fmt::join(parts, "; "), describe_scale(*study.error));
+                       fmt::join(parts, "; "), describe_scale(kind));
 }
 
 std::string tell_error(const Study& study, const std::vector<RunOutcome>& outcomes)
 {
     if (!study.error) return "";
+    if (study.error->reference == ErrorRule::Reference::None)
+        return fmt::format("Value in the column error: {}; there is no reference.",
+                           tell_quantity(*study.error));
     return fmt::format("Error: {}, {}.", tell_quantity(*study.error), tell_reference(study, outcomes));
 }
 

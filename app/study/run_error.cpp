@@ -51,13 +51,13 @@ double norm_of(const std::vector<double>& differences, const std::vector<double>
     return duration > 0.0 ? std::sqrt(squares / duration) : most;
 }
 
-// A reference that stays at one value, such as a tip at rest, is measured by its size.
-double scale_of(const std::vector<double>& reference)
+void set_scale(const std::vector<double>& reference, RunError& error)
 {
     const auto [least, greatest] = std::minmax_element(reference.begin(), reference.end());
     const double range = *greatest - *least, size = std::max(std::abs(*least), std::abs(*greatest));
     constexpr double kRounding = 1e-12;  // of the size
-    return range > kRounding * size ? range : size;
+    error.scale_kind = range > kRounding * size ? ErrorScale::Range : ErrorScale::Size;
+    error.scale = error.scale_kind == ErrorScale::Range ? range : size;
 }
 
 RunError history_error(const ErrorRule& rule, const std::string& run, const std::string& reference_run)
@@ -69,7 +69,7 @@ RunError history_error(const ErrorRule& rule, const std::string& run, const std:
         differences.push_back(history.values[i] - reference[i]);
     RunError error;
     error.value = norm_of(differences, history.times, rule.norm);
-    if (rule.reference != Reference::None) error.scale = scale_of(reference);
+    if (rule.reference != Reference::None) set_scale(reference, error);
     return error;
 }
 
@@ -81,6 +81,7 @@ RunError shape_error(const ErrorRule& rule, const std::string& run, const std::s
             fmt::format("{}: has {} frames, but the reference has {}; allowed: as many, at least 1",
                         printable(run), frames, count_frames(reference_run)));
     RunError error;
+    error.scale_kind = ErrorScale::Diagonal;
     double mean = 0.0, greatest = 0.0;
     const std::int64_t first = rule.is_over_all_frames ? 0 : frames - 1;
     for (std::int64_t i = first; i < frames; ++i) {
@@ -111,10 +112,17 @@ RunError measure_error(const ErrorRule& rule, const std::string& run, const std:
                                                        : history_error(rule, run, reference_run);
 }
 
-std::string describe_scale(const ErrorRule& rule)
+std::string describe_scale(ErrorScale kind)
 {
-    if (rule.quantity == ErrorRule::Quantity::Shape) return "the diagonal of the reference cloth's box";
-    return "the reference's range over the run, or of its size where it does not change";
+    switch (kind) {
+        case ErrorScale::Range:
+            return "the reference's range over the run";
+        case ErrorScale::Size:
+            return "the reference, which does not change";
+        case ErrorScale::Diagonal:
+            return "the diagonal of the reference cloth's box";
+    }
+    return "";
 }
 
 }  // namespace arris

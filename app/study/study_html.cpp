@@ -26,7 +26,10 @@ std::string columns_html(const Study& study)
 {
     std::string html;
     for (const std::string& key : study.keys) html += "<th>" + escape_html(key) + "</th>";
-    if (study.error) html += "<th>error</th><th>error, %</th>";
+    const bool has_reference = study.error && study.error->reference != ErrorRule::Reference::None;
+    if (study.error)
+        html += fmt::format("<th>{}</th><th>error, %</th>",
+                            has_reference ? "error" : escape_html(study.error->column));
     html += "<th>CPU s</th><th>least</th><th>greatest</th><th>ms a step</th><th>steps</th><th>vertices</th>";
     return html + "<th>memory, MiB</th><th>outcome</th>";
 }

@@ -55,8 +55,15 @@ std::vector<double> different_numbers(const std::vector<RunOutcome>& outcomes, c
     return numbers;
 }
 
+/// "Error", or without a reference the column that takes its place.
+std::string error_name(const ErrorRule& rule)
+{
+    return rule.reference == ErrorRule::Reference::None ? rule.column : "Error";
+}
+
 std::string error_unit(const ErrorRule& rule)
 {
+    if (rule.reference == ErrorRule::Reference::None) return rule.column;
     return rule.quantity == ErrorRule::Quantity::Column ? "error of " + rule.column : "error (m)";
 }
 
@@ -75,7 +82,7 @@ void add_notes(const std::vector<RunOutcome>& outcomes, LogPanel& panel)
         return is_compared(outcome) && !(outcome.error->value > 0.0);
     });
     if (exact > 0)
-        panel.notes.push_back(fmt::format("{} runs without any error: triangles at the lower border", exact));
+        panel.notes.push_back(fmt::format("triangles at the lower border: exactly 0 ({} runs)", exact));
     const auto references = std::count_if(outcomes.begin(), outcomes.end(),
                                           [](const RunOutcome& outcome) { return outcome.is_reference; });
     if (references > 0)
@@ -108,7 +115,7 @@ LogPanel cost_panel(const Study& study, const std::vector<RunOutcome>& outcomes,
                     const std::vector<NumericKey>& keys)
 {
     LogPanel panel;
-    panel.title = "Error against CPU time";
+    panel.title = error_name(*study.error) + " against CPU time";
     panel.x_label = fmt::format("CPU time of a run (s{})",
                                 study.repeats > 1 ? fmt::format(", median of {}", study.repeats) : "");
     panel.y_label = error_unit(*study.error);
@@ -135,7 +142,7 @@ LogPanel number_panel(const Study& study, const std::vector<RunOutcome>& outcome
 {
     const bool has_error = study.error.has_value();
     LogPanel panel;
-    panel.title = has_error ? "Error against " + key.label : "CPU time of a step against " + key.label;
+    panel.title = (has_error ? error_name(*study.error) : "CPU time of a step") + " against " + key.label;
     panel.x_label = key.label;
     panel.y_label = has_error ? error_unit(*study.error) : "CPU time of a step (ms)";
     panel.named_x = different_numbers(outcomes, key.key, has_error);

@@ -30,7 +30,7 @@ class StudyAnalysis : public ::testing::Test {
         outcome.status = status;
         outcome.cpu_seconds = {cpu};
         outcome.wall_seconds = {cpu};
-        if (status == "finished") outcome.error = RunError{error, 10.0, {}, {}};
+        if (status == "finished") outcome.error = RunError{error, 10.0, ErrorScale::Range, {}, {}};
         study_.runs.push_back(outcome.run.settings);
         outcomes_.push_back(outcome);
         find_axes(study_);
@@ -82,6 +82,7 @@ TEST_F(StudyAnalysis, TellsTheCheapestSettingForEachError)
     add(0.1, true, 4, 0.05);
     add(0.2, true, 2, 0.05);
     add(0.4, true, 1, 0.9);
+    add(0.4, false, 0.5, 5.0);
     const std::vector<CheapestRun> cheapest = find_cheapest(outcomes_, "");
     ASSERT_EQ(cheapest.size(), 3u);
     EXPECT_EQ(cheapest[0].run, 2u) << "0.9 of 10 is 9 %";
@@ -100,6 +101,20 @@ TEST_F(StudyAnalysis, ARunIsNeverComparedWithItself)
     outcomes_[0].is_reference = true;
     EXPECT_THAT(find_pareto_front(outcomes_), ElementsAre(1));
     EXPECT_FALSE(find_cheapest(outcomes_, "")[2].run);
+}
+
+TEST_F(StudyAnalysis, WithoutAReferenceSmallIsNotBetter)
+{
+    study_.error->reference = ErrorRule::Reference::None;
+    study_.error->quantity = ErrorRule::Quantity::Column;
+    study_.error->column = "kinetic_energy";
+    add(0.1, true, 4, 0.05);
+    add(0.2, true, 2, 0.5);
+    for (RunOutcome& outcome : outcomes_) outcome.error->scale.reset();
+    EXPECT_TRUE(find_pareto_front(outcomes_).empty());
+    EXPECT_FALSE(make_curves(study_, outcomes_, "time.step")[0].slope);
+    EXPECT_THAT(tell_cheapest(study_, outcomes_), HasSubstr("has no reference"));
+    EXPECT_THAT(draw_study(study_, outcomes_), HasSubstr("kinetic_energy against CPU time"));
 }
 
 TEST_F(StudyAnalysis, DrawsACurveAMethodTheFrontAndFailedRuns)

@@ -112,7 +112,7 @@ TEST_F(StudyCommand, MeasuresTheErrorAndTheOrderOfImplicitEuler)
                                       "wall_s_median,peak_memory_bytes,status,"));
     const auto json = nlohmann::json::parse(read_bytes(folder_ / "out/study.json"));
     EXPECT_NEAR(json["slopes"][0]["slope"].get<double>(), 1.0, 1e-3);
-    EXPECT_THAT(out_, HasSubstr("; 1 % and 0.1 %: no run of the study."));  // 2.5 % with the least step
+    EXPECT_THAT(out_, HasSubstr("; 1 and 0.1 %: no run of the study."));  // 2.5 % with the least step
     const std::string html = read_bytes(folder_ / "out/study.html"),
                       svg = read_bytes(folder_ / "out/study.svg");
     EXPECT_THAT(html,
