@@ -46,11 +46,12 @@ LogAxis make_axis(const std::vector<double>& values, double from, double to)
     return {least - margin, greatest + margin, from, to};
 }
 
-/// Powers of ten; where these are fewer than three, also their multiples by 2 and 5.
+/// Powers of ten; where these are fewer than three, also their multiples.
 std::vector<double> make_ticks(const LogAxis& axis)
 {
     std::vector<double> ticks;
-    for (const std::vector<double>& steps : {std::vector<double>{1.0}, {1.0, 2.0, 5.0}}) {
+    for (const std::vector<double>& steps :
+         {std::vector<double>{1.0}, {1.0, 2.0, 5.0}, {1.0, 1.5, 2.0, 3.0, 5.0, 7.0}}) {
         ticks.clear();
         const double first = std::floor(axis.least), last = std::ceil(axis.greatest);
         const double stride = std::ceil((last - first) / 8.0);

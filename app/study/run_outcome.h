@@ -47,7 +47,7 @@ std::vector<RunOutcome> collect_outcomes(const std::vector<StudyRun>& runs, int 
                                          const TaskFolder& folder);
 
 /// Measures the errors of finished runs. A run whose error cannot be measured gets the status "no_error",
-/// with the reason. Throws InputError if a reference that all runs share is invalid.
+/// with the reason.
 void measure_errors(const ErrorRule& rule, const TaskFolder& folder, std::vector<RunOutcome>& outcomes);
 
 }  // namespace arris

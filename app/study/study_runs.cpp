@@ -12,6 +12,7 @@
 #include "app/scene/scene_document.h"
 #include "app/scene/scene_values.h"
 #include "app/study/fingerprint.h"
+#include "app/study/time_history.h"
 #include "app/text/printable.h"
 #include "geometry/input_error.h"
 
@@ -167,6 +168,8 @@ std::vector<StudyRun> list_runs(const Study& study)
         require_quantity(study, run);
         runs.push_back(std::move(run));
     }
+    if (study.error && study.error->reference == ErrorRule::Reference::File)
+        read_reference_file(study.error->formula, *study.error);  // before anything runs
     if (study.error && study.error->reference == ErrorRule::Reference::Run)
         add_further_runs(study, scene, runs);
     require_different_names(study, runs);

@@ -27,7 +27,7 @@ struct Fineness {
 Fineness fineness_of(const StudyRun& run);
 
 /// The runs of a study in its order, then the further runs for references. Throws InputError if a setting is
-/// not valid for the scene, or if the error's probe or column does not exist.
+/// not valid for the scene, or if the error's probe, column or reference file does not exist.
 std::vector<StudyRun> list_runs(const Study& study);
 
 /// "KEY=VALUE" of all settings of a run, those common to all runs first.

@@ -225,6 +225,7 @@ TEST_F(StudyCommand, BadInputIsOneLineBeforeAnythingRuns)
         {"vary = { \"time.step\" = [-1] }\n", "time.step"},
         {vary + "error = { probe = 'q', reference = 't' }\n",
          "error.probe = \"q\": is not in the scene; allowed: p"},
+        {vary + "error = { probe = 'p', reference = 'no.csv' }\n", "no.csv: cannot be opened"},
         {vary + "error = { column = 'kinetic', reference = 't' }\n", "allowed: a column of steps.csv"},
         {vary +
              "set = { \"output.frames_per_second\" = 0 }\nerror = { shape = 'last', reference = 'finest' }\n",
