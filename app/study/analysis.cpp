@@ -92,8 +92,11 @@ std::vector<std::string> tell_thresholds(const Study& study, const std::vector<R
         std::vector<std::string> shares;
         while (next < found.size() && found[next].run == found[first].run)
             shares.push_back(fmt::format("{:g}", 100.0 * found[next++].share));
+        std::string listed = shares.front();
+        for (std::size_t i = 1; i < shares.size(); ++i)
+            listed.append(i + 1 < shares.size() ? ", " : " and ").append(shares[i]);
         parts.push_back(fmt::format(
-            "{} %: {}", fmt::join(shares, " % and "),
+            "{} %: {}", listed,
             found[first].run ? tell_run(study, outcomes[*found[first].run]) : "no run of the study"));
     }
     return parts;
