@@ -13,6 +13,7 @@
 #include "app/run/run.h"
 #include "app/run/run_export_options.h"
 #include "app/scene/scene_docs.h"
+#include "app/study/study.h"
 #include "app/text/printable.h"
 #include "app/text/version.h"
 #include "geometry/input_error.h"
@@ -42,7 +43,7 @@ int tell_parse_error(const CLI::App& app, const CLI::ParseError& error)
     if (is_missing && app.get_subcommands().empty()) {
         const std::vector<std::string> words = app.remaining();
         line = words.empty() ? "a command is missing" : words.front() + ": is not a command";
-        line += "; allowed: run, resume, check, export, docs";
+        line += "; allowed: run, resume, check, study, export, docs";
     }
     if (is_missing && app.got_subcommand("docs")) line += "; allowed: scene, schema";
     for (char& c : line)
@@ -102,6 +103,28 @@ CLI::App* add_check(CLI::App& app, CheckRequest& request)
     return command;
 }
 
+CLI::App* add_study(CLI::App& app, StudyRequest& request)
+{
+    CLI::App* command =
+        app.add_subcommand("study", "Run a scene over a grid of settings: error against time");
+    command->add_option("study", request.study, "Study file (TOML)")->required();
+    command->add_option("-o,--output", request.directory, "Folder for the results; default out/<study>");
+    command->add_option("--jobs", request.jobs, "Runs at a time, each with one thread; default: one a core")
+        ->check(CLI::Range(1, 1024));
+    command
+        ->add_option_function<std::string>(
+            "--engine",
+            [&request](const std::string& name) {
+                request.engine = name == "slurm" ? StudyEngine::Slurm : StudyEngine::Local;
+            },
+            "local, or slurm: a Slurm job array")
+        ->check(CLI::IsMember({"local", "slurm"}));
+    command->add_flag("--quick", request.is_quick, "The study's coarse variant, its table quick");
+    command->add_flag("--overwrite", request.is_overwriting, "Run again what has finished");
+    command->add_flag("--quiet", request.is_quiet, "Print only failed runs and errors");
+    return command;
+}
+
 CLI::App* add_export(CLI::App& app, ExportRequest& request)
 {
     CLI::App* command = app.add_subcommand("export", "Export a run's frames to other formats");
@@ -152,11 +175,13 @@ int run_command_line(int argc, char** argv)
     RunRequest run_request;
     ResumeRequest resume_request;
     CheckRequest check_request;
+    StudyRequest study_request;
     ExportRequest export_request;
     std::string topic;
     const CLI::App* run_command = add_run(app, run_request);
     const CLI::App* resume_command = add_resume(app, resume_request);
     const CLI::App* check_command = add_check(app, check_request);
+    const CLI::App* study_command = add_study(app, study_request);
     const CLI::App* export_command = add_export(app, export_request);
     add_docs(app, topic);
     try {
@@ -168,6 +193,7 @@ int run_command_line(int argc, char** argv)
     if (*run_command) return exit_status(run(run_request));
     if (*resume_command) return exit_status(resume(resume_request));
     if (*check_command) return check(check_request);
+    if (*study_command) return run_study(study_request);
     if (*export_command) return export_formats(export_request);
     fmt::print("{}", topic == "scene" ? scene_markdown() : scene_schema());
     return 0;

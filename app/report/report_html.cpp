@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string_view>
 
 #include "app/files/atomic_file.h"
+#include "app/report/page_template.h"
 #include "app/report/report_features.h"
 #include "app/report/report_plots.h"
 #include "app/report/svg_plot.h"
@@ -25,23 +24,6 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kMaxProbePlots = 24;
 constexpr std::size_t kMaxSceneValue = 400;  // bytes shown of one key's value
-
-// Replaces each {{name}} by its HTML in one pass, so that inserted text is not searched again.
-std::string fill_template(std::string_view page, const std::map<std::string_view, std::string>& parts)
-{
-    std::string filled;
-    for (;;) {
-        const std::size_t open = page.find("{{");
-        filled += page.substr(0, open);
-        if (open == std::string_view::npos) return filled;
-        const std::size_t close = page.find("}}", open);
-        assert(close != std::string_view::npos && "report_template.html has an unclosed {{");
-        const auto part = parts.find(page.substr(open + 2, close - open - 2));
-        assert(part != parts.end() && "report_template.html names a part that is not made");
-        filled += part->second;
-        page.remove_prefix(close + 2);
-    }
-}
 
 std::string format_seconds(double seconds)
 {

@@ -10,22 +10,21 @@ namespace arris {
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
+std::string_view told;  // written before handlers are installed
 
 void on_signal(int signal)
 {
     interrupted = 1;
     std::signal(signal, SIG_DFL);
-    constexpr char kMessage[] =
-        "\narris: stopping; a second Ctrl-C stops at once (arris resume continues in both "
-        "cases)\n";
-    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, told.data(), told.size());
 }
 
 }  // namespace
 
-void watch_for_interrupt()
+void watch_for_interrupt(std::string_view message)
 {
     interrupted = 0;
+    told = message;
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
     std::signal(SIGHUP, on_signal);

@@ -39,6 +39,9 @@ namespace arris {
 
 namespace {
 
+constexpr const char* kStopping =
+    "\narris: stopping; a second Ctrl-C stops at once (arris resume continues in both cases)\n";
+
 /// The state of a run in progress.
 struct Run {
     const RunConfig& config;
@@ -216,7 +219,7 @@ void tell_ending(const Run& run, const RunEnding& ending, bool is_quiet)
 /// Runs and writes the results. From here on every ending, errors included, is recorded in the run's files.
 RunStatus run_to_the_end(Run& run, bool is_quiet, int threads)
 {
-    watch_for_interrupt();
+    watch_for_interrupt(kStopping);
     RunEnding ending;
     try {
         ending = simulate(run, is_quiet);
