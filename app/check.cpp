@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "app/scene/missing_effects.h"
 #include "app/scene/scene_effects.h"
 #include "app/scene/scene_estimate.h"
 #include "app/text/printable.h"
@@ -76,6 +77,10 @@ void describe_effects(const RunConfig& config, Lines& lines)
     lines.push_back("not simulated:");
     for (const SceneEffect& effect : list_effects(config))
         if (!effect.is_on) lines.push_back(fmt::format("  {}: {}", effect.name, effect.reason));
+    const std::vector<MissingEffect> missing = find_missing_effects(config);
+    if (!missing.empty()) lines.push_back("not simulated, and would show:");
+    for (const MissingEffect& effect : missing)
+        lines.push_back(fmt::format("  {}: {}", effect.name, effect.sign));
 }
 
 std::string pin_motion(const Scene& scene, const Pin& pin)

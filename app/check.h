@@ -10,8 +10,8 @@ namespace arris {
 
 /// The output of `arris check`, one printable line per entry: size and material of the cloth, edges of its
 /// mesh, obstacles with their sharp features relative to these edges and intersections at time 0, effects
-/// with reasons, vertices of pins and pulls, faces of probes, steps, frames, expected memory and disk space,
-/// notes and warnings.
+/// with reasons and effects whose absence would show, vertices of pins and pulls, faces of probes, steps,
+/// frames, expected memory and disk space, notes and warnings.
 std::vector<std::string> describe_scene(const RunConfig& config);
 
 }  // namespace arris

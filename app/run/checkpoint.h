@@ -12,16 +12,20 @@
 
 namespace arris {
 
-/// The input of `resume`. Contains no wall times, so that checkpoints of a resumed and an uninterrupted run
-/// are identical.
-struct Checkpoint {
-    SceneSource source;
-    std::vector<std::string> warnings;  ///< from loading the scene
+/// The part of a checkpoint that changes from step to step.
+struct RunProgress {
     State state;
     TimelinePosition position;
     std::int64_t frames = 0;  ///< written so far
     std::int64_t rows = 0;    ///< rows of steps.csv and probes.csv so far
     StrainPeaks strain;       ///< of the rows so far
+};
+
+/// The input of `resume`. Contains no wall times, so that checkpoints of a resumed and an uninterrupted run
+/// are identical.
+struct Checkpoint : RunProgress {
+    SceneSource source;
+    std::vector<std::string> warnings;  ///< from loading the scene
 };
 
 /// Replaces the file atomically. Throws std::system_error naming the path if writing fails.

@@ -32,6 +32,7 @@
 #include "solver/advance.h"
 #include "solver/cloth_strain.h"
 #include "solver/contact/audit.h"
+#include "solver/mesh_change/step_mesh.h"
 #include "solver/model/stopwatch.h"
 #include "solver/step.h"
 
@@ -69,9 +70,9 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     run.audited = is_audited ? audit(run.config.scene, state) : Audit();
     StepRow row = make_step_row(run.config, state, run.work, run.audited, report);
     row.is_halved = is_halved;
-    const MeshCache& mesh = run.work.mesh;
-    const ClothStrain strain =
-        measure_cloth_strain(run.config.scene.material, mesh.elements, mesh.stars, state.mesh.world);
+    MeshCache& mesh = run.work.mesh;
+    const ClothStrain strain = measure_cloth_strain(run.config.scene.material, find_stretches(state, mesh),
+                                                    state.mesh, mesh.stars.faces);
     row.max_strain = strain.greatest();
     note_strain(state, strain, run.at.strain);
     if (const std::int64_t index = run.timeline.frame_at(state.time); index >= 0) {
@@ -135,14 +136,14 @@ RunEnding simulate(Run& run, bool is_quiet)
             ending = {RunStatus::Interrupted, fmt::format("stopped at t = {:.6g} s", run.at.state.time)};
             break;
         }
-        const Checkpoint before = run.at;
+        RunProgress before = run.at;
         try {
             if (const std::optional<RunEnding> failed = advance(run)) {
                 ending = *failed;
                 break;
             }
         } catch (const Interrupted&) {  // a resumed run makes the whole planned step again
-            run.at = before;
+            static_cast<RunProgress&>(run.at) = std::move(before);
             run.opening.reset();
             continue;
         }

@@ -17,7 +17,7 @@ SceneEffect obstacle_effect(const RunConfig& config)
     for (std::size_t i = 0; i < std::min(obstacles.size(), kMostNames); ++i)
         names += (i > 0 ? ", " : "") + obstacles[i].name();
     if (obstacles.size() > kMostNames) names += fmt::format(" and {} more", obstacles.size() - kMostNames);
-    return {"obstacle", true, names};
+    return {"obstacle", true, fmt::format("{} [[obstacle]]: {}", obstacles.size(), names)};
 }
 
 SceneEffect eol_effect(const RunConfig& config)

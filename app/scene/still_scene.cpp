@@ -49,7 +49,7 @@ bool has_moving_bodies(const RunConfig& config)
 
 bool is_relaxed(const ClothMesh& cloth, const MeshTopology& topology)
 {
-    const ClothElements elements = make_elements(cloth, topology);
+    const ClothElements elements = list_elements(cloth, topology, HingeUse::None);
     const bool is_unstrained =
         std::all_of(elements.faces.begin(), elements.faces.end(), [&](const FaceElement& face) {
             const Vec2 stretches = principal_stretches(FaceState(face, cloth.world).F);

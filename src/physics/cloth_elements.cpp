@@ -102,12 +102,14 @@ std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& mate
     return gradients;
 }
 
-ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology)
+ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology, HingeUse use)
 {
     ClothElements elements;
     elements.vertex_count = mesh.vertex_count();
+    elements.hinge_use = use;
     elements.faces.reserve(mesh.faces.size());
     for (const Face& face : mesh.faces) elements.faces.push_back(make_face_element(mesh.material, face));
+    if (use == HingeUse::None) return elements;
     elements.hinges.reserve(topology.hinges.size());
     for (const Hinge& hinge : topology.hinges) {
         HingeElement made{{hinge.a, hinge.b, hinge.c, hinge.d}, {hinge.face_c, hinge.face_d}};
@@ -118,11 +120,12 @@ ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology)
     return elements;
 }
 
-ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology)
+ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology, HingeUse use)
 {
-    ClothElements elements = list_elements(mesh, topology);
+    ClothElements elements = list_elements(mesh, topology, use);
     elements.face_colors = color_elements(elements.vertex_count, elements.faces);
-    elements.hinge_colors = color_elements(elements.vertex_count, elements.hinges);
+    if (use == HingeUse::Terms)
+        elements.hinge_colors = color_elements(elements.vertex_count, elements.hinges);
     return elements;
 }
 

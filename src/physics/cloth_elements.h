@@ -36,21 +36,28 @@ struct ElementColors {
     std::vector<int> start;
 };
 
+/// What a cloth's hinges are for: nothing, so that there are none; the momentum of material that flows around
+/// them (momentum_flux.h); or, beside that, the hinge terms of an effect such as bending.
+enum class HingeUse { None, Flow, Terms };
+
 /// Everything about the mesh that the terms need, besides its positions. Rebuilt where the mesh changes.
 /// Where only material coordinates change, `update_elements` suffices.
 struct ClothElements {
     int vertex_count = 0;
     std::vector<FaceElement> faces;
     std::vector<HingeElement> hinges;
+    HingeUse hinge_use = HingeUse::Terms;
     ElementColors face_colors, hinge_colors;
 };
 
 /// Elements without colours, which suffice for energies and for assembling a few elements one after the
 /// other. Linear in face count. Material orientations must be positive (`validate` checks this).
-ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology);
+ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology,
+                            HingeUse use = HingeUse::Terms);
 
-/// Elements with colours.
-ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology);
+/// Elements with colours. Hinges are listed if `use` is not None, and get colours if it is Terms.
+ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology,
+                            HingeUse use = HingeUse::Terms);
 
 /// Recomputes the elements at vertices with `is_moved` (one entry per vertex) from the mesh's material
 /// coordinates. The result is bitwise that of `make_elements`. Faces, and so colours, must be unchanged.

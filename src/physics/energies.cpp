@@ -60,10 +60,12 @@ double compute_load_work(const ClothMesh& mesh, const ClothElements& elements, c
                          const Linearization& at, const std::vector<Vec3>& velocity,
                          const std::vector<Vec3>& displacement)
 {
-    std::vector<Vec3> load(displacement.size(), Vec3::Zero());
-    for (const auto& term : terms.loads) term->add(mesh, at, load);
     double sum = 0.0;
-    for (std::size_t v = 0; v < load.size(); ++v) sum += load[v].dot(displacement[v]);
+    if (!terms.loads.empty()) {
+        std::vector<Vec3> load(displacement.size(), Vec3::Zero());
+        for (const auto& term : terms.loads) term->add(mesh, at, load);
+        for (std::size_t v = 0; v < load.size(); ++v) sum += load[v].dot(displacement[v]);
+    }
     for (const auto& term : terms.faces) {
         if (!term->is_drive()) continue;
         for (const FaceElement& face : elements.faces) {
@@ -90,6 +92,7 @@ FaceReadings compute_face_readings(const ClothElements& elements, const Terms& t
         for (const auto& term : terms.faces)
             if (term->energy_kind() == EnergyKind::Stretch) readings.stretch_energy[f] += term->energy(face);
     }
+    if (terms.hinges.empty()) return readings;
     for (const HingeElement& hinge : elements.hinges)
         for (const auto& term : terms.hinges)
             if (term->energy_kind() == EnergyKind::Bending)

@@ -90,6 +90,7 @@ LinearSystem::Neighbours LinearSystem::find_neighbours(const ClothElements& elem
                     if (i > j && j >= 0) visit(i, j);
         };
         for (const FaceElement& face : elements.faces) visit_pairs(face.vertices);
+        if (elements.hinge_use != HingeUse::Terms) return;
         for (const HingeElement& hinge : elements.hinges) visit_pairs(hinge.vertices);
     };
     Neighbours neighbours;
@@ -152,9 +153,11 @@ void LinearSystem::find_element_blocks(const ClothElements& elements)
             }
     };
     face_blocks_.resize(elements.faces.size());
-    hinge_blocks_.resize(elements.hinges.size());
     for (std::size_t f = 0; f < elements.faces.size(); ++f)
         find_blocks(elements.faces[f].vertices, face_blocks_[f]);
+    hinge_blocks_.clear();
+    if (elements.hinge_use != HingeUse::Terms) return;
+    hinge_blocks_.resize(elements.hinges.size());
     for (std::size_t h = 0; h < elements.hinges.size(); ++h)
         find_blocks(elements.hinges[h].vertices, hinge_blocks_[h]);
 }
@@ -234,6 +237,8 @@ void LinearSystem::set_loads(const ClothMesh& mesh, const Terms& terms, const Li
         flowed = mesh;
         flowed->material = at.flow->extrapolated.material;
     }
+    rhs_.setZero();
+    if (terms.loads.empty()) return;
     const ClothMesh& loaded = flowed ? *flowed : mesh;
     std::vector<Vec3> load(mesh.vertex_count(), Vec3::Zero());
     for (const auto& term : terms.loads) term->add(loaded, at, load);
@@ -258,6 +263,7 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
                             const Linearization& at)
 {
     assert((!at.flow || is_consistent(*at.flow, mesh)) && "material flows through EOL vertices only");
+    assert((terms.hinges.empty() || elements.hinge_use == HingeUse::Terms) && "hinges have no blocks");
     assert((!at.flow || places_.empty()) && "nothing flows where some are held");
     matrix_.coeffs().setZero();
     set_loads(mesh, terms, at);

@@ -16,8 +16,8 @@ namespace arris {
 /// once per mesh.
 class LinearSystem {
   public:
-    /// Creates the pattern, with values zero: every pair of vertices that share a face or a hinge. O(n log
-    /// n).
+    /// Creates the pattern, with values zero: every pair of vertices that share a face, or a hinge that has
+    /// terms. O(n log n).
     void make_pattern(const ClothElements& elements);
 
     /// As above, where some vertices are held and have no unknowns. `places` (one entry per vertex,

@@ -167,6 +167,15 @@ Vec2 principal_stretches(const Mat32& F)
     return {0.5 * (s.S + difference), 0.5 * (s.S - difference)};
 }
 
+std::vector<Vec2> compute_stretches(const ClothElements& elements, const std::vector<Vec3>& position)
+{
+    std::vector<Vec2> stretches;
+    stretches.reserve(elements.faces.size());
+    for (const FaceElement& face : elements.faces)
+        stretches.push_back(principal_stretches(FaceState(face, position).F));
+    return stretches;
+}
+
 Vec2 principal_tensions(const Vec2& stretches, double youngs_modulus, double poisson_ratio)
 {
     const auto [mu, lambda] = find_moduli(youngs_modulus, poisson_ratio);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "physics/term.h"
 
 namespace arris {
@@ -37,6 +39,9 @@ class Membrane : public FaceTerm {
 
 /// Singular values of F, greatest first.
 Vec2 principal_stretches(const Mat32& F);
+
+/// Principal stretches of each face at these positions.
+std::vector<Vec2> compute_stretches(const ClothElements& elements, const std::vector<Vec3>& position);
 
 /// Tensions, N/m, along the principal directions of a face with these principal stretches: dV/ds_i / A.
 /// Negative where the face is compressed. A strip that is compressed by the strain e has -E e.

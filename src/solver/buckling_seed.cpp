@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 
 #include "physics/membrane.h"
+#include "solver/mesh_change/step_mesh.h"
 #include "solver/plane_stars.h"
 
 namespace arris {
@@ -36,49 +39,81 @@ constexpr double kLeastCompression = 1e-3;
 constexpr double kAcross = 1e-6;
 
 /// 1 for each vertex of a compressed face; empty where no face is compressed.
-std::vector<char> mark_compressed(const Material& material, const State& state, const ClothElements& elements)
+std::vector<char> mark_compressed(const Material& material, const ClothMesh& mesh,
+                                  const std::vector<Vec2>& stretches)
 {
     std::vector<char> is_compressed;
-    for (const FaceElement& face : elements.faces) {
-        const Vec2 stretches = principal_stretches(FaceState(face, state.mesh.world).F);
+    for (int f = 0; f < mesh.face_count(); ++f) {
         const double least =
-            principal_tensions(stretches, material.youngs_modulus, material.poisson_ratio).minCoeff();
+            principal_tensions(stretches[f], material.youngs_modulus, material.poisson_ratio).minCoeff();
         if (!(least < -kLeastCompression * material.youngs_modulus)) continue;
-        is_compressed.resize(state.mesh.world.size(), 0);
-        for (const int v : face.vertices) is_compressed[v] = 1;
+        is_compressed.resize(mesh.world.size(), 0);
+        for (const int v : mesh.faces[f]) is_compressed[v] = 1;
     }
     return is_compressed;
 }
 
-/// Drops the normals of vertices around which the cloth is no longer plane after a further step like the
-/// last.
-void drop_bending(const State& state, const VertexFaces& stars, double dt,
-                  std::vector<std::optional<Vec3>>& normals)
-{
-    std::vector<Vec3> moved = state.mesh.world;
-    for (std::size_t v = 0; v < moved.size(); ++v) moved[v] += dt * state.velocity[v];
-    const std::vector<std::optional<Vec3>> then = find_plane_stars(state.mesh.faces, stars, moved, kPlane);
-    for (std::size_t v = 0; v < normals.size(); ++v)
-        if (!then[v]) normals[v].reset();
-}
+/// Finds normals of vertices around which the cloth is plane, now and after a further step like the last, and
+/// on which nothing acts across it.
+class UnloadedNormals {
+  public:
+    UnloadedNormals(const Scene& scene, const State& state, const VertexFaces& stars, double dt,
+                    const std::vector<Contact>& contacts)
+        : scene_(scene), state_(state), stars_(stars), dt_(dt), contacts_(contacts)
+    {
+    }
 
-/// Drops the normals of EOL vertices, and of vertices on which gravity or an obstacle acts across the cloth.
-void drop_loaded(const Scene& scene, const State& state, const std::vector<Contact>& contacts,
-                 std::vector<std::optional<Vec3>>& normals)
-{
-    if (scene.gravity) {
-        const Vec3& g = scene.gravity->acceleration;
-        for (std::optional<Vec3>& normal : normals)
-            if (normal && std::abs(g.dot(*normal)) > kAcross * g.norm()) normal.reset();
+    std::optional<Vec3> operator()(int v)
+    {
+        const std::optional<Vec3> normal =
+            find_plane_normal(v, state_.mesh.faces, stars_, state_.mesh.world, kPlane);
+        return normal && !is_loaded(v, *normal) && stays_plane(v) ? normal : std::nullopt;
     }
-    for (const EolVertex& eol : state.eol) normals[state.index_of(eol.vertex_id)].reset();
-    for (const Contact& contact : contacts) {
-        if (!contact.was_active()) continue;
-        for (const int v : contact.in_frame.vertices)
-            if (v >= 0 && normals[v] && std::abs(contact.normal.dot(*normals[v])) > kAcross)
-                normals[v].reset();
+
+  private:
+    bool is_loaded(int v, const Vec3& normal)
+    {
+        if (scene_.gravity) {
+            const Vec3& g = scene_.gravity->acceleration;
+            if (std::abs(g.dot(normal)) > kAcross * g.norm()) return true;
+        }
+        if (state_.eol_entry(state_.ids[v]) >= 0) return true;
+        if (!pressing_) find_pressing();
+        const auto [begin, end] = pressing_->equal_range(v);
+        return std::any_of(begin, end, [&](const auto& pressing) {
+            return std::abs(pressing.second.dot(normal)) > kAcross;
+        });
     }
-}
+
+    void find_pressing()
+    {
+        pressing_.emplace();
+        for (const Contact& contact : contacts_) {
+            if (!contact.was_active()) continue;
+            for (const int v : contact.in_frame.vertices)
+                if (v >= 0) pressing_->emplace(v, contact.normal);
+        }
+    }
+
+    bool stays_plane(int v)
+    {
+        if (moved_.empty()) {
+            moved_ = state_.mesh.world;
+            for (std::size_t w = 0; w < moved_.size(); ++w) moved_[w] += dt_ * state_.velocity[w];
+        }
+        return find_plane_normal(v, state_.mesh.faces, stars_, moved_, kPlane).has_value();
+    }
+
+    const Scene& scene_;
+    const State& state_;
+    const VertexFaces& stars_;
+    double dt_;  ///< s
+    const std::vector<Contact>& contacts_;
+
+    // Computed when first needed.
+    std::optional<std::multimap<int, Vec3>> pressing_;  ///< normals of contacts that pressed, by vertex
+    std::vector<Vec3> moved_;                           ///< m
+};
 
 /// A number from -1 to 1 that depends on `id` alone, with mean 0 over many ids (SplitMix64, Steele, Lea and
 /// Flood 2014).
@@ -102,24 +137,20 @@ double longest_edge(const State& state, std::span<const int> star, int v)
 
 }  // namespace
 
-void seed_buckling(const Scene& scene, const State& state, const MeshCache& mesh,
+void seed_buckling(const Scene& scene, const State& state, MeshCache& mesh,
                    const std::vector<Contact>& contacts, Prediction& prediction)
 {
-    const VertexFaces& stars = mesh.stars.faces;
-    std::vector<std::optional<Vec3>> normals =
-        find_plane_stars(state.mesh.faces, stars, state.mesh.world, kPlane);
-    const bool is_any_plane =
-        std::any_of(normals.begin(), normals.end(), [](const auto& n) { return n.has_value(); });
-    if (!is_any_plane) return;  // nearly all cloth that moves
-    const std::vector<char> is_compressed = mark_compressed(scene.material, state, mesh.elements);
+    const std::vector<char> is_compressed =
+        mark_compressed(scene.material, state.mesh, find_stretches(state, mesh));
     if (is_compressed.empty()) return;
-    drop_bending(state, stars, prediction.gamma, normals);
-    drop_loaded(scene, state, contacts, normals);
+    const VertexFaces& stars = mesh.stars.faces;
+    UnloadedNormals find_normal(scene, state, stars, prediction.gamma, contacts);
+    PlaneStars plane(state.mesh.faces, stars, state.mesh.vertex_count(), std::ref(find_normal));
     for (int v = 0; v < state.mesh.vertex_count(); ++v) {
-        if (!is_compressed[v] || !is_plane_around(v, state.mesh.faces, stars, normals)) continue;
+        if (!is_compressed[v] || !plane.is_plane_around(v)) continue;
         const double deviation =
             kSeed * longest_edge(state, stars[v], v) * (1.0 + kVariation * draw(state.ids[v]));
-        prediction.velocity[v] += deviation / prediction.gamma * *normals[v];
+        prediction.velocity[v] += deviation / prediction.gamma * *plane.normal(v);
     }
 }
 

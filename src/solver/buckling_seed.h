@@ -21,7 +21,7 @@ namespace arris {
 /// compressed and exactly plane: it is in one plane, its velocity keeps it there, and neither gravity nor a
 /// contact acts across. Any other force across would have shown in its velocity. Only the state and the
 /// vertex's id decide. `mesh` belongs to the state. Nothing changes elsewhere, to the bit.
-void seed_buckling(const Scene& scene, const State& state, const MeshCache& mesh,
+void seed_buckling(const Scene& scene, const State& state, MeshCache& mesh,
                    const std::vector<Contact>& contacts, Prediction& prediction);
 
 }  // namespace arris

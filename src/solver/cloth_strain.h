@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "physics/cloth_elements.h"
+#include "geometry/cloth/cloth_mesh.h"
+#include "geometry/cloth/mesh_topology.h"
 #include "physics/material.h"
-#include "solver/eol/cloth_stars.h"
 
 namespace arris {
 
@@ -27,8 +27,9 @@ struct ClothStrain {
     double greatest() const { return std::max(stretch.strain, -compression.strain); }
 };
 
-/// Linear in face count. `elements` and `stars` belong to the cloth at `positions`.
-ClothStrain measure_cloth_strain(const Material& material, const ClothElements& elements,
-                                 const ClothStars& stars, const std::vector<Vec3>& positions);
+/// Linear in face count. `stretches` are the principal stretches of the faces of `mesh`, and `stars` the
+/// faces at its vertices.
+ClothStrain measure_cloth_strain(const Material& material, const std::vector<Vec2>& stretches,
+                                 const ClothMesh& mesh, const VertexFaces& stars);
 
 }  // namespace arris

@@ -251,9 +251,10 @@ void measure_proposal_energy(const Scene& scene, double dt, Workspace& work)
 {
     constexpr double kStill = 1e-6;  // m/s: above round-off of pins and restored stand-offs
     const Proposal& proposal = work.proposal;
-    double fastest = 0.0;
-    for (const Vec3& v : push_velocity(work, dt)) fastest = std::max(fastest, v.squaredNorm());
     MovingCloth end = find_end(work.prediction, velocity_of(proposal));
+    double fastest = 0.0;
+    if (end.world != proposal.world)  // contacts or pins have moved the proposal
+        for (const Vec3& v : push_velocity(work, dt)) fastest = std::max(fastest, v.squaredNorm());
     if (fastest > kStill * kStill) work.energies.solved = compute_cloth_energy(scene, work, end);
     end.world = proposal.world;
     work.energies.proposed = compute_cloth_energy(scene, work, end);

@@ -32,33 +32,41 @@ std::optional<Vec3> find_normal(const std::vector<Face>& faces, std::span<const 
 
 }  // namespace
 
-std::vector<std::optional<Vec3>> find_plane_stars(const std::vector<Face>& faces, const VertexFaces& stars,
-                                                  const std::vector<Vec3>& positions, double tolerance)
+std::optional<Vec3> find_plane_normal(int vertex, const std::vector<Face>& faces, const VertexFaces& stars,
+                                      const std::vector<Vec3>& positions, double tolerance)
 {
     constexpr double kRoundOff = 16.0 * std::numeric_limits<double>::epsilon();  // relative to a coordinate
-    std::vector<std::optional<Vec3>> normals(positions.size());
-    for (int v = 0; v < static_cast<int>(positions.size()); ++v) {
-        const std::optional<Vec3> normal = find_normal(faces, stars[v], positions);
-        if (!normal) continue;
-        double height = 0.0, squared_length = 0.0;
-        for (const int f : stars[v])
-            for (const int w : faces[f]) {
-                const Vec3 way = positions[w] - positions[v];
-                height = std::max(height, std::abs(normal->dot(way)));
-                squared_length = std::max(squared_length, way.squaredNorm());
-            }
-        const double round_off = kRoundOff * positions[v].cwiseAbs().maxCoeff();
-        if (height <= tolerance * std::sqrt(squared_length) + round_off) normals[v] = normal;
-    }
-    return normals;
+    const std::optional<Vec3> normal = find_normal(faces, stars[vertex], positions);
+    if (!normal) return std::nullopt;
+    double height = 0.0, squared_length = 0.0;
+    for (const int f : stars[vertex])
+        for (const int w : faces[f]) {
+            const Vec3 way = positions[w] - positions[vertex];
+            height = std::max(height, std::abs(normal->dot(way)));
+            squared_length = std::max(squared_length, way.squaredNorm());
+        }
+    const double round_off = kRoundOff * positions[vertex].cwiseAbs().maxCoeff();
+    return height <= tolerance * std::sqrt(squared_length) + round_off ? normal : std::nullopt;
 }
 
-bool is_plane_around(int vertex, const std::vector<Face>& faces, const VertexFaces& stars,
-                     const std::vector<std::optional<Vec3>>& normals)
+const std::optional<Vec3>& PlaneStars::normal(int vertex)
 {
-    const auto is_plane = [&](int v) { return normals[v].has_value(); };
-    return std::all_of(stars[vertex].begin(), stars[vertex].end(),
-                       [&](int f) { return std::all_of(faces[f].begin(), faces[f].end(), is_plane); });
+    if (is_known_.empty()) {
+        is_known_.assign(vertex_count_, 0);
+        normals_.resize(vertex_count_);
+    }
+    if (!is_known_[vertex]) {
+        normals_[vertex] = find_(vertex);
+        is_known_[vertex] = 1;
+    }
+    return normals_[vertex];
+}
+
+bool PlaneStars::is_plane_around(int vertex)
+{
+    const auto is_plane = [&](int v) { return normal(v).has_value(); };
+    return std::all_of(stars_[vertex].begin(), stars_[vertex].end(),
+                       [&](int f) { return std::all_of(faces_[f].begin(), faces_[f].end(), is_plane); });
 }
 
 }  // namespace arris

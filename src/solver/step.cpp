@@ -72,7 +72,6 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
         work.eol = add_eol_contacts(scene, state, work.mesh.stars, work.prediction, turning, work.obstacles,
                                     work.contacts);
     }
-    measure_start_energy(scene, state, work);
     const std::optional<int> overconstrained =
         share_room(work.obstacles, work.prediction, work.contacts).overconstrained;
     flatten_history(scene, state, work.obstacles, work.eol, 0, work.contacts, work.prediction);
@@ -300,13 +299,16 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
     report.seconds.move += watch.lap();
 
     // 3. Contacts of vertices, edges and faces. A vertex without room fails the step.
-    if (!find_contacts(scene, start, work, report)) {
+    const bool has_room = find_contacts(scene, start, work, report);
+    if (!scene.obstacles.empty()) report.seconds.contacts += watch.lap();
+    if (!has_room) {
         work.retry.note(report, attempt, state, start, {});
         return report;
     }
     // Cloth that is compressed exactly in a plane has no force across it, and could never fold by itself.
     seed_buckling(scene, start, work.mesh, work.contacts, work.prediction);
-    report.seconds.contacts += watch.lap();
+    measure_start_energy(scene, start, work);
+    report.seconds.move += watch.lap();
 
     // 4 - 6. Solve, propose and check, in bounded rounds: violations become rows. A mesh with EOL vertices
     // takes no last resorts, as RetryPolicy first tries a mesh without any. A step that fails after its

@@ -88,7 +88,7 @@ TEST(Check, DescribesObstaclesWithTheirFeaturesAndMotion)
     EXPECT_THAT(lines, Contains("obstacle obstacle2: wire, 1 wire segment"));
     EXPECT_THAT(lines, Contains("  2 keyframes from 0 s to 0.5 s"));
     EXPECT_THAT(lines, Contains("the cloth is clear of all obstacles at time 0"));
-    EXPECT_THAT(lines, Contains("  obstacle: table, obstacle1, obstacle2"));
+    EXPECT_THAT(lines, Contains("  obstacle: 3 [[obstacle]]: table, obstacle1, obstacle2"));
     EXPECT_THAT(lines, Contains(HasSubstr("  eol: eol.enabled is true, and an obstacle has sharp features")));
 }
 

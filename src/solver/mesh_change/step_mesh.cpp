@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/sort_unique.h"
+#include "physics/membrane.h"
 #include "solver/eol/creases.h"
 #include "solver/mesh_change/conform.h"
 #include "solver/mesh_change/mesh_transfer.h"
@@ -25,12 +26,20 @@ void prepare_stars(const State& state, MeshCache& cache)
     cache.faces_of_stars = state.mesh.faces;
 }
 
+/// What this scene's effects need hinges for.
+HingeUse find_hinge_use(const Scene& scene, const Terms& terms)
+{
+    if (!terms.hinges.empty()) return HingeUse::Terms;
+    return scene.eol ? HingeUse::Flow : HingeUse::None;
+}
+
 /// Updates the elements to the state's mesh. True where its faces have changed.
-bool prepare_elements(const State& state, MeshCache& cache)
+bool prepare_elements(const Scene& scene, const State& state, MeshCache& cache)
 {
     prepare_stars(state, cache);
     const bool has_faces = cache.faces_of_elements == state.mesh.faces;
     if (has_faces && cache.material_of_elements == state.mesh.material) return false;
+    cache.world_of_stretches.clear();
     if (has_faces) {  // material has flowed
         const std::vector<Vec2>& then = cache.material_of_elements;
         std::vector<char> is_moved(then.size());
@@ -39,7 +48,7 @@ bool prepare_elements(const State& state, MeshCache& cache)
         cache.material_of_elements = state.mesh.material;
         return false;
     }
-    cache.elements = make_elements(state.mesh, cache.stars.topology);
+    cache.elements = make_elements(state.mesh, cache.stars.topology, find_hinge_use(scene, cache.terms));
     cache.system.make_pattern(cache.elements);
     cache.faces_of_elements = state.mesh.faces;
     cache.material_of_elements = state.mesh.material;
@@ -205,8 +214,9 @@ StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& fail
     Stopwatch watch;
     prepare_stars(state, cache);
     report.seconds.move += watch.lap();
-    TriedMesh best =
-        MeshTries(scene, end - state.time, state, cache, failed, watch, report.seconds).find_best();
+    TriedMesh best;
+    if (scene.eol)
+        best = MeshTries(scene, end - state.time, state, cache, failed, watch, report.seconds).find_best();
     cache.refused = std::move(best.outcome.refused);
     const bool is_new = best.outcome.mesh.has_value();
     if (is_new) {
@@ -222,11 +232,21 @@ StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& fail
     return {start, is_changed};
 }
 
+const std::vector<Vec2>& find_stretches(const State& state, MeshCache& cache)
+{
+    if (cache.world_of_stretches != state.mesh.world) {
+        cache.stretches = compute_stretches(cache.elements, state.mesh.world);
+        cache.world_of_stretches = state.mesh.world;
+    }
+    return cache.stretches;
+}
+
 bool update_mesh_cache(const Scene& scene, const State& state, MeshCache& cache)
 {
     if (cache.terms.faces.empty())
         cache.terms = make_terms(scene.material, scene.gravity, scene.wind, scene.pulls);
-    const bool has_new_elements = prepare_elements(state, cache);
+    const bool has_new_elements = prepare_elements(scene, state, cache);
+    if (!scene.eol) return has_new_elements;  // without folds on features there are no creases
     const Creases creases = find_creases(scene, state, cache.stars);
     const bool has_new_creases = mark_creases(creases, state.mesh, cache.elements);
     return has_new_elements || has_new_creases;

@@ -22,6 +22,10 @@ struct StepMesh {
 StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& failed, State& state,
                           MeshCache& cache, StepReport& report);
 
+/// Principal stretches of the state's faces. `cache` must belong to the state's mesh. Computed once for the
+/// state, by whoever asks first.
+const std::vector<Vec2>& find_stretches(const State& state, MeshCache& cache);
+
 /// Rebuilds the data in `cache` that do not belong to the state's mesh. True where elements or creases have
 /// changed.
 bool update_mesh_cache(const Scene& scene, const State& state, MeshCache& cache);

@@ -24,6 +24,7 @@ Vec3 find_origin(const State& state, std::uint32_t pin, int vertex, const Placem
 
 std::vector<PinTarget> find_pin_targets(const Scene& scene, const State& state, double end)
 {
+    if (scene.pins.empty()) return {};
     std::vector<int> slot(state.mesh.world.size(), -1);
     std::vector<PinTarget> held;
     for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
@@ -58,6 +59,7 @@ void hold_in_place(const std::vector<PinTarget>& held, std::vector<Vec3>& world)
 
 void attach_pins(const Scene& scene, State& state)
 {
+    if (scene.pins.empty()) return;
     const std::vector<Vec3> placed = state.mesh.world;
     for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
         const Pin& pin = scene.pins[p];
