@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes a scene that fails smaller while it still fails in the same way, for scripts/fuzz."""
 import copy
+import itertools
 
 from random_scene import RandomScene
 
@@ -23,8 +24,9 @@ def list_smaller(scene):
     for part in ("wind", "gravity"):
         if part in scene:
             yield changed(lambda s: s.pop(part))
-    yield changed(lambda s: s.update(duration=round(0.5 * s["duration"], 6)))
-    yield changed(lambda s: s.update(duration=round(0.8 * s["duration"], 6)))
+    if scene["duration"] > 2 * scene["time"]["step"]:
+        yield changed(lambda s: s.update(duration=round(0.5 * s["duration"], 6)))
+        yield changed(lambda s: s.update(duration=round(0.8 * s["duration"], 6)))
     cells = scene["cloth"]["resolution"]
     if max(cells) > 2:
         yield changed(lambda s: s["cloth"].update(resolution=[max(1, n // 2) for n in cells]))
@@ -80,13 +82,15 @@ def shrink(failing, kind_of):
     fault, or None."""
     kind, runs = kind_of(failing), 0
     is_smaller = kind is not None
-    while is_smaller and runs < MOST_RUNS:
-        is_smaller = False
-        for candidate in list_candidates(failing):
-            if runs >= MOST_RUNS:
+    while is_smaller:
+        is_smaller, at = False, 0
+        while runs < MOST_RUNS:
+            candidate = next(itertools.islice(list_candidates(failing), at, None), None)
+            if candidate is None:
                 break
             runs += 1
             if kind_of(candidate) == kind:
-                failing, is_smaller = candidate, True
-                break
+                failing, is_smaller = candidate, True  # the next candidate of this kind takes this one's place
+            else:
+                at += 1
     return failing
