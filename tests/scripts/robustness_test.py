@@ -12,7 +12,7 @@ import unittest
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 from random_scene import RandomScene, SceneMaker, toml_text  # noqa: E402
-from run_verdict import Outcome, RunFiles, find_faults, is_driven  # noqa: E402
+from run_verdict import Outcome, RunFiles, find_faults, is_driven, run_program  # noqa: E402
 from same_run import find_difference, lasting_rows  # noqa: E402
 from shrink_scene import shrink  # noqa: E402
 
@@ -75,6 +75,15 @@ class Verdict(unittest.TestCase):
         for part in ({"wind": {}}, {"pull": [{}]}, {"pin": [{"angular_velocity": [0, 0, 1]}]},
                      {"obstacle": [{"keyframes": [{"translate": [0, 0, 0]}, {"translate": [0, 0, 1]}]}]}):
             self.assertTrue(is_driven(part), part)
+
+
+class Limits(unittest.TestCase):
+    def test_a_program_that_spins_is_stopped(self):
+        self.assertIsNone(run_program("sh", ["-c", "while :; do :; done"], 1).exit)
+
+    def test_exit_status_and_errors_are_kept(self):
+        outcome = run_program("sh", ["-c", "echo first >&2; echo why >&2; exit 2"], 5)
+        self.assertEqual((outcome.exit, outcome.last_error), (2, "why"))
 
 
 class Comparison(unittest.TestCase):
