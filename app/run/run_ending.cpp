@@ -48,6 +48,20 @@ std::string explain_infeasible(const Infeasible& infeasible, const Scene& scene,
                        place, why);
 }
 
+/// Says which number is not finite: "the pin's target of vertex 7, at [..], of pin.0", "the placement of
+/// box".
+std::string name_not_finite(const NotFinite& found, const Scene& scene, const State& state)
+{
+    if (found.what == nullptr) return "a value";
+    std::string name = fmt::format("the {}", found.what);
+    if (found.vertex >= 0) name += " of " + name_vertex(state, found.vertex);
+    if (found.pin >= 0) name += fmt::format(" of pin.{}", found.pin);
+    if (found.obstacle >= 0)
+        name += (found.vertex >= 0 ? " with " : " of ") +
+                scene.obstacles[static_cast<std::size_t>(found.obstacle)].name();
+    return name;
+}
+
 }  // namespace
 
 RunEnding explain_ending(const StepReport& report, double tolerance, const Scene& scene, const State& state)
@@ -56,7 +70,8 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
     switch (report.status) {
         case StepStatus::NotFinite:
             return {RunStatus::NotFinite,
-                    fmt::format("a value is not finite {}, even with 64 times smaller steps", place)};
+                    fmt::format("{} is not finite {}, even with 64 times smaller steps",
+                                name_not_finite(report.not_finite, scene, state), place)};
         case StepStatus::Overrun:
             return {RunStatus::NotConverged, fmt::format("material flows over a feature faster than the mesh "
                                                          "can follow {}, even with 64 times smaller steps",

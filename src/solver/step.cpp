@@ -33,6 +33,7 @@
 #include "solver/mesh_change/step_mesh.h"
 #include "solver/model/eol_limits.h"
 #include "solver/model/stopwatch.h"
+#include "solver/not_finite.h"
 #include "solver/overconstrained.h"
 #include "solver/relinearization.h"
 #include "solver/yielding.h"
@@ -43,6 +44,16 @@ namespace {
 
 /// Velocity solves of one step. Returning to the linearization with the least energy rise may add one more.
 constexpr int kMostSolves = 12;
+
+/// Records the first number of a stage's results that is not finite, which ends the attempt. False without
+/// one.
+bool note_not_finite(CheckedStage stage, const State& state, const Workspace& work, StepReport& report)
+{
+    report.not_finite = find_not_finite(stage, state, work);
+    if (report.not_finite.what == nullptr) return false;
+    report.status = StepStatus::NotFinite;
+    return true;
+}
 
 /// Stage 2: predicts the cloth from its history (q~, v~), and places pins and obstacles at `end`. Forces are
 /// first linearised at the velocity of the last step, or at q~ without history.
@@ -61,9 +72,10 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
 }
 
 /// Stage 3: collects the contacts that the cloth may meet, and flattens history that runs into an obstacle.
-/// False where a vertex has no room between two obstacles.
+/// False where a vertex has no room between two obstacles, and where a number is not finite.
 bool find_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
 {
+    if (note_not_finite(CheckedStage::Move, state, work, report)) return false;
     work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
     // An EOL vertex has one bound of its own instead of contacts with its feature.
     work.eol.clear();
@@ -77,6 +89,7 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
     flatten_history(scene, state, work.obstacles, work.eol, 0, work.contacts, work.prediction);
     work.has_system = false;
     work.yielded = 0;
+    if (note_not_finite(CheckedStage::Contacts, state, work, report)) return false;
     if (!overconstrained) return true;
     report.status = StepStatus::Infeasible;
     report.infeasible = name_infeasible(state, work, overconstrained);
@@ -138,7 +151,7 @@ void solve_velocity(const Scene& scene, const Settings& settings, const State& s
             report.status = StepStatus::NotConverged;
             break;
         case SolveStatus::NotFinite:
-            report.status = StepStatus::NotFinite;
+            note_not_finite(CheckedStage::Solve, state, work, report);
             break;
         case SolveStatus::Infeasible:
             report.status = StepStatus::Infeasible;
@@ -190,14 +203,17 @@ void fail_or_rewind(const Scene& scene, double end, const State& state, Attempt 
 }
 
 /// Stage 6: makes the proposal and checks its whole path. Cloth is not pushed out to its stand-off where the
-/// push would strain stiff cloth, or where the pushed proposal is not clean.
-Violations propose_and_check(const Scene& scene, double dt, double growth, Workspace& work)
+/// push would strain stiff cloth, or where the pushed proposal is not clean. Null where a number of the
+/// proposal is not finite.
+std::optional<Violations> propose_and_check(const Scene& scene, double dt, double growth, const State& state,
+                                            Workspace& work, StepReport& report)
 {
     const auto propose_measured = [&](double by) {
         propose(scene, by, work);
         measure_proposal_energy(scene, dt, work);
     };
     propose_measured(growth);
+    if (note_not_finite(CheckedStage::Proposal, state, work, report)) return std::nullopt;
     if (growth > 0.0 && does_push_out_strain(scene, dt, work)) propose_measured(growth = 0.0);
     const Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
     if (violations.is_clean() || growth <= 0.0) return violations;
@@ -256,7 +272,10 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     }
     // The exact check of the whole path. Only the first solve pushes cloth out to its stand-off.
     const double growth = report.solves == 1 ? kMendingSpeed * (end - state.time) : 0.0;
-    const Violations violations = propose_and_check(scene, end - state.time, growth, work);
+    const std::optional<Violations> found =
+        propose_and_check(scene, end - state.time, growth, state, work, report);
+    if (!found) return false;
+    const Violations& violations = *found;
     // A clean proposal may still be refused: EOL vertices pressed from both sides, or too much energy.
     const bool is_done = report.status == StepStatus::Done && violations.is_clean();
     if (is_done && !find_overconstrained_by_work(work).empty()) {
@@ -287,6 +306,10 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
     StepReport report;
     report.dt = end - state.time;
     Stopwatch watch;
+    if (note_not_finite(CheckedStage::Start, state, work, report)) {
+        work.retry.note(report, attempt, state, state, {});
+        return report;
+    }
 
     // 1. The mesh, with EOL vertices on the features that press; new elements where the mesh has changed.
     const StepMesh mesh = choose_step_mesh(scene, end, work.retry.flow(), state, work.mesh, report);

@@ -345,7 +345,7 @@ std::string three_ds(const ObstacleMesh& mesh)
     return chunk_3ds(0x4d4d, chunk_3ds(0x3d3d, chunk_3ds(0x4000, std::string("box\0", 4) + triangles)));
 }
 
-std::string three_mf(const ObstacleMesh& mesh, const std::string& attributes)
+std::string three_mf_model(const ObstacleMesh& mesh, const std::string& attributes)
 {
     std::string model = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model" + attributes +
                         " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n<resources>"
@@ -355,7 +355,11 @@ std::string three_mf(const ObstacleMesh& mesh, const std::string& attributes)
     model += "</vertices><triangles>\n";
     for (const auto& [a, b, c] : mesh.faces)
         model += fmt::format("<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>\n", a, b, c);
-    model += "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>\n";
+    return model + "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>\n";
+}
+
+std::string three_mf_package(const std::string& model)
+{
     return zip(
         {{"[Content_Types].xml",
           "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/"
@@ -365,6 +369,11 @@ std::string three_mf(const ObstacleMesh& mesh, const std::string& attributes)
           "relationships\"><Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
           "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>"},
          {"3D/3dmodel.model", model}});
+}
+
+std::string three_mf(const ObstacleMesh& mesh, const std::string& attributes)
+{
+    return three_mf_package(three_mf_model(mesh, attributes));
 }
 
 }  // namespace arris::mesh_files

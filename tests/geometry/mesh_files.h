@@ -49,7 +49,10 @@ std::string three_ds(const ObstacleMesh& mesh);
 /// An archive of files (name, content), not compressed.
 std::string zip(const std::vector<std::pair<std::string, std::string>>& files);
 
-/// A 3MF file as an uncompressed archive; `attributes` of its model, such as " unit=\"inch\"".
+/// The model of a 3MF file, with `attributes` such as " unit=\"inch\""; and a file with this model, as an
+/// uncompressed archive.
+std::string three_mf_model(const ObstacleMesh& mesh, const std::string& attributes);
+std::string three_mf_package(const std::string& model);
 std::string three_mf(const ObstacleMesh& mesh, const std::string& attributes);
 
 }  // namespace arris::mesh_files

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -95,9 +96,21 @@ bool is_expected(const Contact& contact, const Prediction& prediction, const Sta
     return contact.was_active() || contact.is_pressing || contact.gap + prediction.gamma * closing < 0.0;
 }
 
+/// Whether no coordinate moves the contact, as where its normal is across the only direction in which an EOL
+/// vertex moves, and the contact keeps its gap but for round-off. Coefficients that are round-off would ask
+/// for any speed.
+bool is_kept_at_rest(const ConstraintRow& row, const Prediction& prediction, const Contact& contact)
+{
+    constexpr double kRoundOff = 1e-9;  // of the gap to be kept
+    const auto last = row.coefficient.begin() + row.count;
+    const bool can_move = std::any_of(row.coefficient.begin(), last, [](double g) { return g != 0.0; });
+    return !can_move && row.lower * prediction.gamma <= kRoundOff * contact.in_frame.least_gap;
+}
+
 void add_row(const Prediction& prediction, const Linearization& at, Contact& contact,
              VelocityProblem& problem)
 {
+    constexpr double kRoundOff = 1e-15;  // of a unit normal: a smaller part along a coordinate is none
     ConstraintRow row;
     row.lower = -contact.gap / prediction.gamma;
     row.expected = contact.last_multiplier;
@@ -108,9 +121,10 @@ void add_row(const Prediction& prediction, const Linearization& at, Contact& con
         row.lower -= local.weights[i] * contact.normal.dot(at.drift[v]);
         for (int d = 0; d < 3; ++d) {
             row.coordinate[row.count] = 3 * v + d;
-            row.coefficient[row.count++] = gradient[d];
+            row.coefficient[row.count++] = std::abs(gradient[d]) < kRoundOff ? 0.0 : gradient[d];
         }
     }
+    if (is_kept_at_rest(row, prediction, contact)) row.lower = -std::numeric_limits<double>::infinity();
     row.group = local.vertices[0];
     contact.row = static_cast<int>(problem.rows.size());
     problem.rows.push_back(row);

@@ -37,11 +37,20 @@ struct Infeasible {
     std::array<int, 2> obstacles = {-1, -1};  ///< indices in the scene; the second where no pin holds it
 };
 
+/// A number that is not finite, of a step with that status; -1 where a part is not known.
+struct NotFinite {
+    const char* what = nullptr;  ///< in words, such as "force"; null where all numbers are finite
+    std::int64_t vertex = -1;    ///< id
+    int obstacle = -1;           ///< index in the scene
+    int pin = -1;                ///< index in the scene
+};
+
 struct StepReport {
     StepStatus status = StepStatus::Done;
     double dt = 0.0;  ///< s
     StepPart part = StepPart::Ordinary;
     Infeasible infeasible;      ///< of an infeasible step
+    NotFinite not_finite;       ///< of a step that met such a number
     int contacts = 0;           ///< pressing, without fold planes at wires
     int feature_rows = 0;       ///< pressing, at a sharp edge, corner, wire or point, without EOL vertices
     RowCounts rows_by_cause{};  ///< `feature_rows` by cause, in a scene with EOL vertices

@@ -117,5 +117,22 @@ TEST(RunEnding, OfAnInfeasibleStepWithoutAVertexOrWithOneObstacleIsAWholeSentenc
                       HasSubstr("two parts of this obstacle leave it no room")));
 }
 
+TEST(RunEnding, NamesTheNumberThatIsNotFinite)
+{
+    Scene scene;
+    scene.obstacles.push_back(Obstacle("vee", make_box({1, 1, 1}), {}, {}, 30.0));
+    State state;
+    StepReport report;
+    report.status = StepStatus::NotFinite;
+    const auto message = [&](const NotFinite& found) {
+        report.not_finite = found;
+        return explain_ending(report, 1e-9, scene, state).message;
+    };
+    EXPECT_THAT(message({"pin's target", 7, -1, 2}),
+                HasSubstr("the pin's target of vertex 7 of pin.2 is not"));
+    EXPECT_THAT(message({"contact", 7, 0, -1}), HasSubstr("the contact of vertex 7 with vee is not finite"));
+    EXPECT_THAT(message({"placement", -1, 0, -1}), HasSubstr("the placement of vee is not finite"));
+}
+
 }  // namespace
 }  // namespace arris

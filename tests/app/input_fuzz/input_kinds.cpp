@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/app/input_fuzz/input_kinds.h"
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "app/files/binary_stream.h"
+#include "app/files/frame.h"
+#include "app/run/checkpoint.h"
+#include "app/scene/obstacle_records.h"
+#include "app/scene/run_config.h"
+#include "app/text/version.h"
+#include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth_input/cloth_file.h"
+#include "geometry/obstacle/obstacle_topology.h"
+#include "geometry/obstacle_input/obstacle_file.h"
+#include "solver/step.h"
+#include "tests/app/example_frame.h"
+#include "tests/geometry/mesh_files.h"
+#include "tests/geometry/sample_obstacles.h"
+
+namespace arris {
+namespace {
+
+/// Every seed is far smaller than a file that takes this long.
+constexpr std::chrono::seconds kImportTime{60};
+
+void write_plain(const std::string& path, const std::string& bytes)
+{
+    std::ofstream(path, std::ios::binary) << bytes;
+}
+
+std::string read_plain(const std::string& path)
+{
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+constexpr const char* kScene = R"(title = "Every key"
+duration = 0.5
+[time]
+step = 0.01
+integrator = "bdf2"
+[cloth]
+size = [0.4, 0.3]
+resolution = [3, 2]
+pattern = "cross"
+pattern_angle = 17.0
+folds = [ { line = [[0.2, 0.0], [0.2, 0.3]], degrees = 40 } ]
+translate = [0.0, 0.0, 0.5]
+rotate = { axis = [1, 0, 0], degrees = 20 }
+velocity = [0.1, 0.0, -0.2]
+[cloth.material]
+preset = "silk"
+density = 0.1
+damping = 0.001
+thickness = 1e-3
+[[pin]]
+material = [[0, 0], [0, 0.3]]
+follow = "plate"
+release = 0.4
+[[pin]]
+material = [[0.4, 0], [0.4, 0]]
+keyframes = [ { time = 0.0 }, { time = 0.2, translate = [0, 0.1, 0], rotate = { axis = [0, 0, 1], degrees = 5 } } ]
+directions = ["x", "z"]
+[[pull]]
+material = [[0.4, 0.3], [0.4, 0.3]]
+force = [0, 0, -0.1]
+start = 0.1
+stop = 0.21
+[gravity]
+acceleration = [0, 0, -9.81]
+[wind]
+velocity = [2, 1, 0]
+gust = { amplitude = 0.5, frequency = 2, seed = 3 }
+[[obstacle]]
+name = "plate"
+box = [0.2, 0.2, 0.1]
+translate = [0, 0, 0.1]
+motion = { velocity = [0, 0, 0.1], angular_velocity = [0, 0, 1], start = 0.1, stop = 0.3 }
+[[obstacle]]
+name = "row"
+teeth = { count = 3, pitch = 0.1, height = 0.05, width = 0.2, tip_degrees = 60 }
+feature_angle = 20
+[[obstacle]]
+wire = [[0, 0, -0.1], [0.1, 0, -0.1], [0.1, 0.1, -0.1]]
+closed = true
+[[obstacle]]
+points = [[0, 0, -0.2]]
+scale = 2.0
+[[probe]]
+name = "tip"
+material = [0.4, 0.1]
+[solver]
+tolerance = 1e-9
+[output]
+frames_per_second = 24
+formats = ["obj", "viewer"]
+)";
+
+RunConfig load(const std::string& path, const std::vector<std::string>& importer)
+{
+    LoadOptions options;
+    options.importer = importer;
+    return load_scene(path, {}, options);
+}
+
+InputKind mesh_kind(const std::string& name, const std::string& file, const std::string& seed,
+                    const std::vector<std::string>& importer)
+{
+    const auto read = [importer](const std::string& path) {
+        ObstacleFileRequest request;
+        request.path = path;
+        request.importer = importer;
+        request.timeout = kImportTime;
+        return validate(read_obstacle_file(request).mesh);
+    };
+    return {name, file, seed, write_plain, read};
+}
+
+std::vector<InputKind> list_mesh_kinds(const std::vector<std::string>& importer, const std::string& folder)
+{
+    using namespace mesh_files;
+    const ObstacleMesh mesh = samples::l_prism();
+    const PolygonMesh polygons = {mesh.points, {{0, 1, 2}, {0, 2, 3, 4}, {5, 6, 7, 8, 9}, {3, 2, 1}}};
+    write_plain(folder + "/buffer.bin", gltf_buffer(mesh));
+    std::vector<InputKind> kinds;
+    const auto add = [&](const std::string& name, const std::string& file, const std::string& seed) {
+        kinds.push_back(mesh_kind(name, file, seed, importer));
+    };
+    add("OBJ", "mesh.obj", obj(polygons) + "l 1 2 3\np 4\n");
+    add("text STL", "mesh.stl", ascii_stl(mesh));
+    add("binary STL", "mesh.stl", binary_stl(mesh));
+    add("text PLY", "mesh.ply", ascii_ply(polygons));
+    add("binary PLY", "mesh.ply", binary_ply(mesh));
+    add("big-endian PLY", "mesh.ply", binary_ply(mesh, true));
+    add("glTF", "mesh.gltf", gltf_json(mesh, "buffer.bin"));
+    add("GLB", "mesh.glb", glb(mesh));
+    add("COLLADA", "mesh.dae",
+        dae(polygons, "<unit name=\"centimeter\" meter=\"0.01\"/><up_axis>Y_UP</up_axis>"));
+    add("FBX", "mesh.fbx", fbx(polygons, 1, 100.0));
+    add("3DS", "mesh.3ds", three_ds(mesh));
+    add("3MF", "mesh.3mf", three_mf(mesh, " unit=\"inch\""));
+    // The archive's checksum is right, so that the changed model is read.
+    add("3MF model", "mesh.3mf", three_mf_model(mesh, " unit=\"inch\""));
+    kinds.back().write = [](const std::string& path, const std::string& model) {
+        write_plain(path, three_mf_package(model));
+    };
+    return kinds;
+}
+
+/// A kind of sealed file: the body is changed, and sealed anew.
+InputKind sealed_kind(const std::string& name, const std::string& file, const FileKind& kind,
+                      const std::string& sound, std::function<std::string(const std::string&)> read)
+{
+    const auto write = [kind](const std::string& path, const std::string& body) {
+        write_sealed(path, kind, body);
+    };
+    return {name, file, read_sealed(sound, kind), write, std::move(read)};
+}
+
+/// Files that a run writes: a state with EOL vertices, contacts and pins, and moving obstacles.
+void write_run_files(const RunConfig& config, const std::string& folder)
+{
+    write_obstacles(folder, record_obstacles(config));
+    Checkpoint checkpoint;
+    checkpoint.source = {folder + "/scene.toml", kScene, {"time.step=0.02"}};
+    checkpoint.state = make_state(config.scene, config.cloth, config.cloth_velocity);
+    constexpr std::uint32_t kNo = ActiveContact::kNoVertex;
+    checkpoint.state.active = {{{2, 5, kNo}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1}};
+    checkpoint.state.eol = {{1, FeatureId::bend(0, 4, 1), Vec3::UnitZ(), 0, 0}};
+    checkpoint.rows = 1;
+    write_checkpoint(folder + "/checkpoint", checkpoint);
+    write_frame(folder + "/frame.ply", make_example_frame());
+}
+
+std::vector<InputKind> list_run_kinds(const std::string& folder)
+{
+    constexpr FileKind kCheckpoint = {"ARRIS checkpoint\n", kCheckpointVersion, "", ""};
+    constexpr FileKind kObstacles = {"ARRIS obstacles\n", "obstacles 1", "", ""};
+    const auto read_state = [](const std::string& path) {
+        return validate(read_checkpoint(path).state.mesh);
+    };
+    const auto read_records = [](const std::string& path) {
+        std::string defect;
+        for (const ObstacleRecord& record :
+             read_obstacles(std::filesystem::path(path).parent_path().string()))
+            if (defect.empty()) defect = validate(record.mesh);
+        return defect;
+    };
+    const auto read_cloth_frame = [](const std::string& path) {
+        read_frame(path);
+        return std::string();
+    };
+    const std::string checkpoint = folder + "/checkpoint";
+    return {sealed_kind("checkpoint", "checkpoint", kCheckpoint, checkpoint, read_state),
+            {"checkpoint file", "checkpoint", read_plain(checkpoint), write_plain, read_state},
+            sealed_kind("obstacles", "obstacles", kObstacles, obstacles_file(folder), read_records),
+            {"frame", "frame.ply", read_plain(folder + "/frame.ply"), write_plain, read_cloth_frame}};
+}
+
+}  // namespace
+
+std::vector<InputKind> list_input_kinds(const std::vector<std::string>& importer, const std::string& folder)
+{
+    std::vector<InputKind> kinds = list_mesh_kinds(importer, folder);
+    const auto read_cloth = [](const std::string& path) {
+        return validate(read_cloth_file(path, 1.0, 'z').mesh);
+    };
+    kinds.push_back({"cloth", "cloth.obj",
+                     "v 0 0 1\nv 1 0 1\nv 1 1 1.5\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1.1\nvt 0 1\n"
+                     "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
+                     write_plain, read_cloth});
+    const auto read_scene = [importer](const std::string& path) {
+        return validate(load(path, importer).cloth);
+    };
+    kinds.push_back({"scene", "scene.toml", kScene, write_plain, read_scene});
+    write_plain(folder + "/scene.toml", kScene);
+    write_run_files(load(folder + "/scene.toml", importer), folder);
+    for (InputKind& kind : list_run_kinds(folder)) kinds.push_back(std::move(kind));
+    return kinds;
+}
+
+}  // namespace arris
