@@ -18,6 +18,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
+#include "geometry/obstacle_input/dae_check.h"
 #include "geometry/obstacle_input/face_cutter.h"
 #include "geometry/obstacle_input/format_reader.h"
 #include "geometry/obstacle_input/gltf_file.h"
@@ -86,6 +87,7 @@ class ObstacleImporter {
                                          fmt::join(known, ", .")));
         std::string bytes = without_marks(extension_, read_regular_file(path_, kLargestFile));
         check_mesh_bytes(extension_, bytes);
+        if (extension_ == "dae") check_dae(bytes);
         if (is_plain_format(extension_))
             take_plain(bytes);
         else if (extension_ == "3mf")
