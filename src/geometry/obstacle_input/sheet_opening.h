@@ -15,7 +15,7 @@ struct SheetOpening {
     double area = 0.0;                ///< m^2
 
     /// Smallest angle, degrees, between a face at the border and the flat lid that the border would have. 0
-    /// for a flat sheet, 70 for a tetrahedron without a face, 90 for a box without a lid.
+    /// for a flat sheet, 55 to 70 for tetrahedra without a face, 90 for a box without a lid.
     double least_lid_angle = 180.0;
     double upright_area =
         0.0;  ///< m^2, of faces parallel to the lid or at right angles to it, within 5 degrees
@@ -26,7 +26,7 @@ struct SheetOpening {
     /// prism: a table top without its upper side. Bowls are taken for sheets.
     bool looks_solid() const
     {
-        constexpr double kSteep = 60.0;
+        constexpr double kSteep = 50.0;  // 45 of three sides of a cube that meet in a corner
         const bool is_short = border_length * border_length < 5.0 * area;
         const bool is_face = border_edges <= 6 || upright_area > 0.9 * area;
         return loops == 1 && (is_short || (least_lid_angle > kSteep && is_face));

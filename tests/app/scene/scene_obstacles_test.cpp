@@ -321,7 +321,7 @@ TEST(SceneObstacles, TellWhereFacesCrossAndWhatToDo)
                                     "[[obstacle]]\nfile = \"leaves.obj\"\nunits = \"mm\"\ntranslate = [0, 0, "
                                     "5]\n[gravity]\n");
     EXPECT_THAT(load_scene(dir / "s.toml", {}, with_program()).warnings,
-                ElementsAre(AllOf(HasSubstr("1 pairs of faces cross"),
+                ElementsAre(AllOf(HasSubstr("1 pair of faces crosses"),
                                   HasSubstr("near [0.0025, 0.0025, 0] (m, z up, before it is scaled"),
                                   HasSubstr("unite its parts"))));
 }
