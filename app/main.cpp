@@ -12,7 +12,7 @@
 #include "app/text/error_line.h"
 #include "app/text/printable.h"
 #include "geometry/input_error.h"
-#include "geometry/obstacle_input/obstacle_import.h"
+#include "geometry/obstacle_input/import_command.h"
 
 int main(int argc, char** argv)
 {

@@ -6,7 +6,7 @@
 
 namespace arris {
 
-/// Removes the UTF-8 byte-order mark at the beginning of a text. Throws InputError, without the file's name,
+/// Removes the UTF-8 byte-order marks at the beginning of a text. Throws InputError, without the file's name,
 /// for a text in UTF-16 or UTF-32.
 std::string_view skip_byte_order_mark(std::string_view text);
 
@@ -21,19 +21,19 @@ struct ParsedNumber {
 /// Fortran's exponent letter D. Infinity and NaN are numbers.
 ParsedNumber parse_number(std::string_view word);
 
-/// An OBJ file in the one spelling that the readers of cloth and obstacles need: keywords in lower case at
-/// the beginning of a line, words separated by one space, each statement on one line, line feeds only.
-/// Continued and commented lines leave empty lines, so lines keep their numbers. Numbers begin with a digit,
-/// as the import library (assimp 5.2) requires. Throws InputError, without the file's name, for bytes that
-/// are no text and for UTF-16.
-std::string canonical_obj(std::string_view bytes);
+/// Takes a line that ends with a line feed, a carriage return, or both. The line has no byte-order mark at
+/// its beginning, and no blanks at either end.
+std::string_view take_line(std::string_view& text);
 
-/// Whether the bytes are those of a text STL file: they begin with "solid" in any case, hold no zero byte,
-/// and their length is not that of a binary file. Throws InputError for UTF-16.
-bool is_text_stl(std::string_view bytes);
+/// Takes a word that blanks separate from the next; empty at the end of the line.
+std::string_view take_word(std::string_view& line);
 
-/// A text STL file in the one spelling that the import library needs: words in lower case, one space between
-/// words, one keyword a line. Leaves out names of solids, and normals, which obstacles do not use.
-std::string canonical_stl(std::string_view bytes);
+std::string to_lower(std::string_view word);
+
+/// A text from a file for a message: at most its first 40 characters.
+std::string excerpt(std::string_view text);
+
+/// A number with its noun: "1 face", "2 faces", "2 vertices" (for the plural that is given).
+std::string counted(long long count, std::string_view one, std::string_view many);
 
 }  // namespace arris

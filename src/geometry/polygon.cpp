@@ -12,8 +12,10 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "geometry/cgal.h"
+#include "geometry/polygon_touch.h"
 
 // The sides of the polygon are constraints of a triangulation of its corners. A triangle belongs to the
 // polygon if the polygon winds around it once, in either direction. Where a polygon touches itself without
@@ -99,6 +101,7 @@ std::optional<std::vector<Face>> cut_convex_quad(const std::vector<Vec2>& corner
 
 class PolygonCutter {
   public:
+    // `order` names corners as they follow each other; it may come to a corner more than once.
     PolygonCutter(const std::vector<Vec2>& corners, const std::vector<int>& order)
         : corners_(corners), order_(order)
     {
@@ -107,7 +110,7 @@ class PolygonCutter {
     PolygonTriangles cut()
     {
         insert_corners();
-        if (triangulation_.dimension() < 2) return {{}, PolygonDefect::NoArea};
+        if (triangulation_.dimension() < 2) return {{}, PolygonDefect::NoArea, {}};
         vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
         const std::size_t count = vertices_.size();
         try {
@@ -115,7 +118,7 @@ class PolygonCutter {
                 if (vertices_[k] != vertices_[(k + 1) % count])
                     triangulation_.insert_constraint(vertices_[k], vertices_[(k + 1) % count]);
         } catch (const Triangulation::Intersection_of_constraints_exception&) {
-            return {{}, PolygonDefect::CrossesItself};
+            return {{}, PolygonDefect::CrossesItself, {}};
         }
         for (std::size_t k = 0; k < count; ++k) count_side(vertices_[k], vertices_[(k + 1) % count]);
         wind();
@@ -183,7 +186,7 @@ class PolygonCutter {
         PolygonTriangles triangles;
         for (const FaceHandle face : triangulation_.finite_face_handles()) {
             const int number = face->info().number;
-            if (std::abs(number) > 1) return {{}, PolygonDefect::CrossesItself};
+            if (std::abs(number) > 1) return {{}, PolygonDefect::CrossesItself, {}};
             if (number == 0) continue;
             const int a = face->vertex(0)->info(), b = face->vertex(1)->info(), c = face->vertex(2)->info();
             triangles.faces.push_back(number > 0 ? Face{a, b, c} : Face{a, c, b});
@@ -214,16 +217,67 @@ Vec3 normal_of(const std::vector<Vec3>& corners)
     return sum.norm() > kNoNormal * largest.norm() ? sum : largest;
 }
 
+// Twice the area that the triangles cover.
+double twice_area(const std::vector<Vec2>& corners, const std::vector<Face>& faces)
+{
+    double sum = 0.0;
+    for (const auto& [a, b, c] : faces)
+        sum += std::abs(cross(corners[b] - corners[a], corners[c] - corners[a]));
+    return sum;
+}
+
+// Cuts a polygon that is no convex quadrilateral. Bends sides where the polygon touches itself but for
+// rounding; keeps the exact cut if that would change its area by more than rounding does.
+PolygonTriangles cut_polygon(const std::vector<Vec2>& corners, const std::vector<int>& order, NearTouch touch)
+{
+    PolygonTriangles exact = PolygonCutter(corners, order).cut();
+    if (exact.defect == PolygonDefect::NoArea) return exact;
+    if (exact.defect == PolygonDefect::None && touch == NearTouch::Keep) return exact;
+    const double rounding = rounding_of(corners);
+    PolygonLoop loop = join_touches(corners, order, rounding);
+    if (loop.corners == order) return exact;
+    PolygonTriangles bent = PolygonCutter(corners, loop.corners).cut();
+    if (bent.defect != PolygonDefect::None) return exact;
+    if (exact.defect == PolygonDefect::None) {
+        double outline = 0.0;
+        for (std::size_t k = 0; k < corners.size(); ++k)
+            outline += (corners[(k + 1) % corners.size()] - corners[k]).norm();
+        const double change = std::abs(twice_area(corners, bent.faces) - twice_area(corners, exact.faces));
+        if (change > 2.0 * rounding * outline) return exact;
+    }
+    bent.joined = std::move(loop.joined);
+    return bent;
+}
+
+// Whether `a` comes before `b` in an order of places.
+bool precedes(const Vec3& a, const Vec3& b)
+{
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+
+// The first of two starts, by the places of the corners that follow; equal runs give equal fans. Only corners
+// at one place need more than one comparison.
+bool starts_first(const std::vector<Vec3>& corners, std::size_t a, std::size_t b)
+{
+    constexpr std::size_t kMostCompared = 100;
+    const std::size_t count = corners.size();
+    for (std::size_t k = 0; k < std::min(count, kMostCompared); ++k) {
+        const Vec3 &p = corners[(a + k) % count], &q = corners[(b + k) % count];
+        if (p != q) return precedes(p, q);
+    }
+    return false;
+}
+
 }  // namespace
 
-PolygonTriangles triangulate_polygon(const std::vector<Vec2>& corners)
+PolygonTriangles triangulate_polygon(const std::vector<Vec2>& corners, NearTouch touch)
 {
     const std::vector<int> order = canonical_order(corners);
     PolygonTriangles triangles;
     if (auto quad = cut_convex_quad(corners, order))
         triangles.faces = *std::move(quad);
     else
-        triangles = PolygonCutter(corners, order).cut();
+        triangles = cut_polygon(corners, order, touch);
     const bool is_reversed = twice_area(corners) < 0.0;
     for (Face& face : triangles.faces) {
         if (is_reversed) std::swap(face[1], face[2]);
@@ -233,10 +287,10 @@ PolygonTriangles triangulate_polygon(const std::vector<Vec2>& corners)
     return triangles;
 }
 
-PolygonTriangles triangulate_polygon(const std::vector<Vec3>& corners)
+PolygonTriangles triangulate_polygon(const std::vector<Vec3>& corners, NearTouch touch)
 {
     const Vec3 normal = normal_of(corners);
-    if (!(normal.norm() > 0.0)) return {{}, PolygonDefect::NoArea};
+    if (!(normal.norm() > 0.0)) return {{}, PolygonDefect::NoArea, {}};
     // Leaving out a coordinate rounds nothing: corners on a line, and equal corners, remain so. Of
     // coordinates that are about equal in the normal, the last, so that rounding does not choose.
     const Vec3 sizes = normal.cwiseAbs();
@@ -244,7 +298,7 @@ PolygonTriangles triangulate_polygon(const std::vector<Vec3>& corners)
     while (axis > 0 && sizes[axis] < (1.0 - kEqualAxes) * sizes.maxCoeff()) --axis;
     std::vector<Vec2> flat;
     for (const Vec3& p : corners) flat.emplace_back(p[(axis + 1) % 3], p[(axis + 2) % 3]);
-    PolygonTriangles triangles = triangulate_polygon(flat);
+    PolygonTriangles triangles = triangulate_polygon(flat, touch);
     if (triangles.defect == PolygonDefect::None) return triangles;
     // A polygon that is not flat may cross itself as seen along an axis, but not along its own normal.
     const Vec3 along_u = normal.unitOrthogonal();
@@ -253,8 +307,36 @@ PolygonTriangles triangulate_polygon(const std::vector<Vec3>& corners)
         const Vec3 p = corners[k] - corners[0];
         flat[k] = {along_u.dot(p), along_v.dot(p)};
     }
-    const PolygonTriangles seen = triangulate_polygon(flat);
+    PolygonTriangles seen = triangulate_polygon(flat, touch);
     return seen.defect == PolygonDefect::None ? seen : triangles;
+}
+
+std::vector<Face> fan_polygon(const std::vector<Vec3>& corners)
+{
+    const int count = static_cast<int>(corners.size());
+    int start = 0;
+    for (int k = 1; k < count; ++k)
+        if (starts_first(corners, k, start)) start = k;
+    std::vector<Face> faces;
+    for (int k = 2; k < count; ++k) faces.push_back({start, (start + k - 1) % count, (start + k) % count});
+    return faces;
+}
+
+PolygonBend find_bend(const std::vector<Vec3>& corners)
+{
+    PolygonBend bend;
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& p : corners) middle += (p - corners[0]) / static_cast<double>(corners.size());
+    const Vec3 normal = normal_of(corners).stableNormalized();
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const Vec3 from_middle = corners[k] - corners[0] - middle;
+        bend.size = std::max(bend.size, from_middle.norm());
+        const double distance = std::abs(from_middle.dot(normal));
+        if (distance <= bend.distance) continue;
+        bend.distance = distance;
+        bend.corner = static_cast<int>(k);
+    }
+    return bend;
 }
 
 }  // namespace arris

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "geometry/obstacle_input/child_process.h"
-#include "geometry/obstacle_input/obstacle_import.h"
+#include "geometry/obstacle_input/import_command.h"
 #include "geometry/obstacle_input/obstacle_reply.h"
 #include "tests/geometry/sample_obstacles.h"
 

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/app/error_of.h"
 
@@ -32,34 +35,32 @@ TEST(MeshText, NumbersAreReadInEverySpelling)
     EXPECT_TRUE(std::isinf(parse_number("-inf").value));
 }
 
-TEST(MeshText, ObjHasOneSpelling)
+TEST(MeshText, LinesEndInEveryWayAndHaveNoMarks)
 {
-    const std::pair<std::string, std::string> cases[] = {
-        {"", ""},
-        {"v 1 2 3\n", "v 1 2 3\n"},
-        {"v 1 2 3", "v 1 2 3\n"},
-        {"\xef\xbb\xbfv 1 2 3\n", "v 1 2 3\n"},
-        {"V 1 2 3\nVT 0 0\nVN 0 0 1\nF 1/1/1 2 3\nL 1 2\nP 1\n",
-         "v 1 2 3\nvt 0 0\nvn 0 0 1\nf 1/1/1 2 3\nl 1 2\np 1\n"},
-        {"v 1 2 3\r\nf 1 2 3\r\n", "v 1 2 3\nf 1 2 3\n"},
-        {"v 1 2 3\rf 1 2 3\r", "v 1 2 3\nf 1 2 3\n"},
-        {" \tv\t1  2\v3 \f\n", "v 1 2 3\n"},
-        {"v 1 2 3 # a corner\n#v 9 9 9\nf 1 2 3#end", "v 1 2 3\n\nf 1 2 3\n"},
-        {"v 1 \\\n2 \\ \n3\nf 1 2 3\n", "v 1 2 3\n\n\nf 1 2 3\n"},
-        {"v 1 \\\r\n2 3\r\n", "v 1 2 3\n\n"},
-        {"v 1 2 3 \\", "v 1 2 3\n"},
-        // A path in a comment may end with a backslash.
-        {"# C:\\models\\\nv 1 2 3\n", "\nv 1 2 3\n"},
-        {"v .5 -.5 +.25\nvt .5 1.\n", "v 0.5 -0.5 +0.25\nvt 0.5 1.\n"},
-        {"v 1.5D+00 2d-1 3E0\n", "v 1.5e+00 2e-1 3E0\n"},
-        {"v x 1,5 nan\n", "v x 1,5 nan\n"},
-        {"fo 1 2 3\n", "f 1 2 3\n"},
-        {"O Part.1\nUSEMTL Red.2\nmtllib a b.mtl\n", "o Part.1\nusemtl Red.2\nmtllib a b.mtl\n"},
-        // The import library would take these for a point, a line and a vertex.
-        {"parm u 0 1\nlod 2\nvp 0 1\n", "# parm u 0 1\n# lod 2\n# vp 0 1\n"},
-        {"cstype bezier\n", "cstype bezier\n"},
+    const std::string mark = "\xef\xbb\xbf";
+    const std::pair<std::string, std::vector<std::string>> cases[] = {
+        {"", {}},
+        {"a\nb", {"a", "b"}},
+        {"a\r\nb\r\n", {"a", "b"}},
+        {"a\rb\r", {"a", "b"}},
+        {"a\n\rb", {"a", "", "b"}},
+        {" \ta b\v\f\x1a\n", {"a b"}},
+        {mark + "a\n" + mark + " b\n" + mark + mark + "c\n " + mark + "d" + mark,
+         {"a", "b", "c", "d" + mark}},
     };
-    for (const auto& [text, expected] : cases) EXPECT_EQ(canonical_obj(text), expected) << text;
+    for (const auto& [text, lines] : cases) {
+        std::string_view rest = text;
+        std::vector<std::string> found;
+        while (!rest.empty()) found.emplace_back(take_line(rest));
+        EXPECT_EQ(found, lines) << text;
+    }
+}
+
+TEST(MeshText, NounsAgreeWithTheirNumber)
+{
+    EXPECT_EQ(counted(0, "face", "faces"), "0 faces");
+    EXPECT_EQ(counted(1, "face", "faces"), "1 face");
+    EXPECT_EQ(counted(2, "face", "faces"), "2 faces");
 }
 
 std::string utf16(const std::string& text, bool is_big_endian, bool has_mark)
@@ -73,44 +74,13 @@ TEST(MeshText, WideTextIsRefused)
 {
     for (const bool is_big_endian : {false, true})
         for (const bool has_mark : {false, true}) {
-            const std::string obj = utf16("v 0 0 0\nf 1 1 1\n", is_big_endian, has_mark);
-            EXPECT_THAT(error_of([&] { canonical_obj(obj); }), HasSubstr("UTF-16"))
-                << is_big_endian << has_mark;
-            const std::string stl = utf16("solid x\nendsolid x\n", is_big_endian, has_mark);
-            EXPECT_THAT(error_of([&] { is_text_stl(stl); }), HasSubstr("UTF-16"))
+            const std::string wide = utf16("v 0 0 0\nf 1 1 1\n", is_big_endian, has_mark);
+            EXPECT_THAT(error_of([&] { skip_byte_order_mark(wide); }), HasSubstr("UTF-16"))
                 << is_big_endian << has_mark;
         }
-    EXPECT_THAT(error_of([&] { canonical_obj(std::string("v 0 0 \0 0\n", 10)); }), HasSubstr("zero byte"));
-}
-
-TEST(MeshText, StlHasOneSpelling)
-{
-    const std::string plain =
-        "solid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
-        "endsolid\n";
-    const std::string cases[] = {
-        plain,
-        "solid a part\nfacet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n "
-        "endloop\n"
-        "endfacet\nendsolid a part",
-        "\xef\xbb\xbfSOLID PART\r\nFACET NORMAL 0 0 1\r\nOUTER LOOP\r\nVERTEX 0 0 0\r\nVERTEX 1 0 "
-        "0\r\nVERTEX 0 1 0\r\n"
-        "ENDLOOP\r\nENDFACET\r\nENDSOLID PART\r\n",
-        "solid\rfacet normal nan -nan(ind) 1.#QNAN\router loop\rvertex 0 0 0\rvertex 1 0 0\rvertex 0 1 "
-        "0\rendloop\r"
-        "endfacet\rendsolid",
-        "solid x facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet "
-        "endsolid x",
-        "\n\n\tsolid facet\n\tfacet\tnormal 0 0 1\nouter  loop\nvertex 0 0\t0\nvertex 1 0 0 # end\nvertex 0 "
-        "1 0\n"
-        "endloop\nendfacet\nendsolid facet\n\n",
-    };
-    for (const std::string& text : cases) {
-        EXPECT_TRUE(is_text_stl(text)) << text;
-        EXPECT_EQ(canonical_stl(text), plain) << text;
-    }
-    EXPECT_FALSE(is_text_stl("facet normal 0 0 1"));
-    EXPECT_FALSE(is_text_stl(std::string("solid \0 binary", 14)));
+    EXPECT_EQ(skip_byte_order_mark("\xef\xbb\xbf\xef\xbb\xbf"
+                                   "v"),
+              "v");
 }
 
 }  // namespace

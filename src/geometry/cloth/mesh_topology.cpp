@@ -148,9 +148,15 @@ std::string find_bow_tie(const ClothMesh& mesh, const std::vector<Side>& sides, 
     for (int c = 0; c < static_cast<int>(parent.size()); ++c) {
         const int v = mesh.faces[c / 3][c % 3];
         if (fan[v] < 0) fan[v] = root(c);
-        if (fan[v] != root(c))
-            return fmt::format("vertex {} joins parts of the cloth in a single point (faces {} and {})",
-                               names.vertex(v), names.face(fan[v] / 3), names.face(c / 3));
+        if (fan[v] == root(c)) continue;
+        const int one = names.face(fan[v] / 3), other = names.face(c / 3);
+        return fmt::format(
+            "vertex {} joins parts of the cloth in a single point, where {}; allowed: parts that share an "
+            "edge, or "
+            "that are apart, each with a vertex of its own",
+            names.vertex(v),
+            one == other ? fmt::format("the polygon of face {} touches itself", one)
+                         : fmt::format("faces {} and {} meet", one, other));
     }
     return {};
 }

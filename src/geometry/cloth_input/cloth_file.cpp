@@ -11,18 +11,23 @@
 #include <tuple>
 
 #include "geometry/cgal.h"
+#include "geometry/cloth/euler_characteristic.h"
 #include "geometry/cloth/material_box.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/cloth_input/chart_overlap.h"
-#include "geometry/cloth_input/obj_outline.h"
+#include "geometry/cloth_input/cloth_obj.h"
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
+#include "geometry/mesh_text.h"
 #include "geometry/polygon.h"
 
 namespace arris {
 namespace {
 
 constexpr double kFlat = 1e-6;  // relative to size; files are often written in single precision
+
+constexpr const char* kTubeAdvice =
+    "; a tube cannot be simulated yet: open it along a seam, and move the two sides apart";
 
 struct FileVertex {
     Vec3 position;
@@ -51,9 +56,9 @@ class ClothReader {
     ClothFile read()
     {
         require_regular_obj();
-        outline_ = read_obj_outline(path_);
-        file_.has_uv = outline_.corners.front().uv >= 0;
-        for (const ObjCorner& corner : outline_.corners) require_finite(corner);
+        statements_ = read_cloth_obj(path_);
+        file_.has_uv = statements_.corners.front().uv >= 0;
+        for (const ObjCorner& corner : statements_.corners) require_finite(corner);
         collect();
         warn_about_dropped();
         require_single_uvs();
@@ -98,20 +103,53 @@ class ClothReader {
     {
         std::map<decltype(FileVertex().key()), int> index;
         std::size_t first = 0;
-        for (const int count : outline_.corner_counts) {
+        for (const int count : statements_.corner_counts) {
             std::vector<int> vertices;
-            for (int k = 0; k < count; ++k) vertices.push_back(weld(outline_.corners[first + k], index));
-            const int line = outline_.corners[first].line;
+            for (int k = 0; k < count; ++k) vertices.push_back(weld(statements_.corners[first + k], index));
+            const int line = statements_.corners[first].line;
             for (const auto& [a, b, c] : cut(vertices, line)) {
                 file_.faces.push_back({vertices[a], vertices[b], vertices[c]});
                 file_.lines.push_back(line);
             }
             first += static_cast<std::size_t>(count);
         }
+        for (Face& face : file_.faces)
+            for (int& v : face) v = standing_for(v);
+        drop_unused();
+    }
+
+    // The vertex that stands for `v`: of vertices that a polygon joined, the first.
+    int standing_for(int v) const
+    {
+        for (auto found = joined_.find(v); found != joined_.end(); found = joined_.find(v)) v = found->second;
+        return v;
+    }
+
+    // Corners that a polygon joined, and tips of spurs, belong to no triangle.
+    void drop_unused()
+    {
+        std::vector<int> name(file_.vertices.size(), -1);
+        for (const Face& face : file_.faces)
+            for (const int v : face) name[v] = 0;
+        int kept = 0;
+        for (std::size_t v = 0; v < name.size(); ++v) {
+            if (name[v] < 0) continue;
+            file_.vertices[kept] = file_.vertices[v];
+            file_.numbers[kept] = file_.numbers[v];
+            name[v] = kept++;
+        }
+        if (const int dropped = static_cast<int>(name.size()) - kept; dropped > 0)
+            warnings_.push_back(
+                fmt::format("{}: {} dropped (within rounding of another in a polygon, or the tip of a spur)",
+                            path_, counted(dropped, "vertex was", "vertices were")));
+        file_.vertices.resize(kept);
+        file_.numbers.resize(kept);
+        for (Face& face : file_.faces)
+            for (int& v : face) v = name[v];
     }
 
     // Triangles of a face's corners, cut in the material if the file has UVs, else in the face's own plane.
-    std::vector<Face> cut(const std::vector<int>& vertices, int line) const
+    std::vector<Face> cut(const std::vector<int>& vertices, int line)
     {
         if (vertices.size() == 3) return {{0, 1, 2}};
         std::vector<Vec2> uvs;
@@ -120,8 +158,8 @@ class ClothReader {
             uvs.push_back(file_.vertices[v].uv);
             places.push_back(file_.vertices[v].position);
         }
-        const PolygonTriangles triangles =
-            file_.has_uv ? triangulate_polygon(uvs) : triangulate_polygon(places);
+        const PolygonTriangles triangles = file_.has_uv ? triangulate_polygon(uvs, NearTouch::Join)
+                                                        : triangulate_polygon(places, NearTouch::Join);
         const char* where = file_.has_uv ? " in material space" : "";
         if (triangles.defect == PolygonDefect::CrossesItself)
             refuse_line(line,
@@ -129,13 +167,19 @@ class ClothReader {
                                     where));
         if (triangles.defect == PolygonDefect::NoArea)
             refuse_line(line, fmt::format("its polygon has no area{}", where));
+        for (const auto& [corner, other] : triangles.joined) {
+            // Links lead to smaller numbers, so they end.
+            const auto [low, high] =
+                std::minmax(standing_for(vertices[corner]), standing_for(vertices[other]));
+            if (low != high) joined_[high] = low;
+        }
         return triangles.faces;
     }
 
     FileVertex vertex_at(const ObjCorner& corner) const
     {
-        return {outline_.vertices[corner.vertex].place,
-                corner.uv < 0 ? Vec2(Vec2::Zero()) : outline_.uvs[corner.uv].place};
+        return {statements_.vertices[corner.vertex].place,
+                corner.uv < 0 ? Vec2(Vec2::Zero()) : statements_.uvs[corner.uv].place};
     }
 
     template <class Index>
@@ -152,12 +196,15 @@ class ClothReader {
 
     void warn_about_dropped()
     {
-        if (outline_.unused_vertex_count > 0)
+        std::vector<char> is_used(statements_.vertices.size(), 0);
+        for (const ObjCorner& corner : statements_.corners) is_used[corner.vertex] = 1;
+        if (const auto unused = std::count(is_used.begin(), is_used.end(), 0); unused > 0)
             warnings_.push_back(fmt::format("{}: {} of {} vertices belong to no face and were dropped", path_,
-                                            outline_.unused_vertex_count, outline_.vertices.size()));
-        if (outline_.line_and_point_count > 0)
+                                            unused, is_used.size()));
+        for (const std::string& warning : statements_.warnings) warnings_.push_back(path_ + ": " + warning);
+        if (statements_.line_and_point_count > 0)
             warnings_.push_back(fmt::format("{}: {} lines and points are no cloth and were dropped", path_,
-                                            outline_.line_and_point_count));
+                                            statements_.line_and_point_count));
     }
 
     [[noreturn]] void refuse_line(int line, const std::string& why) const
@@ -167,13 +214,13 @@ class ClothReader {
 
     void require_finite(const ObjCorner& corner) const
     {
-        const auto& [p, line] = outline_.vertices[corner.vertex];
+        const auto& [p, line] = statements_.vertices[corner.vertex];
         if (!p.allFinite() || !(p.cwiseAbs().maxCoeff() * unit_ <= kLargestCoordinate))
             refuse_line(
                 line, fmt::format("vertex ({}, {}, {}) must be finite and within {:g} m of the origin", p.x(),
                                   p.y(), p.z(), kLargestCoordinate));
         if (corner.uv < 0) return;
-        const auto& [uv, uv_line] = outline_.uvs[corner.uv];
+        const auto& [uv, uv_line] = statements_.uvs[corner.uv];
         if (!uv.allFinite() || !(uv.cwiseAbs().maxCoeff() <= kLargestCoordinate))
             refuse_line(uv_line, fmt::format("UV ({}, {}) must be finite and within {:g} m", uv.x(), uv.y(),
                                              kLargestCoordinate));
@@ -265,9 +312,10 @@ class ClothReader {
         for (const Vec3& x : mesh_.world)
             if (!(std::abs((x - origin).dot(normal)) <= kFlat * world_size()))
                 refuse(fmt::format(
-                    "curved (by {:.3g} m at ({:.6g}, {:.6g}, {:.6g}) m) and without UVs: give UVs in "
-                    "metres, or a flat mesh",
-                    std::abs((x - origin).dot(normal)), x.x(), x.y(), x.z()));
+                    "curved (by {:.3g} m at ({:.6g}, {:.6g}, {:.6g}) m) and without UVs; allowed: UVs in "
+                    "metres, or a flat mesh{}",
+                    std::abs((x - origin).dot(normal)), x.x(), x.y(), x.z(),
+                    euler_characteristic(mesh_) > 0 ? "" : kTubeAdvice));
         // u is along x if possible: a horizontal mesh then keeps its x and y.
         const Vec3 guide = std::abs(normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
         const Vec3 along_u = (guide - guide.dot(normal) * normal).normalized();
@@ -329,8 +377,9 @@ class ClothReader {
     std::string path_;
     double unit_;
     Mat3 to_z_up_;
-    ObjOutline outline_;
+    ObjFile statements_;
     FileMesh file_;
+    std::map<int, int> joined_;  // a vertex, and the earlier one that stands for it
     ClothMesh mesh_;
     std::vector<std::string> warnings_;
 };

@@ -10,6 +10,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/obstacle_input/gltf_document.h"
+#include "geometry/obstacle_input/gltf_nodes.h"
 #include "geometry/obstacle_input/obstacle_reply.h"
 
 namespace arris {
@@ -21,12 +22,15 @@ constexpr std::size_t kLongestQuote = 60;
 
 constexpr std::array<std::string_view, 2> kRead = {"KHR_draco_mesh_compression", "KHR_mesh_quantization"};
 
-// Extensions that leave shapes as they are, by what follows the vendor in their names. Those of the second
-// list add data that a reader of shapes does not need; the node that has MSFT_lod is the finest of its
-// levels.
+// Vendors whose extensions are known. Their extensions leave shapes as they are if their names go on as
+// follows.
+constexpr std::array<std::string_view, 14> kVendors = {"KHR",   "EXT",    "MSFT", "ADOBE",  "AGI",
+                                                       "ASOBO", "CESIUM", "FB",   "GOOGLE", "MOZ",
+                                                       "MX",    "NV",     "VRMC", "WEB3D"};
 constexpr std::array<std::string_view, 12> kAppearances = {"materials", "texture",     "lights",  "light",
                                                            "image",     "environment", "xmp",     "audio",
                                                            "animation", "packing",     "sampler", "cameras"};
+// Data that a reader of shapes does not need; the node that has MSFT_lod is the finest of its levels.
 constexpr std::array<std::string_view, 10> kShapeless = {
     "FB_ngon_encoding",      "CESIUM_primitive_outline", "EXT_mesh_features",
     "EXT_instance_features", "EXT_structural_metadata",  "MSFT_lod",
@@ -43,7 +47,8 @@ bool changes_no_shape(std::string_view name)
 {
     if (is_in(kShapeless, name)) return true;
     const std::size_t vendor = name.find('_');
-    if (vendor == std::string_view::npos) return false;
+    if (vendor == std::string_view::npos || !is_in(kVendors, name.substr(0, vendor))) return false;
+    if (name.find("displacement") != std::string_view::npos) return false;
     const std::string_view rest = name.substr(vendor + 1);
     return std::any_of(kAppearances.begin(), kAppearances.end(), [&](std::string_view word) {
         return rest.starts_with(word) && (rest.size() == word.size() || rest[word.size()] == '_');
@@ -63,7 +68,11 @@ class GltfCheck {
     std::vector<std::string> run()
     {
         for (const json& name : gltf_member(file_, "extensionsRequired")) check_required(quote(name));
-        for_each("nodes", "node", [&](const json& node, const std::string& what) { check_node(node, what); });
+        note_unknown(file_, "the file itself");
+        for_each("scenes", "scene",
+                 [&](const json& scene, const std::string& what) { note_unknown(scene, what); });
+        const json& nodes = gltf_member(file_, "nodes");
+        for (const std::size_t n : shown_gltf_nodes(file_)) check_node(nodes[n], fmt::format("node {}", n));
         for_each("meshes", "mesh",
                  [&](const json& mesh, const std::string& what) { check_mesh(mesh, what); });
         for_each("bufferViews", "buffer view",
@@ -119,6 +128,7 @@ class GltfCheck {
         if (gltf_member(gltf_member(extensions, "KHR_node_visibility"), "visible") == false)
             throw InputError(what +
                              " is hidden (KHR_node_visibility), which is not read; allowed: visible nodes");
+        check_gltf_placement(node, what);
         check_weights(node, what);
         if (!gltf_member(node, "skin").is_null() && !gltf_member(node, "mesh").is_null())
             warnings_.push_back(
@@ -126,10 +136,14 @@ class GltfCheck {
         note_unknown(node, what);
     }
 
-    // Morph targets move vertices by their weights.
-    static void check_weights(const json& object, const std::string& what)
+    // Morph targets move vertices by the weights of the node, or else of its mesh.
+    void check_weights(const json& node, const std::string& what) const
     {
-        for (const json& weight : gltf_member(object, "weights"))
+        const json& mesh = gltf_member(node, "mesh");
+        if (mesh.is_null()) return;
+        const json& own = gltf_member(node, "weights");
+        for (const json& weight :
+             own.is_null() ? gltf_member(gltf_element(file_, "meshes", mesh), "weights") : own)
             if (weight != 0)
                 throw InputError(
                     fmt::format("{} morphs its mesh (weight {}), which is not read; allowed: weights 0", what,
@@ -138,7 +152,6 @@ class GltfCheck {
 
     void check_mesh(const json& mesh, const std::string& what)
     {
-        check_weights(mesh, what);
         note_unknown(mesh, what);
         const json& primitives = gltf_member(mesh, "primitives");
         for (std::size_t i = 0; i < primitives.size(); ++i)
@@ -158,8 +171,38 @@ class GltfCheck {
         const json& position = gltf_member(gltf_member(primitive, "attributes"), "POSITION");
         if (position.is_null()) throw InputError(what + " has no positions");
         require_data(position, is_packed, what);
-        if (const json& indices = gltf_member(primitive, "indices"); !indices.is_null())
-            require_data(indices, is_packed, what);
+        require_form(position, "VEC3", {5120, 5121, 5122, 5123, 5126}, what);
+        const json& indices = gltf_member(primitive, "indices");
+        if (indices.is_null()) return;
+        require_data(indices, is_packed, what);
+        require_form(indices, "SCALAR", {5121, 5123, 5125}, what);
+    }
+
+    // Without its full type the import library takes numbers for others.
+    void require_form(const json& index, const char* type, const std::vector<int>& components,
+                      const std::string& what) const
+    {
+        const json& accessor = gltf_element(file_, "accessors", index);
+        const std::string told = fmt::format("{}: its accessor {}", what, quote(index));
+        if (const json& found = gltf_member(accessor, "type"); found != type)
+            throw InputError(fmt::format("{} has type {}; allowed: {}", told, quote(found), type));
+        const json& component = gltf_member(accessor, "componentType");
+        if (std::find(components.begin(), components.end(), component) == components.end())
+            throw InputError(fmt::format("{} has component type {}; allowed: {}", told, quote(component),
+                                         fmt::join(components, ", ")));
+        const json& view = gltf_member(accessor, "bufferView");
+        if (view.is_null()) return;
+        const json& stride = gltf_member(gltf_element(file_, "bufferViews", view), "byteStride");
+        const int least = size_of(component) * (std::string_view(type) == "VEC3" ? 3 : 1);
+        if (!stride.is_null() && (!stride.is_number_unsigned() || stride < least))
+            throw InputError(fmt::format("{} has byteStride {}; allowed: at least {}, the size of an element",
+                                         told, quote(stride), least));
+    }
+
+    static int size_of(const json& component)
+    {
+        if (component == 5120 || component == 5121) return 1;
+        return component == 5122 || component == 5123 ? 2 : 4;
     }
 
     // Without a buffer view, numbers of an accessor are zero.

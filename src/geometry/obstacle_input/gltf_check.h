@@ -13,9 +13,12 @@ namespace arris {
 ///  - required extensions that are not read, unless they change the appearance only;
 ///  - instances (EXT_mesh_gpu_instancing), hidden nodes (KHR_node_visibility), and data that are there in
 ///    compressed form only (EXT_meshopt_compression);
-///  - positions without data, morph targets whose weights are not zero, and unknown kinds of primitives.
+///  - positions and indices without data, or of another type than theirs, or with a stride shorter than an
+///    element; unknown kinds of primitives;
+///  - shown nodes whose morph targets have weights that are not zero, or whose placement is not well formed
+///    (see check_gltf_placement).
 ///
-/// Returns warnings about skins, which are not applied, and about unknown extensions of the geometry.
+/// Returns warnings about skins, which are not applied, and about unknown extensions that may change shapes.
 std::vector<std::string> check_gltf(const nlohmann::json& json);
 
 }  // namespace arris

@@ -35,12 +35,19 @@ std::size_t padded(std::size_t size)
     return (size + 3) / 4 * 4;
 }
 
+// Readers call themselves for each level.
+constexpr int kDeepest = 200;
+
 nlohmann::json parse(std::string_view text)
 {
+    const auto require_depth = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+        if (depth > kDeepest) throw InputError(fmt::format("its JSON nests deeper than {} levels", kDeepest));
+        return true;
+    };
     // Some writers fill up the chunk with zeros instead of spaces.
     text = text.substr(0, text.find_last_not_of('\0') + 1);
     try {
-        nlohmann::json json = nlohmann::json::parse(text);
+        nlohmann::json json = nlohmann::json::parse(text, require_depth);
         if (!json.is_object()) throw InputError("its JSON is no object");
         return json;
     } catch (const nlohmann::json::parse_error& error) {

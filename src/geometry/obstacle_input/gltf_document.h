@@ -16,7 +16,7 @@ struct GltfDocument {
 };
 
 /// Takes a .gltf file, or a .glb file whose chunk lengths check_mesh_bytes has checked, apart. Throws
-/// InputError, without the file's name, for JSON that is not well formed.
+/// InputError, without the file's name, for JSON that is not well formed or nests deeper than 200 levels.
 GltfDocument read_gltf(bool is_binary, std::string_view bytes);
 
 /// The bytes of a .glb file.

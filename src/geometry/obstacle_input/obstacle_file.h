@@ -31,8 +31,8 @@ struct ObstacleFile {
 ///
 /// Units and up axis, unless given, are those that the file declares (COLLADA, FBX, 3MF; glTF: metres, y up),
 /// else metres and z. An up axis is turned to +z: y by (x, y, z) -> (x, -z, y), x by (-z, y, x). Coordinates
-/// are read in single precision, except those of 3MF; a warning says where that matters. Polygons are cut by
-/// triangulate_polygon; a warning counts those that cross themselves.
+/// of texts and 3MF are double; others are single precision: a warning says where that matters. Polygons are
+/// cut by triangulate_polygon; warnings count those that cross themselves, and those that are not flat.
 ///
 /// Throws InputError, one line that begins with the path, for a file that cannot be used. It may be missing,
 /// not regular, larger than 2 GB, of another format, damaged, or without usable geometry. Also throws where

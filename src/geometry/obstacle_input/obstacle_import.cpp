@@ -4,13 +4,11 @@
 #include <assimp/config.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
-#include <unistd.h>
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -20,6 +18,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
+#include "geometry/obstacle_input/dae_check.h"
 #include "geometry/obstacle_input/face_cutter.h"
 #include "geometry/obstacle_input/format_reader.h"
 #include "geometry/obstacle_input/gltf_file.h"
@@ -27,6 +26,7 @@
 #include "geometry/obstacle_input/mesh_file_check.h"
 #include "geometry/obstacle_input/mesh_folder_io.h"
 #include "geometry/obstacle_input/obstacle_reply.h"
+#include "geometry/obstacle_input/plain_mesh.h"
 #include "geometry/obstacle_input/soup_repair.h"
 #include "geometry/obstacle_input/soup_weld.h"
 #include "geometry/obstacle_input/three_mf_file.h"
@@ -34,7 +34,8 @@
 // The importer gets the reader of one format, no post-processing, and a file system of one folder. Its own
 // checks, its joining of vertices (within 1e-5, whatever the unit), its triangulation (which depends on a
 // polygon's starting corner) and its flattening of the node tree (in single precision) are not used. So
-// positions leave the importer as the file has them, and are double from there.
+// positions leave the importer as the file has them, and are double from there. OBJ, STL, PLY and 3MF have
+// readers of their own, whose values are double from the beginning.
 namespace arris {
 namespace {
 
@@ -84,16 +85,20 @@ class ObstacleImporter {
         if (std::find(known.begin(), known.end(), extension_) == known.end())
             throw InputError(fmt::format("unknown format '.{}'; allowed: .{}", one_line(extension_),
                                          fmt::join(known, ", .")));
-        std::string bytes = canonical_bytes(extension_, read_regular_file(path_, kLargestFile));
-        warnings_ = check_mesh_bytes(extension_, bytes);
-        if (extension_ == "3mf")
+        std::string bytes = without_marks(extension_, read_regular_file(path_, kLargestFile));
+        check_mesh_bytes(extension_, bytes);
+        if (extension_ == "dae") check_dae(bytes);
+        if (is_plain_format(extension_))
+            take_plain(bytes);
+        else if (extension_ == "3mf")
             take_package(bytes);
         else if (extension_ == "gltf" || extension_ == "glb")
             take_gltf(std::move(bytes));
         else
             load("mesh." + extension_, bytes);
         place();
-        if (cutter_.crossing_count() > 0) warnings_.push_back(cutter_.tell_crossing(soup_.points));
+        for (std::string& warning : cutter_.warnings(soup_.points, unit_.value_or(declared_unit_)))
+            warnings_.push_back(std::move(warning));
         warn_where_far();
         // Readers of all other formats give each face its own points, even where the file shares them.
         if (extension_ != "stl" && extension_ != "ply") join_equal_points(soup_);
@@ -103,11 +108,54 @@ class ObstacleImporter {
     }
 
   private:
+    // Formats whose numbers the import library rounds, and whose less common spellings it misreads
+    void take_plain(const std::string& bytes)
+    {
+        PlainMesh mesh = read_plain_mesh(extension_, bytes);
+        const std::size_t total = mesh.corner_counts.size() + mesh.segments.size() + mesh.lone_points.size();
+        if (total > kMostFaces || mesh.points.size() > 3 * kMostFaces)
+            throw InputError(fmt::format("more than {} faces", kMostFaces));
+        require_near(mesh);
+        std::size_t first = 0;
+        for (const int count : mesh.corner_counts) {
+            const int* face = &mesh.corners[first];
+            std::vector<Vec3> corners;
+            for (int k = 0; k < count; ++k) corners.push_back(mesh.points[face[k]]);
+            for (const auto& [a, b, c] : cutter_.cut(corners, face[0]))
+                soup_.faces.push_back({face[a], face[b], face[c]});
+            first += static_cast<std::size_t>(count);
+        }
+        soup_.points = std::move(mesh.points);
+        soup_.segments = std::move(mesh.segments);
+        soup_.lone_points = std::move(mesh.lone_points);
+        warnings_ = std::move(mesh.warnings);
+        is_single_ = mesh.is_single;
+    }
+
+    // repair_soup checks the same of all formats, and knows no lines.
+    void require_near(const PlainMesh& mesh) const
+    {
+        const double unit = unit_.value_or(declared_unit_);
+        const auto require = [&](int point) {
+            const Vec3& p = mesh.points[point];
+            if (mesh.lines.empty() || unit * p.cwiseAbs().maxCoeff() <= kLargestCoordinate) return;
+            throw InputError(fmt::format("line {}: vertex ({}, {}, {}) must be within {:g} m of the origin",
+                                         mesh.lines[point], p.x(), p.y(), p.z(), kLargestCoordinate));
+        };
+        for (const int point : mesh.corners) require(point);
+        for (const auto& [a, b] : mesh.segments) {
+            require(a);
+            require(b);
+        }
+        for (const int point : mesh.lone_points) require(point);
+    }
+
     // The import library reads one part of a 3MF package, and drops what refers to others.
     void take_package(const std::string& bytes)
     {
         ThreeMfFile file = read_three_mf(bytes, kMostFaces);
         soup_ = std::move(file.soup);
+        is_single_ = false;
         declared_unit_ = file.metres_per_unit;
         warnings_.insert(warnings_.end(), file.warnings.begin(), file.warnings.end());
     }
@@ -258,23 +306,21 @@ class ObstacleImporter {
             soup_.points.push_back((placement * Eigen::Vector4d(p.x, p.y, p.z, 1.0)).head<3>());
         }
         // A mirroring placement reverses the orientation of faces.
-        const bool is_mirrored = placement.topLeftCorner<3, 3>().determinant() < 0.0;
+        const double volume = placement.topLeftCorner<3, 3>().determinant();
+        const bool is_mirrored = volume < 0.0;
+        const double scale = std::cbrt(std::abs(volume));
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
             const aiFace& face = mesh.mFaces[f];
             const auto point = [&](unsigned k) { return base + static_cast<int>(face.mIndices[k]); };
             if (face.mNumIndices == 1) soup_.lone_points.push_back(point(0));
             if (face.mNumIndices == 2) soup_.segments.push_back({point(0), point(1)});
-            for (const auto& [a, b, c] : cut(mesh, face, base))
+            for (const auto& [a, b, c] : cut(mesh, face, base, scale))
                 soup_.faces.push_back({point(a), point(is_mirrored ? c : b), point(is_mirrored ? b : c)});
         }
-        // A PLY file with vertices only is a point cloud.
-        if (mesh.mNumFaces == 0 && extension_ == "ply")
-            for (unsigned v = 0; v < mesh.mNumVertices; ++v)
-                soup_.lone_points.push_back(base + static_cast<int>(v));
     }
 
     // Triangles of corners. Cuts polygons where the file states them: a placement would round their corners.
-    std::vector<Face> cut(const aiMesh& mesh, const aiFace& face, int base)
+    std::vector<Face> cut(const aiMesh& mesh, const aiFace& face, int base, double scale)
     {
         if (face.mNumIndices < 3) return {};
         std::vector<Vec3> corners;
@@ -282,7 +328,7 @@ class ObstacleImporter {
             const aiVector3D& p = mesh.mVertices[face.mIndices[k]];
             corners.emplace_back(p.x, p.y, p.z);
         }
-        return cutter_.cut(corners, base + static_cast<int>(face.mIndices[0]));
+        return cutter_.cut(corners, base + static_cast<int>(face.mIndices[0]), scale);
     }
 
     // Conversion from the file's unit and axes to metres and +z up
@@ -314,7 +360,7 @@ class ObstacleImporter {
         for (const int p : soup_.lone_points) extend(p);
         const double offset = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
         const double size = (high - low).norm();
-        if (extension_ != "3mf" && offset > kFarFromOrigin * size && size > 0.0)
+        if (is_single_ && offset > kFarFromOrigin * size && size > 0.0)
             warnings_.push_back(fmt::format(
                 "it lies {:.3g} times its size from the origin: single precision moves its points by up to "
                 "{:.2g} m; move it near the origin",
@@ -328,37 +374,10 @@ class ObstacleImporter {
     double declared_unit_ = 1.0;  // m
     char declared_up_ = 'z';
     ObstacleMesh soup_;
+    bool is_single_ = true;  // coordinates come in single precision
     FaceCutter cutter_;
     std::vector<std::string> warnings_;
 };
-
-std::string make_reply(char** arguments)
-{
-    try {
-        const std::string unit = arguments[1];
-        const std::string up = arguments[2];
-        return encode_reply(
-            import_obstacle(arguments[3], unit == "-" ? std::nullopt : std::optional<double>(std::stod(unit)),
-                            up == "-" ? std::nullopt : std::optional<char>(up[0])));
-    } catch (const InputError& error) {
-        return encode_refusal(error.what());
-    } catch (const std::bad_alloc&) {
-        return encode_refusal("its import needs more memory than it may have");
-    } catch (const std::exception& error) {
-        return encode_refusal(std::string("cannot be imported: ") + error.what());
-    }
-}
-
-bool write_all(int descriptor, std::string_view bytes)
-{
-    while (!bytes.empty()) {
-        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) return false;
-        bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return true;
-}
 
 }  // namespace
 
@@ -366,12 +385,6 @@ ObstacleFile import_obstacle(const std::string& path, std::optional<double> metr
                              std::optional<char> up)
 {
     return ObstacleImporter(path, metres_per_unit, up).import();
-}
-
-int import_obstacle_command(int count, char** arguments)
-{
-    if (count != 4) return 2;
-    return write_all(std::atoi(arguments[0]), make_reply(arguments)) ? 0 : 1;
 }
 
 }  // namespace arris

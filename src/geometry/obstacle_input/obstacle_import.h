@@ -13,9 +13,4 @@ namespace arris {
 ObstacleFile import_obstacle(const std::string& path, std::optional<double> metres_per_unit,
                              std::optional<char> up);
 
-/// Entry point of the importer process that read_obstacle_file starts. `arguments` (`count` of them): a file
-/// descriptor for the reply, metres per unit or "-", up axis or "-", path. Prints nothing. Returns the exit
-/// status, 0 if the reply (a mesh or an error) was written.
-int import_obstacle_command(int count, char** arguments);
-
 }  // namespace arris

@@ -13,7 +13,9 @@
 #include "geometry/cgal.h"
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
+#include "geometry/mesh_text.h"
 #include "geometry/obstacle/obstacle_topology.h"
+#include "geometry/obstacle_input/border_seams.h"
 #include "geometry/obstacle_input/shell_orientation.h"
 #include "geometry/obstacle_input/soup_weld.h"
 
@@ -81,7 +83,7 @@ class SoupRepairer {
             remove_flat_faces();
             extract_surface();
             const ShellReport shells = orient_shells(mesh_);
-            tell(shells);
+            tell(shells, find_border_seams(mesh_, make_topology(mesh_)));
         }
         attach_wires_and_points();
         tell_flat_faces();
@@ -92,24 +94,27 @@ class SoupRepairer {
     }
 
   private:
-    void warn_of(int count, const char* sentence)
+    void warn_of(const char* what, int count, const char* one, const char* many)
     {
-        if (count > 0) warnings_.push_back(fmt::format(fmt::runtime(sentence), count));
+        if (count > 0) warnings_.push_back(std::string(what) + " " + counted(count, one, many));
     }
 
     void tell(const WeldCounts& counts)
     {
         if (counts.near_points > 0)
-            warnings_.push_back(fmt::format("welded {} vertices ({} equal to others, {} within {:.3g} m)",
-                                            counts.equal_points + counts.near_points, counts.equal_points,
-                                            counts.near_points, counts.tolerance));
+            warnings_.push_back(
+                fmt::format("welded {} ({} equal to others, {} within {:.3g} m)",
+                            counted(counts.equal_points + counts.near_points, "vertex", "vertices"),
+                            counts.equal_points, counts.near_points, counts.tolerance));
         else if (counts.equal_points > 0)  // formats without shared vertices produce equal points
-            notes_.push_back(fmt::format("welded {} vertices that equal others", counts.equal_points));
-        warn_of(counts.collapsed_faces, "dropped {} faces that name a vertex twice");
-        warn_of(counts.duplicate_faces, "dropped {} duplicate faces");
-        warn_of(counts.zero_segments, "dropped {} segments of no length");
-        warn_of(counts.duplicate_segments, "dropped {} duplicate segments");
-        warn_of(counts.duplicate_lone_points, "dropped {} duplicate points");
+            notes_.push_back("welded " + counted(counts.equal_points, "vertex that equals another",
+                                                 "vertices that equal others"));
+        warn_of("dropped", counts.collapsed_faces, "face that names a vertex twice",
+                "faces that name a vertex twice");
+        warn_of("dropped", counts.duplicate_faces, "duplicate face", "duplicate faces");
+        warn_of("dropped", counts.zero_segments, "segment of no length", "segments of no length");
+        warn_of("dropped", counts.duplicate_segments, "duplicate segment", "duplicate segments");
+        warn_of("dropped", counts.duplicate_lone_points, "duplicate point", "duplicate points");
     }
 
     bool is_flat(int a, int b, int c) const
@@ -240,10 +245,16 @@ class SoupRepairer {
         return turned;
     }
 
-    void tell(const ShellReport& shells)
+    void tell(const ShellReport& shells, const BorderSeams& seams)
     {
-        warn_of(split_,
-                "split {} vertices where more than two faces meet at an edge, or faces at a point only");
+        warn_of("split", split_, "vertex where more than two faces meet at an edge, or faces at a point only",
+                "vertices where more than two faces meet at an edge, or faces at a point only");
+        if (seams.edges > 0)
+            warnings_.push_back(fmt::format(
+                "{} along another without being joined to it, the first near {}, up to {:.2g} m away: merge "
+                "vertices by distance where it was made",
+                counted(seams.edges, "border edge runs", "border edges run"), place(seams.place),
+                seams.widest));
         if (const int turned = count_turned(); turned > 0)
             warnings_.push_back(fmt::format(
                 "turned {} of {} faces round, to agree with their neighbours and "
@@ -251,21 +262,30 @@ class SoupRepairer {
                 turned, mesh_.faces.size(),
                 shells.turned_shells > 0 ? "; a closed surface is solid, whichever way its faces look" : ""));
         if (shells.crossing_pairs > 0) {
-            const Vec3& p = shells.crossing_place;
-            warnings_.push_back(fmt::format(
-                "{} pairs of faces cross, overlap or touch, the first near [{:.6g}, {:.6g}, {:.6g}] (m, "
-                "z up, before it is scaled and placed): sharp edges where they do are not found, and cloth "
-                "may snag there; unite its parts (a boolean union) where it was made",
-                shells.crossing_pairs, p.x(), p.y(), p.z()));
+            warnings_.push_back(
+                fmt::format("{} the first near {}: sharp edges where they do are not found, and "
+                            "cloth may snag there; {}",
+                            counted(shells.crossing_pairs, "pair of faces crosses, overlaps or touches,",
+                                    "pairs of faces cross, overlap or touch,"),
+                            place(shells.crossing_place),
+                            seams.edges > 0 ? "merging vertices by distance may mend this as well"
+                                            : "unite its parts (a boolean union) where it was made"));
         }
         if (shells.cavities > 0)
-            notes_.push_back(
-                fmt::format("{} closed shells lie inside others and bound cavities", shells.cavities));
+            notes_.push_back(counted(shells.cavities, "closed shell lies inside another and bounds a cavity",
+                                     "closed shells lie inside others and bound cavities"));
         if (shells.border_edges > 0)
-            notes_.push_back(fmt::format("open: {} border edges, two-sided", shells.border_edges));
+            notes_.push_back(fmt::format("open: {}, two-sided",
+                                         counted(shells.border_edges, "border edge", "border edges")));
     }
 
-    void tell_flat_faces() { warn_of(flat_faces_, "removed {} faces without area"); }
+    static std::string place(const Vec3& p)
+    {
+        return fmt::format("[{:.6g}, {:.6g}, {:.6g}] (m, z up, before it is scaled and placed)", p.x(), p.y(),
+                           p.z());
+    }
+
+    void tell_flat_faces() { warn_of("removed", flat_faces_, "face without area", "faces without area"); }
 
     // Wires and lone points share points with the faces that they touch.
     void attach_wires_and_points()

@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "geometry/input_error.h"
+#include "geometry/mesh_text.h"
 #include "geometry/obstacle_input/obstacle_reply.h"
+#include "geometry/obstacle_input/percent_code.h"
 #include "geometry/obstacle_input/three_mf_part.h"
 #include "geometry/obstacle_input/xml_elements.h"
 #include "geometry/obstacle_input/zip_archive.h"
@@ -20,14 +24,14 @@ namespace {
 constexpr const char* kRelationships = "_rels/.rels";
 constexpr std::string_view kRootType = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 
-// Components deeper than this refer to each other in a circle.
-constexpr int kDeepest = 100;
+constexpr std::size_t kDeepest = 1000;
 constexpr std::size_t kMostPlaced = 1'000'000;
 
-// A part's name in the archive, which has no leading slash.
+// A part's name in the archive, which has no leading slash. References are percent-encoded; names of files in
+// archives are not.
 std::string part_name(std::string_view path)
 {
-    std::string name = std::filesystem::path(path).lexically_normal().generic_string();
+    std::string name = std::filesystem::path(percent_decoded(path)).lexically_normal().generic_string();
     name.erase(0, name.find_first_not_of('/'));
     return name;
 }
@@ -61,9 +65,12 @@ class PackageReader {
         file_.metres_per_unit = part(root).metres_per_unit;
         if (part(root).items.empty())
             throw InputError(fmt::format("its part '{}': its build has no items", one_line(root)));
-        for (const ThreeMfReference& item : part(root).items) place(item, root, {}, 0);
+        for (const ThreeMfReference& item : part(root).items) place(item, root, {});
         for (const auto& [type, count] : left_out_)
-            file_.warnings.push_back(fmt::format("{} placed objects of type '{}' are left out", count, type));
+            file_.warnings.push_back(
+                fmt::format("{} left out", counted(count, fmt::format("placed object of type '{}' is", type),
+                                                   fmt::format("placed objects of type '{}' are", type))));
+        for (const std::string& told : unread_) file_.warnings.push_back(told);
         return std::move(file_);
     }
 
@@ -96,8 +103,7 @@ class PackageReader {
     }
 
     // Places an object, and the objects that it refers to, under `parent`. The reference stands in `part_of`.
-    void place(const ThreeMfReference& reference, const std::string& part_of, const Placement& parent,
-               int depth)
+    void place(const ThreeMfReference& reference, const std::string& part_of, const Placement& parent)
     {
         const double unit = part(part_of).metres_per_unit / file_.metres_per_unit;
         const Placement placement = {parent.turn * reference.turn,
@@ -107,7 +113,10 @@ class PackageReader {
         const std::string told =
             fmt::format("object {} of its part '{}'", one_line(reference.object), one_line(name));
         if (found == part(name).objects.end()) throw InputError(told + " is placed, but is not there");
-        if (depth == kDeepest) throw InputError(told + ": components refer to each other in a circle");
+        if (std::find(open_.begin(), open_.end(), &found->second) != open_.end())
+            throw InputError(told + ": components refer to each other in a circle");
+        if (open_.size() == kDeepest)
+            throw InputError(fmt::format("{}: components nest deeper than {} levels", told, kDeepest));
         if (++placed_ > kMostPlaced)
             throw InputError(fmt::format("more than {} placed objects", kMostPlaced));
         const ThreeMfObject& object = found->second;
@@ -119,9 +128,13 @@ class PackageReader {
             throw InputError(fmt::format("{} has its shape from <{}> of an extension, which is not read",
                                          told, object.foreign));
         if (object.faces.empty() && object.components.empty()) throw InputError(told + " has no mesh");
+        if (!object.unread.empty())
+            unread_.insert(
+                fmt::format("{} has <{}> of an extension, which is not read", told, object.unread));
         append(object, placement, part(name).metres_per_unit / file_.metres_per_unit);
-        for (const ThreeMfReference& component : object.components)
-            place(component, name, placement, depth + 1);
+        open_.push_back(&object);
+        for (const ThreeMfReference& component : object.components) place(component, name, placement);
+        open_.pop_back();
     }
 
     void append(const ThreeMfObject& object, const Placement& placement, double unit)
@@ -145,6 +158,8 @@ class PackageReader {
     ThreeMfFile file_;
     std::map<std::string, int> left_out_;  // numbers of objects, by type
     std::size_t placed_ = 0;
+    std::vector<const ThreeMfObject*> open_;  // whose components are being placed
+    std::set<std::string> unread_;            // warnings
 };
 
 }  // namespace

@@ -20,12 +20,16 @@ namespace {
 
 constexpr std::string_view kFamily = "http://schemas.microsoft.com/3dmanufacturing/";
 constexpr std::string_view kCore = "http://schemas.microsoft.com/3dmanufacturing/core/";
+// Whitespace that XML lets stand around a number.
+constexpr std::string_view kSpace = " \t\r\n";
 constexpr std::string_view kProduction = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
 constexpr std::size_t kLongestQuote = 40;
 
 // Extensions, by the part of their namespace after kFamily, whose absence from a reader changes no shape:
 // colours, identifiers, groups of triangles.
-constexpr std::array<std::string_view, 4> kShapeless = {"core/", "production/", "material/", "trianglesets/"};
+// Alternatives (production/alternatives/) hold the full shape of an object whose own mesh is a sketch.
+constexpr std::array<std::string_view, 4> kShapeless = {"core/", "production/20", "material/",
+                                                        "trianglesets/"};
 
 bool is_shapeless(std::string_view space)
 {
@@ -35,6 +39,12 @@ bool is_shapeless(std::string_view space)
                        [&](auto name) { return space.starts_with(name); });
 }
 
+std::string_view trimmed(std::string_view text)
+{
+    text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
+    return text.substr(0, text.find_last_not_of(kSpace) + 1);
+}
+
 std::string quote(std::string_view text)
 {
     return one_line(text.substr(0, kLongestQuote));
@@ -42,7 +52,6 @@ std::string quote(std::string_view text)
 
 std::vector<std::string_view> split(std::string_view text)
 {
-    constexpr std::string_view kSpace = " \t\r\n";
     std::vector<std::string_view> words;
     for (std::size_t begin = text.find_first_not_of(kSpace); begin != std::string_view::npos;) {
         const std::size_t end = std::min(text.find_first_of(kSpace, begin), text.size());
@@ -107,11 +116,14 @@ class PartReader {
         object_ = nullptr;
     }
 
-    // Extensions put shapes inside an object; others put data of their own at its side.
+    // Extensions put shapes inside an object; others put data of their own at its side. Elements of vendors
+    // may be left out, as the file does not require their extensions.
     void note_foreign(const XmlName& name)
     {
-        if (object_ != nullptr && object_->foreign.empty() && !is_shapeless(name.space))
-            object_->foreign = quote(name.local);
+        if (object_ == nullptr || is_shapeless(name.space)) return;
+        const bool is_of_family = name.space.starts_with(kFamily);
+        std::string& noted = is_of_family ? object_->foreign : object_->unread;
+        if (noted.empty()) noted = quote(name.local);
     }
 
     static std::string_view require(const XmlElement& element, std::string_view attribute)
@@ -119,7 +131,7 @@ class PartReader {
         const auto value = element.find(attribute);
         if (!value)
             throw InputError(fmt::format("<{}> has no attribute '{}'", quote(element.name.local), attribute));
-        return *value;
+        return trimmed(*value);
     }
 
     void take_model(const XmlElement& element)

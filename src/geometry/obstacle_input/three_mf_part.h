@@ -28,6 +28,7 @@ struct ThreeMfObject {
     std::vector<Face> faces;
     std::vector<ThreeMfReference> components;
     std::string foreign;  ///< an element that gives the object a shape, but is not of the core specification
+    std::string unread;   ///< an element of a vendor's extension, which the file does not require
 };
 
 /// A model part of a 3MF package.

@@ -50,6 +50,7 @@ void XMLCALL on_begin(void* data, const XML_Char* name, const XML_Char** attribu
     guarded(walk, [&] {
         walk.element.name = split(name);
         walk.element.attributes.clear();
+        walk.element.line = XML_GetCurrentLineNumber(walk.parser);
         for (; attributes[0] != nullptr; attributes += 2)
             walk.element.attributes.emplace_back(split(attributes[0]), attributes[1]);
         walk.visitor.begin(walk.element);
@@ -60,6 +61,12 @@ void XMLCALL on_end(void* data, const XML_Char* name)
 {
     Walk& walk = *static_cast<Walk*>(data);
     guarded(walk, [&] { walk.visitor.end(split(name)); });
+}
+
+void XMLCALL on_text(void* data, const XML_Char* text, int length)
+{
+    Walk& walk = *static_cast<Walk*>(data);
+    guarded(walk, [&] { walk.visitor.text({text, static_cast<std::size_t>(length)}); });
 }
 
 void XMLCALL on_declare(void* data, const XML_Char* prefix, const XML_Char* uri)
@@ -85,6 +92,7 @@ void visit_xml(std::string_view text, const XmlVisitor& visitor)
     Walk walk{visitor, parser.get(), {}, {}};
     XML_SetUserData(parser.get(), &walk);
     XML_SetElementHandler(parser.get(), on_begin, on_end);
+    XML_SetCharacterDataHandler(parser.get(), on_text);
     XML_SetStartNamespaceDeclHandler(parser.get(), on_declare);
     for (bool is_last = false; !is_last;) {
         const std::string_view block = text.substr(0, kBlock);

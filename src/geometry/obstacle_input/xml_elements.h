@@ -19,6 +19,7 @@ struct XmlName {
 struct XmlElement {
     XmlName name;
     std::vector<std::pair<XmlName, std::string_view>> attributes;
+    unsigned long line = 0;  ///< of its beginning, counted from 1
 
     /// The value of an attribute; `space` is empty for an attribute without a prefix.
     std::optional<std::string_view> find(std::string_view local, std::string_view space = {}) const;
@@ -28,6 +29,8 @@ struct XmlElement {
 struct XmlVisitor {
     std::function<void(const XmlElement&)> begin;
     std::function<void(const XmlName&)> end = [](const XmlName&) {};
+    /// A piece of the text in an element; pieces may end inside a word.
+    std::function<void(std::string_view)> text = [](std::string_view) {};
     /// A prefix and the URI that it stands for; called before the element that declares it.
     std::function<void(std::string_view, std::string_view)> declare = [](std::string_view, std::string_view) {
     };

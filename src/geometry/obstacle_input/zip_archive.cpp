@@ -41,8 +41,9 @@ std::uint64_t number_at(std::string_view bytes, std::uint64_t offset)
 std::string key_of(std::string_view name)
 {
     std::string key(name);
+    // Some writers separate folders by a backslash, which the format does not have.
     std::transform(key.begin(), key.end(), key.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+                   [](unsigned char c) { return c == '\\' ? '/' : static_cast<char>(std::tolower(c)); });
     return key;
 }
 
@@ -51,12 +52,29 @@ struct Directory {
     std::uint64_t count = 0;
 };
 
-Directory find_directory(std::string_view bytes)
+// The end record, after which only its comment comes. The comment may hold the record's mark; and some
+// writers leave bytes behind the comment.
+std::size_t find_end_record(std::string_view bytes)
 {
     if (bytes.size() < kEndRecord) refuse_truncated();
     const std::size_t tail = bytes.size() - std::min(bytes.size(), kEndRecord + kLongestComment);
-    const std::size_t end = bytes.rfind("PK\x05\x06");
-    if (end == std::string_view::npos || end < tail) refuse_truncated();
+    constexpr std::size_t kNone = std::string_view::npos;
+    std::size_t found = kNone;
+    for (std::size_t end = bytes.rfind("PK\x05\x06"); end != kNone && end >= tail;
+         end = end == 0 ? kNone : bytes.rfind("PK\x05\x06", end - 1)) {
+        if (bytes.size() - end < kEndRecord) continue;
+        const std::size_t stop = end + kEndRecord + number_at<std::uint16_t>(bytes, end + 20);
+        if (stop == bytes.size()) return end;
+        const bool has_directory = number_at<std::uint32_t>(bytes, end + 16) < end;
+        if (found == kNone && stop < bytes.size() && has_directory) found = end;
+    }
+    if (found == kNone) refuse_truncated();
+    return found;
+}
+
+Directory find_directory(std::string_view bytes)
+{
+    const std::size_t end = find_end_record(bytes);
     if (end < kLocator64 || bytes.substr(end - kLocator64, 4) != "PK\x06\x07")
         return {number_at<std::uint32_t>(bytes, end + 16), number_at<std::uint16_t>(bytes, end + 10)};
     const std::uint64_t record = number_at<std::uint64_t>(bytes, end - kLocator64 + 8);
@@ -120,7 +138,8 @@ std::uint64_t ZipArchive::read_entry(std::uint64_t at)
             field.remove_prefix(8);
         }
     }
-    entries_.emplace(key_of(name), entry);
+    const auto [place, is_new] = entries_.emplace(key_of(name), entry);
+    place->second.is_double |= !is_new;
     return at + kEntry + name_length + extra_length + comment_length;
 }
 
@@ -144,6 +163,7 @@ std::string ZipArchive::read(const std::string& name) const
     const std::string shown = one_line(name);
     if (found == entries_.end()) throw InputError(fmt::format("its archive has no '{}'", shown));
     const Entry& entry = found->second;
+    if (entry.is_double) throw InputError(fmt::format("its archive has two files named '{}'", shown));
     if (entry.is_encrypted) throw InputError(fmt::format("'{}' of its archive is encrypted", shown));
     if (entry.method != 0 && entry.method != Z_DEFLATED)
         throw InputError(

@@ -273,6 +273,19 @@ TEST(SceneObstacles, TellOfASurfaceThatClosesButForAHole)
     EXPECT_THAT(warnings_of(cube + "f 5 6 7 8\n"), IsEmpty()) << "with a lid";
     EXPECT_THAT(warnings_of("v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"), IsEmpty())
         << "an open sheet is meant as one";
+    // The low box of a table top, without its upper side, or a half of it; a tetrahedron without a face.
+    const std::string table =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 .05\nv 1 0 .05\nv 1 1 .05\nv 0 1 .05\n"
+        "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    for (const std::string& open : {table, table + "f 5 6 7\n",
+                                    std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                                                "f 1 3 2\nf 1 2 4\nf 1 4 3\n")})
+        EXPECT_THAT(warnings_of(open), ElementsAre(HasSubstr("a surface is closed except for a hole")))
+            << open;
+    // A box without two sides that meet, a roof, and a ramp.
+    const std::string corner = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+    for (const char* faces : {"f 1 4 3 2\nf 1 2 6 5\n", "f 1 4 3 2\nf 1 2 6 5\nf 4 1 5 8\n"})
+        EXPECT_THAT(warnings_of(corner + faces), IsEmpty()) << faces;
     // Three sides of a long box, and four of them: a channel and a tube.
     const std::string channel =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 9\nv 1 0 9\nv 1 1 9\nv 0 1 9\n"
@@ -308,7 +321,7 @@ TEST(SceneObstacles, TellWhereFacesCrossAndWhatToDo)
                                     "[[obstacle]]\nfile = \"leaves.obj\"\nunits = \"mm\"\ntranslate = [0, 0, "
                                     "5]\n[gravity]\n");
     EXPECT_THAT(load_scene(dir / "s.toml", {}, with_program()).warnings,
-                ElementsAre(AllOf(HasSubstr("1 pairs of faces cross"),
+                ElementsAre(AllOf(HasSubstr("1 pair of faces crosses"),
                                   HasSubstr("near [0.0025, 0.0025, 0] (m, z up, before it is scaled"),
                                   HasSubstr("unite its parts"))));
 }

@@ -194,8 +194,9 @@ TEST(GltfFile, ExtensionsOfTheAppearanceAreAllowed)
 
 TEST(GltfFile, RequiredExtensionsThatAreNotReadAreRefused)
 {
-    for (const char* name : {"EXT_no_such_thing", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
-                             "KHR_gaussian_splatting", "KHR_lightsaber", "materials", ""}) {
+    for (const char* name :
+         {"EXT_no_such_thing", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_gaussian_splatting",
+          "KHR_lightsaber", "materials", "", "ACME_materials_glow", "KHR_materials_displacement"}) {
         json file = brick_json();
         file["extensionsUsed"] = file["extensionsRequired"] = {name};
         const std::string says = fmt::format("it requires the glTF extension '{}', which is not read", name);
@@ -221,7 +222,7 @@ TEST(GltfFile, WhatTheImporterWouldMissIsRefused)
          "node 0 morphs its mesh (weight 0.5)"},
         {"morphed mesh",
          R"({"meshes":[{"weights":[1],"primitives":[{"attributes":{"POSITION":0},"indices":1,"targets":[{"POSITION":0}]}]}]})",
-         "mesh 0 morphs its mesh"},
+         "node 0 morphs its mesh (weight 1)"},
         {"mode", R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":7}]}]})",
          "its mode is 7; allowed: 0 to 6"},
         {"no positions", R"({"meshes":[{"primitives":[{"attributes":{"NORMAL":0},"indices":1}]}]})",
@@ -233,12 +234,38 @@ TEST(GltfFile, WhatTheImporterWouldMissIsRefused)
          "mesh 0, primitive 0: its accessor 0 has no data"},
         {"type of positions", R"({"accessors":[{"bufferView":0,"componentType":5125,"count":8,"type":"VEC3"},
                                                {"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}]})",
-         "accessor 0: its positions have component type 5125"},
+         "its accessor 0 has component type 5125; allowed: 5120, 5121, 5122, 5123, 5126"},
         {"integers beyond their buffer",
          R"({"accessors":[{"bufferView":0,"componentType":5123,"count":99,"type":"VEC3"},
                                                           {"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}]})",
          "accessor 0: its positions reach beyond the end"},
         {"wrong types", R"({"meshes":[{"primitives":[3]}]})", "has no positions"},
+        {"VEC2", R"({"accessors":[{"bufferView":0,"componentType":5126,"count":8,"type":"VEC2"},
+                                  {"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}]})",
+         "its accessor 0 has type VEC2; allowed: VEC3"},
+        {"signed indices", R"({"accessors":[{"bufferView":0,"componentType":5126,"count":8,"type":"VEC3"},
+                                            {"bufferView":1,"componentType":5122,"count":36,"type":"SCALAR"}]})",
+         "its accessor 1 has component type 5122; allowed: 5121, 5123, 5125"},
+        {"stride", R"({"bufferViews":[{"buffer":0,"byteLength":96,"byteStride":4},
+                                      {"buffer":0,"byteOffset":96,"byteLength":72}]})",
+         "its accessor 0 has byteStride 4; allowed: at least 12, the size of an element"},
+        {"stride 0", R"({"bufferViews":[{"buffer":0,"byteLength":96,"byteStride":0},
+                                        {"buffer":0,"byteOffset":96,"byteLength":72}]})",
+         "byteStride 0; allowed: at least 12"},
+        {"matrix of 12", R"({"nodes":[{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0]}]})",
+         "node 0: its matrix is [1,0,0,0,0,1,0,0,0,0,1,0]; allowed: 16 finite numbers"},
+        {"word in a matrix", R"({"nodes":[{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,"x",0,0,1]}]})",
+         "allowed: 16 finite numbers"},
+        {"projection", R"({"nodes":[{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,5,0,0,2]}]})",
+         "the last row of its matrix is 0 0 0 2; allowed: 0 0 0 1"},
+        {"translation of 2", R"({"nodes":[{"mesh":0,"translation":[5,0]}]})",
+         "node 0: its translation is [5,0]; allowed: 3 finite numbers"},
+        {"word in a translation", R"({"nodes":[{"mesh":0,"translation":["5",0,0]}]})", "3 finite numbers"},
+        {"one scale", R"({"nodes":[{"mesh":0,"scale":2}]})", "its scale is 2; allowed: 3 finite numbers"},
+        {"rotation of zeros", R"({"nodes":[{"mesh":0,"rotation":[0,0,0,0]}]})",
+         "has length 0; allowed: a quaternion of length 1"},
+        {"child of a shown node", R"({"nodes":[{"children":[1]},{"mesh":0,"scale":[1,1]}]})",
+         "node 1: its scale"},
     };
     for (const auto& c : cases) {
         json file = brick_json();
@@ -252,6 +279,60 @@ TEST(GltfFile, WhatTheImporterWouldMissIsRefused)
     EXPECT_THAT(import_error("a.gltf", packed.dump()), HasSubstr("buffer view 0 is compressed"));
 }
 
+TEST(GltfFile, WhatIsLegalIsRead)
+{
+    const std::pair<const char*, const char*> cases[] = {
+        {"weights of a node precede those of its mesh",
+         R"({"nodes":[{"mesh":0,"weights":[0]}],
+             "meshes":[{"weights":[1],"primitives":[{"attributes":{"POSITION":0},"indices":1,
+                                                     "targets":[{"POSITION":0}]}]}]})"},
+        {"node that no scene shows", R"({"nodes":[{"mesh":0},{"mesh":0,"weights":[1],"scale":"x"}]})"},
+        {"node of another scene", R"({"scenes":[{"nodes":[0]},{"nodes":[1]}],
+                                      "nodes":[{"mesh":0},{"mesh":0,"scale":[1]}]})"},
+        {"matrix", R"({"nodes":[{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}]})"},
+        {"rounded rotation", R"({"nodes":[{"mesh":0,"rotation":[0,0,0,0.9998]}]})"},
+        {"whole numbers", R"({"nodes":[{"mesh":0,"translation":[0,0,0],"scale":[1,1,1]}]})"},
+        {"stride of an element", R"({"bufferViews":[{"buffer":0,"byteLength":96,"byteStride":12},
+                                                    {"buffer":0,"byteOffset":96,"byteLength":72}]})"},
+    };
+    for (const auto& [name, patch] : cases) {
+        SCOPED_TRACE(name);
+        json file = brick_json();
+        file.merge_patch(json::parse(patch));
+        expect_brick(imported("a.gltf", file.dump()), 1.0, kSingle);
+    }
+}
+
+TEST(GltfFile, JsonThatNestsDeeplyIsRefused)
+{
+    const auto nested = [](std::size_t levels) {
+        std::string text = brick_json().dump();
+        const std::string extras = ",\"extras\":" + std::string(levels, '[') + std::string(levels, ']');
+        return text.insert(text.size() - 1, extras);
+    };
+    expect_brick(imported("a.gltf", nested(100)), 1.0, kSingle);
+    EXPECT_THAT(import_error("a.gltf", nested(200'000)), HasSubstr("nests deeper than 200 levels"));
+}
+
+TEST(GltfFile, ReferencesArePercentEncoded)
+{
+    const std::filesystem::path folder =
+        std::filesystem::path(::testing::TempDir()) / "arris_gltf_file_percent";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "my buf\u00e9.bin", std::ios::binary) << mesh_files::gltf_buffer(brick());
+    const auto import = [&](const std::string& uri) {
+        json file = brick_json();
+        file["buffers"][0]["uri"] = uri;
+        std::ofstream(folder / "a.gltf") << file.dump();
+        return import_obstacle((folder / "a.gltf").string(), {}, {});
+    };
+    for (const char* uri : {"my%20buf%C3%A9.bin", "my buf%c3%a9.bin", "my buf\u00e9.bin"})
+        expect_brick(import(uri), 1.0, kSingle);
+    EXPECT_THAT(error_of([&] { import("%2e%2e/x.bin"); }), HasSubstr("the mesh's own folder"));
+    EXPECT_THAT(error_of([&] { import("100%.bin"); }), HasSubstr("100%.bin"));
+    std::filesystem::remove_all(folder);
+}
+
 TEST(GltfFile, SkinsAndUnknownExtensionsAreToldOf)
 {
     json file = brick_json();
@@ -260,6 +341,17 @@ TEST(GltfFile, SkinsAndUnknownExtensionsAreToldOf)
     const ObstacleFile found = imported("a.gltf", file.dump());
     expect_brick(found, 1.0, kSingle);
     EXPECT_THAT(found.warnings, ElementsAre("the glTF extension 'ACME_bent' (first at node 0) is not read"));
+    const std::pair<const char*, const char*> places[] = {
+        {R"({"extensions":{"ACME_bent":{}}})", "first at the file itself"},
+        {R"({"scenes":[{"nodes":[0],"extensions":{"ACME_bent":{}}}]})", "first at scene 0"},
+        {R"({"meshes":[{"extensions":{"ACME_bent":{}},"primitives":[{"attributes":{"POSITION":0},"indices":1}]}]})",
+         "first at mesh 0"},
+    };
+    for (const auto& [patch, says] : places) {
+        json other = brick_json();
+        other.merge_patch(json::parse(patch));
+        EXPECT_THAT(imported("a.gltf", other.dump()).warnings, ElementsAre(HasSubstr(says)));
+    }
 }
 
 TEST(GltfFile, SparsePositionsAreApplied)

@@ -140,8 +140,45 @@ TEST(ObstaclePolygons, CrossingPolygonsAreSaidToCross)
     };
     for (const auto& c : cases)
         EXPECT_THAT(imported("crossing.obj", c.text).warnings,
-                    ::testing::Contains(HasSubstr(fmt::format("{} polygons cross themselves", c.crossing))))
+                    ::testing::Contains(HasSubstr(c.crossing == 1 ? "1 polygon crosses itself"
+                                                                  : "2 polygons cross themselves")))
             << c.name;
+}
+
+TEST(ObstaclePolygons, CrossingPolygonsAreCutAlikeFromEveryStart)
+{
+    const std::string corners = "v 0 0 0\nv 2 2 0\nv 2 0 0.5\nv 0 2 0\nv -1 0.5 0\n";
+    const std::string faces[] = {"f 1 2 3 4 5\n", "f 2 3 4 5 1\n", "f 3 4 5 1 2\n", "f 5 1 2 3 4\n"};
+    const auto surface = [&](const std::string& face) {
+        const ObstacleFile file = imported("crossing.obj", corners + face);
+        EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("1 polygon crosses itself"))) << face;
+        const ObstacleMesh& mesh = file.mesh;
+        double area = 0.0;
+        for (const auto& [a, b, c] : mesh.faces)
+            area += (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]).norm();
+        return area;
+    };
+    for (const std::string& face : faces) EXPECT_NEAR(surface(face), surface(faces[0]), 1e-12) << face;
+}
+
+TEST(ObstaclePolygons, BentPolygonsAreToldWithPlaceAndDistance)
+{
+    const auto warnings = [](double bend, const char* file) {
+        const PolygonMesh mesh = {{{5, 0, bend}, {6, 0, -bend}, {6, 1, bend}, {5, 1, -bend}}, {{0, 1, 2, 3}}};
+        const std::string name = file;
+        return imported(name, name.ends_with("obj")   ? mesh_files::obj(mesh)
+                              : name.ends_with("dae") ? dae(mesh)
+                                                      : mesh_files::ascii_ply(mesh))
+            .warnings;
+    };
+    for (const char* file : {"a.obj", "a.ply", "a.dae"}) {
+        EXPECT_THAT(warnings(1e-4, file), IsEmpty()) << file;
+        EXPECT_THAT(
+            warnings(0.05, file),
+            ElementsAre(::testing::AllOf(HasSubstr("1 polygon is not flat; it has a corner at [5, 0, 0.05]"),
+                                         HasSubstr("0.05 m off its plane (0.071 of its size)"))))
+            << file;
+    }
 }
 
 TEST(ObstaclePolygons, RepeatedCornersDoNoHarm)
@@ -195,6 +232,37 @@ TEST(ObstaclePolygons, ClothOfEveryStartHasTheSameMaterial)
                     }
                     EXPECT_NEAR(area, outline.area, 1e-12 * outline.area);
                 }
+}
+
+// A frame whose hole is joined by a bridge, one way of which has a corner that is off by rounding.
+TEST(ObstaclePolygons, ClothHasNoGapsWithinRounding)
+{
+    for (const double off : {0.0, 1e-16, -1e-16, 1e-7, -1e-7})
+        for (const bool has_uvs : {false, true})
+            for (std::size_t start = 0; start < 11; start += 5) {
+                const std::vector<Vec2> bridge = {{0, 0},           {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1},
+                                                  {0.3, 0.3 + off}, {0, 0}, {4, 0}, {4, 4}, {0, 4}};
+                const ClothFile file = cloth(cloth_text(bridge, start, has_uvs));
+                double area = 0.0;
+                for (const auto& [a, b, c] : file.mesh.faces)
+                    area +=
+                        0.5 * twice_area(file.mesh.material[a], file.mesh.material[b], file.mesh.material[c]);
+                EXPECT_NEAR(area, 12.0, 1e-6) << off << " " << start;
+                EXPECT_EQ(file.mesh.vertex_count(), 9) << off << " " << start;
+            }
+    // Corners of the two ways that are nearly one become one.
+    const std::vector<Vec2> twice = {{0, 0},        {1, 1},    {1, 2}, {2, 2}, {2, 1},
+                                     {1, 1 + 1e-8}, {1e-8, 0}, {3, 0}, {3, 3}, {0, 3}};
+    EXPECT_EQ(cloth(cloth_text(twice, 0, false)).mesh.vertex_count(), 8);
+}
+
+TEST(ObstaclePolygons, ClothThatHangsTogetherInAPointIsTold)
+{
+    const std::vector<Vec2> lobes = {{0, 0}, {4, 0}, {4, 2}, {4 / 3.0, 0}, {0, 2}};
+    EXPECT_THAT(
+        error_of([&] { cloth(cloth_text(lobes, 0, false)); }),
+        ::testing::AllOf(HasSubstr("vertex 4 joins parts of the cloth in a single point, where the polygon"),
+                         HasSubstr("touches itself; allowed: parts that share an edge, or that are apart")));
 }
 
 TEST(ObstaclePolygons, ClothThatCrossesItselfIsRefused)

@@ -62,6 +62,20 @@ std::vector<Variant> sheets()
         {"Fortran's exponents", replace_all(replace_all(kSheet, "0.5", "5.0D-01"), "1.5", "0.15d+1")},
         {"groups and materials", "o A\n" + replace_all(kSheet, "f 4", "g b\nusemtl red\ns off\nf 4")},
         {"old name of a face", replace_all(kSheet, "f ", "fo ")},
+        {"byte-order marks in front of every line",
+         "\xef\xbb\xbf\xef\xbb\xbf" + replace_all(kSheet, "\nv", "\n\xef\xbb\xbfv")},
+        {"colours", replace_all(kSheet, " 1\n", " 1 0.5 0.5 0.5\n")},
+        {"colours with alpha", replace_all(kSheet, " 1\n", " 1 1 0 0 1\n")},
+        {"one colour with alpha", replace_all(kSheet, "v 0.5 0 1\n", "v 0.5 0 1 1 0 0 1\n")},
+        {"five numbers", replace_all(kSheet, " 1\n", " 1 0.5 0.5\n")},
+        {"weights", replace_all(kSheet, "v 1.5 1 1\n", "v 3 2 2 2\n")},
+        {"comment between continued lines", replace_all(kSheet, "f 1 2 3 4", "f 1 2 3 \\\n# c\n 4")},
+        {"comment behind a backslash", replace_all(kSheet, "f 1 2 3 4", "f 1 2 \\ # c\n 3 4")},
+        {"long numbers", replace_all(kSheet, "v 1.5 1 1\n", "v 1.5 100000000000000000000000000000e-29 1\n")},
+        {"long fractions", replace_all(kSheet, "0.5", "0.00000000000000000000000000000000000000005e40")},
+        {"UVs of one number", "vt 0\n" + kSheet},
+        {"UVs of four numbers", "vt 0 0 0 0\n" + kSheet},
+        {"plus signs on indices", replace_all(kSheet, "f 1 2", "f +1 +2")},
     };
 }
 
@@ -151,7 +165,7 @@ TEST(ObstacleText, WhatIsNoVariantIsOneClearLine)
         {"wide.obj", std::string("\xff\xfev\0 \0", 6), "UTF-16 or UTF-32; allowed: ASCII or UTF-8"},
         {"wide.stl", std::string("\xfe\xff\0s\0o\0l\0i\0d", 12), "UTF-16"},
         {"wide.ply", std::string("\xff\xfep\0l\0y\0", 8), "UTF-16"},
-        {"comma.obj", "v 0,5 0 0\nf 1 1 1\n", "line 1: 'v 0,5 0 0': '0,5' is no number"},
+        {"comma.obj", "v 0,5 0 0\nf 1 1 1\n", "line 1: 'v 0,5 0 0': '0,5' is no number; allowed: 'v x y z'"},
         {"line.obj", "v 0 0 0\r\rv 1 0 x\r", "line 3: 'v 1 0 x'"},
         {"word.stl", replace_all(stl, "vertex 1 ", "vertex one "),
          "face 1, vertex 2: 'one' is no number; a vertex has 3"},
@@ -165,7 +179,7 @@ TEST(ObstacleText, FreeFormSurfacesAreMissedAloud)
     const ObstacleFile file =
         imported("free.obj", kSheet + "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nend\n");
     EXPECT_EQ(file.mesh.faces.size(), 3u);
-    EXPECT_THAT(file.warnings, ::testing::ElementsAre(HasSubstr("1 free-form curves and surfaces")));
+    EXPECT_THAT(file.warnings, ::testing::ElementsAre(HasSubstr("its 1 free-form curve or surface")));
 }
 
 }  // namespace

@@ -20,11 +20,13 @@
 namespace arris {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRounding = 1e-12;  // for volumes of about 1
@@ -336,7 +338,7 @@ TEST(SoupRepair, HollowBoxStaysHollow)
         EXPECT_EQ(validate(repaired.mesh), "");
         EXPECT_NEAR(volume(repaired.mesh), kHollow, 10 * kRounding);
         EXPECT_EQ(solid_count(repaired.mesh), 2);
-        EXPECT_THAT(repaired.notes, ElementsAre(HasSubstr("1 closed shells lie inside others")));
+        EXPECT_THAT(repaired.notes, ElementsAre(HasSubstr("1 closed shell lies inside another")));
         if (c.turned == 0) {
             EXPECT_THAT(repaired.warnings, IsEmpty());
         } else {
@@ -384,7 +386,7 @@ TEST(SoupRepair, BoxesThatShareACornerComeApart)
     ASSERT_EQ(validate(repaired.mesh), "");
     EXPECT_EQ(solid_count(repaired.mesh), 2);
     EXPECT_EQ(repaired.mesh.points.size(), 16u);
-    EXPECT_THAT(repaired.warnings, Contains(HasSubstr("split 1 vertices")));
+    EXPECT_THAT(repaired.warnings, Contains(HasSubstr("split 1 vertex where")));
 }
 
 TEST(SoupRepair, FinOnASolidIsCutOff)
@@ -434,7 +436,7 @@ TEST(SoupRepair, CountsFacesThatCross)
     ObstacleMesh crossing;
     crossing.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, -1}, {0.2, 0.2, 1}, {0.3, 0.3, 1}};
     crossing.faces = {{0, 1, 2}, {3, 4, 5}};
-    EXPECT_THAT(repair_soup(crossing).warnings, ElementsAre(HasSubstr("1 pairs of faces cross")));
+    EXPECT_THAT(repair_soup(crossing).warnings, ElementsAre(HasSubstr("1 pair of faces cross")));
 }
 
 // ----------------------------------------------------------------- wires and points
@@ -452,8 +454,8 @@ TEST(SoupRepair, WiresAndPointsAreWeldedAndShared)
     EXPECT_EQ(repaired.mesh.points.size(), 8u + 3u);
     EXPECT_EQ(repaired.mesh.segments, (std::vector<std::array<int, 2>>{{0, 8}, {8, 9}}));
     EXPECT_EQ(repaired.mesh.lone_points, (std::vector<int>{10, 0}));
-    EXPECT_THAT(repaired.warnings, ElementsAre("dropped 1 segments of no length",
-                                               "dropped 1 duplicate segments", "dropped 1 duplicate points"));
+    EXPECT_THAT(repaired.warnings, ElementsAre("dropped 1 segment of no length",
+                                               "dropped 1 duplicate segment", "dropped 1 duplicate point"));
     EXPECT_THAT(repaired.notes, Contains(HasSubstr("welded 4 vertices")));
 }
 
@@ -544,6 +546,24 @@ TEST(SoupRepair, CostsAsMuchAsThereIs)
     RecordProperty("ratio", std::to_string(many / few));
     // Ten times the points take 10 to 11 times as long; all pairs would take 100 times.
     EXPECT_LT(many, 40.0 * few);
+}
+
+TEST(SoupRepair, FacesThatAreNotJoinedAreToldToBeMerged)
+{
+    for (const double size : {1.0, 1e3}) {
+        const auto scaled = [&](const Vec3& p) { return Vec3(size * p); };
+        const RepairedSoup repaired = repair_soup(samples::moved(unwelded(unit_box(), 1e-4), scaled));
+        EXPECT_THAT(repaired.warnings, Contains(AllOf(HasSubstr("36 border edges run along another"),
+                                                      HasSubstr("merge vertices by distance"))));
+        EXPECT_THAT(repaired.warnings, Each(Not(HasSubstr("boolean union"))));
+    }
+    // Sheets beside each other, as far apart as a thousandth of their size or joined, are meant as they are.
+    const double kApart = 2e-3;
+    ObstacleMesh sheets;
+    sheets.points = {{0, 0, 0},      {1, 0, 0},      {1, 1, 0},      {0, 1, 0},
+                     {0, 0, kApart}, {1, 0, kApart}, {1, 1, kApart}, {0, 1, kApart}};
+    sheets.faces = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+    EXPECT_THAT(repair_soup(sheets).warnings, IsEmpty());
 }
 
 }  // namespace

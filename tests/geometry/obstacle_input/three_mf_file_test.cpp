@@ -207,6 +207,52 @@ TEST(ThreeMfFile, PackagesArePlaced)
     }
 }
 
+TEST(ThreeMfFile, PackagesInEverySpellingAreRead)
+{
+    const std::string item = "<item objectid=\"1\"/>";
+    const std::string one = object("1", box(1, 2, 3));
+    const std::string root = model("meter", one, item);
+    std::string chain = object("0", box(1, 2, 3));
+    for (int k = 1; k <= 300; ++k)
+        chain += object(fmt::format("{}", k),
+                        fmt::format("<components><component objectid=\"{}\"/></components>", k - 1));
+    // The comment of an archive stands at its end, with its length in front.
+    std::string commented = package(root);
+    const std::string comment = "made PK\x05\x06 by a program whose name is long enough";
+    commented[commented.size() - 2] = static_cast<char>(comment.size());
+    commented += comment;
+    const std::pair<const char*, std::string> cases[] = {
+        {"deep", package(model("meter", chain, "<item objectid=\"300\"/>"))},
+        {"comment with the mark of the end", commented},
+        {"bytes behind the end", package(root) + std::string(100, '\0')},
+        {"percent-encoded target", mesh_files::zip({{"_rels/.rels", relationships("/3D/my%20root.model")},
+                                                    {"3D/my root.model", root}})},
+        {"backslash in a name",
+         mesh_files::zip({{"_rels/.rels", relationships("/3D/root.model")}, {"3D\\root.model", root}})},
+        {"blanks around numbers",
+         package(model("meter", object("1", box(1, 2, 3)), "<item objectid=\" 1 \"/>"))},
+    };
+    for (const auto& [name, bytes] : cases) {
+        const ObstacleFile file = imported("a.3mf", bytes);
+        EXPECT_NEAR(volume_of(file.mesh), 6.0, kRounding) << name;
+        EXPECT_THAT(file.warnings, IsEmpty()) << name;
+    }
+}
+
+TEST(ThreeMfFile, VendorsElementsAreLeftOutAloud)
+{
+    const std::string vendor = "xmlns:v=\"http://vendor.com/x\"";
+    const std::string item = "<item objectid=\"1\"/>";
+    const ObstacleFile file = imported(
+        "a.3mf", package(model("meter", object("1", box(1, 2, 3) + "<v:note/>"), item + item, vendor)));
+    EXPECT_NEAR(volume_of(file.mesh), 6.0, kRounding);
+    EXPECT_THAT(file.warnings, ElementsAre("object 1 of its part '3D/root.model' has <note> of an extension, "
+                                           "which is not read",
+                                           "dropped 12 duplicate faces"));
+    EXPECT_THAT(import_error("a.3mf", package(model("meter", object("1", "<v:note/>"), item, vendor))),
+                HasSubstr("has no mesh"));
+}
+
 TEST(ThreeMfFile, SupportsAreLeftOutAloud)
 {
     const std::string objects = object("1", box(1, 2, 3)) + object("2", box(9, 9, 9), "type=\"support\"") +
@@ -218,9 +264,9 @@ TEST(ThreeMfFile, SupportsAreLeftOutAloud)
             "meter", objects,
             "<item objectid=\"1\"/><item objectid=\"2\"/><item objectid=\"3\"/><item objectid=\"4\"/>")));
     EXPECT_EQ(file.mesh.faces.size(), 12u);
-    EXPECT_THAT(file.warnings, ElementsAre("1 placed objects of type 'other' are left out",
-                                           "1 placed objects of type 'solidsupport' are left out",
-                                           "1 placed objects of type 'support' are left out"));
+    EXPECT_THAT(file.warnings, ElementsAre("1 placed object of type 'other' is left out",
+                                           "1 placed object of type 'solidsupport' is left out",
+                                           "1 placed object of type 'support' is left out"));
 }
 
 TEST(ThreeMfFile, DefectsAreOneClearLine)
@@ -228,6 +274,8 @@ TEST(ThreeMfFile, DefectsAreOneClearLine)
     const std::string one = object("1", box(1, 2, 3));
     const std::string item = "<item objectid=\"1\"/>";
     const std::string root = model("meter", one, item);
+    const std::string alternatives =
+        "xmlns:pa=\"http://schemas.microsoft.com/3dmanufacturing/production/alternatives/2021/04\"";
     const std::string beams = "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\"";
     const struct {
         const char* name;
@@ -254,6 +302,21 @@ TEST(ThreeMfFile, DefectsAreOneClearLine)
          package(model("meter", object("2", "<components><component objectid=\"2\"/></components>"),
                        "<item objectid=\"2\"/>")),
          "components refer to each other in a circle"},
+        {"circle of two",
+         package(model("meter",
+                       object("2", "<components><component objectid=\"3\"/></components>") +
+                           object("3", "<components><component objectid=\"2\"/></components>"),
+                       "<item objectid=\"2\"/>")),
+         "components refer to each other in a circle"},
+        {"two files of one name",
+         mesh_files::zip({{"_rels/.rels", relationships("/a.model")}, {"a.model", root}, {"A.model", root}}),
+         "its archive has two files named 'a.model'"},
+        {"alternatives required",
+         package(model("meter", one, item, "requiredextensions=\"pa\" " + alternatives)),
+         "it requires the 3MF extension 'pa'"},
+        {"alternatives",
+         package(model("meter", object("1", box(1, 2, 3) + "<pa:alternatives/>"), item, alternatives)),
+         "has its shape from <alternatives> of an extension"},
         {"nothing built", package(model("meter", one, "")), "its build has no items"},
         {"only supports", package(model("meter", object("1", box(1, 2, 3), "type=\"support\""), item)),
          "no faces"},
