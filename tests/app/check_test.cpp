@@ -59,13 +59,6 @@ TEST(Check, SaysWhichEffectsAreOnAndWhy)
     EXPECT_EQ(on, "damping wind ");
 }
 
-TEST(Check, EndsWithTheWarnings)
-{
-    const auto lines = describe_scene(load("units = \"m\"\n[gravity]\n"));
-    EXPECT_EQ(lines.back(),
-              "warning: s.toml:6: cloth.units = \"m\": has no effect: the cloth is not from a file");
-}
-
 TEST(Check, DescribesObstaclesWithTheirFeaturesAndMotion)
 {
     const auto lines =

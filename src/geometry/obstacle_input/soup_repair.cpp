@@ -92,9 +92,15 @@ class SoupRepairer {
     }
 
   private:
-    void warn_of(int count, const char* sentence)
+    /// `sentence`, with the words for one or for many in place of {}.
+    void warn_of(int count, const char* sentence, const char* one, const char* many)
     {
-        if (count > 0) warnings_.push_back(fmt::format(fmt::runtime(sentence), count));
+        if (count > 0) warnings_.push_back(fmt::format(fmt::runtime(sentence), counted(count, one, many)));
+    }
+
+    static std::string counted(int count, const char* one, const char* many)
+    {
+        return fmt::format("{} {}", count, count == 1 ? one : many);
     }
 
     void tell(const WeldCounts& counts)
@@ -104,12 +110,15 @@ class SoupRepairer {
                                             counts.equal_points + counts.near_points, counts.equal_points,
                                             counts.near_points, counts.tolerance));
         else if (counts.equal_points > 0)  // formats without shared vertices produce equal points
-            notes_.push_back(fmt::format("welded {} vertices that equal others", counts.equal_points));
-        warn_of(counts.collapsed_faces, "dropped {} faces that name a vertex twice");
-        warn_of(counts.duplicate_faces, "dropped {} duplicate faces");
-        warn_of(counts.zero_segments, "dropped {} segments of no length");
-        warn_of(counts.duplicate_segments, "dropped {} duplicate segments");
-        warn_of(counts.duplicate_lone_points, "dropped {} duplicate points");
+            notes_.push_back(fmt::format(
+                "welded {}",
+                counted(counts.equal_points, "vertex that equals another", "vertices that equal others")));
+        warn_of(counts.collapsed_faces, "dropped {} twice", "face that names a vertex",
+                "faces that name a vertex");
+        warn_of(counts.duplicate_faces, "dropped {}", "duplicate face", "duplicate faces");
+        warn_of(counts.zero_segments, "dropped {} of no length", "segment", "segments");
+        warn_of(counts.duplicate_segments, "dropped {}", "duplicate segment", "duplicate segments");
+        warn_of(counts.duplicate_lone_points, "dropped {}", "duplicate point", "duplicate points");
     }
 
     bool is_flat(int a, int b, int c) const
@@ -242,8 +251,8 @@ class SoupRepairer {
 
     void tell(const ShellReport& shells)
     {
-        warn_of(split_,
-                "split {} vertices where more than two faces meet at an edge, or faces at a point only");
+        warn_of(split_, "split {} where more than two faces meet at an edge, or faces at a point only",
+                "vertex", "vertices");
         if (const int turned = count_turned(); turned > 0)
             warnings_.push_back(fmt::format(
                 "turned {} of {} faces round, to agree with their neighbours and "
@@ -253,19 +262,23 @@ class SoupRepairer {
         if (shells.crossing_pairs > 0) {
             const Vec3& p = shells.crossing_place;
             warnings_.push_back(fmt::format(
-                "{} pairs of faces cross, overlap or touch, the first near [{:.6g}, {:.6g}, {:.6g}] (m, "
+                "{}, the first near [{:.6g}, {:.6g}, {:.6g}] (m, "
                 "z up, before it is scaled and placed): sharp edges where they do are not found, and cloth "
                 "may snag there; unite its parts (a boolean union) where it was made",
-                shells.crossing_pairs, p.x(), p.y(), p.z()));
+                counted(shells.crossing_pairs, "pair of faces crosses, overlaps or touches",
+                        "pairs of faces cross, overlap or touch"),
+                p.x(), p.y(), p.z()));
         }
         if (shells.cavities > 0)
-            notes_.push_back(
-                fmt::format("{} closed shells lie inside others and bound cavities", shells.cavities));
+            notes_.push_back(fmt::format(
+                "{} inside others",
+                counted(shells.cavities, "closed shell bounds a cavity", "closed shells bound cavities")));
         if (shells.border_edges > 0)
-            notes_.push_back(fmt::format("open: {} border edges, two-sided", shells.border_edges));
+            notes_.push_back(fmt::format("open: {}, two-sided",
+                                         counted(shells.border_edges, "border edge", "border edges")));
     }
 
-    void tell_flat_faces() { warn_of(flat_faces_, "removed {} faces without area"); }
+    void tell_flat_faces() { warn_of(flat_faces_, "removed {} without area", "face", "faces"); }
 
     // Wires and lone points share points with the faces that they touch.
     void attach_wires_and_points()

@@ -101,6 +101,9 @@ TEST(ClosestKey, IsASiblingFirst)
     EXPECT_EQ(closest_key("pin[]", "releas"), "release");
     EXPECT_EQ(closest_key("cloth.material", "density_"), "density");
     EXPECT_EQ(closest_key("cloth", "formats"), "output.formats");
+    EXPECT_EQ(closest_key("obstacle[]", "velocity"), "motion.velocity");
+    EXPECT_EQ(closest_key("pin[]", "translate"), "keyframes[].translate");
+    EXPECT_EQ(closest_key("obstacle[].rotate", "angle"), "") << "remesh.angle is not built";
     EXPECT_EQ(closest_key("cloth", "qqqqqqqqq"), "");
     EXPECT_EQ(closest_key("cloth", std::string(1'000'000, 'x')), "");
 }

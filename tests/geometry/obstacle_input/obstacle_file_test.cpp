@@ -292,7 +292,7 @@ TEST_F(ObstacleFileTest, BrokenFilesAreOneClearLine)
         {"unit.dae", mesh_files::dae(m, "<unit name=\"nil\" meter=\"0\"/>"), "its unit is 0 m"},
         // Nothing is left after repair.
         {"flat.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n",
-         "nothing is left of it: removed 1 faces without area"},
+         "nothing is left of it: removed 1 face without area"},
         {"point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "nothing is left of it"},
     };
     std::string nan_buffer = mesh_files::gltf_buffer(m);

@@ -346,7 +346,7 @@ TEST_F(ObstacleImport, RepairsAreToldWithTheirCounts)
     std::swap(mesh.faces[5][0], mesh.faces[5][1]);
     const ObstacleFile file = import("dirty.ply", mesh_files::binary_ply(mesh));
     expect_box(file, Vec3::Zero(), kSizes, "dirty");
-    EXPECT_THAT(file.warnings, ElementsAre("dropped 1 duplicate faces", HasSubstr("turned 1 of 12 faces")));
+    EXPECT_THAT(file.warnings, ElementsAre("dropped 1 duplicate face", HasSubstr("turned 1 of 12 faces")));
 }
 
 TEST_F(ObstacleImport, PlyEdgesAreMissedAloud)

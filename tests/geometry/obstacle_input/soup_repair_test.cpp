@@ -336,7 +336,7 @@ TEST(SoupRepair, HollowBoxStaysHollow)
         EXPECT_EQ(validate(repaired.mesh), "");
         EXPECT_NEAR(volume(repaired.mesh), kHollow, 10 * kRounding);
         EXPECT_EQ(solid_count(repaired.mesh), 2);
-        EXPECT_THAT(repaired.notes, ElementsAre(HasSubstr("1 closed shells lie inside others")));
+        EXPECT_THAT(repaired.notes, ElementsAre(HasSubstr("1 closed shell bounds a cavity inside others")));
         if (c.turned == 0) {
             EXPECT_THAT(repaired.warnings, IsEmpty());
         } else {
@@ -384,7 +384,7 @@ TEST(SoupRepair, BoxesThatShareACornerComeApart)
     ASSERT_EQ(validate(repaired.mesh), "");
     EXPECT_EQ(solid_count(repaired.mesh), 2);
     EXPECT_EQ(repaired.mesh.points.size(), 16u);
-    EXPECT_THAT(repaired.warnings, Contains(HasSubstr("split 1 vertices")));
+    EXPECT_THAT(repaired.warnings, Contains(HasSubstr("split 1 vertex")));
 }
 
 TEST(SoupRepair, FinOnASolidIsCutOff)
@@ -434,7 +434,8 @@ TEST(SoupRepair, CountsFacesThatCross)
     ObstacleMesh crossing;
     crossing.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, -1}, {0.2, 0.2, 1}, {0.3, 0.3, 1}};
     crossing.faces = {{0, 1, 2}, {3, 4, 5}};
-    EXPECT_THAT(repair_soup(crossing).warnings, ElementsAre(HasSubstr("1 pairs of faces cross")));
+    EXPECT_THAT(repair_soup(crossing).warnings,
+                ElementsAre(HasSubstr("1 pair of faces crosses, overlaps or touches, ")));
 }
 
 // ----------------------------------------------------------------- wires and points
@@ -452,8 +453,8 @@ TEST(SoupRepair, WiresAndPointsAreWeldedAndShared)
     EXPECT_EQ(repaired.mesh.points.size(), 8u + 3u);
     EXPECT_EQ(repaired.mesh.segments, (std::vector<std::array<int, 2>>{{0, 8}, {8, 9}}));
     EXPECT_EQ(repaired.mesh.lone_points, (std::vector<int>{10, 0}));
-    EXPECT_THAT(repaired.warnings, ElementsAre("dropped 1 segments of no length",
-                                               "dropped 1 duplicate segments", "dropped 1 duplicate points"));
+    EXPECT_THAT(repaired.warnings, ElementsAre("dropped 1 segment of no length",
+                                               "dropped 1 duplicate segment", "dropped 1 duplicate point"));
     EXPECT_THAT(repaired.notes, Contains(HasSubstr("welded 4 vertices")));
 }
 
