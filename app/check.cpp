@@ -11,6 +11,7 @@
 #include "app/scene/missing_effects.h"
 #include "app/scene/scene_effects.h"
 #include "app/scene/scene_estimate.h"
+#include "app/text/counted.h"
 #include "app/text/printable.h"
 #include "geometry/cloth/mesh_quality.h"
 
@@ -28,11 +29,6 @@ std::string in_words(const MaterialBox& box)
 {
     return fmt::format("[[{:.6g}, {:.6g}], [{:.6g}, {:.6g}]]", box.min.x(), box.min.y(), box.max.x(),
                        box.max.y());
-}
-
-std::string counted(std::size_t count, std::string_view one, std::string_view many)
-{
-    return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 template <typename Point>
@@ -54,9 +50,10 @@ void describe_cloth(const RunConfig& config, const EdgeLengths& edges, Lines& li
     const ClothMesh& cloth = config.cloth;
     const Material& material = config.scene.material;
     const double area = material_area(cloth);
-    lines.push_back(fmt::format("cloth: {} of material, {:.6g} m^2, {:.4g} kg; {} vertices, {} faces",
-                                extent(cloth.material), area, material.density * area, cloth.vertex_count(),
-                                cloth.face_count()));
+    lines.push_back(fmt::format("cloth: {} of material, {:.6g} m^2, {:.4g} kg; {}, {}",
+                                extent(cloth.material), area, material.density * area,
+                                counted(cloth.vertex_count(), "vertex", "vertices"),
+                                counted(cloth.face_count(), "face", "faces")));
     lines.push_back(
         fmt::format("  mesh edges: mean {:.4g} m, from {:.4g} to {:.4g} m; least angle {:.3g} degrees",
                     edges.mean, edges.least, edges.greatest, least_material_angle(cloth)));
@@ -277,7 +274,6 @@ std::vector<std::string> describe_scene(const RunConfig& config)
     describe_meetings(config, lines);
     describe_run(config, lines);
     for (const std::string& note : config.notes) lines.push_back(fmt::format("note: {}", note));
-    for (const std::string& warning : config.warnings) lines.push_back(fmt::format("warning: {}", warning));
     for (std::string& line : lines) line = printable(line);
     return lines;
 }

@@ -144,13 +144,19 @@ void add_docs(CLI::App& app, std::string& topic)
         ->check(CLI::IsMember({"scene", "schema"}));
 }
 
+void tell_warnings(const std::vector<std::string>& warnings)
+{
+    for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", printable(warning));
+}
+
 int check(const CheckRequest& request)
 {
     LoadOptions options;
     options.tells_intersections = true;
     const RunConfig config = load_scene(request.scene, request.overrides, options);
     for (const std::string& line : describe_scene(config)) fmt::print("{}\n", line);
-    std::fflush(stdout);  // so that it precedes the error on standard error
+    std::fflush(stdout);  // so that it precedes what follows on standard error
+    tell_warnings(config.warnings);
     if (!config.intersections.empty()) throw InputError(config.intersections.front());
     return 0;
 }
@@ -158,7 +164,9 @@ int check(const CheckRequest& request)
 int export_formats(const ExportRequest& request)
 {
     require_known_formats(request.formats);
-    export_frames(request.directory, request.formats, read_export_options(request.directory));
+    const ExportOptions options = read_export_options(request.directory);
+    tell_warnings(warn_of_missing_files(request.directory));
+    export_frames(request.directory, request.formats, options);
     for (const std::string& format : request.formats)
         fmt::print("{:<7} {}\n", format, printable(exported_path(request.directory, format)));
     return 0;
@@ -174,6 +182,7 @@ int run_command_line(int argc, char** argv)
 
     RunRequest run_request;
     ResumeRequest resume_request;
+    run_request.program = resume_request.program = argc > 0 ? argv[0] : "arris";
     CheckRequest check_request;
     StudyRequest study_request;
     ExportRequest export_request;

@@ -78,6 +78,7 @@ std::string read_sealed(const std::string& path, const FileKind& kind)
     if (!in || !std::filesystem::is_regular_file(path))
         throw InputError(fmt::format("{}: {}", printable(path), kind.missing));
     const std::string bytes(std::istreambuf_iterator<char>(in), {});
+    if (bytes.empty()) throw InputError(fmt::format("{}: is empty: it {}", printable(path), kind.other));
     if (!bytes.starts_with(kind.magic)) throw InputError(fmt::format("{}: {}", printable(path), kind.other));
     BinaryReader file(std::string_view(bytes).substr(kind.magic.size()), path);
     const std::string version = file.text();

@@ -4,11 +4,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
+#include <fstream>
 
 #include "app/files/atomic_file.h"
 #include "app/files/csv_table.h"
+#include "app/text/printable.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -90,6 +93,8 @@ StepTotals sum_steps(const std::string& steps_csv)
     std::vector<std::size_t> phase_columns;
     for (const Phase& phase : kPhases) phase_columns.push_back(reader.column(std::string(phase.name) + "_s"));
     const std::size_t eol = reader.column("eol_pressing");
+    const std::array touches = {reader.column("contacts"), reader.column("eol_vertices"),
+                                reader.column("feature_rows")};
     std::vector<std::size_t> cause_columns;
     for (std::size_t k = 0; k < kRowCauses; ++k)
         cause_columns.push_back(reader.column(rows_column(static_cast<RowCause>(k))));
@@ -108,6 +113,8 @@ StepTotals sum_steps(const std::string& steps_csv)
         totals.crossings = std::max(totals.crossings, to_count(row[crossings], steps_csv));
         totals.max_kkt_residual = greatest(totals.max_kkt_residual, row[residual]);
         totals.halved_steps += to_count(row[halved], steps_csv);
+        totals.touching_rows +=  // an empty cell is not a number, and so not > 0
+            std::any_of(touches.begin(), touches.end(), [&](std::size_t k) { return row[k] > 0.0; }) ? 1 : 0;
         if (std::isnan(row[eol])) continue;
         if (!totals.features) totals.features.emplace();
         totals.features->eol += to_count(row[eol], steps_csv);
@@ -173,6 +180,15 @@ void write_report_json(const std::string& path, const RunReport& report)
     // Text that is not UTF-8, such as a file name in a message, must not prevent the report.
     const auto replace = nlohmann::ordered_json::error_handler_t::replace;
     write_atomically(path, to_json(report).dump(kIndent, ' ', kEscapeNonAscii, replace) + "\n");
+}
+
+std::string read_status(const std::string& path)
+{
+    std::ifstream in(path);
+    const nlohmann::json report = nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
+    if (!report.is_object() || !report.contains("status") || !report["status"].is_string())
+        throw InputError(printable(path) + ": is not the report of a run: it has no status");
+    return report["status"];
 }
 
 std::int64_t peak_memory_bytes()

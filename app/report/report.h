@@ -39,6 +39,7 @@ struct StepTotals {
     std::int64_t crossings = 0;
     double max_kkt_residual = 0.0;
     std::int64_t halved_steps = 0;
+    std::int64_t touching_rows = 0;  ///< rows in which the cloth touches an obstacle
     std::optional<FeatureTotals> features;
 };
 
@@ -72,6 +73,9 @@ nlohmann::ordered_json to_json(const RunReport& report);
 
 /// Writes report.json atomically. Throws std::system_error naming the path if writing fails.
 void write_report_json(const std::string& path, const RunReport& report);
+
+/// The status in a report.json. Throws InputError naming the file if there is none.
+std::string read_status(const std::string& path);
 
 /// Peak resident memory of this process, and CPU time of all its threads, so far.
 std::int64_t peak_memory_bytes();

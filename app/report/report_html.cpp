@@ -115,8 +115,8 @@ std::vector<Fact> quality_facts(const RunReport& report, std::optional<double> t
     }
     if (totals.features)
         facts.push_back({"EOL share", format_share(totals.features->eol_share()), "",
-                         "Share of EOL vertices among the contacts that press on sharp features for a second "
-                         "step or longer. Cloth slides over a feature through an EOL vertex; at the other "
+                         "Share of EOL vertices among the contacts that press on sharp features for at least "
+                         "two steps. Cloth slides over a feature through an EOL vertex; at the other "
                          "contacts coarse cloth may snag."});
     facts.push_back({"Greatest KKT residual", fmt::format("{:.2e}", totals.max_kkt_residual),
                      tolerance ? fmt::format("{:.3g} allowed", *tolerance) : "",

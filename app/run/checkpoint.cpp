@@ -20,7 +20,7 @@ namespace {
 
 constexpr FileKind kKind = {"ARRIS checkpoint\n", kCheckpointVersion,
                             "there is no checkpoint to resume from; arris run starts the run again",
-                            "is not a checkpoint of arris"};
+                            "is not a checkpoint of arris; arris run with --overwrite starts the run again"};
 
 void write_vectors(BinaryWriter& out, const std::vector<Vec2>& vectors)
 {

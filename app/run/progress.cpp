@@ -15,10 +15,10 @@ namespace {
 std::string format_duration(double seconds)
 {
     const long whole =
-        std::lround(std::clamp(seconds, 1.0, 359999.0));  // "0s left" would say that it is over
-    if (whole >= 3600) return fmt::format("{}h{:02}m", whole / 3600, whole / 60 % 60);
-    if (whole >= 60) return fmt::format("{}m{:02}s", whole / 60, whole % 60);
-    return fmt::format("{}s", whole);
+        std::lround(std::clamp(seconds, 1.0, 359999.0));  // "0 s left" would say that it is over
+    if (whole >= 3600) return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
+    if (whole >= 60) return fmt::format("{} min {} s", whole / 60, whole % 60);
+    return fmt::format("{} s", whole);
 }
 
 }  // namespace
@@ -35,18 +35,18 @@ Progress::Progress(double from, double to, bool is_quiet)
 void Progress::update(double time, const std::string& detail)
 {
     if (is_quiet_ || !(to_ > from_)) return;
-    const double share = std::clamp((time - from_) / (to_ - from_), 0.0, 1.0);
+    const double share = std::clamp(time / to_, 0.0, 1.0);
+    const double own = std::clamp((time - from_) / (to_ - from_), 0.0, 1.0);  // share of this process
     const auto now = Clock::now();
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     std::string left;
-    if (share < 1.0)
-        left = share > 0.0 ? format_duration(elapsed * (1.0 - share) / share) + " left" : "? left";
+    if (share < 1.0) left = "  " + (own > 0.0 ? format_duration(elapsed * (1.0 - own) / own) : "?") + " left";
 
     if (!is_terminal_) {
         const int tenths = static_cast<int>(10.0 * share);
         if (tenths <= tenths_told_) return;
         tenths_told_ = tenths;
-        fmt::print("{:3.0f} %  t = {:.3f} s  {}  {}\n", 100.0 * share, time, detail, left);
+        fmt::print("{:3.0f} %  t = {:.3f} s  {}{}\n", 100.0 * share, time, detail, left);
         std::fflush(stdout);
         return;
     }
@@ -56,7 +56,7 @@ void Progress::update(double time, const std::string& detail)
     constexpr int kWidth = 30;
     const int filled = static_cast<int>(kWidth * share);
     // \x1b[K clears the rest of a longer previous line.
-    fmt::print("\r[{}{}] {:3.0f} %  t = {:.3f} s  {}  {}\x1b[K", std::string(filled, '#'),
+    fmt::print("\r[{}{}] {:3.0f} %  t = {:.3f} s  {}{}\x1b[K", std::string(filled, '#'),
                std::string(kWidth - filled, '.'), 100.0 * share, time, detail, left);
     std::fflush(stdout);
     is_line_open_ = true;

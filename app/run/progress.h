@@ -10,7 +10,8 @@ namespace arris {
 /// after each 10 %.
 class Progress {
   public:
-    /// `from` and `to` are simulated seconds. Prints nothing if `is_quiet`.
+    /// `from` and `to` are simulated seconds: the share done counts from 0, the time left from `from`, where
+    /// this process begins. Prints nothing if `is_quiet`.
     Progress(double from, double to, bool is_quiet);
 
     /// `detail`: a few words on the step, such as "3281 vertices".

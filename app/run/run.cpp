@@ -19,14 +19,15 @@
 #include "app/run/resumed_scene.h"
 #include "app/run/run_directory.h"
 #include "app/run/run_ending.h"
+#include "app/run/run_warnings.h"
 #include "app/run/state_readings.h"
 #include "app/run/step_row.h"
-#include "app/run/strain_warnings.h"
 #include "app/run/timeline.h"
 #include "app/scene/run_config.h"
 #include "app/scene/scene_effects.h"
 #include "app/text/error_line.h"
 #include "app/text/printable.h"
+#include "app/text/shell_word.h"
 #include "app/text/version.h"
 #include "geometry/input_error.h"
 #include "solver/advance.h"
@@ -42,6 +43,12 @@ namespace {
 
 constexpr const char* kStopping =
     "\narris: stopping; a second Ctrl-C stops at once (arris resume continues in both cases)\n";
+/// What a command line asks for besides the scene.
+struct Asked {
+    const std::string& program;
+    bool is_quiet;
+    int threads;
+};
 
 /// The state of a run in progress.
 struct Run {
@@ -159,12 +166,27 @@ RunEnding simulate(Run& run, bool is_quiet)
     return ending;
 }
 
-RunReport make_report(const Run& run, const RunEnding& ending, double export_seconds, int threads)
+/// What the rows of a run sum to, and the warnings of its end.
+struct RunSummary {
+    StepTotals totals;
+    std::vector<std::string> warnings;
+};
+
+RunSummary summarise(const Run& run, RunStatus status)
+{
+    RunSummary summary;
+    summary.totals = sum_steps(steps_file(run.files.path()));
+    summary.warnings = warn_at_end(run.config, run.at.strain, status, summary.totals);
+    return summary;
+}
+
+RunReport make_report(const Run& run, const RunEnding& ending, const RunSummary& summary,
+                      double export_seconds, int threads)
 {
     RunReport report;
     report.status = ending.status;
     report.message = ending.message;
-    report.totals = sum_steps(steps_file(run.files.path()));
+    report.totals = summary.totals;
     report.totals.phases.output += export_seconds;
     report.totals.wall_seconds += export_seconds;
     report.totals.cpu_seconds += process_cpu_seconds() - run.cpu_told;
@@ -172,7 +194,7 @@ RunReport make_report(const Run& run, const RunEnding& ending, double export_sec
     for (const SceneEffect& effect : list_effects(run.config))
         if (effect.is_on) report.effects.push_back(effect.name);
     report.warnings = run.config.warnings;
-    for (std::string& warning : warn_of_strain(run.at.strain)) report.warnings.push_back(std::move(warning));
+    report.warnings.insert(report.warnings.end(), summary.warnings.begin(), summary.warnings.end());
     report.scene = run.config.as_run;
     report.version = kVersion;
     report.threads = threads;
@@ -181,7 +203,7 @@ RunReport make_report(const Run& run, const RunEnding& ending, double export_sec
 
 /// Writes exported formats and reports after the last step. A write error is reported in report.json if that
 /// can still be written.
-RunEnding write_results(const Run& run, RunEnding ending, int threads)
+RunEnding write_results(const Run& run, RunEnding ending, const RunSummary& summary, int threads)
 {
     const std::string& dir = run.files.path();
     Stopwatch watch;
@@ -192,7 +214,7 @@ RunEnding write_results(const Run& run, RunEnding ending, int threads)
     } catch (const std::runtime_error& error) {  // write error, or frames that a format cannot represent
         ending = {RunStatus::IoError, error_line(error)};
     }
-    const RunReport report = make_report(run, ending, watch.lap(), threads);
+    const RunReport report = make_report(run, ending, summary, watch.lap(), threads);
     write_report_json((std::filesystem::path(dir) / "report.json").string(), report);
     write_report_html(dir, report);
     return ending;
@@ -203,32 +225,34 @@ void tell_warnings(const std::vector<std::string>& warnings)
     for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", printable(warning));
 }
 
-void tell_ending(const Run& run, const RunEnding& ending, bool is_quiet)
+void tell_ending(const Run& run, const RunEnding& ending, const Asked& asked)
 {
     const std::string dir = printable(run.files.path());
-    tell_warnings(warn_of_strain(run.at.strain));
     if (ending.status != RunStatus::Finished)
         fmt::print(stderr, "arris: {}: {}\n", to_string(ending.status), printable(ending.message));
-    if (is_quiet) return;
+    if (asked.is_quiet) return;
     if (run.at.frames > 0) fmt::print("frames  {}/frames ({})\n", dir, run.at.frames);
     if (std::filesystem::exists(std::filesystem::path(run.files.path()) / "viewer.html"))
         fmt::print("viewer  {}/viewer.html\n", dir);
     fmt::print("report  {}/report.html\n", dir);
-    if (ending.status == RunStatus::Interrupted) fmt::print("resume  arris resume {}\n", dir);
+    if (ending.status == RunStatus::Interrupted)
+        fmt::print("resume  {}\n", resume_command(asked.program, run.files.path()));
 }
 
 /// Runs and writes the results. From here on every ending, errors included, is recorded in the run's files.
-RunStatus run_to_the_end(Run& run, bool is_quiet, int threads)
+RunStatus run_to_the_end(Run& run, const Asked& asked)
 {
     watch_for_interrupt(kStopping);
     RunEnding ending;
     try {
-        ending = simulate(run, is_quiet);
+        ending = simulate(run, asked.is_quiet);
     } catch (const std::exception& error) {  // write error, or too little memory for a factorisation
         ending = {RunStatus::IoError, error_line(error)};
     }
-    ending = write_results(run, ending, threads);
-    tell_ending(run, ending, is_quiet);
+    const RunSummary summary = summarise(run, ending.status);
+    tell_warnings(summary.warnings);
+    ending = write_results(run, ending, summary, asked.threads);
+    tell_ending(run, ending, asked);
     return ending.status;
 }
 
@@ -238,14 +262,14 @@ std::string default_directory(const std::string& scene)
 }
 
 /// Says that a resumed run has no step left.
-void tell_is_over(const Run& run)
+void tell_is_over(const Run& run, const std::string& program)
 {
-    const std::string dir = printable(run.files.path());
     fmt::print("nothing to do: the run has reached its end, t = {} s\n", run.at.state.time);
-    fmt::print("resume  arris resume {} --until T, with T a later time in s\n", dir);
+    fmt::print("resume  {} --until T, with T a later time in s\n", resume_command(program, run.files.path()));
     fmt::print(
-        "        (at the same frame rate; another rate needs a new run: arris run SCENE --set "
-        "output.frames_per_second=N)\n");
+        "        (at the same frame rate; another rate needs a new run: {} run SCENE --set "
+        "output.frames_per_second=N)\n",
+        shell_word(program));
 }
 
 int thread_count(int asked)
@@ -268,7 +292,7 @@ RunStatus run(const RunRequest& request)
     tell_warnings(config.warnings);
     const std::string directory =
         request.directory.empty() ? default_directory(request.scene) : request.directory;
-    RunDirectory files = RunDirectory::create(directory, request.is_overwriting, config);
+    RunDirectory files = RunDirectory::create({directory, request.is_overwriting, request.program}, config);
 
     start.warnings = config.warnings;
     start.state = make_state(config.scene, config.cloth, config.cloth_velocity);
@@ -277,7 +301,7 @@ RunStatus run(const RunRequest& request)
     initial.seconds.advance = watch.lap();  // time of loading
     write_outputs(run, initial, watch, false);
     run.files.write_checkpoint(run.at);
-    return run_to_the_end(run, request.is_quiet, threads);
+    return run_to_the_end(run, {request.program, request.is_quiet, threads});
 }
 
 RunStatus resume(const ResumeRequest& request)
@@ -290,8 +314,8 @@ RunStatus resume(const ResumeRequest& request)
     tell_warnings(config.warnings);
     RunDirectory files = RunDirectory::reopen(request.directory, checkpoint, config);
     Run run(config, std::move(files), std::move(checkpoint));
-    if (run.timeline.is_over(run.at.position) && !request.is_quiet) tell_is_over(run);
-    return run_to_the_end(run, request.is_quiet, threads);
+    if (run.timeline.is_over(run.at.position) && !request.is_quiet) tell_is_over(run, request.program);
+    return run_to_the_end(run, {request.program, request.is_quiet, threads});
 }
 
 }  // namespace arris

@@ -15,7 +15,8 @@ struct RunRequest {
     std::vector<std::string> overrides;  ///< KEY=VALUE
     bool is_overwriting = false;
     bool is_quiet = false;
-    int threads = 0;  ///< 0: as many as the machine has
+    int threads = 0;                ///< 0: as many as the machine has
+    std::string program = "arris";  ///< as it was called, for advice
 };
 
 struct ResumeRequest {
@@ -23,6 +24,7 @@ struct ResumeRequest {
     std::optional<double> until;  ///< s, instead of the scene's duration
     bool is_quiet = false;
     int threads = 0;
+    std::string program = "arris";  ///< as it was called, for advice
 };
 
 /// Simulate a scene, or continue from a checkpoint, and write the files of docs/output.md. Whatever the

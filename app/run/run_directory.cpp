@@ -21,6 +21,7 @@
 #include "app/report/report.h"
 #include "app/scene/obstacle_records.h"
 #include "app/text/printable.h"
+#include "app/text/shell_word.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -103,6 +104,51 @@ void remove_run(const std::string& dir)
     }
 }
 
+/// A file in `dir` that a run would replace, relative to `dir`; empty if there is none.
+std::string find_run_file(const std::string& dir)
+{
+    std::error_code error;  // an inaccessible file is reported where it is used
+    for (const char* name : kRunFiles)
+        if (fs::exists(fs::path(dir) / name, error)) return name;
+    for (fs::directory_iterator entry(frames_directory(dir), error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string file = entry->path().filename().string();
+        if (const std::optional<FrameName> name = parse_frame_name(file); name && name->subject == "cloth")
+            return (fs::path("frames") / file).string();
+    }
+    return {};
+}
+
+/// ", unfinished at t = 0.17 s: arris resume DIR continues it" for a run that resume can continue.
+std::string tell_unfinished(const RunTarget& target)
+{
+    try {
+        const fs::path report = fs::path(target.path) / "report.json";
+        const bool is_killed = !fs::exists(report);  // before its first report
+        const std::string status = is_killed ? "interrupted" : read_status(report.string());
+        if (status != "interrupted" && status != "io_error") return {};
+        return fmt::format(", unfinished at t = {:.3g} s: {} continues it",
+                           read_checkpoint(checkpoint_file(target.path)).state.time,
+                           resume_command(target.program, target.path));
+    } catch (const InputError&) {  // such as a damaged checkpoint: there is nothing to continue
+        return {};
+    }
+}
+
+/// Throws InputError if the folder holds a run, or a file that a run would replace.
+void require_no_run(const RunTarget& target)
+{
+    const std::string& path = target.path;
+    if (holds_run(path))
+        throw InputError(fmt::format(
+            "-o {}: holds a run already{}; allowed: --overwrite, which replaces it, or another folder",
+            printable(path), tell_unfinished(target)));
+    if (const std::string file = find_run_file(path); !file.empty())
+        throw InputError(
+            fmt::format("-o {}: holds {}, which a run would replace; allowed: --overwrite, or another folder",
+                        printable(path), printable(file)));
+}
+
 void make_folders(const std::string& path)
 {
     std::error_code error;
@@ -163,18 +209,16 @@ RunDirectory::RunDirectory(std::string path, FolderLock lock, CsvWriter steps, C
 {
 }
 
-RunDirectory RunDirectory::create(const std::string& path, bool is_overwriting, const RunConfig& config)
+RunDirectory RunDirectory::create(const RunTarget& target, const RunConfig& config)
 {
+    const std::string& path = target.path;
     std::error_code error;  // ignored: make_folders fails with the reason
     if (fs::exists(path, error) && !fs::is_directory(path, error))
         throw InputError(fmt::format("-o {}: is not a folder", printable(path)));
-    if (holds_run(path) && !is_overwriting)
-        throw InputError(fmt::format(
-            "-o {}: holds a run already; allowed: --overwrite, which replaces it, or another folder",
-            printable(path)));
+    if (!target.is_overwriting) require_no_run(target);
     make_folders(path);
     FolderLock lock(path);
-    if (holds_run(path)) remove_run(path);
+    if (target.is_overwriting) remove_run(path);
     RunDirectory files(path, std::move(lock), CsvWriter::create(steps_file(path), step_header()),
                        CsvWriter::create(probes_file(path), probe_header(probe_names(config))));
     if (!config.scene.obstacles.empty()) write_obstacles(path, record_obstacles(config));

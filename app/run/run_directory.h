@@ -26,12 +26,19 @@ class FolderLock {
     int descriptor_;
 };
 
+/// Where a new run writes its files.
+struct RunTarget {
+    std::string path;
+    bool is_overwriting = false;
+    std::string program = "arris";  ///< as it was called, for advice
+};
+
 /// The files that a run writes while it runs: CSV files, frames and the checkpoint.
 class RunDirectory {
   public:
-    /// Creates `path` for a new run. If it holds a run already: throws InputError, or with `is_overwriting`
-    /// removes the files of that run and no others.
-    static RunDirectory create(const std::string& path, bool is_overwriting, const RunConfig& config);
+    /// Creates the folder of a new run. If it holds a run or another file with the name of one of a run's
+    /// files: throws InputError, or with `is_overwriting` removes these files and no others.
+    static RunDirectory create(const RunTarget& target, const RunConfig& config);
 
     /// Opens the files of a run after truncating them to its checkpoint.
     static RunDirectory reopen(const std::string& path, const Checkpoint& checkpoint,

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/run/run_directory.h"
+#include "app/scene/obstacle_records.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -43,7 +44,6 @@ ExportOptions read_export_options(const std::string& run_dir)
     }
     const nlohmann::ordered_json report = read_report(path);
     const nlohmann::ordered_json& scene = report["scene"];
-
     ExportOptions options;
     if (scene.contains("title") && scene["title"].is_string()) options.title = scene["title"];
     const auto rate = nlohmann::ordered_json::json_pointer("/output/frames_per_second");
@@ -54,6 +54,14 @@ ExportOptions read_export_options(const std::string& run_dir)
         throw InputError(fmt::format("{}: scene.output.frames_per_second is {}: the run wrote no frames",
                                      path, options.frames_per_second));
     return options;
+}
+
+std::vector<std::string> warn_of_missing_files(const std::string& run_dir)
+{
+    const std::string report = run_dir + "/report.json", stored = obstacles_file(run_dir);
+    if (!std::filesystem::exists(report) || std::filesystem::exists(stored)) return {};
+    if (!read_report(report)["scene"].contains("obstacle")) return {};
+    return {stored + ": is missing, in which the run stored its obstacles: the export is without them"};
 }
 
 }  // namespace arris

@@ -2,8 +2,12 @@
 #include "app/run/strain_warnings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "app/run/strain_causes.h"
 
 namespace arris {
 namespace {
@@ -28,12 +32,42 @@ void note(const State& state, const FaceStrain& found, StrainPeak& peak)
     }
 }
 
+/// Whether two peaks are of one face at one moment.
+bool is_same(const StrainPeak& a, const StrainPeak& b)
+{
+    return a.time <= b.time && a.time >= b.time && a.material == b.material;
+}
+
 std::string describe(const StrainPeak& peak)
 {
     return fmt::format(
         "by {:.3g} % at t = {:.6g} s, at [{:.4g}, {:.4g}, {:.4g}] (m, material [{:.4g}, {:.4g}])",
         100.0 * std::abs(peak.strain), peak.time, peak.world.x(), peak.world.y(), peak.world.z(),
         peak.material.x(), peak.material.y());
+}
+
+/// A peak that cloth does not bear.
+struct Finding {
+    std::string what, limit, cause;
+};
+
+/// A line for each cause.
+std::vector<std::string> join_by_cause(const std::vector<Finding>& found)
+{
+    std::vector<std::string> lines, causes;
+    for (const Finding& one : found) {
+        if (std::find(causes.begin(), causes.end(), one.cause) != causes.end()) continue;
+        causes.push_back(one.cause);
+        std::vector<std::string> peaks, limits;
+        for (const Finding& other : found)
+            if (other.cause == one.cause) {
+                peaks.push_back(other.what);
+                limits.push_back(other.limit);
+            }
+        lines.push_back(fmt::format("the cloth was {}: {}; {}", fmt::join(peaks, ", and "),
+                                    fmt::join(limits, ", "), one.cause));
+    }
+    return lines;
 }
 
 }  // namespace
@@ -46,26 +80,24 @@ void note_strain(const State& state, const ClothStrain& strain, StrainPeaks& pea
     if (peaks.plane_rows >= kRowsToFold) note(state, strain.in_plane, peaks.in_plane);
 }
 
-std::vector<std::string> warn_of_strain(const StrainPeaks& peaks)
+std::vector<std::string> warn_of_strain(const StrainPeaks& peaks, const RunConfig& config)
 {
-    std::vector<std::string> lines;
+    const bool stays_plane = -peaks.in_plane.strain > kGreatestInPlane;
+    std::vector<Finding> found;
     if (peaks.stretch.strain > kGreatestStrain)
-        lines.push_back(
-            fmt::format("the cloth was stretched {}: woven cloth tears before {:g} %; pull less, use smaller "
-                        "cells, or raise "
-                        "cloth.material.youngs_modulus",
-                        describe(peaks.stretch), 100.0 * kGreatestStrain));
-    if (-peaks.compression.strain > kGreatestStrain)
-        lines.push_back(
-            fmt::format("the cloth was compressed {}: real cloth folds before {:g} %; use smaller "
-                        "cells, so that the mesh can fold there",
-                        describe(peaks.compression), 100.0 * kGreatestStrain));
-    if (-peaks.in_plane.strain > kGreatestInPlane)
-        lines.push_back(
-            fmt::format("the cloth was compressed {} and stayed plane: real cloth folds before "
-                        "{:g} %; leave it room to fold, or use smaller cells",
-                        describe(peaks.in_plane), 100.0 * kGreatestInPlane));
-    return lines;
+        found.push_back({"stretched " + describe(peaks.stretch),
+                         fmt::format("woven cloth tears before {:g} %", 100.0 * kGreatestStrain),
+                         explain_stretch(config, peaks.stretch)});
+    if (-peaks.compression.strain > kGreatestStrain &&
+        !(stays_plane && is_same(peaks.compression, peaks.in_plane)))
+        found.push_back({"compressed " + describe(peaks.compression),
+                         fmt::format("real cloth folds before {:g} %", 100.0 * kGreatestStrain),
+                         explain_compression(config, peaks.compression)});
+    if (stays_plane)
+        found.push_back({"compressed " + describe(peaks.in_plane) + " and stayed plane",
+                         fmt::format("real cloth folds before {:g} %", 100.0 * kGreatestInPlane),
+                         explain_compression(config, peaks.in_plane)});
+    return join_by_cause(found);
 }
 
 }  // namespace arris

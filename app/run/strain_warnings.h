@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/scene/run_config.h"
 #include "solver/cloth_strain.h"
 #include "solver/model/state.h"
 
@@ -30,7 +31,8 @@ struct StrainPeaks {
 void note_strain(const State& state, const ClothStrain& strain, StrainPeaks& peaks);
 
 /// A line for each peak that cloth does not bear: stretch or compression above 20 %, and compression above 5
-/// % where the cloth stays plane.
-std::vector<std::string> warn_of_strain(const StrainPeaks& peaks);
+/// % where the cloth stays plane. Each says what of the scene causes the strain, where that can be measured.
+/// Peaks with one cause share a line.
+std::vector<std::string> warn_of_strain(const StrainPeaks& peaks, const RunConfig& config);
 
 }  // namespace arris

@@ -92,6 +92,17 @@ SceneValue to_scene_value(const toml::node& node, int source)
 
 // ---- files
 
+/// What to write instead of text that the parser refuses with `error`.
+std::string_view allowed_toml(std::string_view error)
+{
+    const auto says = [&](std::string_view words) { return error.find(words) != std::string_view::npos; };
+    if (says("as array-of-tables") || (says("existing array") && says("as table")))
+        return "[[name]] with two brackets above every one of several tables with this name";
+    if (says("escape sequence") || says("unicode scalar"))
+        return "in double quotes \\\\ for a backslash; or single quotes, as in 'C:\\meshes\\table.obj'";
+    return "TOML 1.0, text in quotes, a digit before a number's point";
+}
+
 SceneValue parse_file(const std::string& path, std::string_view text)
 {
     if (const std::size_t bad = find_invalid_utf8(text); bad != std::string_view::npos) {
@@ -101,11 +112,9 @@ SceneValue parse_file(const std::string& path, std::string_view text)
     try {
         return to_scene_value(toml::parse(text), 0);
     } catch (const toml::parse_error& error) {
-        throw InputError(
-            fmt::format("{}:{}: is not TOML: {}; allowed: TOML 1.0, text in quotes, a digit before a "
-                        "number's point",
-                        printable(path), std::max<toml::source_index>(1, error.source().begin.line),
-                        printable(error.description(), 200)));
+        throw InputError(fmt::format("{}:{}: is not TOML: {}; allowed: {}", printable(path),
+                                     std::max<toml::source_index>(1, error.source().begin.line),
+                                     printable(error.description(), 200), allowed_toml(error.description())));
     }
 }
 

@@ -16,6 +16,15 @@ std::string_view parent_name(std::string_view name)
     return dot == std::string_view::npos ? std::string_view() : name.substr(0, dot);
 }
 
+/// "obstacle.motion" for "obstacle[].motion", as it stands in a [header].
+std::string header_name(std::string_view name)
+{
+    std::string header(name);
+    for (std::size_t at = header.find("[]"); at != std::string::npos; at = header.find("[]"))
+        header.erase(at, 2);
+    return header;
+}
+
 std::string number_range(const SceneKey& key)
 {
     const KeyRange& range = key.range;
@@ -100,7 +109,8 @@ std::string allowed_values(const SceneKey& key)
 {
     switch (key.type) {
         case KeyType::Table:
-            return fmt::format("a table, [{}]", key.name);
+            if (leaf_name(key.name) == "rotate") return "a table, { axis = [0, 0, 1], degrees = 45 }";
+            return fmt::format("a table, [{}]", header_name(key.name));
         case KeyType::Tables:
             return fmt::format("tables, [[{}]]", key.name);
         case KeyType::Number:
@@ -167,9 +177,31 @@ std::string closest_key(std::string_view parent, std::string_view leaf)
         }
     }
     if (closest) return std::string(leaf_name(closest->name));
+    // A key farther below the same table first.
+    const std::string below = parent.empty() ? "" : fmt::format("{}.", parent);
     for (const SceneKey& key : scene_keys())
-        if (leaf_name(key.name) == leaf) return std::string(key.name);
+        if (!below.empty() && key.name.starts_with(below) && leaf_name(key.name) == leaf && is_built(key))
+            return std::string(key.name.substr(below.size()));
+    for (const SceneKey& key : scene_keys())
+        if (leaf_name(key.name) == leaf && is_built(key)) return std::string(key.name);
     return {};
+}
+
+std::string explain_unknown(std::string_view parent, std::string_view leaf)
+{
+    constexpr std::array kSizesOfWires = {"radius", "thickness", "diameter"};
+    if (parent == "obstacle[]" &&
+        std::find(kSizesOfWires.begin(), kSizesOfWires.end(), leaf) != kSizesOfWires.end())
+        return "unknown key: obstacles, wires and nails too, have no thickness of their own; "
+               "cloth.material.thickness is the distance that the cloth keeps from them";
+    const std::string meant = closest_key(parent, leaf);
+    if (meant.empty()) return "unknown key";
+    const SceneKey* key = find_scene_key(meant);
+    const std::size_t list = meant.find("[]");
+    if (key && key->type == KeyType::Table && list != std::string::npos)
+        return fmt::format("unknown key, did you mean [{}], below its [[{}]]?", header_name(meant),
+                           meant.substr(0, list));
+    return fmt::format("unknown key, did you mean {}?", meant);
 }
 
 }  // namespace arris

@@ -82,8 +82,12 @@ bool is_scene_name(std::string_view text);
 std::string allowed_values(const SceneKey& key);
 
 /// Suggestion for the unknown key `leaf` below `parent`: the nearest key below `parent` by edit distance,
-/// else a key elsewhere whose last component is `leaf`; "" if there is neither.
+/// else a built key whose last component is `leaf`, farther below `parent` (relative to it) or elsewhere;
+/// "" if there is none.
 std::string closest_key(std::string_view parent, std::string_view leaf);
+
+/// "unknown key", with a suggestion or an explanation where there is one.
+std::string explain_unknown(std::string_view parent, std::string_view leaf);
 
 /// Restricted Damerau-Levenshtein distance (insert, delete, replace, swap of neighbours) in bytes.
 int edit_distance(std::string_view a, std::string_view b);

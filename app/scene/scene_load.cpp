@@ -19,6 +19,7 @@
 #include "app/scene/scene_values.h"
 #include "app/scene/scene_warnings.h"
 #include "app/scene/start_strain.h"
+#include "app/text/counted.h"
 #include "geometry/cloth_input/cloth_file.h"
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/input_error.h"
@@ -282,9 +283,9 @@ void warn_of_first_keyframes(const SceneDocument& document, RunConfig& config)
             if (way.norm() > tolerance) ++moved;
         }
         if (moved > 0)
-            config.warnings.push_back(
-                fmt::format("{}: moves {} vertices from their initial placement at time 0",
-                            document.describe(fmt::format("pin.{}.keyframes", i)), moved));
+            config.warnings.push_back(fmt::format("{}: moves {} from the initial placement at time 0",
+                                                  document.describe(fmt::format("pin.{}.keyframes", i)),
+                                                  counted(moved, "vertex", "vertices")));
     }
 }
 

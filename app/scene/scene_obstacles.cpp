@@ -10,6 +10,7 @@
 
 #include "app/scene/scene_estimate.h"
 #include "app/scene/scene_json.h"
+#include "app/text/counted.h"
 #include "app/text/printable.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/input_error.h"
@@ -116,6 +117,11 @@ ObstacleMesh stored_mesh(const SceneDocument& document, const LoadOptions& optio
                          const ObstaclePlan& plan)
 {
     const std::vector<ObstacleRecord>& stored = *options.obstacles;
+    if (stored.empty())  // a run with obstacles has always stored them
+        document.fail(fmt::format("obstacle.{}", index),
+                      fmt::format("{} is missing, in which the run stored its obstacles",
+                                  printable(options.obstacles_file)),
+                      "the whole folder of a run; arris run with --overwrite starts the run again");
     if (index >= stored.size() || stored[index].name != plan.name)
         document.fail(fmt::format("obstacle.{}", index),
                       fmt::format("{} is not among the obstacles that the run stored in {}", plan.name,
@@ -235,9 +241,8 @@ void keep_stand_off(const StrainRange& placed, RunConfig& config)
     if (moved == 0) return;
     const double thickness = config.scene.material.thickness;
     std::string line = fmt::format(
-        "the cloth starts nearer to obstacles than its thickness, {:g} m: {} vertices are moved out to that "
-        "distance",
-        thickness, moved);
+        "the cloth starts nearer to obstacles than its thickness, {:g} m: {} moved out to that distance",
+        thickness, counted(moved, "vertex is", "vertices are"));
     const StrainRange strain = measure_strain(config.cloth);
     if (strain.is_surprising() && !placed.is_surprising())
         line += fmt::format(

@@ -251,11 +251,7 @@ void refuse_unknown_keys(const SceneDocument& document, const SceneValue& table,
 {
     for (const auto& [leaf, value] : table.members) {
         if (find_scene_key(join(name, leaf))) continue;
-        const std::string meant = closest_key(name, leaf);
-        document.fail(
-            join(path, leaf),
-            meant.empty() ? std::string("unknown key") : fmt::format("unknown key, did you mean {}?", meant),
-            child_names(name));
+        document.fail(join(path, leaf), explain_unknown(name, leaf), child_names(name));
     }
 }
 

@@ -10,9 +10,11 @@
 #include <map>
 #include <tuple>
 
+#include "app/scene/placement_warnings.h"
 #include "app/scene/scene_estimate.h"
 #include "app/scene/still_scene.h"
 #include "app/scene/warnings.h"
+#include "app/text/counted.h"
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/obstacle_input/sheet_opening.h"
@@ -51,6 +53,10 @@ void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings
         warnings.note("cloth.material.youngs_modulus",
                       "exceeds that of any cloth: the unit is N/m, a modulus in Pa times the cloth's "
                       "physical thickness in m");
+    constexpr double kHeaviest = 3.0;  // kg/m^2: three times what thick leather has
+    if (material.density > kHeaviest && warnings.is_written("cloth.material.density"))
+        warnings.note("cloth.material.density",
+                      "exceeds that of any cloth: the unit is kg/m^2, and 150 g/m^2 are 0.15");
     if (material.bending_stiffness > 0.0 && topology.hinges.empty())
         warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
     if (config.scene.obstacles.empty()) warnings.add("cloth.material.thickness", "the scene has no obstacle");
@@ -104,18 +110,31 @@ void check_pulls(const RunConfig& config, Warnings& warnings)
     }
 }
 
+/// Warns of keyframes that a motion until `end` does not reach.
+void check_keyframes(const RunConfig& config, const RigidMotion& motion, double end, const std::string& path,
+                     Warnings& warnings)
+{
+    for (std::size_t k = 1; k < motion.keyframes.size(); ++k) {
+        const std::string key = fmt::format("{}.keyframes.{}.time", path, k);
+        // A keyframe has an effect if the previous one precedes the end: the body then moves towards it.
+        if (motion.keyframes[k - 1].time >= end)
+            warnings.add(key, end < config.duration
+                                  ? "the previous keyframe is not before the release"
+                                  : "the previous keyframe is not before the end of the run");
+        else if (motion.keyframes[k].time > config.duration)
+            warnings.note(key, fmt::format("is not reached: the run ends at {:g} s, on the way to this "
+                                           "keyframe (times are in seconds, not frames)",
+                                           config.duration));
+    }
+}
+
 void check_pin_motion(const RunConfig& config, const Pin& pin, const std::string& path, Warnings& warnings)
 {
     for (int d = 0; d < 3; ++d)
         if (!pin.held[d] && !is_zero(pin.motion.velocity[d]))
             warnings.add(path + ".velocity", fmt::format("the pin does not hold {}", "xyz"[d]));
     if (is_zero(pin.motion.angular_velocity)) warnings.add(path + ".pivot", "there is no angular_velocity");
-    // A keyframe has an effect if the previous one precedes the end: the pin then moves towards it.
-    const auto& keyframes = pin.motion.keyframes;
-    for (std::size_t k = 1; k < keyframes.size(); ++k)
-        if (keyframes[k - 1].time >= std::min(config.duration, pin.release))
-            warnings.add(fmt::format("{}.keyframes.{}.time", path, k),
-                         "the previous keyframe is not before the end of the run or the release");
+    check_keyframes(config, pin.motion, std::min(config.duration, pin.release), path, warnings);
 }
 
 bool is_moving(const Scene& scene, const Pin& pin)
@@ -135,28 +154,7 @@ void check_obstacle_motion(const RunConfig& config, const RigidMotion& motion, c
         warnings.add(path + ".motion.start", "the motion starts after the end of the run");
     else if (motion.stop >= config.duration)
         warnings.add(path + ".motion.stop", "the run ends before that time");
-    for (std::size_t k = 1; k < motion.keyframes.size(); ++k)
-        if (motion.keyframes[k - 1].time >= config.duration)
-            warnings.add(fmt::format("{}.keyframes.{}.time", path, k),
-                         "the previous keyframe is not before the end of the run");
-}
-
-/// Warns of a file that is far larger or smaller than the cloth: mostly its unit is wrong or missing.
-void check_units(const RunConfig& config, std::size_t i, Warnings& warnings)
-{
-    constexpr double kSurprising = 100.0;  // a file in millimetres is 1000 times too large
-    if (!config.as_run["obstacle"][i].contains("file")) return;
-    const Obstacle& obstacle = config.scene.obstacles[i];
-    Box3 around_cloth;
-    for (const Vec3& x : config.cloth.world) around_cloth.extend(x);
-    const double size = obstacle.bounds().diagonal().norm(), cloth = around_cloth.diagonal().norm();
-    if (size < kSurprising * cloth && cloth < kSurprising * size) return;
-    const std::string units = fmt::format("obstacle.{}.units", i);
-    const bool has_units = warnings.is_written(units);
-    warnings.note(has_units ? units : fmt::format("obstacle.{}.file", i),
-                  fmt::format("the obstacle is {:.3g} m in size and the cloth {:.3g} m: {}", size, cloth,
-                              has_units ? "check this unit, and 'scale'"
-                                        : "a file that is not in metres needs 'units' or 'scale'"));
+    check_keyframes(config, motion, config.duration, path, warnings);
 }
 
 /// Warns of a surface that is closed except for a hole: it looks solid, but is a sheet.
@@ -173,11 +171,11 @@ void check_inside(const RunConfig& config, std::size_t i, Warnings& warnings)
     }
     if (count == 0) return;
     const std::string which = count == 1 ? "a surface" : fmt::format("each of {} surfaces", count);
-    warnings.note(
-        fmt::format("obstacle.{}.file", i),
-        fmt::format("{} is closed except for a hole ({} border edges{}), and so is a sheet without an "
-                    "inside: cloth may enter through the hole; if a solid is meant, close the mesh",
-                    which, border_edges, count == 1 ? "" : " in all"));
+    warnings.note(fmt::format("obstacle.{}.file", i),
+                  fmt::format("{} is closed except for a hole ({}{}), and so is a sheet without an "
+                              "inside: cloth may enter through the hole; if a solid is meant, close the mesh",
+                              which, counted(border_edges, "border edge", "border edges"),
+                              count == 1 ? "" : " in all"));
 }
 
 void check_obstacles(const RunConfig& config, Warnings& warnings)
@@ -192,7 +190,6 @@ void check_obstacles(const RunConfig& config, Warnings& warnings)
         }
         if (!json.contains("wire")) warnings.add(path + ".closed", "the obstacle is not a wire");
         if (obstacle.mesh().faces.empty()) warnings.add(path + ".feature_angle", "the obstacle has no faces");
-        check_units(config, i, warnings);
         check_inside(config, i, warnings);
         check_obstacle_motion(config, obstacle.motion(), path, warnings);
     }
@@ -223,11 +220,10 @@ void check_pins(const RunConfig& config, Warnings& warnings)
             }
         for (const auto& [other, count] : shared)
             if (is_moving(config.scene, config.scene.pins[other]) || is_moving(config.scene, pin))
-                warnings.note(
-                    path + ".material",
-                    fmt::format(
-                        "holds {} position components that pin.{} also holds; pin.{} alone moves them", count,
-                        other, i));
+                warnings.note(path + ".material",
+                              fmt::format("holds {} that pin.{} also holds; pin.{} alone moves {}",
+                                          counted(count, "position component", "position components"), other,
+                                          i, count == 1 ? "it" : "them"));
     }
 }
 
@@ -268,12 +264,18 @@ void check_turns(const RunConfig& config, Warnings& warnings)
 }
 
 /// Warns of a cloth that starts strongly strained, mostly because its UVs are not in metres.
-void check_strain(const StrainRange& placed, Warnings& warnings)
+void check_strain(const RunConfig& config, const StrainRange& placed, Warnings& warnings)
 {
-    if (placed.is_surprising())
-        warnings.note("cloth", fmt::format("starts strained, {}: material coordinates are in metres, and the "
-                                           "cloth will contract or expand to their size",
-                                           in_words(placed)));
+    if (!placed.is_surprising()) return;
+    const bool is_scaled = warnings.is_written("cloth.scale");
+    const char* remedy = !is_scaled ? ""
+                         : config.as_run["cloth"].contains("file")
+                             ? "; 'scale' does not change the file's UVs"
+                             : "; change 'size' instead of 'scale'";
+    warnings.note(is_scaled ? "cloth.scale" : "cloth",
+                  fmt::format("{} strained, {}: material coordinates are in metres, and the "
+                              "cloth will contract or expand to their size{}",
+                              is_scaled ? "starts the cloth" : "starts", in_words(placed), remedy));
 }
 
 /// Warns of thin faces. Mesh surgery refuses operations that leave thin faces, so few EOL vertices fit in.
@@ -296,9 +298,10 @@ void check_angles(const RunConfig& config, Warnings& warnings)
     warnings.note(
         is_from_file ? "cloth.file" : "cloth.resolution",
         fmt::format(
-            "{} of {} faces have an angle below {:g} degrees, the least {:.2g} degrees at [{:.6g}, {:.6g}] "
+            "{} of {} an angle below {:g} degrees, the least {:.2g} degrees at [{:.6g}, {:.6g}] "
             "(material): EOL vertices can hardly be placed in such thin faces; {}",
-            thin, cloth.face_count(), kThin, least, X.x(), X.y(),
+            thin, counted(cloth.face_count(), "face has", thin == 1 ? "faces has" : "faces have"), kThin,
+            least, X.x(), X.y(),
             is_from_file
                 ? "remesh the file with more even faces"
                 : "use cells with more even sides, or folds and a pattern_angle that cut off no slivers"));
@@ -361,8 +364,9 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_wind(config, warnings);
     check_pulls(config, warnings);
     check_obstacles(config, warnings);
+    check_placement(config, warnings);
     check_turns(config, warnings);
-    check_strain(placed, warnings);
+    check_strain(config, placed, warnings);
     check_thickness(config, topology, warnings);
     check_bends(config, warnings);
     check_stillness(config, topology, warnings);

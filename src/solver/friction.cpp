@@ -25,7 +25,6 @@ void store(Workspace& work)
 
 void count(const Workspace& work, StepReport& report)
 {
-    
     report.sticking = report.sliding = 0;
     report.friction_work = 0.0;
     for (std::size_t r = 0; r < work.rubs.size(); ++r) {

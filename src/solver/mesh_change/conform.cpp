@@ -163,9 +163,9 @@ class Conforming {
         return false;
     }
 
-    /// Vertices that clean-up has put on a trace between two EOL vertices become EOL, too. These hold the wire's
-    /// side for it, so that only its plane is asked for: with `refuse_inserted`, more contacts of a frame of
-    /// wires stay rows.
+    /// Vertices that clean-up has put on a trace between two EOL vertices become EOL, too. These hold the
+    /// wire's side for it, so that only its plane is asked for: with `refuse_inserted`, more contacts of a
+    /// frame of wires stay rows.
     ConformedMesh result() const
     {
         ConformedMesh made{surgery_.result(), surgery_.events(), {}, report_};

@@ -9,17 +9,15 @@
 #include "solver/velocity_solve/active_set_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "solver/model/stopwatch.h"
 #include "solver/velocity_solve/kkt_certificate.h"
+#include "solver/velocity_solve/newton_share.h"
 #include "solver/velocity_solve/primal_prediction.h"
-#include "solver/velocity_solve/symmetric_product.h"
 
 namespace arris {
 namespace {
@@ -139,7 +137,7 @@ VelocitySolution ActiveSetSearch::run_bases()
 {
     for (int base = 0; base < kMostBases && budget_.flops > 0.0 && !is_over_; ++base)
         run_base(base < kCappedBases ? kWorkingSetCap : kLargestWorkingSet);
-    if (in_use_) measure_lag();
+    if (in_use_) in_use_->measure_lag();
     best_.infeasible_rows = find_infeasible_rows();
     for (std::size_t k = 0; k < constraints_.rows.size(); ++k)
         best_.row_multipliers[static_cast<Eigen::Index>(k)] /= constraints_.rows[k].scale;
@@ -173,7 +171,7 @@ VelocitySolution ActiveSetSearch::resume()
     base.is_pressing.resize(constraints_.rows.size(), 0);
     base.iterate.row_multipliers.conservativeResizeLike(best_.row_multipliers);
     in_use_->set.see_new_rows();
-    if (!problem_.friction.empty()) move_springs();
+    rows_ = in_use_->move_springs();
     in_use_->iterate = base.iterate;
     is_pressing_ = base.is_pressing;  // new rows are found as violators
     if (start_rows()) run_rounds(kWorkingSetCap);
@@ -214,34 +212,6 @@ void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
             is_pressing_[k] = 1;
         else if (static_cast<int>(rows_.size()) < kMostRows)  // the others join when they are violated
             rows_.push_back(k);
-    }
-}
-
-/// Moves the base's friction springs to the impulses at the present velocity, with the factor as it is. Pairs
-/// whose lag does not fall join the working set.
-void ActiveSetSearch::move_springs()
-{
-    PinnedBase& base = in_use_->base;
-    for (int p = 0; p < constraints_.pair_count(); ++p) {
-        if (in_use_->set.contains_row(2 * p)) continue;
-        if (in_use_->is_stalled[p]) rows_.insert(rows_.end(), {2 * p, 2 * p + 1});
-        base.slips[p] =
-            through(base.slips[p], constraints_, p, slip_of(constraints_, p, in_use_->iterate.velocity));
-    }
-    solve_with_forces(base);
-}
-
-/// Measures how far the base's friction springs are from their law, and whether that is less than the last
-/// time.
-void ActiveSetSearch::measure_lag()
-{
-    constexpr double kFalling = 0.7;
-    const double same = kSameFriction * constraints_.largest_budget();
-    for (int p = 0; p < constraints_.pair_count(); ++p) {
-        const Eigen::Vector2d y = slip_of(constraints_, p, in_use_->iterate.velocity);
-        const double lag = (in_use_->base.slips[p].at(y) - friction_at(constraints_, p, y)).norm();
-        in_use_->is_stalled[p] = lag > same && lag > kFalling * in_use_->lag[p];
-        in_use_->lag[p] = lag;
     }
 }
 
@@ -307,41 +277,6 @@ bool ActiveSetSearch::has_many_changes(const Violators& violators) const
            std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
 }
 
-/// Share of the way between two velocities at which the energy, with the springs of all rows, is least.
-/// Without it Newton's method goes to and fro where many rows depend on each other.
-double ActiveSetSearch::find_newton_share(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const
-{
-    constexpr int kBisections = 40;
-    const Eigen::VectorXd way = to - from;
-    const double slope = way.dot(symmetric_product(*problem_.matrix, from) - *problem_.rhs),
-                 curvature = way.dot(symmetric_product(*problem_.matrix, way));
-    std::vector<std::array<double, 3>> springs;  // gap at the start, its change, 1 / give
-    for (std::size_t k = constraints_.slip_count(); k < constraints_.rows.size(); ++k) {
-        const ScaledRow& row = constraints_.rows[k];
-        if (row.entries.empty()) continue;
-        const double start = gap(row, from, 0.0), end = gap(row, to, 0.0);
-        if (start < 0.0 || end < 0.0) springs.push_back({start, end - start, 1.0 / row.give});
-    }
-    std::vector<std::tuple<int, Eigen::Vector2d, Eigen::Vector2d>> slips;  // y at the start, its change
-    for (int p = 0; p < constraints_.pair_count(); ++p)
-        slips.emplace_back(p, slip_of(constraints_, p, from), slip_of(constraints_, p, way));
-    const auto slope_at = [&](double share) {
-        double sum = slope + share * curvature;
-        for (const auto& [start, change, stiffness] : springs)
-            sum += stiffness * change * std::min(start + share * change, 0.0);
-        for (const auto& [pair, start, change] : slips)
-            sum -= change.dot(friction_at(constraints_, pair, start + share * change));
-        return sum;
-    };
-    double low = 0.0, high = 1.0;
-    if (!(slope_at(high) > 0.0)) return 1.0;
-    for (int k = 0; k < kBisections; ++k) {
-        const double middle = 0.5 * (low + high);
-        (slope_at(middle) > 0.0 ? high : low) = middle;
-    }
-    return high;
-}
-
 /// Newton's step: all rows violated now press in the next base, and no others.
 void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
 {
@@ -349,7 +284,8 @@ void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
     const bool is_newton = best_.factorisations <= kNewtonBases;
     const bool is_full = best_.factorisations <= kFullSteps || newton_point_.size() == 0;
     if (is_newton && !is_full)
-        newton_point_ += find_newton_share(newton_point_, velocity) * (velocity - newton_point_);
+        newton_point_ +=
+            find_newton_share(problem_, constraints_, newton_point_, velocity) * (velocity - newton_point_);
     else
         newton_point_ = velocity;
     slips_ = springs_at(constraints_, in_use_->base.slips, newton_point_);

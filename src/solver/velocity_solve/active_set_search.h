@@ -1,37 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <vector>
 
+#include "solver/velocity_solve/base_in_use.h"
 #include "solver/velocity_solve/factorization.h"
-#include "solver/velocity_solve/pinned_base.h"
 #include "solver/velocity_solve/violators.h"
-#include "solver/velocity_solve/working_set.h"
 
 namespace arris {
-
-/// A factorised base with its working set and current iterate.
-struct BaseInUse {
-    PinnedBase base;
-    WorkingSet set;
-    Iterate iterate;
-    std::vector<double>
-        lag;  ///< N s, by friction pair: distance of its spring from its law at the last answer
-    std::vector<char> is_stalled;  ///< by friction pair: that distance has not fallen
-
-    explicit BaseInUse(PinnedBase solved)
-        : base(std::move(solved)),
-          set(base),
-          iterate(base.iterate),
-          lag(base.slips.size(), std::numeric_limits<double>::infinity()),
-          is_stalled(base.slips.size(), 0)
-    {
-    }
-    BaseInUse(const BaseInUse&) = delete;  // the set refers to the base
-    BaseInUse& operator=(const BaseInUse&) = delete;
-};
 
 /// No motion and no multipliers.
 VelocitySolution make_zero_solution(const VelocityProblem& problem);
@@ -57,13 +34,10 @@ class ActiveSetSearch {
     bool start_rows();
     void choose_rows(const std::vector<int>& expected);
     bool has_many_changes(const Violators& violators) const;
-    void move_springs();
-    void measure_lag();
     void rebase_by_prediction();
     void flip_bounds(const std::vector<int>& coordinates);
     void rebase_with_changed(const Violators& violators);
     void rebase_with_violated_rows(const Violators& violators);
-    double find_newton_share(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
     bool finish();
     void refine();
     bool certify();

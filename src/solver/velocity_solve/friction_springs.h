@@ -12,8 +12,8 @@
 
 namespace arris {
 
-/// Impulses of friction that differ by less, relative to the largest budget, count as the same. Budgets agree to 1e-4
-/// (friction_sweeps.cpp).
+/// Impulses of friction that differ by less, relative to the largest budget, count as the same. Budgets agree
+/// to 1e-4 (friction_sweeps.cpp).
 inline constexpr double kSameFriction = 3e-5;
 
 /// A linear law f = force - stiffness y in place of a friction pair's law.

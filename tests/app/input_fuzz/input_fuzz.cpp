@@ -18,6 +18,7 @@
 #include <map>
 
 #include "geometry/input_error.h"
+#include "geometry/obstacle_input/import_command.h"
 #include "geometry/obstacle_input/obstacle_import.h"
 #include "tests/app/input_fuzz/input_kinds.h"
 #include "tests/app/input_fuzz/mutation.h"

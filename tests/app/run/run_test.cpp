@@ -498,9 +498,11 @@ TEST_F(RunWithObstacles, WithoutItsStoredObstaclesARunIsNotResumed)
     fs::remove(dir + "/obstacles");
     Program resumed(folder, {"resume", dir, "--until", "0.5"});
     EXPECT_EQ(resumed.wait(), 2);
-    const std::string message =
-        "table is not among the obstacles that the run stored in " + dir + "/obstacles";
+    const std::string message = dir + "/obstacles is missing, in which the run stored its obstacles";
     EXPECT_NE(resumed.err().find(message), std::string::npos) << resumed.err();
+    Program exported(folder, {"export", dir, "--formats", "usd"});
+    EXPECT_EQ(exported.wait(), 0);
+    EXPECT_NE(exported.err().find(dir + "/obstacles: is missing"), std::string::npos) << exported.err();
 }
 
 TEST_F(RunWithObstacles, FramesPastTheCheckpointAreCutBack)

@@ -60,6 +60,68 @@ const std::vector<WrongScene> kWrongScenes = {
      {},
      "s.toml:1: duration: is required and missing; allowed: a number > 0 and <= 1000000 (s)"},
     {"SyntaxError", "duration = 1\nx = = 2\n", {}, "s.toml:2: is not TOML: "},
+    {"TableAndArrayOfTables",
+     kBase + "[obstacle]\nbox = [1, 1, 1]\n" + kNail,
+     {},
+     "s.toml:7: is not TOML: Error while parsing table header: cannot redefine existing table 'obstacle' as "
+     "array-of-tables; allowed: [[name]] with two brackets above every one of several tables with this name"},
+    {"ArrayOfTablesAndTable",
+     kBase + kNail + "[obstacle]\nbox = [1, 1, 1]\n",
+     {},
+     "s.toml:7: is not TOML: Error while parsing table header: cannot redefine existing array 'obstacle' as "
+     "table; "
+     "allowed: [[name]] with two brackets above every one of several tables with this name"},
+    {"Backslash",
+     kBase + "[[obstacle]]\nfile = \"C:\\meshes\\table.obj\"\n",
+     {},
+     "s.toml:6: is not TOML: Error while parsing string: unknown escape sequence '\\m'; allowed: in double "
+     "quotes "
+     "\\\\ for a backslash; or single quotes, as in 'C:\\meshes\\table.obj'"},
+    {"BackslashU",
+     kBase + "[[obstacle]]\nfile = \"C:\\users\\table.obj\"\n",
+     {},
+     "s.toml:6: is not TOML: Error while parsing unicode scalar sequence: expected hex digit, saw 's'; "
+     "allowed: in "
+     "double quotes \\\\ for a backslash; or single quotes, as in 'C:\\meshes\\table.obj'"},
+    {"RotateOfNumbers",
+     kBase + "rotate = [0, 0, 45]\n",
+     {},
+     "s.toml:5: cloth.rotate = [0, 0, 45]: is not a table; allowed: a table, { axis = [0, 0, 1], degrees = "
+     "45 }"},
+    {"RotateOfANumber",
+     kBase + kNail + "rotate = 45\n",
+     {},
+     "s.toml:7: obstacle.0.rotate = 45: is not a table; allowed: a table, { axis = [0, 0, 1], degrees = 45 "
+     "}"},
+    {"MotionOfNumbers",
+     kBase + kNail + "motion = [1, 0, 0]\n",
+     {},
+     "s.toml:7: obstacle.0.motion = [1, 0, 0]: is not a table; allowed: a table, [obstacle.motion]"},
+    {"VelocityOfAnObstacle",
+     kBase + kNail + "velocity = [1, 0, 0]\n",
+     {},
+     "s.toml:7: obstacle.0.velocity = [1, 0, 0]: unknown key, did you mean motion.velocity?; allowed: name, "
+     "file, "
+     "units, up, box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, "
+     "keyframes, "
+     "friction"},
+    {"MotionOfTheScene",
+     kBase + "[motion]\nvelocity = [1, 0, 0]\n",
+     {},
+     "s.toml:5: motion: unknown key, did you mean [obstacle.motion], below its [[obstacle]]?; allowed: "
+     "title, "
+     "duration, time, cloth, pin, gravity, wind, pull, friction, self_contact, eol, remesh, obstacle, probe, "
+     "solver, "
+     "output"},
+    {"RadiusOfANail",
+     kBase + kNail + "radius = 0.01\n",
+     {},
+     "s.toml:7: obstacle.0.radius = 0.01: unknown key: obstacles, wires and nails too, have no thickness of "
+     "their "
+     "own; cloth.material.thickness is the distance that the cloth keeps from them; allowed: name, file, "
+     "units, up, "
+     "box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, keyframes, "
+     "friction"},
     {"DuplicateKey", "duration = 1\nduration = 2\n", {}, "s.toml:2: is not TOML: "},
     {"UnclosedHeader", "[cloth\n", {}, "s.toml:1: is not TOML: "},
     {"ControlCharacter", "title = \"a\033b\"\n", {}, "s.toml:1: is not TOML: "},
@@ -623,10 +685,6 @@ const std::vector<WrongScene> kWrongScenes = {
      {},
      "s.toml:7: obstacle.0.motion.stop = 0.25: is not later than the motion's start; allowed: a number > 0.5 "
      "(s)"},
-    {"ObstacleFriction",
-     kBase + kNail + "friction = 0.5\n",
-     {},
-     "s.toml:7: obstacle.0.friction = 0.5: is not built yet in this version; allowed: a scene without it"},
     {"TooManyObstacles",
      kBase + many_nails(1001),
      {},
@@ -674,10 +732,6 @@ const std::vector<WrongScene> kWrongScenes = {
      "s.toml:5: obstacle.0: at time 0 the cloth intersects obstacle0, at [0.25, 0.25, 0] (m); allowed: cloth "
      "that starts clear of every obstacle; " +
          kRemedy},
-    {"Friction",
-     kBase + "[friction]\n",
-     {},
-     "s.toml:5: friction: is not built yet in this version; allowed: a scene without it"},
     {"SelfContact",
      kBase + "[self_contact]\n",
      {},
@@ -816,8 +870,8 @@ const std::vector<WrongScene> kWrongScenes = {
      "--set wind.velocity=[1,0,0]: line 1 of the file gives wind another type; allowed: a table, [wind]"},
     {"SetNotBuilt",
      kBase,
-     {"friction.coefficient=0.5"},
-     "--set friction.coefficient=0.5: friction: is not built yet in this version; allowed: a scene without "
+     {"remesh.angle=20"},
+     "--set remesh.angle=20: remesh: is not built yet in this version; allowed: a scene without "
      "it"},
     {"SetObstacle",
      kBase,

@@ -76,7 +76,7 @@ TEST(SceneKeys, AreBuiltOnlyBelowBuiltTables)
     EXPECT_TRUE(is_built(*find_scene_key("pin[].release")));
     EXPECT_TRUE(is_built(*find_scene_key("eol.enabled")));
     EXPECT_TRUE(is_built(*find_scene_key("obstacle[].teeth.pitch")));
-    EXPECT_FALSE(is_built(*find_scene_key("obstacle[].friction")));
+    EXPECT_TRUE(is_built(*find_scene_key("obstacle[].friction")));
     EXPECT_FALSE(is_built(*find_scene_key("remesh")));
     EXPECT_FALSE(is_built(*find_scene_key("remesh.angle")));
 }
@@ -101,6 +101,9 @@ TEST(ClosestKey, IsASiblingFirst)
     EXPECT_EQ(closest_key("pin[]", "releas"), "release");
     EXPECT_EQ(closest_key("cloth.material", "density_"), "density");
     EXPECT_EQ(closest_key("cloth", "formats"), "output.formats");
+    EXPECT_EQ(closest_key("obstacle[]", "velocity"), "motion.velocity");
+    EXPECT_EQ(closest_key("pin[]", "translate"), "keyframes[].translate");
+    EXPECT_EQ(closest_key("obstacle[].rotate", "angle"), "") << "remesh.angle is not built";
     EXPECT_EQ(closest_key("cloth", "qqqqqqqqq"), "");
     EXPECT_EQ(closest_key("cloth", std::string(1'000'000, 'x')), "");
 }

@@ -240,12 +240,12 @@ TEST(SceneObstacles, TellOfAFileThatIsMostlyInOtherUnits)
     const TemporaryDirectory dir;
     write_bytes(dir / "wedge.obj", kTetrahedron);
     const auto warnings_of = [&](const std::string& keys) {
-        write_bytes(dir / "s.toml", kBase + "[[obstacle]]\nfile = \"wedge.obj\"\ntranslate = [0, 0, 500]\n" +
-                                        keys + "[gravity]\n");
-        return load_scene(dir / "s.toml", {}, with_program()).warnings;
+        write_bytes(dir / "s.toml",
+                    kBase + "[[obstacle]]\nfile = \"wedge.obj\"\ntranslate = [0, 0, 500]\n" + keys);
+        return load_scene(dir / "s.toml", {"cloth.velocity=[0,0,1]"}, with_program()).warnings;
     };
     EXPECT_THAT(warnings_of(""), IsEmpty());
-    EXPECT_THAT(warnings_of("scale = 30\n"), IsEmpty());
+    EXPECT_THAT(warnings_of("scale = 5\n"), IsEmpty());
     EXPECT_THAT(warnings_of("scale = 100\n"),
                 ElementsAre(AllOf(HasSubstr("obstacle.0.file"),
                                   HasSubstr("374 m in size and the cloth 1.41 m"), HasSubstr("'units'"))));
@@ -539,14 +539,23 @@ TEST(SceneObstacles, OfSurprisingSizeBlameTheUnitThatIsWrittenOrMissing)
         {"units = \"mm\"\n", 0.2, "units = \"mm\": the obstacle is 0.000693 m in size"},
         {"units = \"in\"\nscale = 100\n", 80, "units = \"in\": the obstacle is 704 m in size"},
         {"scale = 0.001\n", 0.2, "file = \"box.obj\": the obstacle is 0.000693 m in size"},
+        // Of a factor 20 either way: centimetres in a table 5 times smaller or larger than the cloth.
+        {"", 8.1, ""},
+        {"", 8.2, "file = \"box.obj\": the obstacle is 28.4 m in size and the cloth 1.41 m: a file that"},
+        {"", 0.0205, ""},
+        {"", 0.0203,
+         "file = \"box.obj\": the obstacle is 0.0703 m in size and the cloth 1.41 m: a file that"},
+        {"units = \"m\"\n", 8.2, "units = \"m\": the obstacle is 28.4 m in size"},
+        {"units = \"cm\"\n", 2.03, "units = \"cm\": the obstacle is 0.0703 m in size"},
     };
     for (const UnitCase& one : kUnits) {
         SCOPED_TRACE(std::string(one.keys) + std::to_string(one.half));
         const TemporaryDirectory dir;
         write_bytes(dir / "box.obj", room_obj(one.half, false));
-        write_bytes(dir / "s.toml", kBase + "[gravity]\n[[obstacle]]\nfile = \"box.obj\"\n" + one.keys +
-                                        "translate = [0, 0, -5000]\n");
-        const std::vector<std::string> warnings = load_scene(dir / "s.toml", {}, with_program()).warnings;
+        write_bytes(dir / "s.toml",
+                    kBase + "[[obstacle]]\nfile = \"box.obj\"\n" + one.keys + "translate = [0, 0, -5000]\n");
+        const std::vector<std::string> warnings =
+            load_scene(dir / "s.toml", {"cloth.velocity=[0,0,1]"}, with_program()).warnings;
         if (*one.warning == '\0')
             EXPECT_THAT(warnings, IsEmpty());
         else

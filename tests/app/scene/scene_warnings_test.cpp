@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "tests/app/temporary_directory.h"
 
@@ -79,8 +80,32 @@ const std::vector<IneffectiveKey> kIneffectiveKeys = {
     {"VelocityAcross", kPin + "velocity = [1, 0, 0]\ndirections = [\"z\"]\n",
      "7: pin.0.velocity = [1, 0, 0]: has no effect: the pin does not hold x"},
     {"LateKeyframe", kPin + "keyframes = [ { time = 0 }, { time = 1 }, { time = 1.5 } ]\n",
-     "7: pin.0.keyframes.2.time = 1.5: has no effect: the previous keyframe is not before the end of the run "
-     "or the release"},
+     "7: pin.0.keyframes.2.time = 1.5: has no effect: the previous keyframe is not before the end of the "
+     "run"},
+    {"KeyframeAfterRelease",
+     kPin + "release = 0.5\nkeyframes = [ { time = 0 }, { time = 0.5 }, { time = 0.6 } ]\n",
+     "8: pin.0.keyframes.2.time = 0.6: has no effect: the previous keyframe is not before the release"},
+    {"UnreachedKeyframe", kPin + "keyframes = [ { time = 0 }, { time = 1.5 } ]\n",
+     "7: pin.0.keyframes.1.time = 1.5: is not reached: the run ends at 1 s, on the way to this keyframe "
+     "(times "
+     "are in seconds, not frames)"},
+    {"UnreachedObstacleKeyframe",
+     "[[obstacle]]\nbox = [1, 1, 1]\nkeyframes = [ { time = 0, translate = [0, 0, 9] }, { time = 24, "
+     "translate = "
+     "[0, 0, 8] } ]\n",
+     "7: obstacle.0.keyframes.1.time = 24: is not reached: the run ends at 1 s, on the way to this keyframe "
+     "(times are in seconds, not frames)"},
+    {"Density", "[cloth.material]\ndensity = 150\n",
+     "6: cloth.material.density = 150: exceeds that of any cloth: the unit is kg/m^2, and 150 g/m^2 are "
+     "0.15"},
+    {"SidewaysGravity", "[gravity]\nacceleration = [0, -9.81, 0]\n",
+     "6: gravity.acceleration = [0, -9.81, 0]: does not point down: up is +z, so that gravity is [0, 0, "
+     "-9.81]; "
+     "a file with y up needs up = \"y\""},
+    {"UpwardGravity", "[gravity]\nacceleration = [0, 0, 9.81]\n",
+     "6: gravity.acceleration = [0, 0, 9.81]: does not point down: up is +z, so that gravity is [0, 0, "
+     "-9.81]; "
+     "a file with y up needs up = \"y\""},
     {"ObstacleUnits", kBox + "units = \"cm\"\n",
      "8: obstacle.0.units = \"cm\": has no effect: the obstacle is not from a file"},
     {"ObstacleUp", kBox + "up = \"y\"\n",
@@ -114,11 +139,53 @@ const std::vector<IneffectiveKey> kIneffectiveKeys = {
 INSTANTIATE_TEST_SUITE_P(Scene, IneffectiveKeyTest, ::testing::ValuesIn(kIneffectiveKeys),
                          [](const auto& key) { return key.param.name; });
 
+struct Fall {
+    std::string name, obstacle, set;
+    bool misses;
+};
+
+// The cloth is the square [0, 1]^2 at z = 0 and falls by 4.905 m.
+const Fall kFalls[] = {
+    {"onto it", "box = [1, 1, 1]\ntranslate = [0.5, 0.5, -3]\n", "", false},
+    {"not so far", "box = [1, 1, 1]\ntranslate = [0.5, 0.5, -6]\n", "", true},
+    {"just so far", "box = [1, 1, 1]\ntranslate = [0.5, 0.5, -5.4]\n", "", false},
+    {"past it", "box = [1, 1, 1]\ntranslate = [2.2, 0.5, -3]\n", "", true},
+    {"along its side", "box = [1, 1, 1]\ntranslate = [1.52, 0.5, -3]\n", "", false},
+    {"away from it", "box = [1, 1, 1]\ntranslate = [0.5, 0.5, 3]\n", "", true},
+    {"upward to it", "box = [1, 1, 1]\ntranslate = [0.5, 0.5, 3]\n", "gravity.acceleration=[0,0,9.81]",
+     false},
+    {"it comes", "box = [1, 1, 1]\ntranslate = [0.5, 0.5, 3]\nmotion = { velocity = [0, 0, -9] }\n", "",
+     false},
+    {"blown to it", "box = [1, 1, 1]\ntranslate = [2.2, 0.5, -3]\n", "wind.velocity=[9,0,0]", false},
+    {"thrown to it", "box = [1, 1, 1]\ntranslate = [2.2, 0.5, -3]\n", "cloth.velocity=[9,0,0]", false},
+    {"onto a nail", "points = [[0.5, 0.5, -3]]\n", "", false},
+    {"past a wire", "wire = [[3, 0, -1], [3, 1, -1]]\n", "", true},
+};
+
+TEST(SceneWarnings, TellOfAClothThatCanOnlyFallPastAllObstacles)
+{
+    for (const Fall& fall : kFalls) {
+        SCOPED_TRACE(fall.name);
+        const std::string text = kBase + "[[obstacle]]\nname = \"rock\"\n" + fall.obstacle + "[gravity]\n";
+        std::vector<std::string> set;
+        if (!fall.set.empty()) set.push_back(fall.set);
+        const std::vector<std::string> warnings = load_scene(SceneSource{"s.toml", text, set}).warnings;
+        const auto told =
+            ::testing::Contains(HasSubstr("s.toml: the cloth reaches none of: rock: it only falls"));
+        if (fall.misses)
+            EXPECT_THAT(warnings, told);
+        else
+            EXPECT_THAT(warnings, ::testing::Not(told));
+    }
+}
+
 TEST(SceneWarnings, TellOfAClothThatStartsStrained)
 {
     const RunConfig config = load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=3"}});
-    ASSERT_THAT(config.warnings, ::testing::SizeIs(1));
-    EXPECT_THAT(config.warnings[0], ::testing::HasSubstr("starts strained, from 0 % to +200 %"));
+    EXPECT_THAT(config.warnings,
+                ElementsAre(AllOf(HasSubstr("cloth.scale=3: starts the cloth strained, from 0 % "
+                                            "to +200 %"),
+                                  HasSubstr("change 'size' instead of 'scale'"))));
     EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase, {"cloth.scale=1.05", kMoving}}).warnings,
                 ::testing::IsEmpty());
 }
@@ -209,7 +276,7 @@ TEST(SceneWarnings, TellOfFacesThatAreThinAndWhatToDo)
     write_bytes(dir / "s.toml", "duration = 1\n[cloth]\nfile = \"c.obj\"\n" + nail);
     EXPECT_THAT(
         load_scene(dir / "s.toml", {kMoving}).warnings,
-        ElementsAre(AllOf(HasSubstr("cloth.file = \"c.obj\": 1 of 2 faces have an angle below 5 degrees, "
+        ElementsAre(AllOf(HasSubstr("cloth.file = \"c.obj\": 1 of 2 faces has an angle below 5 degrees, "
                                     "the least 1.1 degrees at "),
                           HasSubstr("remesh the file"))));
 }

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/strain_causes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "app/scene/scene_estimate.h"
+#include "app/scene/start_strain.h"
+#include "geometry/cloth/material_box.h"
+#include "geometry/cloth/mesh_quality.h"
+#include "geometry/cloth/mesh_topology.h"
+
+namespace arris {
+namespace {
+
+// A cause counts if it alone strains the cloth by 5 %, a quarter of the strain at which cloth tears.
+constexpr double kCounts = 0.05;
+
+/// A possible cause: the strain that it makes alone, and how to make it smaller.
+struct Cause {
+    double strain = 0.0;  ///< size
+    std::string what, remedy;
+};
+
+std::string percent(double strain)
+{
+    return fmt::format("{:.3g} %", 100.0 * strain);
+}
+
+// ---- loads: tension per width over the membrane stiffness E
+
+Cause weight_of(const RunConfig& config, double length)
+{
+    const Material& material = config.scene.material;
+    const double g = config.scene.gravity ? config.scene.gravity->acceleration.norm() : 0.0;
+    return {material.density * g * length / material.youngs_modulus,
+            "its weight (density * gravity * length / youngs_modulus)",
+            "lower cloth.material.density, which is in kg/m^2, or raise cloth.material.youngs_modulus"};
+}
+
+Cause wind_on(const RunConfig& config, double length)
+{
+    if (!config.scene.wind) return {};
+    const Wind& wind = *config.scene.wind;
+    const double speed = wind.velocity.norm() * (1.0 + (wind.gust ? std::abs(wind.gust->amplitude) : 0.0));
+    const double pressure = 0.5 * wind.air_density * wind.drag * speed * speed;
+    return {pressure * length / config.scene.material.youngs_modulus,
+            "the wind (pressure * length / youngs_modulus)",
+            "lower wind.velocity, or raise cloth.material.youngs_modulus"};
+}
+
+Cause pull_on(const RunConfig& config, std::size_t i, double width)
+{
+    const double force = config.scene.pulls[i].force.norm();
+    return {force / (width * config.scene.material.youngs_modulus),
+            fmt::format("pull.{} (force / (width * youngs_modulus))", i),
+            fmt::format("lower pull.{}.force, or raise cloth.material.youngs_modulus", i)};
+}
+
+/// The greatest of the loads.
+Cause greatest_load(const RunConfig& config)
+{
+    Eigen::AlignedBox2d box;
+    for (const Vec2& X : config.cloth.material) box.extend(X);
+    const double length = box.sizes().maxCoeff(), width = box.sizes().minCoeff();
+    std::vector<Cause> loads = {weight_of(config, length), wind_on(config, length)};
+    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i) loads.push_back(pull_on(config, i, width));
+    return *std::max_element(loads.begin(), loads.end(),
+                             [](const Cause& a, const Cause& b) { return a.strain < b.strain; });
+}
+
+std::string describe_load(const Cause& load)
+{
+    return fmt::format("{} alone strains it by {}: {}", load.what, percent(load.strain), load.remedy);
+}
+
+// ---- the start
+
+std::optional<Cause> start_of(const RunConfig& config)
+{
+    const StrainRange start = measure_strain(config.cloth);
+    if (!start.is_surprising()) return std::nullopt;
+    Cause cause;
+    cause.strain = std::max(start.greatest, -start.least);
+    cause.what = fmt::format("it starts strained, {}", in_words(start));
+    const auto& cloth = config.as_run["cloth"];
+    const double scale = cloth["scale"].get<double>();
+    if (std::abs(scale - 1.0) > kCounts) {
+        cause.what += fmt::format(", as cloth.scale = {:g} scales its positions but not its material", scale);
+        cause.remedy =
+            cloth.contains("file") ? "scale the UVs of its file as well" : "change cloth.size instead";
+    } else {
+        cause.remedy = cloth.contains("file")
+                           ? "check the UVs of its file, which are in metres, and cloth.units"
+                           : "start it farther from obstacles and from the places of pins";
+    }
+    return cause;
+}
+
+// ---- pins: the distance between held vertices, relative to that between their material points
+
+struct HeldVertex {
+    Vec3 world;
+    Vec2 material;
+};
+
+/// The vertices that a pin holds at `time`, at most about 60 of them.
+std::vector<HeldVertex> held_at(const RunConfig& config, const Pin& pin, double time)
+{
+    constexpr std::size_t kMost = 60;
+    std::vector<HeldVertex> held;
+    const bool holds_all = pin.held[0] && pin.held[1] && pin.held[2];
+    if (!holds_all || !pin.holds_until(time)) return held;
+    Placement way = pin.motion.at(time);
+    if (pin.follows) {
+        const Obstacle& obstacle = config.scene.obstacles[static_cast<std::size_t>(*pin.follows)];
+        way = obstacle.at(time) * obstacle.at(0.0).inverse();
+    }
+    const std::vector<int> vertices = vertices_in_box(config.cloth, pin.material);
+    const std::size_t stride = 1 + vertices.size() / kMost;
+    for (std::size_t k = 0; k < vertices.size(); k += stride) {
+        const auto v = static_cast<std::size_t>(vertices[k]);
+        held.push_back({way(config.cloth.world[v]), config.cloth.material[v]});
+    }
+    return held;
+}
+
+/// The two pins that strain the cloth between them most at `time`; `sign` 1: stretch, -1: compress.
+Cause pins_at(const RunConfig& config, double time, double sign)
+{
+    Cause cause;
+    std::vector<std::vector<HeldVertex>> held;
+    for (const Pin& pin : config.scene.pins) held.push_back(held_at(config, pin, time));
+    for (std::size_t i = 0; i < held.size(); ++i)
+        for (std::size_t j = i + 1; j < held.size(); ++j)
+            for (const HeldVertex& a : held[i])
+                for (const HeldVertex& b : held[j]) {
+                    const double length = (a.material - b.material).norm();
+                    if (!(length > 0.0)) continue;
+                    const double strain = sign * ((a.world - b.world).norm() / length - 1.0);
+                    if (!(strain > cause.strain)) continue;
+                    cause.strain = strain;
+                    cause.what = fmt::format("pin.{} and pin.{}", i, j);
+                }
+    return cause;
+}
+
+/// Whether the peak is next to a pin, at most two edges away.
+bool is_next_to_pin(const RunConfig& config, const StrainPeak& peak, double edge)
+{
+    constexpr double kEdges = 2.0;
+    return std::any_of(config.scene.pins.begin(), config.scene.pins.end(), [&](const Pin& pin) {
+        const Vec2 nearest = peak.material.cwiseMax(pin.material.min).cwiseMin(pin.material.max);
+        return (peak.material - nearest).norm() <= kEdges * edge;
+    });
+}
+
+/// The whole weight on the vertices that pins hold, each with one edge of width.
+Cause weight_on_pins(const RunConfig& config, const StrainPeak& peak, double edge)
+{
+    std::size_t count = 0;
+    for (const Pin& pin : config.scene.pins)
+        if (pin.holds_until(peak.time)) count += vertices_in_box(config.cloth, pin.material).size();
+    if (count == 0 || !config.scene.gravity || !is_next_to_pin(config, peak, edge)) return {};
+    const Material& material = config.scene.material;
+    const double weight =
+        material.density * material_area(config.cloth) * config.scene.gravity->acceleration.norm();
+    return {weight / (static_cast<double>(count) * edge * material.youngs_modulus),
+            fmt::format("its whole weight on {} stretches it",
+                        count == 1 ? "one pinned vertex" : fmt::format("{} pinned vertices", count)),
+            "let pins hold a larger part of the cloth"};
+}
+
+double mean_edge(const RunConfig& config)
+{
+    return measure_edges(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces)).mean;
+}
+
+}  // namespace
+
+std::string explain_stretch(const RunConfig& config, const StrainPeak& peak)
+{
+    if (const std::optional<Cause> start = start_of(config))
+        return fmt::format("{}: {}", start->what, start->remedy);
+    if (const Cause pins = pins_at(config, peak.time, 1.0); pins.strain > kCounts)
+        return fmt::format("{} are then {} farther apart than the material between them: move them less far",
+                           pins.what, percent(pins.strain));
+    const Cause load = greatest_load(config);
+    if (load.strain > kCounts) return describe_load(load);
+    const Cause hung = weight_on_pins(config, peak, mean_edge(config));
+    if (hung.strain > kCounts)
+        return fmt::format("{} by {} there: {}", hung.what, percent(hung.strain), hung.remedy);
+    if (!(load.strain > 0.0)) return "no load or pin of the scene explains it";
+    return fmt::format("no load or pin of the scene explains it, the greatest being {}: {}", load.what,
+                       percent(load.strain));
+}
+
+std::string explain_compression(const RunConfig& config, const StrainPeak& peak)
+{
+    if (const std::optional<Cause> start = start_of(config))
+        return fmt::format("{}: {}", start->what, start->remedy);
+    const Cause load = greatest_load(config);
+    if (load.strain > kCounts) return describe_load(load);
+    if (const Cause pins = pins_at(config, peak.time, -1.0); pins.strain > kCounts)
+        return fmt::format(
+            "{} are then {} nearer than the material between them: leave it room to fold, and "
+            "let something bend it out of its plane, such as cloth.folds",
+            pins.what, percent(pins.strain));
+    return fmt::format("a fold needs several edges of the mesh, whose mean edge is {:.2g} m",
+                       mean_edge(config));
+}
+
+}  // namespace arris
