@@ -115,7 +115,7 @@ const RunCase kRuns[] = {
     {"pushed on a floor", kFloor + kPulled + "[-0.15, 0, 0]\n", {"compressed by 1"}, 0.1, 0.2},
     {"pushed far on a floor",
      kFloor + kPulled + "[-0.4, 0, 0]\n",
-     {"compressed by 3", "and stayed plane"},
+     {"and stayed plane: real cloth folds before 5 %; pin.0 and pin.1"},
      0.25,
      0.5},
 };
@@ -156,7 +156,7 @@ TEST(StrainWarnings, SurviveAResumeInAnyPart)
                 std::string(kSheet) +
                     "[[pin]]\nmaterial = [[0.4, 0], [0.4, 0.4]]\nkeyframes = [{time = 0}, "
                     "{time = 0.1, translate = [0.12, 0, 0]}, {time = 0.2}]\n");
-    for (const auto& [name, end] : {std::pair("through", "0.3"), std::pair("stopped", "0.15")}) {
+    for (const auto& [name, end] : {std::pair("through", "0.3"), std::pair("stopped", "0.2")}) {
         Program program(folder, {"run", folder / "scene.toml", "-o", folder / name, "--set",
                                  std::string("duration=") + end});
         ASSERT_EQ(program.wait(), 0) << program.err();

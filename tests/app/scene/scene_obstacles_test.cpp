@@ -28,6 +28,7 @@ using ::testing::SizeIs;
 
 constexpr double kRoundOff = 1e-14;  // of lengths of about 1 m
 const std::string kBase = "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [2, 2]\n";  // at z = 0
+const std::string kThrown = "cloth.velocity=[0,0,1]";  // or a warning says that it only falls, past them
 
 RunConfig load(const std::string& text, const LoadOptions& options = with_program())
 {
@@ -242,7 +243,7 @@ TEST(SceneObstacles, TellOfAFileThatIsMostlyInOtherUnits)
     const auto warnings_of = [&](const std::string& keys) {
         write_bytes(dir / "s.toml",
                     kBase + "[[obstacle]]\nfile = \"wedge.obj\"\ntranslate = [0, 0, 500]\n" + keys);
-        return load_scene(dir / "s.toml", {"cloth.velocity=[0,0,1]"}, with_program()).warnings;
+        return load_scene(dir / "s.toml", {kThrown}, with_program()).warnings;
     };
     EXPECT_THAT(warnings_of(""), IsEmpty());
     EXPECT_THAT(warnings_of("scale = 5\n"), IsEmpty());
@@ -264,7 +265,7 @@ TEST(SceneObstacles, TellOfASurfaceThatClosesButForAHole)
         write_bytes(dir / "box.obj", obj);
         write_bytes(dir / "s.toml",
                     kBase + "[[obstacle]]\nfile = \"box.obj\"\ntranslate = [0, 0, 5]\n[gravity]\n");
-        return load_scene(dir / "s.toml", {}, with_program()).warnings;
+        return load_scene(dir / "s.toml", {kThrown}, with_program()).warnings;
     };
     EXPECT_THAT(warnings_of(cube),
                 ElementsAre(AllOf(HasSubstr("s.toml:6: obstacle.0.file = \"box.obj\": "),
@@ -320,8 +321,8 @@ TEST(SceneObstacles, TellWhereFacesCrossAndWhatToDo)
     write_bytes(dir / "s.toml", kBase +
                                     "[[obstacle]]\nfile = \"leaves.obj\"\nunits = \"mm\"\ntranslate = [0, 0, "
                                     "5]\n[gravity]\n");
-    EXPECT_THAT(load_scene(dir / "s.toml", {}, with_program()).warnings,
-                ElementsAre(AllOf(HasSubstr("1 pair of faces crosses"),
+    EXPECT_THAT(load_scene(dir / "s.toml", {kThrown}, with_program()).warnings,
+                ElementsAre(AllOf(HasSubstr("1 pair of faces crosses, overlaps or touches"),
                                   HasSubstr("near [0.0025, 0.0025, 0] (m, z up, before it is scaled"),
                                   HasSubstr("unite its parts"))));
 }
@@ -338,7 +339,7 @@ TEST(SceneObstacles, BlamesTheKeyThatNamesABadFileAndTellsWhatWasRepaired)
     EXPECT_EQ(refusal().find('\n'), std::string::npos);
 
     write_bytes(dir / "table.obj", kTetrahedron + std::string("f 2 3 4\n"));
-    const RunConfig config = load_scene(scene, {}, with_program());
+    const RunConfig config = load_scene(scene, {kThrown}, with_program());
     EXPECT_THAT(config.warnings, ElementsAre(HasSubstr("s.toml:6: obstacle.0.file = \"table.obj\": ")));
 
     LoadOptions options = with_program();
@@ -364,10 +365,15 @@ TEST(SceneObstacles, TakeTheStoredMeshesWhateverBecameOfTheFiles)
     EXPECT_EQ(again.scene.obstacles[0].mesh().points, first.scene.obstacles[0].mesh().points);
     EXPECT_EQ(again.scene.obstacles[0].at(0.0).translation, Vec3(0, 0, 5));
 
+    std::vector<ObstacleRecord> others = records;
+    others[0].name = "other";
+    options.obstacles = &others;
+    EXPECT_THAT(error_of([&] { load_scene(dir / "s.toml", {}, options); }),
+                HasSubstr("obstacle0 is not among the obstacles that the run stored"));
     const std::vector<ObstacleRecord> none;
     options.obstacles = &none;
     EXPECT_THAT(error_of([&] { load_scene(dir / "s.toml", {}, options); }),
-                HasSubstr("obstacle0 is not among the obstacles that the run stored"));
+                HasSubstr("is missing, in which the run stored its obstacles"));
 }
 
 const std::string kCrate = "[[obstacle]]\nname = \"crate\"\nbox = [0.4, 0.4, 0.4]\n";
@@ -511,12 +517,12 @@ TEST(SceneObstacles, SayThatASurfaceTurnedInsideOutIsSolid)
     write_bytes(dir / "s.toml",
                 kBase + "[gravity]\n[[obstacle]]\nfile = \"room.obj\"\ntranslate = [9, 0, 0]\n");
     write_bytes(dir / "room.obj", room_obj(2, true));
-    EXPECT_THAT(load_scene(dir / "s.toml", {}, with_program()).warnings,
+    EXPECT_THAT(load_scene(dir / "s.toml", {kThrown}, with_program()).warnings,
                 ElementsAre(HasSubstr(
                     "turned 12 of 12 faces round, to agree with their neighbours and to face outward "
                     "(cavities: inward); a closed surface is solid, whichever way its faces look")));
     write_bytes(dir / "room.obj", room_obj(2, false));
-    EXPECT_THAT(load_scene(dir / "s.toml", {}, with_program()).warnings, IsEmpty());
+    EXPECT_THAT(load_scene(dir / "s.toml", {kThrown}, with_program()).warnings, IsEmpty());
 }
 
 struct UnitCase {
@@ -555,7 +561,7 @@ TEST(SceneObstacles, OfSurprisingSizeBlameTheUnitThatIsWrittenOrMissing)
         write_bytes(dir / "s.toml",
                     kBase + "[[obstacle]]\nfile = \"box.obj\"\n" + one.keys + "translate = [0, 0, -5000]\n");
         const std::vector<std::string> warnings =
-            load_scene(dir / "s.toml", {"cloth.velocity=[0,0,1]"}, with_program()).warnings;
+            load_scene(dir / "s.toml", {kThrown}, with_program()).warnings;
         if (*one.warning == '\0')
             EXPECT_THAT(warnings, IsEmpty());
         else

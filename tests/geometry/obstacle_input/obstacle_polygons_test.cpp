@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -192,7 +193,8 @@ TEST(ObstaclePolygons, RepeatedCornersDoNoHarm)
 
 ClothFile cloth(const std::string& text)
 {
-    const std::string path = ::testing::TempDir() + "arris_obstacle_polygons_cloth.obj";
+    const std::string path =
+        ::testing::TempDir() + fmt::format("arris_obstacle_polygons_cloth_{}.obj", ::getpid());
     std::ofstream(path, std::ios::binary) << text;
     return read_cloth_file(path, 1.0, 'z');
 }
