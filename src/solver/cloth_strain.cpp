@@ -29,9 +29,6 @@ ClothStrain measure_cloth_strain(const Material& material, const ClothElements& 
     for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
         const double least = stretches[f].minCoeff() - 1.0;
         if (!(least < found.in_plane.strain)) continue;
-        // Where a jerk swings undamped, cloth that is pulled contracts across the pull by up to twice the
-        // contraction at rest.
-        if (-least <= 2.0 * material.poisson_ratio * (stretches[f].maxCoeff() - 1.0)) continue;
         // Cloth that is pulled contracts across the pull without compressive tension.
         const Vec2 tensions =
             principal_tensions(stretches[f], material.youngs_modulus, material.poisson_ratio);
