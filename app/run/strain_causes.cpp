@@ -210,6 +210,11 @@ std::string explain_compression(const RunConfig& config, const StrainPeak& peak)
             "{} are then {} nearer than the material between them: leave it room to fold, and "
             "let something bend it out of its plane, such as cloth.folds",
             pins.what, percent(pins.strain));
+    if (const Cause pins = pins_at(config, peak.time, 1.0); pins.strain > kCounts)
+        return fmt::format(
+            "{} are then {} farther apart than the material between them, and pulled cloth contracts across "
+            "the pull: move them less far",
+            pins.what, percent(pins.strain));
     return fmt::format("a fold needs several edges of the mesh, whose mean edge is {:.2g} m",
                        mean_edge(config));
 }

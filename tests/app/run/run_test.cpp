@@ -165,9 +165,9 @@ TEST_F(Run, ResumedAtItsEndSaysThatNothingIsLeftAndHowToGoOn)
     EXPECT_EQ(resumed.out().rfind("nothing to do: the run has reached its end, t = 0.5 s\n", 0), 0U)
         << resumed.out();
     EXPECT_NE(resumed.out().find("arris resume " + dir + " --until T"), std::string::npos) << resumed.out();
-    EXPECT_NE(
-        resumed.out().find("another rate needs a new run: arris run SCENE --set output.frames_per_second=N"),
-        std::string::npos)
+    EXPECT_NE(resumed.out().find("another rate needs a new run: " ARRIS_PROGRAM
+                                 " run SCENE --set output.frames_per_second=N"),
+              std::string::npos)
         << resumed.out();
     EXPECT_TRUE(read_bytes(dir + "/steps.csv") == steps);
     Program further(folder, {"resume", dir, "--until", "0.51"});

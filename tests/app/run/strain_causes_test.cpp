@@ -62,7 +62,7 @@ const CauseCase kCauses[] = {
      {"pin.1.velocity=[0.4,0,0]"},
      "pin.0 and pin.1 are then 20 % farther apart than the "
      "material between them: move them less far",
-     "a fold needs several edges"},
+     "and pulled cloth contracts across the pull"},
     {"pinned together",
      kPins,
      {"pin.1.velocity=[-0.4,0,0]"},

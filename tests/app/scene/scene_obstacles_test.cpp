@@ -314,16 +314,16 @@ TEST(SceneObstacles, TellOfASurfaceThatClosesButForAHole)
 TEST(SceneObstacles, TellWhereFacesCrossAndWhatToDo)
 {
     const TemporaryDirectory dir;
-    // A leaf through another, within 2 to 3 mm.
+    // A leaf through another, within 2 to 3 cm.
     write_bytes(dir / "leaves.obj",
                 "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 2 2 -1\nv 2 2 1\nv 3 3 1\n"
                 "f 1 2 3\nf 4 5 6\n");
     write_bytes(dir / "s.toml", kBase +
-                                    "[[obstacle]]\nfile = \"leaves.obj\"\nunits = \"mm\"\ntranslate = [0, 0, "
+                                    "[[obstacle]]\nfile = \"leaves.obj\"\nunits = \"cm\"\ntranslate = [0, 0, "
                                     "5]\n[gravity]\n");
     EXPECT_THAT(load_scene(dir / "s.toml", {kThrown}, with_program()).warnings,
                 ElementsAre(AllOf(HasSubstr("1 pair of faces crosses, overlaps or touches"),
-                                  HasSubstr("near [0.0025, 0.0025, 0] (m, z up, before it is scaled"),
+                                  HasSubstr("near [0.025, 0.025, 0] (m, z up, before it is scaled"),
                                   HasSubstr("unite its parts"))));
 }
 
