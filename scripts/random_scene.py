@@ -240,6 +240,8 @@ class SceneMaker:
             scene["gravity"] = {} if self.is_true(0.8) else {"acceleration": self.vector(15.0)}
         if self.is_true(0.25):
             scene["wind"] = {"velocity": self.vector(self.log(0.5, 20.0))}
+        if self.is_true(0.5):
+            scene["friction"] = {"coefficient": self.log(0.02, 3.0)}
         scene["output"] = {"frames_per_second": self.chance.choice([10, 24, 60]), "formats": []}
         return RandomScene(scene, self.meshes)
 

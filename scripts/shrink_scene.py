@@ -21,7 +21,7 @@ def list_smaller(scene):
     for part in ("obstacle", "pin"):
         for k in range(len(scene.get(part, []))):
             yield changed(lambda s: s[part].pop(k) if len(s[part]) > 1 else s.pop(part))
-    for part in ("wind", "gravity"):
+    for part in ("friction", "wind", "gravity"):
         if part in scene:
             yield changed(lambda s: s.pop(part))
     if scene["duration"] > 2 * scene["time"]["step"]:
