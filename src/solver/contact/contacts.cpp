@@ -111,7 +111,7 @@ RiddenHistory find_ridden(const Obstacle& obstacle, const ObstacleStep& step, co
         const Vec3 before = step.before(step.motion.begin[v]);
         const Vec3 gained =
             obstacle.velocity_after(state.time, now) - obstacle.velocity_after(previous_time, before);
-        position += contact.in_frame.weights[i] * (now + forward * (now - before));
+        position += contact.in_frame.weights[i] * ridden_position(step, state, forward, v);
         velocity += contact.in_frame.weights[i] * (state.velocity[v] + forward * gained);
     }
     return {contact.normal.dot(position), contact.normal.dot(velocity)};
@@ -192,6 +192,12 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
         steps.push_back(std::move(step));
     }
     return steps;
+}
+
+Vec3 ridden_position(const ObstacleStep& step, const State& state, double forward, int vertex)
+{
+    const Vec3& now = state.mesh.world[vertex];
+    return now + forward * (now - step.before(step.motion.begin[vertex]));
 }
 
 void recall(const State& state, const ObstacleStep& step, Contact& contact)

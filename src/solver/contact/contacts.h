@@ -62,6 +62,9 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
 std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
                                    std::vector<ObstacleStep>& steps);
 
+/// q~ of a vertex that has ridden on the obstacle during the last step.
+Vec3 ridden_position(const ObstacleStep& step, const State& state, double forward, int vertex);
+
 /// Sets the contact's last multiplier and friction from `state.active`, if it pressed. For an edge or face,
 /// the obstacle's element must match. For a vertex, which slides from face to face, the normals must be
 /// close.

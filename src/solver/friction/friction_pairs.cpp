@@ -22,10 +22,8 @@ std::vector<double> lump_masses(double density, const ClothElements& elements)
 Vec3 riding_velocity(const RubbingCloth& cloth, const ObstacleStep& step, int v)
 {
     const Prediction& prediction = cloth.prediction;
-    const Vec3& now = cloth.state.mesh.world[v];
-    const Vec3& place = step.motion.begin[v];
-    const Vec3 ridden = now + prediction.forward * (now - step.before(place));
-    return (step.end(place) - ridden) / prediction.gamma;
+    return (step.end(step.motion.begin[v]) - ridden_position(step, cloth.state, prediction.forward, v)) /
+           prediction.gamma;
 }
 
 void add_entry(int coordinate, double coefficient, ConstraintRow& row)
@@ -162,9 +160,8 @@ std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& 
         pair.mass = 1.0 / compliance;
         const double gamma = cloth.prediction.gamma;
         pair.budget = gamma * contact.friction.budget;
-        for (int d = 0; d < 2; ++d) {
+        for (int d = 0; d < 2; ++d)
             pair.slip[d].expected = gamma * rub.directions[d].dot(contact.last_friction.force);
-        }
         pair.last = predict_slip(cloth, contact, rub);
         rubs.push_back(rub);
         problem.friction.push_back(pair);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "solver/velocity_solve/condensed_discs.h"
+
 namespace arris {
 
 namespace {
@@ -19,9 +21,7 @@ double residual_of(const VelocitySolution& solution, const std::vector<double>& 
 {
     double error = 0.0, largest = 0.0;
     for (std::size_t p = 0; p < budgets.size(); ++p) {
-        const Eigen::Vector2d& free = solution.unlimited[p];
-        const double length = free.norm();
-        const Eigen::Vector2d law = length <= budgets[p] ? free : Eigen::Vector2d(budgets[p] / length * free);
+        const Eigen::Vector2d law = project_on_disc(solution.unlimited[p], budgets[p]);
         error = std::max(error, (solution.friction[p] - law).norm());
         largest = std::max(largest, budgets[p]);
     }

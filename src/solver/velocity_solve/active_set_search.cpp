@@ -255,17 +255,24 @@ void ActiveSetSearch::run_rounds(int cap)
     }
 }
 
+/// The next base has the rows that press now, and the tangents of friction at the present velocity.
+void ActiveSetSearch::start_from_iterate()
+{
+    choose_rows(pressing_rows(constraints_, in_use_->iterate));
+    slips_ = springs_at(constraints_, in_use_->base.slips, in_use_->iterate.velocity);
+}
+
 void ActiveSetSearch::rebase_by_prediction()
 {
     const Iterate& iterate = in_use_->iterate;
     ActivePrediction prediction = predict_active_bounds(problem_, constraints_, iterate);
     best_.nlopt_evaluations += prediction.nlopt_evaluations;
     is_active_ = std::move(prediction.is_active);
-    choose_rows(pressing_rows(constraints_, iterate));
-    slips_ = springs_at(constraints_, in_use_->base.slips, iterate.velocity);
+    start_from_iterate();
 }
 
-/// Whether so many rows change sides that another base costs less than U, at a base that has rows.
+/// Whether so many friction pairs are far from their springs, or so many rows change sides at a base that has
+/// rows, that another base costs less than U.
 bool ActiveSetSearch::has_many_changes(const Violators& violators) const
 {
     const std::vector<char>& in_base = in_use_->base.is_pressing;
@@ -311,8 +318,7 @@ void ActiveSetSearch::flip_bounds(const std::vector<int>& coordinates)
 void ActiveSetSearch::rebase_with_changed(const Violators& violators)
 {
     flip_bounds(violators.coordinates);
-    choose_rows(pressing_rows(constraints_, in_use_->iterate));
-    slips_ = springs_at(constraints_, in_use_->base.slips, in_use_->iterate.velocity);
+    start_from_iterate();
 }
 
 /// No violator is left: accepts, refines, or factorises once more with exactly these bounds pinned. False
@@ -327,8 +333,7 @@ bool ActiveSetSearch::finish()
     if (is_over_) return true;
     if (set.row_count() > 0 && !find_violators(base, iterate, set).empty()) return false;
     is_active_ = iterate.is_active;
-    choose_rows(pressing_rows(constraints_, iterate));
-    slips_ = springs_at(constraints_, in_use_->base.slips, iterate.velocity);
+    start_from_iterate();
     const bool is_new_base = set.row_count() == 0 ? set.size() > 0 : is_active_ != base.iterate.is_active;
     is_over_ = !is_new_base || (has_rebased_for_accuracy_ && best_.kkt_residual <= settings_.tolerance);
     has_rebased_for_accuracy_ = true;

@@ -34,6 +34,7 @@ class ActiveSetSearch {
     bool start_rows();
     void choose_rows(const std::vector<int>& expected);
     bool has_many_changes(const Violators& violators) const;
+    void start_from_iterate();
     void rebase_by_prediction();
     void flip_bounds(const std::vector<int>& coordinates);
     void rebase_with_changed(const Violators& violators);

@@ -15,9 +15,8 @@ struct BaseInUse {
     PinnedBase base;
     WorkingSet set;
     Iterate iterate;
-    std::vector<double>
-        lag;  ///< N s, by friction pair: distance of its spring from its law at the last answer
-    std::vector<char> is_stalled;  ///< by friction pair: that distance has not fallen
+    std::vector<double> lag;       ///< N s, by friction pair: error of its spring at the last answer
+    std::vector<char> is_stalled;  ///< by friction pair: whether `lag` has not fallen
 
     explicit BaseInUse(PinnedBase solved)
         : base(std::move(solved)),
@@ -27,6 +26,7 @@ struct BaseInUse {
           is_stalled(base.slips.size(), 0)
     {
     }
+
     /// Moves the base's friction springs to the impulses at the present velocity, with the factor as it is.
     /// Returns slip rows that have to join the working set: of pairs whose lag does not fall.
     std::vector<int> move_springs();

@@ -88,13 +88,10 @@ class DiscProblem {
         std::vector<int> free;
         for (int i = 0; i < size(); ++i)
             if (is_in_disc[i] || v[i] > 0.0) free.push_back(i);
-        Eigen::VectorXd step = rhs;
         Eigen::MatrixXd matrix = S(free, free);
-        Eigen::VectorXd right = rhs(free);
-        Eigen::VectorXd moved = Eigen::VectorXd::Zero(size());
-        for (int i = 0; i < size(); ++i)
-            if (!is_in_disc[i] && !(v[i] > 0.0)) moved[i] = rhs[i];
-        const Eigen::VectorXd pulled = S * moved;  // of w by the others' steps
+        Eigen::VectorXd right = rhs(free), step = rhs;
+        step(free).setZero();
+        const Eigen::VectorXd pulled = S * step;  // change of w by the steps of the others
         std::vector<int> place(static_cast<std::size_t>(size()), -1);
         for (std::size_t k = 0; k < free.size(); ++k) place[free[k]] = static_cast<int>(k);
         for (const int i : free)
@@ -118,7 +115,7 @@ class DiscProblem {
         }
         const Eigen::VectorXd found = matrix.partialPivLu().solve(right);
         if (!found.allFinite()) return std::nullopt;
-        for (std::size_t k = 0; k < free.size(); ++k) step[free[k]] = found[static_cast<Eigen::Index>(k)];
+        step(free) = found;
         return step;
     }
 

@@ -175,9 +175,7 @@ std::optional<CondensedQp> WorkingSet::condense() const
 void WorkingSet::add_discs(CondensedQp& qp) const
 {
     const ConstraintRows& constraints = *base_->constraints;
-    std::vector<std::array<int, 2>> place(constraints.budgets.size(), {-1, -1});
-    for (int k = 0; k < size(); ++k)
-        if (is_slip(members_[k])) place[members_[k].index / 2][members_[k].index % 2] = k;
+    const std::vector<std::array<int, 2>> place = places_of_pairs();
     Eigen::MatrixXd spring = Eigen::MatrixXd::Zero(size(), size());
     Eigen::VectorXd force = Eigen::VectorXd::Zero(size());
     bool has_spring = false;
@@ -206,19 +204,13 @@ void WorkingSet::add_discs(CondensedQp& qp) const
         for (const int k : {disc.first, disc.second}) qp.hessian(k, k) += row_of(members_[k]).give;
 }
 
-/// The part of a slip row's impulse that the base's spring already gives: f0 - K y.
-double WorkingSet::spring_share(int k, const CondensedAnswer& answer) const
+/// The members that are a friction pair's two slip rows, by pair; -1 for pairs outside U.
+std::vector<std::array<int, 2>> WorkingSet::places_of_pairs() const
 {
-    const int pair = members_[k].index / 2, direction = members_[k].index % 2;
-    const SlipSpring& spring = base_->slips[pair];
-    double share = spring.force[direction];
-    for (int l = 0; l < size(); ++l) {
-        if (!is_slip(members_[l]) || members_[l].index / 2 != pair) continue;
-        const ScaledRow& row = row_of(members_[l]);
-        share -= spring.stiffness(direction, members_[l].index % 2) *
-                 (answer.w[l] - row.give * answer.z[l] + row.lower);
-    }
-    return share;
+    std::vector<std::array<int, 2>> place(base_->slips.size(), {-1, -1});
+    for (int k = 0; k < size(); ++k)
+        if (is_slip(members_[k])) place[members_[k].index / 2][members_[k].index % 2] = k;
+    return place;
 }
 
 /// u - lower, or g^T u - lower + give * multiplier.
@@ -247,8 +239,17 @@ bool WorkingSet::solve(Iterate& iterate, int& nlopt_evaluations, DenseBudget& bu
     Eigen::VectorXd coefficients(size());
     for (int k = 0; k < size(); ++k)
         coefficients[k] = members_[k].kind == Kind::Released ? -answer->w[k] : answer->z[k];
-    for (int k = 0; k < size(); ++k)
-        if (is_slip(members_[k])) coefficients[k] -= spring_share(k, *answer);
+    // The base's springs already give a part f0 - K y of the impulses of friction, y = w - give z + lower.
+    const std::vector<std::array<int, 2>> place = places_of_pairs();
+    for (std::size_t p = 0; p < place.size(); ++p) {
+        if (place[p][0] < 0) continue;
+        Eigen::Vector2d y;
+        for (int d = 0; d < 2; ++d) {
+            const ScaledRow& row = base_->constraints->rows[2 * p + d];
+            y[d] = answer->w[place[p][d]] - row.give * answer->z[place[p][d]] + row.lower;
+        }
+        coefficients(place[p]) -= base_->slips[p].at(y);
+    }
     Eigen::VectorXd forward = base_->forward;
     columns_.accumulate(coefficients, forward);
     set_members(*answer, base_->factorization->solve_backward(forward), iterate);
@@ -334,6 +335,7 @@ Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Ite
     const auto count = static_cast<Eigen::Index>(equations.size());
     if (count == 0) return {};
     const Eigen::VectorXd product = columns_.dot(forward);
+    const std::vector<std::array<int, 2>> place = places_of_pairs();
     Eigen::MatrixXd matrix(count, count);
     Eigen::VectorXd rhs(count), scale(count);
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -350,10 +352,10 @@ Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Ite
             matrix.row(i).setZero();
             matrix(i, i) = unit;
             rhs[i] = 0.0;
-            for (int l = 0; l < size(); ++l) {
-                if (!is_slip(members_[l]) || members_[l].index / 2 != member.index / 2) continue;
-                const double stiffness =
-                    unit * base_->slips[member.index / 2].stiffness(member.index % 2, members_[l].index % 2);
+            const int pair = member.index / 2;
+            for (int d = 0; d < 2; ++d) {
+                const int l = place[pair][d];
+                const double stiffness = unit * base_->slips[pair].stiffness(member.index % 2, d);
                 rhs[i] += stiffness * product[l];
                 for (Eigen::Index j = 0; j < count; ++j) matrix(i, j) -= stiffness * mixed(l, equations[j]);
             }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "solver/velocity_solve/condensed_qp.h"
 #include "solver/velocity_solve/forward_columns.h"
 #include "solver/velocity_solve/pinned_base.h"
@@ -63,7 +66,7 @@ class WorkingSet {
     {
         return member.kind == Kind::Row && member.index < base_->constraints->slip_count();
     }
-    double spring_share(int k, const CondensedAnswer& answer) const;
+    std::vector<std::array<int, 2>> places_of_pairs() const;
     double give_of(const Member& member) const
     {
         return member.kind == Kind::Row && !is_slip(member) ? row_of(member).give : 0.0;
