@@ -66,7 +66,7 @@ std::vector<CheapestRun> find_cheapest(const std::vector<RunOutcome>& outcomes, 
 /// The study's result in one sentence.
 std::string tell_cheapest(const Study& study, const std::vector<RunOutcome>& outcomes);
 
-/// What the errors are, and against which reference.
+/// A sentence that names the measured error and its reference.
 std::string tell_error(const Study& study, const std::vector<RunOutcome>& outcomes);
 
 }  // namespace arris

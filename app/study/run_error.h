@@ -8,7 +8,7 @@
 
 namespace arris {
 
-/// What errors are shares of.
+/// The size of which an error is a share.
 enum class ErrorScale {
     Range,    ///< of the reference over the run's times
     Size,     ///< of a reference that does not change

@@ -12,7 +12,7 @@
 
 namespace arris {
 
-/// What a run of a study left. Times are those of all repetitions.
+/// Results of one run of a study. Times are those of all repetitions.
 struct RunOutcome {
     StudyRun run;
     std::string status;   ///< finished, another status of report.json, bad_input, killed, crashed, no_error

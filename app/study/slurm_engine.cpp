@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is on disk decides: tasks/NAME.task says what was submitted, tasks/NAME.job its array and index, and
-// tasks/NAME.exit that it has ended. So a study goes on wherever it was interrupted.
+// The files in the study's folder decide what runs next: tasks/NAME.task says what was submitted,
+// tasks/NAME.job its array and index, and tasks/NAME.exit that it has ended. So a study goes on wherever it
+// was interrupted.
 #include "app/study/slurm_engine.h"
 
 #include <fmt/format.h>
@@ -68,7 +69,7 @@ std::string job_of(const TaskFolder& folder, const std::string& name)
     return job;
 }
 
-/// What one task of an array runs. The exit file appears at once and whole.
+/// The script of one task of an array. Its exit file appears whole, by a renaming.
 std::string task_script(const Task& task, const TaskFolder& folder)
 {
     std::string command;

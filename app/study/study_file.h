@@ -9,7 +9,7 @@
 
 namespace arris {
 
-/// What the error of a run is, and against what it is measured.
+/// Definition of a run's error: the measured quantity, the reference and the norm.
 struct ErrorRule {
     enum class Quantity {
         Probe,   ///< displacement of a probe since time 0 along an axis

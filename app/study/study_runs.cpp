@@ -45,7 +45,7 @@ std::string make_name(const std::vector<Setting>& settings)
     return is_exact ? name : fmt::format("{}-{}", name.substr(0, kMostNameBytes), fingerprint({exact}));
 }
 
-// Of references that are runs each problem has its own; another reference holds for all runs.
+// Each problem has a reference run of its own; a formula or file is the reference of all runs.
 std::string problem_of(const Study& study, const std::vector<Setting>& settings)
 {
     const bool is_run = study.error && (study.error->reference == ErrorRule::Reference::Finest ||

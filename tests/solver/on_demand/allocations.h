@@ -13,7 +13,7 @@ struct Allocations {
 /// Since the start of the program, by all threads.
 Allocations allocations_so_far();
 
-/// Of one call.
+/// Allocations made by one call.
 template <typename Call>
 Allocations allocations_of(const Call& call)
 {
