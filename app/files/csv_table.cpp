@@ -90,6 +90,7 @@ const StepColumn kStepColumns[] = {
     {"friction_work", [](const StepRow& row) { return cell(row.friction_work); }},
     {"sticking", [](const StepRow& row) { return cell(row.sticking); }},
     {"sliding", [](const StepRow& row) { return cell(row.sliding); }},
+    {"self_contacts", [](const StepRow& row) { return cell(row.self_contacts); }},
 };  // followed by rows_<cause> for each cause
 
 std::string join(const std::vector<std::string>& cells)

@@ -41,6 +41,7 @@ struct StepRow {
     std::optional<double> friction_residual;      ///< by how much it does not, relative to the largest budget
     std::optional<double> friction_work;          ///< J, lost to friction in this step
     std::optional<std::int64_t> sticking, sliding;  ///< contacts with friction
+    std::optional<std::int64_t> self_contacts;      ///< of the cloth with itself, with a positive multiplier
     double max_strain = 0.0;                        ///< size of the greatest principal strain of any face
     std::optional<RowCounts> rows_by_cause;         ///< `feature_rows` by cause, columns rows_<cause>
 };

@@ -62,6 +62,22 @@ std::vector<Vec2> read_vectors(BinaryReader& in)
     });
 }
 
+void write_friction(BinaryWriter& out, const ContactFriction& friction)
+{
+    out.vector(friction.force);
+    out.vector(friction.slip);
+    out.number(friction.budget);
+}
+
+ContactFriction read_friction(BinaryReader& in)
+{
+    ContactFriction friction;
+    friction.force = in.vector();
+    friction.slip = in.vector();
+    friction.budget = in.number<double>();
+    return friction;
+}
+
 void write_state(BinaryWriter& out, const State& state)
 {
     out.number(state.time);
@@ -102,9 +118,14 @@ void write_state(BinaryWriter& out, const State& state)
         out.number(contact.element);
         out.vector(contact.normal);
         out.number(contact.multiplier);
-        out.vector(contact.friction.force);
-        out.vector(contact.friction.slip);
-        out.number(contact.friction.budget);
+        write_friction(out, contact.friction);
+    });
+    out.list(state.self, [&](const ActiveSelfContact& contact) {
+        out.number(static_cast<std::int32_t>(contact.kind));
+        for (const std::uint32_t id : contact.vertex_ids) out.number(id);
+        out.vector(contact.normal);
+        out.number(contact.multiplier);
+        write_friction(out, contact.friction);
     });
     out.number(state.crossings);
 }
@@ -160,13 +181,48 @@ State read_state(BinaryReader& in)
         contact.element = in.number<std::int32_t>();
         contact.normal = in.vector();
         contact.multiplier = in.number<double>();
-        contact.friction.force = in.vector();
-        contact.friction.slip = in.vector();
-        contact.friction.budget = in.number<double>();
+        contact.friction = read_friction(in);
+        return contact;
+    });
+    constexpr std::size_t kSelfContactBytes =
+        sizeof(std::int32_t) + 4 * sizeof(std::uint32_t) + 11 * sizeof(double);
+    state.self = in.list<ActiveSelfContact>(kSelfContactBytes, [&] {
+        ActiveSelfContact contact;
+        contact.kind = static_cast<SelfContactKind>(in.number<std::int32_t>());
+        for (std::uint32_t& id : contact.vertex_ids) id = in.number<std::uint32_t>();
+        contact.normal = in.vector();
+        contact.multiplier = in.number<double>();
+        contact.friction = read_friction(in);
         return contact;
     });
     state.crossings = in.number<std::int64_t>();
     return state;
+}
+
+template <typename Contact>
+bool is_finite(const Contact& contact)
+{
+    const ContactFriction& friction = contact.friction;
+    return contact.normal.allFinite() && std::isfinite(contact.multiplier) && friction.force.allFinite() &&
+           friction.slip.allFinite() && friction.budget >= 0.0 && std::isfinite(friction.budget);
+}
+
+/// Describes the first invalid contact of the cloth with itself; empty if there is none.
+std::string find_defect(const std::vector<ActiveSelfContact>& contacts, const std::vector<std::uint32_t>& ids)
+{
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+        const ActiveSelfContact& contact = contacts[k];
+        if (k > 0 && std::tie(contact.kind, contact.vertex_ids) <=
+                         std::tie(contacts[k - 1].kind, contacts[k - 1].vertex_ids))
+            return "contacts of the cloth with itself are not in ascending order";
+        if (!is_finite(contact)) return fmt::format("contact {} of the cloth with itself is not finite", k);
+        if (contact.kind != SelfContactKind::VertexFace && contact.kind != SelfContactKind::EdgeEdge)
+            return fmt::format("contact {} of the cloth with itself has an unknown kind", k);
+        for (const std::uint32_t id : contact.vertex_ids)
+            if (!std::binary_search(ids.begin(), ids.end(), id))
+                return fmt::format("contact {} of the cloth with itself refers to an unknown vertex", k);
+    }
+    return {};
 }
 
 /// Describes the first invalid contact on vertices `ids`; empty if there is none.
@@ -178,11 +234,7 @@ std::string find_defect(const std::vector<ActiveContact>& contacts, const std::v
     for (std::size_t k = 0; k < contacts.size(); ++k) {
         const ActiveContact& contact = contacts[k];
         if (k > 0 && !(order(contacts[k - 1]) < order(contact))) return "contacts are not in ascending order";
-        const ContactFriction& friction = contact.friction;
-        if (!contact.normal.allFinite() || !std::isfinite(contact.multiplier) ||
-            !friction.force.allFinite() || !friction.slip.allFinite() || !(friction.budget >= 0.0) ||
-            !std::isfinite(friction.budget))
-            return fmt::format("contact {} is not finite", k);
+        if (!is_finite(contact)) return fmt::format("contact {} is not finite", k);
         if (contact.kind < ContactKind::Vertex || contact.kind > ContactKind::Triangle)
             return fmt::format("contact {} has an unknown kind", k);
         for (const std::uint32_t id : contact.vertex_ids)
@@ -228,6 +280,7 @@ std::string find_defect(const Checkpoint& checkpoint)
             !state.previous_material[v].allFinite() || !state.previous_material_velocity[v].allFinite())
             return fmt::format("vertex {} is not finite", v);
     if (const std::string defect = find_defect(state.active, state.ids); !defect.empty()) return defect;
+    if (const std::string defect = find_defect(state.self, state.ids); !defect.empty()) return defect;
     if (const std::string defect = find_defect(state.eol, state.ids); !defect.empty()) return defect;
     for (std::size_t k = 0; k < state.anchors.size(); ++k) {
         const PinAnchor& anchor = state.anchors[k];

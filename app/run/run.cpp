@@ -57,7 +57,8 @@ struct Run {
     RunDirectory files;
     Checkpoint at;  ///< the current checkpoint
     Workspace work;
-    Audit audited;  ///< of the current cloth, if the time is that of a frame or the end
+    Audit audited;          ///< of the current cloth, if the time is that of a frame or the end
+    SelfCrossings crossed;  ///< likewise
     double cpu_told = process_cpu_seconds();
     std::optional<StepReport> opening;  ///< first part of the current step, not yet written as a row
 
@@ -75,6 +76,8 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     prepare(run.config.scene, state, run.work);  // rebuilds elements where material has flowed
     const bool is_audited = run.timeline.frame_at(state.time) >= 0 || state.time >= run.config.duration;
     run.audited = is_audited ? audit(run.config.scene, state) : Audit();
+    run.crossed = is_audited ? find_self_crossings(run.config.scene, state.mesh) : SelfCrossings();
+    run.at.state.crossings += run.crossed.count;
     StepRow row = make_step_row(run.config, state, run.work, run.audited, report);
     row.is_halved = is_halved;
     MeshCache& mesh = run.work.mesh;
@@ -111,7 +114,7 @@ std::optional<RunEnding> advance(Run& run)
         if (run.opening) --run.at.state.step;
         write_outputs(run, run.opening ? join_parts(*run.opening, report) : report, watch, is_halved);
         run.opening.reset();
-        return run.audited.obstacle < 0;
+        return run.audited.obstacle < 0 && run.crossed.count == 0;
     };
     const double end = run.timeline.next_end(run.at.position);
     Settings settings = run.config.settings;
@@ -125,6 +128,7 @@ std::optional<RunEnding> advance(Run& run)
         return explain_ending(*failed, run.config.settings.tolerance, run.config.scene, state);
     }
     if (run.audited.obstacle >= 0) return explain_ending(run.audited, run.config.scene, state);
+    if (run.crossed.count > 0) return explain_ending(run.crossed, state);
     run.at.position = run.timeline.advance(run.at.position);
     return std::nullopt;
 }

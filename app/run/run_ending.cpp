@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/text/counted.h"
+
 namespace arris {
 namespace {
 
@@ -112,6 +114,15 @@ RunEnding explain_ending(const Audit& audited, const Scene& scene, const State& 
         fmt::format("the cloth reaches {:.3g} m into {} at [{:.6g}, {:.6g}, {:.6g}], at t = {} s",
                     audited.found.depth, scene.obstacles[static_cast<std::size_t>(audited.obstacle)].name(),
                     place.x(), place.y(), place.z(), state.time)};
+}
+
+RunEnding explain_ending(const SelfCrossings& crossings, const State& state)
+{
+    const Vec3& place = crossings.place;
+    return {
+        RunStatus::Penetration,
+        fmt::format("{} of faces of the cloth cross, the first at [{:.6g}, {:.6g}, {:.6g}], at t = {} s",
+                    counted(crossings.count, "pair", "pairs"), place.x(), place.y(), place.z(), state.time)};
 }
 
 }  // namespace arris

@@ -25,4 +25,7 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
 /// so the program has an error.
 RunEnding explain_ending(const Audit& audited, const Scene& scene, const State& state);
 
+/// Ends a run whose cloth crosses itself.
+RunEnding explain_ending(const SelfCrossings& crossings, const State& state);
+
 }  // namespace arris

@@ -44,6 +44,7 @@ StepRow make_step_row(const RunConfig& config, const State& state, const Workspa
         row.rewound = report.rewound;
         row.yielded = report.yielded;
     }
+    if (scene.self_contact) row.self_contacts = report.self_contacts;
     row.energy_rise = report.energy_rise;
     row.material_area = material_area(state.mesh);
     row.max_penetration = audited.found.depth;

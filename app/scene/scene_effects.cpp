@@ -40,6 +40,13 @@ SceneEffect friction_effect(const RunConfig& config)
     return {"friction", true, "coefficient " + coefficients};
 }
 
+SceneEffect self_contact_effect(const RunConfig& config)
+{
+    const std::optional<ClothContact>& contact = config.scene.self_contact;
+    if (!contact) return {"self_contact", false, "no [self_contact]: the cloth may pass through itself"};
+    return {"self_contact", true, fmt::format("layers keep {:g} m apart", contact->thickness)};
+}
+
 SceneEffect by_table(const RunConfig& config, const std::string& table, bool is_list)
 {
     const bool is_on = config.as_run.contains(table) && !config.as_run[table].empty();
@@ -72,7 +79,7 @@ std::vector<SceneEffect> list_effects(const RunConfig& config)
         {"remesh", false,
          "not in this version: the mesh changes only near sharp features, with EOL vertices"},
         friction_effect(config),
-        {"self_contact", false, "not in this version: the cloth may pass through itself"},
+        self_contact_effect(config),
     };
 }
 

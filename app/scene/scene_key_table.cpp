@@ -262,7 +262,12 @@ std::vector<SceneKey> make_scene_keys()
         number("friction.coefficient", "", {0.0, 100.0}, "0.3",
                "Coefficient of Coulomb friction; an obstacle's own coefficient overrides it."),
 
-        not_built(table("self_contact", "", "Switches contact of the cloth with itself on.")),
+        table("self_contact", "",
+              "Switches contact of the cloth with itself on, and of several pieces of one file with each "
+              "other."),
+        number("self_contact.thickness", "m", {0.0, 1.0, true}, "",
+               "Distance kept between the middle surfaces of two layers; without it the cloth's "
+               "`material.thickness`."),
 
         table("eol", "{}", "Eulerian-on-Lagrangian (EOL) vertices on sharp features of obstacles."),
         boolean("eol.enabled", "true",

@@ -92,6 +92,7 @@ std::optional<Friction> to_friction(const Json& json)
     const bool is_on = json.contains("friction");
     const double common = is_on ? to_double(json["friction"]["coefficient"]) : 0.0;
     Friction friction;
+    friction.between_layers = common;
     bool has_own = false;
     for (const Json& obstacle : json.value("obstacle", Json::array())) {
         const bool is_own = obstacle.contains("friction");
@@ -113,6 +114,11 @@ Scene to_scene(const Json& json)
                                to_double(pull["start"]), to_time(pull["stop"])});
     for (const Json& pin : json.value("pin", Json::array())) scene.pins.push_back(to_pin(json, pin));
     scene.friction = to_friction(json);
+    if (json.contains("self_contact")) {
+        const Json& own = json["self_contact"];
+        scene.self_contact =
+            ClothContact{own.contains("thickness") ? to_double(own["thickness"]) : scene.material.thickness};
+    }
     return scene;
 }
 

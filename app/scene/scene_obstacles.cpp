@@ -219,7 +219,7 @@ void load_obstacles(const SceneDocument& document, const LoadOptions& options,
 std::vector<std::string> find_intersections(const SceneDocument& document, const RunConfig& config)
 {
     std::vector<std::string> lines;
-    if (config.scene.obstacles.empty()) return lines;
+    if (config.scene.obstacles.empty() && !config.scene.self_contact) return lines;
     const ClothMesh start = make_state(config.scene, config.cloth, config.cloth_velocity).mesh;
     for (const Audit& audited : find_penetrations(config.scene, start, 0.0)) {
         const auto i = static_cast<std::size_t>(audited.obstacle);
@@ -232,6 +232,14 @@ std::vector<std::string> find_intersections(const SceneDocument& document, const
             document.describe(fmt::format("obstacle.{}", i)), how, config.scene.obstacles[i].name(),
             place.x(), place.y(), place.z(), remedy(config, i, depth > 0.0 && audited.found.faces == 0)));
     }
+    if (const SelfCrossings crossed = find_self_crossings(config.scene, start); crossed.count > 0)
+        lines.push_back(
+            fmt::format("{}: at time 0 {} of faces of the cloth cross or touch, the first at [{:.6g}, "
+                        "{:.6g}, {:.6g}] (m); "
+                        "allowed: cloth that starts clear of itself (a fold of 180 degrees lies in itself: "
+                        "179 is allowed)",
+                        document.describe("self_contact"), counted(crossed.count, "pair", "pairs"),
+                        crossed.place.x(), crossed.place.y(), crossed.place.z()));
     return lines;
 }
 

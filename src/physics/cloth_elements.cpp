@@ -139,4 +139,12 @@ void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, C
                                                 elements.faces[hinge.faces[1]].area);
 }
 
+std::vector<double> lump_masses(double density, const ClothElements& elements)
+{
+    std::vector<double> mass(static_cast<std::size_t>(elements.vertex_count), 0.0);
+    for (const FaceElement& face : elements.faces)
+        for (const int v : face.vertices) mass[v] += density * face.area / 3.0;
+    return mass;
+}
+
 }  // namespace arris

@@ -63,6 +63,9 @@ ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology,
 /// coordinates. The result is bitwise that of `make_elements`. Faces, and so colours, must be unchanged.
 void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, ClothElements& elements);
 
+/// Mass of each vertex, kg: a third of its faces'. `density` in kg/m^2.
+std::vector<double> lump_masses(double density, const ClothElements& elements);
+
 /// Element of the triangle with corners at `material[face[i]]`, m; it must be counter-clockwise.
 FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face);
 

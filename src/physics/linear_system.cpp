@@ -64,9 +64,10 @@ void reduce(const std::array<int, N>& vertices, const Linearization& at, LocalSy
 
 }  // namespace
 
-void LinearSystem::make_pattern(const ClothElements& elements)
+void LinearSystem::make_pattern(const ClothElements& elements, std::vector<std::array<int, 2>> coupled)
 {
-    make_pattern(elements, {});
+    coupled_ = std::move(coupled);
+    make_pattern(elements, std::vector<int>());
 }
 
 void LinearSystem::make_pattern(const ClothElements& elements, std::vector<int> places)
@@ -90,6 +91,7 @@ LinearSystem::Neighbours LinearSystem::find_neighbours(const ClothElements& elem
                     if (i > j && j >= 0) visit(i, j);
         };
         for (const FaceElement& face : elements.faces) visit_pairs(face.vertices);
+        for (const std::array<int, 2>& pair : coupled_) visit_pairs(pair);
         if (elements.hinge_use != HingeUse::Terms) return;
         for (const HingeElement& hinge : elements.hinges) visit_pairs(hinge.vertices);
     };
@@ -169,6 +171,13 @@ int LinearSystem::find_block(int row, int column) const
     const int* found = std::lower_bound(begin, end, 3 * row);
     assert(found != end && *found == 3 * row && "every pair of an element is in the pattern");
     return static_cast<int>(found - matrix_.innerIndexPtr());
+}
+
+bool LinearSystem::has_pair(int v, int w) const
+{
+    const int column = std::min(place_of(v), place_of(w)), row = std::max(place_of(v), place_of(w));
+    const int* begin = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[3 * column];
+    return std::binary_search(begin, begin + column_height_[column], 3 * row);
 }
 
 void LinearSystem::add_to_vertex(int place, const Mat3& block)

@@ -17,8 +17,8 @@ namespace arris {
 class LinearSystem {
   public:
     /// Creates the pattern, with values zero: every pair of vertices that share a face, or a hinge that has
-    /// terms. O(n log n).
-    void make_pattern(const ClothElements& elements);
+    /// terms, and the pairs in `coupled`, as of contacts. O(n log n).
+    void make_pattern(const ClothElements& elements, std::vector<std::array<int, 2>> coupled = {});
 
     /// As above, where some vertices are held and have no unknowns. `places` (one entry per vertex,
     /// ascending) maps each vertex to its index in the system, or to -1. No material may flow, and held
@@ -30,6 +30,11 @@ class LinearSystem {
     /// coordinates of q^ and of the extrapolated state. Other elements are summed as if no vertex were EOL.
     void assemble(const ClothMesh& mesh, const ClothElements& elements, const Terms& terms,
                   const Linearization& at);
+
+    /// The pairs that the pattern has besides those of elements.
+    const std::vector<std::array<int, 2>>& coupled() const { return coupled_; }
+    /// Whether the pattern couples two vertices.
+    bool has_pair(int v, int w) const;
 
     const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
     const Eigen::VectorXd& rhs() const { return rhs_; }
@@ -61,6 +66,7 @@ class LinearSystem {
     Eigen::VectorXd rhs_;
     std::vector<int> places_;                       ///< index in the system of each vertex; empty where all
                                                     ///< vertices have unknowns
+    std::vector<std::array<int, 2>> coupled_;       ///< vertices
     std::vector<int> column_height_;                ///< entries in each column of a vertex
     std::vector<std::array<int, 3>> face_blocks_;   ///< first entry of blocks (1,0), (2,0), (2,1); -1 where
                                                     ///< either vertex is held

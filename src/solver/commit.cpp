@@ -35,10 +35,12 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     report.rows_by_cause = census.by_cause;
     report.eol_pressing = census.eol;
     state.active = active_contacts(state, work.obstacles, work.contacts, multiplier);
+    state.self = active_self_contacts(state, work.self_rows, work.solution);
     count_idle(work.contacts, work.eol, multiplier, state.eol);
     state.crossings += report.crossings;
     report.contacts = static_cast<int>(state.active.size() -
                                        std::count_if(state.active.begin(), state.active.end(), is_fold));
+    report.self_contacts = static_cast<int>(state.self.size());
     report.eol_vertices = static_cast<int>(state.eol.size());
     state.previous_world.swap(state.mesh.world);
     state.previous_velocity.swap(state.velocity);

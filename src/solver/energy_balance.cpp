@@ -79,6 +79,10 @@ double work_of_features(const State& state, const std::vector<double>& multiplie
         for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i)
             impulse[local.vertices[i]] -= multiplier[c] * local.weights[i] * contact.normal;
     }
+    for (const SelfRow& row : work.self_rows)
+        for (int i = 0; i < 4; ++i)
+            impulse[row.contact.vertices[i]] -=
+                work.solution.row_multipliers[row.row] * row.contact.weights[i] * row.contact.normal;
     double sum = 0.0;
     for (const EolCoordinates& vertex : work.eol) {
         const int v = vertex.vertex;
@@ -93,8 +97,8 @@ double work_of_friction(const Workspace& work)
 {
     double sum = 0.0;
     for (const Rub& rub : work.rubs) {
+        if (rub.contact < 0 || work.contacts[rub.contact].eol >= 0) continue;
         const Contact& contact = work.contacts[rub.contact];
-        if (contact.eol >= 0) continue;
         const ObstacleStep& step = work.obstacles[contact.obstacle];
         const Vec3 place = contact.in_frame.at(step.motion.begin);
         sum += contact.friction.force.dot(step.end(place) - step.begin(place));

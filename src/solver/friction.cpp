@@ -13,7 +13,8 @@ void store(Workspace& work)
     const double gamma = work.prediction.gamma;
     for (std::size_t r = 0; r < work.rubs.size(); ++r) {
         const Rub& rub = work.rubs[r];
-        ContactFriction& friction = work.contacts[rub.contact].friction;
+        ContactFriction& friction =
+            rub.self_row >= 0 ? work.self_rows[rub.self_row].friction : work.contacts[rub.contact].friction;
         friction = {Vec3::Zero(), Vec3::Zero(), work.problem.friction[r].budget / gamma};
         const bool is_sliding = work.solution.unlimited[r].norm() > work.problem.friction[r].budget;
         for (int d = 0; d < 2; ++d) {
@@ -41,7 +42,7 @@ void count(const Workspace& work, StepReport& report)
 RubbingCloth rubbing_cloth(const Scene& scene, const State& state, const Workspace& work)
 {
     return {scene,          state,    work.mesh.stars, work.mesh.elements, work.prediction,
-            work.obstacles, work.eol, work.contacts,   work.linearization};
+            work.obstacles, work.eol, work.contacts,   work.self_rows,     work.linearization};
 }
 
 void solve_with_friction(const Scene& scene, const State& state,

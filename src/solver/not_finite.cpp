@@ -111,4 +111,12 @@ NotFinite find_not_finite(CheckedStage stage, const State& state, const Workspac
     return {};
 }
 
+bool note_not_finite(CheckedStage stage, const State& state, const Workspace& work, StepReport& report)
+{
+    report.not_finite = find_not_finite(stage, state, work);
+    if (report.not_finite.what == nullptr) return false;
+    report.status = StepStatus::NotFinite;
+    return true;
+}
+
 }  // namespace arris

@@ -16,4 +16,7 @@ enum class CheckedStage { Start, Move, Contacts, Solve, Proposal };
 /// Solve, which runs only after a failure, also in the size of A.
 NotFinite find_not_finite(CheckedStage stage, const State& state, const Workspace& work);
 
+/// Records what `find_not_finite` finds, which ends the attempt. False where all numbers are finite.
+bool note_not_finite(CheckedStage stage, const State& state, const Workspace& work, StepReport& report);
+
 }  // namespace arris

@@ -20,6 +20,7 @@ void expand_at(ClothVelocity next, Workspace& work, StepReport& report)
 {
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
     for (std::size_t c = 0; c < work.contacts.size(); ++c) work.contacts[c].is_pressing = multiplier[c] > 0.0;
+    for (SelfRow& row : work.self_rows) row.is_pressing = work.solution.row_multipliers[row.row] > 0.0;
     work.expansion = std::move(next);
     work.has_system = false;
     ++report.relinearisations;

@@ -4,7 +4,7 @@
 //   stage                 result                                       code, in src/solver
 //   1. choose_step_mesh   mesh with EOL vertices on pressing features  mesh_change/step_mesh
 //   2. move               predicted cloth, pins and obstacles at end   model/time_integration
-//   3. find_contacts      contacts that the cloth may meet             contact/contacts, contact/eol_contacts
+//   3. find_contacts      contacts that the cloth may meet             step_contacts, contact/contacts
 //   4. assemble           A, b; contacts as bounds or rows             contact/constraints, material_flow
 //   5. solve_velocity     velocity, with its certificate               velocity_solve/velocity_solve
 //   6. propose_and_check  new positions, whole path checked            contact/proposal, energy_balance
@@ -23,7 +23,6 @@
 #include "solver/buckling_seed.h"
 #include "solver/commit.h"
 #include "solver/contact/constraints.h"
-#include "solver/contact/eol_contacts.h"
 #include "solver/energy_balance.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/eol/eol_features.h"
@@ -36,6 +35,7 @@
 #include "solver/not_finite.h"
 #include "solver/overconstrained.h"
 #include "solver/relinearization.h"
+#include "solver/step_contacts.h"
 #include "solver/yielding.h"
 
 namespace arris {
@@ -45,15 +45,8 @@ namespace {
 /// Velocity solves of one step. Returning to the linearization with the least energy rise may add one more.
 constexpr int kMostSolves = 12;
 
-/// Records the first number of a stage's results that is not finite, which ends the attempt. False without
-/// one.
-bool note_not_finite(CheckedStage stage, const State& state, const Workspace& work, StepReport& report)
-{
-    report.not_finite = find_not_finite(stage, state, work);
-    if (report.not_finite.what == nullptr) return false;
-    report.status = StepStatus::NotFinite;
-    return true;
-}
+/// Passes over the contacts that push layers of cloth out to their stand-off.
+constexpr int kPushes = 5;
 
 /// Stage 2: predicts the cloth from its history (q~, v~), and places pins and obstacles at `end`. Forces are
 /// first linearised at the velocity of the last step, or at q~ without history.
@@ -71,31 +64,6 @@ void move(const Scene& scene, const Settings& settings, double end, const State&
         move_obstacles(scene, state, work.mesh.stars.topology.edges, work.prediction, work.pin_targets, end);
 }
 
-/// Stage 3: collects the contacts that the cloth may meet, and flattens history that runs into an obstacle.
-/// False where a vertex has no room between two obstacles, and where a number is not finite.
-bool find_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
-{
-    if (note_not_finite(CheckedStage::Move, state, work, report)) return false;
-    work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
-    // An EOL vertex has one bound of its own instead of contacts with its feature.
-    work.eol.clear();
-    if (!state.eol.empty()) {
-        const double turning = work.retry.may_turn() ? work.prediction.gamma : 0.0;
-        work.eol = add_eol_contacts(scene, state, work.mesh.stars, work.prediction, turning, work.obstacles,
-                                    work.contacts);
-    }
-    const std::optional<int> overconstrained =
-        share_room(work.obstacles, work.prediction, work.contacts).overconstrained;
-    flatten_history(scene, state, work.obstacles, work.eol, 0, work.contacts, work.prediction);
-    work.has_system = false;
-    work.yielded = 0;
-    if (note_not_finite(CheckedStage::Contacts, state, work, report)) return false;
-    if (!overconstrained) return true;
-    report.status = StepStatus::Infeasible;
-    report.infeasible = name_infeasible(state, work, overconstrained);
-    return false;
-}
-
 /// Stage 4: gives each vertex coordinates in which pins are known and contacts are bounds or rows. Assembles
 /// A and b in these coordinates. Does nothing where only rows were added since the last solve. False where a
 /// step would take more material from a face than the mesh allows.
@@ -104,6 +72,8 @@ bool assemble(const Scene& scene, double end, const State& state, Workspace& wor
     if (work.has_system) return true;
     build_constraints(work.pin_targets, work.eol, work.prediction, state, work.contacts, work.linearization,
                       work.problem);
+    append_self_rows(state, work.prediction, work.linearization, 0, work.self_rows, work.problem);
+    make_room_for_self_rows(work);
     work.rubs = add_friction_pairs(rubbing_cloth(scene, state, work), work.problem);
     Linearization& at = work.linearization;
     const Prediction& prediction = work.prediction;
@@ -172,8 +142,16 @@ void propose(const Scene& scene, double growth, Workspace& work)
                    work.linearization.basis[v] * work.solution.velocity.segment<3>(3 * v);
         work.proposal.world[v] = work.prediction.position[v] + work.prediction.gamma * velocity;
     }
-    restore_stand_off(work.contacts, work.obstacles, work.pin_targets, scene.material.thickness, growth,
-                      work.proposal);
+    // A layer that is pushed away from another one may have to come back from an obstacle.
+    const int passes = work.self_rows.empty() ? 0 : kPushes;
+    for (int pass = 0; pass < passes; ++pass) {
+        restore_self_stand_off(work.self_rows, work.mobility, scene.self_contact->thickness, growth,
+                               work.proposal.world);
+        restore_stand_off(work.contacts, work.obstacles, scene.material.thickness, growth, work.proposal);
+    }
+    if (passes == 0)
+        restore_stand_off(work.contacts, work.obstacles, scene.material.thickness, growth, work.proposal);
+    hold_in_place(work.pin_targets, work.proposal.world);
 }
 
 /// Whether an EOL vertex has gone round its wire or tip with the cloth.
@@ -195,8 +173,9 @@ void fail_or_rewind(const Scene& scene, double end, const State& state, Attempt 
     else
         report.status = StepStatus::Penetration;
     if (attempt == Attempt::Ordinary) return;
-    const std::optional<int> rewound = rewind(scene, state, work.pin_targets, work.prediction,
-                                              end - state.time, work.obstacles, work.proposal);
+    const std::optional<int> rewound =
+        rewind(scene, state, work.mesh.self_surface, work.pin_targets, work.prediction, end - state.time,
+               work.obstacles, work.proposal);
     if (!rewound) return;
     report.rewound = *rewound;
     report.status = StepStatus::Done;
@@ -215,26 +194,14 @@ std::optional<Violations> propose_and_check(const Scene& scene, double dt, doubl
     propose_measured(growth);
     if (note_not_finite(CheckedStage::Proposal, state, work, report)) return std::nullopt;
     if (growth > 0.0 && does_push_out_strain(scene, dt, work)) propose_measured(growth = 0.0);
-    const Violations violations = check_proposal(scene, work.proposal, work.prediction, work.obstacles);
+    const auto check = [&] {
+        return check_proposal(scene, state, work.mesh.self_surface, work.proposal, work.prediction,
+                              work.obstacles);
+    };
+    const Violations violations = check();
     if (violations.is_clean() || growth <= 0.0) return violations;
     propose_measured(0.0);
-    return check_proposal(scene, work.proposal, work.prediction, work.obstacles);
-}
-
-/// Adds the violations as rows: to the existing system, or to a new one where they change history or the room
-/// that contacts share. False where the check names no contact.
-bool add_violations(const Scene& scene, const State& state, const Violations& violations, Workspace& work)
-{
-    if (violations.contacts.empty()) return false;
-    const std::size_t first = work.contacts.size();
-    work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());
-    const bool is_shared = share_room(work.obstacles, work.prediction, work.contacts).is_changed;
-    if (flatten_history(scene, state, work.obstacles, work.eol, first, work.contacts, work.prediction) ||
-        is_shared)
-        work.has_system = false;
-    else
-        append_rows(work.prediction, work.linearization, first, work.contacts, work.problem);
-    return true;
+    return check();
 }
 
 /// Stages 4 to 6 once. True where the velocity is to be solved again.
@@ -256,7 +223,7 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
     solve_velocity(scene, settings, state, work, report);
     watch.lap();
     if (report.status == StepStatus::Infeasible && report.solves < kMostSolves &&
-        yield_infeasible(scene, work))
+        yield_infeasible(scene, state, work))
         return true;
     if (report.status == StepStatus::Done && report.solves < kMostSolves && yield_folds(scene, work))
         return true;
@@ -322,7 +289,7 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
     report.seconds.move += watch.lap();
 
     // 3. Contacts of vertices, edges and faces. A vertex without room fails the step.
-    const bool has_room = find_contacts(scene, start, work, report);
+    const bool has_room = collect_contacts(scene, start, work, report);
     if (!scene.obstacles.empty()) report.seconds.contacts += watch.lap();
     if (!has_room) {
         work.retry.note(report, attempt, state, start, {});

@@ -6,6 +6,7 @@
 #include "physics/energies.h"
 #include "solver/contact/contacts.h"
 #include "solver/contact/proposal.h"
+#include "solver/contact/self_contacts.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/friction/friction_pairs.h"
 #include "solver/mesh_change/mesh_cache.h"
@@ -54,6 +55,8 @@ struct Workspace {
 
     // find_contacts, build_constraints, add_violations
     std::vector<Contact> contacts;
+    std::vector<SelfRow> self_rows;
+    std::vector<double> mobility;  ///< with self-contact: see find_mobility
     std::vector<EolCoordinates> eol;
     Linearization linearization;
     ClothVelocity expansion;  ///< v^: q^ = q~ + gamma v^ is where forces are linearised

@@ -9,13 +9,20 @@
 
 namespace arris {
 
-bool yield_infeasible(const Scene& scene, Workspace& work)
+bool yield_infeasible(const Scene& scene, const State& state, Workspace& work)
 {
     bool is_changed = false;
     for (Contact& contact : work.contacts) {
         const std::vector<int>& rows = work.solution.infeasible_rows;
         if (contact.row < 0 || std::find(rows.begin(), rows.end(), contact.row) == rows.end()) continue;
         if (!yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, contact)) continue;
+        ++work.yielded;
+        is_changed = true;
+    }
+    for (SelfRow& self : work.self_rows) {
+        const std::vector<int>& rows = work.solution.infeasible_rows;
+        if (std::find(rows.begin(), rows.end(), self.row) == rows.end()) continue;
+        if (!yield_self_row(state, scene.self_contact->thickness, self)) continue;
         ++work.yielded;
         is_changed = true;
     }

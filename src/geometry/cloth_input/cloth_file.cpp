@@ -169,8 +169,8 @@ class ClothReader {
             refuse_line(line, fmt::format("its polygon has no area{}", where));
         for (const auto& [corner, other] : triangles.joined) {
             // Links lead to smaller numbers, so they end.
-            const auto [low, high] =
-                std::minmax(standing_for(vertices[corner]), standing_for(vertices[other]));
+            const int first = standing_for(vertices[corner]), second = standing_for(vertices[other]);
+            const int low = std::min(first, second), high = std::max(first, second);
             if (low != high) joined_[high] = low;
         }
         return triangles.faces;

@@ -300,46 +300,68 @@ std::array<Vec3, 3> gaps_at(const Pair& pair, double time)
 
 }  // namespace
 
-std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
-                                          const std::array<Vec3, 3>& triangle, double distance)
+std::optional<ClothSweepHit> sweep_cloth_vertex_face(const std::array<Vec3, 4>& begin,
+                                                     const std::array<Vec3, 4>& end, double distance)
 {
     Pair pair;
     pair.gaps = 3;
     for (int k = 0; k < 3; ++k) {
-        pair.gap_begin[k] = begin - triangle[k];
-        pair.gap_end[k] = end - triangle[k];
-        pair.side_begin[k] = pair.side_end[k] = triangle[(k + 1) % 3] - triangle[k];
+        const int next = (k + 1) % 3;
+        pair.gap_begin[k] = begin[0] - begin[1 + k];
+        pair.gap_end[k] = end[0] - end[1 + k];
+        pair.side_begin[k] = begin[1 + next] - begin[1 + k];
+        pair.side_end[k] = end[1 + next] - end[1 + k];
     }
     const std::optional<Touch> touch = first_touch(pair, distance);
     if (!touch) return std::nullopt;
-
     const std::array<double, 3> w = weights_of_least(gaps_at(pair, touch->time));
-    const Vec3 point = triangle[0] + w[1] * (triangle[1] - triangle[0]) + w[2] * (triangle[2] - triangle[0]);
-    return SweepHit{touch->time, {1.0, 0.0, 0.0}, point, touch->normal};
+    return ClothSweepHit{touch->time, {1.0, -w[0], -w[1], -w[2]}, touch->normal};
+}
+
+std::optional<ClothSweepHit> sweep_cloth_edges(const std::array<Vec3, 4>& begin,
+                                               const std::array<Vec3, 4>& end, double distance)
+{
+    Pair pair;
+    pair.gaps = 4;
+    for (int k = 0; k < 4; ++k) {
+        pair.gap_begin[k] = begin[k / 2] - begin[2 + k % 2];
+        pair.gap_end[k] = end[k / 2] - end[2 + k % 2];
+    }
+    for (int k = 0; k < 2; ++k) {
+        pair.side_begin[k] = begin[2 * k + 1] - begin[2 * k];
+        pair.side_end[k] = end[2 * k + 1] - end[2 * k];
+    }
+    const std::optional<Touch> touch = first_touch(pair, distance);
+    if (!touch) return std::nullopt;
+    // Relative to the second element's first point, so that no digits are lost far from the origin.
+    const Vec3 start = at(pair.gap_begin[0], pair.gap_end[0], touch->time);
+    const Vec3 first = at(pair.side_begin[0], pair.side_end[0], touch->time);
+    const Vec3 second = at(pair.side_begin[1], pair.side_end[1], touch->time);
+    const SegmentPair closest = closest_between_segments({start, start + first}, {Vec3::Zero(), second});
+    return ClothSweepHit{
+        touch->time, {1.0 - closest.s, closest.s, closest.t - 1.0, -closest.t}, touch->normal};
+}
+
+std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
+                                          const std::array<Vec3, 3>& triangle, double distance)
+{
+    const auto& [a, b, c] = triangle;
+    const std::optional<ClothSweepHit> hit =
+        sweep_cloth_vertex_face({begin, a, b, c}, {end, a, b, c}, distance);
+    if (!hit) return std::nullopt;
+    const Vec3 point = a - hit->weights[2] * (b - a) - hit->weights[3] * (c - a);
+    return SweepHit{hit->time, {1.0, 0.0, 0.0}, point, hit->normal};
 }
 
 std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const std::array<Vec3, 2>& end,
                                         const std::array<Vec3, 2>& segment, double distance)
 {
-    Pair pair;
-    pair.gaps = 4;
-    for (int k = 0; k < 4; ++k) {
-        pair.gap_begin[k] = begin[k / 2] - segment[k % 2];
-        pair.gap_end[k] = end[k / 2] - segment[k % 2];
-    }
-    pair.side_begin[0] = begin[1] - begin[0];
-    pair.side_end[0] = end[1] - end[0];
-    pair.side_begin[1] = pair.side_end[1] = segment[1] - segment[0];
-    const std::optional<Touch> touch = first_touch(pair, distance);
-    if (!touch) return std::nullopt;
-
-    // Relative to the obstacle's first point, so that no digits are lost far from the origin.
-    const Vec3 start = at(pair.gap_begin[0], pair.gap_end[0], touch->time);
-    const Vec3 along = at(pair.side_begin[0], pair.side_end[0], touch->time);
-    const SegmentPair closest =
-        closest_between_segments({start, start + along}, {Vec3::Zero(), pair.side_begin[1]});
+    const auto& [a, b] = segment;
+    const std::optional<ClothSweepHit> hit =
+        sweep_cloth_edges({begin[0], begin[1], a, b}, {end[0], end[1], a, b}, distance);
+    if (!hit) return std::nullopt;
     return SweepHit{
-        touch->time, {1.0 - closest.s, closest.s, 0.0}, at(segment[0], segment[1], closest.t), touch->normal};
+        hit->time, {hit->weights[0], hit->weights[1], 0.0}, at(a, b, -hit->weights[3]), hit->normal};
 }
 
 std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin, const std::array<Vec3, 3>& end,

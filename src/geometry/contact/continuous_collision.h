@@ -38,4 +38,20 @@ std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const 
 std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin, const std::array<Vec3, 3>& end,
                                          const Vec3& point, double distance);
 
+/// The first touch of two moving elements of the cloth. `begin` and `end` hold the corners of both.
+struct ClothSweepHit {
+    double time;
+    std::array<double, 4>
+        weights;  ///< of the two meeting points: sum 1 on the first, -1 on the second element
+    Vec3 normal;  ///< as SweepHit's, from the second element to the first
+};
+
+/// A vertex (the first point) and a face of the cloth.
+std::optional<ClothSweepHit> sweep_cloth_vertex_face(const std::array<Vec3, 4>& begin,
+                                                     const std::array<Vec3, 4>& end, double distance);
+
+/// Two edges of the cloth: the first two points, and the last two.
+std::optional<ClothSweepHit> sweep_cloth_edges(const std::array<Vec3, 4>& begin,
+                                               const std::array<Vec3, 4>& end, double distance);
+
 }  // namespace arris

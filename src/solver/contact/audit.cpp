@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/contact/audit.h"
 
+#include "geometry/self_contact/self_intersection.h"
 #include "solver/contact/contacts.h"
 
 namespace arris {
@@ -16,6 +17,18 @@ Audit deepest_of(const std::vector<Audit>& penetrations)
 }
 
 }  // namespace
+
+SelfCrossings find_self_crossings(const Scene& scene, const ClothMesh& mesh)
+{
+    SelfCrossings crossings;
+    if (!scene.self_contact) return crossings;
+    const auto pairs = find_self_intersections(mesh.world, mesh.faces);
+    crossings.count = static_cast<int>(pairs.size());
+    if (pairs.empty()) return crossings;
+    const Face& face = mesh.faces[pairs.front()[0]];
+    crossings.place = (mesh.world[face[0]] + mesh.world[face[1]] + mesh.world[face[2]]) / 3.0;
+    return crossings;
+}
 
 std::vector<Audit> find_penetrations(const Scene& scene, const State& state)
 {

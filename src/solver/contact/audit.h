@@ -14,6 +14,13 @@ struct Audit {
     Penetration found;  ///< in that obstacle; `place` in the world
 };
 
+/// Pairs of faces of the cloth that cross or touch each other; none without self-contact in the scene.
+struct SelfCrossings {
+    int count = 0;
+    Vec3 place = Vec3::Zero();  ///< of the first pair
+};
+SelfCrossings find_self_crossings(const Scene& scene, const ClothMesh& mesh);
+
 /// Every obstacle that contains cloth at `time` (s). Classifies the surface anew and ignores the cloth's
 /// motion, so that errors of a step's own check are found.
 std::vector<Audit> find_penetrations(const Scene& scene, const ClothMesh& mesh, double time);

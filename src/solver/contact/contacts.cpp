@@ -194,6 +194,12 @@ std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
     return steps;
 }
 
+void update_gaps(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
+                 std::vector<Contact>& contacts)
+{
+    for (Contact& contact : contacts) update_gap(steps[contact.obstacle], prediction, contact);
+}
+
 Vec3 ridden_position(const ObstacleStep& step, const State& state, double forward, int vertex)
 {
     const Vec3& now = state.mesh.world[vertex];
@@ -327,8 +333,7 @@ bool flatten_history(const Scene& scene, const State& state, const std::vector<O
             shift_along(eol, contact, gained, prediction.velocity, prediction.material_velocity);
             is_changed = true;
         }
-    if (is_changed)
-        for (Contact& contact : contacts) update_gap(steps[contact.obstacle], prediction, contact);
+    if (is_changed) update_gaps(steps, prediction, contacts);
     return is_changed;
 }
 

@@ -65,6 +65,10 @@ std::vector<Contact> find_contacts(const Scene& scene, const State& state, const
 /// q~ of a vertex that has ridden on the obstacle during the last step.
 Vec3 ridden_position(const ObstacleStep& step, const State& state, double forward, int vertex);
 
+/// Sets each contact's gap from the prediction.
+void update_gaps(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
+                 std::vector<Contact>& contacts);
+
 /// Sets the contact's last multiplier and friction from `state.active`, if it pressed. For an edge or face,
 /// the obstacle's element must match. For a vertex, which slides from face to face, the normals must be
 /// close.

@@ -155,7 +155,9 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         contacts.back().mitre = eol[e].frame.mitre;
         contacts.back().may_grow = false;  // a push-out would stretch the cloth on both sides
     }
-    append_folds(scene, state, stars, prediction, steps, eol, contacts);
+    // With self-contact the sides of a fold stop each other.
+    if (!scene.self_contact)
+        append_folds(scene, state, stars, prediction, steps, eol, contacts);
     for (std::size_t c = found; c < contacts.size(); ++c)
         recall(state, steps[contacts[c].obstacle], contacts[c]);
     return eol;

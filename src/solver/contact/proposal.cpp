@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "geometry/check/sweep_check.h"
+#include "geometry/self_contact/self_sweep.h"
 #include "geometry/sort_unique.h"
 
 namespace arris {
@@ -67,8 +68,7 @@ class Shares {
 }  // namespace
 
 void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<ObstacleStep>& steps,
-                       const std::vector<PinTarget>& held, double thickness, double growth,
-                       Proposal& proposal)
+                       double thickness, double growth, Proposal& proposal)
 {
     constexpr double kFoldShare = 0.1;  // of the push-out: moving aside stretches straight cloth
     for (const Contact& contact : contacts) {
@@ -80,15 +80,16 @@ void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<O
         const double missing = std::min(contact.mitre * thickness, wanted) - gap;
         if (missing > 0.0) local.shift(missing * contact.normal, proposal.world);
     }
-    hold_in_place(held, proposal.world);
 }
 
 bool Violations::is_clean() const
 {
-    return std::all_of(faces.begin(), faces.end(), [](const std::vector<int>& f) { return f.empty(); });
+    return self_faces.empty() &&
+           std::all_of(faces.begin(), faces.end(), [](const std::vector<int>& f) { return f.empty(); });
 }
 
-Violations check_proposal(const Scene& scene, const Proposal& proposal, const Prediction& prediction,
+Violations check_proposal(const Scene& scene, const State& state, const SelfSurface& surface,
+                          const Proposal& proposal, const Prediction& prediction,
                           std::vector<ObstacleStep>& steps)
 {
     Violations violations;
@@ -101,30 +102,41 @@ Violations check_proposal(const Scene& scene, const Proposal& proposal, const Pr
         violations.crossings += report.crossings;
         violations.faces.push_back(std::move(report.faces));
     }
+    if (!scene.self_contact) return violations;
+    SelfSweepReport report =
+        check_self_sweep(surface, {state.mesh.world, proposal.world}, scene.self_contact->thickness);
+    for (const SelfContact& contact : report.violations)
+        violations.self_rows.push_back(make_self_row(state, contact));
+    violations.crossings += report.crossings;
+    violations.self_faces = std::move(report.faces);
     return violations;
 }
 
-std::optional<int> rewind(const Scene& scene, const State& state, const std::vector<PinTarget>& held,
-                          const Prediction& prediction, double dt, std::vector<ObstacleStep>& steps,
-                          Proposal& proposal)
+std::optional<int> rewind(const Scene& scene, const State& state, const SelfSurface& surface,
+                          const std::vector<PinTarget>& held, const Prediction& prediction, double dt,
+                          std::vector<ObstacleStep>& steps, Proposal& proposal)
 {
     constexpr int kMostRounds = 200;
     const std::vector<Vec3> wanted = proposal.world;
     const std::size_t n = wanted.size();
-    std::vector<Shares> shares(steps.size(), Shares(state.mesh.faces, held, n));
+    const std::size_t carriers = steps.size() + 1;  // the obstacles, then the world
+    std::vector<Shares> shares(carriers, Shares(state.mesh.faces, held, n));
     std::vector<char> is_rewound(n, 0);
     for (int round = 0; round < kMostRounds; ++round) {
-        const Violations violations = check_proposal(scene, proposal, prediction, steps);
+        const Violations violations = check_proposal(scene, state, surface, proposal, prediction, steps);
         if (violations.is_clean())
             return static_cast<int>(std::count(is_rewound.begin(), is_rewound.end(), 1));
-        for (std::size_t o = 0; o < steps.size(); ++o) {
-            if (violations.faces[o].empty()) continue;
-            if (!shares[o].shrink(violations.faces[o])) return std::nullopt;
+        for (std::size_t o = 0; o < carriers; ++o) {
+            const bool is_world = o == steps.size();
+            const std::vector<int>& unclean = is_world ? violations.self_faces : violations.faces[o];
+            if (unclean.empty()) continue;
+            if (!shares[o].shrink(unclean)) return std::nullopt;
+            const Placement end = is_world ? Placement{} : steps[o].end;
             for (std::size_t v = 0; v < n; ++v) {
                 if (shares[o][v] >= 1.0) continue;
-                const Vec3& begin = steps[o].motion.begin[v];
-                const Vec3 way = steps[o].end.inverse(wanted[v]) - begin;
-                proposal.world[v] = steps[o].end(begin + shares[o][v] * way);
+                const Vec3& begin = is_world ? state.mesh.world[v] : steps[o].motion.begin[v];
+                const Vec3 way = end.inverse(wanted[v]) - begin;
+                proposal.world[v] = end(begin + shares[o][v] * way);
                 proposal.velocity[v] = (proposal.world[v] - state.mesh.world[v]) / dt;
                 is_rewound[v] = 1;
             }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "solver/contact/contacts.h"
+#include "solver/contact/self_contacts.h"
 #include "solver/model/pin_targets.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
@@ -19,30 +20,33 @@ struct Proposal {
 };
 
 /// Moves positions, not velocities, out to the gaps that their contacts keep, which removes round-off. Cloth
-/// nearer than its stand-off moves up to `growth` (m) farther. Pinned directions stay.
+/// nearer than its stand-off moves up to `growth` (m) farther.
 void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<ObstacleStep>& steps,
-                       const std::vector<PinTarget>& held, double thickness, double growth,
-                       Proposal& proposal);
+                       double thickness, double growth, Proposal& proposal);
 
-/// Violations of the proposed step by the exact check against every obstacle.
+/// Violations of the proposed step by the exact check against every obstacle and of the cloth itself.
 struct Violations {
     std::vector<Contact> contacts;
+    std::vector<SelfRow> self_rows;
     std::vector<std::vector<int>> faces;  ///< for each obstacle: faces of the cloth that are not clean
+    std::vector<int> self_faces;          ///< that met another part of the cloth
     int crossings = 0;
 
     bool is_clean() const;
 };
 
 /// Checks the motion from the state to the proposal; each step's `motion.end` is set to the proposal.
-Violations check_proposal(const Scene& scene, const Proposal& proposal, const Prediction& prediction,
+Violations check_proposal(const Scene& scene, const State& state, const SelfSurface& surface,
+                          const Proposal& proposal, const Prediction& prediction,
                           std::vector<ObstacleStep>& steps);
 
 /// The last resort. Patches of cloth that are not clean go back on their path, in the frame of the obstacle
-/// that they meet: to half of it, a quarter, ..., at last to their start, riding on the obstacle. Patches
-/// that went all the way back grow by one ring of vertices. Velocity follows; pinned vertices stay. Returns
-/// the number of vertices that went back, or nothing where the step is still not clean.
-std::optional<int> rewind(const Scene& scene, const State& state, const std::vector<PinTarget>& held,
-                          const Prediction& prediction, double dt, std::vector<ObstacleStep>& steps,
-                          Proposal& proposal);
+/// that they meet, or in the world where they meet the cloth: to half of it, a quarter, ..., at last to their
+/// start, riding on the obstacle. Patches that went all the way back grow by one ring of vertices. Velocity
+/// follows; pinned vertices stay. Returns the number of vertices that went back, or nothing where the step is
+/// still not clean.
+std::optional<int> rewind(const Scene& scene, const State& state, const SelfSurface& surface,
+                          const std::vector<PinTarget>& held, const Prediction& prediction, double dt,
+                          std::vector<ObstacleStep>& steps, Proposal& proposal);
 
 }  // namespace arris

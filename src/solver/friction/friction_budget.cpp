@@ -101,9 +101,8 @@ std::vector<TraceVertex> find_trace_vertices(const RubbingCloth& cloth, const st
     std::vector<TraceVertex> vertices;
     slot.assign(rubs.size(), -1);
     for (std::size_t r = 0; r < rubs.size(); ++r) {
-        const Contact& contact = cloth.contacts[rubs[r].contact];
-        if (contact.eol < 0) continue;
-        const EolCoordinates& at = cloth.eol[contact.eol];
+        if (rubs[r].contact < 0 || cloth.contacts[rubs[r].contact].eol < 0) continue;
+        const EolCoordinates& at = cloth.eol[cloth.contacts[rubs[r].contact].eol];
         if (cloth.state.eol[at.entry].on.is_fixed()) continue;
         slot[r] = static_cast<int>(vertices.size());
         vertices.push_back({at.vertex, at.trace});
@@ -124,6 +123,10 @@ std::vector<double> compute_budgets(const RubbingCloth& cloth, const Terms& term
         sides = compute_trace_sides(vertices, cloth.elements, terms, cloth.at, solution.velocity);
     std::vector<double> budgets;
     for (std::size_t r = 0; r < rubs.size(); ++r) {
+        if (const int self = rubs[r].self_row; self >= 0) {
+            budgets.push_back(rubs[r].coefficient * solution.row_multipliers[cloth.self_rows[self].row]);
+            continue;
+        }
         const Contact& contact = cloth.contacts[rubs[r].contact];
         const double normal = multiplier[rubs[r].contact], mu = rubs[r].coefficient;
         double budget = mu * normal;

@@ -3,19 +3,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <span>
 
 namespace arris {
 
 namespace {
-
-/// Mass of each vertex, kg: a third of its faces.
-std::vector<double> lump_masses(double density, const ClothElements& elements)
-{
-    std::vector<double> mass(static_cast<std::size_t>(elements.vertex_count), 0.0);
-    for (const FaceElement& face : elements.faces)
-        for (const int v : face.vertices) mass[v] += density * face.area / 3.0;
-    return mass;
-}
 
 /// Velocity v' with which the vertex rides on the obstacle: its path from the last step's start to this
 /// step's end is then rigid, whatever its history.
@@ -123,13 +116,80 @@ std::array<double, 2> predict_slip(const RubbingCloth& cloth, const Contact& con
     return slip.dot(last.slip) > 0.0 ? components(slip) : std::array<double, 2>{0.0, 0.0};
 }
 
+/// Whether material flows through any of the vertices; unused ones are -1.
+bool is_any_eulerian(const RubbingCloth& cloth, std::span<const int> vertices)
+{
+    return std::any_of(vertices.begin(), vertices.end(),
+                       [&](int v) { return v >= 0 && cloth.at.flow && cloth.at.flow->is_eulerian[v]; });
+}
+
 bool can_rub(const RubbingCloth& cloth, const Contact& contact)
 {
     if (contact.is_fold()) return false;
-    if (contact.eol >= 0) return true;
-    for (const int v : contact.in_frame.vertices)
-        if (v >= 0 && cloth.at.flow && cloth.at.flow->is_eulerian[v]) return false;
-    return true;
+    return contact.eol >= 0 || !is_any_eulerian(cloth, contact.in_frame.vertices);
+}
+
+/// Two unit directions across a unit normal.
+std::array<Vec3, 2> directions_across(const Vec3& normal)
+{
+    const Vec3 first = normal.unitOrthogonal();
+    return {first, normal.cross(first)};
+}
+
+/// 1 / sum w_i^2 / m_i, kg.
+double slipping_mass(std::span<const int> vertices, std::span<const double> weights,
+                     const std::vector<double>& mass)
+{
+    double compliance = 0.0;
+    for (std::size_t i = 0; i < vertices.size() && vertices[i] >= 0; ++i)
+        compliance += weights[i] * weights[i] / mass[vertices[i]];
+    return 1.0 / compliance;
+}
+
+/// Completes the pair of a rub whose slip rows are known, from the friction of the last step and solve.
+void set_forces(const RubbingCloth& cloth, const Rub& rub, const ContactFriction& last,
+                const ContactFriction& now, FrictionPair& pair)
+{
+    const double gamma = cloth.prediction.gamma;
+    pair.budget = gamma * now.budget;
+    for (int d = 0; d < 2; ++d) pair.slip[d].expected = gamma * rub.directions[d].dot(last.force);
+}
+
+/// Slip of two parts of the cloth along a world direction: their difference in velocity.
+ConstraintRow slip_between(const RubbingCloth& cloth, const SelfContact& contact, const Vec3& direction)
+{
+    ConstraintRow row;
+    for (int i = 0; i < 4; ++i) {
+        if (contact.weights[i] == 0.0) continue;
+        const int v = contact.vertices[i];
+        const Vec3 weighed = contact.weights[i] * direction;
+        row.lower -= weighed.dot(cloth.at.drift[v]);
+        const Vec3 gradient = cloth.at.basis[v].transpose() * weighed;
+        for (int d = 0; d < 3; ++d) add_entry(3 * v + d, gradient[d], row);
+    }
+    return row;
+}
+
+void add_self_pairs(const RubbingCloth& cloth, const std::vector<double>& mass, std::vector<Rub>& rubs,
+                    VelocityProblem& problem)
+{
+    const double coefficient = cloth.scene.friction->between_layers;
+    if (!(coefficient > 0.0)) return;
+    for (std::size_t k = 0; k < cloth.self_rows.size(); ++k) {
+        const SelfRow& self = cloth.self_rows[k];
+        const SelfContact& contact = self.contact;
+        if (is_any_eulerian(cloth, contact.vertices)) continue;
+        const Rub rub{-1, static_cast<int>(k), coefficient, directions_across(contact.normal)};
+        FrictionPair pair;
+        for (int d = 0; d < 2; ++d) {
+            pair.slip[d] = slip_between(cloth, contact, rub.directions[d]);
+            pair.last[d] = rub.directions[d].dot(self.friction.slip);
+        }
+        pair.mass = slipping_mass(contact.vertices, contact.weights, mass);
+        set_forces(cloth, rub, self.last_friction, self.friction, pair);
+        rubs.push_back(rub);
+        problem.friction.push_back(pair);
+    }
 }
 
 }  // namespace
@@ -138,34 +198,27 @@ std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& 
 {
     std::vector<Rub> rubs;
     problem.friction.clear();
-    if (!cloth.scene.friction || cloth.contacts.empty()) return rubs;
+    if (!cloth.scene.friction || (cloth.contacts.empty() && cloth.self_rows.empty())) return rubs;
     const std::vector<double> mass = lump_masses(cloth.scene.material.density, cloth.elements);
     for (std::size_t c = 0; c < cloth.contacts.size(); ++c) {
         const Contact& contact = cloth.contacts[c];
         const double coefficient = cloth.scene.friction->coefficients[contact.obstacle];
         if (!(coefficient > 0.0) || !can_rub(cloth, contact)) continue;
-        Rub rub{static_cast<int>(c), coefficient, {Vec3::UnitX(), Vec3::UnitY()}};
+        Rub rub{static_cast<int>(c), -1, coefficient, {Vec3::UnitX(), Vec3::UnitY()}};
         FrictionPair pair;
         if (contact.eol >= 0) {
             pair.slip = slip_over_feature(cloth, contact);
         } else {
-            rub.directions[0] = contact.normal.unitOrthogonal();
-            rub.directions[1] = contact.normal.cross(rub.directions[0]);
+            rub.directions = directions_across(contact.normal);
             for (int d = 0; d < 2; ++d) pair.slip[d] = slip_along(cloth, contact, rub.directions[d]);
         }
-        double compliance = 0.0;
-        const ObstacleContact& local = contact.in_frame;
-        for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i)
-            compliance += local.weights[i] * local.weights[i] / mass[local.vertices[i]];
-        pair.mass = 1.0 / compliance;
-        const double gamma = cloth.prediction.gamma;
-        pair.budget = gamma * contact.friction.budget;
-        for (int d = 0; d < 2; ++d)
-            pair.slip[d].expected = gamma * rub.directions[d].dot(contact.last_friction.force);
+        pair.mass = slipping_mass(contact.in_frame.vertices, contact.in_frame.weights, mass);
+        set_forces(cloth, rub, contact.last_friction, contact.friction, pair);
         pair.last = predict_slip(cloth, contact, rub);
         rubs.push_back(rub);
         problem.friction.push_back(pair);
     }
+    add_self_pairs(cloth, mass, rubs, problem);
     return rubs;
 }
 

@@ -7,6 +7,7 @@
 #include "physics/cloth_elements.h"
 #include "physics/linearization.h"
 #include "solver/contact/contacts.h"
+#include "solver/contact/self_contacts.h"
 #include "solver/eol/cloth_stars.h"
 #include "solver/velocity_solve/velocity_solve.h"
 
@@ -14,7 +15,8 @@ namespace arris {
 
 /// A contact with friction; the problem's friction pair of the same index belongs to it.
 struct Rub {
-    int contact;  ///< index
+    int contact;   ///< index; -1 where the cloth rubs on itself
+    int self_row;  ///< index; -1 where it rubs on an obstacle
     double coefficient;
     /// World directions of the pair's two components; at EOL vertices unit vectors X and Y (ContactFriction).
     std::array<Vec3, 2> directions;
@@ -30,14 +32,16 @@ struct RubbingCloth {
     const std::vector<ObstacleStep>& obstacles;
     const std::vector<EolCoordinates>& eol;
     const std::vector<Contact>& contacts;
+    const std::vector<SelfRow>& self_rows;
     const Linearization& at;
 };
 
 /// Adds to `problem` a friction pair for each contact that can rub, and returns where they are. Slip is
 /// measured against an obstacle's material that moves with a smooth rigid motion, so that sticking cloth
 /// rides on the obstacle exactly. At an EOL vertex the material slips: along the feature by the motion of
-/// vertex and material, across it by the flow. Without friction: folds, and contacts of EOL vertices with
-/// anything but their feature.
+/// vertex and material, across it by the flow. Parts of the cloth slip against each other by their
+/// difference in velocity. Without friction: folds, and contacts of EOL vertices with anything but their
+/// feature.
 std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& problem);
 
 }  // namespace arris

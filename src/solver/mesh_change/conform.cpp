@@ -7,6 +7,7 @@
 #include "geometry/surgery/trace_insertion.h"
 #include "solver/eol/eol_features.h"
 #include "solver/mesh_change/refused_contacts.h"
+#include "solver/mesh_change/self_guard.h"
 #include "solver/mesh_change/site_insertion.h"
 #include "solver/mesh_change/way_clearing.h"
 #include "solver/model/eol_limits.h"
@@ -51,9 +52,11 @@ class Conforming {
           insertion_(scene, state, stars, kClearSteps * dt, trace_, admission_, ways_, refused_)
     {
         guard_.watch(surgery_);
+        if (scene.self_contact) self_guard_.emplace(state);
         surgery_.set_guard([this](const SurgeryEvent& event) {
             insertion_.note_proposal(event);
-            return ways_.keeps_way(event) && guard_.allows(event);
+            return ways_.keeps_way(event) && guard_.allows(event) &&
+                   (!self_guard_ || self_guard_->allows(event, surgery_.events()));
         });
     }
 
@@ -188,6 +191,7 @@ class Conforming {
     TraceMesh trace_;
     ClothSurgery& surgery_;  ///< of `trace_`
     EolGuard guard_;
+    std::optional<SelfGuard> self_guard_;  ///< with self-contact
     EolAdmission admission_;
     WayClearing ways_;
     RefusedContacts refused_;

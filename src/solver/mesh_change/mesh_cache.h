@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "geometry/self_contact/self_surface.h"
 #include "physics/cloth_elements.h"
 #include "physics/linear_system.h"
 #include "physics/term.h"
@@ -16,6 +17,7 @@ namespace arris {
 struct MeshCache {
     ClothStars stars;
     std::vector<Face> faces_of_stars;  ///< of the mesh `stars` was made for
+    SelfSurface self_surface;          ///< of the same mesh; empty without self-contact
     Terms terms;
     ClothElements elements;
     LinearSystem system;

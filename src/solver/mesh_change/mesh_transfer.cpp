@@ -155,6 +155,7 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     after.eol = conformed.eol;
     after.anchors = before.anchors;
     after.active = before.active;
+    after.self = before.self;
     after.crossings = before.crossings;
     const std::size_t n = after.ids.size();
     after.velocity.resize(n);
@@ -180,6 +181,10 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     }
     for (const auto& [id, carried] : all.changed())  // any order: each vertex has its own entry
         if (const int v = after.index_of(id); v >= 0) write(static_cast<std::size_t>(v), carried);
+    std::erase_if(after.self, [&](const ActiveSelfContact& contact) {
+        return std::any_of(contact.vertex_ids.begin(), contact.vertex_ids.end(),
+                           [&](std::uint32_t id) { return after.index_of(id) < 0; });
+    });
     std::erase_if(after.anchors, [&](const PinAnchor& a) { return after.index_of(a.vertex_id) < 0; });
     return after;
 }

@@ -14,6 +14,7 @@
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/cloth/sub_mesh.h"
 #include "geometry/obstacle/obstacle_distance.h"
+#include "geometry/self_contact/self_sweep.h"
 #include "physics/energies.h"
 #include "physics/term.h"
 #include "solver/mesh_change/patch_equations.h"
@@ -236,6 +237,34 @@ class Relaxation {
     std::optional<PatchEquations> equations_;
 };
 
+/// Whether vertices of the state can move from `begin` to `end` without meeting the rest of the cloth. Only
+/// the cloth near them is looked at.
+bool is_way_free_of_cloth(const Scene& scene, const State& state, const std::vector<int>& vertices,
+                          const std::vector<Vec3>& begin, const std::vector<Vec3>& end)
+{
+    if (!scene.self_contact) return true;
+    std::vector<Vec3> world = state.mesh.world;
+    for (std::size_t i = 0; i < vertices.size(); ++i) world[vertices[i]] += end[i] - begin[i];
+    std::vector<char> is_moved(world.size(), 0);
+    for (std::size_t v = 0; v < world.size(); ++v) is_moved[v] = world[v] != state.mesh.world[v];
+    std::vector<BoxTree::Box> boxes;
+    BoxTree::Box reach;
+    for (const Face& face : state.mesh.faces) {
+        BoxTree::Box& box = boxes.emplace_back();
+        for (const int v : face) box.extend(state.mesh.world[v]).extend(world[v]);
+        if (is_moved[face[0]] || is_moved[face[1]] || is_moved[face[2]]) reach.extend(box);
+    }
+    std::vector<int> near;
+    for (std::size_t f = 0; f < boxes.size(); ++f)
+        if (boxes[f].intersects(reach)) near.push_back(static_cast<int>(f));
+    const SubMesh part = extract_faces(state.mesh, near);
+    std::vector<Vec3> part_end;
+    for (const int v : part.vertices) part_end.push_back(world[v]);
+    const int n = part.mesh.vertex_count();
+    const SelfSurface surface(n, part.mesh.faces, make_topology(n, part.mesh.faces));
+    return check_self_sweep(surface, {part.mesh.world, part_end}, scene.self_contact->thickness).is_clean();
+}
+
 }  // namespace
 
 Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vertex_id)
@@ -268,7 +297,11 @@ double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& pat
     relaxation.rise_to(patch.wanted);
     relaxation.keep_off(begin, state.time);
     if (!(relaxation.energy() < before)) return before;
-    for (int k = 0; !relaxation.is_way_free(begin, state.time); ++k) {
+    const auto is_way_free = [&] {
+        return relaxation.is_way_free(begin, state.time) &&
+               is_way_free_of_cloth(scene, state, part.vertices, begin, relaxation.world());
+    };
+    for (int k = 0; !is_way_free(); ++k) {
         if (k == kMostHalvings) return before;
         relaxation.go_back_half(begin);
     }

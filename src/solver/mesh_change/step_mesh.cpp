@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "geometry/self_contact/self_intersection.h"
 #include "geometry/sort_unique.h"
 #include "physics/membrane.h"
 #include "solver/eol/creases.h"
@@ -92,7 +94,9 @@ class MeshTries {
     TriedMesh find_best()
     {
         TriedMesh best = choose();
-        if (best.strain() <= kMostStrain || !failed_.given_up.empty() || !failed_.made_at.empty())
+        const bool is_crossing = crosses_itself(best);
+        if (!is_crossing &&
+            (best.strain() <= kMostStrain || !failed_.given_up.empty() || !failed_.made_at.empty()))
             return best;
         TriedMesh none;
         none.outcome.refused = std::move(best.outcome.refused);
@@ -106,6 +110,27 @@ class MeshTries {
     }
 
   private:
+    /// Whether new faces, or faces at vertices that have moved, cross the cloth.
+    bool crosses_itself(const TriedMesh& tried) const
+    {
+        if (!scene_.self_contact || !tried.state) return false;
+        const State& made = *tried.state;
+        std::vector<int> changed;
+        std::set<IdFace> known;
+        for (const Face& face : state_.mesh.faces)
+            known.insert({state_.ids[face[0]], state_.ids[face[1]], state_.ids[face[2]]});
+        for (int f = 0; f < made.mesh.face_count(); ++f) {
+            const Face& face = made.mesh.faces[f];
+            const IdFace ids = {made.ids[face[0]], made.ids[face[1]], made.ids[face[2]]};
+            const bool has_moved = std::any_of(face.begin(), face.end(), [&](int v) {
+                const int before = state_.index_of(made.ids[v]);
+                return before < 0 || state_.mesh.world[before] != made.mesh.world[v];
+            });
+            if (has_moved || !known.contains(ids)) changed.push_back(f);
+        }
+        return !find_self_intersections(made.mesh.world, made.mesh.faces, changed).empty();
+    }
+
     /// First tries a mesh that relies on cloth that gives way; then one with care, where patches stay
     /// strained. The last try is a mesh made by force, where vertices are blocked or care has lost some.
     TriedMesh choose()
@@ -246,6 +271,8 @@ bool update_mesh_cache(const Scene& scene, const State& state, MeshCache& cache)
     if (cache.terms.faces.empty())
         cache.terms = make_terms(scene.material, scene.gravity, scene.wind, scene.pulls);
     const bool has_new_elements = prepare_elements(scene, state, cache);
+    if (scene.self_contact && cache.self_surface.faces != state.mesh.faces)
+        cache.self_surface = SelfSurface(state.mesh.vertex_count(), state.mesh.faces, cache.stars.topology);
     if (!scene.eol) return has_new_elements;  // without folds on features there are no creases
     const Creases creases = find_creases(scene, state, cache.stars);
     const bool has_new_creases = mark_creases(creases, state.mesh, cache.elements);

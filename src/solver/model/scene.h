@@ -27,9 +27,15 @@ struct Pin {
     bool holds_until(double end) const { return end <= release; }
 };
 
-/// Coulomb friction between cloth and obstacles.
+/// Coulomb friction between cloth and obstacles, and between layers of cloth.
 struct Friction {
     std::vector<double> coefficients;  ///< one per obstacle, >= 0
+    double between_layers = 0.0;       ///< with self-contact
+};
+
+/// Contact of the cloth with itself.
+struct ClothContact {
+    double thickness;  ///< m, kept between the middle surfaces of two layers
 };
 
 /// The simulated scene, const while stepping. An absent effect costs nothing.
@@ -41,6 +47,7 @@ struct Scene {
     std::vector<Pin> pins;
     std::vector<Obstacle> obstacles;
     std::optional<Friction> friction;
+    std::optional<ClothContact> self_contact;
     std::optional<MeshTarget> eol;  ///< target of the mesh near features; no EOL vertices without it
 };
 

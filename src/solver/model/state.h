@@ -8,6 +8,7 @@
 
 #include "geometry/cloth/cloth_mesh.h"
 #include "geometry/contact/obstacle_contact.h"
+#include "geometry/self_contact/self_contact.h"
 #include "solver/model/feature_id.h"
 
 namespace arris {
@@ -31,6 +32,15 @@ struct ActiveContact {
     std::int32_t element;   ///< as ObstacleContact's
     Vec3 normal;            ///< in the obstacle's frame
     double multiplier;      ///< N s
+    ContactFriction friction = {};
+};
+
+/// A contact of the cloth with itself that pressed at the end of a step.
+struct ActiveSelfContact {
+    SelfContactKind kind;
+    std::array<std::uint32_t, 4> vertex_ids;  ///< as ClothPointPair's vertices
+    Vec3 normal;
+    double multiplier;  ///< N s
     ContactFriction friction = {};
 };
 
@@ -68,10 +78,11 @@ struct State {
     std::vector<Vec2> previous_material;
     std::vector<Vec2> previous_material_velocity;
 
-    std::vector<EolVertex> eol;         ///< ascending by vertex_id
-    std::vector<PinAnchor> anchors;     ///< ascending by (pin, vertex_id)
-    std::vector<ActiveContact> active;  ///< ascending by (vertex_ids, obstacle, kind, element)
-    std::int64_t crossings = 0;         ///< passages through obstacles so far
+    std::vector<EolVertex> eol;           ///< ascending by vertex_id
+    std::vector<PinAnchor> anchors;       ///< ascending by (pin, vertex_id)
+    std::vector<ActiveContact> active;    ///< ascending by (vertex_ids, obstacle, kind, element)
+    std::vector<ActiveSelfContact> self;  ///< ascending by (kind, vertex_ids)
+    std::int64_t crossings = 0;           ///< passages through obstacles so far
 
     /// Index of the vertex with this id; -1 without such a vertex.
     int index_of(std::uint32_t id) const

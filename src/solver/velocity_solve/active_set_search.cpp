@@ -12,6 +12,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "solver/model/stopwatch.h"
@@ -43,7 +44,7 @@ constexpr int kLargestWorkingSet = 2000;
 constexpr int kMostBases = 30;
 
 /// Largest number of rows in U; if more press, they become part of the base.
-constexpr int kMostRows = 400;
+constexpr int kMostRows = 600;
 
 /// Rows that start in U: at most this number, and this share of the vertices. More become part of the base.
 constexpr int kFewRows = 150;
@@ -51,8 +52,8 @@ constexpr double kFewShare = 0.01;
 
 /// Bases whose rows may change sides all at once (Newton's method), until at most kFewChanges remain. After
 /// these bases, a row that has pulled in one is not part of a later one: U decides about it.
-constexpr int kNewtonBases = 20;
-constexpr int kFullSteps = 8;  // of these; the others go as far as the energy falls
+constexpr int kNewtonBases = 4;
+constexpr int kFullSteps = 4;  // of these; the others go as far as the energy falls
 constexpr int kFewChanges = 30;
 
 /// Friction pairs that may join U at a time: so many that the dense work, about kPairFlops times the third
@@ -64,6 +65,12 @@ constexpr int kLeastPairs = 10, kMostPairs = 150;
 /// and kLeastFlops, about a second's work.
 constexpr double kMostFactorisations = 30.0;
 constexpr double kLeastFlops = 2e9;
+
+/// Number of rows that U takes more cheaply than a base.
+double few_rows(const VelocityProblem& problem)
+{
+    return std::max<double>(kFewRows, kFewShare / 3.0 * static_cast<double>(problem.lower.size()));
+}
 
 std::vector<char> active_by_guess(const VelocityProblem& problem)
 {
@@ -84,6 +91,11 @@ std::vector<int> pressing_rows(const ConstraintRows& constraints, const Iterate&
 }
 
 }  // namespace
+
+bool wants_rows_in_matrix(const VelocityProblem& problem, std::size_t pressing)
+{
+    return static_cast<double>(pressing) > few_rows(problem);
+}
 
 VelocitySolution make_zero_solution(const VelocityProblem& problem)
 {
@@ -204,9 +216,7 @@ void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
 {
     rows_.clear();
     is_pressing_.assign(constraints_.rows.size(), 0);
-    const double few =
-        std::max<double>(kFewRows, kFewShare / 3.0 * static_cast<double>(problem_.lower.size()));
-    const bool is_few = static_cast<double>(expected.size()) <= few;
+    const bool is_few = static_cast<double>(expected.size()) <= few_rows(problem_);
     for (const int k : expected) {
         if (!is_few && !has_pulled_[k] && has_room_for(*problem_.matrix, constraints_.rows[k]))
             is_pressing_[k] = 1;
@@ -233,26 +243,37 @@ void ActiveSetSearch::run_rounds(int cap)
     Iterate& iterate = in_use_->iterate;
     for (;;) {  // ends: U grows by at least one member per round, up to the cap
         Violators violators = find_violators(base, iterate, set);
-        if (violators.empty()) {
-            if (finish()) return;
-            continue;
-        }
-        if (!violators.pulling.empty() || has_many_changes(violators))
-            return rebase_with_violated_rows(violators);
-        const int count = static_cast<int>(violators.coordinates.size()),
-                  row_count = static_cast<int>(violators.rows.size()),
-                  pair_count = static_cast<int>(violators.pairs.size());
-        const int room = cap + cap / 2 - set.coordinate_count(), row_room = kMostRows - set.row_count();
-        if (count > kHopeless * cap) return rebase_by_prediction();
-        if (count > 0 && set.coordinate_count() >= cap) return rebase_with_changed(violators);
-        if (row_count + pair_count > 0 && row_room <= 0) return rebase_with_changed(violators);
-        if (count > room) keep_worst_coordinates(base, iterate, room, violators.coordinates);
-        if (row_count > row_room) keep_worst_rows(base, iterate, row_room, violators.rows);
-        for (const int pair : violators.pairs)
-            violators.rows.insert(violators.rows.end(), {2 * pair, 2 * pair + 1});
-        set.extend(violators.coordinates, violators.rows);
-        if (!set.solve(iterate, best_.nlopt_evaluations, budget_)) return rebase_by_prediction();
+        int nb = 0, np = 0;
+        for (char c : base.is_pressing) nb += c;
+        for (int k = constraints_.slip_count(); k < iterate.row_multipliers.size(); ++k)
+            np += iterate.row_multipliers[k] > 0;
+        std::fprintf(stderr,
+                     "fact %d U %d (rows %d) base rows %d of %zu press %d viol coord %zu rows %zu pull "
+                     "%zu pairs %zu budget %.2g\n",
+                     best_.factorisations, set.size(), set.row_count(), nb, constraints_.rows.size(), np,
+                     violators.coordinates.size(), violators.rows.size(), violators.pulling.size(),
+                     violators.pairs.size(), budget_.flops);
     }
+    if (violators.empty()) {
+        if (finish()) return;
+        continue;
+    }
+    if (!violators.pulling.empty() || has_many_changes(violators))
+        return rebase_with_violated_rows(violators);
+    const int count = static_cast<int>(violators.coordinates.size()),
+              row_count = static_cast<int>(violators.rows.size()),
+              pair_count = static_cast<int>(violators.pairs.size());
+    const int room = cap + cap / 2 - set.coordinate_count(), row_room = kMostRows - set.row_count();
+    if (count > kHopeless * cap) return rebase_by_prediction();
+    if (count > 0 && set.coordinate_count() >= cap) return rebase_with_changed(violators);
+    if (row_count + pair_count > 0 && row_room <= 0) return rebase_with_changed(violators);
+    if (count > room) keep_worst_coordinates(base, iterate, room, violators.coordinates);
+    if (row_count > row_room) keep_worst_rows(base, iterate, row_room, violators.rows);
+    for (const int pair : violators.pairs)
+        violators.rows.insert(violators.rows.end(), {2 * pair, 2 * pair + 1});
+    set.extend(violators.coordinates, violators.rows);
+    if (!set.solve(iterate, best_.nlopt_evaluations, budget_)) return rebase_by_prediction();
+}
 }
 
 /// The next base has the rows that press now, and the tangents of friction at the present velocity.
@@ -296,11 +317,24 @@ void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
     else
         newton_point_ = velocity;
     slips_ = springs_at(constraints_, in_use_->base.slips, newton_point_);
+    // Of rows that do not press yet, only the worst of each group joins: many repeat each other.
     std::vector<int> violated;
+    std::map<int, std::pair<double, int>> worst;
     for (int k = constraints_.slip_count(); k < static_cast<int>(constraints_.rows.size()); ++k) {
         const ScaledRow& row = constraints_.rows[k];
-        if (!row.entries.empty() && gap(row, newton_point_, 0.0) < 0.0) violated.push_back(k);
+        if (row.entries.empty()) continue;
+        const double here = gap(row, newton_point_, 0.0);
+        if (!(here < 0.0)) continue;
+        if (in_use_->iterate.row_multipliers[k] > 0.0) {
+            violated.push_back(k);
+            continue;
+        }
+        const double depth = -here / std::sqrt(row.compliance);
+        const auto [at, is_new] = worst.try_emplace(row.group, depth, k);
+        if (!is_new && depth > at->second.first) at->second = {depth, k};
     }
+    for (const auto& [group, row] : worst) violated.push_back(row.second);
+    std::sort(violated.begin(), violated.end());
     if (!is_newton)
         for (const int k : violators.pulling) has_pulled_[k] = 1;
     flip_bounds(violators.coordinates);

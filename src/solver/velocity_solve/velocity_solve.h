@@ -73,6 +73,10 @@ struct VelocitySolution {
     }
 };
 
+/// Whether the springs of so many pressing rows become part of the solve's matrix, as far as it has entries
+/// for all pairs of a row's coordinates.
+bool wants_rows_in_matrix(const VelocityProblem& problem, std::size_t pressing);
+
 /// Solves the constrained velocity step by the working-set method. One sparse factorisation pins the guessed
 /// coordinates. NLopt solves the dense problem condensed on the violators. A KKT certificate accepts the
 /// answer. Keeps the symbolic analysis between solves while the pattern stays.

@@ -732,10 +732,10 @@ const std::vector<WrongScene> kWrongScenes = {
      "s.toml:5: obstacle.0: at time 0 the cloth intersects obstacle0, at [0.25, 0.25, 0] (m); allowed: cloth "
      "that starts clear of every obstacle; " +
          kRemedy},
-    {"SelfContact",
-     kBase + "[self_contact]\n",
+    {"SelfContactThickness",
+     kBase + "[self_contact]\nthickness = 0\n",
      {},
-     "s.toml:5: self_contact: is not built yet in this version; allowed: a scene without it"},
+     "s.toml:6: self_contact.thickness = 0: is out of range; allowed: a number > 0 and <= 1 (m)"},
     {"Remesh",
      kBase + "[remesh]\nangle = 10\n",
      {},

@@ -54,9 +54,12 @@ struct Above {
         }
     }
 
-    std::optional<int> put_back() { return rewind(scene, state, held, prediction, kStep, steps, proposal); }
+    std::optional<int> put_back()
+    {
+        return rewind(scene, state, {}, held, prediction, kStep, steps, proposal);
+    }
 
-    bool is_clean() { return check_proposal(scene, proposal, prediction, steps).is_clean(); }
+    bool is_clean() { return check_proposal(scene, state, {}, proposal, prediction, steps).is_clean(); }
 
     void expect_free() const
     {
@@ -145,7 +148,8 @@ TEST(CheckProposal, NamesWhatWouldHavePreventedIt)
 {
     Above above;
     above.propose(Vec3(0, 0, -0.05));
-    const Violations violations = check_proposal(above.scene, above.proposal, above.prediction, above.steps);
+    const Violations violations =
+        check_proposal(above.scene, above.state, {}, above.proposal, above.prediction, above.steps);
     EXPECT_GT(violations.crossings, 0);
     ASSERT_FALSE(violations.contacts.empty());
     for (const Contact& contact : violations.contacts) {
@@ -180,7 +184,8 @@ struct OverPlane {
 
     double restore(double growth, const std::vector<PinTarget>& held = {})
     {
-        restore_stand_off(contacts, steps, held, kThickness, growth, proposal);
+        restore_stand_off(contacts, steps, kThickness, growth, proposal);
+        hold_in_place(held, proposal.world);
         EXPECT_EQ(proposal.velocity[0], Vec3(0, 0, -1)) << "never through the velocity";
         return proposal.world[0].z();
     }

@@ -23,7 +23,8 @@ arris::testing::Allocations arris::testing::allocations_so_far()
     return {count, bytes};
 }
 
-// The array forms of the standard library call these.
+// The array forms of the standard library call these. All forms are here: under the address sanitizer, memory
+// that its own `new` gave must not be freed here.
 void* operator new(std::size_t size)
 {
     note(size);
@@ -37,6 +38,12 @@ void* operator new(std::size_t size, std::align_val_t alignment)
     const auto step = static_cast<std::size_t>(alignment);
     if (void* memory = std::aligned_alloc(step, (size / step + 1) * step)) return memory;
     throw std::bad_alloc();
+}
+
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept
+{
+    note(size);
+    return std::malloc(size > 0 ? size : 1);
 }
 
 void operator delete(void* memory) noexcept

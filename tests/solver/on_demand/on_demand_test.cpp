@@ -238,7 +238,10 @@ const Stage kStages[] = {
     {"find_contacts", "obstacle",
      [](SheetRun& r) { find_contacts(r.scene, r.state, r.work.prediction, r.work.obstacles); }},
     {"check_proposal", "obstacle",
-     [](SheetRun& r) { check_proposal(r.scene, r.work.proposal, r.work.prediction, r.work.obstacles); }},
+     [](SheetRun& r) {
+         check_proposal(r.scene, r.state, r.work.mesh.self_surface, r.work.proposal, r.work.prediction,
+                        r.work.obstacles);
+     }},
     {"audit", "obstacle", [](SheetRun& r) { audit(r.scene, r.state); }},
     {"compute_load_work", "pull",
      [](SheetRun& r) {

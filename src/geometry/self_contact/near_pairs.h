@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "geometry/box_tree.h"
+#include "geometry/check/face_groups.h"
+#include "geometry/contact/contact_batches.h"
+#include "geometry/self_contact/self_surface.h"
+#include "geometry/vectors.h"
+
+namespace arris {
+
+/// Linear motion of the cloth's vertices during a step.
+struct SelfMotion {
+    const std::vector<Vec3>& begin;
+    const std::vector<Vec3>& end;
+
+    Box3 box(int v) const { return Box3(begin[v]).extend(end[v]); }
+    Box3 box(int a, int b) const { return box(a).merged(box(b)); }
+};
+
+/// Collects what `find` makes of the pairs of elements whose swept boxes come within `reach` (m) of each
+/// other: find.vertex_face(v, face, results) and find.edge_edge(e, f, results), each pair once. A vertex of
+/// the face, or a common vertex of the edges, makes no pair. In parallel; the order does not depend on the
+/// number of threads. `Find` is copied for each batch.
+template <typename Result, typename Find>
+std::vector<Result> collect_near_pairs(const SelfSurface& surface, const SelfMotion& motion, double reach,
+                                       const Find& find)
+{
+    constexpr int kGroupSize = 16;  // faces per query of the tree
+    const auto grow = [&](const Box3& box) {
+        return Box3(box.min().array() - 0.5 * reach, box.max().array() + 0.5 * reach);
+    };
+    std::vector<Box3> boxes(surface.faces.size());
+    for (std::size_t f = 0; f < boxes.size(); ++f) {
+        for (const int v : surface.faces[f]) boxes[f].extend(motion.box(v));
+        boxes[f] = grow(boxes[f]);
+    }
+    const BoxTree tree(boxes);
+    const std::vector<int> order = order_by_place(boxes, kGroupSize);
+
+    const auto sweep_vertices = [&](Find& found, int f, int g, std::vector<Result>& results) {
+        const Face& face = surface.faces[g];
+        for (const int v : surface.own_vertices[f])
+            if (v >= 0 && v != face[0] && v != face[1] && v != face[2] &&
+                grow(motion.box(v)).intersects(boxes[g]))
+                found.vertex_face(v, g, results);
+    };
+    const auto sweep_edges = [&](Find& found, int f, int g, std::vector<Result>& results) {
+        for (const int e : surface.own_edges[f]) {
+            if (e < 0) continue;
+            const MeshEdge& first = surface.edges[e];
+            const Box3 box = grow(motion.box(first.a, first.b));
+            if (!box.intersects(boxes[g])) continue;
+            for (const int h : surface.own_edges[g]) {
+                if (h < 0) continue;
+                const MeshEdge& second = surface.edges[h];
+                if (first.a != second.a && first.a != second.b && first.b != second.a &&
+                    first.b != second.b && box.intersects(grow(motion.box(second.a, second.b))))
+                    found.edge_edge(std::min(e, h), std::max(e, h), results);
+            }
+        }
+    };
+    const auto search = [&](int begin, int end, std::vector<Result>& results) {
+        Find found = find;
+        std::vector<int> near;
+        for (int first = begin; first < end; first += kGroupSize) {
+            const int last = std::min(first + kGroupSize, end);
+            Box3 group;
+            for (int i = first; i < last; ++i) group.extend(boxes[order[i]]);
+            tree.find(group, near);
+            for (int i = first; i < last; ++i) {
+                const int f = order[i];
+                for (const int g : near) {
+                    if (g <= f || !boxes[f].intersects(boxes[g])) continue;
+                    sweep_vertices(found, f, g, results);
+                    sweep_vertices(found, g, f, results);
+                    sweep_edges(found, f, g, results);
+                }
+            }
+        }
+    };
+    return collect_in_batches<Result>(static_cast<int>(order.size()), search);
+}
+
+}  // namespace arris

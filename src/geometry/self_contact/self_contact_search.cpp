@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/self_contact/self_contact_search.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "geometry/closest_point.h"
+#include "geometry/contact/continuous_collision.h"
+
+namespace arris {
+
+namespace {
+
+constexpr double kNear = 2.0;  // thicknesses: nearer pairs have a plane at their closest points
+const double kSameNormal = std::cos(20.0 * M_PI / 180.0);
+
+/// Directions along a surface that lead nearer by less than this cosine count as level. Level parts, as of
+/// two plane layers, have a plane wherever they face each other.
+constexpr double kLevel = 1e-6;
+
+/// Height of a ridge, of the thickness. Edges that cross have a plane where both are ridges. Of flatter
+/// layers the planes of vertices keep all parts apart, but for about this height.
+constexpr double kRidge = 0.1;
+
+/// A closest pair of points, and whether moving either along its surface leads no nearer.
+struct Closest {
+    ClothPointPair pair;
+    Vec3 difference;
+    bool is_least;
+};
+
+class Search {
+  public:
+    Search(const SelfSurface& surface, const SelfMotion& motion, double thickness)
+        : surface_(surface), motion_(motion), thickness_(thickness)
+    {
+    }
+
+    void vertex_face(int v, int face, std::vector<SelfContact>& found) const
+    {
+        const Face& f = surface_.faces[face];
+        const std::array<int, 4> vertices = {v, f[0], f[1], f[2]};
+        if (is_near_at_begin(box_at(v), box_at(f[0], f[1], f[2])) &&
+            take_near(closest_vertex_face(v, face), found))
+            return;
+        if (const auto hit = sweep_cloth_vertex_face(corners(motion_.begin, vertices),
+                                                     corners(motion_.end, vertices), thickness_))
+            take_hit({SelfContactKind::VertexFace, vertices, hit->weights}, hit->normal, found);
+    }
+
+    void edge_edge(int first, int second, std::vector<SelfContact>& found) const
+    {
+        const MeshEdge &a = surface_.edges[first], &b = surface_.edges[second];
+        const std::array<int, 4> vertices = {a.a, a.b, b.a, b.b};
+        if (is_near_at_begin(box_at(a.a, a.b), box_at(b.a, b.b)) &&
+            take_near(closest_edges(first, second), found))
+            return;
+        const auto hit =
+            sweep_cloth_edges(corners(motion_.begin, vertices), corners(motion_.end, vertices), thickness_);
+        if (hit && is_ridge(a, -hit->normal, hit->time) && is_ridge(b, hit->normal, hit->time))
+            take_hit({SelfContactKind::EdgeEdge, vertices, hit->weights}, hit->normal, found);
+    }
+
+  private:
+    template <typename... Vertices>
+    Box3 box_at(int v, Vertices... others) const
+    {
+        Box3 box(motion_.begin[v]);
+        (box.extend(motion_.begin[others]), ...);
+        return box;
+    }
+
+    bool is_near_at_begin(const Box3& a, const Box3& b) const
+    {
+        const double reach = kNear * thickness_;
+        return a.squaredExteriorDistance(b) < reach * reach;
+    }
+
+    static std::array<Vec3, 4> corners(const std::vector<Vec3>& field, const std::array<int, 4>& vertices)
+    {
+        return {field[vertices[0]], field[vertices[1]], field[vertices[2]], field[vertices[3]]};
+    }
+
+    Vec3 place(int v, double time) const
+    {
+        return motion_.begin[v] + time * (motion_.end[v] - motion_.begin[v]);
+    }
+
+    /// Way from an edge to the third vertex of its face, across the edge.
+    Vec3 way_across(const MeshEdge& edge, int face, double time) const
+    {
+        const Vec3 a = place(edge.a, time);
+        const Vec3 along = (place(edge.b, time) - a).normalized(),
+                   side = place(surface_.apex(edge, face), time) - a;
+        return side - along.dot(side) * along;
+    }
+
+    /// Whether an edge stands out towards `direction` (unit) from its faces.
+    bool is_ridge(const MeshEdge& edge, const Vec3& direction, double time) const
+    {
+        for (const int face : {edge.face_left, edge.face_right})
+            if (face >= 0 && way_across(edge, face, time).dot(direction) > -kRidge * thickness_) return false;
+        return true;
+    }
+
+    /// Whether going from a surface's point along `way` leads no nearer to a point at `gap` from it.
+    static bool leads_no_nearer(const Vec3& way, const Vec3& gap)
+    {
+        return way.dot(gap) <= kLevel * way.norm() * gap.norm();
+    }
+
+    /// The same for the faces around a vertex.
+    bool leads_no_nearer(int vertex, const Vec3& gap) const
+    {
+        for (const int face : surface_.faces_at[vertex])
+            for (const int w : surface_.faces[face])
+                if (w != vertex && !leads_no_nearer(motion_.begin[w] - motion_.begin[vertex], gap))
+                    return false;
+        return true;
+    }
+
+    Closest closest_vertex_face(int v, int face) const
+    {
+        const std::vector<Vec3>& x = motion_.begin;
+        const Face& f = surface_.faces[face];
+        const Vec3 normal = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]).stableNormalized();
+        const PointOnTriangle at = closest_on_triangle(x[v], {x[f[0]], x[f[1]], x[f[2]]}, normal);
+        Closest closest{{SelfContactKind::VertexFace,
+                         {v, f[0], f[1], f[2]},
+                         {1.0, -at.weights[0], -at.weights[1], -at.weights[2]}},
+                        x[v] - at.point,
+                        true};
+        if (at.edge >= 0) {  // told once, by the left face
+            const MeshEdge& edge = surface_.edges[surface_.edges_of[face][at.edge]];
+            closest.is_least = face == edge.face_left &&
+                               (edge.face_right < 0 ||
+                                leads_no_nearer(way_across(edge, edge.face_right, 0.0), closest.difference));
+        } else if (at.corner >= 0) {  // told once, by the first face
+            const int corner = f[at.corner];
+            closest.is_least =
+                face == surface_.faces_at[corner].front() && leads_no_nearer(corner, closest.difference);
+        }
+        return closest;
+    }
+
+    Closest closest_edges(int first, int second) const
+    {
+        const std::vector<Vec3>& x = motion_.begin;
+        const MeshEdge &a = surface_.edges[first], &b = surface_.edges[second];
+        const SegmentPair at = closest_between_segments({x[a.a], x[a.b]}, {x[b.a], x[b.b]});
+        const Vec3 difference = at.first - at.second, direction = difference.stableNormalized();
+        const auto is_inside = [](double s) { return s > 0.0 && s < 1.0; };
+        return {{SelfContactKind::EdgeEdge, {a.a, a.b, b.a, b.b}, {1.0 - at.s, at.s, at.t - 1.0, -at.t}},
+                difference,
+                is_inside(at.s) && is_inside(at.t) && is_ridge(a, -direction, 0.0) &&
+                    is_ridge(b, direction, 0.0)};
+    }
+
+    /// True where the pair is near: its plane is known, or that of a nearer pair beside it is.
+    bool take_near(const Closest& closest, std::vector<SelfContact>& found) const
+    {
+        const double gap = closest.difference.norm();
+        if (!(gap > 0.0) || gap >= kNear * thickness_) return false;
+        if (!closest.is_least) return true;
+        const SelfContact contact =
+            make_self_contact(closest.pair, closest.difference / gap, motion_.begin, thickness_);
+        if (contact.normal.dot(contact.difference(motion_.end)) < contact.least_gap + thickness_)
+            found.push_back(contact);
+        return true;
+    }
+
+    void take_hit(const ClothPointPair& pair, const Vec3& normal, std::vector<SelfContact>& found) const
+    {
+        const SelfContact contact = make_self_contact(pair, normal, motion_.begin, thickness_);
+        if (contact.least_gap > 0.0) found.push_back(contact);
+    }
+
+    const SelfSurface& surface_;
+    const SelfMotion& motion_;
+    double thickness_;
+};
+
+/// Keeps up to three planes of each vertex, the nearest first.
+void keep_nearest_planes(std::vector<SelfContact>& contacts)
+{
+    constexpr std::size_t kMostPlanes = 3;
+    std::vector<SelfContact> kept;
+    std::size_t first = 0;  // of the present vertex, in `kept`
+    for (const SelfContact& contact : contacts) {
+        if (contact.kind == SelfContactKind::VertexFace) {
+            if (kept.empty() || kept.back().vertices[0] != contact.vertices[0]) first = kept.size();
+            const auto is_like = [&](const SelfContact& other) {
+                return other.normal.dot(contact.normal) > kSameNormal;
+            };
+            if (kept.size() - first >= kMostPlanes ||
+                std::any_of(kept.begin() + static_cast<std::ptrdiff_t>(first), kept.end(), is_like))
+                continue;
+        }
+        kept.push_back(contact);
+    }
+    contacts = std::move(kept);
+}
+
+}  // namespace
+
+SelfContact make_self_contact(const ClothPointPair& pair, const Vec3& normal, const std::vector<Vec3>& begin,
+                              double thickness)
+{
+    return {pair, normal, std::min(thickness, normal.dot(pair.difference(begin)))};
+}
+
+std::vector<SelfContact> find_self_contacts(const SelfSurface& surface, const SelfMotion& motion,
+                                            double thickness)
+{
+    std::vector<SelfContact> contacts = collect_near_pairs<SelfContact>(surface, motion, kNear * thickness,
+                                                                        Search(surface, motion, thickness));
+    // By vertex, nearest first; edges last.
+    const auto distance = [&](const SelfContact& c) { return c.normal.dot(c.difference(motion.begin)); };
+    const auto is_before = [&](const SelfContact& a, const SelfContact& b) {
+        const double at_a = distance(a), at_b = distance(b);
+        return std::tie(a.kind, a.vertices[0], at_a, a.vertices) <
+               std::tie(b.kind, b.vertices[0], at_b, b.vertices);
+    };
+    std::sort(contacts.begin(), contacts.end(), is_before);
+    keep_nearest_planes(contacts);
+    return contacts;
+}
+
+}  // namespace arris

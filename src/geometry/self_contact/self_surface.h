@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/cloth/mesh_topology.h"
+
+namespace arris {
+
+/// Connectivity of a cloth, as contact with itself needs it.
+struct SelfSurface {
+    SelfSurface() = default;
+    SelfSurface(int vertex_count, const std::vector<Face>& faces, const MeshTopology& topology);
+
+    /// The third vertex of an edge's face.
+    int apex(const MeshEdge& edge, int face) const;
+
+    std::vector<Face> faces;
+    std::vector<MeshEdge> edges;
+    VertexFaces faces_at;
+    /// Each vertex and edge belongs to one face; -1 where there are fewer. An edge belongs to its left face.
+    std::vector<std::array<int, 3>> own_vertices, own_edges;
+    std::vector<std::array<int, 3>> edges_of;  ///< of each face: the edge from corner k to the next
+};
+
+}  // namespace arris

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/mesh_change/self_guard.h"
+
+#include <algorithm>
+
+#include "geometry/self_contact/self_intersection.h"
+
+namespace arris {
+
+namespace {
+
+IdFace from_least(IdFace face)
+{
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    return face;
+}
+
+BoxTree::Box box_of(const PatchFace& face)
+{
+    BoxTree::Box box;
+    for (const Vec3& x : face.world) box.extend(x);
+    return box;
+}
+
+bool is_crossing(const PatchFace& first, const PatchFace& second)
+{
+    std::vector<Vec3> positions(first.world.begin(), first.world.end());
+    Face other;
+    for (int i = 0; i < 3; ++i) {
+        const auto shared = std::find(first.vertices.begin(), first.vertices.end(), second.vertices[i]);
+        other[i] =
+            static_cast<int>(shared != first.vertices.end() ? shared - first.vertices.begin()
+                                                            : static_cast<std::ptrdiff_t>(positions.size()));
+        if (shared == first.vertices.end()) positions.push_back(second.world[i]);
+    }
+    return arris::is_crossing(positions, Face{0, 1, 2}, other);
+}
+
+}  // namespace
+
+SelfGuard::SelfGuard(const State& state)
+{
+    std::vector<BoxTree::Box> boxes;
+    for (const Face& face : state.mesh.faces) {
+        PatchFace made;
+        for (int i = 0; i < 3; ++i) {
+            made.vertices[i] = state.ids[face[i]];
+            made.material[i] = state.mesh.material[face[i]];
+            made.world[i] = state.mesh.world[face[i]];
+        }
+        add(made);
+        boxes.push_back(parts_.back().box);
+    }
+    first_count_ = parts_.size();
+    tree_ = BoxTree(boxes);
+}
+
+void SelfGuard::add(const PatchFace& face)
+{
+    index_of_[from_least(face.vertices)] = static_cast<int>(parts_.size());
+    parts_.push_back({face, box_of(face)});
+}
+
+void SelfGuard::follow(const std::vector<SurgeryEvent>& events)
+{
+    for (; followed_ < events.size(); ++followed_) {
+        for (const PatchFace& face : events[followed_].before)
+            if (const auto known = index_of_.find(from_least(face.vertices)); known != index_of_.end()) {
+                parts_[known->second].is_there = false;
+                index_of_.erase(known);
+            }
+        for (const PatchFace& face : events[followed_].after) add(face);
+    }
+}
+
+bool SelfGuard::crosses(const PatchFace& made, const SurgeryEvent& event)
+{
+    const BoxTree::Box box = box_of(made);
+    const auto meets = [&](const Part& part) {
+        if (!part.is_there || !part.box.intersects(box)) return false;
+        const IdFace face = from_least(part.face.vertices);
+        const bool is_replaced =
+            std::any_of(event.before.begin(), event.before.end(),
+                        [&](const PatchFace& old) { return from_least(old.vertices) == face; });
+        return !is_replaced && is_crossing(made, part.face);
+    };
+    tree_.find(box, found_);
+    return std::any_of(found_.begin(), found_.end(), [&](int f) { return meets(parts_[f]); }) ||
+           std::any_of(parts_.begin() + static_cast<std::ptrdiff_t>(first_count_), parts_.end(), meets);
+}
+
+bool SelfGuard::allows(const SurgeryEvent& event, const std::vector<SurgeryEvent>& events)
+{
+    if (event.operation == SurgeryOperation::SplitEdge || event.operation == SurgeryOperation::SplitFace)
+        return true;
+    follow(events);
+    for (std::size_t i = 0; i < event.after.size(); ++i) {
+        if (crosses(event.after[i], event)) return false;
+        for (std::size_t j = i + 1; j < event.after.size(); ++j)
+            if (is_crossing(event.after[i], event.after[j])) return false;
+    }
+    return true;
+}
+
+}  // namespace arris

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "solver/model/scene.h"
+#include "solver/model/state.h"
+#include "solver/model/step_report.h"
+#include "solver/workspace.h"
+
+namespace arris {
+
+/// Stage 3 of a step: collects the contacts that the cloth may meet, and flattens history that runs into
+/// them. False where a vertex has no room between two obstacles, and where a number is not finite.
+bool collect_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report);
+
+/// Before A is assembled: where so many rows of the cloth with itself are expected to press that the velocity
+/// solve wants them in its matrix, gives the pattern the pairs of vertices that they couple.
+void make_room_for_self_rows(Workspace& work);
+
+/// Adds violations as rows: to the existing system, or to a new one where they change history or the room
+/// that contacts share. False where the check names no contact.
+bool add_violations(const Scene& scene, const State& state, const Violations& violations, Workspace& work);
+
+}  // namespace arris

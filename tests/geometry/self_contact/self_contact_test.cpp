@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "geometry/cloth_input/cloth_grid.h"
+#include "geometry/self_contact/self_contact_search.h"
+#include "geometry/self_contact/self_intersection.h"
+#include "geometry/self_contact/self_sweep.h"
+
+namespace arris {
+namespace {
+
+constexpr double kThickness = 1e-3;
+
+/// Sheets of one mesh, at rest or moving.
+struct Sheets {
+    std::vector<Face> faces;
+    std::vector<Vec3> begin, end;
+
+    void add(int cells, GridPattern pattern, const Vec3& corner, const Vec3& way = Vec3::Zero())
+    {
+        ClothGrid grid;
+        grid.resolution = {cells, cells};
+        grid.pattern = pattern;
+        const ClothMesh mesh = make_cloth_grid(grid);
+        const int first = static_cast<int>(begin.size());
+        for (const Face& f : mesh.faces) faces.push_back({f[0] + first, f[1] + first, f[2] + first});
+        for (const Vec2& p : mesh.material) {
+            begin.push_back(corner + Vec3(p.x(), p.y(), 0.0));
+            end.push_back(begin.back() + way);
+        }
+    }
+    SelfSurface surface() const
+    {
+        const int n = static_cast<int>(begin.size());
+        return {n, faces, make_topology(n, faces)};
+    }
+    std::vector<SelfContact> contacts() const
+    {
+        return find_self_contacts(surface(), {begin, end}, kThickness);
+    }
+    SelfSweepReport check() const { return check_self_sweep(surface(), {begin, end}, kThickness); }
+};
+
+TEST(SelfContact, FlatClothHasNone)
+{
+    for (const GridPattern pattern : {GridPattern::Diagonal, GridPattern::Cross, GridPattern::Unstructured}) {
+        Sheets sheets;
+        sheets.add(12, pattern, Vec3::Zero(), {3.0, -2.0, 1.0});
+        EXPECT_TRUE(sheets.contacts().empty());
+        EXPECT_TRUE(sheets.check().is_clean());
+        EXPECT_TRUE(find_self_intersections(sheets.begin, sheets.faces).empty());
+    }
+}
+
+TEST(SelfContact, EveryVertexOfALayerHasAPlaneAcrossIt)
+{
+    for (const GridPattern pattern : {GridPattern::Diagonal, GridPattern::Cross, GridPattern::Unstructured}) {
+        Sheets sheets;
+        sheets.add(6, pattern, Vec3::Zero());
+        const int below = static_cast<int>(sheets.begin.size());
+        sheets.add(6, pattern, {0.0, 0.0, kThickness});
+        const std::vector<SelfContact> contacts = sheets.contacts();
+        std::vector<char> is_kept(sheets.begin.size(), 0);
+        for (const SelfContact& contact : contacts) {
+            EXPECT_NEAR(std::abs(contact.normal.z()), 1.0, 1e-9);
+            EXPECT_NEAR(contact.least_gap, kThickness, 1e-15);
+            EXPECT_NEAR(contact.normal.dot(contact.difference(sheets.begin)), kThickness, 1e-15);
+            if (contact.kind == SelfContactKind::VertexFace) is_kept[contact.vertices[0]] = 1;
+        }
+        EXPECT_EQ(std::count(is_kept.begin(), is_kept.end(), 1), static_cast<long>(is_kept.size()));
+        EXPECT_LE(contacts.size(), 8u * below);
+    }
+}
+
+TEST(SelfContact, ClothBesideAnEdgeIsNotHeldSideways)
+{
+    Sheets sheets;
+    sheets.add(4, GridPattern::Diagonal, Vec3::Zero());
+    // Above a face, near its edge: the plane of the neighbouring face is no local minimum.
+    sheets.add(1, GridPattern::Diagonal, {0.24, 0.1, kThickness});
+    for (const SelfContact& contact : sheets.contacts()) EXPECT_NEAR(std::abs(contact.normal.z()), 1.0, 1e-9);
+}
+
+TEST(SelfContact, FastLayersMeetInTheSearchAndInTheCheck)
+{
+    Sheets sheets;
+    sheets.add(5, GridPattern::Cross, Vec3::Zero());
+    sheets.add(7, GridPattern::Diagonal, {0.05, 0.03, 0.2}, {0.0, 0.0, -0.5});
+    const std::vector<SelfContact> contacts = sheets.contacts();
+    ASSERT_FALSE(contacts.empty());
+    for (const SelfContact& contact : contacts) {
+        EXPECT_GT(contact.least_gap, 0.0);
+        EXPECT_LT(contact.normal.dot(contact.difference(sheets.end)), 0.0);
+    }
+    const SelfSweepReport report = sheets.check();
+    EXPECT_GT(report.crossings, 60);
+    EXPECT_FALSE(report.violations.empty());
+    // A layer that stops short of the other one has met nothing.
+    for (Vec3& x : sheets.end) x.z() = std::max(x.z(), x.z() < -0.1 ? 1e-5 : x.z());
+    EXPECT_TRUE(sheets.check().is_clean());
+}
+
+TEST(SelfContact, FoldsMeetOnlyWhereTheyPassThroughThemselves)
+{
+    // A strip folded about x = .5 by `angle`; from 180 degrees on its parts lie in each other.
+    const auto folded = [](double angle) {
+        Sheets sheets;
+        sheets.add(6, GridPattern::Diagonal, Vec3::Zero());
+        for (Vec3& x : sheets.begin)
+            if (x.x() > 0.5)
+                x = Vec3(0.5 + (x.x() - 0.5) * std::cos(angle), x.y(), (x.x() - 0.5) * std::sin(angle));
+        sheets.end = sheets.begin;
+        return sheets;
+    };
+    const double degree = M_PI / 180.0;
+    for (const double angle : {1e-6, 0.5, 2.0, 179.0 * degree, 179.999 * degree})
+        EXPECT_TRUE(find_self_intersections(folded(angle).begin, folded(angle).faces).empty()) << angle;
+    Sheets flat = folded(M_PI);
+    for (Vec3& x : flat.begin) x.z() = 0.0;
+    EXPECT_FALSE(find_self_intersections(flat.begin, flat.faces).empty());
+    Sheets through = folded(170.0 * degree);
+    through.end = folded(190.0 * degree).begin;
+    EXPECT_FALSE(through.check().is_clean());
+    Sheets closing = folded(100.0 * degree);
+    closing.end = folded(179.0 * degree).begin;
+    EXPECT_TRUE(closing.check().is_clean());
+    EXPECT_TRUE(find_self_intersections(through.end, through.faces).empty());  // passed, and free again
+}
+
+TEST(SelfContact, CrossingsOfRandomSheetsAreExact)
+{
+    // Two tilted sheets: faces cross where a vertical line through both planes' common line says so.
+    Sheets sheets;
+    sheets.add(3, GridPattern::Diagonal, {0.0, 0.0, 0.0});
+    const int n = static_cast<int>(sheets.begin.size());
+    sheets.add(3, GridPattern::Diagonal, {0.0, 0.0, -0.51});
+    for (std::size_t v = n; v < sheets.begin.size(); ++v) sheets.begin[v].z() += sheets.begin[v].x();
+    const auto pairs = find_self_intersections(sheets.begin, sheets.faces);
+    ASSERT_FALSE(pairs.empty());
+    for (const auto& [a, b] : pairs)
+        for (const int f : {a, b}) {  // both contain points on both sides of x = .51
+            double low = 1.0, high = 0.0;
+            for (const int v : sheets.faces[f]) {
+                low = std::min(low, sheets.begin[v].x());
+                high = std::max(high, sheets.begin[v].x());
+            }
+            EXPECT_LE(low, 0.51 + 1e-12);
+            EXPECT_GE(high, 0.51 - 1e-12);
+        }
+}
+
+}  // namespace
+}  // namespace arris
