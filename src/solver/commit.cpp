@@ -15,13 +15,14 @@ namespace {
 void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoordinates>& eol,
                 const std::vector<double>& multiplier, std::vector<EolVertex>& vertices)
 {
-    for (std::size_t c = 0; c < contacts.size(); ++c) {
-        if (contacts[c].eol < 0) continue;
-        EolVertex& vertex = vertices[eol[contacts[c].eol].entry];
-        vertex.outward = contacts[c].in_frame.normal;
-        vertex.side = eol[contacts[c].eol].side;
-        vertex.idle = multiplier[c] > 0.0 ? 0 : vertex.idle + 1;
+    for (const EolCoordinates& at : eol) {
+        EolVertex& vertex = vertices[at.entry];
+        vertex.outward = at.frame.outward;
+        vertex.side = at.side;
+        ++vertex.idle;
     }
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+        if (contacts[c].eol >= 0 && multiplier[c] > 0.0) vertices[eol[contacts[c].eol].entry].idle = 0;
 }
 
 }  // namespace

@@ -52,7 +52,10 @@ struct RopeCase {
     GridPattern pattern = GridPattern::Diagonal;
     double pattern_angle = 0.0;  ///< degrees
     Integrator integrator = Integrator::Bdf2;
-    int segments = 1;  ///< number of wire segments from y = -1 to 1
+    int segments = 1;  ///< number of wire segments
+    std::array<double, 2> ends = {-1.0,
+                                  1.0};  ///< y of the wire's ends, m; the rope's borders are at -.1 and .1
+    bool is_frame = false;               ///< whether the wire goes on downward at its ends, to a closed frame
     /// Angle between the sides at the start: a little more than the fold planes require.
     double open_degrees = 0.6;
     double stiffness = 2e5;  ///< N/m
@@ -114,11 +117,15 @@ double integrated_displacement(Integrator integrator, double duration, double dt
     return y;
 }
 
-ObstacleMesh make_wire_of(int segments)
+ObstacleMesh make_wire_of(const RopeCase& rope)
 {
+    const auto [from, to] = rope.ends;
     std::vector<Vec3> points;
-    for (int k = 0; k <= segments; ++k) points.emplace_back(0.0, -1.0 + 2.0 * k / segments, 0.0);
-    return make_wire(points, false);
+    for (int k = 0; k <= rope.segments; ++k)
+        points.emplace_back(0.0, from + (to - from) * k / rope.segments, 0.0);
+    if (rope.is_frame)
+        for (const double y : {to, from}) points.emplace_back(0.0, y, -2.0);
+    return make_wire(points, rope.is_frame);
 }
 
 /// A run with the rope folded over the wire, with EOL vertices on the wire where they are given.
@@ -141,7 +148,7 @@ ClothRun make_rope_run(const RopeCase& rope)
     Scene scene;
     scene.material = {kDensity, rope.stiffness, 0.0, rope.bending, rope.damping, kThickness};
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
-    scene.obstacles.push_back(Obstacle("wire", make_wire_of(rope.segments), {}, {}, 10.0));
+    scene.obstacles.push_back(Obstacle("wire", make_wire_of(rope), {}, {}, 10.0));
     scene.eol = make_initial_target(mesh);
     if (rope.friction > 0.0) scene.friction = Friction{{rope.friction}};
     if (!rope.is_given) clear_stand_off(scene, mesh);
@@ -418,6 +425,86 @@ TEST(RopeOverWire, SlidesHoweverWideTheSceneFoldsIt)
         for (ClothRun* run : {&given, &found}) run->advance(kShare * kLiftOff, kStep);
         EXPECT_EQ(found.state.crossings, 0);
         EXPECT_NEAR(measure_displacement(found) / measure_displacement(given), 1.0, c.allowed);
+    }
+}
+
+// A wire may end with the rope's borders or before them. The rope's sides are stiff in their planes, so that
+// its fold stays straight past the wire's end, and the rope slides as on a longer wire.
+TEST(RopeOverWire, SlidesOnAWireThatEndsWithItsBordersOrBeforeThem)
+{
+    struct Case {
+        const char* name;
+        std::array<double, 2> ends;  // m
+        std::array<int, 2> cells;
+        GridPattern pattern;
+        bool is_frame = false;
+        double share = kShare;  ///< of kLiftOff
+    };
+    constexpr double kEndError = 1e-3;  // relative to y
+    for (const Case& c :
+         {Case{"flush", {-0.1, 0.1}, {8, 2}, GridPattern::Diagonal},
+          {"flush, one cell", {-0.1, 0.1}, {1, 1}, GridPattern::Diagonal},
+          {"flush, more cells", {-0.1, 0.1}, {20, 4}, GridPattern::Cross},
+          {"flush with a frame's corners", {-0.1, 0.1}, {8, 2}, GridPattern::Diagonal, true, 0.8},
+          {"flush at one end", {-0.1, 1.0}, {16, 4}, GridPattern::Unstructured},
+          {"a thickness inside", {-0.099, 0.099}, {8, 2}, GridPattern::Diagonal},
+          {"less than a cell inside", {-0.07, 0.06}, {8, 2}, GridPattern::Diagonal},
+          {"less than a cell inside, more cells", {-0.07, 0.06}, {20, 4}, GridPattern::Cross},
+          {"inside at one end", {-1.0, 0.06}, {16, 4}, GridPattern::Unstructured},
+          {"a cell inside", {-0.05, 0.05}, {20, 4}, GridPattern::Cross},
+          {"more than a cell inside", {-0.07, 0.06}, {40, 8}, GridPattern::Cross}}) {
+        SCOPED_TRACE(c.name);
+        RopeCase rope;
+        rope.cells = c.cells;
+        rope.pattern = c.pattern;
+        rope.ends = c.ends;
+        rope.is_frame = c.is_frame;
+        rope.stiffness = 2e4;
+        rope.damping = kDamping;
+        rope.is_given = false;
+        ClothRun run = make_rope_run(rope);
+        const double duration = c.share * kLiftOff;
+        run.advance(duration, kStep);
+        EXPECT_EQ(run.state.crossings, 0);
+        EXPECT_NEAR(measure_displacement(run) / displacement(duration), 1.0, kEndError);
+    }
+}
+
+// The wire is beside the fold's sides, not between them: nothing carries the rope, though it touches the
+// wire.
+TEST(RopeOverWire, FallsBesideAWireThatItsFoldDoesNotHangOn)
+{
+    struct Case {
+        double open_degrees, beside, height;  // m
+        std::array<int, 2> cells;
+    };
+    constexpr double kFallError = 5e-3;  // relative to the fall: the wire pushes the rope aside at first
+    for (const Case& c : {Case{0.6, 1e-5, 0.0, {8, 2}},
+                          {0.6, 5e-5, 0.0, {8, 2}},
+                          {0.6, 2e-4, 0.0, {8, 2}},
+                          {0.6, -1e-5, 0.0, {8, 2}},
+                          {0.6, -2e-4, 0.0, {8, 2}},
+                          {0.6, 2e-4, 1e-3, {8, 2}},
+                          {0.6, 2e-4, 0.0, {20, 4}},
+                          {2.0, 5e-5, 0.0, {8, 2}},
+                          {2.0, -2e-4, 0.0, {8, 2}}}) {
+        for (const double damping : {0.0, kDamping}) {
+            RopeCase rope;
+            rope.open_degrees = c.open_degrees;
+            rope.beside = c.beside;
+            rope.height = c.height;
+            rope.cells = c.cells;
+            rope.damping = damping;
+            rope.is_given = false;
+            SCOPED_TRACE(describe(rope));
+            ClothRun run = make_rope_run(rope);
+            constexpr double kDuration = 0.2;  // s
+            const double start = measure_displacement(run);
+            run.advance(kDuration, kStep);
+            EXPECT_EQ(run.state.crossings, 0);
+            const double fall = 0.5 * kG * kDuration * kDuration;
+            EXPECT_NEAR((measure_displacement(run) - start) / fall, 1.0, kFallError);
+        }
     }
 }
 

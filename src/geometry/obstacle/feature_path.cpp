@@ -84,6 +84,20 @@ PointOnFeature place_on_feature(const Obstacle& obstacle, int feature, const Vec
     return {s, a + s * (b - a)};
 }
 
+Vec3 way_across(const Obstacle& obstacle, int feature, const Vec3& place)
+{
+    const Vec3 along = direction_of(obstacle, feature);
+    const Vec3 from = place - feature_segment(obstacle, feature)[0];
+    return from - along.dot(from) * along;
+}
+
+double length_past_end(const Obstacle& obstacle, int feature, const Vec3& place)
+{
+    const int end = end_passed(obstacle, feature, place);
+    if (end < 0 || obstacle.features().edges[feature].kind != FeatureKind::Wire) return 0.0;
+    return std::abs(direction_of(obstacle, feature).dot(place - obstacle.mesh().points[end]));
+}
+
 FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& place)
 {
     const auto look_at = [&](int f) {
@@ -104,13 +118,18 @@ FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& 
     return {feature, s};
 }
 
-bool is_past_end(const Obstacle& obstacle, int feature, const Vec3& place)
+int end_passed(const Obstacle& obstacle, int feature, const Vec3& place)
 {
     const double s = place_on_feature(obstacle, feature, place).s;
-    if (s > 0.0 && s < 1.0) return false;
+    if (s > 0.0 && s < 1.0) return -1;
     const ObstacleFeatures& features = obstacle.features();
-    const auto& ends = obstacle.topology().edges[features.edges[feature].edge].points;
-    return is_corner(features, ends[s > 0.0 ? 1 : 0]);
+    const int end = obstacle.topology().edges[features.edges[feature].edge].points[s > 0.0 ? 1 : 0];
+    return is_corner(features, end) ? end : -1;
+}
+
+bool is_past_end(const Obstacle& obstacle, int feature, const Vec3& place)
+{
+    return end_passed(obstacle, feature, place) >= 0;
 }
 
 std::optional<FeatureBend> find_bend(const Obstacle& obstacle, int point)

@@ -26,12 +26,21 @@ struct PointOnFeature {
 };
 PointOnFeature place_on_feature(const Obstacle& obstacle, int feature, const Vec3& place);
 
+/// From the line through feature edge `feature` to `place`, across the line.
+Vec3 way_across(const Obstacle& obstacle, int feature, const Vec3& place);
+
+/// Length, m, by which a place is past an end of its wire, along the straight line that goes on from there. 0
+/// elsewhere, and for other features. `feature`: the edge of the wire nearest to the place.
+double length_past_end(const Obstacle& obstacle, int feature, const Vec3& place);
+
 /// Finds the place on the polyline for a point that has moved along it, starting from feature edge `feature`.
 /// Moves on to the next edge as long as that edge is nearer. So another part of the same polyline that
 /// happens to be near is not taken.
 FeaturePlace follow_polyline(const Obstacle& obstacle, int feature, const Vec3& place);
 
-/// Whether the point of feature edge `feature` nearest to `place` is an end of its polyline.
+/// The end of the polyline, an index in the mesh, that is the point of feature edge `feature` nearest to
+/// `place`; -1 where the nearest point is no end.
+int end_passed(const Obstacle& obstacle, int feature, const Vec3& place);
 bool is_past_end(const Obstacle& obstacle, int feature, const Vec3& place);
 
 /// A bend of a polyline: an end (0 or 1) of one of its edges, beyond which the polyline continues in another

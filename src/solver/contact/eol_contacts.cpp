@@ -29,7 +29,8 @@ bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordina
 {
     constexpr double kReach = 10.0;  // heights: cloth leaving at 6 degrees is a stand-off away
     const ObstacleFeatures& features = obstacle.features();
-    const double height = std::max((place - at.frame.point).norm(), thickness);
+    const Vec3 from = place - at.frame.point, along = at.frame.tangent.dot(from) * at.frame.tangent;
+    const double height = std::max((from - along).norm(), thickness);
     if ((contact.point - at.frame.point).norm() > kReach * height) return false;
     const int corner = fixed_point(obstacle, eol);
     const auto is_of_wire = [&](int edge) {
@@ -41,8 +42,9 @@ bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordina
     if (contact.kind == ContactKind::Edge) return is_of_wire(contact.element);
     if (eol.on.is_corner()) return contact.element == corner;
     const ObstacleTopology& topology = obstacle.topology();
-    return !is_corner(features, contact.element) && topology.edge_count_at(contact.element) > 0 &&
-           is_of_wire(topology.edge_at(contact.element, 0));
+    // The fold of a vertex past the wire's end passes over that end.
+    if (is_corner(features, contact.element) && !is_past_end(obstacle, eol.on.index, place)) return false;
+    return topology.edge_count_at(contact.element) > 0 && is_of_wire(topology.edge_at(contact.element, 0));
 }
 
 /// Whether a point of the obstacle is within kOnFeature thicknesses of an EOL vertex's feature. Any place
@@ -90,6 +92,32 @@ void append_folds(const Scene& scene, const State& state, const ClothStars& star
         contacts.push_back(place_contact(contact, fold.obstacle, step, prediction));
         contacts.back().mitre = fold.bound.wanted / thickness;
     }
+}
+
+/// Whether an EOL vertex is past the end of its wire, with another one between them. The end supports the
+/// cloth at the first vertex past it; farther out nothing does.
+bool is_unsupported(const Scene& scene, const State& state, const ClothStars& stars, const EolCoordinates& at,
+                    const std::vector<Vec3>& positions)
+{
+    const EolVertex& eol = state.eol[at.entry];
+    const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
+    const auto length_of = [&](const EolVertex& e, int v) {
+        return e.on.is_corner() ? 0.0 : length_past_end(obstacle, e.on.index, positions[v]);
+    };
+    const double length = length_of(eol, at.vertex);
+    if (!(length > 0.0)) return false;
+    bool has_nearer = false;
+    for (const int f : stars.faces[at.vertex])
+        for (const int w : state.mesh.faces[f]) {
+            const int entry = state.eol_entry(state.ids[w]);
+            if (w == at.vertex || entry < 0 ||
+                !is_trace_edge(obstacle, {eol, positions[at.vertex]}, {state.eol[entry], positions[w]}))
+                continue;
+            const double other = length_of(state.eol[entry], w);
+            if (!(other > 0.0) && !state.eol[entry].on.is_corner()) return false;
+            has_nearer = has_nearer || other < length;
+        }
+    return has_nearer;
 }
 
 Contact make_eol_contact(const ObstacleStep& step, const Prediction& prediction, double thickness,
@@ -150,6 +178,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     const std::size_t found = contacts.size();
     for (std::size_t e = 0; e < eol.size(); ++e) {
         const int o = state.eol[eol[e].entry].on.obstacle;
+        if (is_unsupported(scene, state, stars, eol[e], steps[o].motion.begin)) continue;
         contacts.push_back(make_eol_contact(steps[o], prediction, thickness, o, eol[e]));
         contacts.back().eol = static_cast<int>(e);
         contacts.back().mitre = eol[e].frame.mitre;

@@ -15,6 +15,14 @@ namespace {
 // rad. Cloth that hangs straight down loses 1e-5 of its height, and passes the wire at 5e-3 stand-offs.
 constexpr double kLeastAngle = 5e-3;
 
+/// Whether a way leads across a wire with this tangent. Edges along a fold do not, however near the wire the
+/// fold's next vertex is: they are on no side of the fold.
+bool leads_across(const Vec3& tangent, const Vec3& way)
+{
+    constexpr double kLeast = 0.17;  // sine of 10 degrees
+    return tangent.cross(way).norm() > kLeast * tangent.norm() * way.norm();
+}
+
 }  // namespace
 
 bool is_folded_around(const std::array<Vec3, 2>& segment, const Vec3& place, const Vec3& other,
@@ -28,12 +36,26 @@ bool is_folded_around(const std::array<Vec3, 2>& segment, const Vec3& place, con
     const auto side_of = [&](const Vec3& end) {
         const SegmentPair nearest = closest_between_segments({place, end}, segment);
         const double gap = (nearest.first - nearest.second).norm();
+        if (!leads_across(tangent, end - place)) return 0;
         if (!(gap < (1.0 - kNearer) * from.norm() && gap <= reach)) return 0;
         return tangent.dot((end - place).cross(from)) > 0.0 ? 1 : -1;
     };
     const int side = side_of(other);
     return side != 0 &&
            std::any_of(around.begin(), around.end(), [&](const Vec3& end) { return side_of(end) == -side; });
+}
+
+bool is_folded_beside(const std::array<Vec3, 2>& segment, const Vec3& place, const std::vector<Vec3>& around)
+{
+    const SegmentPair at = closest_between_segments({place, place}, segment);
+    const Vec3 tangent = segment[1] - segment[0];
+    const Vec3 normal = tangent.cross(at.second - at.first);
+    bool is_before = false, is_behind = false;
+    for (const Vec3& end : around) {
+        if (!leads_across(tangent, end - place)) continue;
+        (normal.dot(end - place) > 0.0 ? is_before : is_behind) = true;
+    }
+    return is_before != is_behind;
 }
 
 double angle_behind(const FeatureFrame& frame, const Vec3& place)

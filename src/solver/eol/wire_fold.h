@@ -24,6 +24,11 @@ namespace arris {
 bool is_folded_around(const std::array<Vec3, 2>& segment, const Vec3& place, const Vec3& other,
                       const std::vector<Vec3>& around, double reach);
 
+/// Whether the cloth at the vertex `place` is folded beside a wire's `segment`: all its edges across the
+/// wire, which lead to `around`, leave to one side of the way to the wire. The wire is then outside of the
+/// fold.
+bool is_folded_beside(const std::array<Vec3, 2>& segment, const Vec3& place, const std::vector<Vec3>& around);
+
 /// Direction outward from a wire at the end of a step of `dt` (s). Turns towards `wanted.outward`, as far as
 /// the plane behind stays off the cloth and the vertex moves at most at 0.1 m/s. `place` is the vertex and
 /// `beside` its neighbours that are not on the wire, m, in the obstacle's frame. `wanted.outward` where the

@@ -29,6 +29,19 @@ inline constexpr double kOnFeature = 2.5;
 inline constexpr double kFlyingCells = 1.0;
 inline constexpr double kAstrayCells = 0.3;
 
+/// Length, in cells, past the free end of a wire over which a fold on the wire may lead on, in line with it,
+/// to the cloth's border. Raising it keeps longer folds straight and in their plane that have no support
+/// there.
+struct PastEnd {
+    double enter;  ///< for a new vertex
+    double stay;   ///< more, so that a vertex does not come and go
+};
+inline constexpr PastEnd kPastEnd = {.enter = 4.0, .stay = 4.3};
+
+/// Likewise, in thicknesses, past a corner where other wires go on: only for borders flush with it. Raising
+/// it leads folds on into the corner's other wires.
+inline constexpr double kPastJoinedEnd = 0.1;
+
 /// Consecutive steps without pressing before a vertex may be released: contact that chatters is still
 /// contact.
 inline constexpr int kIdleSteps = 3;

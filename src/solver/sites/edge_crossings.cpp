@@ -13,6 +13,7 @@
 #include "geometry/sort_unique.h"
 #include "solver/eol/eol_features.h"
 #include "solver/eol/wire_fold.h"
+#include "solver/sites/wire_end.h"
 
 namespace arris {
 
@@ -40,6 +41,12 @@ std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const 
     return find(a, b, feature, normal, {kInPlane, kOnFeature * thickness_});
 }
 
+std::optional<FeatureSite> EdgeCrossings::find_past_end(int a, int b, int feature, const Vec3& normal) const
+{
+    const auto site = find(a, b, feature, normal, {kInPlane, kOnFeature * thickness_, true});
+    return site && is_past_end(feature, *site) ? site : std::nullopt;
+}
+
 std::optional<FeatureSite> EdgeCrossings::find_pressed(int a, int b, int feature, const Vec3& normal) const
 {
     const double height = kOnFeature * thickness_ + find_rise(a, b, feature, normal);
@@ -62,15 +69,51 @@ std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const 
                                                const Reach& reach) const
 {
     if (a > b) std::swap(a, b);
-    if (const auto fold = find_fold_around(a, b, feature)) return find_on_fold(*fold, feature);
+    // Past the end of a wire a trace leads only over a fold, and to the cloth's border.
+    const auto is_there = [&](const FeatureSite& site) {
+        return reach.is_past_end || site.is_on_border || !is_past_end(feature, site);
+    };
+    if (const auto fold = find_fold_around(a, b, feature)) {
+        const auto site = find_on_fold(*fold, feature);
+        return site && is_there(*site) ? site : std::nullopt;
+    }
     const std::optional<double> s = find_share(a, b, feature, reach);
     if (!s || (*s == 0.0 && is_eol(a)) || (*s == 1.0 && is_eol(b))) return std::nullopt;
     const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
+    if (is_beside_fold(a, b, feature, X)) return std::nullopt;
     FeatureSite site = {FeatureId::edge(o_, feature), X, state_.ids[*s < 0.5 ? a : b], normal};
     site.edge = {*s < 1.0 ? a : b, *s > 0.0 ? b : a};
     const auto [before, after] = stars_.border_neighbours[site.edge[0]];
     site.is_on_border = site.edge[0] == site.edge[1] ? before >= 0 : before == b || after == b;
-    return site;
+    return is_there(site) ? std::optional(site) : std::nullopt;
+}
+
+/// The feature near vertex `v` of the cloth, with the line that goes on past an end of a wire.
+std::array<Vec3, 2> EdgeCrossings::segment_at(int v, int feature) const
+{
+    std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
+    const Vec3 along = (segment[1] - segment[0]).normalized();
+    for (const int end : {0, 1}) {
+        const double reach =
+            reach_past_end(obstacle_, feature, point_at(obstacle_, {feature, end}), thickness_,
+                           kPastEnd.enter, target_.length(state_.mesh.material[v]));
+        segment[end] += (end == 1 ? reach : -reach) * along;
+    }
+    return segment;
+}
+
+Vec3 EdgeCrossings::place_of(const FeatureSite& site) const
+{
+    const auto& [a, b] = site.edge;
+    const std::vector<Vec2>& X = state_.mesh.material;
+    const double length = (X[b] - X[a]).norm();
+    const double s = length > 0.0 ? (site.material - X[a]).norm() / length : 0.0;
+    return (1.0 - s) * positions_[a] + s * positions_[b];
+}
+
+bool EdgeCrossings::is_past_end(int feature, const FeatureSite& site) const
+{
+    return arris::is_past_end(obstacle_, feature, place_of(site));
 }
 
 /// Site on a fold of the cloth around a wire or border. Each side of the fold has a nearest point of its own,
@@ -91,7 +134,7 @@ std::optional<FeatureSite> EdgeCrossings::find_on_fold(const FoldEnd& fold, int 
 /// Share of the edge, from a (0) to b (1), at which it crosses.
 std::optional<double> EdgeCrossings::find_share(int a, int b, int feature, const Reach& reach) const
 {
-    const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
+    const std::array<Vec3, 2> segment = segment_at(a, feature);
     const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
     const FeatureEdge& edge = obstacle_.features().edges[feature];
     if (edge.kind != FeatureKind::Convex) {
@@ -123,7 +166,7 @@ std::optional<double> EdgeCrossings::find_share(int a, int b, int feature, const
 std::optional<EdgeCrossings::FoldEnd> EdgeCrossings::find_fold_around(int a, int b, int feature) const
 {
     if (obstacle_.features().edges[feature].kind == FeatureKind::Convex) return std::nullopt;
-    const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
+    const std::array<Vec3, 2> segment = segment_at(a, feature);
     for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)}) {
         const double along = closest_on_segment(positions_[end], segment[0], segment[1]);
         const Vec3 from = positions_[end] - (segment[0] + along * (segment[1] - segment[0]));
@@ -136,6 +179,22 @@ std::optional<EdgeCrossings::FoldEnd> EdgeCrossings::find_fold_around(int a, int
             return FoldEnd{end, from};
     }
     return std::nullopt;
+}
+
+/// Whether a wire or border presses at X from outside on a fold of the cloth, at an end of its edge. A vertex
+/// on the wire would take the fold's place, though the fold does not hang on the wire.
+bool EdgeCrossings::is_beside_fold(int a, int b, int feature, const Vec2& X) const
+{
+    if (obstacle_.features().edges[feature].kind == FeatureKind::Convex) return false;
+    const std::array<Vec3, 2> segment = segment_at(a, feature);
+    const std::array<int, 2> ends = {a, b};
+    return std::any_of(ends.begin(), ends.end(), [&](int end) {
+        const Vec2& at = state_.mesh.material[end];
+        if (!((X - at).norm() < kCrowded * target_.length(at))) return false;
+        std::vector<Vec3> around;
+        for (const int w : neighbours(end)) around.push_back(positions_[w]);
+        return is_folded_beside(segment, positions_[end], around);
+    });
 }
 
 /// Height, m, by which an edge of the cloth that pressed along `normal` may have risen over the feature. The

@@ -20,9 +20,18 @@ class EdgeCrossings {
     /// along `normal` (in the obstacle's frame). Nothing at an EOL vertex.
     std::optional<FeatureSite> find(int a, int b, int feature, const Vec3& normal) const;
 
+    /// `find` past an end of a wire, on the line that goes on from there.
+    std::optional<FeatureSite> find_past_end(int a, int b, int feature, const Vec3& normal) const;
+
     /// `find` for an edge that pressed. By now the edge may be higher, or end before it crosses; the crossing
     /// is then on an edge that continues from its end.
     std::optional<FeatureSite> find_pressed(int a, int b, int feature, const Vec3& normal) const;
+
+    /// Position of a site on a cloth's edge, in the obstacle's frame.
+    Vec3 place_of(const FeatureSite& site) const;
+
+    /// Whether a site on a cloth's edge is past an end of its feature.
+    bool is_past_end(int feature, const FeatureSite& site) const;
 
     const Obstacle& obstacle() const { return obstacle_; }
     std::int32_t obstacle_index() const { return o_; }
@@ -39,13 +48,16 @@ class EdgeCrossings {
     struct Reach {
         double in_plane;  ///< thicknesses from the plane, within which an end of an edge is the crossing
         double height;    ///< m, above the feature, up to which cloth lies on it
+        bool is_past_end = false;  ///< whether sites inside the cloth may be past an end of a wire
     };
     std::optional<FeatureSite> find(int a, int b, int feature, const Vec3& normal, const Reach& reach) const;
     std::optional<double> find_share(int a, int b, int feature, const Reach& reach) const;
+    std::array<Vec3, 2> segment_at(int v, int feature) const;
     struct FoldEnd {
         int vertex;
         Vec3 from;  ///< to the vertex, from its nearest point on the feature
     };
+    bool is_beside_fold(int a, int b, int feature, const Vec2& X) const;
     std::optional<FoldEnd> find_fold_around(int a, int b, int feature) const;
     std::optional<FeatureSite> find_on_fold(const FoldEnd& fold, int feature) const;
     double find_rise(int a, int b, int feature, const Vec3& normal) const;

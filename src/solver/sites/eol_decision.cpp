@@ -10,6 +10,7 @@
 #include "solver/eol/eol_features.h"
 #include "solver/eol/free_fold.h"
 #include "solver/sites/border_room.h"
+#include "solver/sites/wire_end.h"
 
 namespace arris {
 
@@ -56,13 +57,22 @@ bool is_corner_under_face(const Scene& scene, const State& state, const EolVerte
     });
 }
 
+/// From the feature to an EOL vertex. Past the end of a wire it is measured across the line that goes on from
+/// there.
+Vec3 way_off(const FeatureFrame& frame, const Vec3& place)
+{
+    const Vec3 from = place - frame.point;
+    return from - frame.tangent.dot(from) * frame.tangent;
+}
+
 /// Whether an EOL vertex off its edge or wire, under fast flow, moves in another direction than the arriving
 /// cloth. It then bends that cloth in every step. A fold that moves along a face does not (free_fold.h).
 bool is_led_astray(const Scene& scene, const State& state, const EolVertex& eol, const EolCoordinates& at,
                    const Vec3& place)
 {
     constexpr double kAlongFace = 0.15;  // sine
-    if (eol.on.is_corner() || !has_left_feature(at.frame.point, place, scene.material.thickness) ||
+    if (eol.on.is_corner() ||
+        !has_left_feature(place - way_off(at.frame, place), place, scene.material.thickness) ||
         !(state.material_velocity[at.vertex].norm() > 0.5 * kFreeFlow))
         return false;
     const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
@@ -73,10 +83,16 @@ bool is_led_astray(const Scene& scene, const State& state, const EolVertex& eol,
     });
 }
 
-/// Whether an EOL vertex has not passed the end of its polyline.
-bool is_on_feature(const Obstacle& obstacle, const EolVertex& vertex, const Vec3& place)
+/// Whether an EOL vertex has not passed the end of its polyline. It may be past the end of a wire, in line
+/// with it.
+bool is_on_feature(const Scene& scene, const State& state, const EolVertex& eol, const Vec3& place)
 {
-    return vertex.on.is_corner() || !is_past_end(obstacle, vertex.on.index, place);
+    const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
+    const int end = eol.on.is_corner() ? -1 : end_passed(obstacle, eol.on.index, place);
+    const Vec2& X = state.mesh.material[state.index_of(eol.vertex_id)];
+    return end < 0 || length_past_end(obstacle, eol.on.index, place) <
+                          reach_past_end(obstacle, eol.on.index, end, scene.material.thickness, kPastEnd.stay,
+                                         scene.eol->length(X));
 }
 
 /// Whether an EOL vertex is so near to the cloth's border that it is released.
@@ -217,7 +233,7 @@ bool EolAdmission::is_in_plane(const EolVertex& eol) const
     const Vec3 place = trace_.placed(eol).place;
     if (eol.on.is_corner()) return true;
     const FeatureEdge& edge = obstacle.features().edges[eol.on.index];
-    const Vec3 off = place - place_on_feature(obstacle, eol.on.index, place).point;
+    const Vec3 off = way_across(obstacle, eol.on.index, place);
     if (edge.kind != FeatureKind::Convex) return off.norm() <= kOnFeature * scene_.material.thickness;
     if (has_left(eol))  // a free fold may be anywhere beyond both faces
         return std::all_of(edge.normals.begin(), edge.normals.end(), [&](const Vec3& normal) {
@@ -236,7 +252,7 @@ bool EolAdmission::is_on_side(const EolVertex& eol) const
     if (eol.on.is_corner() || obstacle.features().edges[eol.on.index].kind == FeatureKind::Convex)
         return true;
     const Vec3 place = trace_.placed(eol).place;
-    const Vec3 from = place - place_on_feature(obstacle, eol.on.index, place).point;
+    const Vec3 from = way_across(obstacle, eol.on.index, place);
     return from.dot(eol.outward) >= kAlong * from.norm();
 }
 
@@ -255,7 +271,7 @@ EolRetention decide_retention(const Scene& scene, const State& state, const Clot
 {
     const EolVertex& eol = state.eol[entry];
     if (eol.idle < kIdleSteps) return EolRetention::Firm;
-    const double gap = (place - at.frame.point).norm();
+    const double gap = way_off(at.frame, place).norm();
     const double cells = is_led_astray(scene, state, eol, at, place) ? kAstrayCells : kFlyingCells;
     if (gap > cells * scene.eol->shortest && gap > cells * scene.eol->length(state.mesh.material[at.vertex]))
         return EolRetention::None;
@@ -306,7 +322,7 @@ std::vector<EolRelease> find_releases(const Scene& scene, const State& state, co
             causes[entry] = placing.refusal;
         else if (is_at_border(scene, state, stars, eol))
             causes[entry] = RowCause::NearBorder;
-        else if (is_on_feature(obstacle, eol, place))
+        else if (is_on_feature(scene, state, eol, place))
             retained[entry] = decide_retention(scene, state, stars, entry, *placing.coordinates, place);
     }
     retain_between(scene, state, stars, retained);

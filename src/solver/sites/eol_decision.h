@@ -105,7 +105,7 @@ struct EolRelease {
 };
 
 /// EOL vertices to release, in the order of `state.eol`. These have no retention or no coordinates, have
-/// passed an end of their feature, or are too near to the cloth's border.
+/// passed an end of their feature (past a wire's, a fold may lead on), or are too near to the cloth's border.
 std::vector<EolRelease> find_releases(const Scene& scene, const State& state, const ClothStars& stars);
 
 }  // namespace arris

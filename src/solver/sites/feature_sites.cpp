@@ -14,6 +14,7 @@
 #include "solver/eol/eol_features.h"
 #include "solver/sites/bend_sites.h"
 #include "solver/sites/edge_crossings.h"
+#include "solver/sites/end_sites.h"
 #include "solver/sites/trace_gaps.h"
 
 namespace arris {
@@ -133,7 +134,9 @@ class SiteFinder {
         const Box3 box(place.array() - reach, place.array() + reach);
         std::vector<int> found;
         obstacle_.find_corners(box, found);
-        for (const int c : found) {
+        const bool is_on_border =
+            stars_.border_neighbours[v][0] >= 0;  // such a vertex has no room at a point
+        for (const int c : is_on_border ? std::vector<int>() : found) {
             const int point = obstacle_.features().corners[c].point;
             const Vec3 from = place - obstacle_.mesh().points[point];
             if (from.norm() <= reach && is_in_point_cone(obstacle_, point, from.normalized()))
@@ -233,8 +236,10 @@ std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& sta
         if (!eol.on.is_corner()) by_feature[{eol.on.obstacle, eol.on.index}];
     for (auto& [feature, found] : by_feature) {
         fill_trace_gaps(finder_of(feature[0]).crossings(), feature[1], found);
+        continue_past_ends(finder_of(feature[0]).crossings(), feature[1], found);
         sites.insert(sites.end(), found.begin(), found.end());
     }
+    for (const auto& [o, finder] : finders) drop_ends_passed(finder.crossings(), sites);
     for (const auto& [o, finder] : finders) {
         std::vector<FeatureSite> of_obstacle;
         for (const FeatureSite& site : sites)

@@ -323,7 +323,13 @@ const std::vector<WrongScene> kWrongScenes = {
     {"FoldTooFar",
      kBase + "folds = [ { line = [[0.5, 0], [0.5, 1]], degrees = 181 } ]\n",
      {},
-     "s.toml:5: cloth.folds.0.degrees = 181: is out of range; allowed: a number from -180 to 180 (degrees)"},
+     "s.toml:5: cloth.folds.0.degrees = 181: is out of range; allowed: a number from -179.9 to 179.9 "
+     "(degrees)"},
+    {"FoldShut",
+     kBase + "folds = [ { line = [[0.5, 0], [0.5, 1]], degrees = -180 } ]\n",
+     {},
+     "s.toml:5: cloth.folds.0.degrees = -180: is out of range; allowed: a number from -179.9 to 179.9 "
+     "(degrees)"},
     {"PointForLine",
      kBase + "folds = [ { line = [[0.5, 0], [0.5, 0]], degrees = 90 } ]\n",
      {},

@@ -56,6 +56,20 @@ TEST(PastEnd, IsWhatIsNearestToACornerNotToANode)
     EXPECT_FALSE(is_past_end(make_polygon(12), 0, Vec3(5.0, -5.0, 0.0))) << "and has no end";
 }
 
+TEST(LengthPastEnd, IsAlongTheLineThatGoesOnFromTheEnd)
+{
+    const Obstacle wire = make_polyline({{0, 0, 0}, {2, 0, 0}, {3, 1, 0}}, false);
+    constexpr double kRounding = 1e-14;
+    EXPECT_NEAR(length_past_end(wire, 0, Vec3(-0.3, 0.05, 0.4)), 0.3, kRounding);
+    EXPECT_NEAR(length_past_end(wire, 1, Vec3(4.0, 2.0, 0.7)), std::sqrt(2.0), kRounding);
+    for (const Vec3& place : {Vec3(0.0, 0.1, 0.0), Vec3(1.0, 0.1, 0.0), Vec3(2.5, -0.5, 0.0)})
+        EXPECT_NEAR(length_past_end(wire, 0, place), 0.0, kRounding) << place.transpose();
+    EXPECT_EQ(end_passed(wire, 0, Vec3(-0.3, 0.0, 0.0)), 0);
+    EXPECT_EQ(end_passed(wire, 1, Vec3(4.0, 2.0, 0.0)), 2);
+    EXPECT_EQ(end_passed(wire, 0, Vec3(0.5, 0.0, 0.0)), -1);
+    EXPECT_NEAR((way_across(wire, 0, Vec3(-0.3, 0.05, 0.4)) - Vec3(0.0, 0.05, 0.4)).norm(), 0.0, kRounding);
+}
+
 TEST(FollowPolyline, ExactlyAtANodeStaysWhereItWas)
 {
     const Obstacle wire = make_bent();

@@ -91,6 +91,46 @@ TEST(IsFoldedAround, HoldsWhereBothSidesPassTheWireNearerThanTheVertex)
             }
 }
 
+// Edges along the fold are on neither side, also where the fold's next vertices are nearer to the wire.
+TEST(IsFoldedAround, DoesNotTakeTheFoldForOneOfItsSides)
+{
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const Wire wire(seed, 3.0);
+        const std::array<Vec3, 2> segment = {wire.point - wire.tangent(), wire.point + wire.tangent()};
+        const Vec3 vertex = wire.vertex();
+        const Vec3 side = vertex + 0.1 * (wire.at(0.3, 1.0) - wire.point);
+        std::vector<Vec3> around = {side};
+        for (const double along : {-0.1, 0.1})
+            around.push_back(wire.point + along * wire.tangent() + 0.9 * kHeight * wire.outward(0.05));
+        EXPECT_FALSE(is_folded_around(segment, vertex, side, around, 2.5 * kHeight)) << "seed " << seed;
+    }
+}
+
+// An angle of 0 is straight down; the wire is at 0 as seen from the vertex.
+TEST(IsFoldedBeside, HoldsWhereAllSidesLeaveToOneSideOfTheWire)
+{
+    struct Case {
+        const char* name;
+        double first, second;  // rad
+        bool is_beside;
+    };
+    for (const Case& c : {Case{"around", 0.01, -0.01, false},
+                          {"flat", M_PI / 2.0, -M_PI / 2.0, false},
+                          {"flat, the wire ahead", 0.3, 0.3 - M_PI + 1e-3, false},
+                          {"beside", 0.2, 0.21, true},
+                          {"beside, on the other side", -0.2, -0.7, true}})
+        for (unsigned seed = 0; seed < 20; ++seed) {
+            const Wire wire(seed, 3.0);
+            const std::array<Vec3, 2> segment = {wire.point - wire.tangent(), wire.point + wire.tangent()};
+            const Vec3 vertex = wire.vertex();
+            std::vector<Vec3> around = {vertex + 0.1 * wire.tangent() + 0.01 * kHeight * wire.outward(1.0),
+                                        vertex - 0.1 * wire.tangent() - 0.01 * kHeight * wire.outward(1.0)};
+            for (const double angle : {c.first, c.second})
+                around.push_back(vertex + 0.1 * (wire.at(angle, 1.0) - wire.point) + 0.03 * wire.tangent());
+            EXPECT_EQ(is_folded_beside(segment, vertex, around), c.is_beside) << c.name << ", seed " << seed;
+        }
+}
+
 TEST(AngleBehind, IsTheAngleAroundTheWireWhereverThatIs)
 {
     for (unsigned seed = 0; seed < 20; ++seed) {
