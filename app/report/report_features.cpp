@@ -44,6 +44,8 @@ const char* explain(RowCause cause)
         case RowCause::Blocked:
             return "the path ahead of its EOL vertices could not be cleared, or leads beyond the cloth's "
                    "border";
+        case RowCause::Gathering:
+            return "the cloth is compressed along the feature and wants to leave it in pleats";
         case RowCause::GivenUp:
             return "an attempt at the step with EOL vertices there failed";
         case RowCause::Released:

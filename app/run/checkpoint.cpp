@@ -105,6 +105,7 @@ void write_state(BinaryWriter& out, const State& state)
         out.number(vertex.idle);
         out.number(vertex.side);
         out.number(vertex.on.end);
+        out.number(vertex.gathering);
     });
     out.list(state.anchors, [&](const PinAnchor& anchor) {
         out.number(anchor.pin);
@@ -151,7 +152,7 @@ State read_state(BinaryReader& in)
     state.previous_velocity = in.vectors();
     state.previous_material = read_vectors(in);
     state.previous_material_velocity = read_vectors(in);
-    constexpr std::size_t kEolBytes = 7 * sizeof(std::int32_t) + 3 * sizeof(double);
+    constexpr std::size_t kEolBytes = 7 * sizeof(std::int32_t) + 4 * sizeof(double);
     state.eol = in.list<EolVertex>(kEolBytes, [&] {
         EolVertex vertex;
         vertex.vertex_id = in.number<std::uint32_t>();
@@ -162,6 +163,7 @@ State read_state(BinaryReader& in)
         vertex.idle = in.number<std::int32_t>();
         vertex.side = in.number<std::int32_t>();
         vertex.on.end = in.number<std::int32_t>();
+        vertex.gathering = in.number<double>();
         return vertex;
     });
     state.anchors = in.list<PinAnchor>(2 * sizeof(std::uint32_t) + 3 * sizeof(double), [&] {
@@ -253,8 +255,8 @@ std::string find_defect(const std::vector<EolVertex>& eol, const std::vector<std
         const FeatureId& on = eol[k].on;
         const bool is_kind = on.kind >= FeatureId::Kind::Edge && on.kind <= FeatureId::Kind::Bend;
         const bool is_end_sound = on.is_bend() ? on.end == 0 || on.end == 1 : on.end == -1;
-        if (!eol[k].outward.allFinite() || eol[k].idle < 0 || std::abs(eol[k].side) > 1 || !is_kind ||
-            !is_end_sound)
+        if (!eol[k].outward.allFinite() || !(eol[k].gathering >= 0.0) || !std::isfinite(eol[k].gathering) ||
+            eol[k].idle < 0 || std::abs(eol[k].side) > 1 || !is_kind || !is_end_sound)
             return fmt::format("EOL vertex {} has an invalid value", k);
         if (!std::binary_search(ids.begin(), ids.end(), eol[k].vertex_id))
             return fmt::format("EOL vertex {} refers to an unknown vertex", k);

@@ -7,7 +7,6 @@
 #include "geometry/box_tree.h"
 #include "geometry/cgal.h"
 #include "geometry/contact/contact_batches.h"
-#include "geometry/obstacle/obstacle.h"
 
 namespace arris {
 
@@ -64,7 +63,7 @@ std::vector<std::array<int, 2>> find_self_intersections(const std::vector<Vec3>&
                                                         const std::vector<Face>& faces,
                                                         const std::vector<int>& of)
 {
-    std::vector<Box3> boxes(faces.size());
+    std::vector<BoxTree::Box> boxes(faces.size());
     for (std::size_t f = 0; f < faces.size(); ++f)
         for (const int v : faces[f]) boxes[f].extend(positions[v]);
     const BoxTree tree(boxes);

@@ -28,6 +28,8 @@ const char* to_string(RowCause cause)
             return "off_plane";
         case RowCause::Blocked:
             return "blocked";
+        case RowCause::Gathering:
+            return "gathering";
         case RowCause::GivenUp:
             return "given_up";
         case RowCause::Released:

@@ -36,6 +36,7 @@ enum class RowCause {
     Quality,       ///< the mesh has no place: a corner, another trace, a face too thin
     OffPlane,      ///< the mesh's only place is off the edge's plane
     Blocked,       ///< cloth ahead of its trace could not be cleared
+    Gathering,     ///< the cloth is compressed along the feature, so that it wants to leave it in pleats
     GivenUp,       ///< an attempt at this step had failed with EOL vertices there
     Released,      ///< was EOL until this step
     NoDirection,   ///< a saddle corner, or a wire or point where the cloth's side is unknown
@@ -46,7 +47,7 @@ enum class RowCause {
                    ///< there
     OtherObstacle  ///< its vertex is on a feature of another obstacle
 };
-inline constexpr std::size_t kRowCauses = 19;
+inline constexpr std::size_t kRowCauses = 20;
 using RowCounts = std::array<int, kRowCauses>;  ///< by RowCause
 
 /// Name in the columns of steps.csv.

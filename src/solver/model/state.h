@@ -48,10 +48,11 @@ struct ActiveSelfContact {
 struct EolVertex {
     std::uint32_t vertex_id;
     FeatureId on;
-    Vec3 outward;           ///< unit, from the feature, in the obstacle's frame
-    std::int32_t idle;      ///< consecutive steps at whose end it did not press
-    std::int32_t side = 0;  ///< at a wire or point: 1 if the normals of the cloth's faces point outward, -1
-                            ///< if inward, 0 if unknown
+    Vec3 outward;            ///< unit, from the feature, in the obstacle's frame
+    std::int32_t idle;       ///< consecutive steps at whose end it did not press
+    std::int32_t side = 0;   ///< at a wire or point: 1 if the normals of the cloth's faces point outward, -1
+                             ///< if inward, 0 if unknown
+    double gathering = 0.0;  ///< growth of a pleat along the feature (sites/gathering.h)
 };
 
 /// Place of a pinned vertex at time 0, which the pin's motion maps to the vertex's target.

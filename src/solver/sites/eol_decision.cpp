@@ -10,6 +10,7 @@
 #include "solver/eol/eol_features.h"
 #include "solver/eol/free_fold.h"
 #include "solver/sites/border_room.h"
+#include "solver/sites/gathering.h"
 #include "solver/sites/wire_end.h"
 
 namespace arris {
@@ -111,6 +112,7 @@ std::optional<RowCause> EolAdmission::find_refusal(const FeatureSite& site, int 
 {
     if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
     if (is_beside_other(site)) return RowCause::OtherFeature;
+    if (gathers(site, v)) return RowCause::Gathering;
     if (const std::optional<RowCause> fold = find_fold_cause(site)) return fold;
     if ((site.on.is_fixed()) && has_vertex_on(site)) return RowCause::BesideEol;
     return std::nullopt;
@@ -136,6 +138,16 @@ std::optional<RowCause> EolAdmission::find_border_cause(const FeatureSite& site,
     const double closing = (room - room_at(site.material + aside)) / (kAside * h) * flow.norm();
     if (room < soon_ * closing) return RowCause::BorderAhead;
     return std::nullopt;
+}
+
+/// Whether the cloth along the feature is near to gathering.
+bool EolAdmission::gathers(const FeatureSite& site, int v) const
+{
+    if (site.on.is_fixed()) return false;
+    const Obstacle& obstacle = scene_.obstacles[site.on.obstacle];
+    const auto [from, to] = feature_segment(obstacle, site.on.index);
+    const Vec3 tangent = obstacle.at(state_.time).rotation * (to - from).normalized();
+    return is_near_gathering(scene_, state_, stars_, v, tangent);
 }
 
 /// Whether another edge nearer than the thickness has a trace here: between two traces there would be no
@@ -324,6 +336,11 @@ std::vector<EolRelease> find_releases(const Scene& scene, const State& state, co
             causes[entry] = RowCause::NearBorder;
         else if (is_on_feature(scene, state, eol, place))
             retained[entry] = decide_retention(scene, state, stars, entry, *placing.coordinates, place);
+    }
+    for (std::size_t entry = 0; entry < retained.size(); ++entry) {
+        if (!has_gathered(state.eol[entry]) || retained[entry] == EolRetention::None) continue;
+        retained[entry] = EolRetention::None;
+        causes[entry] = RowCause::Gathering;
     }
     retain_between(scene, state, stars, retained);
     std::vector<EolRelease> released;

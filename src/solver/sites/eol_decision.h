@@ -65,6 +65,7 @@ class EolAdmission {
     bool is_on_side(const EolVertex& eol) const;
     std::optional<RowCause> find_border_cause(const FeatureSite& site, int v, const Vec2& flow) const;
     bool is_beside_other(const FeatureSite& site) const;
+    bool gathers(const FeatureSite& site, int v) const;
     std::optional<RowCause> find_fold_cause(const FeatureSite& site) const;
     std::optional<double> find_free_fold(const FeatureSite& site) const;
     bool has_vertex_on(const FeatureSite& site) const;

@@ -12,7 +12,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "solver/model/stopwatch.h"
@@ -243,37 +242,26 @@ void ActiveSetSearch::run_rounds(int cap)
     Iterate& iterate = in_use_->iterate;
     for (;;) {  // ends: U grows by at least one member per round, up to the cap
         Violators violators = find_violators(base, iterate, set);
-        int nb = 0, np = 0;
-        for (char c : base.is_pressing) nb += c;
-        for (int k = constraints_.slip_count(); k < iterate.row_multipliers.size(); ++k)
-            np += iterate.row_multipliers[k] > 0;
-        std::fprintf(stderr,
-                     "fact %d U %d (rows %d) base rows %d of %zu press %d viol coord %zu rows %zu pull "
-                     "%zu pairs %zu budget %.2g\n",
-                     best_.factorisations, set.size(), set.row_count(), nb, constraints_.rows.size(), np,
-                     violators.coordinates.size(), violators.rows.size(), violators.pulling.size(),
-                     violators.pairs.size(), budget_.flops);
+        if (violators.empty()) {
+            if (finish()) return;
+            continue;
+        }
+        if (!violators.pulling.empty() || has_many_changes(violators))
+            return rebase_with_violated_rows(violators);
+        const int count = static_cast<int>(violators.coordinates.size()),
+                  row_count = static_cast<int>(violators.rows.size()),
+                  pair_count = static_cast<int>(violators.pairs.size());
+        const int room = cap + cap / 2 - set.coordinate_count(), row_room = kMostRows - set.row_count();
+        if (count > kHopeless * cap) return rebase_by_prediction();
+        if (count > 0 && set.coordinate_count() >= cap) return rebase_with_changed(violators);
+        if (row_count + pair_count > 0 && row_room <= 0) return rebase_with_changed(violators);
+        if (count > room) keep_worst_coordinates(base, iterate, room, violators.coordinates);
+        if (row_count > row_room) keep_worst_rows(base, iterate, row_room, violators.rows);
+        for (const int pair : violators.pairs)
+            violators.rows.insert(violators.rows.end(), {2 * pair, 2 * pair + 1});
+        set.extend(violators.coordinates, violators.rows);
+        if (!set.solve(iterate, best_.nlopt_evaluations, budget_)) return rebase_by_prediction();
     }
-    if (violators.empty()) {
-        if (finish()) return;
-        continue;
-    }
-    if (!violators.pulling.empty() || has_many_changes(violators))
-        return rebase_with_violated_rows(violators);
-    const int count = static_cast<int>(violators.coordinates.size()),
-              row_count = static_cast<int>(violators.rows.size()),
-              pair_count = static_cast<int>(violators.pairs.size());
-    const int room = cap + cap / 2 - set.coordinate_count(), row_room = kMostRows - set.row_count();
-    if (count > kHopeless * cap) return rebase_by_prediction();
-    if (count > 0 && set.coordinate_count() >= cap) return rebase_with_changed(violators);
-    if (row_count + pair_count > 0 && row_room <= 0) return rebase_with_changed(violators);
-    if (count > room) keep_worst_coordinates(base, iterate, room, violators.coordinates);
-    if (row_count > row_room) keep_worst_rows(base, iterate, row_room, violators.rows);
-    for (const int pair : violators.pairs)
-        violators.rows.insert(violators.rows.end(), {2 * pair, 2 * pair + 1});
-    set.extend(violators.coordinates, violators.rows);
-    if (!set.solve(iterate, best_.nlopt_evaluations, budget_)) return rebase_by_prediction();
-}
 }
 
 /// The next base has the rows that press now, and the tangents of friction at the present velocity.
@@ -317,24 +305,8 @@ void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
     else
         newton_point_ = velocity;
     slips_ = springs_at(constraints_, in_use_->base.slips, newton_point_);
-    // Of rows that do not press yet, only the worst of each group joins: many repeat each other.
-    std::vector<int> violated;
-    std::map<int, std::pair<double, int>> worst;
-    for (int k = constraints_.slip_count(); k < static_cast<int>(constraints_.rows.size()); ++k) {
-        const ScaledRow& row = constraints_.rows[k];
-        if (row.entries.empty()) continue;
-        const double here = gap(row, newton_point_, 0.0);
-        if (!(here < 0.0)) continue;
-        if (in_use_->iterate.row_multipliers[k] > 0.0) {
-            violated.push_back(k);
-            continue;
-        }
-        const double depth = -here / std::sqrt(row.compliance);
-        const auto [at, is_new] = worst.try_emplace(row.group, depth, k);
-        if (!is_new && depth > at->second.first) at->second = {depth, k};
-    }
-    for (const auto& [group, row] : worst) violated.push_back(row.second);
-    std::sort(violated.begin(), violated.end());
+    const std::vector<int> violated =
+        find_newton_rows(constraints_, in_use_->iterate.row_multipliers, newton_point_);
     if (!is_newton)
         for (const int k : violators.pulling) has_pulled_[k] = 1;
     flip_bounds(violators.coordinates);

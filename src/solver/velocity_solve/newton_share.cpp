@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 #include <tuple>
 #include <vector>
 
@@ -43,6 +45,28 @@ double find_newton_share(const VelocityProblem& problem, const ConstraintRows& c
         (slope_at(middle) > 0.0 ? high : low) = middle;
     }
     return high;
+}
+
+std::vector<int> find_newton_rows(const ConstraintRows& constraints, const Eigen::VectorXd& multipliers,
+                                  const Eigen::VectorXd& point)
+{
+    std::vector<int> rows;
+    std::map<int, std::pair<double, int>> worst;  // by group
+    for (int k = constraints.slip_count(); k < static_cast<int>(constraints.rows.size()); ++k) {
+        const ScaledRow& row = constraints.rows[k];
+        const double here = row.entries.empty() ? 0.0 : gap(row, point, 0.0);
+        if (!(here < 0.0)) continue;
+        if (multipliers[k] > 0.0) {
+            rows.push_back(k);
+            continue;
+        }
+        const double depth = -here / std::sqrt(row.compliance);
+        const auto [at, is_new] = worst.try_emplace(row.group, depth, k);
+        if (!is_new && depth > at->second.first) at->second = {depth, k};
+    }
+    for (const auto& [group, row] : worst) rows.push_back(row.second);
+    std::sort(rows.begin(), rows.end());
+    return rows;
 }
 
 }  // namespace arris
