@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "cloth_run.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
 #include "geometry/surgery/initial_target.h"
 #include "grid_patterns.h"
 #include "ode.h"
@@ -199,6 +200,85 @@ TEST(FrictionOverAnEdge, RestsBelowTheOnsetAndGoesAboveIt)
         EXPECT_NEAR(measure_length_after(strip, run), strip.start, kElastic) << friction;
         strip.start = 1.02 * find_onset(strip);
         EXPECT_NEAR(way_over_edge(strip, 0.6, kStep), 1.0, 0.01) << friction;
+    }
+}
+
+// A sheet lies on both sides of a ridge, which fall by b, and slides along the ridge. Its sides press by
+// cos b of their weight, and around the edge by b times their tension, sin b of their weight.
+TEST(FrictionAlongAnEdge, SlidesByMuTimesTheTurn)
+{
+    constexpr double kDuration = 0.2;  // s
+    constexpr double kError = 5e-4;    // relative
+    Table table("friction_along_an_edge", {"coefficient", "sides fall by", "acceleration / closed form"});
+    for (const double friction : {0.1, 0.3, 0.5})
+        for (const double fall : {30.0, 60.0}) {
+            const double b = fall * kDegrees, share = friction * (std::cos(b) + b * std::sin(b));
+            StripCase strip{
+                .slopes = {-b, b}, .length = 0.2, .start = 0.1, .cells = {2, 6}, .friction = friction};
+            strip.lean = std::atan(share) + 0.05;
+            ClothRun above = make_strip_run(strip);
+            above.advance(kDuration, kStep);
+            const double expected = kDuration * kG * (std::sin(strip.lean) - share * std::cos(strip.lean));
+            EXPECT_NEAR(mean_velocity(above).y() / expected, 1.0, kError) << friction << " " << fall;
+            table.add({fmt::format("{:g}", friction), fmt::format("{:g} degrees", fall),
+                       fmt::format("{:.5f}", mean_velocity(above).y() / expected)});
+            strip.lean = std::atan(share) - 0.01;
+            ClothRun below = make_strip_run(strip);
+            below.advance(kDuration, kStep);
+            EXPECT_NEAR(mean_velocity(below).y(), 0.0, 1e-12) << friction << " " << fall;
+        }
+}
+
+/// A stiff sheet lies with its middle on a nail, and gravity leans by `slope` towards `direction` (rad).
+ClothRun make_nail_run(double friction, double slope, double direction)
+{
+    Scene scene;
+    scene.material = {0.15, 1e4, 0.3, 10.0, 0.002, kThickness};
+    const Vec3 level(std::cos(direction), std::sin(direction), 0.0);
+    scene.gravity = Gravity{kG * (std::sin(slope) * level - std::cos(slope) * Vec3::UnitZ())};
+    scene.obstacles.push_back(Obstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0));
+    scene.friction = Friction{{friction}};
+    ClothMesh mesh = make_sheet({0.2, 0.2}, {6, 6}, GridPattern::Cross);
+    lay(mesh, Vec3(-0.1, -0.1, kThickness));
+    scene.eol = make_initial_target(mesh);
+    return ClothRun(std::move(scene), std::move(mesh));
+}
+
+// The whole weight presses on the nail, and the sheet stays flat: beta = 0. In 50 ms it tips by 4e-4 rad.
+TEST(FrictionOnANail, HoldsAStiffSheetUpToTheAngleOfFriction)
+{
+    constexpr double kDuration = 0.05;  // s
+    constexpr double kError = 3e-3;     // relative: tipping adds up to 2e-3
+    constexpr double kTurn = 1e-6;      // rad: no direction is preferred
+    Table table("friction_on_a_nail", {"coefficient", "direction", "acceleration / closed form"});
+    for (const double friction : {0.1, 0.3, 0.5})
+        for (const double degrees : {0.0, 30.0, 100.0}) {
+            const double slope = std::atan(friction) + 10.0 * kDegrees;
+            ClothRun run = make_nail_run(friction, slope, degrees * kDegrees);
+            run.advance(kDuration, kStep);
+            ASSERT_EQ(run.state.eol.size(), 1u);
+            Vec3 sum = Vec3::Zero();  // without the vertex on the nail, which does not move with its material
+            for (std::size_t v = 0; v < run.state.velocity.size(); ++v)
+                if (run.state.eol_entry(run.state.ids[v]) < 0) sum += run.state.velocity[v];
+            const double speed = sum.head<2>().norm() / static_cast<double>(run.state.velocity.size() - 1);
+            const double expected = kG * (std::sin(slope) - friction * std::cos(slope)) * kDuration;
+            EXPECT_NEAR(speed / expected, 1.0, kError) << friction << " " << degrees;
+            EXPECT_NEAR(std::atan2(sum.y(), sum.x()), degrees * kDegrees, kTurn) << friction;
+            table.add({fmt::format("{:g}", friction), fmt::format("{:g} degrees", degrees),
+                       fmt::format("{:.4f}", speed / expected)});
+        }
+}
+
+TEST(FrictionOnANail, HoldsAStiffSheetBelowTheAngleOfFriction)
+{
+    constexpr double kSprings = 2e-6;  // m: friction's spring gives way while the load comes on it
+    for (const double friction : {0.1, 0.3, 0.5}) {
+        ClothRun run = make_nail_run(friction, std::atan(friction) - 1.0 * kDegrees, 0.5);
+        run.advance(0.1, kStep);
+        EXPECT_LT(middle_of(run).head<2>().norm(), kSprings) << friction;
+        const Vec3 rest = middle_of(run);
+        run.advance(0.1, kStep);
+        EXPECT_LT((middle_of(run) - rest).head<2>().norm(), 1e-9) << friction;
     }
 }
 
