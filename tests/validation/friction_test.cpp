@@ -282,25 +282,40 @@ TEST(FrictionOnANail, HoldsAStiffSheetBelowTheAngleOfFriction)
     }
 }
 
-TEST(FrictionOnATable, BringsADroppedClothToRest)
+/// Greatest distance of corresponding vertices, m; infinite on different meshes.
+double greatest_move(const std::vector<Vec3>& from, const std::vector<Vec3>& to)
 {
+    if (from.size() != to.size()) return std::numeric_limits<double>::infinity();
+    double most = 0.0;
+    for (std::size_t v = 0; v < from.size(); ++v) most = std::max(most, (to[v] - from[v]).norm());
+    return most;
+}
+
+// Damping alone ends the swinging of the sides (docs/research-notes.md, "Friction").
+TEST(FrictionOnATable, BringsADroppedClothToRestWithoutCreep)
+{
+    constexpr double kDensity = 0.15, kStill = 1e-8;  // kg/m^2, J/kg
+    constexpr double kCreep = 1e-9;                   // m in ten seconds
     ClothMesh mesh = make_sheet({1.0, 1.0}, {10, 10}, GridPattern::Cross, 10.0);
     lay(mesh, Vec3(-0.5, -0.5, 0.02));
-    Scene scene = make_table_scene(mesh, {0.15, 500.0, 0.3, 1e-4, 0.02, kThickness}, Vec3(0.7, 0.7, 0.3),
+    Scene scene = make_table_scene(mesh, {kDensity, 500.0, 0.3, 1e-4, 0.1, kThickness}, Vec3(0.7, 0.7, 0.3),
                                    Vec3(0.0, 0.0, -0.15));
     scene.friction = Friction{{0.3}};
-    const double mass = 0.15;
     ClothRun run(std::move(scene), std::move(mesh));
     double energy = measure_energy(run).sum(), rise = 0.0;
     const double first = energy;
-    run.advance(6.0, kStep, [&](const StepReport& report) {
+    run.advance(3.0, kStep, [&](const StepReport& report) {
         const double now = measure_energy(run).sum();
         rise = std::max(rise, now - energy);
         energy = std::min(energy, now);
         EXPECT_GE(report.friction_work, -1e-9);
     });
     EXPECT_LT(rise, 1e-3 * (first - energy));
-    EXPECT_LT(measure_energy(run).kinetic / mass, 1e-6);
+    EXPECT_LT(measure_energy(run).kinetic / kDensity, kStill);
+    run.advance(4.0, 4.0 * kStep);
+    const std::vector<Vec3> rest = run.state.mesh.world;
+    run.advance(10.0, 20.0 * kStep);
+    EXPECT_LT(greatest_move(rest, run.state.mesh.world), kCreep);
 }
 
 }  // namespace
