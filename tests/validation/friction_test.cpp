@@ -15,7 +15,9 @@
 #include "refinement.h"
 #include "sliding_strip.h"
 #include "solver/advance.h"
+#include "solver/contact/audit.h"
 #include "solver/energy_balance.h"
+#include "solver/model/time_integration.h"
 #include "tests/solver/floor.h"
 
 namespace arris {
@@ -24,8 +26,10 @@ namespace {
 constexpr double kG = 9.81, kThickness = 1e-3, kStep = 0.005;
 constexpr double kDegrees = std::numbers::pi / 180.0;
 
-/// A sheet of .4 m that lies on a wide floor under gravity that leans by `slope` (rad) towards x.
-ClothRun make_floor_run(double friction, double slope, GridPattern pattern, const RigidMotion& motion = {})
+/// A sheet of .4 m that lies on a wide floor under gravity that leans by `slope` (rad) towards x. `corner`: x
+/// of its border, m.
+ClothRun make_floor_run(double friction, double slope, GridPattern pattern, const RigidMotion& motion = {},
+                        double corner = 0.2)
 {
     Scene scene;
     scene.material = {0.15, 2000.0, 0.3, 1e-5, 0.0, kThickness};
@@ -34,7 +38,7 @@ ClothRun make_floor_run(double friction, double slope, GridPattern pattern, cons
     scene.obstacles.push_back(Obstacle("floor", floor.mesh(), {}, motion, 30.0));
     scene.friction = Friction{{friction}};
     ClothMesh mesh = make_sheet({0.4, 0.4}, {4, 4}, pattern);
-    lay(mesh, Vec3(0.2, -0.2, kThickness));
+    lay(mesh, Vec3(corner, -0.2, kThickness));
     return ClothRun(std::move(scene), std::move(mesh));
 }
 
@@ -316,6 +320,108 @@ TEST(FrictionOnATable, BringsADroppedClothToRestWithoutCreep)
     const std::vector<Vec3> rest = run.state.mesh.world;
     run.advance(10.0, 20.0 * kStep);
     EXPECT_LT(greatest_move(rest, run.state.mesh.world), kCreep);
+}
+
+/// A sheet hangs over a box, around whose corners it is EOL; the box starts to turn after a while.
+ClothRun make_turning_box_run(double friction, double rate, double start)
+{
+    ClothMesh mesh = make_sheet({0.5, 0.5}, {10, 10}, GridPattern::Cross);
+    lay(mesh, Vec3(-0.25, -0.25, 0.002));
+    Scene scene = make_table_scene(mesh, {0.15, 500.0, 0.3, 1e-4, 0.05, kThickness}, Vec3(0.4, 0.4, 0.2),
+                                   Vec3(0.0, 0.0, -0.1));
+    Placement place;
+    place.translation = Vec3(0.0, 0.0, -0.1);
+    RigidMotion motion;
+    motion.angular_velocity = Vec3(0.0, 0.0, rate);
+    motion.start = start;
+    scene.obstacles.clear();
+    scene.obstacles.push_back(Obstacle("box", make_box(Vec3(0.4, 0.4, 0.2)), place, motion, 30.0));
+    scene.friction = Friction{{friction}};
+    return ClothRun(std::move(scene), std::move(mesh));
+}
+
+/// Angle, rad, by which the cloth has turned about z from its material.
+double turn_of(const ClothMesh& mesh)
+{
+    double along = 0.0, across = 0.0;
+    for (std::size_t v = 0; v < mesh.world.size(); ++v) {
+        const Vec2 X = mesh.material[v] - Vec2(0.25, 0.25);
+        const Vec3& x = mesh.world[v];
+        along += X.x() * x.x() + X.y() * x.y();
+        across += X.x() * x.y() - X.y() * x.x();
+    }
+    return std::atan2(across, along);
+}
+
+/// Angular momentum about z over moment of inertia, rad/s, of vertices with equal mass.
+double spin_of(const State& state)
+{
+    double momentum = 0.0, inertia = 0.0;
+    for (std::size_t v = 0; v < state.velocity.size(); ++v) {
+        const Vec3 &x = state.mesh.world[v], &w = state.velocity[v];
+        momentum += x.x() * w.y() - x.y() * w.x();
+        inertia += x.x() * x.x() + x.y() * x.y();
+    }
+    return momentum / inertia;
+}
+
+TEST(FrictionOnMovingObstacles, TurnsClothAroundCornersWithTheBoxOrLetsItSlip)
+{
+    constexpr double kRate = 2.0, kStart = 0.5, kSettled = 0.4;  // rad/s, s, s
+    constexpr double kSpin = 5e-3, kRides = 2e-3;                // rad/s, rad: the sides still swing a little
+    for (const double friction : {0.02, 0.8}) {
+        ClothRun run = make_turning_box_run(friction, kRate, kStart);
+        const auto watch = [&](const StepReport& report) { EXPECT_EQ(report.crossings, 0); };
+        run.advance(kStart, kStep, watch);
+        restart(run.state);  // the box jumps to its speed
+        run.advance(0.2, kStep, watch);
+        const auto corners = [&] {
+            return std::count_if(run.state.eol.begin(), run.state.eol.end(),
+                                 [](const EolVertex& eol) { return eol.on.is_corner(); });
+        };
+        EXPECT_EQ(audit(run.scene, run.state).obstacle, -1);
+        if (friction < 0.1) {  // the box has turned by .4 rad; only its edges drag the sides along
+            EXPECT_LT(spin_of(run.state), 0.5 * kRate);
+            EXPECT_LT(turn_of(run.state.mesh), 0.1);
+            continue;
+        }
+        EXPECT_NEAR(spin_of(run.state), kRate, 4.0 * kSpin);
+        run.advance(kSettled - 0.2, kStep, watch);
+        const double lag = kRate * kSettled - turn_of(run.state.mesh);
+        run.advance(0.3, kStep, watch);
+        EXPECT_EQ(corners(), 4);
+        EXPECT_NEAR(spin_of(run.state), kRate, kSpin);
+        EXPECT_NEAR(kRate * (kSettled + 0.3) - turn_of(run.state.mesh), lag, kRides);
+        EXPECT_EQ(audit(run.scene, run.state).obstacle, -1);
+    }
+}
+
+// On a table that jumps to w rad/s every point slips along its circle, so the sheet's spin grows by
+// mu g integral r / integral r^2 until it is w. Pressure is a third of each face at its corners.
+TEST(FrictionOnMovingObstacles, SpinsASheetUpByItsTorque)
+{
+    constexpr double kError = 5e-4;  // relative
+    for (const double friction : {0.1, 0.3}) {
+        RigidMotion motion;
+        motion.angular_velocity = Vec3(0.0, 0.0, 3.0);
+        ClothRun run = make_floor_run(friction, 0.0, GridPattern::Cross, motion, -0.2);
+        double torque = 0.0, inertia = 0.0;  // over mass, g and mu
+        for (const Face& face : run.state.mesh.faces) {
+            Vec2 middle = Vec2::Zero();
+            double squares = 0.0;
+            for (const int v : face) {
+                const Vec2 x = run.state.mesh.world[v].head<2>();
+                torque += x.norm() / 3.0;
+                middle += x;
+                squares += x.squaredNorm();
+            }
+            inertia += (squares + middle.squaredNorm()) / 12.0;
+        }
+        constexpr double kDuration = 0.04;
+        run.advance(kDuration, 0.5 * kStep);
+        const double gained = friction * kG * torque / inertia * kDuration;
+        EXPECT_NEAR(spin_of(run.state) / gained, 1.0, kError) << friction;
+    }
 }
 
 }  // namespace
