@@ -64,10 +64,12 @@ struct RopeCase {
     /// Whether the EOL vertices are given. Otherwise the first step must find them, as in a scene with
     /// `folds`.
     bool is_given = true;
-    double height = 0.0;    ///< m, of the fold above the place where it rests on the wire
-    double beside = 0.0;    ///< m, from the wire to the fold, across the wire
-    double start = kStart;  ///< m, y at the start
-    double friction = 0.0;  ///< coefficient
+    double height = 0.0;                      ///< m, of the fold above the place where it rests on the wire
+    double beside = 0.0;                      ///< m, from the wire to the fold, across the wire
+    double start = kStart;                    ///< m, y at the start
+    double friction = 0.0;                    ///< coefficient
+    double lean = 0.0;                        ///< rad, by which gravity leans along the wire
+    double length = kLength, width = kWidth;  ///< m
 };
 
 std::string describe(const RopeCase& rope)
@@ -131,23 +133,23 @@ ObstacleMesh make_wire_of(const RopeCase& rope)
 /// A run with the rope folded over the wire, with EOL vertices on the wire where they are given.
 ClothRun make_rope_run(const RopeCase& rope)
 {
-    const double fold = 0.5 * kLength - rope.start;
+    const double fold = 0.5 * rope.length - rope.start;
     ClothGrid grid;
-    grid.size = Vec2(kLength, kWidth);
+    grid.size = Vec2(rope.length, rope.width);
     grid.resolution = rope.cells;
     grid.pattern = rope.pattern;
     grid.pattern_angle = rope.pattern_angle;
-    grid.folds = {{{Vec2(fold, 0.0), Vec2(fold, kWidth)}, 90.0}};
+    grid.folds = {{{Vec2(fold, 0.0), Vec2(fold, rope.width)}, 90.0}};
     ClothMesh mesh = make_cloth_grid(grid);
     const double half = 0.5 * rope.open_degrees * M_PI / 180.0;
     for (std::size_t v = 0; v < mesh.world.size(); ++v) {
         const double along = mesh.material[v].x() - fold;
-        mesh.world[v] = {rope.beside + along * std::sin(half), mesh.material[v].y() - 0.5 * kWidth,
+        mesh.world[v] = {rope.beside + along * std::sin(half), mesh.material[v].y() - 0.5 * rope.width,
                          rope.height + kThickness - std::abs(along) * std::cos(half)};
     }
     Scene scene;
     scene.material = {kDensity, rope.stiffness, 0.0, rope.bending, rope.damping, kThickness};
-    scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
+    scene.gravity = Gravity{kG * Vec3(0.0, std::sin(rope.lean), -std::cos(rope.lean))};
     scene.obstacles.push_back(Obstacle("wire", make_wire_of(rope), {}, {}, 10.0));
     scene.eol = make_initial_target(mesh);
     if (rope.friction > 0.0) scene.friction = Friction{{rope.friction}};
@@ -584,6 +586,36 @@ TEST(RopeOverWire, RestsBelowTheOnsetOfTheCapstansLaw)
         ClothRun run = make_rope_run(rope);
         run.advance(0.6, kStep);
         EXPECT_NEAR(measure_displacement(run), rope.start, kElastic) << friction;
+    }
+}
+
+/// Mean velocity of the rope along its wire, m/s.
+double speed_along_wire(const ClothRun& run)
+{
+    double sum = 0.0;
+    for (const Vec3& v : run.state.velocity) sum += v.y();
+    return sum / static_cast<double>(run.state.velocity.size());
+}
+
+// Along the wire the pressure around the whole turn phi rubs: phi / 2 times the sum of both tensions, while
+// their resultant is only sin(phi / 2) times that sum. The short sides keep the rope tight on its whole
+// width.
+TEST(RopeOverWire, SlidesAlongItsWireByMuTimesHalfItsTurn)
+{
+    constexpr double kDuration = 0.2;  // s
+    constexpr double kError = 5e-3;    // relative: the sides hang a little off the wire's plane
+    for (const double friction : {0.1, 0.3, 0.5}) {
+        RopeCase rope{.cells = {2, 6}, .start = 0.0, .friction = friction, .length = 0.2};
+        const double share = 0.5 * friction * (180.0 - rope.open_degrees) * M_PI / 180.0;
+        rope.lean = std::atan(share) + 0.05;
+        ClothRun above = make_rope_run(rope);
+        above.advance(kDuration, kStep);
+        const double expected = kDuration * kG * (std::sin(rope.lean) - share * std::cos(rope.lean));
+        EXPECT_NEAR(speed_along_wire(above) / expected, 1.0, kError) << friction;
+        rope.lean = std::atan(share) - 0.01;
+        ClothRun below = make_rope_run(rope);
+        below.advance(kDuration, kStep);
+        EXPECT_NEAR(speed_along_wire(below), 0.0, 1e-12) << friction;
     }
 }
 

@@ -57,6 +57,7 @@ struct StripCase {
     Placement place = {};         ///< moves edge, strip and gravity together: must not change the result
     Vec3 carried = Vec3::Zero();  ///< m/s, common velocity of edge and strip: must not change the result
     double friction = 0.0;        ///< coefficient
+    double lean = 0.0;            ///< rad, by which gravity leans along the edge
 };
 
 /// Distance of `world` from the line of the fold, m, perpendicular to the edge. That line is at the stand-off

@@ -195,7 +195,7 @@ bool EolGuard::is_loose(VertexId v, const VertexRing& ring, const std::vector<Ve
     const bool is_changed = std::any_of(event.changes.begin(), event.changes.end(),
                                         [v](const VertexChange& change) { return change.vertex == v; });
     if (is_changed || !surgery_->has_vertex(v) || surgery_->is_fixed(v) ||
-        surgery_->role(v) != TraceRole::Free)
+        surgery_->role(v) != TraceRole::Free || is_stuck(state_, v))
         return false;
     return std::all_of(ring.vertices.begin(), ring.vertices.end(),
                        [&](VertexId w) { return contains(near, w); });

@@ -108,7 +108,8 @@ class PatchFitter {
         relaxed_.wanted = before;
         for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
             const int v = patch.vertices[i];
-            relaxed_.is_free[v] = after_.eol_entry(after_.ids[v]) < 0 && patch.is_inside[i];
+            const std::uint32_t id = after_.ids[v];
+            relaxed_.is_free[v] = after_.eol_entry(id) < 0 && patch.is_inside[i] && !is_stuck(after_, id);
         }
         for (const PinTarget& held : held_) relaxed_.is_free[held.vertex] = 0;
         for (const int v : patch.vertices)

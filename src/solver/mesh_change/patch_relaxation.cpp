@@ -267,16 +267,37 @@ bool is_way_free_of_cloth(const Scene& scene, const State& state, const std::vec
 
 }  // namespace
 
-Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vertex_id)
+namespace {
+
+/// Calls visit(contact) for the vertex's own contacts that pressed at the end of the last step.
+template <typename Visit>
+void visit_contacts(const State& state, std::uint32_t vertex_id, const Visit& visit)
 {
-    Vec3 normal = Vec3::Zero();
     auto contact = std::lower_bound(
         state.active.begin(), state.active.end(), vertex_id,
         [](const ActiveContact& active, std::uint32_t id) { return active.vertex_ids[0] < id; });
     for (; contact != state.active.end() && contact->vertex_ids[0] == vertex_id; ++contact)
-        if (contact->kind == ContactKind::Vertex)
-            normal = scene.obstacles[contact->obstacle].at(state.time).rotation * contact->normal;
+        if (contact->kind == ContactKind::Vertex) visit(*contact);
+}
+
+}  // namespace
+
+Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vertex_id)
+{
+    Vec3 normal = Vec3::Zero();
+    visit_contacts(state, vertex_id, [&](const ActiveContact& contact) {
+        normal = scene.obstacles[contact.obstacle].at(state.time).rotation * contact.normal;
+    });
     return normal;
+}
+
+bool is_stuck(const State& state, std::uint32_t vertex_id)
+{
+    bool is_stuck = false;
+    visit_contacts(state, vertex_id, [&](const ActiveContact& contact) {
+        is_stuck |= contact.friction.budget > 0.0 && contact.friction.slip.isZero(0.0);
+    });
+    return is_stuck;
 }
 
 double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state)

@@ -21,6 +21,9 @@ struct RelaxedPatch {
 /// contact.
 Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vertex_id);
 
+/// Whether friction held the vertex at the end of the last step, at a contact of its own.
+bool is_stuck(const State& state, std::uint32_t vertex_id);
+
 /// Moves free vertices in the world until the patch's stretch, bending and gravity energy has fallen to
 /// `wanted`. Stops earlier once a few steps are known not to reach `wanted`. Returns the energy, J. As in the
 /// pop filter of Narain, Pfaff and O'Brien 2013: otherwise a mesh change that strains the cloth would push it

@@ -77,7 +77,9 @@ void grow_gathering(const Scene& scene, const ClothStars& stars, double dt, Stat
     }
     for (std::size_t entry = 0; entry < state.eol.size(); ++entry) {
         EolVertex& vertex = state.eol[entry];
-        const double strain = material[entry] > 0.0 ? 1.0 - world[entry] / material[entry] : 0.0;
+        // Around a corner the cloth is compressed across its edges, too, which its flaps take up.
+        const bool is_measured = material[entry] > 0.0 && !vertex.on.is_corner();
+        const double strain = is_measured ? 1.0 - world[entry] / material[entry] : 0.0;
         const int v = state.index_of(vertex.vertex_id);
         const double growth = dt * find_growth_rate(scene, state, stars, v, strain);
         vertex.gathering = std::clamp(vertex.gathering + growth, 0.0, kGathered);

@@ -256,7 +256,8 @@ void ActiveSetSearch::run_rounds(int cap)
         if (count > 0 && set.coordinate_count() >= cap) return rebase_with_changed(violators);
         if (row_count + pair_count > 0 && row_room <= 0) return rebase_with_changed(violators);
         if (count > room) keep_worst_coordinates(base, iterate, room, violators.coordinates);
-        if (row_count > row_room) keep_worst_rows(base, iterate, row_room, violators.rows);
+        if (row_count > 0 && row_count > row_room)  // pairs may have left no room: then no row is violated
+            keep_worst_rows(base, iterate, row_room, violators.rows);
         for (const int pair : violators.pairs)
             violators.rows.insert(violators.rows.end(), {2 * pair, 2 * pair + 1});
         set.extend(violators.coordinates, violators.rows);

@@ -517,6 +517,31 @@ TEST(MeshTransfer, WhatGivesWayIsNeverWhatIsOnAFeature)
     EXPECT_GT(moved, 5);
 }
 
+TEST(MeshTransfer, WhatFrictionHoldsDoesNotGiveWay)
+{
+    EolCloth cloth = bent_cloth();
+    ClothSurgery surgery = operate(cloth.state);
+    const VertexId gone = cloth.state.ids[cloth.vertex_at(0.2, 0.2)];
+    ASSERT_EQ(surgery.commit(surgery.propose_collapse(gone, surgery.ring(gone).vertices[0])), Verdict::Done);
+    const ConformedMesh mesh = conformed(surgery, {});
+    const VertexId beside = cloth.state.ids[cloth.vertex_at(0.2, 0.25)];
+    const auto way_beside = [&](const Vec3& slip, double budget) {
+        ActiveContact contact{};
+        contact.vertex_ids = {beside, ActiveContact::kNoVertex, ActiveContact::kNoVertex};
+        contact.kind = ContactKind::Vertex;
+        contact.normal = Vec3::UnitZ();
+        contact.friction.slip = slip;
+        contact.friction.budget = budget;
+        cloth.state.active = {contact};
+        const State after = carry(cloth, mesh);
+        return (after.mesh.world[after.index_of(beside)] - mesh.surgery.mesh.world[after.index_of(beside)])
+            .norm();
+    };
+    EXPECT_GT(way_beside(Vec3::Zero(), 0.0), 1e-6);   // without friction
+    EXPECT_GT(way_beside(Vec3::UnitX(), 1.0), 1e-6);  // slides
+    EXPECT_EQ(way_beside(Vec3::Zero(), 1.0), 0.0);    // sticks
+}
+
 TEST(MeshTransfer, StiffClothIsNotStrainedByAChangeOfItsMesh)
 {
     // A vertex is removed from the top of a round fold, whose chord is shorter than the cloth.

@@ -171,6 +171,24 @@ TEST(Friction, EqualsDescentOnTheDual)
     EXPECT_GT(sliding, 100);
 }
 
+// Sweeps change budgets while the working set stays: many pairs may join it, and leave no room for rows.
+TEST(Friction, MayFillTheWorkingSetWithPairs)
+{
+    std::mt19937 random(11);
+    OwnedProblem owned = make_rubbing_problem(400, random);
+    std::vector<FrictionPair>& pairs = owned.problem.friction;
+    VelocitySolver solver;
+    EXPECT_EQ(solver.solve(owned.problem, Settings()).status, SolveStatus::Certified);
+    constexpr int kSweeps = 16, kChanged = 30;  // pairs a sweep
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+        for (int k = 0; k < kChanged; ++k) {
+            FrictionPair& pair = pairs[static_cast<std::size_t>(kChanged * sweep + k) % pairs.size()];
+            pair.budget *= k % 2 == 0 ? 1.0 / 3.0 : 3.0;
+        }
+        EXPECT_EQ(solver.resume(owned.problem, Settings()).status, SolveStatus::Certified) << sweep;
+    }
+}
+
 TEST(Friction, WithoutBudgetChangesNothing)
 {
     std::mt19937 random(5);
