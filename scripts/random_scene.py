@@ -242,7 +242,28 @@ class SceneMaker:
             scene["wind"] = {"velocity": self.vector(self.log(0.5, 20.0))}
         if self.is_true(0.5):
             scene["friction"] = {"coefficient": self.log(0.02, 3.0)}
+        if self.is_true(0.3):
+            scene["self_contact"] = {}
         scene["output"] = {"frames_per_second": self.chance.choice([10, 24, 60]), "formats": []}
+        return RandomScene(scene, self.meshes)
+
+    def make_crumple(self, title):
+        """Cloth thrown edge-on at a floor, at 2 to 8 m/s, with contact with itself."""
+        cells, height = self.chance.choice([12, 16, 24]), self.chance.choice([0.1, 0.2, 0.4])
+        about = self.chance.uniform(0.0, 2.0 * math.pi)
+        cloth = {"size": [0.4, height], "resolution": [cells, max(3, round(cells * height / 0.4))],
+                 "pattern": self.chance.choice(["diagonal", "alternating", "cross", "unstructured"]),
+                 "rotate": {"axis": [round(math.cos(about), 4), round(math.sin(about), 4), 0.0],
+                            "degrees": round(self.chance.gauss(90.0, 8.0), 2)},
+                 "translate": [0.0, 0.0, 0.5],
+                 "velocity": [self.number(-1.0, 1.0), self.number(-1.0, 1.0), -self.number(2.0, 8.0)],
+                 "material": {"density": self.log(0.05, 0.4), "youngs_modulus": self.log(50.0, 5000.0),
+                              "bending_stiffness": self.log(1e-6, 1e-4)}}
+        scene = {"title": title, "duration": 0.6, "cloth": cloth, "gravity": {}, "self_contact": {},
+                 "obstacle": [{"name": "floor", "box": [6.0, 6.0, 0.1], "translate": [0.0, 0.0, -0.05]}]}
+        if self.is_true(0.5):
+            scene["friction"] = {"coefficient": self.log(0.02, 1.0)}
+        scene["output"] = {"frames_per_second": 50, "formats": []}
         return RandomScene(scene, self.meshes)
 
 

@@ -270,6 +270,10 @@ std::vector<SceneKey> make_scene_keys()
         number("self_contact.thickness", "m", {0.0, 1.0, true}, "",
                "Distance kept between the middle surfaces of two layers; without it the cloth's "
                "`material.thickness`."),
+        number(
+            "self_contact.friction", "", {0.0, 100.0}, "0.0",
+            "Coefficient of Coulomb friction between layers; steps of crumpled cloth then take many times as "
+            "long."),
 
         table("eol", "{}", "Eulerian-on-Lagrangian (EOL) vertices on sharp features of obstacles."),
         boolean("eol.enabled", "true",

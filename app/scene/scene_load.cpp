@@ -90,16 +90,18 @@ Material to_material(const Json& json)
 std::optional<Friction> to_friction(const Json& json)
 {
     const bool is_on = json.contains("friction");
+    const double between_layers =
+        json.contains("self_contact") ? to_double(json["self_contact"]["friction"]) : 0.0;
     const double common = is_on ? to_double(json["friction"]["coefficient"]) : 0.0;
     Friction friction;
-    friction.between_layers = common;
+    friction.between_layers = between_layers;
     bool has_own = false;
     for (const Json& obstacle : json.value("obstacle", Json::array())) {
         const bool is_own = obstacle.contains("friction");
         friction.coefficients.push_back(is_own ? to_double(obstacle["friction"]) : common);
         has_own = has_own || is_own;
     }
-    if (!is_on && !has_own) return std::nullopt;
+    if (!is_on && !has_own && !(between_layers > 0.0)) return std::nullopt;
     return friction;
 }
 

@@ -73,7 +73,7 @@ bool assemble(const Scene& scene, double end, const State& state, Workspace& wor
     build_constraints(work.pin_targets, work.eol, work.prediction, state, work.contacts, work.linearization,
                       work.problem);
     append_self_rows(state, work.prediction, work.linearization, 0, work.self_rows, work.problem);
-    make_room_for_self_rows(work);
+    make_room_for_self_rows(scene, work);
     work.rubs = add_friction_pairs(rubbing_cloth(scene, state, work), work.problem);
     Linearization& at = work.linearization;
     const Prediction& prediction = work.prediction;

@@ -54,7 +54,7 @@ bool collect_contacts(const Scene& scene, const State& state, Workspace& work, S
     return false;
 }
 
-void make_room_for_self_rows(Workspace& work)
+void make_room_for_self_rows(const Scene& scene, Workspace& work)
 {
     constexpr std::size_t kFewPairs = 60;  // of vertices, for which a new analysis does not pay
     LinearSystem& system = work.mesh.system;
@@ -63,7 +63,10 @@ void make_room_for_self_rows(Workspace& work)
     std::set<int> closing;  // groups of rows: about as many press
     for (const SelfRow& row : work.self_rows)
         if (row.is_closing || row.was_active()) closing.insert(work.problem.rows[row.row].group);
-    const bool is_wanted = wants_rows_in_matrix(work.problem, closing.size());
+    constexpr std::size_t kFewRub = 10;  // pairs, whose springs the working set finds as well
+    const bool do_many_rub =
+        scene.friction && scene.friction->between_layers > 0.0 && closing.size() > kFewRub;
+    const bool is_wanted = do_many_rub || wants_rows_in_matrix(work.problem, closing.size());
     for (const SelfRow& row : work.self_rows)
         for (int i = 0; is_wanted && i < 4; ++i)
             for (int j = 0; j < i; ++j) {

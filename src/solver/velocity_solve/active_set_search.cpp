@@ -49,10 +49,11 @@ constexpr int kMostRows = 600;
 constexpr int kFewRows = 150;
 constexpr double kFewShare = 0.01;
 
-/// Bases whose rows may change sides all at once (Newton's method), until at most kFewChanges remain. After
-/// these bases, a row that has pulled in one is not part of a later one: U decides about it.
-constexpr int kNewtonBases = 4;
-constexpr int kFullSteps = 4;  // of these; the others go as far as the energy falls
+/// Bases in which all may change at once (Newton's method): friction's tangents, and rows until at most
+/// kFewChanges remain. After kRowBases, a row that has pulled in one is not part of a later one: U decides
+/// about it.
+constexpr int kNewtonBases = 20, kRowBases = 4;
+constexpr int kFullSteps = 8;  // of these; the others go as far as the energy falls
 constexpr int kFewChanges = 30;
 
 /// Friction pairs that may join U at a time: so many that the dense work, about kPairFlops times the third
@@ -290,7 +291,7 @@ bool ActiveSetSearch::has_many_changes(const Violators& violators) const
     const int few =
         std::clamp(static_cast<int>(std::cbrt(factorization_.flops() / kPairFlops)), kLeastPairs, kMostPairs);
     if (best_.factorisations <= kNewtonBases && pairs > few) return true;
-    return best_.factorisations <= kNewtonBases && static_cast<int>(violators.rows.size()) > kFewChanges &&
+    return best_.factorisations <= kRowBases && static_cast<int>(violators.rows.size()) > kFewChanges &&
            std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
 }
 
@@ -308,7 +309,7 @@ void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
     slips_ = springs_at(constraints_, in_use_->base.slips, newton_point_);
     const std::vector<int> violated =
         find_newton_rows(constraints_, in_use_->iterate.row_multipliers, newton_point_);
-    if (!is_newton)
+    if (best_.factorisations > kRowBases)
         for (const int k : violators.pulling) has_pulled_[k] = 1;
     flip_bounds(violators.coordinates);
     choose_rows(violated);
