@@ -299,7 +299,8 @@ bool ActiveSetSearch::has_many_changes(const Violators& violators) const
 void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
 {
     const Eigen::VectorXd& velocity = in_use_->iterate.velocity;
-    const bool is_newton = best_.factorisations <= kNewtonBases;
+    // Rows alone need no line search: what pulls is soon left to U.
+    const bool is_newton = best_.factorisations <= (problem_.friction.empty() ? kRowBases : kNewtonBases);
     const bool is_full = best_.factorisations <= kFullSteps || newton_point_.size() == 0;
     if (is_newton && !is_full)
         newton_point_ +=
