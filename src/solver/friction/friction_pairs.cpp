@@ -178,8 +178,6 @@ void add_self_pairs(const RubbingCloth& cloth, const std::vector<double>& mass, 
     for (std::size_t k = 0; k < cloth.self_rows.size(); ++k) {
         const SelfRow& self = cloth.self_rows[k];
         const SelfContact& contact = self.contact;
-        // Of the many planes that layers may meet, few press: the others would only add unknowns.
-        if (!self.was_active() && !self.is_pressing) continue;
         if (is_any_eulerian(cloth, contact.vertices)) continue;
         const Rub rub{-1, static_cast<int>(k), coefficient, directions_across(contact.normal)};
         FrictionPair pair;

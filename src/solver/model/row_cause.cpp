@@ -55,6 +55,7 @@ bool is_excluded(RowCause cause)
     switch (cause) {
         case RowCause::AtEol:
         case RowCause::FlatBehind:
+        case RowCause::Gathering:
         case RowCause::NearBorder:
         case RowCause::NoDirection:
         case RowCause::AlongBorder:

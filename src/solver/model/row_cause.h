@@ -53,8 +53,8 @@ using RowCounts = std::array<int, kRowCauses>;  ///< by RowCause
 /// Name in the columns of steps.csv.
 const char* to_string(RowCause cause);
 
-/// Whether no EOL vertex is possible there, whatever the mesh: without coordinates, at once off the cloth's
-/// border, or because there is one already.
+/// Whether no EOL vertex is possible or wanted there, whatever the mesh: without coordinates, at once off the
+/// cloth's border, where the cloth gathers, or because there is one already.
 bool is_excluded(RowCause cause);
 
 /// Whether rows with this cause count in the EOL share: neither excluded nor in their first step.

@@ -54,7 +54,7 @@ TEST(CsvTable, HasTheColumnsOfStepsInTheirOrder)
             "max_strain,friction_sweeps,friction_residual,friction_work,sticking,sliding,self_contacts,"
             "rows_new,rows_not_crossing,rows_at_eol,rows_beside_eol,rows_flat_behind,"
             "rows_near_border,rows_border_ahead,"
-            "rows_guard,rows_quality,rows_off_plane,rows_blocked,"
+            "rows_guard,rows_quality,rows_off_plane,rows_blocked,rows_gathering,"
             "rows_given_up,rows_released,rows_no_direction,"
             "rows_along_border,rows_edge_on,rows_cloth_corner,"
             "rows_other_feature,rows_other_obstacle"));
