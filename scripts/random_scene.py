@@ -259,7 +259,8 @@ class SceneMaker:
                  "velocity": [self.number(-1.0, 1.0), self.number(-1.0, 1.0), -self.number(2.0, 8.0)],
                  "material": {"density": self.log(0.05, 0.4), "youngs_modulus": self.log(50.0, 5000.0),
                               "bending_stiffness": self.log(1e-6, 1e-4)}}
-        scene = {"title": title, "duration": 0.6, "cloth": cloth, "gravity": {}, "self_contact": {},
+        scene = {"title": title, "duration": 0.6, "time": {"step": 0.005, "integrator": "bdf2"}, "cloth": cloth,
+                 "gravity": {}, "self_contact": {},
                  "obstacle": [{"name": "floor", "box": [6.0, 6.0, 0.1], "translate": [0.0, 0.0, -0.05]}]}
         if self.is_true(0.5):
             scene["friction"] = {"coefficient": self.log(0.02, 1.0)}

@@ -44,7 +44,7 @@ def list_smaller(scene):
             yield changed(lambda s: s["cloth"]["material"].update({key: plain}))
     if scene["time"].get("integrator", "bdf2") != "bdf2":
         yield changed(lambda s: s["time"].pop("integrator"))
-    if scene["eol"]["enabled"]:
+    if scene.get("eol", {}).get("enabled", False):
         yield changed(lambda s: s["eol"].update(enabled=False))
 
 
