@@ -255,7 +255,7 @@ class SceneMaker:
                  "pattern": self.chance.choice(["diagonal", "alternating", "cross", "unstructured"]),
                  "rotate": {"axis": [round(math.cos(about), 4), round(math.sin(about), 4), 0.0],
                             "degrees": round(self.chance.gauss(90.0, 8.0), 2)},
-                 "translate": [0.0, 0.0, 0.5],
+                 "translate": [0.0, 0.0, 0.65],
                  "velocity": [self.number(-1.0, 1.0), self.number(-1.0, 1.0), -self.number(2.0, 8.0)],
                  "material": {"density": self.log(0.05, 0.4), "youngs_modulus": self.log(50.0, 5000.0),
                               "bending_stiffness": self.log(1e-6, 1e-4)}}
