@@ -172,9 +172,8 @@ std::vector<SceneKey> make_scene_keys()
          .sentence = "Two material points. The line through them becomes edges of the mesh, and the material "
                      "to the right of the line is rotated about it."},
         number("cloth.folds[].degrees", "degrees", {-179.9, 179.9}, kRequired,
-               "Angle by which the material to the right of the line is rotated downward. At 180 degrees the "
-               "two "
-               "layers would coincide, and neither would be above the other."),
+               "Angle by which the material to the right of the line is rotated downward. At 180 degrees "
+               "the two layers would coincide, and neither would be above the other."),
         text("cloth.file", KeyType::Path, kPath, "",
              "OBJ mesh used instead of a rectangle. Its positions are the initial world positions; its UVs, "
              "in metres, are the material coordinates. A flat mesh without UVs takes the material "

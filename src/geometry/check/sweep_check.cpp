@@ -15,6 +15,7 @@
 #include "geometry/check/face_groups.h"
 #include "geometry/check/sweep_violation.h"
 #include "geometry/check/swept_face.h"
+#include "geometry/cloth/element_owners.h"
 #include "geometry/contact/contact_batches.h"
 #include "geometry/obstacle/obstacle_touch.h"
 #include "geometry/sort_unique.h"
@@ -28,12 +29,6 @@ constexpr double kTouching = 1e-11;
 constexpr int kMostViolations = 9;  // per cloth face
 constexpr int kGroupSize = 16;      // cloth faces per query: smaller groups cost more queries, larger ones
                                     // have larger boxes
-
-/// Vertices and edges that belong to a cloth face; -1 where there are fewer.
-struct Owned {
-    std::array<int, 3> vertices{-1, -1, -1};
-    std::array<int, 3> edges{-1, -1, -1};
-};
 
 /// Findings for one cloth face.
 struct FaceFinding {
@@ -53,26 +48,6 @@ std::vector<Box3> sweep_boxes(const ClothMotion& motion)
     for (std::size_t f = 0; f < boxes.size(); ++f)
         for (const int v : (*motion.faces)[f]) boxes[f].extend(motion.begin[v]).extend(motion.end[v]);
     return boxes;
-}
-
-std::vector<Owned> assign_owners(const ClothMotion& motion)
-{
-    const std::vector<Face>& faces = *motion.faces;
-    std::vector<Owned> owned(faces.size());
-    std::vector<char> is_taken(motion.begin.size(), 0);
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        for (int k = 0; k < 3; ++k) {
-            if (is_taken[faces[f][k]]) continue;
-            is_taken[faces[f][k]] = 1;
-            owned[f].vertices[k] = faces[f][k];
-        }
-    }
-    const int edge_count = static_cast<int>(motion.edges->size());
-    for (int e = 0; e < edge_count; ++e) {
-        std::array<int, 3>& edges = owned[(*motion.edges)[e].face_left].edges;
-        *std::find(edges.begin(), edges.end(), -1) = e;
-    }
-    return owned;
 }
 
 Box3 box_of(std::span<const Vec3> points)
@@ -105,8 +80,8 @@ class GroupSearch {
     }
 
     /// Appends findings that are not clean.
-    void search(std::span<const int> faces, const std::vector<Box3>& boxes, const std::vector<Owned>& owned,
-                std::vector<FaceFinding>& findings)
+    void search(std::span<const int> faces, const std::vector<Box3>& boxes,
+                const std::vector<OwnedElements>& owned, std::vector<FaceFinding>& findings)
     {
         Box3 group;
         for (const int f : faces) group.extend(boxes[f]);
@@ -149,7 +124,7 @@ class GroupSearch {
         }
     }
 
-    void search_face(const Box3& box, const Owned& owned, FaceFinding& finding)
+    void search_face(const Box3& box, const OwnedElements& owned, FaceFinding& finding)
     {
         copy_touching(near_faces_, box, faces_);
         copy_touching(near_wires_, box, edges_);
@@ -199,7 +174,7 @@ class GroupSearch {
     }
 
     /// A vertex reports only the first face it meets; the others lie behind that face.
-    void sweep_vertices(const Owned& owned, FaceFinding& finding)
+    void sweep_vertices(const OwnedElements& owned, FaceFinding& finding)
     {
         for (const int v : owned.vertices) {
             if (v < 0) continue;
@@ -217,7 +192,7 @@ class GroupSearch {
         }
     }
 
-    void sweep_edges(const Owned& owned, FaceFinding& finding)
+    void sweep_edges(const OwnedElements& owned, FaceFinding& finding)
     {
         for (const int c : owned.edges) {
             if (c < 0) continue;
@@ -355,7 +330,8 @@ SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, dou
     for (const Box3& box : boxes) cloth.extend(box);
     if (!cloth.intersects(obstacle.bounds())) return {};
 
-    const std::vector<Owned> owned = assign_owners(motion);
+    const std::vector<OwnedElements> owned =
+        assign_owners(static_cast<int>(motion.begin.size()), *motion.faces, *motion.edges);
     const std::vector<int> order = order_by_place(boxes, kGroupSize);
     const int count = static_cast<int>(order.size());
     const auto find = [&](int first, int last, std::vector<FaceFinding>& findings) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "geometry/box_tree.h"
@@ -20,6 +21,12 @@ struct SelfMotion {
     Box3 box(int v) const { return Box3(begin[v]).extend(end[v]); }
     Box3 box(int a, int b) const { return box(a).merged(box(b)); }
 };
+
+/// Positions of the four vertices of a pair.
+inline std::array<Vec3, 4> corners(const std::vector<Vec3>& field, const std::array<int, 4>& vertices)
+{
+    return {field[vertices[0]], field[vertices[1]], field[vertices[2]], field[vertices[3]]};
+}
 
 /// Collects what `find` makes of the pairs of elements whose swept boxes come within `reach` (m) of each
 /// other: find.vertex_face(v, face, results) and find.edge_edge(e, f, results), each pair once. A vertex of
@@ -43,18 +50,18 @@ std::vector<Result> collect_near_pairs(const SelfSurface& surface, const SelfMot
 
     const auto sweep_vertices = [&](Find& found, int f, int g, std::vector<Result>& results) {
         const Face& face = surface.faces[g];
-        for (const int v : surface.own_vertices[f])
+        for (const int v : surface.owned[f].vertices)
             if (v >= 0 && v != face[0] && v != face[1] && v != face[2] &&
                 grow(motion.box(v)).intersects(boxes[g]))
                 found.vertex_face(v, g, results);
     };
     const auto sweep_edges = [&](Find& found, int f, int g, std::vector<Result>& results) {
-        for (const int e : surface.own_edges[f]) {
+        for (const int e : surface.owned[f].edges) {
             if (e < 0) continue;
             const MeshEdge& first = surface.edges[e];
             const Box3 box = grow(motion.box(first.a, first.b));
             if (!box.intersects(boxes[g])) continue;
-            for (const int h : surface.own_edges[g]) {
+            for (const int h : surface.owned[g].edges) {
                 if (h < 0) continue;
                 const MeshEdge& second = surface.edges[h];
                 if (first.a != second.a && first.a != second.b && first.b != second.a &&

@@ -78,11 +78,6 @@ class Search {
         return a.squaredExteriorDistance(b) < reach * reach;
     }
 
-    static std::array<Vec3, 4> corners(const std::vector<Vec3>& field, const std::array<int, 4>& vertices)
-    {
-        return {field[vertices[0]], field[vertices[1]], field[vertices[2]], field[vertices[3]]};
-    }
-
     Vec3 place(int v, double time) const
     {
         return motion_.begin[v] + time * (motion_.end[v] - motion_.begin[v]);
@@ -111,7 +106,7 @@ class Search {
         return way.dot(gap) <= kLevel * way.norm() * gap.norm();
     }
 
-    /// The same for the faces around a vertex.
+    /// Whether going from a vertex along any face around it leads no nearer to a point at `gap` from it.
     bool leads_no_nearer(int vertex, const Vec3& gap) const
     {
         for (const int face : surface_.faces_at[vertex])

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "geometry/cloth/element_owners.h"
 #include "geometry/cloth/mesh_topology.h"
 
 namespace arris {
@@ -19,8 +20,7 @@ struct SelfSurface {
     std::vector<Face> faces;
     std::vector<MeshEdge> edges;
     VertexFaces faces_at;
-    /// Each vertex and edge belongs to one face; -1 where there are fewer. An edge belongs to its left face.
-    std::vector<std::array<int, 3>> own_vertices, own_edges;
+    std::vector<OwnedElements> owned;          ///< by each face
     std::vector<std::array<int, 3>> edges_of;  ///< of each face: the edge from corner k to the next
 };
 

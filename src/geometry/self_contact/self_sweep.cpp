@@ -44,11 +44,6 @@ struct Sweep {
                 sweep_cloth_edges(corners(motion.begin, vertices), corners(motion.end, vertices), distance))
             met.push_back({first, second, {SelfContactKind::EdgeEdge, vertices, hit->weights}, *hit});
     }
-
-    static std::array<Vec3, 4> corners(const std::vector<Vec3>& field, const std::array<int, 4>& vertices)
-    {
-        return {field[vertices[0]], field[vertices[1]], field[vertices[2]], field[vertices[3]]};
-    }
 };
 
 /// The plane that a meeting violates. Where the pair began behind the plane, as cloth that slid past an edge

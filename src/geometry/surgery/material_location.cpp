@@ -5,6 +5,7 @@
 #include <set>
 
 #include "geometry/cgal.h"
+#include "geometry/from_least.h"
 
 namespace arris {
 namespace {
@@ -16,12 +17,6 @@ bool contains(const std::array<Vec2, 3>& X, const Vec2& point)
     for (int k = 0; k < 3; ++k)
         if (exact_orientation(X[k], X[(k + 1) % 3], point) < 0) return false;
     return true;
-}
-
-IdFace from_least(IdFace face)
-{
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-    return face;
 }
 
 }  // namespace

@@ -8,15 +8,10 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/from_least.h"
+
 namespace arris {
 namespace {
-
-Face from_least(const Face& face)
-{
-    const auto [a, b, c] = face;
-    if (a < b && a < c) return face;
-    return b < c ? Face{b, c, a} : Face{c, a, b};
-}
 
 // Faces start at their least vertex: bucket sort by this vertex, then a sort of the few faces of each.
 void sort_faces(int vertex_count, std::vector<Face>& faces)

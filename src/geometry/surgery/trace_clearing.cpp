@@ -18,6 +18,7 @@
 #include <tuple>
 
 #include "geometry/cloth/mesh_limits.h"
+#include "geometry/from_least.h"
 #include "geometry/surgery/material_walk.h"
 #include "geometry/surgery/vertex_table.h"
 
@@ -183,12 +184,6 @@ class Clearing {
     }
 
   private:
-    static IdFace from_least(IdFace face)
-    {
-        std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-        return face;
-    }
-
     bool is_moving(VertexId v) const { return ahead_.contains(v); }
 
     double soundness(const PatchFace& face) const { return arris::soundness(face, ahead_); }

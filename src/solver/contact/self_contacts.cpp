@@ -24,8 +24,8 @@ auto key_of(const ActiveSelfContact& contact)
     return std::tie(contact.kind, contact.vertex_ids);
 }
 
-/// The same contact in the last step. A vertex slides from face to face, so its normal tells which plane was
-/// the same.
+/// Entry of the contact in the last step; null where it did not press. A vertex slides from face to face, so
+/// its normal tells which plane was the same.
 const ActiveSelfContact* find_last(const State& state, const SelfContact& contact)
 {
     constexpr double kSameNormal = 0.7;
@@ -144,7 +144,7 @@ void append_self_rows(const State& state, const Prediction& prediction, const Li
         self.row = static_cast<int>(problem.rows.size());
         const double closing = contact.normal.dot(contact.difference(state.velocity));
         self.is_closing = gap + prediction.gamma * closing < contact.least_gap;
-        // Of rows that close, most repeat each other: the search finds those that press.
+        // Most rows that close repeat each other: the search finds those that press.
         if (self.was_active() || self.is_pressing) problem.row_guess.push_back(self.row);
         problem.rows.push_back(row);
     }

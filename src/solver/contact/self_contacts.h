@@ -31,7 +31,7 @@ struct SelfRow {
     bool was_active() const { return last_multiplier > 0.0; }
 };
 
-/// Where the cloth would end at its last velocity, with pinned vertices at their targets.
+/// Positions at which the cloth would end at its last velocity, with pinned vertices at their targets.
 std::vector<Vec3> find_free_end(const State& state, const Prediction& prediction,
                                 const std::vector<PinTarget>& held);
 

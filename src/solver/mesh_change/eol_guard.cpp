@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/from_least.h"
 #include "geometry/sort_unique.h"
 #include "solver/mesh_change/strain_allowance.h"
 #include "solver/mesh_change/surgery_energy.h"
@@ -11,12 +12,6 @@
 namespace arris {
 
 namespace {
-
-IdFace from_least(IdFace face)
-{
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-    return face;
-}
 
 std::size_t find_place(const std::vector<VertexId>& ascending, VertexId v)
 {

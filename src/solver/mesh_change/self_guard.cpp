@@ -3,17 +3,12 @@
 
 #include <algorithm>
 
+#include "geometry/from_least.h"
 #include "geometry/self_contact/self_intersection.h"
 
 namespace arris {
 
 namespace {
-
-IdFace from_least(IdFace face)
-{
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-    return face;
-}
 
 BoxTree::Box box_of(const PatchFace& face)
 {
