@@ -2,8 +2,12 @@
 #include "app/scene/scene_effects.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace arris {
 namespace {
@@ -32,12 +36,14 @@ SceneEffect friction_effect(const RunConfig& config)
 {
     const std::optional<Friction>& friction = config.scene.friction;
     if (!friction) return {"friction", false, "no [friction]: the cloth slides freely over obstacles"};
-    std::string coefficients;
-    for (const double coefficient : friction->coefficients)
-        if (coefficients.find(fmt::format("{:g}", coefficient)) == std::string::npos)
-            coefficients += (coefficients.empty() ? "" : ", ") + fmt::format("{:g}", coefficient);
-    if (config.scene.obstacles.empty()) return {"friction", false, "no [[obstacle]] that could rub"};
-    return {"friction", true, "coefficient " + coefficients};
+    const bool do_layers_rub = config.scene.self_contact && friction->between_layers > 0.0;
+    if (config.scene.obstacles.empty() && !do_layers_rub)
+        return {"friction", false, "no [[obstacle]] that could rub"};
+    const std::set<double> coefficients(friction->coefficients.begin(), friction->coefficients.end());
+    std::vector<std::string> parts;
+    for (const double coefficient : coefficients) parts.push_back(fmt::format("{:g}", coefficient));
+    if (do_layers_rub) parts.push_back(fmt::format("{:g} between layers", friction->between_layers));
+    return {"friction", true, fmt::format("coefficient {}", fmt::join(parts, ", "))};
 }
 
 SceneEffect self_contact_effect(const RunConfig& config)

@@ -259,9 +259,11 @@ std::vector<SceneKey> make_scene_keys()
         number("pull[].start", "s", kNotNegative, "0.0", "Time at which the force begins."),
         number("pull[].stop", "s", kPositive, kNever, "Time at which the force ends; later than `start`."),
 
-        table("friction", "", "Switches friction with obstacles on."),
+        table("friction", "", "Switches friction on."),
         number("friction.coefficient", "", {0.0, 100.0}, "0.3",
-               "Coefficient of Coulomb friction; an obstacle's own coefficient overrides it."),
+               "Coefficient of Coulomb friction with obstacles and, with `[self_contact]`, between layers; "
+               "their "
+               "own coefficients override it."),
 
         table("self_contact", "",
               "Switches contact of the cloth with itself on, and of several pieces of one file with each "
@@ -270,9 +272,9 @@ std::vector<SceneKey> make_scene_keys()
                "Distance kept between the middle surfaces of two layers; without it the cloth's "
                "`material.thickness`."),
         number(
-            "self_contact.friction", "", {0.0, 100.0}, "0.0",
-            "Coefficient of Coulomb friction between layers; steps of crumpled cloth then take many times as "
-            "long."),
+            "self_contact.friction", "", {0.0, 100.0}, "",
+            "Coefficient of Coulomb friction between layers; without it `friction.coefficient`, or 0 without "
+            "`[friction]`."),
 
         table("eol", "{}", "Eulerian-on-Lagrangian (EOL) vertices on sharp features of obstacles."),
         boolean("eol.enabled", "true",

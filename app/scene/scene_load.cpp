@@ -86,22 +86,24 @@ Material to_material(const Json& json)
             to_double(json["damping"]),       to_double(json["thickness"])};
 }
 
-/// Nothing where neither [friction] nor an obstacle's own coefficient is given.
+/// Nothing where neither [friction] nor a coefficient of an obstacle or of the layers is given.
 std::optional<Friction> to_friction(const Json& json)
 {
     const bool is_on = json.contains("friction");
-    const double between_layers =
-        json.contains("self_contact") ? to_double(json["self_contact"]["friction"]) : 0.0;
     const double common = is_on ? to_double(json["friction"]["coefficient"]) : 0.0;
     Friction friction;
-    friction.between_layers = between_layers;
     bool has_own = false;
+    if (json.contains("self_contact")) {
+        const Json& layers = json["self_contact"];
+        has_own = layers.contains("friction");
+        friction.between_layers = has_own ? to_double(layers["friction"]) : common;
+    }
     for (const Json& obstacle : json.value("obstacle", Json::array())) {
         const bool is_own = obstacle.contains("friction");
         friction.coefficients.push_back(is_own ? to_double(obstacle["friction"]) : common);
         has_own = has_own || is_own;
     }
-    if (!is_on && !has_own && !(between_layers > 0.0)) return std::nullopt;
+    if (!is_on && !has_own) return std::nullopt;
     return friction;
 }
 

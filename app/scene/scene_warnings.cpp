@@ -10,6 +10,7 @@
 #include <map>
 #include <tuple>
 
+#include "app/scene/layer_warnings.h"
 #include "app/scene/placement_warnings.h"
 #include "app/scene/scene_estimate.h"
 #include "app/scene/still_scene.h"
@@ -59,7 +60,9 @@ void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings
                       "exceeds that of any cloth: the unit is kg/m^2, and 150 g/m^2 are 0.15");
     if (material.bending_stiffness > 0.0 && topology.hinges.empty())
         warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
-    if (config.scene.obstacles.empty()) warnings.add("cloth.material.thickness", "the scene has no obstacle");
+    const bool keeps_layers = config.scene.self_contact && !warnings.is_written("self_contact.thickness");
+    if (config.scene.obstacles.empty() && !keeps_layers)
+        warnings.add("cloth.material.thickness", "the scene has no obstacle");
 }
 
 /// Warns of a cloth of implausible size, mostly because the unit is wrong.
@@ -368,6 +371,7 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_turns(config, warnings);
     check_strain(config, placed, warnings);
     check_thickness(config, topology, warnings);
+    check_layers(config, topology, warnings);
     check_bends(config, warnings);
     check_stillness(config, topology, warnings);
     return warnings.lines_;

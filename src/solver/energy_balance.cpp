@@ -233,9 +233,10 @@ double find_unforeseen_energy(const Scene& scene, const State& state, const Work
 
 void measure_start_energy(const Scene& scene, const State& state, Workspace& work)
 {
-    // Share of m g L that counts as a change: cloth at rest moves by round-off and as rows give way, by up to
-    // 1e-7 of its size. Without it, changes at rest would be compared with themselves.
-    constexpr double kRest = 1e-6;
+    // Share of m g L that counts as a change: cloth at rest moves by round-off and as rows give way. In a
+    // stack of layers, where other rows press in each step, all of it moves by up to 2e-8 of its size.
+    // Without this share, changes at rest would be compared with themselves.
+    constexpr double kRest = 1e-5;
     const double area = total_area(work.mesh.elements);
     work.energies.floor = scene.gravity ? kRest * scene.material.density * area *
                                               scene.gravity->acceleration.norm() * std::sqrt(area)
@@ -253,16 +254,19 @@ void measure_start_energy(const Scene& scene, const State& state, Workspace& wor
 
 void measure_proposal_energy(const Scene& scene, double dt, Workspace& work)
 {
-    constexpr double kStill = 1e-6;  // m/s: above round-off of pins and restored stand-offs
+    // Push that counts as none, as a share of the cloth's size: above round-off, and a third of kRise of what
+    // `measure_start_energy` takes for rest.
+    constexpr double kStill = 1e-8;
+    const double still = kStill * std::sqrt(total_area(work.mesh.elements)) / dt;
     const Proposal& proposal = work.proposal;
     MovingCloth end = find_end(work.prediction, velocity_of(proposal));
     double fastest = 0.0;
     if (end.world != proposal.world)  // contacts or pins have moved the proposal
         for (const Vec3& v : push_velocity(work, dt)) fastest = std::max(fastest, v.squaredNorm());
-    if (fastest > kStill * kStill) work.energies.solved = compute_cloth_energy(scene, work, end);
+    if (fastest > still * still) work.energies.solved = compute_cloth_energy(scene, work, end);
     end.world = proposal.world;
     work.energies.proposed = compute_cloth_energy(scene, work, end);
-    if (!(fastest > kStill * kStill)) work.energies.solved = work.energies.proposed;
+    if (!(fastest > still * still)) work.energies.solved = work.energies.proposed;
 }
 
 bool does_push_out_strain(const Scene& scene, double dt, const Workspace& work)

@@ -64,8 +64,7 @@ void make_room_for_self_rows(const Scene& scene, Workspace& work)
     for (const SelfRow& row : work.self_rows)
         if (row.is_closing || row.was_active()) closing.insert(work.problem.rows[row.row].group);
     constexpr std::size_t kFewRub = 10;  // pairs, whose springs the working set finds as well
-    const bool do_many_rub =
-        scene.friction && scene.friction->between_layers > 0.0 && closing.size() > kFewRub;
+    const bool do_many_rub = scene.friction && closing.size() > kFewRub;
     const bool is_wanted = do_many_rub || wants_rows_in_matrix(work.problem, closing.size());
     for (const SelfRow& row : work.self_rows)
         for (int i = 0; is_wanted && i < 4; ++i)

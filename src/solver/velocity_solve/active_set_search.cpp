@@ -56,8 +56,8 @@ constexpr int kNewtonBases = 20, kRowBases = 4;
 constexpr int kFullSteps = 8;  // of these; the others go as far as the energy falls
 constexpr int kFewChanges = 30;
 
-/// Friction pairs that may join U at a time: so many that the dense work, about kPairFlops times the third
-/// power of their number, is that of another base.
+/// Friction pairs that may join U at a time, and rows that may start in U beside pairs: so many that the
+/// dense work, about kPairFlops times the third power of their number, is that of another base.
 constexpr double kPairFlops = 50.0;
 constexpr int kLeastPairs = 10, kMostPairs = 150;
 
@@ -216,7 +216,8 @@ void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
 {
     rows_.clear();
     is_pressing_.assign(constraints_.rows.size(), 0);
-    const bool is_few = static_cast<double>(expected.size()) <= few_rows(problem_);
+    const double few = problem_.friction.empty() ? few_rows(problem_) : few_pairs();
+    const bool is_few = static_cast<double>(expected.size()) <= few;
     for (const int k : expected) {
         if (!is_few && !has_pulled_[k] && has_room_for(*problem_.matrix, constraints_.rows[k]))
             is_pressing_[k] = 1;
@@ -282,15 +283,19 @@ void ActiveSetSearch::rebase_by_prediction()
     start_from_iterate();
 }
 
+int ActiveSetSearch::few_pairs() const
+{
+    return std::clamp(static_cast<int>(std::cbrt(factorization_.flops() / kPairFlops)), kLeastPairs,
+                      kMostPairs);
+}
+
 /// Whether so many friction pairs are far from their springs, or so many rows change sides at a base that has
 /// rows, that another base costs less than U.
 bool ActiveSetSearch::has_many_changes(const Violators& violators) const
 {
     const std::vector<char>& in_base = in_use_->base.is_pressing;
     const int pairs = static_cast<int>(violators.pairs.size());
-    const int few =
-        std::clamp(static_cast<int>(std::cbrt(factorization_.flops() / kPairFlops)), kLeastPairs, kMostPairs);
-    if (best_.factorisations <= kNewtonBases && pairs > few) return true;
+    if (best_.factorisations <= kNewtonBases && pairs > few_pairs()) return true;
     return best_.factorisations <= kRowBases && static_cast<int>(violators.rows.size()) > kFewChanges &&
            std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
 }

@@ -33,6 +33,7 @@ class ActiveSetSearch {
     void run_rounds(int cap);
     bool start_rows();
     void choose_rows(const std::vector<int>& expected);
+    int few_pairs() const;
     bool has_many_changes(const Violators& violators) const;
     void start_from_iterate();
     void rebase_by_prediction();

@@ -7,9 +7,10 @@
 
 namespace arris {
 
-/// `solve_condensed_qp` for a problem with discs (friction), from `start`. Block descent with exact solutions
-/// of one unknown or one disc at a time, which always converges, leads to the right set; a semismooth Newton
-/// method on z = P(z - w), P the projection onto bounds and discs, makes the answer exact to round-off.
+/// `solve_condensed_qp` for a problem with discs (friction), from `start`. Some sweeps of block descent lead
+/// near the answer where the discs hardly depend on each other; where that is not near enough, Newton's
+/// method on the energy does from anywhere. A semismooth Newton method on z = P(z - w), P the projection onto
+/// bounds and discs, makes the answer exact to round-off.
 std::optional<CondensedAnswer> solve_with_discs(const CondensedQp& qp, const Eigen::VectorXd& start,
                                                 DenseBudget& budget);
 

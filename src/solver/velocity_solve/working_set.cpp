@@ -2,11 +2,13 @@
 #include "solver/velocity_solve/working_set.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "solver/velocity_solve/dense_solve.h"
 
 namespace arris {
 
@@ -194,11 +196,12 @@ void WorkingSet::add_discs(CondensedQp& qp) const
     if (qp.discs.empty()) return;
     qp.linear -= qp.hessian * force;
     if (has_spring) {
-        const Eigen::PartialPivLU<Eigen::MatrixXd> without(Eigen::MatrixXd::Identity(size(), size()) -
-                                                           qp.hessian * spring);
-        const Eigen::MatrixXd hessian = without.solve(qp.hessian);
-        qp.hessian = 0.5 * (hessian + hessian.transpose());
-        qp.linear = without.solve(qp.linear).eval();
+        Eigen::MatrixXd right(size(), size() + 1);
+        right << qp.hessian, qp.linear;
+        const Eigen::MatrixXd solved =
+            solve_dense(Eigen::MatrixXd::Identity(size(), size()) - qp.hessian * spring, std::move(right));
+        qp.hessian = 0.5 * (solved.leftCols(size()) + solved.leftCols(size()).transpose());
+        qp.linear = solved.col(size());
     }
     for (const CondensedDisc& disc : qp.discs)
         for (const int k : {disc.first, disc.second}) qp.hessian(k, k) += row_of(members_[k]).give;
@@ -364,7 +367,7 @@ Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Ite
     }
     // Members have different units: scale to a unit diagonal first.
     matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
-    return scale.cwiseProduct(matrix.partialPivLu().solve(scale.cwiseProduct(rhs)));
+    return scale.cwiseProduct(solve_dense(std::move(matrix), scale.cwiseProduct(rhs)).col(0));
 }
 
 }  // namespace arris

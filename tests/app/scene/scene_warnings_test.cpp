@@ -294,6 +294,31 @@ TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
     EXPECT_THAT(load("0.4").warnings, ::testing::IsEmpty());
 }
 
+TEST(SceneWarnings, TellOfLayersTooThickForTheMeshOrTooNear)
+{
+    const TemporaryDirectory dir;
+    std::string two;  // sheets of 1 x 1 m, 2 mm apart
+    for (const std::string z : {" 0", " 0.002"})
+        for (const std::string x : {"0 0", "1 0", "1 1", "0 1"})
+            two += "v " + x + z + "\nvt " + (z == " 0" ? "" : "2") + x + "\n";
+    write_bytes(dir / "two.obj", two + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 5/5 6/6 7/7\nf 5/5 7/7 8/8\n");
+    const auto load = [&](const std::string& thickness) {
+        write_bytes(dir / "s.toml", "duration = 1\n[cloth]\nfile = \"two.obj\"\n[gravity]\n[self_contact]\n" +
+                                        thickness + "\n");
+        return load_scene(dir / "s.toml", {kMoving}).warnings;
+    };
+    EXPECT_THAT(load(""), ::testing::IsEmpty());
+    EXPECT_THAT(
+        load("thickness = 0.01"),
+        ElementsAre(HasSubstr("self_contact.thickness = 0.01: 8 of 8 vertices start nearer to another "
+                              "layer than the 0.01 m that layers keep apart, the nearest 0.002 m")));
+    EXPECT_THAT(
+        load("thickness = 0.2"),
+        ::testing::Contains(HasSubstr("self_contact.thickness = 0.2: layers keep 0.2 m apart, which is "
+                                      "above a fifth of the mean height of the cloth's triangles, "
+                                      "0.707 m")));
+}
+
 TEST(SceneWarnings, TellOfAModulusInPascal)
 {
     const auto load = [](const std::string& modulus) {

@@ -200,6 +200,42 @@ TEST(Friction, WithoutBudgetChangesNothing)
     EXPECT_LE((with.velocity - without.velocity).lpNorm<Eigen::Infinity>(), 1e-12);
 }
 
+/// Discs of contacts that depend on each other, as in a stack: S has a few large eigenvalues and many at the
+/// springs' give; budgets are spread over six orders.
+CondensedQp make_dependent_discs(int discs, int bounds, int rank, std::mt19937& random)
+{
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> order(-6.0, 0.0);
+    const int size = 2 * discs + bounds;
+    const Eigen::MatrixXd g = Eigen::MatrixXd::NullaryExpr(size, rank, [&] { return normal(random); });
+    CondensedQp qp;
+    qp.hessian = g * g.transpose() / rank + 1e-4 * Eigen::MatrixXd::Identity(size, size);
+    qp.linear = g * Eigen::VectorXd::NullaryExpr(rank, [&] { return normal(random); });
+    for (int d = 0; d < discs; ++d) qp.discs.push_back({2 * d, 2 * d + 1, std::pow(10.0, order(random))});
+    return qp;
+}
+
+TEST(CondensedDiscs, AreExactWhereTheyDependOnEachOther)
+{
+    std::mt19937 random(1);
+    for (int trial = 0; trial < 60; ++trial) {
+        const int discs = 5 + trial, bounds = trial % 3 * 20;
+        const CondensedQp qp = make_dependent_discs(discs, bounds, 6 + trial / 2, random);
+        DenseBudget budget = {1e12};
+        const auto answer = solve_condensed_qp(qp, Eigen::VectorXd::Zero(qp.linear.size()), budget);
+        ASSERT_TRUE(answer) << trial;
+        const Eigen::VectorXd slack = qp.hessian * answer->z + qp.linear;
+        const double unit = qp.linear.lpNorm<Eigen::Infinity>() + answer->z.lpNorm<Eigen::Infinity>();
+        for (const CondensedDisc& disc : qp.discs) {
+            const Eigen::Vector2d z(answer->z[disc.first], answer->z[disc.second]);
+            const Eigen::Vector2d w(slack[disc.first], slack[disc.second]);
+            EXPECT_LE((project_on_disc(z - w, disc.radius) - z).norm(), 1e-10 * unit) << trial;
+        }
+        for (int i = 2 * discs; i < qp.linear.size(); ++i)
+            EXPECT_NEAR(std::max(answer->z[i] - slack[i], 0.0), answer->z[i], 1e-10 * unit) << trial;
+    }
+}
+
 TEST(MinimiseInDisc, EqualsAFineSearchOnTheRim)
 {
     std::mt19937 random(1);
