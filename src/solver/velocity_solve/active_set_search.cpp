@@ -72,6 +72,13 @@ double few_rows(const VelocityProblem& problem)
     return std::max<double>(kFewRows, kFewShare / 3.0 * static_cast<double>(problem.lower.size()));
 }
 
+/// Number of friction pairs, or of rows beside them.
+int few_pairs(const Factorization& factorization)
+{
+    const int few = static_cast<int>(std::cbrt(factorization.flops() / kPairFlops));
+    return std::clamp(few, kLeastPairs, kMostPairs);
+}
+
 std::vector<char> active_by_guess(const VelocityProblem& problem)
 {
     std::vector<char> is_active(problem.is_fixed.size(), 0);
@@ -150,7 +157,7 @@ VelocitySolution ActiveSetSearch::run_bases()
     for (int base = 0; base < kMostBases && budget_.flops > 0.0 && !is_over_; ++base)
         run_base(base < kCappedBases ? kWorkingSetCap : kLargestWorkingSet);
     if (in_use_) in_use_->measure_lag();
-    best_.infeasible_rows = find_infeasible_rows();
+    best_.infeasible_rows = find_infeasible_rows(constraints_, best_.row_multipliers);
     for (std::size_t k = 0; k < constraints_.rows.size(); ++k)
         best_.row_multipliers[static_cast<Eigen::Index>(k)] /= constraints_.rows[k].scale;
     for (int p = 0; p < constraints_.pair_count(); ++p) {
@@ -216,7 +223,7 @@ void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
 {
     rows_.clear();
     is_pressing_.assign(constraints_.rows.size(), 0);
-    const double few = problem_.friction.empty() ? few_rows(problem_) : few_pairs();
+    const double few = problem_.friction.empty() ? few_rows(problem_) : few_pairs(factorization_);
     const bool is_few = static_cast<double>(expected.size()) <= few;
     for (const int k : expected) {
         if (!is_few && !has_pulled_[k] && has_room_for(*problem_.matrix, constraints_.rows[k]))
@@ -283,19 +290,13 @@ void ActiveSetSearch::rebase_by_prediction()
     start_from_iterate();
 }
 
-int ActiveSetSearch::few_pairs() const
-{
-    return std::clamp(static_cast<int>(std::cbrt(factorization_.flops() / kPairFlops)), kLeastPairs,
-                      kMostPairs);
-}
-
 /// Whether so many friction pairs are far from their springs, or so many rows change sides at a base that has
 /// rows, that another base costs less than U.
 bool ActiveSetSearch::has_many_changes(const Violators& violators) const
 {
     const std::vector<char>& in_base = in_use_->base.is_pressing;
     const int pairs = static_cast<int>(violators.pairs.size());
-    if (best_.factorisations <= kNewtonBases && pairs > few_pairs()) return true;
+    if (best_.factorisations <= kNewtonBases && pairs > few_pairs(factorization_)) return true;
     return best_.factorisations <= kRowBases && static_cast<int>(violators.rows.size()) > kFewChanges &&
            std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
 }
@@ -382,22 +383,6 @@ bool ActiveSetSearch::certify()
         best_exact_ = iterate.is_exact;
     }
     return residual <= kAccurate;
-}
-
-/// Rows that give way further than rows that can be met, and rows without a movable coordinate.
-std::vector<int> ActiveSetSearch::find_infeasible_rows() const
-{
-    std::vector<int> infeasible = constraints_.impossible;
-    const int first = constraints_.slip_count();
-    for (std::size_t k = first; k < constraints_.rows.size(); ++k) {
-        const ScaledRow& row = constraints_.rows[k];
-        if (row.entries.empty()) continue;
-        if (row.give * best_.row_multipliers[static_cast<Eigen::Index>(k)] > constraints_.unmet_speed)
-            infeasible.push_back(static_cast<int>(k) - first);
-    }
-    std::sort(infeasible.begin(), infeasible.end());
-    infeasible.erase(std::unique(infeasible.begin(), infeasible.end()), infeasible.end());
-    return infeasible;
 }
 
 }  // namespace arris

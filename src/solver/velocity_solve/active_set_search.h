@@ -33,7 +33,6 @@ class ActiveSetSearch {
     void run_rounds(int cap);
     bool start_rows();
     void choose_rows(const std::vector<int>& expected);
-    int few_pairs() const;
     bool has_many_changes(const Violators& violators) const;
     void start_from_iterate();
     void rebase_by_prediction();
@@ -44,7 +43,6 @@ class ActiveSetSearch {
     void refine();
     bool certify();
     std::vector<int> rows_of_guess() const;
-    std::vector<int> find_infeasible_rows() const;
 
     const VelocityProblem& problem_;
     Factorization& factorization_;

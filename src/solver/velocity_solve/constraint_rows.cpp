@@ -230,4 +230,19 @@ double gap(const ScaledRow& row, const Eigen::VectorXd& velocity, double multipl
     return value - row.lower;
 }
 
+std::vector<int> find_infeasible_rows(const ConstraintRows& constraints, const Eigen::VectorXd& multipliers)
+{
+    std::vector<int> infeasible = constraints.impossible;
+    const int first = constraints.slip_count();
+    for (std::size_t k = first; k < constraints.rows.size(); ++k) {
+        const ScaledRow& row = constraints.rows[k];
+        if (row.entries.empty()) continue;
+        if (row.give * multipliers[static_cast<Eigen::Index>(k)] > constraints.unmet_speed)
+            infeasible.push_back(static_cast<int>(k) - first);
+    }
+    std::sort(infeasible.begin(), infeasible.end());
+    infeasible.erase(std::unique(infeasible.begin(), infeasible.end()), infeasible.end());
+    return infeasible;
+}
+
 }  // namespace arris

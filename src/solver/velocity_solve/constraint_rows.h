@@ -52,4 +52,8 @@ double estimate_free_speed(const VelocityProblem& problem);
 /// g^T u - lower + give * multiplier: 0 for a row that presses.
 double gap(const ScaledRow& row, const Eigen::VectorXd& velocity, double multiplier);
 
+/// The problem's rows that give way further than rows that can be met, and rows without a movable coordinate,
+/// ascending. `multipliers`: of the scaled rows.
+std::vector<int> find_infeasible_rows(const ConstraintRows& constraints, const Eigen::VectorXd& multipliers);
+
 }  // namespace arris
