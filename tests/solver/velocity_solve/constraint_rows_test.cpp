@@ -312,6 +312,34 @@ TEST(ConstraintRows, RepeatedAreWorthOne)
         }
 }
 
+// Rows that press are springs of the base where many are expected, and members of the working set where none
+// is: two ways to one answer, though most rows are copies of others.
+TEST(ConstraintRows, InTheBaseAndInTheWorkingSetGiveOneAnswer)
+{
+    int most_pressing = 0;
+    for (unsigned trial = 0; trial < 200; ++trial) {
+        std::mt19937 random(trial);
+        ClothWithRows cloth(6 + static_cast<int>(trial % 4));
+        const testing::RowPattern patterns[] = {testing::RowPattern::Spread, testing::RowPattern::Patch,
+                                                testing::RowPattern::Clusters};
+        cloth.add(patterns[trial % 3], 100, trial);
+        std::vector<ConstraintRow>& rows = cloth.owned.problem.rows;
+        for (int copy = 0; copy < 380; ++copy) rows.push_back(rows[random() % 100]);
+        const VelocitySolution in_set = solve(cloth.owned.problem);
+        cloth.owned.problem.row_guess = pressing(in_set);
+        const VelocitySolution in_base = solve(cloth.owned.problem);
+        ASSERT_EQ(in_set.status, SolveStatus::Certified) << trial;
+        ASSERT_EQ(in_base.status, SolveStatus::Certified) << trial;
+        most_pressing = std::max(most_pressing, static_cast<int>(pressing(in_base).size()));
+        const double speed = in_set.velocity.lpNorm<Eigen::Infinity>();
+        EXPECT_LE((in_base.velocity - in_set.velocity).lpNorm<Eigen::Infinity>(), 1e-10 * speed) << trial;
+        EXPECT_LE((in_base.row_multipliers - in_set.row_multipliers).lpNorm<Eigen::Infinity>(),
+                  1e-7 * in_set.row_multipliers.lpNorm<Eigen::Infinity>())
+            << trial;
+    }
+    EXPECT_GT(most_pressing, 150);  // more than a working set starts with
+}
+
 TEST(ConstraintRows, ThatAreNearlyTheSameAreCertifiedInBoundedWork)
 {
     for (const double difference : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
