@@ -128,6 +128,9 @@ void write_state(BinaryWriter& out, const State& state)
         out.number(contact.multiplier);
         write_friction(out, contact.friction);
     });
+    out.list(state.coupled, [&](const std::array<int, 2>& pair) {
+        for (const int v : pair) out.number(static_cast<std::int32_t>(v));
+    });
     out.number(state.crossings);
 }
 
@@ -196,6 +199,11 @@ State read_state(BinaryReader& in)
         contact.multiplier = in.number<double>();
         contact.friction = read_friction(in);
         return contact;
+    });
+    state.coupled = in.list<std::array<int, 2>>(2 * sizeof(std::int32_t), [&] {
+        std::array<int, 2> pair;
+        for (int& v : pair) v = in.number<std::int32_t>();
+        return pair;
     });
     state.crossings = in.number<std::int64_t>();
     return state;
@@ -283,6 +291,12 @@ std::string find_defect(const Checkpoint& checkpoint)
             return fmt::format("vertex {} is not finite", v);
     if (const std::string defect = find_defect(state.active, state.ids); !defect.empty()) return defect;
     if (const std::string defect = find_defect(state.self, state.ids); !defect.empty()) return defect;
+    for (std::size_t k = 0; k < state.coupled.size(); ++k) {
+        const auto& [v, w] = state.coupled[k];
+        if (v < 0 || v >= w || w >= static_cast<int>(n) ||
+            (k > 0 && state.coupled[k] <= state.coupled[k - 1]))
+            return fmt::format("coupled pair {} is invalid", k);
+    }
     if (const std::string defect = find_defect(state.eol, state.ids); !defect.empty()) return defect;
     for (std::size_t k = 0; k < state.anchors.size(); ++k) {
         const PinAnchor& anchor = state.anchors[k];

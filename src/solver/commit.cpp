@@ -38,6 +38,7 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     report.eol_pressing = census.eol;
     state.active = active_contacts(state, work.obstacles, work.contacts, multiplier);
     state.self = active_self_contacts(state, work.self_rows, work.solution);
+    state.coupled = work.mesh.system.coupled();
     count_idle(work.contacts, work.eol, multiplier, state.eol);
     state.crossings += report.crossings;
     report.contacts = static_cast<int>(state.active.size() -

@@ -188,5 +188,32 @@ TEST(SelfContactCrumple, NeverCrossesItself)
     }
 }
 
+/// Contacts of layers couple vertices in the matrix for more than one step: the state tells which, and so
+/// alone decides the last bit of the next step.
+TEST(SelfContactCrumple, GoesOnFromAStateAlone)
+{
+    Scene scene;
+    scene.material = make_material();
+    scene.gravity = Gravity{{0.0, 0.0, -kG}};
+    scene.obstacles.push_back(make_floor());
+    scene.self_contact = ClothContact{kThickness};
+    scene.friction = Friction{{0.3}, 0.3};
+    ClothMesh mesh = make_sheet({0.3, 0.15}, {14, 7}, GridPattern::Alternating);
+    const Mat3 turn = Eigen::AngleAxisd(-1.5, Vec3::UnitY()).toRotationMatrix();
+    for (Vec3& x : mesh.world) x = turn * x + Vec3(0.0, 0.0, 0.02);
+    ClothRun run(std::move(scene), std::move(mesh), Vec3(0.0, 0.0, -3.0));
+    std::size_t most = 0;
+    for (int k = 0; k < 40; ++k) {
+        ClothRun resumed = {run.scene, run.state.mesh};
+        resumed.state = run.state;
+        run.advance(kStep);
+        resumed.advance(kStep);
+        most = std::max(most, run.state.coupled.size());
+        ASSERT_EQ(run.state.mesh.world, resumed.state.mesh.world) << k;
+        ASSERT_EQ(run.state.coupled, resumed.state.coupled) << k;
+    }
+    EXPECT_GT(most, 0u);
+}
+
 }  // namespace
 }  // namespace arris

@@ -40,6 +40,8 @@ bool prepare_elements(const Scene& scene, const State& state, MeshCache& cache)
 {
     prepare_stars(state, cache);
     const bool has_faces = cache.faces_of_elements == state.mesh.faces;
+    if (has_faces && cache.system.coupled() != state.coupled)
+        cache.system.make_pattern(cache.elements, state.coupled);
     if (has_faces && cache.material_of_elements == state.mesh.material) return false;
     cache.world_of_stretches.clear();
     if (has_faces) {  // material has flowed
@@ -51,7 +53,7 @@ bool prepare_elements(const Scene& scene, const State& state, MeshCache& cache)
         return false;
     }
     cache.elements = make_elements(state.mesh, cache.stars.topology, find_hinge_use(scene, cache.terms));
-    cache.system.make_pattern(cache.elements);
+    cache.system.make_pattern(cache.elements, state.coupled);
     cache.faces_of_elements = state.mesh.faces;
     cache.material_of_elements = state.mesh.material;
     return true;

@@ -83,7 +83,10 @@ struct State {
     std::vector<PinAnchor> anchors;       ///< ascending by (pin, vertex_id)
     std::vector<ActiveContact> active;    ///< ascending by (vertex_ids, obstacle, kind, element)
     std::vector<ActiveSelfContact> self;  ///< ascending by (kind, vertex_ids)
-    std::int64_t crossings = 0;           ///< passages through obstacles so far
+    /// Pairs of vertices that contacts of the cloth with itself couple in the matrix, ascending: they decide
+    /// the order of elimination, and so the last bits of a step.
+    std::vector<std::array<int, 2>> coupled;
+    std::int64_t crossings = 0;  ///< passages through obstacles so far
 
     /// Index of the vertex with this id; -1 without such a vertex.
     int index_of(std::uint32_t id) const

@@ -3,7 +3,7 @@
 // rows, and pins with a negative multiplier, form a working set U. NLopt solves the dense problem condensed
 // on U, and one backward solve gives the velocity. New violators join U until there are none. Few rows
 // expected active start in U. Many become springs in the matrix of the base (Newton's method for the
-// springs): then no dense problem is as large as their number. All bases together are at most kMostBases, and
+// springs): then no dense problem is as large as their number. All bases together are bounded, and
 // the dense work is bounded too. If the guess is too far off for a small U, NLopt on the sparse problem
 // predicts the next base's guess. Whatever happened, the certificate judges the answer.
 #include "solver/velocity_solve/active_set_search.h"
@@ -37,10 +37,11 @@ constexpr int kRefinements = 2;
 constexpr int kWorkingSetCap = 400;
 constexpr int kHopeless = 3;
 
-/// Bases that may end by exceeding the cap; after them U may grow to kLargestWorkingSet.
-constexpr int kCappedBases = 20;
+/// Bases that may end by exceeding the cap; in kLastBases more U may grow to kLargestWorkingSet. Newton's
+/// method for the friction of a stack of layers takes up to 70 bases.
+constexpr int kCappedBases = 20, kCappedBasesWithFriction = 90;
+constexpr int kLastBases = 10;
 constexpr int kLargestWorkingSet = 2000;
-constexpr int kMostBases = 30;
 
 /// Largest number of rows in U; if more press, they become part of the base.
 constexpr int kMostRows = 600;
@@ -49,11 +50,11 @@ constexpr int kMostRows = 600;
 constexpr int kFewRows = 150;
 constexpr double kFewShare = 0.01;
 
-/// Bases in which all may change at once (Newton's method): friction's tangents, and rows until at most
-/// kFewChanges remain. After kRowBases, a row that has pulled in one is not part of a later one: U decides
-/// about it.
-constexpr int kNewtonBases = 20, kRowBases = 4;
-constexpr int kFullSteps = 8;  // of these; the others go as far as the energy falls
+/// Bases in which all may change at once (Newton's method): friction's tangents in all that have a cap, and
+/// rows in kRowBases until at most kFewChanges remain. After them, a row that has pulled in one is not part
+/// of a later one: U decides about it.
+constexpr int kRowBases = 4;
+constexpr int kFullSteps = 20;  // of Newton's; the others go as far as the energy falls
 constexpr int kFewChanges = 30;
 
 /// Friction pairs that may join U at a time, and rows that may start in U beside pairs: so many that the
@@ -70,6 +71,11 @@ constexpr double kLeastFlops = 2e9;
 double few_rows(const VelocityProblem& problem)
 {
     return std::max<double>(kFewRows, kFewShare / 3.0 * static_cast<double>(problem.lower.size()));
+}
+
+int capped_bases(const VelocityProblem& problem)
+{
+    return problem.friction.empty() ? kCappedBases : kCappedBasesWithFriction;
 }
 
 /// Number of friction pairs, or of rows beside them.
@@ -154,8 +160,9 @@ std::vector<int> ActiveSetSearch::rows_of_guess() const
 
 VelocitySolution ActiveSetSearch::run_bases()
 {
-    for (int base = 0; base < kMostBases && budget_.flops > 0.0 && !is_over_; ++base)
-        run_base(base < kCappedBases ? kWorkingSetCap : kLargestWorkingSet);
+    const int capped = capped_bases(problem_);
+    for (int base = 0; base < capped + kLastBases && budget_.flops > 0.0 && !is_over_; ++base)
+        run_base(base < capped ? kWorkingSetCap : kLargestWorkingSet);
     if (in_use_) in_use_->measure_lag();
     best_.infeasible_rows = find_infeasible_rows(constraints_, best_.row_multipliers);
     for (std::size_t k = 0; k < constraints_.rows.size(); ++k)
@@ -296,7 +303,7 @@ bool ActiveSetSearch::has_many_changes(const Violators& violators) const
 {
     const std::vector<char>& in_base = in_use_->base.is_pressing;
     const int pairs = static_cast<int>(violators.pairs.size());
-    if (best_.factorisations <= kNewtonBases && pairs > few_pairs(factorization_)) return true;
+    if (best_.factorisations <= capped_bases(problem_) && pairs > few_pairs(factorization_)) return true;
     return best_.factorisations <= kRowBases && static_cast<int>(violators.rows.size()) > kFewChanges &&
            std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
 }
@@ -306,7 +313,8 @@ void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
 {
     const Eigen::VectorXd& velocity = in_use_->iterate.velocity;
     // Rows alone need no line search: what pulls is soon left to U.
-    const bool is_newton = best_.factorisations <= (problem_.friction.empty() ? kRowBases : kNewtonBases);
+    const bool is_newton =
+        best_.factorisations <= (problem_.friction.empty() ? kRowBases : capped_bases(problem_));
     const bool is_full = best_.factorisations <= kFullSteps || newton_point_.size() == 0;
     if (is_newton && !is_full)
         newton_point_ +=
