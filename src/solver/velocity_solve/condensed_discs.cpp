@@ -138,9 +138,7 @@ struct Trial {
     }
 };
 
-/// Share of a step from x at which the energy 1/2 x^T M x + sum of the springs' energies is least, with v =
-/// v0
-/// + share * dv and Mx = M step.
+/// Share of a step from x at which the energy of `minimise_energy` is least. `v`: -(M x + q) / give.
 double find_share(const DiscProblem& problem, const Eigen::VectorXd& x, const Eigen::VectorXd& step,
                   const Eigen::VectorXd& M_step, const Eigen::VectorXd& v, double give)
 {
@@ -155,31 +153,6 @@ double find_share(const DiscProblem& problem, const Eigen::VectorXd& x, const Ei
         (slope(middle) > 0.0 ? high : low) = middle;
     }
     return high;
-}
-
-/// An answer to about kAcceptable. With give below the least eigenvalue of S, M = S - give is positive
-/// definite, and each unknown is the force P(-(M x + q) / give) of a spring: min 1/2 x^T M x + the springs'
-/// energies, which is convex and smooth, so that Newton's method with an exact line search finds the minimum
-/// from any start.
-std::optional<Trial> minimise_energy(const DiscProblem& problem, Eigen::VectorXd x, DenseBudget& budget)
-{
-    constexpr double kBelow = 0.9, kLeastGive = 1e-10;
-    const double n = static_cast<double>(problem.size());
-    if (!budget.spend(2.0 * n * n * n)) return std::nullopt;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(problem.S, Eigen::EigenvaluesOnly);
-    const double give = kBelow * eigen.eigenvalues()[0];
-    if (!(give > kLeastGive)) return std::nullopt;
-    for (int step = 0; step < kMostSteps; ++step) {
-        const Eigen::VectorXd v = x - problem.slack(x) / give;
-        Trial trial(problem, problem.project(v));
-        if (trial.is_within(problem, kAcceptable)) return trial;
-        if (!budget.spend(n * n * n)) return std::nullopt;
-        const std::optional<Eigen::VectorXd> way = problem.newton(x, v, give);
-        if (!way) return std::nullopt;
-        const Eigen::VectorXd M_way = problem.S * *way - give * *way;
-        x += find_share(problem, x, *way, M_way, v, give) * *way;
-    }
-    return std::nullopt;
 }
 
 /// False where the budget is spent.
@@ -205,6 +178,32 @@ bool polish(const DiscProblem& problem, Trial& best, DenseBudget& budget)
         best = std::move(trial);
     }
     return best.is_within(problem, kAcceptable);
+}
+
+/// A polished answer. With give below the least eigenvalue of S, M = S - give is positive
+/// definite, and each unknown is the force P(-(M x + q) / give) of a spring: min 1/2 x^T M x + the springs'
+/// energies, which is convex and smooth, so that Newton's method with an exact line search finds the minimum
+/// from any start.
+std::optional<Trial> minimise_energy(const DiscProblem& problem, Eigen::VectorXd x, DenseBudget& budget)
+{
+    constexpr double kBelow = 0.9, kLeastGive = 1e-10;
+    constexpr double kNear = 1e-6;  // residual from which polishing is tried: v has lost four digits and more
+    const double n = static_cast<double>(problem.size());
+    if (!budget.spend(2.0 * n * n * n)) return std::nullopt;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(problem.S, Eigen::EigenvaluesOnly);
+    const double give = kBelow * eigen.eigenvalues()[0];
+    if (!(give > kLeastGive)) return std::nullopt;
+    for (int step = 0; step < kMostSteps; ++step) {
+        const Eigen::VectorXd v = x - problem.slack(x) / give;
+        Trial trial(problem, problem.project(v));
+        if (trial.is_within(problem, kNear) && polish(problem, trial, budget)) return trial;
+        if (!budget.spend(n * n * n)) return std::nullopt;
+        const std::optional<Eigen::VectorXd> way = problem.newton(x, v, give);
+        if (!way) return std::nullopt;
+        const Eigen::VectorXd M_way = problem.S * *way - give * *way;
+        x += find_share(problem, x, *way, M_way, v, give) * *way;
+    }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -262,7 +261,6 @@ std::optional<CondensedAnswer> solve_with_discs(const CondensedQp& qp, const Eig
         std::optional<Trial> found = minimise_energy(problem, best.y, budget);
         if (!found) return std::nullopt;
         best = std::move(*found);
-        polish(problem, best, budget);
     }
 
     CondensedAnswer answer;
