@@ -203,7 +203,7 @@ double find_energy_rise(const Scene& scene, const State& state, const Workspace&
     allowed += round_off_energy(scene, state, work.mesh.elements);
     const double driven = compute_driven_work(state, work);
     rise -= std::max(driven, 0.0);
-    allowed += kDriven * std::max(driven, 0.0);
+    allowed += kDriven * std::abs(driven);
     return rise > allowed ? rise : 0.0;
 }
 
