@@ -10,8 +10,8 @@
 #include "app/export/export_obj.h"
 #include "app/export/export_usd.h"
 #include "app/export/viewer_html.h"
-#include "app/files/frame.h"
 #include "app/files/frame_files.h"
+#include "app/files/frame_source.h"
 #include "app/scene/obstacle_records.h"
 #include "geometry/input_error.h"
 
@@ -21,27 +21,27 @@ namespace {
 /// Input of all formats.
 struct Source {
     const std::string& run_dir;
-    std::int64_t frame_count;
+    FrameSource frames;
     const ExportOptions& options;
     std::vector<ObstacleRecord> obstacles;
 
-    double time(std::int64_t frame) const { return static_cast<double>(frame) / options.frames_per_second; }
+    double time(std::size_t frame) const { return static_cast<double>(frame) / options.frames_per_second; }
 };
 
 void export_obj(const Source& run)
 {
-    for (std::int64_t i = 0; i < run.frame_count; ++i)
-        write_obj(frame_file(run.run_dir, i, "obj"), read_frame(frame_file(run.run_dir, i, "ply")));
+    const auto path = [&](std::size_t i, const std::string& name) {
+        return frame_file(run.run_dir, static_cast<std::int64_t>(i), "obj", name);
+    };
+    for (std::size_t i = 0; i < run.frames.count; ++i) write_obj(path(i, "cloth"), run.frames.read(i));
     for (const ObstacleRecord& obstacle : run.obstacles)
-        for (std::int64_t i = 0; i < count_obstacle_frames(obstacle, run.frame_count); ++i)
-            write_obj(frame_file(run.run_dir, i, "obj", obstacle.name), obstacle, obstacle.at(run.time(i)));
+        for (std::size_t i = 0; i < count_obstacle_frames(obstacle, run.frames.count); ++i)
+            write_obj(path(i, obstacle.name), obstacle, obstacle.at(run.time(i)));
 }
 
 void export_usd(const Source& run)
 {
-    std::vector<std::string> paths;
-    for (std::int64_t i = 0; i < run.frame_count; ++i) paths.push_back(frame_file(run.run_dir, i, "ply"));
-    write_usd(run.run_dir + "/cloth.usda", paths, {run.options.title, run.options.frames_per_second},
+    write_usd(run.run_dir + "/cloth.usda", run.frames, {run.options.title, run.options.frames_per_second},
               run.obstacles);
 }
 
@@ -98,10 +98,9 @@ void export_frames(const std::string& run_dir, const std::vector<std::string>& f
                    const ExportOptions& options)
 {
     require_known_formats(formats);
-    const std::int64_t frame_count = count_frames(run_dir);
-    if (frame_count == 0)
+    const Source source{run_dir, read_frames_of(run_dir), options, read_obstacles(run_dir)};
+    if (source.frames.count == 0)
         throw InputError(frames_directory(run_dir) + ": has no frames (cloth_00000.ply, ...)");
-    const Source source{run_dir, frame_count, options, read_obstacles(run_dir)};
     for (const std::string& name : formats) find_format(name).make(source);
 }
 

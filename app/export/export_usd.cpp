@@ -17,7 +17,6 @@
 #include <string_view>
 
 #include "app/files/atomic_file.h"
-#include "app/files/frame.h"
 
 namespace arris {
 namespace {
@@ -30,12 +29,12 @@ struct Changes {
     bool is_material_moving = false;  ///< whether material coordinates ever change
 };
 
-Changes find_changes(const std::vector<std::string>& frame_paths)
+Changes find_changes(const FrameSource& frames)
 {
     Changes changes;
     Frame previous;
-    for (std::size_t i = 0; i < frame_paths.size(); ++i) {
-        Frame frame = read_frame(frame_paths[i]);
+    for (std::size_t i = 0; i < frames.count; ++i) {
+        Frame frame = frames.read(i);
         if (i == 0 || frame.faces.size() != previous.faces.size()) changes.face_counts.push_back(i);
         if (i == 0 || frame.faces != previous.faces) changes.faces.push_back(i);
         if (i > 0 && frame.material != previous.material) changes.is_material_moving = true;
@@ -138,8 +137,7 @@ struct Attribute {
 
 // A value that is constant in time is written as the default, not as a sample. Metadata need a declaration of
 // their own.
-void write_attribute(AtomicFile& file, const std::vector<std::string>& frame_paths,
-                     const Attribute& attribute)
+void write_attribute(AtomicFile& file, const FrameSource& frames, const Attribute& attribute)
 {
     const bool is_constant = attribute.samples.size() == 1;
     const std::string declaration = "    " + attribute.declaration;
@@ -149,7 +147,7 @@ void write_attribute(AtomicFile& file, const std::vector<std::string>& frame_pat
     for (const std::size_t i : attribute.samples) {
         fmt::memory_buffer text;
         if (!is_constant) fmt::format_to(std::back_inserter(text), "        {}: ", i);
-        attribute.put(text, read_frame(frame_paths[i]));
+        attribute.put(text, frames.read(i));
         file.write({text.data(), text.size()});
         file.write(is_constant ? "\n" : ",\n");
     }
@@ -308,17 +306,17 @@ void write_obstacle(AtomicFile& file, const ObstacleRecord& obstacle, std::size_
 
 }  // namespace
 
-void write_usd(const std::string& path, const std::vector<std::string>& frame_paths,
-               const UsdOptions& options, const std::vector<ObstacleRecord>& obstacles)
+void write_usd(const std::string& path, const FrameSource& frames, const UsdOptions& options,
+               const std::vector<ObstacleRecord>& obstacles)
 {
-    const Changes changes = find_changes(frame_paths);
+    const Changes changes = find_changes(frames);
     AtomicFile file(path);
-    file.write(stage_header(frame_paths.size(), options));
-    for (const Attribute& attribute : attributes(frame_paths.size(), changes))
-        write_attribute(file, frame_paths, attribute);
+    file.write(stage_header(frames.count, options));
+    for (const Attribute& attribute : attributes(frames.count, changes))
+        write_attribute(file, frames, attribute);
     file.write("}\n");
     for (const ObstacleRecord& obstacle : obstacles)
-        write_obstacle(file, obstacle, frame_paths.size(), options.frames_per_second);
+        write_obstacle(file, obstacle, frames.count, options.frames_per_second);
     file.commit();
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/files/frame_source.h"
 #include "app/scene/obstacle_records.h"
 
 namespace arris {
@@ -14,7 +15,7 @@ struct UsdOptions {
     double frames_per_second = 24.0;  ///< > 0
 };
 
-/// Writes all frames as one text USD stage, atomically: z up, metres, time code i for frame_paths[i]. The
+/// Writes all frames as one text USD stage, atomically: z up, metres, time code i for frame i. The
 /// default prim, Mesh /cloth, has points, velocities and extent at every time code, primvars:st at every time
 /// code if material coordinates ever change, and faces at the time codes where they change. Numbers read back
 /// to the same double. At most two frames are in memory: the frame files are read once per attribute. Throws
@@ -24,7 +25,7 @@ struct UsdOptions {
 /// moves; between samples USD interpolates matrices linearly, which is not rigid. Below are, as needed, a
 /// Mesh "surface", linear BasisCurves "wires" and Points "points", in the obstacle's frame. Wires and points
 /// are 2 mm wide, since USD has no lines without a width.
-void write_usd(const std::string& path, const std::vector<std::string>& frame_paths,
-               const UsdOptions& options, const std::vector<ObstacleRecord>& obstacles = {});
+void write_usd(const std::string& path, const FrameSource& frames, const UsdOptions& options,
+               const std::vector<ObstacleRecord>& obstacles = {});
 
 }  // namespace arris

@@ -161,9 +161,9 @@ std::vector<ObstacleRecord> read_obstacles(const std::string& run_dir)
     return records;
 }
 
-std::int64_t count_obstacle_frames(const ObstacleRecord& obstacle, std::int64_t frame_count)
+std::size_t count_obstacle_frames(const ObstacleRecord& obstacle, std::size_t frame_count)
 {
-    return obstacle.motion.is_moving() ? frame_count : std::min<std::int64_t>(frame_count, 1);
+    return obstacle.motion.is_moving() ? frame_count : std::min<std::size_t>(frame_count, 1);
 }
 
 }  // namespace arris

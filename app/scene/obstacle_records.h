@@ -33,6 +33,6 @@ void write_obstacles(const std::string& run_dir, const std::vector<ObstacleRecor
 std::vector<ObstacleRecord> read_obstacles(const std::string& run_dir);
 
 /// Number of frames in which an obstacle is exported: `frame_count`, or at most 1 if it never moves.
-std::int64_t count_obstacle_frames(const ObstacleRecord& obstacle, std::int64_t frame_count);
+std::size_t count_obstacle_frames(const ObstacleRecord& obstacle, std::size_t frame_count);
 
 }  // namespace arris

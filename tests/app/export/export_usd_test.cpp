@@ -28,10 +28,15 @@ std::vector<std::string> write_frames(const TemporaryDirectory& dir, const std::
     return paths;
 }
 
+FrameSource source_of(const std::vector<std::string>& paths)
+{
+    return {paths.size(), [paths](std::size_t i) { return read_frame(paths[i]); }};
+}
+
 std::string export_text(const std::vector<Frame>& frames, const UsdOptions& options = {"A title", 24.0})
 {
     const TemporaryDirectory dir;
-    write_usd(dir / "cloth.usda", write_frames(dir, frames), options);
+    write_usd(dir / "cloth.usda", source_of(write_frames(dir, frames)), options);
     return read_bytes(dir / "cloth.usda");
 }
 
@@ -180,10 +185,10 @@ TEST(ExportUsd, LeavesNothingHalfWhenAFrameIsBad)
 {
     const TemporaryDirectory dir;
     const std::vector<std::string> paths = write_frames(dir, {make_example_frame(), make_moved_frame(1)});
-    write_usd(dir / "cloth.usda", paths, {"good", 24.0});
+    write_usd(dir / "cloth.usda", source_of(paths), {"good", 24.0});
     const std::string good = read_bytes(dir / "cloth.usda");
     write_bytes(paths[1], "ply\n");
-    EXPECT_THROW(write_usd(dir / "cloth.usda", paths, {"bad", 24.0}), InputError);
+    EXPECT_THROW(write_usd(dir / "cloth.usda", source_of(paths), {"bad", 24.0}), InputError);
     EXPECT_EQ(read_bytes(dir / "cloth.usda"), good);
     EXPECT_EQ(dir.entry_count(), 3U);
 }
@@ -211,7 +216,7 @@ TEST(ExportUsd, HoldsNoMoreThanAFewFrames)
 
     rusage before = {}, after = {};
     getrusage(RUSAGE_SELF, &before);
-    write_usd(dir / "cloth.usda", paths, {"long", 24.0});
+    write_usd(dir / "cloth.usda", source_of(paths), {"long", 24.0});
     getrusage(RUSAGE_SELF, &after);
     EXPECT_GT(std::filesystem::file_size(dir / "cloth.usda"), 50U << 20);
     EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kMostKibibytes);
@@ -228,7 +233,7 @@ TEST(ExportUsd, PlacesObstaclesByATransformThatIsSampledWhereTheyMove)
 
     const TemporaryDirectory dir;
     const auto frames = write_frames(dir, {make_moved_frame(0), make_moved_frame(1), make_moved_frame(2)});
-    write_usd(dir / "cloth.usda", frames, {"A title", 24.0}, {table, rope, nails});
+    write_usd(dir / "cloth.usda", source_of(frames), {"A title", 24.0}, {table, rope, nails});
     const UsdaParser usd(read_bytes(dir / "cloth.usda"));
     EXPECT_EQ(usd.prim_name, "cloth");
     ASSERT_EQ(usd.others.size(), 3U);

@@ -113,10 +113,10 @@ TEST(ObstacleRecords, WhatNoObstacleCanBeIsRefused)
 TEST(ObstacleRecords, OneThatNeverMovesHasOneFrame)
 {
     const std::vector<ObstacleRecord> records = make_records();
-    EXPECT_EQ(count_obstacle_frames(records[0], 24), 24);
-    EXPECT_EQ(count_obstacle_frames(records[1], 24), 24);
-    EXPECT_EQ(count_obstacle_frames(records[2], 24), 1);
-    EXPECT_EQ(count_obstacle_frames(records[2], 0), 0);
+    EXPECT_EQ(count_obstacle_frames(records[0], 24), 24U);
+    EXPECT_EQ(count_obstacle_frames(records[1], 24), 24U);
+    EXPECT_EQ(count_obstacle_frames(records[2], 24), 1U);
+    EXPECT_EQ(count_obstacle_frames(records[2], 0), 0U);
 }
 
 }  // namespace
