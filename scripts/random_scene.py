@@ -172,8 +172,8 @@ class SceneMaker:
         if kind < 0.7:
             to = [round(a + d, 4) for a, d in zip(at, self.vector(0.4))]
             later = {"rotate": self.turn(120)} if self.is_true(0.5) else turn
-            return {"keyframes": [{"time": 0.0, "translate": at, **turn},
-                                  {"time": self.log(0.02, 0.5), "translate": to, **later}]}
+            time = max(self.log(0.02, 0.5), 2.1 * self.step)  # a step may turn by a quarter turn, and no more
+            return {"keyframes": [{"time": 0.0, "translate": at, **turn}, {"time": time, "translate": to, **later}]}
         start = self.log(0.01, 0.3)
         motion = {"velocity": self.vector(self.log(0.1, 5.0)), "angular_velocity": self.vector(self.log(0.1, 10.0)),
                   "pivot": at, "start": start, "stop": round(start + self.log(0.01, 1.0), 4)}
@@ -213,6 +213,8 @@ class SceneMaker:
         u, v = cloth["size"]
         box = self.chance.choice([[[0, 0], [0, 0]], [[u, v], [u, v]], [[0, 0], [0, v]], [[0, v], [u, v]],
                                   [[0.3 * u, 0.3 * v], [0.7 * u, 0.7 * v]]])
+        if min(cloth["resolution"]) < 4:
+            box = [[0, 0], [0, 0]]  # the box in the middle might hold no vertex
         pin = {"material": [[round(x, 4) for x in corner] for corner in box]}
         if self.is_true(0.15):
             return {**pin, "follow": self.chance.choice(names)}
@@ -228,8 +230,8 @@ class SceneMaker:
 
     def make(self, title):
         names = [f"o{k}" for k in range(self.chance.choice([1, 1, 1, 2, 2, 3]))]
+        self.step = step = self.log(1e-3, 0.05)
         obstacles, cloth = [self.obstacle(name) for name in names], self.cloth()
-        step = self.log(1e-3, 0.05)
         duration = round(min(self.log(0.15, 1.5), 300 * step), 4)
         scene = {"title": title, "duration": duration,
                  "time": {"step": step, "integrator": self.chance.choice(["bdf2", "bdf2", "bdf2", "implicit_euler"])},
