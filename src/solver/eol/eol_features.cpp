@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/eol/eol_features.h"
 
+#include <limits>
 #include <optional>
 
 #include "geometry/sort_unique.h"
@@ -36,35 +37,56 @@ bool is_of_one_strand(const Obstacle& obstacle, const PlacedEol& a, const Placed
     return ((a.place - on_a) - (b.place - on_b)).norm() <= kSteepest * (on_a - on_b).norm();
 }
 
-bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b)
+namespace {
+
+Vec3 point_on_feature(const Obstacle& obstacle, const PlacedEol& at)
 {
-    if (a.eol.on.obstacle != b.eol.on.obstacle || !is_of_one_strand(obstacle, a, b)) return false;
-    if (!a.eol.on.is_corner() && !b.eol.on.is_corner() && a.eol.on.index == b.eol.on.index) return true;
-    constexpr double kLongestWay = 1.2;  // length over distance of an arc that bends by 120 degrees
+    return at.eol.on.is_corner() ? obstacle.mesh().points[obstacle.features().corners[at.eol.on.index].point]
+                                 : place_on_feature(obstacle, at.eol.on.index, at.place).point;
+}
+
+/// Length, m, of the straight feature between two corners; nothing where there is none.
+std::optional<double> length_between_corners(const Obstacle& obstacle, int a, int b, double most)
+{
     const ObstacleFeatures& features = obstacle.features();
-    const auto place_of = [&](const PlacedEol& at) {
-        return at.eol.on.is_corner() ? obstacle.mesh().points[features.corners[at.eol.on.index].point]
-                                     : place_on_feature(obstacle, at.eol.on.index, at.place).point;
-    };
-    const double most = kLongestWay * (place_of(a) - place_of(b)).norm();
-    const auto on = [&](const PlacedEol& at) {
-        return FeaturePlace{at.eol.on.index, place_on_feature(obstacle, at.eol.on.index, at.place).s};
-    };
-    if (!a.eol.on.is_corner() && !b.eol.on.is_corner())
-        return distance_along(obstacle, on(a), on(b), most).has_value();
-    if (a.eol.on.is_corner() != b.eol.on.is_corner()) {
-        const PlacedEol &corner = a.eol.on.is_corner() ? a : b, &other = a.eol.on.is_corner() ? b : a;
-        return distance_to_corner(obstacle, on(other), corner.eol.on.index, most).has_value();
-    }
-    const int point = features.corners[a.eol.on.index].point;
     const ObstacleTopology& topology = obstacle.topology();
+    const int point = features.corners[a].point;
     for (int k = 0; k < topology.edge_count_at(point); ++k) {
         const int edge = topology.edge_at(point, k);
         const int feature = feature_of_edge(features, edge);
+        if (feature < 0) continue;
         const double s = topology.edges[edge].points[0] == point ? 0.0 : 1.0;
-        if (feature >= 0 && distance_to_corner(obstacle, {feature, s}, b.eol.on.index, most)) return true;
+        if (const auto length = distance_to_corner(obstacle, {feature, s}, b, most)) return length;
     }
-    return false;
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> trace_length(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b,
+                                   double most)
+{
+    if (a.eol.on.obstacle != b.eol.on.obstacle || !is_of_one_strand(obstacle, a, b)) return std::nullopt;
+    const auto on = [&](const PlacedEol& at) {
+        return FeaturePlace{at.eol.on.index, place_on_feature(obstacle, at.eol.on.index, at.place).s};
+    };
+    if (a.eol.on.is_corner() && b.eol.on.is_corner())
+        return length_between_corners(obstacle, a.eol.on.index, b.eol.on.index, most);
+    if (a.eol.on.is_corner()) return distance_to_corner(obstacle, on(b), a.eol.on.index, most);
+    if (b.eol.on.is_corner()) return distance_to_corner(obstacle, on(a), b.eol.on.index, most);
+    return distance_along(obstacle, on(a), on(b), most);
+}
+
+bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b)
+{
+    constexpr double kLongestWay = 1.2;  // length over distance of an arc that bends by 120 degrees
+    if (a.eol.on.obstacle != b.eol.on.obstacle) return false;
+    const bool is_one_edge =
+        !a.eol.on.is_corner() && !b.eol.on.is_corner() && a.eol.on.index == b.eol.on.index;
+    const double most =
+        is_one_edge ? std::numeric_limits<double>::infinity()
+                    : kLongestWay * (point_on_feature(obstacle, a) - point_on_feature(obstacle, b)).norm();
+    return trace_length(obstacle, a, b, most).has_value();
 }
 
 std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& obstacles, const State& state,

@@ -61,13 +61,11 @@ double find_growth_rate(const Scene& scene, const State& state, const ClothStars
     return fastest;
 }
 
-}  // namespace
-
-void grow_gathering(const Scene& scene, const ClothStars& stars, double dt, State& state)
+/// Compression of the cloth along each EOL vertex's trace edges; 0 where it has none, and at corners, around
+/// which the cloth is compressed across its edges, too, which its flaps take up.
+std::vector<double> find_trace_compressions(const Scene& scene, const State& state, const ClothStars& stars)
 {
-    if (!scene.eol || state.eol.empty()) return;
-    std::vector<double> world(state.eol.size(), 0.0),
-        material(state.eol.size(), 0.0);  // lengths of traces, m
+    std::vector<double> world(state.eol.size(), 0.0), material(state.eol.size(), 0.0);  // lengths, m
     for (const auto& [a, b] : find_trace_edges(scene.obstacles, state, stars)) {
         const int v = state.index_of(state.eol[a].vertex_id), w = state.index_of(state.eol[b].vertex_id);
         for (const int entry : {a, b}) {
@@ -75,11 +73,53 @@ void grow_gathering(const Scene& scene, const ClothStars& stars, double dt, Stat
             material[entry] += (state.mesh.material[v] - state.mesh.material[w]).norm();
         }
     }
+    std::vector<double> compressions(state.eol.size(), 0.0);
+    for (std::size_t entry = 0; entry < state.eol.size(); ++entry)
+        if (material[entry] > 0.0 && !state.eol[entry].on.is_corner())
+            compressions[entry] = 1.0 - world[entry] / material[entry];
+    return compressions;
+}
+
+/// The same between an EOL vertex on an edge and all others near to it along the feature, whether the cloth
+/// between them lies on the feature or stands off it in pleats.
+double find_compression_with_pleats(const Scene& scene, const State& state, const ClothStars& stars,
+                                    const EolVertex& vertex)
+{
+    constexpr double kReach = 3.0;  // target lengths: a pleat on either side; five give what three do
+    if (vertex.on.is_corner()) return 0.0;
+    const int v = state.index_of(vertex.vertex_id);
+    const Vec2& X = state.mesh.material[v];
+    const double reach = kReach * scene.eol->length(X);
+    const Obstacle& obstacle = scene.obstacles[vertex.on.obstacle];
+    const Placement now = obstacle.at(state.time);
+    const Vec3 place = now.inverse(state.mesh.world[v]);
+    double feature = 0.0, cloth = 0.0;  // lengths, m
+    for (const EolVertex& other : state.eol) {
+        if (other.on.obstacle != vertex.on.obstacle || other.vertex_id == vertex.vertex_id) continue;
+        if (!(other.outward.dot(vertex.outward) > 0.0)) continue;  // cloth on the other side of a wire
+        const int w = state.index_of(other.vertex_id);
+        const Vec3 other_place = now.inverse(state.mesh.world[w]);
+        if (stars.piece[w] != stars.piece[v] || !((other_place - place).norm() < reach)) continue;
+        const auto length = trace_length(obstacle, {vertex, place}, {other, other_place}, reach);
+        if (!length) continue;
+        feature += *length;
+        cloth += (state.mesh.material[w] - X).norm();
+    }
+    return cloth > 0.0 ? 1.0 - feature / cloth : 0.0;
+}
+
+}  // namespace
+
+void grow_gathering(const Scene& scene, const ClothStars& stars, double dt, State& state)
+{
+    // Cloth that stands in pleats between EOL vertices is free already, and yet shows that more wants to be.
+    constexpr double kPleats = 0.1;
+    if (!scene.eol || state.eol.empty()) return;
+    const std::vector<double> on_trace = find_trace_compressions(scene, state, stars);
     for (std::size_t entry = 0; entry < state.eol.size(); ++entry) {
         EolVertex& vertex = state.eol[entry];
-        // Around a corner the cloth is compressed across its edges, too, which its flaps take up.
-        const bool is_measured = material[entry] > 0.0 && !vertex.on.is_corner();
-        const double strain = is_measured ? 1.0 - world[entry] / material[entry] : 0.0;
+        const double strain =
+            std::max(on_trace[entry], kPleats * find_compression_with_pleats(scene, state, stars, vertex));
         const int v = state.index_of(vertex.vertex_id);
         const double growth = dt * find_growth_rate(scene, state, stars, v, strain);
         vertex.gathering = std::clamp(vertex.gathering + growth, 0.0, kGathered);
