@@ -3,13 +3,16 @@
 // one JSON element that lists the frames, and one element per block of data (base64 of zlib), which the page
 // decodes when the block is shown.
 //
-//     frame      x y z of every vertex | strain of every face | contact of every vertex, one bit
-//     topology   vertices of every face | vertices of every EOL edge | EOL vertices on corners and points
+//     frame      x y z of every vertex | strain of every face | contact of every vertex, one bit |
+//                u v of the EOL vertices | speed of every vertex
+//     topology   vertices of every face | vertices of every EOL edge | EOL vertices on corners and points |
+//                u v of every vertex
 //     mesh       per obstacle: x y z of every point | points of every face, wire segment | lone points
 //
-// A topology is stored where it changes. Numbers are stored as differences to their predecessor, first all
-// high bytes, then all low bytes: interleaved bytes hardly deflate (positions of 10k vertices with wrinkles
-// of 0.1 mm take 31 instead of 58 kB; smooth positions 10 instead of 56 kB).
+// A topology is stored where it changes. Only EOL vertices move in the material, so a frame needs no other u
+// v. Numbers are stored as differences to their predecessor, first all high bytes, then all low bytes:
+// interleaved bytes hardly deflate (positions of 10k vertices with wrinkles of 0.1 mm take 31 instead of 58
+// kB; smooth positions 10 instead of 56 kB).
 #include "app/export/viewer_html.h"
 
 #include <algorithm>
@@ -25,6 +28,7 @@
 #include <vector>
 
 #include "app/export/viewer_block.h"
+#include "app/export/viewer_meta.h"
 #include "app/files/atomic_file.h"
 #include "app/files/frame.h"
 #include "app/files/frame_files.h"
@@ -38,63 +42,37 @@ using nlohmann::ordered_json;
 
 constexpr std::string_view kDataMarker = "<!-- ARRIS-DATA -->";
 constexpr double kLevels = 65535.0;      // steps of a 16-bit number
+constexpr double kSpeedLevels = 255.0;   // steps of a speed, which only a colour shows
 constexpr double kLargestNumber = 1e18;  // the page squares numbers in single precision, up to 3e38
 constexpr double kTypicalQuantile =
     0.99;  // of a frame's strains, so that a few thin faces do not determine the colour range
 
-/// Data that is constant from frame to frame until the mesh changes.
-struct Topology {
-    std::size_t vertices = 0;
-    std::vector<Face> faces;
-    std::vector<std::array<int, 2>> eol_edges;
-    std::vector<int> eol_corners;
+/// Quantises `value` to 65536 levels from `least` to `least + range`; 0 if `range` is 0.
+std::uint16_t quantised(double value, double least, double range)
+{
+    if (!(range > 0.0)) return 0;
+    return static_cast<std::uint16_t>(std::lround(std::clamp((value - least) / range, 0.0, 1.0) * kLevels));
+}
 
-    bool operator==(const Topology&) const = default;
-};
+/// Appends u, then v of the points.
+void append_material(const std::vector<Vec2>& points, const Vec2& least, const Vec2& size, Bytes& out)
+{
+    for (int axis = 0; axis < 2; ++axis) {
+        std::vector<std::uint16_t> numbers;
+        for (const Vec2& point : points) numbers.push_back(quantised(point[axis], least[axis], size[axis]));
+        append_planes(numbers, out);
+    }
+}
 
-struct TopologyBlock {
-    std::size_t vertices, faces, edges, corners;
-    Bytes data;
-};
-
-/// The mesh of an obstacle, in the obstacle's frame relative to `centre`.
-struct MeshBlock {
-    const ObstacleRecord* obstacle;
-    Vec3 centre, size;  // centre and size of the bounding box, m
-    Bytes data;
-};
-
-struct FrameBlock {
-    std::int64_t index;
-    int topology;
-    Vec3 least, size;  // bounding box, m
-    double least_strain, strain_range;
-    Bytes data;
-};
-
-/// The blocks of the page. Frames are left out to keep their total size below a limit.
-struct Blocks {
-    std::map<int, TopologyBlock> topologies;
-    int newest_topology = -1;
-    std::vector<FrameBlock> frames;
-    std::vector<MeshBlock> meshes;
-    std::vector<std::string> left_out;  ///< names of obstacles that do not fit
-    std::int64_t stride = 1;
-    std::size_t mesh_bytes = 0;
-    std::size_t bytes = 0;  ///< total size of all blocks
-    double least_strain = std::numeric_limits<double>::infinity();
-    double greatest_strain = -std::numeric_limits<double>::infinity();
-    double typical_strain = 0.0;
-};
-
-Bytes packed_topology(const Topology& topology)
+Bytes packed_topology(const ViewerTopology& topology)
 {
     Bytes raw;
     append_indices(topology.faces, topology.eol_edges, topology.eol_corners, raw);
+    append_material(topology.material, topology.least, topology.size, raw);
     return deflated(raw);
 }
 
-MeshBlock make_mesh_block(const ObstacleRecord& obstacle)
+ViewerMeshBlock make_mesh_block(const ObstacleRecord& obstacle)
 {
     const ObstacleMesh& mesh = obstacle.mesh;
     Vec3 least = mesh.points.front(), greatest = least;
@@ -102,7 +80,7 @@ MeshBlock make_mesh_block(const ObstacleRecord& obstacle)
         least = least.cwiseMin(point);
         greatest = greatest.cwiseMax(point);
     }
-    MeshBlock block{&obstacle, (least + greatest) / 2.0, greatest - least, {}};
+    ViewerMeshBlock block{&obstacle, (least + greatest) / 2.0, greatest - least, {}};
     Bytes raw;
     std::vector<std::uint32_t> numbers;
     for (int axis = 0; axis < 3; ++axis)
@@ -116,10 +94,10 @@ MeshBlock make_mesh_block(const ObstacleRecord& obstacle)
 }
 
 /// Stores the obstacles that fit into half of `most_bytes`, in their order.
-void store_meshes(const std::vector<ObstacleRecord>& obstacles, std::size_t most_bytes, Blocks& blocks)
+void store_meshes(const std::vector<ObstacleRecord>& obstacles, std::size_t most_bytes, ViewerBlocks& blocks)
 {
     for (const ObstacleRecord& obstacle : obstacles) {
-        MeshBlock block = make_mesh_block(obstacle);
+        ViewerMeshBlock block = make_mesh_block(obstacle);
         if (blocks.mesh_bytes + block.data.size() > most_bytes / 2) {
             blocks.left_out.push_back(obstacle.name);
             continue;
@@ -130,14 +108,19 @@ void store_meshes(const std::vector<ObstacleRecord>& obstacles, std::size_t most
     blocks.bytes = blocks.mesh_bytes;
 }
 
-/// Quantises `value` to 65536 levels from `least` to `least + range`; 0 if `range` is 0.
-std::uint16_t quantised(double value, double least, double range)
+/// Speeds as shares of the frame's greatest one, one byte each, as differences.
+void append_speeds(const Frame& frame, double most, Bytes& out)
 {
-    if (!(range > 0.0)) return 0;
-    return static_cast<std::uint16_t>(std::lround(std::clamp((value - least) / range, 0.0, 1.0) * kLevels));
+    std::uint8_t last = 0;
+    for (const Vec3& velocity : frame.material_velocity) {
+        const double share = most > 0.0 ? velocity.norm() / most : 0.0;
+        const auto level = static_cast<std::uint8_t>(std::lround(std::clamp(share, 0.0, 1.0) * kSpeedLevels));
+        out.push_back(static_cast<std::uint8_t>(level - last));
+        last = level;
+    }
 }
 
-Bytes packed_frame(const Frame& frame, const FrameBlock& block)
+Bytes packed_frame(const Frame& frame, const ViewerTopology& topology, const ViewerFrameBlock& block)
 {
     Bytes raw;
     raw.reserve(6 * frame.world.size() + 2 * frame.faces.size() + frame.world.size() / 8 + 1);
@@ -157,23 +140,48 @@ Bytes packed_frame(const Frame& frame, const FrameBlock& block)
     raw.resize(bits + (frame.contact.size() + 7) / 8, 0);
     for (std::size_t v = 0; v < frame.contact.size(); ++v)
         if (frame.contact[v]) raw[bits + v / 8] |= static_cast<std::uint8_t>(1 << (v % 8));
+
+    std::vector<Vec2> moved;
+    for (const int v : topology.eol_vertices) moved.push_back(frame.material[static_cast<std::size_t>(v)]);
+    append_material(moved, topology.least, topology.size, raw);
+    append_speeds(frame, block.most_speed, raw);
     return deflated(raw);
 }
 
-Topology topology_of(const Frame& frame)
+/// Sets the part of the topology that concerns the material.
+void find_material(const Frame& frame, ViewerTopology& topology)
 {
-    Topology topology;
+    std::set<int> moving(topology.eol_corners.begin(), topology.eol_corners.end());
+    for (const auto& edge : topology.eol_edges) moving.insert(edge.begin(), edge.end());
+    topology.eol_vertices.assign(moving.begin(), moving.end());
+
+    topology.least = frame.material[0];
+    Vec2 greatest = frame.material[0];
+    for (const Vec2& point : frame.material) {
+        topology.least = topology.least.cwiseMin(point);
+        greatest = greatest.cwiseMax(point);
+    }
+    topology.size = greatest - topology.least;
+    topology.material = frame.material;
+    for (const int v : topology.eol_vertices) topology.material[static_cast<std::size_t>(v)].setZero();
+}
+
+ViewerTopology topology_of(const Frame& frame)
+{
+    ViewerTopology topology;
     topology.vertices = frame.world.size();
     topology.faces = frame.faces;
     topology.eol_edges = frame.eol_edges;
     for (std::size_t v = 0; v < frame.eol.size(); ++v)
         if (frame.eol[v] == 2) topology.eol_corners.push_back(static_cast<int>(v));
+    find_material(frame, topology);
     return topology;
 }
 
-FrameBlock make_frame_block(const Frame& frame, std::int64_t index, int topology)
+ViewerFrameBlock make_frame_block(const Frame& frame, std::int64_t index, const ViewerTopology& topology,
+                                  int id)
 {
-    FrameBlock block{index, topology, frame.world[0], frame.world[0], 0.0, 0.0, {}};
+    ViewerFrameBlock block{index, id, frame.world[0], frame.world[0], 0.0, 0.0, 0.0, {}};
     Vec3 greatest = frame.world[0];
     for (const Vec3& x : frame.world) {
         block.least = block.least.cwiseMin(x);
@@ -183,28 +191,37 @@ FrameBlock make_frame_block(const Frame& frame, std::int64_t index, int topology
     const auto [least, most] = std::minmax_element(frame.strain.begin(), frame.strain.end());
     block.least_strain = *least;
     block.strain_range = *most - *least;
-    block.data = packed_frame(frame, block);
+    for (const Vec3& velocity : frame.material_velocity)
+        block.most_speed = std::max(block.most_speed, velocity.norm());
+    block.data = packed_frame(frame, topology, block);
     return block;
 }
 
-double typical_strain(std::vector<double> strains)
+double typical(std::vector<double> values)
 {
-    const auto rank = static_cast<std::ptrdiff_t>(kTypicalQuantile * static_cast<double>(strains.size() - 1));
-    std::nth_element(strains.begin(), strains.begin() + rank, strains.end());
-    return strains[static_cast<std::size_t>(rank)];
+    const auto rank = static_cast<std::ptrdiff_t>(kTypicalQuantile * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return values[static_cast<std::size_t>(rank)];
+}
+
+double typical_speed(const Frame& frame)
+{
+    std::vector<double> speeds;
+    for (const Vec3& velocity : frame.material_velocity) speeds.push_back(velocity.norm());
+    return typical(std::move(speeds));
 }
 
 /// Removes every second of the frames kept so far, except the run's last, and the topologies that are then
 /// unused.
-void thin(std::int64_t last, Blocks& blocks)
+void thin(std::int64_t last, ViewerBlocks& blocks)
 {
     blocks.stride *= 2;
-    std::erase_if(blocks.frames, [&](const FrameBlock& frame) {
+    std::erase_if(blocks.frames, [&](const ViewerFrameBlock& frame) {
         return frame.index % blocks.stride != 0 && frame.index != last;
     });
     std::set<int> used;
     blocks.bytes = blocks.mesh_bytes;
-    for (const FrameBlock& frame : blocks.frames) {
+    for (const ViewerFrameBlock& frame : blocks.frames) {
         used.insert(frame.topology);
         blocks.bytes += frame.data.size();
     }
@@ -213,25 +230,27 @@ void thin(std::int64_t last, Blocks& blocks)
 }
 
 /// Stores the frame's topology unless it equals `current`, that of the previous frame; updates `current`.
-void store_topology(const Frame& frame, Topology& current, Blocks& blocks)
+void store_topology(const Frame& frame, ViewerTopology& current, ViewerBlocks& blocks)
 {
     // A topology that thin() has removed is stored again where a later frame has it.
-    Topology topology = topology_of(frame);
+    ViewerTopology topology = topology_of(frame);
     if (topology == current && blocks.topologies.contains(blocks.newest_topology)) return;
-    TopologyBlock block{topology.vertices, topology.faces.size(), topology.eol_edges.size(),
-                        topology.eol_corners.size(), packed_topology(topology)};
+    ViewerTopologyBlock block{topology.vertices,           topology.faces.size(), topology.eol_edges.size(),
+                              topology.eol_corners.size(), topology.least,        topology.size,
+                              packed_topology(topology)};
     blocks.bytes += block.data.size();
     blocks.topologies.emplace(++blocks.newest_topology, std::move(block));
     current = std::move(topology);
 }
 
-void store_frame(const Frame& frame, std::int64_t index, Blocks& blocks)
+void store_frame(const Frame& frame, std::int64_t index, const ViewerTopology& topology, ViewerBlocks& blocks)
 {
-    FrameBlock block = make_frame_block(frame, index, blocks.newest_topology);
+    ViewerFrameBlock block = make_frame_block(frame, index, topology, blocks.newest_topology);
     blocks.bytes += block.data.size();
     blocks.least_strain = std::min(blocks.least_strain, block.least_strain);
     blocks.greatest_strain = std::max(blocks.greatest_strain, block.least_strain + block.strain_range);
-    blocks.typical_strain = std::max(blocks.typical_strain, typical_strain(frame.strain));
+    blocks.typical_strain = std::max(blocks.typical_strain, typical(frame.strain));
+    blocks.typical_speed = std::max(blocks.typical_speed, typical_speed(frame));
     blocks.frames.push_back(std::move(block));
 }
 
@@ -245,100 +264,32 @@ void check_magnitudes(const Frame& frame, const std::string& path)
     for (const double strain : frame.strain)
         if (std::abs(strain) > kLargestNumber)
             throw InputError(path + ": a strain is larger than the viewer can show");
+    for (const Vec3& velocity : frame.material_velocity)
+        if (velocity.cwiseAbs().maxCoeff() > kLargestNumber)
+            throw InputError(path + ": a speed is larger than the viewer can show");
 }
 
 /// Reads the run's frames one by one.
-Blocks pack_run(const std::string& run_directory, std::size_t most_bytes,
-                const std::vector<ObstacleRecord>& obstacles)
+ViewerBlocks pack_run(const std::string& run_directory, std::size_t most_bytes,
+                      const std::vector<ObstacleRecord>& obstacles)
 {
     const std::int64_t last = count_frames(run_directory) - 1;
     if (last < 0)
         throw InputError(frames_directory(run_directory) + ": has no frames (cloth_00000.ply, ...)");
 
-    Blocks blocks;
+    ViewerBlocks blocks;
     store_meshes(obstacles, most_bytes, blocks);
-    Topology topology;
+    ViewerTopology topology;
     for (std::int64_t index = 0; index <= last; ++index) {
         if (index % blocks.stride != 0 && index != last) continue;
         const std::string path = frame_file(run_directory, index, "ply");
         const Frame frame = read_frame(path);
         check_magnitudes(frame, path);
         store_topology(frame, topology, blocks);
-        store_frame(frame, index, blocks);
+        store_frame(frame, index, topology, blocks);
         while (blocks.bytes > most_bytes && blocks.stride <= last) thin(last, blocks);
     }
     return blocks;
-}
-
-ordered_json vector_json(const Vec3& v)
-{
-    return {v.x(), v.y(), v.z()};
-}
-
-/// Rows of the 3 x 4 matrix that maps a point of the obstacle's block to the world at `time`.
-ordered_json placement_json(const MeshBlock& mesh, double time)
-{
-    const Placement placement = mesh.obstacle->at(time);
-    const Vec3 centre = placement(mesh.centre);
-    ordered_json rows = ordered_json::array();
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) rows.push_back(placement.rotation(row, column));
-        rows.push_back(centre[row]);
-    }
-    return rows;
-}
-
-/// The obstacles. A moving obstacle has one placement per frame of the page, any other a single one.
-ordered_json meshes_json(const Blocks& blocks, double frames_per_second)
-{
-    ordered_json result = ordered_json::array();
-    for (const MeshBlock& mesh : blocks.meshes) {
-        const ObstacleMesh& shape = mesh.obstacle->mesh;
-        ordered_json placements = ordered_json::array();
-        for (const FrameBlock& frame : blocks.frames) {
-            placements.push_back(placement_json(mesh, static_cast<double>(frame.index) / frames_per_second));
-            if (!mesh.obstacle->motion.is_moving()) break;
-        }
-        result.push_back({{"name", mesh.obstacle->name},
-                          {"points", shape.points.size()},
-                          {"faces", shape.faces.size()},
-                          {"segments", shape.segments.size()},
-                          {"lone_points", shape.lone_points.size()},
-                          {"size", vector_json(mesh.size)},
-                          {"placements", placements}});
-    }
-    return result;
-}
-
-/// The metadata, which viewer/src/run.js reads first. It ignores unknown keys.
-ordered_json meta(const Blocks& blocks, const ViewerOptions& options)
-{
-    ordered_json result = {{"format", 1},
-                           {"title", options.title},
-                           {"frames_per_second", options.frames_per_second},
-                           {"run_frames", blocks.frames.back().index + 1},
-                           {"stride", blocks.stride},
-                           {"strain",
-                            {{"least", blocks.least_strain},
-                             {"greatest", blocks.greatest_strain},
-                             {"typical", blocks.typical_strain}}}};
-    result["topologies"] = ordered_json::array();
-    for (const auto& [id, topology] : blocks.topologies)
-        result["topologies"].push_back({{"id", id},
-                                        {"vertices", topology.vertices},
-                                        {"faces", topology.faces},
-                                        {"edges", topology.edges},
-                                        {"corners", topology.corners}});
-    result["frames"] = ordered_json::array();
-    for (const FrameBlock& frame : blocks.frames)
-        result["frames"].push_back({{"index", frame.index},
-                                    {"topology", frame.topology},
-                                    {"least", vector_json(frame.least)},
-                                    {"size", vector_json(frame.size)},
-                                    {"strain", {frame.least_strain, frame.strain_range}}});
-    result["meshes"] = meshes_json(blocks, options.frames_per_second);
-    if (!blocks.left_out.empty()) result["left_out"] = blocks.left_out;
-    return result;
 }
 
 /// JSON without HTML markup: `<` occurs only in strings, where \u003c is equivalent.
@@ -355,19 +306,19 @@ void write_data(const std::string& id, const Bytes& data, AtomicFile& file)
     file.write("<script type=\"text/plain\" id=\"" + id + "\">" + base64(data) + "</script>\n");
 }
 
-void write_page(const Blocks& blocks, const ViewerOptions& options, AtomicFile& file)
+void write_page(const ViewerBlocks& blocks, const ViewerOptions& options, AtomicFile& file)
 {
     const std::string_view page = embedded::viewer_template();
     const std::size_t marker = page.find(kDataMarker);
     assert(marker != std::string_view::npos && "the viewer's template has no place for data");
     file.write(page.substr(0, marker));
-    file.write("<script type=\"application/json\" id=\"arris-meta\">" + inert_json(meta(blocks, options)) +
-               "</script>\n");
+    file.write("<script type=\"application/json\" id=\"arris-meta\">" +
+               inert_json(viewer_meta(blocks, options)) + "</script>\n");
     for (const auto& [id, topology] : blocks.topologies)
         write_data("arris-topology-" + std::to_string(id), topology.data, file);
     for (std::size_t i = 0; i < blocks.meshes.size(); ++i)
         write_data("arris-mesh-" + std::to_string(i), blocks.meshes[i].data, file);
-    for (const FrameBlock& frame : blocks.frames)
+    for (const ViewerFrameBlock& frame : blocks.frames)
         write_data("arris-frame-" + std::to_string(frame.index), frame.data, file);
     file.write(page.substr(marker + kDataMarker.size()));
 }
@@ -379,7 +330,7 @@ void write_viewer(const std::string& run_directory, const ViewerOptions& options
 {
     if (!(options.frames_per_second > 0.0) || !std::isfinite(options.frames_per_second))
         throw InputError(run_directory + ": a viewer needs frames_per_second above 0");
-    const Blocks blocks = pack_run(run_directory, options.most_bytes, obstacles);
+    const ViewerBlocks blocks = pack_run(run_directory, options.most_bytes, obstacles);
 
     AtomicFile file(run_directory + "/viewer.html");
     write_page(blocks, options, file);

@@ -13,7 +13,7 @@ struct ViewerOptions {
     std::string title;                ///< shown as plain text
     double frames_per_second = 24.0;  ///< frame k is at time k / frames_per_second; positive, finite
     std::size_t most_bytes =
-        72'000'000;  ///< limit for compressed data; the page takes 4/3 of it in the browser
+        37'500'000;  ///< limit for compressed data; the page takes 4/3 of it in the browser
 };
 
 /// Makes run_directory/viewer.html from run_directory/frames/cloth_%05d.ply: one page that shows the frames

@@ -68,7 +68,8 @@ Frame make_frame(int number, int frames, int cells)
     }
     const std::size_t n = frame.world.size(), m = frame.faces.size();
     frame.vertex_velocity.assign(n, Vec3::Zero());
-    frame.material_velocity.assign(n, Vec3::Zero());
+    // The speed grows along v from 0 to 2 m/s.
+    for (const Vec2& at : frame.material) frame.material_velocity.emplace_back(0.0, 0.0, 2.0 * at.y());
     for (std::size_t v = 0; v < n; ++v) frame.ids.push_back(static_cast<std::uint32_t>(v));
     frame.stretch_energy.assign(m, 0.0);
     frame.bending_energy.assign(m, 0.0);

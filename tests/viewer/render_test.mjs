@@ -20,7 +20,7 @@ function render(...words) {
 const kWrongViews = {
   side: /^scripts\/render: --view side: unknown; allowed: colour, .*fit.*\n$/,
   "ui=0&color=strain": /^scripts\/render: --view color: unknown; allowed: colour, .*\n$/,
-  "colour=red": /^scripts\/render: --view colour=red: allowed: none, strain, contact\n$/,
+  "colour=red": /^scripts\/render: --view colour=red: allowed: none, checker, strain, speed, contact\n$/,
   "azimuth=north": /^scripts\/render: --view azimuth=north: allowed: a number\n$/,
   "zoom=0": /^scripts\/render: --view zoom=0: allowed: a number above 0\n$/,
   "frame=3": /^scripts\/render: --view frame: frames stand behind OUT_PREFIX\n$/,

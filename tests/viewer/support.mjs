@@ -38,16 +38,18 @@ export function documentOf(page) {
   return { getElementById: (id) => elements.get(id) ?? null };
 }
 
-/** Reads a frame as `arris run` writes it: { positions, strain, contact, faces, edges }. */
+/** Reads a frame as `arris run` writes it: { positions, material, speed, strain, contact, faces, edges }. */
 export function readPly(path) {
   const bytes = readFileSync(path);
   const end = bytes.indexOf("end_header\n") + "end_header\n".length;
   const header = bytes.toString("latin1", 0, end);
   const [n, m, e] = ["vertex", "face", "edge"].map((name) => Number(header.match(`element ${name} (\\d+)`)[1]));
-  const frame = { positions: [], strain: [], contact: [], faces: [], edges: [] };
+  const frame = { positions: [], material: [], speed: [], strain: [], contact: [], faces: [], edges: [] };
   let at = end;
   for (let v = 0; v < n; ++v, at += 94) {
     frame.positions.push(bytes.readDoubleLE(at), bytes.readDoubleLE(at + 8), bytes.readDoubleLE(at + 16));
+    frame.material.push(bytes.readDoubleLE(at + 24), bytes.readDoubleLE(at + 32));
+    frame.speed.push(Math.hypot(...[64, 72, 80].map((offset) => bytes.readDoubleLE(at + offset))));
     frame.contact.push(bytes[at + 93]);
   }
   for (let f = 0; f < m; ++f, at += 37) {

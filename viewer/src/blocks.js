@@ -49,6 +49,17 @@ export function unpack16(bytes, offset, count, result) {
   }
 }
 
+/** Decodes bytes stored as differences, times `scale`. */
+export function unpack8(bytes, offset, count, scale) {
+  const result = new Float32Array(count);
+  let value = 0;
+  for (let i = 0; i < count; ++i) {
+    value = (value + bytes[offset + i]) & 0xff;
+    result[i] = scale * value;
+  }
+  return result;
+}
+
 /** Decodes 32-bit numbers stored in four planes of bytes, the highest first. */
 export function unpack32(bytes, count) {
   const result = new Uint32Array(count);

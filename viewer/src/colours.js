@@ -11,7 +11,7 @@ import { Color } from "three";
 export const kRamp = ["#e9e6df", "#f6deaa", "#fbc672", "#f8a44a", "#ee7d35", "#d8562b", "#b53329", "#8a1a2c", "#5e0d2b"];
 export const kBeyond = "#3b35e6"; // strains above the scale's top
 
-const kLight = { front: "#4f8fc9", back: "#e0a458", edge: "#0d1b2a", eol: "#d4008c", contact: "#0a9b63",
+const kLight = { front: "#4f8fc9", back: "#e0a458", edge: "#0d1b2a", eol: "#c2185b", contact: "#0a9b63",
                  free: "#c9ced6", sky: "#ffffff", floor: "#d8d0c6", gridLine: "#39424f", gridStrength: 0.3, shadow: 0.18,
                  obstacle: "#b9b4ac", obstacleLine: "#4a443c" };
 const kDark = { front: "#5b9bd8", back: "#dba055", edge: "#05090f", eol: "#ff3db5", contact: "#14b877",

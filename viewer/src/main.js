@@ -6,14 +6,15 @@ import { Clock } from "./clock.js";
 import { Cloth } from "./cloth.js";
 import { onPaletteChange } from "./colours.js";
 import {
-  addNotice, firstStrainTop, hideMessage, showAxes, showFacts, showHeading, showLegend, showMessage, showMoment,
+  addNotice, firstTops, hideMessage, showAxes, showFacts, showHeading, showLegend, showMessage, showMoment,
 } from "./panels.js";
 import { Obstacles } from "./obstacles.js";
 import { BrokenData } from "./blocks.js";
 import { Run } from "./run.js";
 import { Stage } from "./stage.js";
 
-const kModes = ["none", "strain", "contact"];
+const kModes = ["none", "checker", "strain", "speed", "contact"];
+const kViewNames = ["front", "side", "top", "first"]; // keys 1 to 4
 const kAhead = 4; // frames decoded before they are due
 const kPlayIcon = "M4 2.5v11l9-5.5z";
 const kPauseIcon = "M3.5 2.5h3.2v11H3.5zM9.3 2.5h3.2v11H9.3z";
@@ -31,7 +32,10 @@ class Viewer {
   #isLoading = true; // the obstacles, then one frame at a time
   #mode = "none";
   #hasEdges = false;
-  #strainTop = firstStrainTop(this.#run);
+  #hasEol = true;
+  #hasObstacles = true;
+  #asked = null; // name and changes of the view of the whole run that is shown
+  #tops = firstTops(this.#run);
 
   start() {
     this.#stage.add(this.#cloth.group);
@@ -39,11 +43,14 @@ class Viewer {
     this.#obstacles.load()
       .catch((error) => addNotice(error.message))
       .finally(() => (this.#isLoading = false));
-    this.#cloth.setStrainTop(this.#strainTop);
     showHeading(this.#run);
     byId("scrub").max = this.#run.frames.length - 1;
+    byId("obstacles").hidden = this.#run.meshes.length === 0;
+    byId("eol").hidden = !this.#run.hasEol;
+    this.#setMode(this.#run.hasEol ? "checker" : "none");
     this.#connect();
     this.#resize();
+    this.#view("first");
     if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches && this.#run.frames.length > 1)
       this.#clock.play();
     this.#applyAddress();
@@ -101,7 +108,8 @@ class Viewer {
     this.#shown = position;
     this.#cloth.show(frame);
     this.#obstacles.show(position);
-    this.#stage.aimShadow(this.#run.frames[position]);
+    this.#stage.follow(this.#run.drift(position));
+    this.#stage.aimShadow(this.#run.litBox(position));
     showMoment(this.#run, position);
     showFacts(this.#run, frame, this.#stage.cell);
     this.#showLegend();
@@ -112,6 +120,7 @@ class Viewer {
     this.#shown = position;
     this.#cloth.hide();
     this.#obstacles.show(position);
+    this.#stage.follow(this.#run.drift(position));
     this.#stage.isStale = true;
     showMoment(this.#run, position);
     showMessage(error.message);
@@ -121,11 +130,15 @@ class Viewer {
   #legendState = "";
   #showLegend(isForced = false) {
     const topology = this.#run.peek(this.#shown)?.topology;
-    const features = { edges: topology?.edges.length > 0, corners: topology?.corners.length > 0 };
-    const state = JSON.stringify([this.#mode, this.#strainTop, features]);
+    const features = {
+      edges: this.#hasEol && topology?.edges.length > 0, corners: this.#hasEol && topology?.corners.length > 0,
+    };
+    const top = this.#tops[this.#mode];
+    const state = JSON.stringify([this.#mode, top, features]);
     if (state === this.#legendState && !isForced) return;
     this.#legendState = state;
-    showLegend(this.#run, this.#mode, this.#strainTop, features, (top) => this.#setStrainTop(top));
+    showLegend(this.#run, this.#mode, top, features, (value) => this.#setTop(value));
+    this.#refit();
   }
 
   #showPlaying() {
@@ -157,13 +170,16 @@ class Viewer {
     this.#mode = mode;
     byId("colour").value = mode;
     this.#cloth.setMode(mode);
+    if (mode in this.#tops) this.#cloth.setTop(this.#tops[mode]);
     this.#stage.isStale = true;
     this.#showLegend();
   }
 
-  #setStrainTop(top) {
-    this.#strainTop = top;
-    this.#cloth.setStrainTop(top);
+  /** Sets the top of the present scale; modes without a scale have none. */
+  #setTop(top) {
+    if (!(this.#mode in this.#tops)) return;
+    this.#tops[this.#mode] = top;
+    this.#cloth.setTop(top);
     this.#stage.isStale = true;
     this.#showLegend(true);
   }
@@ -175,12 +191,59 @@ class Viewer {
     this.#stage.isStale = true;
   }
 
+  #setEol(isShown) {
+    this.#hasEol = isShown;
+    byId("eol").setAttribute("aria-pressed", isShown);
+    this.#cloth.setEol(isShown);
+    this.#stage.isStale = true;
+    this.#showLegend();
+  }
+
+  #setObstacles(areShown) {
+    this.#hasObstacles = areShown;
+    byId("obstacles").setAttribute("aria-pressed", areShown);
+    this.#obstacles.group.visible = areShown;
+    this.#stage.isStale = true;
+  }
+
+  #setSpeed(step) {
+    const speed = byId("speed");
+    speed.selectedIndex = Math.min(Math.max(speed.selectedIndex + step, 0), speed.options.length - 1);
+    this.#clock.speed = Number(speed.value);
+  }
+
+  /** Fits the view again after the panels have changed, unless the reader has turned it. */
+  #refit() {
+    if (this.#asked && !this.#stage.isTurned) this.#view(this.#asked.name, this.#asked.view);
+  }
+
+  /** Fits the view to the cloth of the present frame. */
   #fit(view) {
-    this.#stage.fit(this.#run.frames[this.#wanted], view);
+    this.#asked = null;
+    this.#stage.fit([this.#run.frames[this.#wanted]], { ...view, isWhole: false });
+  }
+
+  /** Turns to one of the preset views, of the whole run. */
+  #view(name, view = {}) {
+    this.#asked = { name, view };
+    this.#setInsets();
+    this.#stage.fit(this.#run.viewBoxes(), { view: name, ...view });
+  }
+
+  /** Passes on what wide panels at the top and the bottom cover of the view. */
+  #setInsets() {
+    const isBare = document.body.classList.contains("bare");
+    const boxes = isBare ? [] : ["heading", "display", "legend", "transport"]
+      .map((id) => byId(id).getBoundingClientRect()).filter(({ width }) => width > window.innerWidth / 2);
+    const height = Math.max(window.innerHeight, 1);
+    const [above, below] = [boxes.filter(({ top }) => top < height / 2), boxes.filter(({ top }) => top >= height / 2)];
+    this.#stage.setInsets(Math.max(0, ...above.map(({ bottom }) => bottom)) / height,
+                          Math.max(0, ...below.map(({ top }) => height - top)) / height);
   }
 
   #resize() {
     this.#stage.resize(window.innerWidth, window.innerHeight, window.devicePixelRatio);
+    this.#refit();
   }
 
   #connect() {
@@ -191,10 +254,16 @@ class Viewer {
       loop: () => this.#setLoop(!this.#clock.isLooping),
       edges: () => this.#setEdges(!this.#hasEdges),
       fit: () => this.#fit(),
+      eol: () => this.#setEol(!this.#hasEol),
+      obstacles: () => this.#setObstacles(!this.#hasObstacles),
     };
     for (const [id, action] of Object.entries(actions)) byId(id).addEventListener("click", action);
     byId("scrub").addEventListener("input", (event) => this.#goTo(event.target.valueAsNumber));
     byId("speed").addEventListener("change", (event) => (this.#clock.speed = Number(event.target.value)));
+    byId("view").addEventListener("change", (event) => {
+      this.#view(event.target.value);
+      event.target.value = ""; // the same view may be asked for again
+    });
     byId("colour").addEventListener("change", (event) => this.#setMode(event.target.value));
     window.addEventListener("keydown", (event) => this.#onKey(event, actions));
     window.addEventListener("resize", () => this.#resize());
@@ -217,9 +286,11 @@ class Viewer {
     if (event.key === " " && target.matches("button, summary")) return;
     const keys = {
       " ": actions.play, ArrowLeft: actions.back, ArrowRight: actions.on, e: actions.edges, f: actions.fit,
-      l: actions.loop, c: () => this.#setMode(kModes[(kModes.indexOf(this.#mode) + 1) % kModes.length]),
+      l: actions.loop, s: actions.eol, o: actions.obstacles,
+      "-": () => this.#setSpeed(-1), "+": () => this.#setSpeed(1), "=": () => this.#setSpeed(1), c: () => this.#setMode(kModes[(kModes.indexOf(this.#mode) + 1) % kModes.length]),
       Home: () => this.#goTo(0), End: () => this.#goTo(this.#run.frames.length - 1),
     };
+    kViewNames.forEach((name, index) => (keys[index + 1] = () => this.#view(name)));
     const action = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!action) return;
     event.preventDefault();
@@ -236,13 +307,18 @@ class Viewer {
     if (number("frame") !== undefined) this.#goTo(this.#run.positionOf(number("frame")));
     if (asked.get("play") === "0") this.#clock.pause();
     if (kModes.includes(asked.get("colour"))) this.#setMode(asked.get("colour"));
-    if (number("top") > 0) this.#setStrainTop(number("top") / 100);
+    if (number("top") > 0) this.#setTop(number("top") / (this.#mode === "strain" ? 100 : 1));
     if (asked.has("edges")) this.#setEdges(asked.get("edges") === "1");
+    if (asked.has("eol")) this.#setEol(asked.get("eol") === "1");
+    if (asked.has("obstacles")) this.#setObstacles(asked.get("obstacles") === "1");
+    const wasBare = document.body.classList.contains("bare");
     document.body.classList.toggle("bare", asked.get("ui") === "0");
     const zoom = number("zoom") > 0 ? Math.min(Math.max(number("zoom"), 0.01), 100) : undefined;
     const view = { azimuth: number("azimuth"), elevation: number("elevation"), zoom };
-    if (asked.get("fit") === "frame") this.#fit(view);
-    else if (Object.values(view).some((value) => value !== undefined)) this.#stage.fit(this.#run.surroundings, view);
+    const preset = kViewNames.includes(asked.get("view")) ? asked.get("view") : undefined;
+    const isAsked = preset !== undefined || Object.values(view).some((value) => value !== undefined);
+    if (asked.get("fit") === "frame") this.#fit({ ...view, view: preset });
+    else if (isAsked || wasBare !== document.body.classList.contains("bare")) this.#view(preset ?? "first", view);
   }
 }
 

@@ -19,10 +19,11 @@ export class Obstacles {
   group = new Group();
   #run;
   #placed = []; // { mesh, object }
-  // Pushed back further than the cloth, so that cloth lying 1 mm above is visible at every angle.
+  // Pushed back by some thousandths of the distance to the camera: faces of the cloth that cut a little into a round
+  // obstacle, and cloth lying 1 mm above, stay whole at every angle.
   #solid = new MeshStandardMaterial({
     side: DoubleSide, roughness: 0.9, metalness: 0, flatShading: true,
-    polygonOffset: true, polygonOffsetFactor: 3, polygonOffsetUnits: 8,
+    polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 140,
   });
   #wire = new LineMaterial({ linewidth: 3 });
   #dot = makeDotMaterial(8);

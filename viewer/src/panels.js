@@ -51,7 +51,7 @@ export function showFacts(run, frame, cell) {
   const count = (number) => number.toLocaleString("en");
   const facts = [`${count(frame.positions.length / 3)} vertices`, `${count(faces.length / 3)} faces`];
   if (edges.length > 0) facts.push(`${count(edges.length / 2)} EOL edges`);
-  facts.push(`grid ${metres(cell)}`);
+  if (cell !== null) facts.push(`grid ${metres(cell)}`);
   byId("facts").textContent = facts.join(" · ");
 }
 
@@ -74,9 +74,12 @@ export function hideMessage() {
   byId("message").hidden = true;
 }
 
-/** The initial top of the strain scale: a round number that few faces of the run exceed. */
-export function firstStrainTop(run) {
-  return roundUp(run.strain.typical > 0 ? run.strain.typical : Math.max(run.strain.greatest, 1e-3));
+/** The initial tops of the scales: round numbers that few faces or vertices of the run exceed. */
+export function firstTops({ strain, speed }) {
+  return {
+    strain: roundUp(strain.typical > 0 ? strain.typical : Math.max(strain.greatest, 1e-3)),
+    speed: roundUp(speed.typical > 0 ? speed.typical : Math.max(speed.greatest, 1e-3)),
+  };
 }
 
 function key(className, colour, text) {
@@ -85,38 +88,48 @@ function key(className, colour, text) {
   return element("div", { className: "key" }, swatch, text);
 }
 
-function strainScale(run, top, onTop) {
+/** The scales: `heading`, a number's text, `unit` behind the input and the number of it that is 1. */
+const kScales = {
+  strain: { heading: "Greatest principal strain", text: percent, unit: "%", factor: 100, name: "percent",
+    range: ({ strain }) => `in this run ${percent(strain.least)} to ${percent(strain.greatest)}` },
+  speed: { heading: "Speed of the material", text: (speed) => `${readable(speed)} m/s`, unit: "m/s", factor: 1,
+    name: "metres a second", range: ({ speed }) => `in this run up to ${readable(speed.greatest)} m/s` },
+};
+
+function scale(run, mode, top, onTop) {
+  const { heading, text, unit, range } = kScales[mode];
   const bar = element("div", { className: "bar" });
-  bar.style.backgroundImage = `linear-gradient(to top, ${kRamp.join(", ")})`;
+  bar.style.setProperty("--ramp", kRamp.join(", "));
   const ticks = element("div", { className: "ticks" });
-  for (const part of [1, 0.75, 0.5, 0.25, 0]) ticks.append(element("span", { textContent: percent(part * top) }));
+  for (const part of [1, 0.75, 0.5, 0.25, 0]) ticks.append(element("span", { textContent: text(part * top) }));
   return [
-    element("h2", { textContent: "Greatest principal strain" }),
-    key("", kBeyond, `above ${percent(top)}`),
+    element("h2", { textContent: heading }),
+    key("", kBeyond, `above ${text(top)}`),
     element("div", { className: "scale" }, bar, ticks),
-    element("label", { className: "faint" }, "scale up to ", topInput(top, onTop), " %"),
-    element("div", { className: "faint",
-      textContent: `in this run ${percent(run.strain.least)} to ${percent(run.strain.greatest)}` }),
+    element("label", { className: "faint" }, "scale up to ", topInput(mode, top, onTop), ` ${unit}`),
+    element("div", { className: "faint range", textContent: range(run) }),
   ];
 }
 
 /** Lets the user type the top of the scale. A value that is not a positive number is replaced by the former one. */
-function topInput(top, onTop) {
-  const input = element("input", { type: "number", min: "0", step: "any", value: Number((100 * top).toPrecision(3)) });
-  input.id = "strain-top";
-  input.setAttribute("aria-label", "Top of the strain scale, percent");
-  input.addEventListener("change", () => onTop(input.valueAsNumber > 0 ? input.valueAsNumber / 100 : top));
+function topInput(mode, top, onTop) {
+  const { factor, name } = kScales[mode];
+  const input = element("input", { type: "number", min: "0", step: "any", value: Number((factor * top).toPrecision(3)) });
+  input.id = `${mode}-top`;
+  input.setAttribute("aria-label", `Top of the ${mode} scale, ${name}`);
+  input.addEventListener("change", () => onTop(input.valueAsNumber > 0 ? input.valueAsNumber / factor : top));
   return input;
 }
 
-/** Shows the legend. `mode`: quantity shown by colour; `features`: whether the frame has EOL { edges, corners }. */
+/** Shows the legend. `mode`: quantity shown by colour; `features`: whether EOL { edges, corners } are drawn. */
 export function showLegend(run, mode, top, features, onTop) {
   const colours = palette();
-  const parts = mode === "strain" ? strainScale(run, top, onTop) : [];
+  const parts = mode in kScales ? scale(run, mode, top, onTop) : [];
   if (mode === "contact") parts.push(key("", colours.contact, "pressed by a contact"), key("", colours.free, "free"));
-  if (mode === "none") parts.push(key("", colours.front, "front"), key("", colours.back, "back"));
+  if (mode === "none" || mode === "checker") parts.push(key("", colours.front, "front"), key("", colours.back, "back"));
   if (features.edges) parts.push(key("line", colours.eol, "EOL edge"));
   if (features.corners) parts.push(key("dot", colours.eol, "EOL vertex on a corner"));
+  byId("legend").dataset.mode = mode;
   byId("legend").replaceChildren(...parts);
 }
 

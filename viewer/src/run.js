@@ -2,12 +2,17 @@
 // The run inside the page: a JSON element that lists the frames, and one element for each block of data. Blocks are
 // decoded on demand (blocks.js) and cached. The layout is described in ../README.md.
 
-import { BrokenData, readBlock, require, unpack16, unpack32, unpackIndices } from "./blocks.js";
+import { BrokenData, readBlock, require, unpack16, unpack32, unpack8, unpackIndices } from "./blocks.js";
+import { clipped, diagonal, grown, joined } from "./boxes.js";
 
-const kFormat = 1;
+const kFormat = 2;
 const kCacheBytes = 64e6;
 const kLevels = 65535;
 const kNear = 0.2; // margin around the cloth within which obstacles are shown, over the box's diagonal
+const kWhole = 1.5; // diagonal of an obstacle that a view contains whole, over that of the cloth's boxes
+const kLit = 4; // the same of an obstacle whose whole shadow is drawn
+const kFloor = 1.5; // horizontal sizes of an obstacle that is the ground, over those of the view
+const kFall = 1; // distance below the view down to which the ground follows falling cloth, over the view's diagonal
 const kWay = 2; // distance from its start, in cloth sizes, up to which cloth without obstacles is followed
 
 const isCount = (value) => Number.isSafeInteger(value) && value >= 0;
@@ -38,14 +43,16 @@ function readMeta(document) {
   require(isCount(meta.run_frames) && isCount(meta.stride), "The number of frames is missing.");
   require(Number.isFinite(meta.strain?.least) && Number.isFinite(meta.strain.greatest) &&
           Number.isFinite(meta.strain.typical), "The range of strains is missing.");
+  require(Number.isFinite(meta.typical_speed), "The typical speed is missing.");
   require(Array.isArray(meta.topologies) && meta.topologies.every((topology) =>
-    isCount(topology.id) && isCount(topology.vertices) && isCount(topology.faces) && isCount(topology.edges) && isCount(topology.corners)),
+    isCount(topology.id) && isCount(topology.vertices) && isCount(topology.faces) && isCount(topology.edges) &&
+    isCount(topology.corners) && isNumbers(topology.least, 2) && isNumbers(topology.size, 2)),
   "The list of meshes is damaged.");
   require(Array.isArray(meta.frames) && meta.frames.length > 0, "The run has no frames.");
   const known = new Set(meta.topologies.map((topology) => topology.id));
   for (const frame of meta.frames)
     require(isCount(frame.index) && known.has(frame.topology) &&
-            isNumbers(frame.least, 3) && isNumbers(frame.size, 3) && isNumbers(frame.strain, 2),
+            isNumbers(frame.least, 3) && isNumbers(frame.size, 3) && isNumbers(frame.strain, 2) && Number.isFinite(frame.speed),
     "The list of frames is damaged.");
   meta.meshes ??= [];
   meta.left_out ??= [];
@@ -109,6 +116,15 @@ export function normalGroups(faces, edges, vertexCount) {
   return { groups, groupCount };
 }
 
+/** Writes the material coordinates u v of the listed `vertices`, m, relative to the least ones of the mesh. */
+function unpackMaterial(bytes, offset, { size }, vertices, material) {
+  const levels = new Uint16Array(vertices.length);
+  for (let axis = 0; axis < 2; ++axis) {
+    unpack16(bytes, offset + 2 * axis * vertices.length, vertices.length, levels);
+    vertices.forEach((vertex, i) => (material[2 * vertex + axis] = (size[axis] / kLevels) * levels[i]));
+  }
+}
+
 /** Keeps decoded data up to a number of bytes and drops the least recently used data first. */
 class Cache {
   #entries = new Map();
@@ -133,25 +149,6 @@ class Cache {
   }
 }
 
-/** Operations on boxes { least, size }: the box around both; one enlarged by a margin; the intersection, or null. */
-function joined(a, b) {
-  const least = a.least.map((value, axis) => Math.min(value, b.least[axis]));
-  const size = least.map((value, axis) =>
-    Math.max(a.least[axis] + a.size[axis], b.least[axis] + b.size[axis]) - value);
-  return { least, size };
-}
-
-function grown({ least, size }, margin) {
-  return { least: least.map((value) => value - margin), size: size.map((value) => value + 2 * margin) };
-}
-
-function clipped(a, b) {
-  const least = a.least.map((value, axis) => Math.max(value, b.least[axis]));
-  const size = least.map((value, axis) =>
-    Math.min(a.least[axis] + a.size[axis], b.least[axis] + b.size[axis]) - value);
-  return size.every((value) => value >= 0) ? { least, size } : null;
-}
-
 export class Run {
   #document;
   #topologies;
@@ -166,6 +163,8 @@ export class Run {
     this.runFrames = meta.run_frames;
     this.stride = meta.stride;
     this.strain = meta.strain;
+    this.speed = { greatest: Math.max(...meta.frames.map(({ speed }) => speed)), typical: meta.typical_speed };
+    this.hasEol = meta.topologies.some(({ edges, corners }) => edges + corners > 0);
     this.frames = meta.frames;
     this.#topologies = new Map(meta.topologies.map((topology) => [topology.id, topology]));
     this.bounds = meta.frames.reduce(joined);
@@ -210,9 +209,58 @@ export class Run {
   /** The stage and the parts of obstacles near it, in the first and the last frame: everything that a view shows. */
   #computeSurroundings() {
     const around = grown(this.stage, kNear * Math.hypot(...this.stage.size));
-    const boxes = [0, this.frames.length - 1].flatMap((position) =>
-      this.meshes.map((mesh) => clipped(this.#meshBox(mesh, position), around)));
-    return boxes.filter((box) => box).reduce(joined, this.stage);
+    return [0, this.frames.length - 1].flatMap((position) => this.#obstaclesNear(around, position, kWhole))
+      .reduce(joined, this.stage);
+  }
+
+  /** Boxes of the obstacles near the box `around`: whole up to `whole` times the cloth's diagonal, else the near part. */
+  #obstaclesNear(around, position, whole) {
+    return this.meshes.flatMap((mesh) => {
+      const box = this.#meshBox(mesh, position);
+      const near = clipped(box, around);
+      if (!near) return [];
+      return [diagonal(box) < whole * diagonal(this.stage) ? box : near];
+    });
+  }
+
+  /** The boxes that the first view contains: the cloth in some frames, and the obstacles near it. */
+  viewBoxes() {
+    const step = Math.max(1, Math.floor(this.frames.length / 32));
+    const cloth = this.frames.filter((_, position) => position % step === 0).map((box) => clipped(box, this.stage));
+    return [...cloth.filter((box) => box), ...[0, this.frames.length - 1].flatMap((position) =>
+      this.#obstaclesNear(grown(this.stage, kNear * diagonal(this.stage)), position, kWhole))];
+  }
+
+  /** The box of all that casts a shadow in the `position`-th frame. */
+  litBox(position) {
+    const around = grown(joined(this.frames[position], this.stage), kNear * diagonal(this.stage));
+    return this.#obstaclesNear(around, position, kLit).reduce(joined, this.frames[position]);
+  }
+
+  /** How far the cloth's middle has left the stage in the `position`-th frame: a vector, m. The view follows by it. */
+  drift(position) {
+    const { least, size } = this.frames[position];
+    return least.map((value, axis) => {
+      const middle = value + size[axis] / 2;
+      const low = this.stage.least[axis];
+      return middle - Math.min(Math.max(middle, low), low + this.stage.size[axis]);
+    });
+  }
+
+  /**
+   * Height of the ground, m: the lowest point of the view, or of cloth that falls a little further. null if an
+   * obstacle is the ground, or the cloth falls through every place where a ground could be.
+   */
+  groundHeight() {
+    const view = this.surroundings;
+    const isFloor = (mesh) => {
+      const box = this.#meshBox(mesh, 0);
+      return [0, 1].every((axis) => box.size[axis] > kFloor * view.size[axis]) &&
+        box.size[2] < Math.min(box.size[0], box.size[1]) / 3;
+    };
+    const lowest = this.bounds.least[2];
+    if (this.meshes.some(isFloor) || lowest < view.least[2] - kFall * diagonal(view)) return null;
+    return Math.min(lowest, view.least[2]);
   }
 
   /** An obstacle's placement in the `position`-th frame: 3 x 4 numbers by rows, relative to `origin`. */
@@ -298,7 +346,8 @@ export class Run {
     const topology = await this.#topology(entry.topology);
     const n = topology.vertices;
     const m = topology.faces.length / 3;
-    const bytes = await readBlock(this.#document, `arris-frame-${entry.index}`, 6 * n + 2 * m + ((n + 7) >> 3));
+    const bytes = await readBlock(this.#document, `arris-frame-${entry.index}`, 
+      7 * n + 2 * m + ((n + 7) >> 3) + 4 * topology.moving.length);
 
     const positions = new Float32Array(3 * n);
     const levels = new Uint16Array(Math.max(n, m));
@@ -311,10 +360,15 @@ export class Run {
     const strain = new Float32Array(m);
     unpack16(bytes, 6 * n, m, levels);
     for (let f = 0; f < m; ++f) strain[f] = entry.strain[0] + (entry.strain[1] / kLevels) * levels[f];
-    const contact = bytes.slice(6 * n + 2 * m);
+    let at = 6 * n + 2 * m;
+    const contact = bytes.slice(at, (at += (n + 7) >> 3));
+    const material = topology.material.slice();
+    unpackMaterial(bytes, at, topology, topology.moving, material);
+    const speed = unpack8(bytes, at + 4 * topology.moving.length, n, entry.speed / 255);
 
-    const frame = { topology, positions, strain, contact };
-    this.#cache.set(`f${position}`, frame, positions.byteLength + strain.byteLength + contact.byteLength);
+    const frame = { topology, positions, strain, contact, material, speed };
+    const arrays = [positions, strain, contact, material, speed];
+    this.#cache.set(`f${position}`, frame, arrays.reduce((sum, { byteLength }) => sum + byteLength, 0));
     return frame;
   }
 
@@ -325,16 +379,23 @@ export class Run {
       const entry = this.#topologies.get(id);
       const [faces, edges] = [3 * entry.faces, 2 * entry.edges];
       const count = faces + edges + entry.corners;
-      const indices = unpackIndices(await readBlock(this.#document, `arris-topology-${id}`, 4 * count), count);
+      const bytes = await readBlock(this.#document, `arris-topology-${id}`, 4 * (count + entry.vertices));
+      const indices = unpackIndices(bytes, count);
       require(indices.every((vertex) => vertex < entry.vertices), "its mesh names vertices that do not exist");
       const topology = {
         vertices: entry.vertices,
         faces: indices.subarray(0, faces),
         edges: indices.subarray(faces, faces + edges),
         corners: indices.subarray(faces + edges),
+        moving: [...new Set(indices.subarray(faces))].sort((a, b) => a - b),
+        material: new Float32Array(2 * entry.vertices),
+        least: entry.least,
+        size: entry.size,
       };
+      const all = Array.from({ length: entry.vertices }, (_, vertex) => vertex);
+      unpackMaterial(bytes, 4 * count, topology, all, topology.material);
       Object.assign(topology, normalGroups(topology.faces, topology.edges, entry.vertices));
-      this.#cache.set(`t${id}`, topology, indices.byteLength + topology.groups.byteLength);
+      this.#cache.set(`t${id}`, topology, 2 * indices.byteLength + topology.material.byteLength);
       return topology;
     });
   }

@@ -6,13 +6,19 @@ import {
   ShaderMaterial, ShadowMaterial, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { joined } from "./boxes.js";
 import { linear, palette } from "./colours.js";
 
 const kFieldOfView = 32; // degrees, vertical
 const kAzimuth = -62; // degrees from +x of the first view
 const kElevation = 24; // degrees above the horizon
+const kShadowMap = 2048; // texels a side
+const kShadowTexels = 3; // lift of a surface above its own shadow
 const kKeyLight = new Vector3(-0.8, -0.55, 1.15).normalize();
-const kMargin = 0.84; // share of the view's half width or height that a fitted box may fill
+const kMargin = 0.9; // share of the free half width or height of the view that a fitted box may fill
+const kViews = { // directions of the preset views: azimuth, elevation
+  first: [kAzimuth, kElevation], front: [-90, 4], side: [0, 4], top: [-90, 89.9],
+};
 
 /** Centre and radius of the ball around a box { least, size }, relative to `origin`; the radius is at least 1 mm. */
 function ballAround(box, origin) {
@@ -58,7 +64,10 @@ export class Stage {
   #fill = new DirectionalLight(0xffffff, 0.8);
   #grid;
   #floor;
+  #drift = new Vector3();
+  #insets = [0.06, 0.06];
   isStale = true;
+  isTurned = false; // by the reader, since the last fit
 
   /** Throws if the browser has no WebGL 2. */
   constructor(canvas, run) {
@@ -71,16 +80,17 @@ export class Stage {
     this.#controls.enableDamping = true;
     this.#controls.dampingFactor = 0.16;
     this.#controls.zoomToCursor = true;
+    this.#controls.addEventListener("start", () => (this.isTurned = true));
     this.#controls.addEventListener("change", () => (this.isStale = true));
     this.#addLights();
     this.#addGround();
     this.usePalette();
-    this.fit(run.surroundings, { azimuth: kAzimuth, elevation: kElevation });
+    this.fit(run.viewBoxes(), { view: "first" });
   }
 
-  /** The grid's spacing in metres, for the read-out. */
+  /** The grid's spacing in metres, for the read-out; null without a ground. */
   get cell() {
-    return this.#grid.material.uniforms.uCell.value;
+    return !this.#grid.visible ? null : this.#grid.material.uniforms.uCell.value;
   }
 
   add(object) {
@@ -98,41 +108,76 @@ export class Stage {
   }
 
   /**
-   * Turns the camera to a box { least, size } so that the box fills the view. The direction is the present one unless
-   * `azimuth` (degrees from +x about z) and `elevation` (degrees) are given. A `zoom` above 1 comes nearer.
+   * Turns the camera so that boxes { least, size } fill the view. The direction is the present one unless a preset
+   * `view`, `azimuth` (degrees from +x about z) or `elevation` (degrees) are given. A `zoom` above 1 comes nearer.
+   * `isWhole`: the boxes are those of the whole run, so the view goes on following cloth that leaves them.
    */
-  fit(box, { azimuth, elevation, zoom = 1 } = {}) {
-    const { centre, radius } = ballAround(box, this.#run.origin);
+  fit(boxes, { view, azimuth, elevation, zoom = 1, isWhole = true } = {}) {
     const direction = this.#camera.position.clone().sub(this.#controls.target).normalize();
-    if (azimuth !== undefined || elevation !== undefined) {
-      const a = ((azimuth ?? kAzimuth) * Math.PI) / 180;
-      const e = (Math.min(Math.max(elevation ?? kElevation, -89.9), 89.9) * Math.PI) / 180;
+    if (view !== undefined || azimuth !== undefined || elevation !== undefined) {
+      const [firstAzimuth, firstElevation] = kViews[view ?? "first"];
+      const a = ((azimuth ?? firstAzimuth) * Math.PI) / 180;
+      const e = (Math.min(Math.max(elevation ?? firstElevation, -89.9), 89.9) * Math.PI) / 180;
       direction.set(Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e));
     }
-    const distance = Math.max(this.#distanceFor(box.size, direction), 2 * radius) / zoom;
+    const { centre, distance } = this.#fitted(boxes, direction);
+    this.isTurned = false;
+    if (isWhole) centre.add(this.#drift);
     this.#controls.target.copy(centre);
-    this.#camera.position.copy(centre).addScaledVector(direction, distance);
+    this.#camera.position.copy(centre).addScaledVector(direction, distance / zoom);
     this.#controls.update();
     this.isStale = true;
   }
 
-  /** Distance from its centre at which a box of this size fits into the view, for a view against `direction`. */
-  #distanceFor(size, direction) {
+  /** The nearest camera against `direction` that sees all corners of the boxes within the part free of panels. */
+  #fitted(boxes, direction) {
     const right = this.#camera.up.clone().cross(direction).normalize();
     const up = direction.clone().cross(right);
-    const slope = kMargin * Math.tan((kFieldOfView * Math.PI) / 360);
-    let distance = 0;
-    for (let corner = 0; corner < 8; ++corner) {
-      const at = new Vector3(...size.map((length, axis) => ((corner >> axis) & 1 ? length : -length) / 2));
-      const needed = Math.max(Math.abs(at.dot(right)) / (slope * this.#camera.aspect), Math.abs(at.dot(up)) / slope);
-      distance = Math.max(distance, needed + at.dot(direction));
+    const slope = Math.tan((kFieldOfView * Math.PI) / 360);
+    // The free part of the view in units of its half height, and its corners' slopes; x is even, y is not.
+    const across = kMargin * slope * this.#camera.aspect;
+    const [above, below] = this.#insets.map((inset) => slope * kMargin * (1 - 2 * inset));
+    const most = { left: -Infinity, right: -Infinity, above: -Infinity, below: -Infinity };
+    for (const { least, size } of boxes) {
+      for (let corner = 0; corner < 8; ++corner) {
+        const at = new Vector3(...least.map((value, axis) =>
+          value + ((corner >> axis) & 1 ? size[axis] : 0) - this.#run.origin[axis]));
+        const [x, y, z] = [at.dot(right), at.dot(up), at.dot(direction)];
+        // A corner is within the view from distance d if |x - centre| <= across (d - z), and for y likewise.
+        most.right = Math.max(most.right, x + across * z);
+        most.left = Math.max(most.left, -x + across * z);
+        most.above = Math.max(most.above, y + above * z);
+        most.below = Math.max(most.below, -y + below * z);
+      }
     }
-    return distance;
+    const far = Math.max((most.right + most.left) / (2 * across), (most.above + most.below) / (above + below));
+    const x = (most.right - most.left) / 2;
+    const y = (most.above - above * far + below * far - most.below) / 2;
+    // The controls turn about a point in the middle of the boxes' depth.
+    const box = boxes.reduce(joined);
+    const { centre: middle, radius } = ballAround(box, this.#run.origin);
+    const depth = middle.dot(direction);
+    const centre = right.multiplyScalar(x).addScaledVector(up, y).addScaledVector(direction, depth);
+    return { centre, distance: Math.max(far - depth, 2 * radius * 0.5, 1e-3) };
   }
 
-  /**
-   * Aims the shadow light at the cloth of this frame. The light's view contains the cloth and its way to the ground.
-   */
+  /** Sets the shares of the view's height that panels take at the top and the bottom. */
+  setInsets(top, bottom) {
+    this.#insets = [Math.min(top, 0.4), Math.min(bottom, 0.4)];
+  }
+
+  /** Moves the camera along with cloth that leaves the run's stage, by the vector `drift` of Run.drift. */
+  follow(drift) {
+    const change = new Vector3(...drift).sub(this.#drift);
+    if (change.lengthSq() === 0) return;
+    this.#drift.add(change);
+    this.#controls.target.add(change);
+    this.#camera.position.add(change);
+    this.#controls.update();
+    this.isStale = true;
+  }
+
+  /** Aims the shadow light at a box { least, size }: all that casts shadows now. Its view includes the way down. */
   aimShadow(box) {
     const { centre, radius } = ballAround(box, this.#run.origin);
     const camera = this.#key.shadow.camera;
@@ -143,7 +188,7 @@ export class Stage {
     camera.near = 0.5 * radius;
     camera.far = 3.5 * radius + 3 * Math.hypot(...this.#run.surroundings.size);
     camera.updateProjectionMatrix();
-    this.#key.shadow.normalBias = 0.006 * radius;
+    this.#key.shadow.normalBias = kShadowTexels * 2 * radius / kShadowMap;
     this.isStale = true;
   }
 
@@ -178,7 +223,7 @@ export class Stage {
   #addLights() {
     this.#sky.position.set(0, 0, 1);
     this.#key.castShadow = true;
-    this.#key.shadow.mapSize.set(2048, 2048);
+    this.#key.shadow.mapSize.set(kShadowMap, kShadowMap);
     this.#key.shadow.bias = -0.0006;
     this.#key.shadow.radius = 2.5;
     this.#fill.position.set(0.6, 0.2, 1); // from beside the camera, so that no view looks flat
@@ -187,9 +232,9 @@ export class Stage {
     this.#scene.add(this.#sky, this.#key, this.#key.target, this.#camera);
   }
 
-  /** Adds a grid and the shadow slightly below the lowest z of the run's view, so that they cut nothing lying there. */
+  /** Adds a grid and the shadow slightly below the run's ground, so that they cut nothing lying there. */
   #addGround() {
-    const { least } = this.#run.surroundings;
+    const height = this.#run.groundHeight();
     const { centre, radius } = ballAround(this.#run.stage, this.#run.origin);
     const reach = 5 * radius;
     const cell = 10 ** Math.floor(Math.log10(radius / 1.5));
@@ -207,7 +252,8 @@ export class Stage {
     this.#floor.receiveShadow = true;
     this.#floor.renderOrder = -1;
     for (const plane of [this.#grid, this.#floor]) {
-      plane.position.set(centre.x, centre.y, least[2] - this.#run.origin[2] - 1e-3 * radius);
+      plane.position.set(centre.x, centre.y, (height ?? 0) - this.#run.origin[2] - 1e-3 * radius);
+      plane.visible = height !== null;
       this.#scene.add(plane);
     }
   }

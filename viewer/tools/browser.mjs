@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 
 const kAnswerSeconds = 60;
+const kPictureQuality = 80; // of JPEG and WebP, per cent
 
 export function findChromium() {
   const places = ["/usr/bin", "/usr/local/bin", "/snap/bin"];
@@ -164,9 +165,10 @@ export class Page {
     await this.send("Input.dispatchKeyEvent", { type: "keyUp", key, code });
   }
 
-  /** The page as PNG bytes. */
-  async screenshot() {
-    const { data } = await this.send("Page.captureScreenshot", { format: "png" });
+  /** The page as bytes of a picture: "png", "jpeg" or "webp". */
+  async screenshot(format = "png") {
+    const quality = format === "png" ? {} : { quality: kPictureQuality };
+    const { data } = await this.send("Page.captureScreenshot", { format, ...quality });
     return Buffer.from(data, "base64");
   }
 

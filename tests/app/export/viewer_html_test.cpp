@@ -80,7 +80,8 @@ Frame make_strip(int columns, const Vec3& centre, const Vec3& extent, unsigned s
     }
     for (std::size_t f = 0; f < frame.faces.size(); ++f) frame.strain.push_back(unit(random));
     frame.vertex_velocity.assign(frame.world.size(), Vec3::Zero());
-    frame.material_velocity = frame.vertex_velocity;
+    for (std::size_t v = 0; v < frame.world.size(); ++v)
+        frame.material_velocity.emplace_back(unit(random), unit(random), unit(random));
     frame.ids.assign(frame.world.size(), 0);
     frame.eol.assign(frame.world.size(), 0);
     frame.stretch_energy.assign(frame.faces.size(), 0.0);
@@ -159,6 +160,8 @@ std::vector<int> indices(const std::vector<std::uint8_t>& bytes, std::size_t cou
 
 struct Decoded {
     std::vector<Vec3> world;
+    std::vector<Vec2> material;
+    std::vector<double> speed;
     std::vector<double> strain;
     std::vector<int> contact;
     std::vector<int> topology;  // faces, EOL edges, corners
@@ -171,8 +174,14 @@ Decoded decode(const std::string& page, std::size_t position)
     const auto topology = std::find_if(all["topologies"].begin(), all["topologies"].end(),
                                        [&](const json& entry) { return entry["id"] == frame["topology"]; });
     const std::size_t n = (*topology)["vertices"], m = (*topology)["faces"];
-    const auto bytes =
-        unpacked(page, fmt::format("arris-frame-{}", frame["index"].get<int>()), 6 * n + 2 * m + (n + 7) / 8);
+    const std::size_t e = (*topology)["edges"], corners = (*topology)["corners"];
+    const std::size_t count = 3 * m + 2 * e + corners;
+    const auto mesh =
+        unpacked(page, fmt::format("arris-topology-{}", frame["topology"].get<int>()), 4 * count + 4 * n);
+    const std::vector<int> mesh_indices = indices(mesh, count);
+    const std::set<int> moving(mesh_indices.begin() + static_cast<std::ptrdiff_t>(3 * m), mesh_indices.end());
+    const std::size_t moving_at = 6 * n + 2 * m + (n + 7) / 8, speed_at = moving_at + 4 * moving.size();
+    const auto bytes = unpacked(page, fmt::format("arris-frame-{}", frame["index"].get<int>()), speed_at + n);
 
     Decoded result;
     result.world.resize(n);
@@ -186,10 +195,25 @@ Decoded decode(const std::string& page, std::size_t position)
         result.strain.push_back(frame["strain"][0].get<double>() +
                                 frame["strain"][1].get<double>() * level / 65535.0);
     for (std::size_t v = 0; v < n; ++v) result.contact.push_back(bytes[6 * n + 2 * m + v / 8] >> (v % 8) & 1);
-    const std::size_t count =
-        3 * m + 2 * (*topology)["edges"].get<std::size_t>() + (*topology)["corners"].get<std::size_t>();
-    result.topology = indices(
-        unpacked(page, fmt::format("arris-topology-{}", frame["topology"].get<int>()), 4 * count), count);
+    result.topology = mesh_indices;
+
+    result.material.resize(n);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double least = (*topology)["least"][axis], size = (*topology)["size"][axis];
+        const auto numbers = levels(mesh, 4 * count + 2 * n * axis, n);
+        for (std::size_t v = 0; v < n; ++v)
+            result.material[v][static_cast<Eigen::Index>(axis)] = least + size * numbers[v] / 65535.0;
+        const auto moved = levels(bytes, moving_at + 2 * moving.size() * axis, moving.size());
+        std::size_t k = 0;
+        for (const int v : moving)
+            result.material[static_cast<std::size_t>(v)][static_cast<Eigen::Index>(axis)] =
+                least + size * moved[k++] / 65535.0;
+    }
+    std::uint8_t level = 0;
+    for (std::size_t v = 0; v < n; ++v) {
+        level = static_cast<std::uint8_t>(level + bytes[speed_at + v]);
+        result.speed.push_back(frame["speed"].get<double>() * level / 255.0);
+    }
     return result;
 }
 
@@ -215,6 +239,15 @@ void expect_shows(const std::string& page, std::size_t position, const Frame& fr
     for (std::size_t f = 0; f < frame.strain.size(); ++f)
         ASSERT_NEAR(decoded.strain[f], frame.strain[f], half_level(*most - *least, 1.0)) << "face " << f;
     EXPECT_THAT(decoded.contact, testing::ElementsAreArray(frame.contact));
+    double most_speed = 0.0;
+    for (const Vec3& velocity : frame.material_velocity) most_speed = std::max(most_speed, velocity.norm());
+    for (std::size_t v = 0; v < frame.world.size(); ++v) {
+        ASSERT_NEAR((decoded.material[v] - frame.material[v]).cwiseAbs().maxCoeff(), 0.0,
+                    half_level(100.0, 100.0))
+            << "vertex " << v;
+        ASSERT_NEAR(decoded.speed[v], frame.material_velocity[v].norm(), 0.501 / 255.0 * most_speed)
+            << "vertex " << v;
+    }
 
     std::vector<int> topology;
     for (const Face& face : frame.faces) topology.insert(topology.end(), face.begin(), face.end());
@@ -232,7 +265,7 @@ TEST_F(ViewerHtml, HoldsEveryFrameToHalfALevelOfItsBox)
     write_viewer(run_, {"strip", 25.0});
 
     const json all = meta(page());
-    EXPECT_EQ(all["format"], 1);
+    EXPECT_EQ(all["format"], 2);
     EXPECT_EQ(all["title"], "strip");
     EXPECT_EQ(all["frames_per_second"], 25.0);
     EXPECT_EQ(all["run_frames"], 5);
@@ -254,11 +287,22 @@ TEST_F(ViewerHtml, KeepsItsPrecisionFarAwayFlatTinyAndHuge)
     for (std::size_t k = 0; k < frames.size(); ++k) expect_shows(page(), k, frames[k]);
 }
 
+TEST_F(ViewerHtml, StoresATopologyAnewWhereAnyOtherVertexMovesInTheMaterial)
+{
+    std::vector<Frame> frames(2, make_strip(20, 1));
+    frames[1].material[5] = {2.3, 0.9};
+    for (int k = 0; k < 2; ++k) write_frame(frame_path(k), frames[k]);
+    write_viewer(run_, {});
+    EXPECT_EQ(meta(page())["topologies"].size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k) expect_shows(page(), k, frames[k]);
+}
+
 TEST_F(ViewerHtml, StoresATopologyOnlyWhereItChanges)
 {
     std::vector<Frame> frames;
     for (unsigned k = 0; k < 8; ++k) frames.push_back(make_strip(k < 6 ? 20 : 33, k));
     for (unsigned k = 2; k < 5; ++k) frames[k].eol_edges = {{2, 4}, {4, 6}, {40, 38}};
+    frames[3].material[4] = {2.3, 0.1};  // an EOL vertex slides: the topology stays
     frames[4].eol[6] = 2;
     frames[4].eol[4] = 1;
     for (int k = 0; k < 8; ++k) write_frame(frame_path(k), frames[k]);
@@ -314,7 +358,7 @@ TEST_F(ViewerHtml, LeavesFramesOutWhereTheyDoNotFitAndSaysSo)
     for (unsigned k = 0; k < 22; ++k) frames.push_back(make_strip(k == 7 ? 42 : k < 9 ? 40 : 41, k));
     for (int k = 0; k < 22; ++k) write_frame(frame_path(k), frames[k]);
     std::set<int> strides;
-    for (std::size_t most = 400; most < 16'000; most += 200) {
+    for (std::size_t most = 400; most < 24'000; most += 300) {
         write_viewer(run_, {"long", 24.0, most});
         ASSERT_NO_FATAL_FAILURE(expect_thinned(page(), frames, most)) << most;
         strides.insert(meta(page())["stride"].get<int>());
