@@ -69,6 +69,7 @@ export class Browser {
     const page = new Page(this, sessionId, targetId);
     await page.send("Page.enable");
     await page.send("Runtime.enable");
+    await page.send("Log.enable");
     await page.send("Network.enable");
     await page.send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
     await page.setScheme(scheme);
@@ -111,12 +112,17 @@ export class Page {
   #onLoad = () => {};
   requests = []; // addresses the page asked for
   dialogs = 0; // alerts it opened
+  problems = []; // errors and warnings in its console
 
   constructor(browser, session, target) {
     [this.#browser, this.#session, this.#target] = [browser, session, target];
     browser.onEvent(({ method, params, sessionId }) => {
       if (sessionId !== session) return;
       if (method === "Page.loadEventFired") this.#onLoad();
+      if (method === "Runtime.exceptionThrown") this.problems.push(params.exceptionDetails.text);
+      if (method === "Runtime.consoleAPICalled" && ["error", "warning"].includes(params.type))
+        this.problems.push(params.args.map(({ value }) => value).join(" "));
+      if (method === "Log.entryAdded" && params.entry.level === "error") this.problems.push(params.entry.text);
       if (method === "Network.requestWillBeSent") this.requests.push(params.request.url);
       if (method === "Page.javascriptDialogOpening") {
         ++this.dialogs;
