@@ -74,7 +74,7 @@ outgoingLight = mix(outgoingLight, uEdge, edge * uEdges * smoothstep(2.0, 7.0, h
 `;
 
 // Lines on the cloth are drawn a little nearer, so that the cloth does not cover half of their width.
-const kNearer = { polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -60 };
+const kNearer = { polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -160 };
 
 function makeFaceMaterial(uniforms) {
   const material = new MeshStandardMaterial({

@@ -225,7 +225,7 @@ export class Stage {
     this.#key.castShadow = true;
     this.#key.shadow.mapSize.set(kShadowMap, kShadowMap);
     this.#key.shadow.bias = -0.0006;
-    this.#key.shadow.radius = 2.5;
+    this.#key.shadow.radius = 6;
     this.#fill.position.set(0.6, 0.2, 1); // from beside the camera, so that no view looks flat
     this.#camera.add(this.#fill, this.#fill.target);
     this.#fill.target.position.set(0, 0, -1);
