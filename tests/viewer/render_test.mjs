@@ -47,3 +47,11 @@ test("every name that the viewer's address takes is one of a view", () => {
   const { line } = render("--view", "side", run, join(directory, "p_"));
   for (const name of names.filter((name) => name !== "frame")) assert.match(line, new RegExp(`\\b${name}\\b`));
 });
+
+for (const words of [["--film", "film.avi"], ["--fps", "0", "--film", "film.mp4"], ["--quality", "20"]]) {
+  test(`the words ${words.join(" ")} are answered with the usage`, () => {
+    const { status, line } = render(...words, run, join(directory, "p_"));
+    assert.match(line, /^usage: scripts\/render .*--film FILE/s);
+    assert.equal(status, 2);
+  });
+}
