@@ -192,6 +192,37 @@ test("cloth that has left is not followed by the first view", () => {
             "free fall is followed for some of the cloth's sizes");
 });
 
+/** The obstacles' page with its cloth lowered by another `drop` metres in each frame from the 12th on. */
+const falling = (drop) => open(obstaclesPage.replace(/(id="arris-meta">)([^<]*)/, (_, head, json) => {
+  const meta = JSON.parse(json);
+  meta.frames.forEach((frame, k) => (frame.least[2] -= drop * Math.max(0, k - 11)));
+  return head + JSON.stringify(meta);
+}));
+
+test("the ground is at the lowest point in view, and where an obstacle is the floor there is no other", () => {
+  const reader = open(obstaclesPage);
+  assert.equal(reader.groundHeight(), Math.min(reader.bounds.least[2], 0.3), "the table's underside is at 0.3 m");
+  const legs = open(obstaclesPage.replace(/"size":\[0.5,1.2,0.1\d*\]/, '"size":[0.5,0.6,1.1]'));
+  assert.ok(Math.abs(legs.groundHeight() - (0.35 - 0.55)) < 1e-9, `${legs.groundHeight()}`);
+  assert.equal(open(obstaclesPage.replace(/"size":\[0.5,1.2,0.1\d*\]/, '"size":[9,9,0.1]')).groundHeight(), null);
+  assert.equal(falling(10).groundHeight(), null, "the cloth falls through every ground");
+});
+
+test("the camera follows cloth that leaves the stage, and no other", () => {
+  const still = open(obstaclesPage);
+  for (let k = 0; k < 25; ++k) assert.deepEqual(still.drift(k), [0, 0, 0]);
+  const fallen = falling(10);
+  assert.deepEqual(fallen.drift(5), [0, 0, 0]);
+  const [x, y, z] = fallen.drift(24);
+  assert.ok(x === 0 && y === 0 && z < -100, `${[x, y, z]}`);
+});
+
+test("the light covers whole obstacles near the cloth", () => {
+  const reader = open(obstaclesPage);
+  const { least, size } = reader.litBox(0);
+  assert.ok(least[1] <= -0.1 + 1e-9 && least[1] + size[1] >= 1.1 - 1e-9, "the table from end to end");
+});
+
 const kMeshBreaks = {
   "a placement that is none": (text) => text.replace(/"placements":\[\[[^,]*,/, '"placements":[[null,'),
   "too few placements": (text) => text.replace(/("name":"wire".*?"placements":\[)\[[^\]]*\],/, "$1"),
