@@ -20,8 +20,8 @@ struct ViewerOptions {
 /// in a browser, from disk and without a network (source and data format: viewer/README.md). Linear in the
 /// size of the frames. Memory: one frame and at most `most_bytes` of compressed frames. If the frames do not
 /// fit, only every second, fourth, ... frame and the last one are kept, and the page says so. Positions are
-/// quantised to 1/65535 of the frame's bounding box in each direction, strains to 1/65535 of the frame's
-/// range.
+/// quantised to 1/65535 of the frame's bounding box in each direction, material coordinates likewise, strains
+/// to 1/65535 of the frame's range, speeds to 1/255 of the frame's greatest.
 ///
 /// Meshes of `obstacles` are stored once, in single precision relative to their centre; a moving obstacle has
 /// a placement for each frame. They take at most half of `most_bytes`. The page lists the names of obstacles
