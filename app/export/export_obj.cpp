@@ -20,6 +20,8 @@ void write_obj(const std::string& path, const Frame& frame)
     for (const Vec2& X : frame.material) fmt::format_to(out, "vt {} {}\n", X[0], X[1]);
     for (const Face& face : frame.faces)
         fmt::format_to(out, "f {0}/{0} {1}/{1} {2}/{2}\n", face[0] + 1, face[1] + 1, face[2] + 1);
+    // Some readers make lines of a whole object that has any, so the edges are an object of their own.
+    if (!frame.eol_edges.empty()) fmt::format_to(out, "o cloth_eol\n");
     for (const auto& [a, b] : frame.eol_edges) fmt::format_to(out, "l {} {}\n", a + 1, b + 1);
     write_atomically(path, {text.data(), text.size()});
 }

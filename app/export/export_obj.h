@@ -9,8 +9,9 @@
 namespace arris {
 
 /// Writes the cloth of one frame as Wavefront OBJ, atomically: `v` world positions and `vt` material
-/// coordinates, both in metres and one per vertex; `f` triangles as v/vt; `l` EOL edges. Numbers read back to
-/// the same double. Throws std::system_error naming the path if writing fails.
+/// coordinates, both in metres and one per vertex; object `cloth`: `f` triangles as v/vt; object `cloth_eol`,
+/// if there are EOL edges: these as `l`. Numbers read back to the same double. Throws std::system_error
+/// naming the path if writing fails.
 void write_obj(const std::string& path, const Frame& frame);
 
 /// Writes an obstacle whose frame has the given placement in the world: `v` world positions in metres, `f`

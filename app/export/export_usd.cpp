@@ -6,6 +6,12 @@
 // USD interpolates arrays of floats linearly between the samples on either side, and holds arrays of ints. So
 // faces need a sample only where they change, but float attributes that change at all are sampled at every
 // frame.
+//
+// Where the mesh changes, vertex i before and vertex i after are different points of the cloth, and a mean of
+// both is no cloth. Readers hold the earlier array if the lengths differ, but interpolate by index if they
+// agree. So a held sample, a copy of the frame before, stands just before each change:
+//
+//     points   0: A,  1: A',  1.999999: A',  2: B       held from 1 to 2 as the faces are
 #include "app/export/export_usd.h"
 
 #include <fmt/format.h>
@@ -25,8 +31,11 @@ namespace {
 struct Changes {
     std::vector<std::size_t>
         face_counts;  ///< frames whose face count differs from the frame before; 0 is always there
-    std::vector<std::size_t> faces;   ///< frames whose faces differ from the frame before; 0 is always there
-    bool is_material_moving = false;  ///< whether material coordinates ever change
+    std::vector<std::size_t> faces;    ///< frames whose faces differ from the frame before; 0 is always there
+    std::vector<std::size_t> creases;  ///< frames whose EOL edges differ from the frame before; 0 is there
+    std::vector<std::size_t> meshes;   ///< frames whose vertices or faces are others than in the frame before
+    bool has_eol_edges = false;        ///< whether any frame has them
+    bool is_material_moving = false;   ///< whether material coordinates ever change
 };
 
 Changes find_changes(const FrameSource& frames)
@@ -37,7 +46,11 @@ Changes find_changes(const FrameSource& frames)
         Frame frame = frames.read(i);
         if (i == 0 || frame.faces.size() != previous.faces.size()) changes.face_counts.push_back(i);
         if (i == 0 || frame.faces != previous.faces) changes.faces.push_back(i);
+        if (i == 0 || frame.eol_edges != previous.eol_edges) changes.creases.push_back(i);
+        if (i > 0 && (frame.faces != previous.faces || frame.ids != previous.ids))
+            changes.meshes.push_back(i);
         if (i > 0 && frame.material != previous.material) changes.is_material_moving = true;
+        changes.has_eol_edges = changes.has_eol_edges || !frame.eol_edges.empty();
         previous = std::move(frame);
     }
     return changes;
@@ -124,13 +137,38 @@ void put_extent(fmt::memory_buffer& out, const Frame& frame)
     put_array(out, std::array{least, greatest});
 }
 
+// Each EOL edge is a crease of its own. Sharpness 10 is infinite in USD.
+constexpr int kInfiniteSharpness = 10;
+
+void put_creases(fmt::memory_buffer& out, const Frame& frame)
+{
+    std::vector<int> indices;
+    for (const auto& edge : frame.eol_edges) indices.insert(indices.end(), edge.begin(), edge.end());
+    put_array(out, indices);
+}
+
+void put_crease_lengths(fmt::memory_buffer& out, const Frame& frame)
+{
+    put_array(out, std::vector<int>(frame.eol_edges.size(), 2));
+}
+
+void put_crease_sharpnesses(fmt::memory_buffer& out, const Frame& frame)
+{
+    put_array(out, std::vector<int>(frame.eol_edges.size(), kInfiniteSharpness));
+}
+
+/// A time code and the frame that is written there.
+struct Sample {
+    std::size_t frame;
+    bool is_held = false;  ///< just before frame + 1
+};
+
 using PutSample = std::function<void(fmt::memory_buffer&, const Frame&)>;
 
-/// One attribute of the mesh: `declaration` is its type and name, `samples` the frames at which it is
-/// written.
+/// One attribute of the mesh: `declaration` is its type and name, `samples` where it is written.
 struct Attribute {
     std::string declaration;
-    std::vector<std::size_t> samples;
+    std::vector<Sample> samples;
     PutSample put;
     std::string metadata = "";
 };
@@ -144,31 +182,49 @@ void write_attribute(AtomicFile& file, const FrameSource& frames, const Attribut
     if (!attribute.metadata.empty())
         file.write(declaration + " (\n        " + attribute.metadata + "\n    )\n");
     file.write(declaration + (is_constant ? " = " : ".timeSamples = {\n"));
-    for (const std::size_t i : attribute.samples) {
+    for (const Sample& sample : attribute.samples) {
         fmt::memory_buffer text;
-        if (!is_constant) fmt::format_to(std::back_inserter(text), "        {}: ", i);
-        attribute.put(text, frames.read(i));
+        // A millionth of a frame survives when an application shifts or scales the time codes.
+        if (!is_constant)
+            fmt::format_to(std::back_inserter(text), "        {}{}: ", sample.frame,
+                           sample.is_held ? ".999999" : "");
+        attribute.put(text, frames.read(sample.frame));
         file.write({text.data(), text.size()});
         file.write(is_constant ? "\n" : ",\n");
     }
     if (!is_constant) file.write("    }\n");
 }
 
-std::vector<std::size_t> all_frames(std::size_t count)
+/// Every frame, with a held sample before each frame whose mesh is another one.
+std::vector<Sample> all_frames(std::size_t count, const std::vector<std::size_t>& mesh_changes)
 {
-    std::vector<std::size_t> samples(count);
-    for (std::size_t i = 0; i < count; ++i) samples[i] = i;
+    std::vector<Sample> samples;
+    auto change = mesh_changes.begin();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (change != mesh_changes.end() && *change == i) {
+            samples.push_back({i - 1, true});
+            ++change;
+        }
+        samples.push_back({i});
+    }
+    return samples;
+}
+
+std::vector<Sample> samples_at(const std::vector<std::size_t>& frames)
+{
+    std::vector<Sample> samples;
+    for (const std::size_t i : frames) samples.push_back({i});
     return samples;
 }
 
 std::vector<Attribute> attributes(std::size_t frame_count, const Changes& changes)
 {
-    const std::vector<std::size_t> every = all_frames(frame_count);
-    const std::vector<std::size_t> first(every.begin(),
-                                         every.begin() + std::min<std::ptrdiff_t>(1, std::ssize(every)));
-    return {
-        {"int[] faceVertexCounts", changes.face_counts, put_face_counts},
-        {"int[] faceVertexIndices", changes.faces, put_faces},
+    const std::vector<Sample> every = all_frames(frame_count, changes.meshes);
+    const std::vector<Sample> first(every.begin(),
+                                    every.begin() + std::min<std::ptrdiff_t>(1, std::ssize(every)));
+    std::vector<Attribute> list = {
+        {"int[] faceVertexCounts", samples_at(changes.face_counts), put_face_counts},
+        {"int[] faceVertexIndices", samples_at(changes.faces), put_faces},
         {"point3f[] points", every, [](auto& out, const Frame& frame) { put_array(out, frame.world); }},
         {"vector3f[] velocities", every,
          [](auto& out, const Frame& frame) { put_array(out, frame.vertex_velocity); }},
@@ -176,6 +232,11 @@ std::vector<Attribute> attributes(std::size_t frame_count, const Changes& change
         {"texCoord2f[] primvars:st", changes.is_material_moving ? every : first,
          [](auto& out, const Frame& frame) { put_array(out, frame.material); }, "interpolation = \"vertex\""},
     };
+    if (!changes.has_eol_edges) return list;
+    list.push_back({"int[] creaseIndices", samples_at(changes.creases), put_creases});
+    list.push_back({"int[] creaseLengths", samples_at(changes.creases), put_crease_lengths});
+    list.push_back({"float[] creaseSharpnesses", samples_at(changes.creases), put_crease_sharpnesses});
+    return list;
 }
 
 std::string stage_header(std::size_t frame_count, const UsdOptions& options)
@@ -184,7 +245,7 @@ std::string stage_header(std::size_t frame_count, const UsdOptions& options)
         "#usda 1.0\n"
         "(\n"
         "    doc = {}\n"
-        "    defaultPrim = \"cloth\"\n"
+        "    defaultPrim = \"arris\"\n"
         "    startTimeCode = 0\n"
         "    endTimeCode = {}\n"
         "    timeCodesPerSecond = {}\n"
@@ -192,6 +253,8 @@ std::string stage_header(std::size_t frame_count, const UsdOptions& options)
         "    metersPerUnit = 1\n"
         "    upAxis = \"Z\"\n"
         ")\n\n"
+        "def Xform \"arris\"\n"
+        "{{\n"
         "def Mesh \"cloth\"\n"
         "{{\n"
         "    uniform token subdivisionScheme = \"none\"\n"
@@ -315,8 +378,10 @@ void write_usd(const std::string& path, const FrameSource& frames, const UsdOpti
     for (const Attribute& attribute : attributes(frames.count, changes))
         write_attribute(file, frames, attribute);
     file.write("}\n");
+    if (!obstacles.empty()) file.write("\ndef Scope \"obstacles\"\n{\n");
     for (const ObstacleRecord& obstacle : obstacles)
         write_obstacle(file, obstacle, frames.count, options.frames_per_second);
+    file.write(obstacles.empty() ? "}\n" : "}\n}\n");
     file.commit();
 }
 

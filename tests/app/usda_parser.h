@@ -42,26 +42,31 @@ struct UsdaPrim {
     std::vector<UsdaPrim> children;
 };
 
-/// What a text stage says, its first prim's attributes at hand, read by the grammar of the format and not by
-/// that of our writer: white space, order and trailing commas are free. Throws std::runtime_error with the
-/// place of an error.
+/// What a text stage says, the attributes of its root's first child at hand, read by the grammar of the
+/// format and not by that of our writer: white space, order and trailing commas are free. Throws
+/// std::runtime_error with the place of an error.
 class UsdaParser {
   public:
     std::map<std::string, UsdaValue> stage;
+    std::string root;  ///< name of the first prim, which has all others below it
     std::string prim_type, prim_name;
     std::map<std::string, UsdaAttribute> attributes;
-    std::vector<UsdaPrim> others;  ///< prims after the first
+    std::vector<UsdaPrim> others;  ///< the root's children after the first
 
     explicit UsdaParser(std::string text) : text_(std::move(text))
     {
         if (text_.rfind("#usda 1.0\n", 0) != 0) fail("no #usda header");
         at_ = 10;
         if (skips("(")) stage = parse_metadata();
-        const UsdaPrim first = parse_prim();
-        prim_type = first.type;
-        prim_name = first.name;
-        attributes = first.attributes;
-        for (skip_space(); at_ != text_.size(); skip_space()) others.push_back(parse_prim());
+        UsdaPrim top = parse_prim();
+        skip_space();
+        if (at_ != text_.size()) fail("a second root");
+        if (top.children.empty()) fail("an empty root");
+        root = top.name;
+        prim_type = top.children[0].type;
+        prim_name = top.children[0].name;
+        attributes = top.children[0].attributes;
+        others.assign(top.children.begin() + 1, top.children.end());
     }
 
   private:

@@ -68,11 +68,21 @@ TEST(ExportObj, CountsVerticesFromOne)
     EXPECT_THAT(lines_of(text, "l"), ElementsAre(ElementsAre("2", "3")));
 }
 
+// Readers make lines of an object that has both faces and lines.
+TEST(ExportObj, PutsEolEdgesIntoAnObjectOfTheirOwn)
+{
+    const std::string text = export_text(make_example_frame());
+    EXPECT_LT(text.find("\no cloth\n"), text.find("\nf "));
+    EXPECT_LT(text.rfind("\nf "), text.find("\no cloth_eol\n"));
+    EXPECT_LT(text.find("\no cloth_eol\n"), text.find("\nl "));
+}
+
 TEST(ExportObj, HasNoLinesWithoutEolEdges)
 {
     Frame frame = make_example_frame();
     frame.eol_edges.clear();
     EXPECT_TRUE(lines_of(export_text(frame), "l").empty());
+    EXPECT_EQ(lines_of(export_text(frame), "o").size(), 1U);
     EXPECT_TRUE(lines_of(export_text(Frame{}), "v").empty());
 }
 

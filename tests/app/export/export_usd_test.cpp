@@ -73,7 +73,8 @@ TEST(ExportUsd, DescribesTheStage)
         export_text({make_moved_frame(0), make_moved_frame(1), make_moved_frame(2)}, {"Tablecloth", 29.97});
     const UsdaParser usd(text);
     EXPECT_EQ(usd.stage.at("doc").text, "Tablecloth");
-    EXPECT_EQ(usd.stage.at("defaultPrim").text, "cloth");
+    EXPECT_EQ(usd.stage.at("defaultPrim").text, usd.root);
+    EXPECT_EQ(usd.root, "arris");
     EXPECT_EQ(usd.stage.at("upAxis").text, "Z");
     EXPECT_EQ(usd.stage.at("metersPerUnit").number, 1.0);
     EXPECT_EQ(usd.stage.at("startTimeCode").number, 0.0);
@@ -131,6 +132,41 @@ TEST(ExportUsd, SamplesFacesOnlyWhereTheyChange)
     EXPECT_EQ(usd.attributes.at("faceVertexIndices").samples.at(2).numbers(),
               (std::vector<double>{0, 1, 3, 0, 3, 2}));
     EXPECT_EQ(usd.attributes.at("faceVertexCounts").samples.at(4).numbers(), (std::vector<double>{3}));
+}
+
+// A reader interpolates arrays of one length by index, also where the vertices are others.
+TEST(ExportUsd, HoldsTheFrameBeforeWhereTheMeshChanges)
+{
+    Frame flipped = make_moved_frame(2);
+    flipped.faces = {{0, 1, 3}, {0, 3, 2}};
+    Frame renamed = flipped;
+    renamed.ids = {0, 7, 13, 12};
+    renamed.material[2] = {0.4, 0.4};
+    const std::vector<Frame> frames = {make_moved_frame(0), make_moved_frame(1), flipped, renamed, renamed};
+    const std::string text = export_text(frames);
+    const UsdaParser usd(text);
+    for (const char* name : {"points", "velocities", "extent", "primvars:st"}) {
+        const auto& samples = usd.attributes.at(name).samples;
+        EXPECT_THAT(times(usd.attributes.at(name)), ElementsAre(0, 1, 1.999999, 2, 2.999999, 3, 4)) << name;
+        EXPECT_EQ(samples.at(1.999999).numbers(), samples.at(1).numbers()) << name;
+        EXPECT_EQ(samples.at(2.999999).numbers(), samples.at(2).numbers()) << name;
+    }
+}
+
+TEST(ExportUsd, WritesEolEdgesAsCreases)
+{
+    std::vector<Frame> frames(4, make_example_frame());
+    frames[1].eol_edges.clear();
+    frames[3].eol_edges = {{1, 2}, {2, 3}};
+    const UsdaParser usd(export_text(frames));
+    for (const char* name : {"creaseIndices", "creaseLengths", "creaseSharpnesses"})
+        EXPECT_THAT(times(usd.attributes.at(name)), ElementsAre(0, 1, 2, 3)) << name;
+    EXPECT_THAT(usd.attributes.at("creaseIndices").samples.at(3).numbers(), ElementsAre(1, 2, 2, 3));
+    EXPECT_THAT(usd.attributes.at("creaseLengths").samples.at(3).numbers(), ElementsAre(2, 2));
+    EXPECT_THAT(usd.attributes.at("creaseSharpnesses").samples.at(3).numbers(), ElementsAre(10, 10));
+    EXPECT_TRUE(usd.attributes.at("creaseIndices").samples.at(1).items.empty());
+    for (Frame& frame : frames) frame.eol_edges.clear();
+    EXPECT_EQ(UsdaParser(export_text(frames)).attributes.count("creaseIndices"), 0U);
 }
 
 // Between two samples USD interpolates, so a late change must not leak into the frames before it.
@@ -236,9 +272,12 @@ TEST(ExportUsd, PlacesObstaclesByATransformThatIsSampledWhereTheyMove)
     write_usd(dir / "cloth.usda", source_of(frames), {"A title", 24.0}, {table, rope, nails});
     const UsdaParser usd(read_bytes(dir / "cloth.usda"));
     EXPECT_EQ(usd.prim_name, "cloth");
-    ASSERT_EQ(usd.others.size(), 3U);
+    ASSERT_EQ(usd.others.size(), 1U);
+    EXPECT_EQ(usd.others[0].name, "obstacles");
+    const std::vector<UsdaPrim>& obstacles = usd.others[0].children;
+    ASSERT_EQ(obstacles.size(), 3U);
 
-    const UsdaPrim& first = usd.others[0];
+    const UsdaPrim& first = obstacles[0];
     EXPECT_EQ(first.type + " " + first.name, "Xform table");
     EXPECT_EQ(first.attributes.at("xformOpOrder").value.at(0).items.at(0).text, "xformOp:transform");
     const UsdaAttribute& placement = first.attributes.at("xformOp:transform");
@@ -256,7 +295,7 @@ TEST(ExportUsd, PlacesObstaclesByATransformThatIsSampledWhereTheyMove)
     EXPECT_EQ(surface.attributes.at("extent").value.at(0).numbers(),
               (std::vector<double>{-0.5, -1, -0.25, 0.5, 1, 0.25}));
 
-    const UsdaPrim& second = usd.others[1];
+    const UsdaPrim& second = obstacles[1];
     const UsdaAttribute& moving = second.attributes.at("xformOp:transform");
     EXPECT_THAT(times(moving), ElementsAre(0, 1, 2));
     EXPECT_EQ(moving.samples.at(2).numbers().at(12), 2.0);
@@ -268,7 +307,7 @@ TEST(ExportUsd, PlacesObstaclesByATransformThatIsSampledWhereTheyMove)
               (std::vector<double>{0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0}));
     EXPECT_EQ(second.children[0].attributes.at("type").value.at(0).text, "linear");
 
-    const UsdaPrim& third = usd.others[2];
+    const UsdaPrim& third = obstacles[2];
     ASSERT_EQ(third.children.size(), 1U);
     EXPECT_EQ(third.children[0].type, "Points");
     EXPECT_EQ(third.children[0].attributes.at("points").value.at(0).numbers(),
