@@ -9,6 +9,7 @@
 
 #include "app/export/export_obj.h"
 #include "app/export/export_usd.h"
+#include "app/export/export_vtk.h"
 #include "app/export/viewer_html.h"
 #include "app/files/frame_files.h"
 #include "app/files/frame_source.h"
@@ -45,6 +46,18 @@ void export_usd(const Source& run)
               run.obstacles);
 }
 
+void export_vtk(const Source& run)
+{
+    const auto path = [&](std::size_t i, const std::string& name) {
+        return frame_file(run.run_dir, static_cast<std::int64_t>(i), "vtp", name);
+    };
+    for (std::size_t i = 0; i < run.frames.count; ++i) write_vtp(path(i, "cloth"), run.frames.read(i));
+    for (const ObstacleRecord& obstacle : run.obstacles)
+        for (std::size_t i = 0; i < count_obstacle_frames(obstacle, run.frames.count); ++i)
+            write_vtp(path(i, obstacle.name), obstacle, obstacle.at(run.time(i)));
+    write_pvd(run.run_dir + "/cloth.pvd", run.obstacles, run.frames.count, run.options.frames_per_second);
+}
+
 void export_viewer(const Source& run)
 {
     ViewerOptions viewer;
@@ -64,7 +77,7 @@ constexpr Format kFormats[] = {
     {"obj", export_obj, "frames/cloth_*.obj"},
     {"usd", export_usd, "cloth.usda"},
     {"viewer", export_viewer, "viewer.html"},
-    {"vtk", nullptr, ""},
+    {"vtk", export_vtk, "cloth.pvd"},
     {"gltf", nullptr, ""},
     {"pc2", nullptr, ""},
 };

@@ -18,7 +18,7 @@ std::string exported_path(const std::string& run_dir, const std::string& format)
 /// Throws InputError naming the format and the allowed ones unless export_frames supports all of them.
 void require_known_formats(const std::vector<std::string>& formats);
 
-/// Makes the formats "obj", "usd", "viewer" from the frames in run_dir/frames and the obstacles in
+/// Makes the formats "obj", "usd", "viewer", "vtk" from the frames in run_dir/frames and the obstacles in
 /// run_dir/obstacles; each file is written atomically. Throws InputError for an unknown format, a run without
 /// frames or an invalid frame file, std::system_error if writing fails.
 void export_frames(const std::string& run_dir, const std::vector<std::string>& formats,

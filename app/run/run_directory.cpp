@@ -31,8 +31,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Files of a run besides the folder of frames.
-constexpr std::array kRunFiles = {"steps.csv",   "probes.csv", "report.json", "report.html",
-                                  "viewer.html", "cloth.usda", "checkpoint",  "obstacles"};
+constexpr std::array kRunFiles = {"steps.csv",  "probes.csv", "report.json", "report.html", "viewer.html",
+                                  "cloth.usda", "cloth.pvd",  "checkpoint",  "obstacles"};
 
 std::vector<std::string> probe_names(const RunConfig& config)
 {
@@ -60,8 +60,8 @@ std::optional<FrameName> parse_frame_name(std::string_view name)
     const char* end = name.data() + name.size();
     const auto [rest, error] = std::from_chars(name.data() + digits, end, index);
     const std::string_view extension(rest, static_cast<std::size_t>(end - rest));
-    const bool is_frame =
-        extension == ".ply" || extension == ".obj" || extension == ".ply.tmp" || extension == ".obj.tmp";
+    const bool is_frame = extension == ".ply" || extension == ".obj" || extension == ".vtp" ||
+                          extension == ".ply.tmp" || extension == ".obj.tmp" || extension == ".vtp.tmp";
     if (digits == 0 || error != std::errc() || !is_frame) return std::nullopt;
     return FrameName{name.substr(0, digits - 1), index};
 }

@@ -45,11 +45,12 @@ TEST(ExportFrames, MakesEveryFormatFromTheRunsReport)
     const ExportOptions options = read_export_options(dir.path());
     EXPECT_EQ(options.title, "T \"q\" </script>");
     EXPECT_EQ(options.frames_per_second, 12.5);
-    export_frames(dir.path(), {"obj", "usd", "viewer"}, options);
-    for (const char* file : {"frames/cloth_00000.obj", "frames/cloth_00002.obj", "cloth.usda", "viewer.html"})
+    export_frames(dir.path(), {"obj", "usd", "viewer", "vtk"}, options);
+    for (const char* file : {"frames/cloth_00000.obj", "frames/cloth_00002.obj", "cloth.usda", "viewer.html",
+                             "frames/cloth_00002.vtp", "cloth.pvd"})
         EXPECT_TRUE(std::filesystem::exists(dir / file)) << file;
     EXPECT_THAT(read_bytes(dir / "cloth.usda"), HasSubstr("timeCodesPerSecond = 12.5\n"));
-    EXPECT_EQ(dir.entry_count(), 1U + 3U + 3U + 3U);
+    EXPECT_EQ(dir.entry_count(), 1U + 3U + 3U + 3U + 3U + 1U);
 }
 
 TEST(ExportFrames, RefusesUnknownFormatsBeforeItWritesAny)
@@ -59,9 +60,9 @@ TEST(ExportFrames, RefusesUnknownFormatsBeforeItWritesAny)
     const auto error_with = [&](const char* format) {
         return error_of([&] { export_frames(dir.path(), {"obj", format}, {}); });
     };
-    EXPECT_THAT(error_with("fbx"), AllOf(HasSubstr("\"fbx\""), HasSubstr("obj, usd, viewer")));
+    EXPECT_THAT(error_with("fbx"), AllOf(HasSubstr("\"fbx\""), HasSubstr("obj, usd, viewer, vtk")));
     EXPECT_THAT(error_with(""), HasSubstr("\"\""));
-    for (const char* planned : {"vtk", "gltf", "pc2"})
+    for (const char* planned : {"gltf", "pc2"})
         EXPECT_THAT(error_with(planned), AllOf(HasSubstr(planned), HasSubstr("not built yet")));
     EXPECT_FALSE(std::filesystem::exists(dir / "frames/cloth_00000.obj"));
     require_known_formats({"viewer", "usd", "obj", "obj"});

@@ -246,7 +246,8 @@ const std::vector<WrongScene> kWrongScenes = {
     {"TextForChoices",
      kBase + "[output]\nformats = \"obj\"\n",
      {},
-     "s.toml:6: output.formats = \"obj\": is not an array; allowed: any of \"obj\", \"usd\", \"viewer\""},
+     "s.toml:6: output.formats = \"obj\": is not an array; allowed: any of \"obj\", \"usd\", \"viewer\", "
+     "\"vtk\""},
     {"ZeroDuration",
      "duration = 0\n" + kCloth,
      {},
@@ -395,7 +396,7 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[output]\nformats = [\"mp4\"]\n",
      {},
      "s.toml:6: output.formats = [\"mp4\"]: \"mp4\" is not one of the choices; allowed: any of \"obj\", "
-     "\"usd\", \"viewer\""},
+     "\"usd\", \"viewer\", \"vtk\""},
     {"BadName",
      kBase + "[[probe]]\nname = \"a b\"\nmaterial = [0, 0]\n",
      {},
@@ -750,21 +751,16 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[solver]\nkernel = \"fast\"\n",
      {},
      "s.toml:6: solver.kernel = \"fast\": \"fast\" is not built yet in this version; allowed: \"exact\""},
-    {"Vtk",
-     kBase + "[output]\nformats = [\"obj\", \"vtk\"]\n",
-     {},
-     "s.toml:6: output.formats = [\"obj\", \"vtk\"]: \"vtk\" is not built yet in this version; allowed: any "
-     "of \"obj\", \"usd\", \"viewer\""},
     {"Gltf",
      kBase + "[output]\nformats = [\"gltf\"]\n",
      {},
      "s.toml:6: output.formats = [\"gltf\"]: \"gltf\" is not built yet in this version; allowed: any of "
-     "\"obj\", \"usd\", \"viewer\""},
+     "\"obj\", \"usd\", \"viewer\", \"vtk\""},
     {"Pc2",
      kBase + "[output]\nformats = [\"pc2\"]\n",
      {},
      "s.toml:6: output.formats = [\"pc2\"]: \"pc2\" is not built yet in this version; allowed: any of "
-     "\"obj\", \"usd\", \"viewer\""},
+     "\"obj\", \"usd\", \"viewer\", \"vtk\""},
     {"PlyCloth",
      "duration = 1\n[cloth]\nfile = \"cloth.ply\"\n",
      {},

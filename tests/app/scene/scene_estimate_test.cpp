@@ -115,7 +115,7 @@ TEST(SceneEstimate, CountsEveryFormatOnDisk)
     estimate_bytes({}, estimate);
     const double frames_alone = estimate.disk_bytes;
     EXPECT_GE(frames_alone, 10.0 * (1000.0 * 94.0 + 2000.0 * 37.0));
-    for (const char* format : {"obj", "usd", "viewer"}) {
+    for (const char* format : {"obj", "usd", "viewer", "vtk"}) {
         estimate_bytes({format}, estimate);
         EXPECT_GT(estimate.disk_bytes, frames_alone) << format;
     }
