@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compares USD and VTK exports of a run, read by OpenUSD and VTK, with the run's PLY frames.
+"""Compares USD, VTK and OBJ exports of a run, read by OpenUSD, VTK and three.js, with the run's PLY frames.
 
 usage: compare.py RUN_DIR FRAMES_PER_SECOND
 """
@@ -47,14 +47,15 @@ def is_same_mesh(a, b):
 def read_usd(stage, times):
     with tempfile.NamedTemporaryFile(suffix=".json") as output:
         done = subprocess.run(
-            ["node", "--require", str(HERE / "browser_shim.cjs"), str(HERE / "read_usd.cjs"), str(stage), *map(str, times)],
+            ["node", "--require", str(HERE / "browser_shim.cjs"), str(HERE / "read_usd.cjs"), str(stage),
+             *map(str, times)],
             env={**os.environ, "ARRIS_OUTPUT": output.name}, capture_output=True, text=True, timeout=120, check=False)
         require(done.returncode == 0, f"OpenUSD did not read {stage}:\n{done.stderr[-2000:]}")
         return json.loads(Path(output.name).read_text())
 
 
 def check_usd(run_dir, frames):
-    """At frames the cloth is the PLY's. Where the mesh changes but not the number of vertices, it is held until then."""
+    """The cloth is the PLY's. Where the mesh changes at a constant number of vertices, it is held until then."""
     changes = [i for i in range(1, len(frames))
                if len(frames[i][0]) == len(frames[i - 1][0]) and not is_same_mesh(frames[i], frames[i - 1])]
     require(changes, "no mesh of this run changes at a constant number of vertices: the test shows nothing")
@@ -122,10 +123,33 @@ def check_vtk(run_dir, frames, frames_per_second):
     return "VTK at 3 frames"
 
 
+def check_obj(run_dir, frames):
+    chosen = (0, len(frames) // 2, len(frames) - 1)
+    files = [str(run_dir / f"frames/cloth_{i:05d}.obj") for i in chosen]
+    done = subprocess.run(["node", str(HERE / "read_obj.mjs"), *files], capture_output=True, text=True, timeout=60,
+                          check=False)
+    require(done.returncode == 0, f"three.js did not read {files}:\n{done.stderr[-2000:]}")
+    for i, objects in zip(chosen, json.loads(done.stdout)):
+        vertices, faces, edges = frames[i]
+        wanted = {("cloth", "Mesh"): faces["vertices"], ("cloth_eol", "LineSegments"): edges}
+        require({(o["name"], o["type"]) for o in objects} == {key for key, cells in wanted.items() if len(cells)},
+                f"OBJ in frame {i}: objects {[(o['name'], o['type']) for o in objects]}")
+        for o in objects:
+            cells = wanted[o["name"], o["type"]].ravel()
+            corners = vertices["x"][cells].astype("f4")
+            require(np.array_equal(np.array(o["corners"], "f4").reshape(-1, 3), corners),
+                    f"OBJ in frame {i}: other corners of {o['name']}")
+            if o["type"] == "Mesh":
+                uv = vertices["u"][cells].astype("f4")
+                require(np.array_equal(np.array(o["uv"], "f4").reshape(-1, 2), uv), f"OBJ in frame {i}: other vt")
+    return "OBJ at 3 frames"
+
+
 def main():
     run_dir = Path(sys.argv[1])
     frames = [read_ply(path) for path in sorted(run_dir.glob("frames/cloth_*.ply"))]
-    done = [check_usd(run_dir, frames), check_vtk(run_dir, frames, float(sys.argv[2]))]
+    done = [check_usd(run_dir, frames), check_vtk(run_dir, frames, float(sys.argv[2])),
+            check_obj(run_dir, frames)]
     print(f"formats: {'; '.join(done)}: as in the PLY frames")
 
 
