@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/check.h"
+#include "app/command_pages.h"
 #include "app/export/export_frames.h"
 #include "app/run/run.h"
 #include "app/run/run_export_options.h"
@@ -16,6 +17,7 @@
 #include "app/study/study.h"
 #include "app/text/printable.h"
 #include "app/text/version.h"
+#include "app/view.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -43,9 +45,9 @@ int tell_parse_error(const CLI::App& app, const CLI::ParseError& error)
     if (is_missing && app.get_subcommands().empty()) {
         const std::vector<std::string> words = app.remaining();
         line = words.empty() ? "a command is missing" : words.front() + ": is not a command";
-        line += "; allowed: run, resume, check, study, export, docs";
+        line += "; allowed: " + list_commands(app);
     }
-    if (is_missing && app.got_subcommand("docs")) line += "; allowed: scene, schema";
+    if (is_missing && app.got_subcommand("docs")) line += "; allowed: scene, schema, man, bash";
     for (char& c : line)
         if (c == '\n') c = ' ';
     fmt::print(stderr, "arris: {} (see arris --help)\n", printable(line));
@@ -62,11 +64,24 @@ struct ExportRequest {
     std::vector<std::string> formats;
 };
 
+constexpr const char* kExitStatus =
+    "Exit status: 0 done; 1 the run stopped before its end and says why; 2 invalid input; 130 interrupted, "
+    "continue with arris resume.";
+
+/// A command whose --help and entry in the manual end with an example.
+CLI::App* add_command(CLI::App& app, const char* name, const char* summary, const char* example)
+{
+    CLI::App* command = app.add_subcommand(name, summary);
+    command->footer(std::string("Example:\n  ") + example);
+    return command;
+}
+
 // Each adds a command, whose arguments are parsed into the request, and returns it.
 
 CLI::App* add_run(CLI::App& app, RunRequest& request)
 {
-    CLI::App* command = app.add_subcommand("run", "Simulate a scene");
+    CLI::App* command = add_command(app, "run", "Simulate a scene",
+                                    "arris run data/scenes/slipping.toml -o out/fine --set time.step=0.002");
     command->add_option("scene", request.scene, "Scene file (TOML)")->required();
     command->add_option("-o,--output", request.directory, "Folder for the results; default out/<scene>");
     command->add_flag("--overwrite", request.is_overwriting, "Replace the run in the folder");
@@ -81,7 +96,8 @@ CLI::App* add_run(CLI::App& app, RunRequest& request)
 
 CLI::App* add_resume(CLI::App& app, ResumeRequest& request)
 {
-    CLI::App* command = app.add_subcommand("resume", "Continue a run from its last checkpoint");
+    CLI::App* command = add_command(app, "resume", "Continue a run from its last checkpoint",
+                                    "arris resume out/fine --until 3");
     command->add_option("dir", request.directory, "Folder of the run")->required();
     command->add_option_function<double>(
         "--until", [&request](double time) { request.until = time; },
@@ -95,7 +111,8 @@ CLI::App* add_resume(CLI::App& app, ResumeRequest& request)
 CLI::App* add_check(CLI::App& app, CheckRequest& request)
 {
     CLI::App* command =
-        app.add_subcommand("check", "Load a scene and print what would be simulated; write nothing");
+        add_command(app, "check", "Load a scene and print what would be simulated; write nothing",
+                    "arris check data/scenes/slipping.toml");
     command->add_option("scene", request.scene, "Scene file (TOML)")->required();
     command->add_option("--set", request.overrides, "As for run")
         ->allow_extra_args(false)
@@ -105,8 +122,8 @@ CLI::App* add_check(CLI::App& app, CheckRequest& request)
 
 CLI::App* add_study(CLI::App& app, StudyRequest& request)
 {
-    CLI::App* command =
-        app.add_subcommand("study", "Run a scene over a grid of settings: error against time");
+    CLI::App* command = add_command(app, "study", "Run a scene over a grid of settings: error against time",
+                                    "arris study data/studies/tablecloth.toml --quick");
     command->add_option("study", request.study, "Study file (TOML)")->required();
     command->add_option("-o,--output", request.directory, "Folder for the results; default out/<study>");
     command->add_option("--jobs", request.jobs, "Runs at a time, each with one thread; default: one a core")
@@ -127,7 +144,8 @@ CLI::App* add_study(CLI::App& app, StudyRequest& request)
 
 CLI::App* add_export(CLI::App& app, ExportRequest& request)
 {
-    CLI::App* command = app.add_subcommand("export", "Export a run's frames to other formats");
+    CLI::App* command = add_command(app, "export", "Export a run's frames to other formats",
+                                    "arris export out/fine --formats usd,obj");
     command->add_option("dir", request.directory, "Folder of the run")->required();
     command->add_option("--formats", request.formats, "obj,usd,viewer")
         ->required()
@@ -136,12 +154,24 @@ CLI::App* add_export(CLI::App& app, ExportRequest& request)
     return command;
 }
 
+CLI::App* add_view(CLI::App& app, std::string& directory)
+{
+    CLI::App* command =
+        add_command(app, "view", "Make a run's viewer.html if need be, and open it", "arris view out/fine");
+    command->add_option("dir", directory, "Folder of the run")->required();
+    return command;
+}
+
 void add_docs(CLI::App& app, std::string& topic)
 {
-    CLI::App* command = app.add_subcommand("docs", "Print the reference of scene keys");
-    command->add_option("topic", topic, "scene (Markdown) or schema (JSON schema for editors)")
+    CLI::App* command = add_command(app, "docs", "Print a reference or a completion script",
+                                    "arris docs bash > ~/.local/share/bash-completion/completions/arris");
+    command
+        ->add_option(
+            "topic", topic,
+            "scene (keys, Markdown), schema (JSON schema for editors), man (manual page), bash (completion)")
         ->required()
-        ->check(CLI::IsMember({"scene", "schema"}));
+        ->check(CLI::IsMember({"scene", "schema", "man", "bash"}));
 }
 
 void tell_warnings(const std::vector<std::string>& warnings)
@@ -172,6 +202,15 @@ int export_formats(const ExportRequest& request)
     return 0;
 }
 
+int print_docs(const CLI::App& app, const std::string& topic)
+{
+    fmt::print("{}", topic == "scene"    ? scene_markdown()
+                     : topic == "schema" ? scene_schema()
+                     : topic == "man"    ? man_page(app, kVersion)
+                                         : bash_completion(app));
+    return 0;
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv)
@@ -179,6 +218,7 @@ int run_command_line(int argc, char** argv)
     CLI::App app("Arris simulates cloth that slides over sharp edges without snagging.", "arris");
     app.set_version_flag("--version", std::string("arris ") + kVersion);
     app.require_subcommand(1);
+    app.footer(kExitStatus);
 
     RunRequest run_request;
     ResumeRequest resume_request;
@@ -186,12 +226,13 @@ int run_command_line(int argc, char** argv)
     CheckRequest check_request;
     StudyRequest study_request;
     ExportRequest export_request;
-    std::string topic;
+    std::string viewed, topic;
     const CLI::App* run_command = add_run(app, run_request);
     const CLI::App* resume_command = add_resume(app, resume_request);
     const CLI::App* check_command = add_check(app, check_request);
     const CLI::App* study_command = add_study(app, study_request);
     const CLI::App* export_command = add_export(app, export_request);
+    const CLI::App* view_command = add_view(app, viewed);
     add_docs(app, topic);
     try {
         app.parse(argc, argv);
@@ -204,8 +245,11 @@ int run_command_line(int argc, char** argv)
     if (*check_command) return check(check_request);
     if (*study_command) return run_study(study_request);
     if (*export_command) return export_formats(export_request);
-    fmt::print("{}", topic == "scene" ? scene_markdown() : scene_schema());
-    return 0;
+    if (*view_command) {
+        view(viewed);
+        return 0;
+    }
+    return print_docs(app, topic);
 }
 
 }  // namespace arris
