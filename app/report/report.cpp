@@ -149,6 +149,9 @@ nlohmann::ordered_json to_json(const RunReport& report)
 {
     nlohmann::ordered_json phases = nlohmann::ordered_json::object();
     for (const NamedSeconds& phase : list_phases(report.totals.phases)) phases[phase.name] = phase.seconds;
+    std::vector<std::string> effects;
+    for (const SceneEffect& effect : report.effects)
+        if (effect.is_on) effects.push_back(effect.name);
     const StepTotals& totals = report.totals;
     nlohmann::ordered_json json = {
         {"status", to_string(report.status)},
@@ -162,7 +165,7 @@ nlohmann::ordered_json to_json(const RunReport& report)
         {"crossings", totals.crossings},
         {"max_kkt_residual", totals.max_kkt_residual},
         {"halved_steps", totals.halved_steps},
-        {"effects", report.effects},
+        {"effects", effects},
         {"phases", phases},
         {"warnings", report.warnings},
         {"scene", report.scene},

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/scene/scene_effects.h"
 #include "solver/model/step_report.h"
 
 namespace arris {
@@ -61,8 +62,7 @@ struct RunReport {
     std::string message;  ///< why it stopped; empty if finished
     StepTotals totals;
     std::int64_t peak_memory_bytes = 0;
-    std::vector<std::string>
-        effects;  ///< a subset of: bending damping gravity wind pull pin obstacle eol remesh friction
+    std::vector<SceneEffect> effects;  ///< all; report.json names those that are on
     std::vector<std::string> warnings;
     nlohmann::ordered_json scene = nlohmann::ordered_json::object();  ///< with every default filled in
     std::string version;

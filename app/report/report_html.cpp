@@ -9,13 +9,18 @@
 #include <optional>
 #include <string_view>
 
+#include "app/export/viewer_block.h"
 #include "app/files/atomic_file.h"
+#include "app/files/frame_files.h"
 #include "app/report/page_template.h"
 #include "app/report/report_features.h"
 #include "app/report/report_plots.h"
+#include "app/report/scene_picture.h"
 #include "app/report/svg_plot.h"
+#include "app/report/verdict.h"
 #include "app/text/html_escape.h"
 #include "embedded/report_template.h"
+#include "geometry/input_error.h"
 
 namespace arris {
 namespace {
@@ -49,15 +54,47 @@ std::string status_words(RunStatus status)
     return words;
 }
 
-std::string status_html(const RunReport& report)
+std::string verdict_html(const RunReport& report)
 {
-    const char* tone = report.status == RunStatus::Finished      ? "good"
-                       : report.status == RunStatus::Interrupted ? "warn"
-                                                                 : "bad";
-    std::string html = fmt::format("<span class=\"status {}\">{}</span>", tone, status_words(report.status));
-    if (!report.message.empty())
-        html += " <span class=\"message\">" + escape_html(report.message) + "</span>";
-    return html;
+    const bool is_bad = has_passed_through(report.totals) ||
+                        (report.status != RunStatus::Finished && report.status != RunStatus::Interrupted);
+    const char* tone = is_bad ? "bad" : report.status == RunStatus::Finished ? "good" : "warn";
+    return fmt::format("<p class=\"verdict {}\">{}</p>\n<p class=\"why\">Status: {}</p>", tone,
+                       escape_html(verdict(report)), status_words(report.status));
+}
+
+/// The time (s) of the run's frame with this number.
+double frame_time(const RunReport& report, std::int64_t frame)
+{
+    const ordered_json::json_pointer key("/output/frames_per_second");
+    const bool is_known = report.scene.contains(key) && report.scene[key].is_number();
+    return is_known ? static_cast<double>(frame) / report.scene[key].get<double>() : 0.0;
+}
+
+/// A picture of the last frame, or the reason that there is none. Nothing for a run without frames.
+std::string picture_html(const std::string& run_dir, const RunReport& report)
+{
+    try {
+        const std::int64_t frames = count_frames(run_dir);
+        if (frames == 0) return "";
+        const double time = frame_time(report, frames - 1);
+        const std::string png =
+            draw_scene(read_frame(frame_file(run_dir, frames - 1, "ply")), read_obstacles(run_dir), time);
+        return fmt::format(
+            "<figure class=\"picture\"><img width=\"720\" height=\"450\" alt=\"The cloth and the obstacles "
+            "at "
+            "the last frame, seen obliquely from above\" src=\"data:image/png;base64,{}\">"
+            "<figcaption>The last frame, at {:.4g} s</figcaption></figure>\n",
+            base64(Bytes(png.begin(), png.end())), time);
+    } catch (const InputError& error) {  // a damaged file of the run must not cost the report
+        return "<p>There is no picture: " + escape_html(error.what()) + "</p>\n";
+    }
+}
+
+std::string viewer_html(const std::string& run_dir)
+{
+    if (!std::filesystem::exists(run_dir + "/viewer.html")) return "";
+    return "<p class=\"viewer\"><a href=\"viewer.html\">Play all frames in the viewer</a></p>\n";
 }
 
 /// A figure of the report: its name, its value, a short note, and a one-line explanation.
@@ -105,7 +142,10 @@ std::vector<Fact> quality_facts(const RunReport& report, std::optional<double> t
     const StepTotals& totals = report.totals;
     std::vector<Fact> facts;
     // Without an obstacle, penetration and crossings have no meaning.
-    if (std::find(report.effects.begin(), report.effects.end(), "obstacle") != report.effects.end()) {
+    const bool has_obstacles =
+        std::any_of(report.effects.begin(), report.effects.end(),
+                    [](const SceneEffect& effect) { return effect.is_on && effect.name == "obstacle"; });
+    if (has_obstacles) {
         facts.push_back({"Greatest penetration", fmt::format("{:.3g} m", totals.max_penetration), "",
                          "Largest depth of the cloth in an obstacle, measured at each frame; must be 0.",
                          totals.max_penetration > 0});
@@ -147,10 +187,14 @@ std::string features_html(const StepTotals& totals)
 
 std::string effects_html(const RunReport& report)
 {
-    if (report.effects.empty()) return "<p class=\"nothing\">none</p>";
-    std::string html = "<ul class=\"chips\">";
-    for (const std::string& effect : report.effects) html += "<li>" + escape_html(effect) + "</li>";
-    return html + "</ul>";
+    std::string html = "<table class=\"effects\"><tbody>\n";
+    for (const bool is_on : {true, false})
+        for (const SceneEffect& effect : report.effects)
+            if (effect.is_on == is_on)
+                html +=
+                    fmt::format("<tr class=\"{0}\"><th scope=\"row\">{1}</th><td>{0}</td><td>{2}</td></tr>\n",
+                                is_on ? "on" : "off", escape_html(effect.name), escape_html(effect.reason));
+    return report.effects.empty() ? "<p class=\"nothing\">none</p>" : html + "</tbody></table>";
 }
 
 std::string warnings_html(const RunReport& report)
@@ -249,7 +293,9 @@ void write_report_html(const std::string& run_dir, const RunReport& report)
     const std::optional<double> tolerance = tolerance_of(report);
     const std::string page = fill_template(
         embedded::report_template(), {{"title", escape_html(title_of(report))},
-                                      {"status", status_html(report)},
+                                      {"verdict", verdict_html(report)},
+                                      {"picture", picture_html(run_dir, report)},
+                                      {"viewer", viewer_html(run_dir)},
                                       {"facts", facts_html(report, tolerance)},
                                       {"effects", effects_html(report)},
                                       {"warnings", warnings_html(report)},

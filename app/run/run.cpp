@@ -195,8 +195,7 @@ RunReport make_report(const Run& run, const RunEnding& ending, const RunSummary&
     report.totals.wall_seconds += export_seconds;
     report.totals.cpu_seconds += process_cpu_seconds() - run.cpu_told;
     report.peak_memory_bytes = peak_memory_bytes();
-    for (const SceneEffect& effect : list_effects(run.config))
-        if (effect.is_on) report.effects.push_back(effect.name);
+    report.effects = list_effects(run.config);
     report.warnings = run.config.warnings;
     report.warnings.insert(report.warnings.end(), summary.warnings.begin(), summary.warnings.end());
     report.scene = run.config.as_run;

@@ -8,10 +8,12 @@
 #include <stdexcept>
 
 #include "app/files/csv_table.h"
+#include "app/files/frame_files.h"
 #include "app/report/report_features.h"
 #include "app/report/report_plots.h"
 #include "embedded/report_template.h"
 #include "geometry/input_error.h"
+#include "tests/app/example_frame.h"
 #include "tests/app/temporary_directory.h"
 
 namespace arris {
@@ -58,7 +60,7 @@ std::string html_of(const TemporaryDirectory& dir, RunReport report = {})
 /// Checks that elements are closed in the order they were opened, and returns the names of all.
 std::set<std::string> elements_of(const std::string& html)
 {
-    static const std::set<std::string> kVoid = {"meta", "path", "br"};
+    static const std::set<std::string> kVoid = {"meta", "path", "br", "img"};
     std::set<std::string> names;
     std::vector<std::string> open;
     for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at + 1)) {
@@ -107,14 +109,16 @@ TEST(ReportHtml, TakesEveryNameAndMessageForText)
     RunReport report;
     report.status = RunStatus::Infeasible;
     report.message = report.version = kEvil;
-    report.warnings = report.effects = {kEvil};
+    report.warnings = {kEvil};
+    report.effects = {{kEvil, true, kEvil}, {kEvil, false, kEvil}};
     report.scene = {{"title", kEvil}, {kEvil, kEvil}, {"obstacle", {{{"name", kEvil}}}}};
     const std::string html = html_of(dir, report);
     const std::set<std::string> elements = elements_of(html);
     EXPECT_FALSE(elements.contains("img"));
     EXPECT_FALSE(elements.contains("script"));
-    // Title twice, message, version, warning, effect; in the scene title, a key, its value, the name.
-    EXPECT_EQ(count(html, "&lt;/script&gt;&lt;img src=x onerror=alert(1)&gt;&quot;&#39;&amp;{{scene}}"), 10U);
+    // Title twice, message, version, warning, two effects with reasons; in the scene title, a key, its value,
+    // the name.
+    EXPECT_EQ(count(html, "&lt;/script&gt;&lt;img src=x onerror=alert(1)&gt;&quot;&#39;&amp;{{scene}}"), 13U);
 }
 
 TEST(ReportHtml, ShowsWhatTheReportSays)
@@ -133,6 +137,62 @@ TEST(ReportHtml, ShowsWhatTheReportSays)
          {"<h1>Tablecloth</h1>", "not converged", "step 20 did not converge", "4 threads", "512.0 MiB",
           "1 of them halved", "<dd>20<", "0.2 s", "cloth.size", "[1.0,2.5]", "obstacle.0.name"})
         EXPECT_THAT(html, HasSubstr(part));
+}
+
+TEST(ReportHtml, BeginsWithTheVerdictThePictureAndTheViewer)
+{
+    const TemporaryDirectory dir;
+    write_steps(dir, 20);
+    std::filesystem::create_directories(dir / "frames");
+    write_frame(frame_file(dir.path(), 0, "ply"), make_example_frame());
+    write_frame(frame_file(dir.path(), 1, "ply"), make_example_frame());
+    RunReport report;
+    report.scene = {{"output", {{"frames_per_second", 4.0}}}};
+    const std::string without = html_of(dir, report);
+    EXPECT_THAT(without, Not(HasSubstr("<a ")));
+    write_bytes(dir / "viewer.html", "");
+    const std::string html = html_of(dir, report);
+    EXPECT_NO_THROW(elements_of(html));
+    std::size_t last = 0;
+    for (const char* part : {"<h1>", "class=\"verdict good\">Finished.", "<img ", "The last frame, at 0.25 s",
+                             "<a href=\"viewer.html\">", "<h2>Effects", "<h2>Figures", "<h2>Over time"}) {
+        const std::size_t at = html.find(part);
+        ASSERT_NE(at, std::string::npos) << part;
+        EXPECT_GT(at, last) << part;
+        last = at;
+    }
+}
+
+TEST(ReportHtml, IsWrittenWithoutAPictureWhereAFrameIsDamaged)
+{
+    const TemporaryDirectory dir;
+    write_steps(dir, 20);
+    std::filesystem::create_directories(dir / "frames");
+    write_bytes(frame_file(dir.path(), 0, "ply"), "ply\n");
+    const std::string html = html_of(dir);
+    EXPECT_THAT(html, AllOf(HasSubstr("There is no picture: "), HasSubstr("cloth_00000.ply"),
+                            Not(HasSubstr("<img"))));
+}
+
+TEST(ReportHtml, IsBadInColourWhereSomethingPassedThrough)
+{
+    const TemporaryDirectory dir;
+    write_steps(dir, 3, [](StepRow& row) { row.crossings = row.step == 3; });
+    EXPECT_THAT(html_of(dir), HasSubstr("class=\"verdict bad\">Finished. Something passed"));
+}
+
+TEST(ReportHtml, TellsWhyEachEffectIsOnOrOff)
+{
+    const TemporaryDirectory dir;
+    write_steps(dir, 3);
+    RunReport report;
+    report.effects = {{"wind", false, "no [wind]"}, {"gravity", true, "[gravity] is given"}};
+    const std::string html = html_of(dir, report);
+    const std::size_t on = html.find("<th scope=\"row\">gravity</th><td>on</td><td>[gravity] is given</td>");
+    const std::size_t off = html.find("<th scope=\"row\">wind</th><td>off</td><td>no [wind]</td>");
+    ASSERT_NE(on, std::string::npos);
+    ASSERT_NE(off, std::string::npos);
+    EXPECT_LT(on, off);
 }
 
 TEST(ReportHtml, TellsTheShareOfEolVerticesAndWhyRowsAreRows)
@@ -175,7 +235,7 @@ TEST(ReportHtml, ExplainsEveryFigureItShows)
     for (const Plot& plot : plot_steps(dir / "steps.csv", 1e-9))
         EXPECT_GT(plot.note.size(), 10U) << plot.title;
     RunReport report;
-    report.effects = {"obstacle"};
+    report.effects = {{"obstacle", true, "1 [[obstacle]]: table"}};
     const std::string html = html_of(dir, report);
     EXPECT_EQ(count(html, "<div class=\"fact"), count(html, "<dd class=\"why\">"));
     EXPECT_EQ(count(html, "<dd class=\"why\"></dd>"), 0U);

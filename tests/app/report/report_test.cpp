@@ -146,7 +146,7 @@ TEST(Report, WritesEveryFieldOfTheContract)
     report.message = "why";
     report.totals = sum_steps(write_steps(dir, 4));
     report.peak_memory_bytes = 1LL << 40;
-    report.effects = {"gravity", "obstacle"};
+    report.effects = {{"gravity", true, ""}, {"wind", false, ""}, {"obstacle", true, ""}};
     report.warnings = {"a warning"};
     report.scene = {{"title", "T"}, {"time", {{"step", 0.1}}}};
     report.version = "0.1.0";
