@@ -35,6 +35,8 @@ std::string passing_words(const RunReport& report)
                            counted(totals.crossings, "time", "times"));
     if (totals.max_penetration > 0.0)
         return fmt::format("The cloth was inside an obstacle, {:.3g} m deep.", totals.max_penetration);
+    if (report.status == RunStatus::Penetration)
+        return "The step that would have passed through is not kept.";
     const bool has_obstacles = is_on("obstacle"), has_layers = is_on("self_contact");
     if (has_obstacles && has_layers) return "Nothing passed through anything.";
     if (has_obstacles) return "The cloth passed through no obstacle; whether through itself was not checked.";

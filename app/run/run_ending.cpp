@@ -24,10 +24,26 @@ std::string name_vertex(const State& state, std::int64_t id)
                        x.y(), x.z(), X.x(), X.y());
 }
 
+/// Says which pins press two layers of the cloth into each other.
+std::string explain_layers(const Infeasible& infeasible, const State& state, const std::string& place)
+{
+    std::string why = "layers, pins and obstacles leave it no room";
+    if (infeasible.layer_pin >= 0)
+        why = fmt::format(
+            "pin.{} and pin.{} press two layers into each other; change the motion of one of them",
+            infeasible.pin, infeasible.layer_pin);
+    else if (infeasible.pin >= 0)
+        why = fmt::format("pin.{} presses it into another layer; change its motion, or release it earlier",
+                          infeasible.pin);
+    return fmt::format("no velocity keeps {} out of the cloth itself {}: {}",
+                       name_vertex(state, infeasible.vertex), place, why);
+}
+
 /// Says which pin and obstacles a vertex cannot meet together.
 std::string explain_infeasible(const Infeasible& infeasible, const Scene& scene, const State& state,
                                const std::string& place)
 {
+    if (infeasible.is_with_itself) return explain_layers(infeasible, state, place);
     const auto name = [&](int obstacle) {
         return scene.obstacles[static_cast<std::size_t>(obstacle)].name();
     };
@@ -82,9 +98,8 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
             return {RunStatus::Infeasible, explain_infeasible(report.infeasible, scene, state, place)};
         case StepStatus::Penetration:
             return {RunStatus::Penetration,
-                    fmt::format(
-                        "the cloth cannot be kept out of an obstacle {}, even with 64 times smaller steps",
-                        place)};
+                    fmt::format("the cloth cannot be kept out of {} {}, even with 64 times smaller steps",
+                                scene.self_contact ? "an obstacle or itself" : "an obstacle", place)};
         default:
             if (!std::isfinite(report.kkt_residual) && report.factorisations > 1)
                 return {RunStatus::NotConverged,

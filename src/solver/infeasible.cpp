@@ -66,6 +66,33 @@ int find_opponent(const Workspace& work, int vertex, const Contact& unmet)
     return opponent;
 }
 
+/// Names a contact of the cloth with itself that the velocity solve could not meet; one with pins before
+/// others. Without such a contact nothing is named.
+Infeasible name_self_contact(const State& state, const Workspace& work)
+{
+    Infeasible named;
+    for (const SelfRow& row : work.self_rows) {
+        const std::vector<int>& rows = work.solution.infeasible_rows;
+        if (std::find(rows.begin(), rows.end(), row.row) == rows.end()) continue;
+        Infeasible found;
+        found.is_with_itself = true;
+        for (int i = 0; i < 4; ++i) {
+            if (row.contact.weights[i] == 0.0) continue;
+            const int vertex = row.contact.vertices[i], pin = find_pin(work, vertex);
+            const bool is_first = found.vertex < 0 || (found.pin < 0 && pin >= 0);
+            if (is_first) {
+                found.vertex = state.ids[vertex];
+                found.pin = pin;
+            } else if (pin >= 0 && pin != found.pin) {
+                found.layer_pin = pin;
+            }
+        }
+        const auto pins = [](const Infeasible& of) { return (of.pin >= 0) + (of.layer_pin >= 0); };
+        if (!named.is_with_itself || pins(found) > pins(named)) named = found;
+    }
+    return named;
+}
+
 }  // namespace
 
 Infeasible name_infeasible(const State& state, const Workspace& work,
@@ -74,7 +101,7 @@ Infeasible name_infeasible(const State& state, const Workspace& work,
     Infeasible named;
     const std::vector<const Contact*> unmet = list_unmet(work, overconstrained);
     const int vertex = overconstrained ? *overconstrained : find_vertex(work, unmet);
-    if (vertex < 0) return named;
+    if (vertex < 0) return name_self_contact(state, work);
     named.vertex = state.ids[vertex];
     named.pin = find_pin(work, vertex);
     for (const Contact* contact : unmet) {

@@ -35,6 +35,8 @@ struct Infeasible {
     std::int64_t vertex = -1;                 ///< id
     int pin = -1;                             ///< index in the scene of the pin that holds the vertex
     std::array<int, 2> obstacles = {-1, -1};  ///< indices in the scene; the second where no pin holds it
+    bool is_with_itself = false;              ///< cloth cannot be kept out of cloth
+    int layer_pin = -1;                       ///< index of the pin that holds the other layer
 };
 
 /// A number that is not finite, of a step with that status; -1 where a part is not known.

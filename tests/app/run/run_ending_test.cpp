@@ -76,6 +76,12 @@ const EndingCase kEndings[] = {
      box("slab", "[2, 2, 0.2]", "") +
          "[[obstacle]]\nname = \"spike\"\npoints = [[0.03, 0.02, 0.4]]\nmotion = { velocity = [0, 0, -1] }\n",
      "spike and slab in the step .*: these obstacles leave it no room"},
+    {"a pin drives cloth into a pinned part of it",
+     "[self_contact]\n" + pin("[[0, 0], [0.125, 0.5]]") +
+         pin("[[0.375, 0], [0.5, 0.5]]",
+             "keyframes = [{time = 0}, {time = 0.3, translate = [-0.3, 0, 0.1]}, "
+             "{time = 0.9, translate = [-0.3, 0, -0.2]}]"),
+     "the cloth itself in the step .*: pin.0 and pin.1 press two layers into each other.*"},
     {"plates that meet far from others",
      box("other", "[0.3, 0.3, 0.1]", "translate = [9, 0, 0]") +
          box("lid", "[0.3, 0.3, 0.1]", "translate = [0, 0, 0.3]\nmotion = { velocity = [0, 0, -1] }") +
