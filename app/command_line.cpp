@@ -62,6 +62,8 @@ struct CheckRequest {
 struct ExportRequest {
     std::string directory;
     std::vector<std::string> formats;
+    std::string topology = "simulated";
+    std::string grid;
 };
 
 constexpr const char* kExitStatus =
@@ -147,10 +149,18 @@ CLI::App* add_export(CLI::App& app, ExportRequest& request)
     CLI::App* command = add_command(app, "export", "Export a run's frames to other formats",
                                     "arris export out/fine --formats usd,obj");
     command->add_option("dir", request.directory, "Folder of the run")->required();
-    command->add_option("--formats", request.formats, "obj,usd,viewer")
+    command->add_option("--formats", request.formats, "obj,usd,viewer,vtk,pc2,mdd")
         ->required()
         ->delimiter(',')
         ->type_name("FORMAT,...");
+    command
+        ->add_option("--topology", request.topology,
+                     "simulated: the mesh of each frame; constant: one mesh, for every format but viewer")
+        ->check(CLI::IsMember({"simulated", "constant"}));
+    command
+        ->add_option("--grid", request.grid,
+                     "Cells of the constant mesh of a rectangular cloth; default: the first frame's mesh")
+        ->type_name("NxM");
     return command;
 }
 
@@ -194,7 +204,9 @@ int check(const CheckRequest& request)
 int export_formats(const ExportRequest& request)
 {
     require_known_formats(request.formats);
-    const ExportOptions options = read_export_options(request.directory);
+    ExportOptions options = read_export_options(request.directory);
+    options.is_topology_constant = request.topology == "constant";
+    if (!request.grid.empty()) options.grid = parse_grid(request.grid);
     tell_warnings(warn_of_missing_files(request.directory));
     export_frames(request.directory, request.formats, options);
     for (const std::string& format : request.formats)

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "app/export/export_obj.h"
+#include "app/export/export_point_cache.h"
 #include "app/export/export_usd.h"
 #include "app/export/export_vtk.h"
 #include "app/export/viewer_html.h"
@@ -22,7 +23,8 @@ namespace {
 /// Input of all formats.
 struct Source {
     const std::string& run_dir;
-    FrameSource frames;
+    FrameSource frames;    ///< as the run wrote them, or resampled by request
+    FrameSource constant;  ///< resampled; only for a format that needs it
     const ExportOptions& options;
     std::vector<ObstacleRecord> obstacles;
 
@@ -58,6 +60,24 @@ void export_vtk(const Source& run)
     write_pvd(run.run_dir + "/cloth.pvd", run.obstacles, run.frames.count, run.options.frames_per_second);
 }
 
+/// The mesh that a cache moves.
+void export_base(const Source& run)
+{
+    write_obj(run.run_dir + "/cloth_base.obj", run.constant.read(0));
+}
+
+void export_pc2(const Source& run)
+{
+    write_pc2(run.run_dir + "/cloth.pc2", run.constant);
+    export_base(run);
+}
+
+void export_mdd(const Source& run)
+{
+    write_mdd(run.run_dir + "/cloth.mdd", run.constant, run.options.frames_per_second);
+    export_base(run);
+}
+
 void export_viewer(const Source& run)
 {
     ViewerOptions viewer;
@@ -71,15 +91,17 @@ struct Format {
     const char* name;
     void (*make)(const Source&);
     const char* place;  ///< relative to the run's folder
+    bool is_constant;   ///< reads Source::constant
 };
 
 constexpr Format kFormats[] = {
-    {"obj", export_obj, "frames/cloth_*.obj"},
-    {"usd", export_usd, "cloth.usda"},
-    {"viewer", export_viewer, "viewer.html"},
-    {"vtk", export_vtk, "cloth.pvd"},
-    {"gltf", nullptr, ""},
-    {"pc2", nullptr, ""},
+    {"obj", export_obj, "frames/cloth_*.obj", false},
+    {"usd", export_usd, "cloth.usda", false},
+    {"viewer", export_viewer, "viewer.html", false},
+    {"vtk", export_vtk, "cloth.pvd", false},
+    {"pc2", export_pc2, "cloth.pc2", true},
+    {"mdd", export_mdd, "cloth.mdd", true},
+    {"gltf", nullptr, "", true},
 };
 
 const Format& find_format(const std::string& name)
@@ -111,9 +133,23 @@ void export_frames(const std::string& run_dir, const std::vector<std::string>& f
                    const ExportOptions& options)
 {
     require_known_formats(formats);
-    const Source source{run_dir, read_frames_of(run_dir), options, read_obstacles(run_dir)};
+    bool needs_constant = options.is_topology_constant;
+    for (const std::string& name : formats) {
+        if (options.is_topology_constant && name == "viewer")
+            throw InputError(
+                "formats: \"viewer\" shows the frames as simulated; allowed with --topology constant: all "
+                "others");
+        needs_constant = needs_constant || find_format(name).is_constant;
+    }
+    if (options.grid && !needs_constant)
+        throw InputError("--grid: no format uses it; allowed: with --topology constant, pc2 or mdd");
+    Source source{run_dir, read_frames_of(run_dir), {}, options, read_obstacles(run_dir)};
     if (source.frames.count == 0)
         throw InputError(frames_directory(run_dir) + ": has no frames (cloth_00000.ply, ...)");
+    if (needs_constant)
+        source.constant =
+            resampled_frames(source.frames, make_constant_mesh(source.frames.read(0), options.grid));
+    if (options.is_topology_constant) source.frames = source.constant;
     for (const std::string& name : formats) find_format(name).make(source);
 }
 

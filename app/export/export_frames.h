@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "app/export/resampled_frames.h"
 
 namespace arris {
 
 /// Properties of the run that exported formats need.
 struct ExportOptions {
     std::string title;
-    double frames_per_second = 24.0;  ///< > 0
+    double frames_per_second = 24.0;    ///< > 0
+    bool is_topology_constant = false;  ///< every format is made from resampled_frames
+    std::optional<GridSize> grid;       ///< of the constant mesh; without it, the first frame's mesh
 };
 
 /// Path of a format's file, or a pattern where there is one file per frame.
@@ -18,9 +23,10 @@ std::string exported_path(const std::string& run_dir, const std::string& format)
 /// Throws InputError naming the format and the allowed ones unless export_frames supports all of them.
 void require_known_formats(const std::vector<std::string>& formats);
 
-/// Makes the formats "obj", "usd", "viewer", "vtk" from the frames in run_dir/frames and the obstacles in
-/// run_dir/obstacles; each file is written atomically. Throws InputError for an unknown format, a run without
-/// frames or an invalid frame file, std::system_error if writing fails.
+/// Makes formats from the frames in run_dir/frames and the obstacles in run_dir/obstacles; each file is
+/// written atomically. "pc2" and "mdd" always have constant topology. Throws InputError for an unknown
+/// format, a viewer of constant topology, a grid that no format uses, a run without frames or an invalid
+/// frame file, std::system_error if writing fails.
 void export_frames(const std::string& run_dir, const std::vector<std::string>& formats,
                    const ExportOptions& options);
 

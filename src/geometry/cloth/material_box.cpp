@@ -7,13 +7,10 @@
 #include <limits>
 #include <optional>
 
-#include "geometry/cgal.h"
+#include "geometry/cloth/material_locator.h"
 
 namespace arris {
 namespace {
-
-// Material coordinates this close, relative to the cloth's size, count as equal.
-constexpr double kMaterialTolerance = 1e-9;
 
 MaterialBox bounding_box(const std::vector<Vec2>& material)
 {
@@ -277,37 +274,6 @@ ShareSum spread(const ClothMesh& mesh, const MaterialBox& box)
     return sum;
 }
 
-Vec2 nearest_on_segment(const Vec2& a, const Vec2& b, const Vec2& p)
-{
-    const Vec2 d = b - a;
-    return a + std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d;
-}
-
-// The point on the face's border nearest to `point`, which lies outside the face.
-Vec2 nearest_on_border(const std::array<Vec2, 3>& X, const Vec2& point)
-{
-    Vec2 nearest = X[0];
-    for (int k = 0; k < 3; ++k) {
-        const Vec2 candidate = nearest_on_segment(X[k], X[(k + 1) % 3], point);
-        if ((candidate - point).squaredNorm() < (nearest - point).squaredNorm()) nearest = candidate;
-    }
-    return nearest;
-}
-
-bool contains(const std::array<Vec2, 3>& X, const Vec2& point)
-{
-    for (int k = 0; k < 3; ++k)
-        if (exact_orientation(X[k], X[(k + 1) % 3], point) < 0) return false;
-    return true;
-}
-
-Vec3 barycentric(const std::array<Vec2, 3>& X, const Vec2& point)
-{
-    Vec3 weights(twice_area(point, X[1], X[2]), twice_area(X[0], point, X[2]), twice_area(X[0], X[1], point));
-    weights = weights.cwiseMax(0.0);
-    return weights / weights.sum();
-}
-
 }  // namespace
 
 double material_size(const std::vector<Vec2>& material)
@@ -338,28 +304,6 @@ std::vector<LoadShare> spread_over_box(const ClothMesh& mesh, const MaterialBox&
 std::vector<FaceShare> spread_over_faces(const ClothMesh& mesh, const MaterialBox& box)
 {
     return spread(mesh, box).face_shares();
-}
-
-MaterialLocation locate(const ClothMesh& mesh, const Vec2& point)
-{
-    const double tolerance = kMaterialTolerance * material_size(mesh.material);
-    const MaterialBox near{point.array() - tolerance, point.array() + tolerance};
-    MaterialLocation nearest;
-    double least = tolerance;
-    for (int f = 0; f < mesh.face_count(); ++f) {
-        const Face& face = mesh.faces[f];
-        if (!overlaps(mesh, face, near)) continue;
-        const std::array<Vec2, 3> X = {mesh.material[face[0]], mesh.material[face[1]],
-                                       mesh.material[face[2]]};
-        if (contains(X, point)) return {f, barycentric(X, point)};
-        const Vec2 on_border = nearest_on_border(X, point);
-        const double distance = (on_border - point).norm();
-        if (distance < least || (nearest.face < 0 && distance <= least)) {
-            least = distance;
-            nearest = {f, barycentric(X, on_border)};
-        }
-    }
-    return nearest;
 }
 
 }  // namespace arris

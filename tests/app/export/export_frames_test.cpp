@@ -17,6 +17,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A cloth that a viewer can show: the example's greatest doubles have no finite bounding box.
 Frame make_tame_frame(int i)
@@ -60,13 +61,39 @@ TEST(ExportFrames, RefusesUnknownFormatsBeforeItWritesAny)
     const auto error_with = [&](const char* format) {
         return error_of([&] { export_frames(dir.path(), {"obj", format}, {}); });
     };
-    EXPECT_THAT(error_with("fbx"), AllOf(HasSubstr("\"fbx\""), HasSubstr("obj, usd, viewer, vtk")));
+    EXPECT_THAT(error_with("fbx"), AllOf(HasSubstr("\"fbx\""), HasSubstr("obj, usd, viewer, vtk, pc2, mdd")));
     EXPECT_THAT(error_with(""), HasSubstr("\"\""));
-    for (const char* planned : {"gltf", "pc2"})
-        EXPECT_THAT(error_with(planned), AllOf(HasSubstr(planned), HasSubstr("not built yet")));
+    EXPECT_THAT(error_with("gltf"), AllOf(HasSubstr("gltf"), HasSubstr("not built yet")));
     EXPECT_FALSE(std::filesystem::exists(dir / "frames/cloth_00000.obj"));
     require_known_formats({"viewer", "usd", "obj", "obj"});
     require_known_formats({});
+}
+
+TEST(ExportFrames, ConstantTopologyIsOfEveryFormatButTheViewer)
+{
+    const TemporaryDirectory dir;
+    write_run(dir, 2, kScene);
+    ExportOptions options = read_export_options(dir.path());
+    export_frames(dir.path(), {"pc2", "mdd"}, options);
+    for (const char* file : {"cloth.pc2", "cloth.mdd", "cloth_base.obj"})
+        EXPECT_TRUE(std::filesystem::exists(dir / file)) << file;
+    export_frames(dir.path(), {"obj"}, options);
+    EXPECT_THAT(read_bytes(dir / "frames/cloth_00001.obj"), HasSubstr("\nl "));
+    options.is_topology_constant = true;
+    export_frames(dir.path(), {"obj"}, options);
+    EXPECT_THAT(read_bytes(dir / "frames/cloth_00001.obj"), Not(HasSubstr("\nl ")));
+    EXPECT_THAT(error_of([&] { export_frames(dir.path(), {"viewer"}, options); }), HasSubstr("\"viewer\""));
+}
+
+TEST(ExportFrames, RefusesAGridThatNoFormatUses)
+{
+    const TemporaryDirectory dir;
+    write_run(dir, 2, kScene);
+    ExportOptions options = read_export_options(dir.path());
+    options.grid = GridSize{2, 2};
+    EXPECT_THAT(error_of([&] { export_frames(dir.path(), {"obj"}, options); }),
+                HasSubstr("no format uses it"));
+    EXPECT_THAT(error_of([&] { export_frames(dir.path(), {"pc2"}, options); }), HasSubstr("rectangle"));
 }
 
 TEST(ExportFrames, SaysWhatIsMissing)

@@ -755,12 +755,7 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[output]\nformats = [\"gltf\"]\n",
      {},
      "s.toml:6: output.formats = [\"gltf\"]: \"gltf\" is not built yet in this version; allowed: any of "
-     "\"obj\", \"usd\", \"viewer\", \"vtk\""},
-    {"Pc2",
-     kBase + "[output]\nformats = [\"pc2\"]\n",
-     {},
-     "s.toml:6: output.formats = [\"pc2\"]: \"pc2\" is not built yet in this version; allowed: any of "
-     "\"obj\", \"usd\", \"viewer\", \"vtk\""},
+     "\"obj\", \"usd\", \"viewer\", \"vtk\", \"pc2\", \"mdd\""},
     {"PlyCloth",
      "duration = 1\n[cloth]\nfile = \"cloth.ply\"\n",
      {},
