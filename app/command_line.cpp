@@ -149,7 +149,7 @@ CLI::App* add_export(CLI::App& app, ExportRequest& request)
     CLI::App* command = add_command(app, "export", "Export a run's frames to other formats",
                                     "arris export out/fine --formats usd,obj");
     command->add_option("dir", request.directory, "Folder of the run")->required();
-    command->add_option("--formats", request.formats, "obj,usd,viewer,vtk,pc2,mdd")
+    command->add_option("--formats", request.formats, "obj,usd,viewer,vtk,pc2,mdd,gltf")
         ->required()
         ->delimiter(',')
         ->type_name("FORMAT,...");

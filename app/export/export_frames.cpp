@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/export/export_gltf.h"
 #include "app/export/export_obj.h"
 #include "app/export/export_point_cache.h"
 #include "app/export/export_usd.h"
@@ -24,7 +25,7 @@ namespace {
 struct Source {
     const std::string& run_dir;
     FrameSource frames;    ///< as the run wrote them, or resampled by request
-    FrameSource constant;  ///< resampled; only for a format that needs it
+    FrameSource constant;  ///< resampled, if a format needs that
     const ExportOptions& options;
     std::vector<ObstacleRecord> obstacles;
 
@@ -78,6 +79,12 @@ void export_mdd(const Source& run)
     export_base(run);
 }
 
+void export_gltf(const Source& run)
+{
+    write_gltf(run.run_dir + "/cloth.glb", run.constant, {run.options.title, run.options.frames_per_second},
+               run.obstacles);
+}
+
 void export_viewer(const Source& run)
 {
     ViewerOptions viewer;
@@ -86,7 +93,7 @@ void export_viewer(const Source& run)
     write_viewer(run.run_dir, viewer, run.obstacles);
 }
 
-/// A format and the function that makes it; null if the format is not built yet.
+/// A format and the function that makes it.
 struct Format {
     const char* name;
     void (*make)(const Source&);
@@ -95,26 +102,20 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {"obj", export_obj, "frames/cloth_*.obj", false},
-    {"usd", export_usd, "cloth.usda", false},
-    {"viewer", export_viewer, "viewer.html", false},
-    {"vtk", export_vtk, "cloth.pvd", false},
-    {"pc2", export_pc2, "cloth.pc2", true},
-    {"mdd", export_mdd, "cloth.mdd", true},
-    {"gltf", nullptr, "", true},
+    {"obj", export_obj, "frames/cloth_*.obj", false}, {"usd", export_usd, "cloth.usda", false},
+    {"viewer", export_viewer, "viewer.html", false},  {"vtk", export_vtk, "cloth.pvd", false},
+    {"pc2", export_pc2, "cloth.pc2", true},           {"mdd", export_mdd, "cloth.mdd", true},
+    {"gltf", export_gltf, "cloth.glb", true},
 };
 
 const Format& find_format(const std::string& name)
 {
-    std::vector<std::string> built;
-    bool is_planned = false;
+    std::vector<std::string> names;
     for (const Format& format : kFormats) {
-        if (format.make != nullptr) built.push_back(format.name);
-        if (name == format.name && format.make != nullptr) return format;
-        is_planned = is_planned || name == format.name;
+        if (name == format.name) return format;
+        names.emplace_back(format.name);
     }
-    throw InputError(fmt::format("formats: \"{}\" is {}; allowed: {}", name,
-                                 is_planned ? "not built yet" : "unknown", fmt::join(built, ", ")));
+    throw InputError(fmt::format("formats: \"{}\" is unknown; allowed: {}", name, fmt::join(names, ", ")));
 }
 
 }  // namespace
@@ -142,14 +143,14 @@ void export_frames(const std::string& run_dir, const std::vector<std::string>& f
         needs_constant = needs_constant || find_format(name).is_constant;
     }
     if (options.grid && !needs_constant)
-        throw InputError("--grid: no format uses it; allowed: with --topology constant, pc2 or mdd");
-    Source source{run_dir, read_frames_of(run_dir), {}, options, read_obstacles(run_dir)};
-    if (source.frames.count == 0)
+        throw InputError("--grid: no format uses it; allowed: with --topology constant, pc2, mdd or gltf");
+    const FrameSource frames = read_frames_of(run_dir);
+    if (frames.count == 0)
         throw InputError(frames_directory(run_dir) + ": has no frames (cloth_00000.ply, ...)");
-    if (needs_constant)
-        source.constant =
-            resampled_frames(source.frames, make_constant_mesh(source.frames.read(0), options.grid));
-    if (options.is_topology_constant) source.frames = source.constant;
+    const FrameSource constant =
+        needs_constant ? resampled_frames(frames, make_constant_mesh(frames.read(0), options.grid)) : frames;
+    const Source source{run_dir, options.is_topology_constant ? constant : frames, constant, options,
+                        read_obstacles(run_dir)};
     for (const std::string& name : formats) find_format(name).make(source);
 }
 

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 
+#include "app/export/float_value.h"
 #include "app/files/atomic_file.h"
 #include "geometry/input_error.h"
 
@@ -46,12 +46,7 @@ void write_points(AtomicFile& file, const std::string& path, const FrameSource& 
                                          path, i, frame.world.size(), vertex_count));
         bytes.clear();
         for (std::size_t v = 0; v < vertex_count; ++v)
-            for (const double value : frame.world[v]) {
-                if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
-                    throw InputError(
-                        fmt::format("{}: frame {}, vertex {}: {} m is beyond a float", path, i, v, value));
-                append(bytes, static_cast<float>(value), order);
-            }
+            for (const double value : frame.world[v]) append(bytes, float_value(path, i, v, value), order);
         file.write(bytes);
     }
 }

@@ -20,13 +20,14 @@ struct FrameBytes {
     std::string_view format;
     double vertex, face;
 };
-constexpr std::array<FrameBytes, 6> kFormatBytes = {{
+constexpr std::array<FrameBytes, 7> kFormatBytes = {{
     {"obj", 110.0, 30.0},   // text: position and texture coordinate, 17 digits each; three index pairs
     {"usd", 150.0, 8.0},    // text: positions and velocities at every frame, topology where it changes
     {"viewer", 24.0, 2.0},  // quantised, base64
     {"vtk", 102.0, 56.0},   // before compression: 12 doubles, an id, two flags; 4 whole numbers, 3 doubles
     {"pc2", 12.0, 0.0},     // three floats
     {"mdd", 12.0, 0.0},     // three floats
+    {"gltf", 24.0, 0.0},    // six floats: position and normal
 }};
 constexpr FrameBytes kPlyBytes = {
     "ply", 94.0, 37.0};  // vertex: 11 doubles, an id, two flags; face: 13 bytes of indices, 3 doubles

@@ -369,9 +369,8 @@ std::vector<SceneKey> make_scene_keys()
         table("output", "{}", "Output of a run."),
         number("output.frames_per_second", "1/s", kNotNegative, "24.0",
                "Frames per second of simulated time; 0 writes no frames."),
-        not_built(choices("output.formats", 0, "obj|usd|viewer|vtk|pc2|mdd|gltf", R"(["viewer"])",
-                          "Formats made from the frames. The PLY frames are always written."),
-                  "gltf"),
+        choices("output.formats", 0, "obj|usd|viewer|vtk|pc2|mdd|gltf", R"(["viewer"])",
+                "Formats made from the frames. The PLY frames are always written."),
     };
 }
 

@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compares PC2 and MDD caches of a run with its PLY frames: the cloth at the same material points.
+"""Compares PC2, MDD and glTF, read by three.js, with a run's PLY frames: the cloth at the same material points.
 
 usage: compare_constant.py RUN_DIR FRAMES_PER_SECOND
 """
+import json
+import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
-from compare import read_ply, require
+from compare import HERE, read_ply, require
 
+GLTF_TOLERANCE = 1e-5  # m: also sums of floats, and time a millionth before the end
 FLOAT_TOLERANCE = 1e-6  # m: points are floats, of a cloth within 4 m of the origin
 BORDER_TOLERANCE = 1e-9  # barycentric: points on edges lie in a face to rounding
 
@@ -59,6 +62,50 @@ def read_base(path):
     return np.array(rows["v"]), np.array(rows["vt"]), np.array(rows["f"], int) - 1
 
 
+def check_gltf(run_dir, frames, frames_per_second):
+    """Khronos's validator accepts the file. At frames and half between two, three.js shows cloth and obstacles."""
+    path = run_dir / "cloth.glb"
+    done = subprocess.run(["node", str(HERE / "validate_gltf.mjs"), str(path)], capture_output=True, text=True,
+                          timeout=60, check=False)
+    require(done.returncode == 0, f"glTF is not valid:\n{done.stderr[-2000:]}")
+    middle, last = len(frames) // 2, len(frames) - 1
+    chosen = (0, middle, middle + 0.5, last)
+    times = [str(i / frames_per_second) for i in chosen]
+    done = subprocess.run(["node", str(HERE / "read_gltf.mjs"), str(path), *times], capture_output=True, text=True,
+                          timeout=60, check=False)
+    require(done.returncode == 0, f"three.js did not read {path}:\n{done.stderr[-2000:]}")
+    shown = json.loads(done.stdout)
+    material = frames[0][0]["u"]
+    moved = 0.0
+    for i, time in zip(chosen, times):
+        got = shown[time]
+        low, share = int(i), i - int(i)
+        wanted = (1 - share) * sample(frames[low], material) + share * sample(frames[min(low + 1, last)], material)
+        require(np.array_equal(got["faces"], frames[0][1]["vertices"].ravel()), "glTF: other faces")
+        require(np.array_equal(np.array(got["uv"], "f4"), material.astype("f4").ravel()), "glTF: other UVs")
+        error = np.abs(np.array(got["points"]) - to_y_up(wanted)).max()
+        require(error < GLTF_TOLERANCE, f"glTF at frame {i}: points differ by {error} m")
+        if share == 0:
+            matrix = np.array(got["nodes"]["spinner"]).reshape(4, 4).T
+            first = read_base(run_dir / "frames/spinner_00000.obj")[0]
+            now = read_base(run_dir / f"frames/spinner_{low:05d}.obj")[0]
+            at_first = np.array(shown[times[0]]["nodes"]["spinner"]).reshape(4, 4).T
+            own = np.linalg.solve(at_first, homogeneous(to_y_up(first)).T)
+            error = np.abs((matrix @ own)[:3].T - to_y_up(now)).max()
+            require(error < GLTF_TOLERANCE, f"glTF at frame {i}: the obstacle is {error} m off")
+            moved = max(moved, np.abs(now - first).max())
+    require(moved > 1e-3, "the obstacle of this run does not move: the test shows nothing")
+    return f"glTF at {len(chosen)} times"
+
+
+def to_y_up(points):
+    return points[:, [0, 2, 1]] * [1, 1, -1]
+
+
+def homogeneous(points):
+    return np.column_stack([points, np.ones(len(points))])
+
+
 def main():
     run_dir, frames_per_second = Path(sys.argv[1]), float(sys.argv[2])
     frames = [read_ply(path) for path in sorted(run_dir.glob("frames/cloth_*.ply"))]
@@ -77,7 +124,8 @@ def main():
         for name, cache in (("PC2", pc2), ("MDD", mdd)):
             error = np.abs(cache[i] - wanted).max()
             require(error < FLOAT_TOLERANCE, f"{name} in frame {i}: points differ by {error} m")
-    print(f"formats: PC2 and MDD at {len(chosen)} frames: the PLY frames' cloth at the same material points")
+    gltf = check_gltf(run_dir, frames, frames_per_second)
+    print(f"formats: PC2 and MDD at {len(chosen)} frames, {gltf}: the PLY frames' cloth at the same material points")
 
 
 if __name__ == "__main__":

@@ -751,11 +751,6 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[solver]\nkernel = \"fast\"\n",
      {},
      "s.toml:6: solver.kernel = \"fast\": \"fast\" is not built yet in this version; allowed: \"exact\""},
-    {"Gltf",
-     kBase + "[output]\nformats = [\"gltf\"]\n",
-     {},
-     "s.toml:6: output.formats = [\"gltf\"]: \"gltf\" is not built yet in this version; allowed: any of "
-     "\"obj\", \"usd\", \"viewer\", \"vtk\", \"pc2\", \"mdd\""},
     {"PlyCloth",
      "duration = 1\n[cloth]\nfile = \"cloth.ply\"\n",
      {},
