@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -68,6 +70,25 @@ TEST(ExportGltf, TargetsAreDifferencesFromTheFirstFrame)
     const std::size_t places = arrays + view["byteOffset"].get<std::size_t>();
     EXPECT_EQ(number_at(bytes, places), 2U);
     EXPECT_EQ(number_at(bytes, places + 4), 5U);
+}
+
+TEST(ExportGltf, NormalsOfTargetsAreDifferencesOfUnitNormals)
+{
+    const TemporaryDirectory dir;
+    write_gltf(dir / "a.glb", make_rising(3), {"", 24.0});
+    const std::string bytes = read_bytes(dir / "a.glb");
+    const nlohmann::json json = json_of(bytes);
+    const int index = json["meshes"][0]["primitives"][0]["targets"][1]["NORMAL"];
+    const nlohmann::json& accessor = json["accessors"][index];
+    const nlohmann::json& view = json["bufferViews"][accessor["bufferView"].get<int>()];
+    const std::size_t at = 20 + number_at(bytes, 12) + 8 + view["byteOffset"].get<std::size_t>() +
+                           accessor["byteOffset"].get<std::size_t>();
+    std::array<float, 3> normal;
+    std::memcpy(normal.data(), bytes.data() + at, sizeof normal);
+    // (1, 0, 0) x (0, 1, 2) = (0, -2, 1); the first frame's normal is (0, 0, 1).
+    EXPECT_FLOAT_EQ(normal[0], 0.0F);
+    EXPECT_FLOAT_EQ(normal[1], static_cast<float>(-2.0 / std::sqrt(5.0)));
+    EXPECT_FLOAT_EQ(normal[2], static_cast<float>(1.0 / std::sqrt(5.0) - 1.0));
 }
 
 TEST(ExportGltf, OneFrameHasNoAnimation)
