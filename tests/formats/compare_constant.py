@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from caches import read_mdd, read_pc2
 from compare import HERE, read_ply, require
 
 GLTF_TOLERANCE = 1e-5  # m: also sums of floats, and time a millionth before the end
@@ -34,22 +35,6 @@ def sample(frame, points):
         require(weights[:, f].min() > -BORDER_TOLERANCE, f"material point {p} is not in the cloth")
         result.append(sum(weights[k, f] * x[k][f] for k in range(3)))
     return np.array(result)
-
-
-def read_pc2(path):
-    data = path.read_bytes()
-    head = np.frombuffer(data, np.dtype([("sign", "S12"), ("version", "<i4"), ("points", "<i4"), ("start", "<f4"),
-                                         ("rate", "<f4"), ("samples", "<i4")]), 1)[0]
-    require(head["sign"] == b"POINTCACHE2" and head["version"] == 1, "PC2: another header")
-    require(head["start"] == 0 and head["rate"] == 1, "PC2: sample i is not frame i")
-    return np.frombuffer(data, "<f4", offset=32).reshape(head["samples"], head["points"], 3)
-
-
-def read_mdd(path):
-    data = path.read_bytes()
-    frames, points = np.frombuffer(data, ">i4", 2)
-    times = np.frombuffer(data, ">f4", frames, 8)
-    return times, np.frombuffer(data, ">f4", offset=8 + 4 * frames).reshape(frames, points, 3)
 
 
 def read_base(path):
