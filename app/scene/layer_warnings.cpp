@@ -32,8 +32,15 @@ const char* thickness_key(const Warnings& warnings)
 
 void check_height(const RunConfig& config, Warnings& warnings)
 {
-    constexpr double kMost = 0.2;
+    constexpr double kMost = 0.2, kLeast = 1e-4;
     const double thickness = config.scene.self_contact->thickness, height = mean_height(config.cloth);
+    if (thickness < kLeast * height)
+        warnings.note(
+            thickness_key(warnings),
+            fmt::format("layers keep only {:g} m apart, which is below a ten-thousandth of the mean "
+                        "height of the cloth's triangles, {:.3g} m: steps are halved often and take "
+                        "long; use a greater self_contact.thickness",
+                        thickness, height));
     if (thickness <= kMost * height) return;
     warnings.note(thickness_key(warnings),
                   fmt::format("layers keep {:g} m apart, which is above a fifth of the mean height of the "
@@ -44,7 +51,8 @@ void check_height(const RunConfig& config, Warnings& warnings)
 
 void check_distance(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
 {
-    constexpr double kMany = 0.1;  // of the vertices: fewer are near a fold
+    constexpr double kMany = 0.1;    // of the vertices: fewer are near a fold
+    constexpr double kTouch = 1e-3;  // of the thickness: so near that it may be unable to move at all
     const ClothMesh& cloth = config.cloth;
     const double thickness = config.scene.self_contact->thickness;
     std::set<int> near;
@@ -58,7 +66,8 @@ void check_distance(const RunConfig& config, const MeshTopology& topology, Warni
         near.insert(contact.vertices[0]);
         least = std::min(least, distance);
     }
-    if (static_cast<double>(near.size()) <= kMany * cloth.vertex_count()) return;
+    if (static_cast<double>(near.size()) <= kMany * cloth.vertex_count() && least >= kTouch * thickness)
+        return;
     warnings.note(thickness_key(warnings),
                   fmt::format("{} of {} vertices start nearer to another layer than the {:g} m that layers "
                               "keep apart, the nearest {:.3g} m, and are moved apart in the first steps: "

@@ -319,6 +319,28 @@ TEST(SceneWarnings, TellOfLayersTooThickForTheMeshOrTooNear)
                                       "0.707 m")));
 }
 
+TEST(SceneWarnings, TellOfBordersThatTouchAndOfLayersTooThin)
+{
+    const std::string folds = R"(duration = 1
+[cloth]
+size = [0.3, 0.1]
+resolution = [12, 4]
+folds = [{ line = [[0.1, 0.1], [0.1, 0]], degrees = DEGREES }, { line = [[0.2, 0.1], [0.2, 0]], degrees = DEGREES }]
+[gravity]
+[self_contact]
+)";
+    const auto load = [&](const std::string& degrees, const std::string& more = "") {
+        std::string text = folds + more;
+        for (std::size_t at; (at = text.find("DEGREES")) != std::string::npos;) text.replace(at, 7, degrees);
+        return load_scene(SceneSource{"s.toml", text, {kMoving}}).warnings;
+    };
+    EXPECT_THAT(load("119"), ::testing::Not(::testing::Contains(HasSubstr("start nearer"))));
+    EXPECT_THAT(load("120"), ::testing::Contains(HasSubstr("vertices start nearer to another layer")));
+    EXPECT_THAT(
+        load("90", "thickness = 1e-6\n"),
+        ::testing::Contains(HasSubstr("self_contact.thickness = 1e-06: layers keep only 1e-06 m apart")));
+}
+
 TEST(SceneWarnings, TellOfAModulusInPascal)
 {
     const auto load = [](const std::string& modulus) {
