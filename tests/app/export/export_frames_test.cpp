@@ -61,7 +61,8 @@ TEST(ExportFrames, RefusesUnknownFormatsBeforeItWritesAny)
     const auto error_with = [&](const char* format) {
         return error_of([&] { export_frames(dir.path(), {"obj", format}, {}); });
     };
-    EXPECT_THAT(error_with("fbx"), AllOf(HasSubstr("\"fbx\""), HasSubstr("obj, usd, viewer, vtk, pc2, mdd, gltf")));
+    EXPECT_THAT(error_with("fbx"),
+                AllOf(HasSubstr("\"fbx\""), HasSubstr("obj, usd, viewer, vtk, pc2, mdd, gltf")));
     EXPECT_THAT(error_with(""), HasSubstr("\"\""));
     EXPECT_FALSE(std::filesystem::exists(dir / "frames/cloth_00000.obj"));
     require_known_formats({"viewer", "usd", "obj", "obj"});

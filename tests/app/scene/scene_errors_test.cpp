@@ -247,7 +247,7 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[output]\nformats = \"obj\"\n",
      {},
      "s.toml:6: output.formats = \"obj\": is not an array; allowed: any of \"obj\", \"usd\", \"viewer\", "
-     "\"vtk\""},
+     "\"vtk\", \"pc2\", \"mdd\", \"gltf\""},
     {"ZeroDuration",
      "duration = 0\n" + kCloth,
      {},
@@ -396,7 +396,7 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[output]\nformats = [\"mp4\"]\n",
      {},
      "s.toml:6: output.formats = [\"mp4\"]: \"mp4\" is not one of the choices; allowed: any of \"obj\", "
-     "\"usd\", \"viewer\", \"vtk\""},
+     "\"usd\", \"viewer\", \"vtk\", \"pc2\", \"mdd\", \"gltf\""},
     {"BadName",
      kBase + "[[probe]]\nname = \"a b\"\nmaterial = [0, 0]\n",
      {},
