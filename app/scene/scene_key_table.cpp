@@ -176,10 +176,12 @@ std::vector<SceneKey> make_scene_keys()
                "the two layers would coincide, and neither would be above the other."),
         text("cloth.file", KeyType::Path, kPath, "",
              "OBJ mesh used instead of a rectangle. Its positions are the initial world positions; its UVs, "
-             "in metres, are the material coordinates. A flat mesh without UVs takes the material "
+             "times `uv_scale`, are the material coordinates. A flat mesh without UVs takes the material "
              "coordinates from its positions."),
         choice("cloth.units", kUnits, R"("m")", "Unit of the file's positions."),
         choice("cloth.up", kAxes, R"("z")", "Upward axis of the file, which is rotated to +z."),
+        number("cloth.uv_scale", "m", {0.0, 1e3, true}, "1.0",
+               "Length of a unit of the file's UVs. Where UVs run from 0 to 1, it is the size of the cloth."),
         numbers("cloth.translate", 3, "m", kAnyNumber, kOrigin,
                 "World position = translate + rotate(scale * (u, v, 0)). For a file, its positions replace "
                 "(u, v, 0)."),

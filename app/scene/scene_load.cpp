@@ -233,8 +233,11 @@ ClothMesh read_cloth(const SceneDocument& document, const Json& cloth, std::vect
         document.fail("cloth.file", "a cloth of this format is not built yet in this version",
                       "an .obj file");
     ClothFile file = blame(document, "cloth.file", [&] {
-        return read_cloth_file(path, metres_of(unit), cloth["up"].get<std::string>()[0]);
+        return read_cloth_file(path, metres_of(unit), cloth["up"].get<std::string>()[0],
+                               cloth["uv_scale"].get<double>());
     });
+    if (document.find("cloth.uv_scale") && !file.has_uv)
+        warnings.push_back(document.describe("cloth.uv_scale") + ": has no effect: the file has no UVs");
     for (const std::string& warning : file.warnings)
         warnings.push_back(fmt::format("{}: {}", document.describe("cloth.file"), warning));
     return std::move(file.mesh);

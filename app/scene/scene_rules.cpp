@@ -44,6 +44,7 @@ void settle_cloth_source(const SceneDocument& document, Json& cloth)
                               allowed_values(*find_scene_key(key)));
         cloth.erase("units");
         cloth.erase("up");
+        cloth.erase("uv_scale");
         return;
     }
     for (const std::string key : {"size", "resolution", "pattern", "pattern_angle", "folds"}) {

@@ -39,6 +39,7 @@ void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings
     if (!warnings.is_written("cloth.file")) {
         warnings.add("cloth.units", "the cloth is not from a file");
         warnings.add("cloth.up", "the cloth is not from a file");
+        warnings.add("cloth.uv_scale", "the cloth is not from a file");
     }
     if (config.as_run["cloth"].value("pattern", "") == "unstructured")
         warnings.add("cloth.pattern_angle", "an unstructured mesh has no direction");
@@ -77,10 +78,12 @@ void check_cloth_size(const RunConfig& config, Warnings& warnings)
     const char* advice = "sizes are in metres";
     if (warnings.is_written("cloth.units")) {
         key = "cloth.units";
-        advice = "check this unit; it is that of positions, and UVs are always in metres";
+        advice = "check this unit; it is that of positions, while cloth.uv_scale is that of UVs";
     } else if (warnings.is_written("cloth.file")) {
         key = "cloth.file";
-        advice = "a file that is not in metres needs 'units', such as \"mm\"; UVs are always in metres";
+        advice =
+            "a file that is not in metres needs 'units', such as \"mm\", for positions, and 'uv_scale' for "
+            "UVs";
     }
     warnings.note(key, fmt::format("the cloth is {:.4g} x {:.4g} m: {}", sides.x(), sides.y(), advice));
 }
@@ -266,15 +269,27 @@ void check_turns(const RunConfig& config, Warnings& warnings)
     }
 }
 
+/// Square root of the world's area over the material's.
+double mean_stretch(const ClothMesh& cloth)
+{
+    double world_area = 0.0;
+    for (const auto& [a, b, c] : cloth.faces)
+        world_area += (cloth.world[b] - cloth.world[a]).cross(cloth.world[c] - cloth.world[a]).norm() / 2.0;
+    return std::sqrt(world_area / material_area(cloth));
+}
+
 /// Warns of a cloth that starts strongly strained, mostly because its UVs are not in metres.
 void check_strain(const RunConfig& config, const StrainRange& placed, Warnings& warnings)
 {
     if (!placed.is_surprising()) return;
     const bool is_scaled = warnings.is_written("cloth.scale");
-    const char* remedy = !is_scaled ? ""
-                         : config.as_run["cloth"].contains("file")
-                             ? "; 'scale' does not change the file's UVs"
-                             : "; change 'size' instead of 'scale'";
+    const bool is_from_file = config.as_run["cloth"].contains("file");
+    std::string remedy;
+    if (is_from_file)
+        remedy = fmt::format("; scale the UVs in the file to metres, or set cloth.uv_scale (near {:.3g})",
+                             config.as_run["cloth"]["uv_scale"].get<double>() * mean_stretch(config.cloth));
+    else if (is_scaled)
+        remedy = "; change 'size' instead of 'scale'";
     warnings.note(is_scaled ? "cloth.scale" : "cloth",
                   fmt::format("{} strained, {}: material coordinates are in metres, and the "
                               "cloth will contract or expand to their size{}",

@@ -47,8 +47,8 @@ struct FileMesh {
 
 class ClothReader {
   public:
-    ClothReader(const std::string& path, double unit_in_metres, char up)
-        : path_(path), unit_(unit_in_metres), to_z_up_(turn_up(up))
+    ClothReader(const std::string& path, double unit_in_metres, char up, double uv_scale)
+        : path_(path), unit_(unit_in_metres), uv_scale_(uv_scale), to_z_up_(turn_up(up))
     {
         if (!std::isfinite(unit_) || !(unit_ > 0.0)) refuse(fmt::format("unit {} m must be positive", unit_));
     }
@@ -57,6 +57,7 @@ class ClothReader {
     {
         require_regular_obj();
         statements_ = read_cloth_obj(path_);
+        for (auto& uv : statements_.uvs) uv.place *= uv_scale_;
         file_.has_uv = statements_.corners.front().uv >= 0;
         for (const ObjCorner& corner : statements_.corners) require_finite(corner);
         collect();
@@ -72,7 +73,7 @@ class ClothReader {
         orient();
         require_manifold();
         require_no_overlap();
-        return {mesh_, warnings_};
+        return {mesh_, warnings_, file_.has_uv};
     }
 
   private:
@@ -375,7 +376,7 @@ class ClothReader {
     }
 
     std::string path_;
-    double unit_;
+    double unit_, uv_scale_;
     Mat3 to_z_up_;
     ObjFile statements_;
     FileMesh file_;
@@ -386,9 +387,9 @@ class ClothReader {
 
 }  // namespace
 
-ClothFile read_cloth_file(const std::string& path, double unit_in_metres, char up)
+ClothFile read_cloth_file(const std::string& path, double unit_in_metres, char up, double uv_scale)
 {
-    return ClothReader(path, unit_in_metres, up).read();
+    return ClothReader(path, unit_in_metres, up, uv_scale).read();
 }
 
 }  // namespace arris

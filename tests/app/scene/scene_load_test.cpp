@@ -15,9 +15,11 @@ namespace arris {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr double kRoundOff = 1e-14;  // of coordinates about 1
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -314,6 +316,34 @@ TEST(SceneLoad, FindsClothFilesBesideTheScene)
     EXPECT_EQ(config.as_run["cloth"]["file"], "cloth.obj");
     for (const char* key : {"size", "resolution", "pattern", "pattern_angle"})
         EXPECT_FALSE(config.as_run["cloth"].contains(key)) << key;
+}
+
+TEST(SceneLoad, ScalesUVsFrom0To1ToMetres)
+{
+    const TemporaryDirectory directory;
+    const std::string places = "v 0 0 0\nv 1.6 0 0\nv 0 1.6 0\n";
+    write_bytes(directory / "cloth.obj", places + "vt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+    const std::string scene = kFileCloth + "[gravity]\n[cloth.material]\nbending_stiffness = 0\n";
+    write_bytes(directory / "s.toml", scene);
+    EXPECT_THAT(
+        load_scene(directory / "s.toml", {}).warnings,
+        Contains(AllOf(HasSubstr("starts strained, "), HasSubstr("scale the UVs in the file to metres, "),
+                       HasSubstr("or set cloth.uv_scale (near 1.6)"))));
+
+    const RunConfig scaled = load_scene(directory / "s.toml", {"cloth.uv_scale=1.6"});
+    EXPECT_THAT(scaled.warnings, Not(Contains(HasSubstr("strained"))));
+    EXPECT_EQ(scaled.cloth.material[1], Vec2(1.6, 0.0));
+    EXPECT_EQ(scaled.cloth.world[1], Vec3(1.6, 0.0, 0.0));
+    try {
+        load_scene(directory / "s.toml", {"cloth.uv_scale=0"});
+        ADD_FAILURE() << "no InputError";
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("cloth.uv_scale=0: is out of range"));
+    }
+
+    write_bytes(directory / "cloth.obj", places + "f 1 2 3\n");
+    EXPECT_THAT(load_scene(directory / "s.toml", {"cloth.uv_scale=1.6"}).warnings,
+                Contains(HasSubstr("cloth.uv_scale=1.6: has no effect: the file has no UVs")));
 }
 
 TEST(SceneLoad, BlamesTheKeyThatNamesABadClothFile)

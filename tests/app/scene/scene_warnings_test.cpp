@@ -47,6 +47,7 @@ TEST_P(IneffectiveKeyTest, IsTheOneWarning)
 const std::vector<IneffectiveKey> kIneffectiveKeys = {
     {"Units", "units = \"cm\"\n", "5: cloth.units = \"cm\": has no effect: the cloth is not from a file"},
     {"Up", "up = \"y\"\n", "5: cloth.up = \"y\": has no effect: the cloth is not from a file"},
+    {"UvScale", "uv_scale = 2\n", "5: cloth.uv_scale = 2: has no effect: the cloth is not from a file"},
     {"PatternAngle", "pattern = \"unstructured\"\npattern_angle = 10\n",
      "6: cloth.pattern_angle = 10: has no effect: an unstructured mesh has no direction"},
     {"Preset",
@@ -213,7 +214,7 @@ TEST(SceneWarnings, TellOfAClothWhoseSizeIsNoCloths)
     EXPECT_THAT(of_file(square_obj("500"), "units = \"mm\"\n"), IsEmpty());
     EXPECT_THAT(of_file(square_obj("0.5"), "units = \"mm\"\n"),
                 ElementsAre(HasSubstr("the cloth is 0.0005 x 0.0005 m")));
-    EXPECT_THAT(of_file(square_obj("500", "500"), ""), ElementsAre(HasSubstr("UVs are always in metres")));
+    EXPECT_THAT(of_file(square_obj("500", "500"), ""), ElementsAre(HasSubstr("'uv_scale' for UVs")));
     EXPECT_THAT(of_file(square_obj("500", "0.5"), "units = \"mm\"\n"), IsEmpty());
     for (const auto& [obj, unit, size] :
          {std::tuple(square_obj("500"), "m", "500 x 500"), std::tuple(square_obj("60000"), "cm", "600 x 600"),
