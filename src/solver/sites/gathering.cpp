@@ -102,7 +102,7 @@ double find_compression_with_pleats(const Scene& scene, const State& state, cons
         if (stars.piece[w] != stars.piece[v] || !((other_place - place).norm() < reach)) continue;
         const auto length = trace_length(obstacle, {vertex, place}, {other, other_place}, reach);
         if (!length) continue;
-        feature += *length;
+        feature += std::max(*length, (other_place - place).norm());  // past a wire's end its fold goes on
         cloth += (state.mesh.material[w] - X).norm();
     }
     return cloth > 0.0 ? 1.0 - feature / cloth : 0.0;
