@@ -113,7 +113,7 @@ double find_compression_with_pleats(const Scene& scene, const State& state, cons
 void grow_gathering(const Scene& scene, const ClothStars& stars, double dt, State& state)
 {
     // Cloth that stands in pleats between EOL vertices is free already, and yet shows that more wants to be.
-    constexpr double kPleats = 0.1;
+    constexpr double kPleats = 0.03;
     if (!scene.eol || state.eol.empty()) return;
     const std::vector<double> on_trace = find_trace_compressions(scene, state, stars);
     for (std::size_t entry = 0; entry < state.eol.size(); ++entry) {

@@ -154,7 +154,7 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "step = 0.01\n",
      {},
      "s.toml:5: cloth.step = 0.01: unknown key, did you mean time.step?; allowed: size, resolution, pattern, "
-     "pattern_angle, folds, file, units, up, translate, rotate, scale, velocity, material"},
+     "pattern_angle, folds, file, units, up, uv_scale, translate, rotate, scale, velocity, material"},
     {"UnknownFarFromAll",
      kBase + "[solver]\nzzzzzzzz = 1\n",
      {},
@@ -163,7 +163,7 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "\"a\\nb\" = 1\n",
      {},
      "s.toml:5: cloth.a\\nb = 1: unknown key; allowed: size, resolution, pattern, pattern_angle, folds, "
-     "file, units, up, translate, rotate, scale, velocity, material"},
+     "file, units, up, uv_scale, translate, rotate, scale, velocity, material"},
     {"UnknownInInlineTable",
      kBase + "rotate = { axis = [0, 0, 1], degree = 10 }\n",
      {},

@@ -339,7 +339,7 @@ folds = [{ line = [[0.1, 0.1], [0.1, 0]], degrees = DEGREES }, { line = [[0.2, 0
     EXPECT_THAT(load("120"), ::testing::Contains(HasSubstr("vertices start nearer to another layer")));
     EXPECT_THAT(
         load("90", "thickness = 1e-6\n"),
-        ::testing::Contains(HasSubstr("self_contact.thickness = 1e-06: layers keep only 1e-06 m apart")));
+        ::testing::Contains(HasSubstr("self_contact.thickness = 1e-6: layers keep only 1e-06 m apart")));
 }
 
 TEST(SceneWarnings, TellOfAModulusInPascal)

@@ -57,9 +57,9 @@ TEST(Gathering, CountsPleatsBetweenEolVertices)
     EXPECT_GT(greatest_gathering(squeeze(0.4, kEverySecond)), 0.0);
 }
 
-TEST(Gathering, CountsAPleatByATenth)
+TEST(Gathering, CountsAPleatByThreePercent)
 {
-    const double on_trace = greatest_gathering(squeeze(0.94, kNeighbours));
+    const double on_trace = greatest_gathering(squeeze(0.982, kNeighbours));
     const double in_pleats = greatest_gathering(squeeze(0.4, kEverySecond));
     EXPECT_LT(on_trace, 2.9);  // less than its greatest value
     EXPECT_NEAR(in_pleats, on_trace, 1e-9 * on_trace);
