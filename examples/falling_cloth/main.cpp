@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A square of cotton falls onto a smaller box and slides over its edges. Prints height and EOL vertices over time.
+// A square of cotton falls onto a smaller box and slides over its edges. Prints height and EOL vertices over
+// time.
 #include <algorithm>
 #include <cstdio>
 
@@ -30,6 +31,7 @@ int main()
         if (failed) return std::puts("no step was possible"), 1;
         double lowest = 1e9;
         for (const Vec3& x : state.mesh.world) lowest = std::min(lowest, x.z());
-        std::printf("%.3f s: lowest point at %.6f m, %zu EOL vertices\n", state.time, lowest, state.eol.size());
+        std::printf("%.3f s: lowest point at %.6f m, %zu EOL vertices\n", state.time, lowest,
+                    state.eol.size());
     }
 }
