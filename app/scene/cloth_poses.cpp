@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <vector>
 
 #include "geometry/cloth/material_box.h"
+#include "geometry/cloth/mesh_pieces.h"
 
 namespace arris {
 namespace {
@@ -46,16 +46,9 @@ double diagonal(const Eigen::AlignedBox2d& box)
 
 int count_pieces(const ClothMesh& cloth)
 {
-    std::vector<int> root(cloth.world.size());
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](int v) {
-        while (root[v] != v) v = root[v] = root[root[v]];
-        return v;
-    };
-    for (const Face& face : cloth.faces)
-        for (const int v : {face[1], face[2]}) root[find(v)] = find(face[0]);
+    const std::vector<int> piece = label_pieces(cloth.vertex_count(), cloth.faces);
     int pieces = 0;
-    for (int v = 0; v < cloth.vertex_count(); ++v) pieces += find(v) == v ? 1 : 0;
+    for (int v = 0; v < cloth.vertex_count(); ++v) pieces += piece[v] == v ? 1 : 0;
     return pieces;
 }
 

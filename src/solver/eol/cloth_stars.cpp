@@ -5,7 +5,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "geometry/cloth/mesh_pieces.h"
 
 namespace arris {
 
@@ -16,23 +17,6 @@ Face turned_to(const Face& face, int vertex)
 {
     const auto at = std::find(face.begin(), face.end(), vertex) - face.begin();
     return {face[at], face[(at + 1) % 3], face[(at + 2) % 3]};
-}
-
-/// Least vertex of the piece of each vertex, by a union-find over the edges.
-std::vector<int> label_pieces(int vertex_count, const std::vector<MeshEdge>& edges)
-{
-    std::vector<int> piece(vertex_count);
-    std::iota(piece.begin(), piece.end(), 0);
-    const auto root = [&](int v) {
-        while (piece[v] != v) v = piece[v] = piece[piece[v]];
-        return v;
-    };
-    for (const MeshEdge& edge : edges) {
-        const int a = root(edge.a), b = root(edge.b);
-        piece[std::max(a, b)] = std::min(a, b);
-    }
-    for (int v = 0; v < vertex_count; ++v) piece[v] = root(v);
-    return piece;
 }
 
 }  // namespace
@@ -47,7 +31,7 @@ ClothStars make_stars(int vertex_count, const std::vector<Face>& faces)
     ClothStars stars;
     stars.topology = make_topology(vertex_count, faces);
     stars.faces = VertexFaces(vertex_count, faces);
-    stars.piece = label_pieces(vertex_count, stars.topology.edges);
+    stars.piece = label_pieces(vertex_count, faces);
     stars.border_neighbours.assign(vertex_count, {-1, -1});
     for (const MeshEdge& edge : stars.topology.edges) {
         if (edge.face_right >= 0) continue;
