@@ -32,15 +32,22 @@ struct Source {
     double time(std::size_t frame) const { return static_cast<double>(frame) / options.frames_per_second; }
 };
 
-void export_obj(const Source& run)
+/// Writes each frame's cloth and obstacles by `write` into files of their own.
+template <typename Write>
+void write_each(const Source& run, const char* extension, const Write& write)
 {
     const auto path = [&](std::size_t i, const std::string& name) {
-        return frame_file(run.run_dir, static_cast<std::int64_t>(i), "obj", name);
+        return frame_file(run.run_dir, static_cast<std::int64_t>(i), extension, name);
     };
-    for (std::size_t i = 0; i < run.frames.count; ++i) write_obj(path(i, "cloth"), run.frames.read(i));
+    for (std::size_t i = 0; i < run.frames.count; ++i) write(path(i, "cloth"), run.frames.read(i));
     for (const ObstacleRecord& obstacle : run.obstacles)
         for (std::size_t i = 0; i < count_obstacle_frames(obstacle, run.frames.count); ++i)
-            write_obj(path(i, obstacle.name), obstacle, obstacle.at(run.time(i)));
+            write(path(i, obstacle.name), obstacle, obstacle.at(run.time(i)));
+}
+
+void export_obj(const Source& run)
+{
+    write_each(run, "obj", [](const auto&... parts) { write_obj(parts...); });
 }
 
 void export_usd(const Source& run)
@@ -51,13 +58,7 @@ void export_usd(const Source& run)
 
 void export_vtk(const Source& run)
 {
-    const auto path = [&](std::size_t i, const std::string& name) {
-        return frame_file(run.run_dir, static_cast<std::int64_t>(i), "vtp", name);
-    };
-    for (std::size_t i = 0; i < run.frames.count; ++i) write_vtp(path(i, "cloth"), run.frames.read(i));
-    for (const ObstacleRecord& obstacle : run.obstacles)
-        for (std::size_t i = 0; i < count_obstacle_frames(obstacle, run.frames.count); ++i)
-            write_vtp(path(i, obstacle.name), obstacle, obstacle.at(run.time(i)));
+    write_each(run, "vtp", [](const auto&... parts) { write_vtp(parts...); });
     write_pvd(run.run_dir + "/cloth.pvd", run.obstacles, run.frames.count, run.options.frames_per_second);
 }
 

@@ -142,10 +142,7 @@ std::vector<Fact> quality_facts(const RunReport& report, std::optional<double> t
     const StepTotals& totals = report.totals;
     std::vector<Fact> facts;
     // Without an obstacle, penetration and crossings have no meaning.
-    const bool has_obstacles =
-        std::any_of(report.effects.begin(), report.effects.end(),
-                    [](const SceneEffect& effect) { return effect.is_on && effect.name == "obstacle"; });
-    if (has_obstacles) {
+    if (is_on(report.effects, "obstacle")) {
         facts.push_back({"Greatest penetration", fmt::format("{:.3g} m", totals.max_penetration), "",
                          "Largest depth of the cloth in an obstacle, measured at each frame; must be 0.",
                          totals.max_penetration > 0});

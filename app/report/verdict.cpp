@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "app/text/counted.h"
 
 namespace arris {
@@ -25,10 +23,6 @@ std::string ending_words(const RunReport& report)
 
 std::string passing_words(const RunReport& report)
 {
-    const auto is_on = [&](const char* name) {
-        return std::any_of(report.effects.begin(), report.effects.end(),
-                           [&](const SceneEffect& effect) { return effect.is_on && effect.name == name; });
-    };
     const StepTotals& totals = report.totals;
     if (totals.crossings > 0)
         return fmt::format("Something passed through the cloth or an obstacle {}.",
@@ -37,7 +31,8 @@ std::string passing_words(const RunReport& report)
         return fmt::format("The cloth was inside an obstacle, {:.3g} m deep.", totals.max_penetration);
     if (report.status == RunStatus::Penetration)
         return "The step that would have passed through is not kept.";
-    const bool has_obstacles = is_on("obstacle"), has_layers = is_on("self_contact");
+    const bool has_obstacles = is_on(report.effects, "obstacle"),
+               has_layers = is_on(report.effects, "self_contact");
     if (has_obstacles && has_layers) return "Nothing passed through anything.";
     if (has_obstacles) return "The cloth passed through no obstacle; whether through itself was not checked.";
     if (has_layers) return "The cloth did not pass through itself.";

@@ -89,4 +89,10 @@ std::vector<SceneEffect> list_effects(const RunConfig& config)
     };
 }
 
+bool is_on(const std::vector<SceneEffect>& effects, std::string_view name)
+{
+    return std::any_of(effects.begin(), effects.end(),
+                       [&](const SceneEffect& effect) { return effect.is_on && effect.name == name; });
+}
+
 }  // namespace arris

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/scene/run_config.h"
@@ -17,5 +18,8 @@ struct SceneEffect {
 
 /// All effects: bending, damping, gravity, wind, pull, pin, obstacle, eol, remesh, friction, self_contact.
 std::vector<SceneEffect> list_effects(const RunConfig& config);
+
+/// Whether the effect of that name is among them and simulated.
+bool is_on(const std::vector<SceneEffect>& effects, std::string_view name);
 
 }  // namespace arris
