@@ -80,8 +80,9 @@ TEST_P(Scenes, FinishFreeOfTheirObstaclesAndKeepTheirMaterial)
     EXPECT_LE(report["max_kkt_residual"].get<double>(), 1e-9);
     EXPECT_EQ(report["max_penetration"], 0.0);
     EXPECT_EQ(report["crossings"], 0);
-    // Of contacts with features; most have .99 and more. Three needles have few contacts, and a tip that
-    // comes late counts much: .89 to .998, .95 in the mean, on meshes of 6 to 16 cells.
+    // The share of contacts with features that EOL vertices take: most scenes have .99 and more. Three
+    // needles have few contacts, and a tip that comes late counts much: .89 to .998, .95 in the mean, on
+    // meshes of 6 to 16 cells.
     if (report.contains("feature_contacts") && !report["feature_contacts"]["eol_share"].is_null()) {
         const double least = GetParam().find("/needles.toml") != std::string::npos ? 0.85 : 0.95;
         EXPECT_GE(report["feature_contacts"]["eol_share"].get<double>(), least);

@@ -80,8 +80,8 @@ std::vector<double> find_trace_compressions(const Scene& scene, const State& sta
     return compressions;
 }
 
-/// The same between an EOL vertex on an edge and all others near to it along the feature, whether the cloth
-/// between them lies on the feature or stands off it in pleats.
+/// Compression of the cloth between an EOL vertex on an edge and all others near to it along the feature,
+/// whether that cloth lies on the feature or stands off it in pleats.
 double find_compression_with_pleats(const Scene& scene, const State& state, const ClothStars& stars,
                                     const EolVertex& vertex)
 {

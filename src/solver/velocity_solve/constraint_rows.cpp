@@ -19,8 +19,8 @@ constexpr double kStiffness = 1e4;
 /// stay below 0.1 free speed / (g^T D^-1 g), so these give way by less than 1e-5 of the speed.
 constexpr double kUnmet = 1e-2;
 
-/// The same for softened rows, over the speed that a row's multiplier alone would give: the lowest rows of a
-/// stack of layers carry those above. With 1, five layers that land lose their thickness.
+/// Softened rows may give way by as many times the speed that their multipliers alone would give: the lowest
+/// rows of a stack of layers carry those above. With 1, five layers that land lose their thickness.
 constexpr double kLeastUnmet = 10.0;
 
 /// Largest speed that a row may ask of what can move, over the free speed. A row of which only a tiny part
