@@ -91,6 +91,8 @@ const StepColumn kStepColumns[] = {
     {"sticking", [](const StepRow& row) { return cell(row.sticking); }},
     {"sliding", [](const StepRow& row) { return cell(row.sliding); }},
     {"self_contacts", [](const StepRow& row) { return cell(row.self_contacts); }},
+    {"remeshed", [](const StepRow& row) { return cell(row.remeshed); }},
+    {"remesh_energy", [](const StepRow& row) { return cell(row.remesh_energy); }},
 };  // followed by rows_<cause> for each cause
 
 std::string join(const std::vector<std::string>& cells)

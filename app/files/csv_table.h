@@ -42,6 +42,8 @@ struct StepRow {
     std::optional<double> friction_work;          ///< J, lost to friction in this step
     std::optional<std::int64_t> sticking, sliding;  ///< contacts with friction
     std::optional<std::int64_t> self_contacts;      ///< of the cloth with itself, with a positive multiplier
+    std::optional<std::int64_t> remeshed;           ///< splits, merges and flips of remeshing
+    std::optional<double> remesh_energy;            ///< J, added by all changes of the mesh in this step
     double max_strain = 0.0;                        ///< size of the greatest principal strain of any face
     std::optional<RowCounts> rows_by_cause;         ///< `feature_rows` by cause, columns rows_<cause>
 };

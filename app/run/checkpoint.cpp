@@ -131,6 +131,7 @@ void write_state(BinaryWriter& out, const State& state)
     out.list(state.coupled, [&](const std::array<int, 2>& pair) {
         for (const int v : pair) out.number(static_cast<std::int32_t>(v));
     });
+    out.list(state.cell_lengths, [&](float length) { out.number(length); });
     out.number(state.crossings);
 }
 
@@ -205,6 +206,7 @@ State read_state(BinaryReader& in)
         for (int& v : pair) v = in.number<std::int32_t>();
         return pair;
     });
+    state.cell_lengths = in.list<float>(sizeof(float), [&] { return in.number<float>(); });
     state.crossings = in.number<std::int64_t>();
     return state;
 }
@@ -305,6 +307,9 @@ std::string find_defect(const Checkpoint& checkpoint)
                          std::pair(state.anchors[k - 1].pin, state.anchors[k - 1].vertex_id))
             return "anchors are not in ascending order";
     }
+    for (std::size_t k = 0; k < state.cell_lengths.size(); ++k)
+        if (!(state.cell_lengths[k] > 0.0f) || !std::isfinite(state.cell_lengths[k]))
+            return fmt::format("cell length {} is not positive", k);
     if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) ||
         !std::isfinite(checkpoint.position.begin) || checkpoint.position.begin < 0.0 ||
         checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1 ||

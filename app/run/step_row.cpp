@@ -45,6 +45,10 @@ StepRow make_step_row(const RunConfig& config, const State& state, const Workspa
         row.yielded = report.yielded;
     }
     if (scene.self_contact) row.self_contacts = report.self_contacts;
+    if (scene.remesh) {
+        row.remeshed = report.remeshed;
+        row.remesh_energy = report.remesh_energy;
+    }
     row.energy_rise = report.energy_rise;
     row.material_area = material_area(state.mesh);
     row.max_penetration = audited.found.depth;
@@ -67,6 +71,8 @@ StepReport join_parts(const StepReport& opening, StepReport rest)
     rest.friction_work += opening.friction_work;
     rest.yielded += opening.yielded;
     rest.rewound += opening.rewound;
+    rest.remeshed += opening.remeshed;
+    rest.remesh_energy += opening.remesh_energy;
     rest.add_cost(opening);
     return rest;
 }

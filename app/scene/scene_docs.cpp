@@ -116,13 +116,12 @@ std::string_view row_name(const SceneKey& section, const SceneKey& key)
 
 std::string key_row(std::string_view name, const SceneKey& key)
 {
-    std::string_view state = key.is_built ? "" : " *Not built yet in this version.*";
     if (is_table(key))
-        return fmt::format("| `{}` | {} | {} | {}{} |\n", name,
+        return fmt::format("| `{}` | {} | {} | {} |\n", name,
                            key.type == KeyType::Table ? "a table" : "an array of tables", default_words(key),
-                           escape_cell(key.sentence), state);
-    return fmt::format("| `{}` | {} | {} | {}{} |\n", name, escape_cell(allowed_words(key)),
-                       escape_cell(default_words(key)), escape_cell(key.sentence), state);
+                           escape_cell(key.sentence));
+    return fmt::format("| `{}` | {} | {} | {} |\n", name, escape_cell(allowed_words(key)),
+                       escape_cell(default_words(key)), escape_cell(key.sentence));
 }
 
 constexpr std::string_view kRowHeader = "\n| key | allowed | default | meaning |\n|---|---|---|---|\n";
@@ -145,8 +144,7 @@ std::string section_of(const SceneKey& table)
 {
     const bool is_list = table.type == KeyType::Tables;
     const std::string name = fmt::format("{0}{2}{1}", is_list ? "[[" : "[", is_list ? "]]" : "]", table.name);
-    std::string section = fmt::format("\n## `{}`\n\n{}{}\n", name, table.sentence,
-                                      is_built(table) ? "" : " *Not built yet in this version.*");
+    std::string section = fmt::format("\n## `{}`\n\n{}\n", name, table.sentence);
     const std::string rows = rows_below(table);
     return rows.empty() ? section : section + std::string(kRowHeader) + rows;
 }
@@ -245,12 +243,8 @@ std::string schema_description(const SceneKey& key)
     return words;
 }
 
-/// The schema of a key that is not built yet accepts no value, so that editors mark the key as an error.
 Json key_schema(const SceneKey& key)
 {
-    if (!is_built(key))
-        return {{"description", schema_description(key) + " Not built yet in this version."},
-                {"not", Json::object()}};
     Json schema = {{"description", schema_description(key)}};
     schema.update(value_schema(key));
     const bool has_default = !key.fallback.empty() && key.fallback != kRequired && key.fallback != "null" &&

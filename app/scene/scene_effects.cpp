@@ -32,6 +32,16 @@ SceneEffect eol_effect(const RunConfig& config)
                                        : "no obstacle has sharp features"};
 }
 
+SceneEffect remesh_effect(const RunConfig& config)
+{
+    if (!config.scene.remesh)
+        return {"remesh", false, "no [remesh]: the mesh changes only near sharp features, with EOL vertices"};
+    const Remeshing& remesh = *config.scene.remesh;
+    return {"remesh", true,
+            fmt::format("edges of {:g} to {:g} m, about {} vertices at most", remesh.shortest, remesh.longest,
+                        remesh.most_vertices)};
+}
+
 SceneEffect friction_effect(const RunConfig& config)
 {
     const std::optional<Friction>& friction = config.scene.friction;
@@ -82,8 +92,7 @@ std::vector<SceneEffect> list_effects(const RunConfig& config)
         by_table(config, "pin", true),
         obstacle_effect(config),
         eol_effect(config),
-        {"remesh", false,
-         "not in this version: the mesh changes only near sharp features, with EOL vertices"},
+        remesh_effect(config),
         friction_effect(config),
         self_contact_effect(config),
     };

@@ -123,13 +123,6 @@ SceneKey boolean(std::string_view name, std::string_view fallback, std::string_v
     return {.name = name, .type = KeyType::Boolean, .fallback = fallback, .sentence = sentence};
 }
 
-/// Marks a key and all keys below it as not built yet.
-SceneKey not_built(SceneKey key)
-{
-    key.is_built = false;
-    return key;
-}
-
 /// Marks the given values of a key as not built yet.
 SceneKey not_built(SceneKey key, std::string_view values)
 {
@@ -283,16 +276,22 @@ std::vector<SceneKey> make_scene_keys()
                 "Whether vertices of the cloth are placed exactly on sharp features, with material flowing "
                 "through them."),
 
-        not_built(table("remesh", "",
-                        "Switches adaptive refinement on. Without it the mesh changes only near features.")),
-        numbers("remesh.edge_length", 2, "m", kPositive, "[0.01, 0.1]", "Smallest and largest edge length."),
-        number("remesh.angle", "degrees", {0.0, 180.0, true}, "10.0",
-               "Rotation of the surface allowed over one edge."),
+        table("remesh", "",
+              "Switches adaptive remeshing on: cells become finer where the cloth bends, buckles or moves "
+              "unevenly, and coarser elsewhere. Without it the mesh changes only near sharp features."),
+        numbers("remesh.edge_length", 2, "m", kPositive, "[0.01, 0.1]",
+                "Smallest and largest edge length to aim at; edges may have half the smallest, and half as "
+                "much again as the largest."),
+        number("remesh.angle", "degrees", {0.0, 180.0, true}, "30.0",
+               "Angle by which the surface may turn over one edge."),
+        integer("remesh.vertices", {3.0, 1e7}, "",
+                "Number of vertices to stay below, by coarser cells everywhere; without it eight times the "
+                "first mesh's."),
         number("remesh.compression", "", {0.0, 1.0, true}, "0.005",
-               "Compressive strain allowed over one edge."),
+               "Compressive strain above which cells become finer, so that the cloth can buckle."),
         number("remesh.velocity", "m/s", kPositive, "0.5", "Velocity difference allowed over one edge."),
         number("remesh.aspect", "", {0.0, 0.8, true}, "0.2",
-               "Smallest height of a face relative to its longest edge."),
+               "Smallest height of a face relative to its longest edge; thinner faces are opened."),
 
         tables("obstacle", "A rigid obstacle; its shape is one of `file`, `box`, `points`, `wire`, `teeth`."),
         text("obstacle[].name", KeyType::Name, {}, "(obstacle0, obstacle1, …)",

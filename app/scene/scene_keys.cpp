@@ -75,14 +75,6 @@ std::string_view leaf_name(std::string_view name)
     return name.substr(name.rfind('.') + 1);  // npos + 1 is 0
 }
 
-bool is_built(const SceneKey& key)
-{
-    if (!key.is_built && key.unbuilt_choices.empty()) return false;
-    std::string_view parent = parent_name(key.name);
-    if (parent.ends_with("[]")) parent.remove_suffix(2);
-    return parent.empty() || is_built(*find_scene_key(parent));
-}
-
 std::vector<std::string_view> split_choices(std::string_view choices)
 {
     std::vector<std::string_view> words;
@@ -180,10 +172,12 @@ std::string closest_key(std::string_view parent, std::string_view leaf)
     // A key farther below the same table first.
     const std::string below = parent.empty() ? "" : fmt::format("{}.", parent);
     for (const SceneKey& key : scene_keys())
-        if (!below.empty() && key.name.starts_with(below) && leaf_name(key.name) == leaf && is_built(key))
+        if (!below.empty() && key.name.starts_with(below) && leaf_name(key.name) == leaf)
             return std::string(key.name.substr(below.size()));
+    // In another table: but what is wrong within one value is no key of another effect.
     for (const SceneKey& key : scene_keys())
-        if (leaf_name(key.name) == leaf && is_built(key)) return std::string(key.name);
+        if (parent.find('.') == std::string_view::npos && leaf_name(key.name) == leaf)
+            return std::string(key.name);
     return {};
 }
 

@@ -48,7 +48,6 @@ struct SceneKey {
     /// off.
     std::string_view fallback = {};
     std::string_view sentence = {};
-    bool is_built = true;                   ///< false: the key is an error in this version
     std::string_view unbuilt_choices = {};  ///< values not built yet, separated by '|'; "true" for a Boolean
 };
 
@@ -69,9 +68,6 @@ std::string child_names(std::string_view parent);
 /// Last component: "release" of "pin[].release".
 std::string_view leaf_name(std::string_view name);
 
-/// Whether the key and all its parents are built.
-bool is_built(const SceneKey& key);
-
 /// Splits "a|b|c".
 std::vector<std::string_view> split_choices(std::string_view choices);
 
@@ -82,8 +78,8 @@ bool is_scene_name(std::string_view text);
 std::string allowed_values(const SceneKey& key);
 
 /// Suggestion for the unknown key `leaf` below `parent`: the nearest key below `parent` by edit distance,
-/// else a built key whose last component is `leaf`, farther below `parent` (relative to it) or elsewhere;
-/// "" if there is none.
+/// else a key whose last component is `leaf`, farther below `parent` (relative to it) or, for a key of a
+/// whole table, elsewhere; "" if there is none.
 std::string closest_key(std::string_view parent, std::string_view leaf);
 
 /// "unknown key", with a suggestion or an explanation where there is one.

@@ -15,6 +15,7 @@
 #include "app/scene/scene_estimate.h"
 #include "app/scene/scene_json.h"
 #include "app/scene/scene_obstacles.h"
+#include "app/scene/scene_remeshing.h"
 #include "app/scene/scene_rules.h"
 #include "app/scene/scene_values.h"
 #include "app/scene/scene_warnings.h"
@@ -384,6 +385,8 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     load_obstacles(document, options, std::move(plans), config);
     if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))
         config.scene.eol = make_initial_target(config.cloth);
+    if (json.contains("remesh"))
+        config.scene.remesh = to_remeshing(json["remesh"], config.settings.step, config.cloth);
     const StrainRange placed = measure_strain(config.cloth);
     if (!options.cloth) check_start(document, options, placed, config);
     warn_of_first_keyframes(document, config);

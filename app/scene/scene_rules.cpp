@@ -167,6 +167,14 @@ void check_pull_times(const SceneDocument& document, const std::string& path, co
                   fmt::format("a number > {} (s)", start));
 }
 
+void check_edge_lengths(const SceneDocument& document, const Json& remesh)
+{
+    const double least = remesh["edge_length"][0].get<double>();
+    if (remesh["edge_length"][1].get<double>() > least) return;
+    document.fail("remesh.edge_length", "has a largest edge length that is not above the smallest",
+                  fmt::format("two lengths, the second > {} (m)", least));
+}
+
 /// Requires unique names of obstacles and probes, none of them "cloth".
 void check_names(const SceneDocument& document, const Json& scene)
 {
@@ -201,6 +209,7 @@ void apply_scene_rules(const SceneDocument& document, Json& scene)
     if (scene.contains("pull"))
         for (std::size_t i = 0; i < scene["pull"].size(); ++i)
             check_pull_times(document, fmt::format("pull.{}", i), scene["pull"][i]);
+    if (scene.contains("remesh")) check_edge_lengths(document, scene["remesh"]);
     check_names(document, scene);
 }
 

@@ -265,8 +265,6 @@ Json complete_table(const SceneDocument& document, const SceneValue* value, std:
         const std::string leaf(leaf_name(key->name));
         const std::string key_path = join(path, leaf);
         const SceneValue* written = value ? value->member(leaf) : nullptr;
-        if (written && !is_built(*key))
-            document.fail(key_path, "is not built yet in this version", "a scene without it");
         if (written)
             result[leaf] = complete_value({document, *key, key_path}, *written);
         else if (key->fallback == kRequired)

@@ -44,6 +44,7 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
                 parts = std::max(parts / shrink, 1);
                 shrink = 1;
                 break;
+            case NextAttempt::WithoutRemeshing:
             case NextAttempt::WithoutTurning:
             case NextAttempt::OnNewMesh:
                 break;

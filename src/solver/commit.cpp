@@ -6,6 +6,7 @@
 #include "solver/contact/constraints.h"
 #include "solver/eol/eol_features.h"
 #include "solver/feature_census.h"
+#include "solver/remesh/cell_lengths.h"
 #include "solver/sites/gathering.h"
 
 namespace arris {
@@ -58,6 +59,7 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     ++state.step;
     follow_features(scene.obstacles, state);
     grow_gathering(scene, work.mesh.stars, report.dt, state);
+    follow_wanted_lengths(scene, work.mesh.stars, report.dt, state);
     work.energies.known_at.world.clear();
     if (report.rewound > 0) return;
     work.energies.known = work.energies.proposed;

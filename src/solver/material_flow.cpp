@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "solver/eol/eol_coordinates.h"
+#include "solver/model/cell_length.h"
 #include "solver/model/eol_limits.h"
 
 namespace arris {
@@ -62,7 +63,7 @@ int find_flow_parts(const Scene& scene, const State& state, double dt)
     for (const EolVertex& eol : state.eol) {
         const int v = state.index_of(eol.vertex_id);
         const double way = dt * state.material_velocity[v].norm();
-        most = std::max(most, way / scene.eol->length(state.mesh.material[v]));
+        most = std::max(most, way / cell_length(scene, state, state.mesh.material[v]));
     }
     int parts = 1;
     while (parts < kMostParts && most > parts * kMostCells) parts *= 2;

@@ -18,14 +18,16 @@ struct Rung {
 };
 
 /// The first rung that applies is chosen. Each is bounded: all EOL vertices are given up once, going round
-/// wires and tips stops once, and history is dropped once. New meshes are bounded by kMostOverruns + 1
-/// overruns and kMostOverconstrained demotions, parts by kMostParts.
+/// wires and tips stops once, history is dropped once, and remeshing is left out once. New meshes are bounded
+/// by kMostOverruns + 1 overruns and kMostOverconstrained demotions, parts by kMostParts.
 constexpr Rung kRungs[] = {
     // Without EOL vertices the whole step may succeed, even where the shortest failed with them.
     {NextAttempt::WholeWithoutEol,
      [](const RetryPolicy& policy, const FailedStep& failed) {
          return failed.is_shortest && policy.has_new_mesh() && policy.has_given_up_all();
      }},
+    {NextAttempt::WithoutRemeshing,
+     [](const RetryPolicy& policy, const FailedStep&) { return policy.has_stopped_remeshing(); }},
     // Going round a wire is not part of the equations of motion, so it may have raised the energy.
     {NextAttempt::WithoutTurning,
      [](const RetryPolicy& policy, const FailedStep&) { return policy.has_stopped_turning(); }},
@@ -56,6 +58,11 @@ void RetryPolicy::note(const StepReport& report, Attempt attempt, const State& s
     if (report.status == StepStatus::Done) {
         if (!has_given_up_all_) forget();
         is_staying_ = was_staying;
+        return;
+    }
+    has_stopped_remeshing_ = report.remeshed > 0;
+    if (has_stopped_remeshing_) {
+        flow_.remeshes = false;
         return;
     }
     is_staying_ = was_staying || (report.status == StepStatus::EnergyRise && failure.has_turned);

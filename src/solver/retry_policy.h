@@ -30,12 +30,13 @@ struct Failure {
 
 /// The attempt that follows a failed one.
 enum class NextAttempt {
-    WholeWithoutEol,  ///< the whole planned step, on a mesh without EOL vertices
-    WithoutTurning,   ///< the failed step, without going round wires and tips
-    WithoutHistory,   ///< the failed step, by implicit Euler
-    OnNewMesh,        ///< the failed step, on a mesh that avoids the recorded failures
-    Shorter,          ///< the rest of the step in twice as many parts
-    None              ///< no attempt is left: the step has failed
+    WholeWithoutEol,   ///< the whole planned step, on a mesh without EOL vertices
+    WithoutRemeshing,  ///< the failed step, on a mesh whose cells keep their size
+    WithoutTurning,    ///< the failed step, without going round wires and tips
+    WithoutHistory,    ///< the failed step, by implicit Euler
+    OnNewMesh,         ///< the failed step, on a mesh that avoids the recorded failures
+    Shorter,           ///< the rest of the step in twice as many parts
+    None               ///< no attempt is left: the step has failed
 };
 
 /// A failed attempt, as input of `RetryPolicy::choose_next`.
@@ -65,6 +66,8 @@ class RetryPolicy {
 
     /// Whether the next attempt gets a different mesh.
     bool has_new_mesh() const { return has_new_mesh_; }
+    /// Whether the last attempt's mesh was remeshed, and the next one's is not.
+    bool has_stopped_remeshing() const { return has_stopped_remeshing_; }
     /// Whether EOL vertices went round wires or tips in the last attempt, and no longer do so from the next
     /// on.
     bool has_stopped_turning() const { return has_stopped_turning_; }
@@ -82,7 +85,7 @@ class RetryPolicy {
     int overruns_ = 0;
     int overconstrained_ = 0;
     int unsolved_ = 0;  ///< attempts whose velocity solve failed
-    bool has_new_mesh_ = false, has_stopped_turning_ = false;
+    bool has_new_mesh_ = false, has_stopped_turning_ = false, has_stopped_remeshing_ = false;
     bool is_staying_ = false, has_given_up_all_ = false;
     FailedFlow flow_;
 };

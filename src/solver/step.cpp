@@ -35,6 +35,7 @@
 #include "solver/not_finite.h"
 #include "solver/overconstrained.h"
 #include "solver/relinearization.h"
+#include "solver/remesh/cell_lengths.h"
 #include "solver/step_contacts.h"
 #include "solver/yielding.h"
 
@@ -280,6 +281,7 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
 
     // 1. The mesh, with EOL vertices on the features that press; new elements where the mesh has changed.
     const StepMesh mesh = choose_step_mesh(scene, end, work.retry.flow(), state, work.mesh, report);
+    const bool had_energy = !work.energies.known_at.world.empty();
     if (mesh.is_changed) work.energies.known_at.world.clear();
     State& start = mesh.start;
     watch.lap();
@@ -298,6 +300,8 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
     // Cloth that is compressed exactly in a plane has no force across it, and could never fold by itself.
     seed_buckling(scene, start, work.mesh, work.contacts, work.prediction);
     measure_start_energy(scene, start, work);
+    if (scene.remesh && had_energy)
+        report.remesh_energy = work.energies.start.sum() - work.energies.known.sum();
     report.seconds.move += watch.lap();
 
     // 4 - 6. Solve, propose and check, in bounded rounds: violations become rows. A mesh with EOL vertices
@@ -338,6 +342,7 @@ State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity)
     state.previous_material = state.mesh.material;
     state.previous_material_velocity.assign(n, Vec2::Zero());
     attach_pins(scene, state);
+    start_cell_lengths(scene, state);
     return state;
 }
 

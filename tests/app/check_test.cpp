@@ -37,7 +37,7 @@ TEST(Check, DescribesTheScene)
     EXPECT_THAT(lines, Contains("  gravity: [gravity] is given"));
     EXPECT_THAT(lines, Contains("  wind: no [wind]"));
     EXPECT_THAT(lines, Contains(HasSubstr("  friction: no [friction]: ")));
-    EXPECT_THAT(lines, Contains(HasSubstr("  remesh: not in this version: ")));
+    EXPECT_THAT(lines, Contains(HasSubstr("  remesh: no [remesh]: ")));
     EXPECT_THAT(lines, Contains("  damping: cloth.material.damping is 0 s"));
     EXPECT_THAT(lines, Contains("pin.0: 3 vertices in [[0, 0], [0, 0.5]], at rest, until 0.5 s"));
     EXPECT_THAT(lines, Contains("pull.0: [0, 0, 1] N on 1 vertex of [[2, 0], [2, 0]]"));

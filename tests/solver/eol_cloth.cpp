@@ -184,7 +184,7 @@ ConformOutcome conform_cloth(const EolCloth& cloth, const FailedFlow& failed, co
     RelaxationMemo relaxations;
     const ClothStars stars = cloth.stars();
     return conform_mesh(cloth.scene, kStep, cloth.state, stars,
-                        find_feature_changes(cloth.scene, cloth.state, stars), failed, limits, relaxations);
+                        find_mesh_changes(cloth.scene, cloth.state, stars), failed, limits, relaxations);
 }
 
 ConformedMesh take(EolCloth& cloth)

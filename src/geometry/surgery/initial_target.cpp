@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/surgery/material_location.h"
@@ -173,12 +174,12 @@ class InitialMesh {
 
 MeshTarget make_initial_target(const ClothMesh& initial, double most_angle)
 {
-    const InitialMesh mesh(initial, most_angle);
-    return {[mesh](const Vec2& X) { return mesh.length(X); },
-            [mesh](const Vec2& X) { return mesh.angle(X); },
-            mesh.mean_length(),
-            mesh.shortest(),
-            mesh.longest(),
+    const auto mesh = std::make_shared<const InitialMesh>(initial, most_angle);
+    return {[mesh](const Vec2& X) { return mesh->length(X); },
+            [mesh](const Vec2& X) { return mesh->angle(X); },
+            mesh->mean_length(),
+            mesh->shortest(),
+            mesh->longest(),
             most_angle};
 }
 

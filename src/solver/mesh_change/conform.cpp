@@ -10,8 +10,10 @@
 #include "solver/mesh_change/self_guard.h"
 #include "solver/mesh_change/site_insertion.h"
 #include "solver/mesh_change/way_clearing.h"
+#include "solver/model/cell_length.h"
 #include "solver/model/eol_limits.h"
 #include "solver/model/pin_targets.h"
+#include "solver/remesh/misfits.h"
 #include "solver/sites/trace_mesh.h"
 #include "solver/sites/trace_order.h"
 
@@ -40,7 +42,6 @@ class Conforming {
     Conforming(const Scene& scene, double dt, const State& state, const ClothStars& stars,
                const FailedFlow& failed, const ConformLimits& limits, RelaxationMemo& relaxations)
         : scene_(scene),
-          target_(*scene.eol),
           failed_(failed),
           limits_(limits),
           trace_(scene, state, stars, find_pinned(scene, state, state.time + dt)),
@@ -60,14 +61,14 @@ class Conforming {
         });
     }
 
-    ConformOutcome run(const FeatureChanges& changes)
+    ConformOutcome run(const MeshChanges& changes)
     {
         std::optional<ConformedMesh> mesh = find_mesh(changes);
         return {std::move(mesh), refused_.list(), lost_, blocked_, guard_.relies_at()};
     }
 
   private:
-    std::optional<ConformedMesh> find_mesh(const FeatureChanges& changes)
+    std::optional<ConformedMesh> find_mesh(const MeshChanges& changes)
     {
         // Release vertices without retention, and vertices on which attempts at this step have failed.
         for (const EolRelease& release : changes.released) demote_to_row(release.vertex, release.cause);
@@ -84,14 +85,29 @@ class Conforming {
         // Insert new vertices, join them along features, and clean up around all of them.
         insert(changes.sites);
         join();
-        clean_up(surgery_, target_);
+        clean_up(surgery_, trace_.target());
+        remesh(changes.misfits);
         if (insertion_.inserted() > 0) {  // the ways of new vertices must be clear, too
             clear_ways();
-            clean_up(surgery_, target_);
+            clean_up(surgery_, trace_.target());
         }
         report_.inserted = insertion_.inserted();
         if (surgery_.events().empty() && report_.released == 0 && report_.inserted == 0) return std::nullopt;
         return result();
+    }
+
+    /// Clean-up does what misfits need, once it comes to where they are.
+    void remesh(const std::vector<std::array<VertexId, 2>>& misfits)
+    {
+        if (misfits.empty()) return;
+        for (const auto& [a, b] : misfits) {
+            if (!surgery_.has_edge(a, b)) continue;
+            surgery_.touch(a);
+            surgery_.touch(b);
+        }
+        const std::size_t before = surgery_.events().size();
+        clean_up(surgery_, trace_.target());
+        report_.remeshed = static_cast<int>(surgery_.events().size() - before);
     }
 
     void clear_ways()
@@ -126,7 +142,7 @@ class Conforming {
     bool has_failed_near(const Vec2& material) const
     {
         constexpr double kNear = 0.5;  // target lengths: clean-up may have moved the vertex
-        return failed_.has_failed_near(material, kNear * target_.length(material));
+        return failed_.has_failed_near(material, kNear * trace_.target().length(material));
     }
 
     /// Takes a vertex off its trace: its contact becomes a row.
@@ -155,7 +171,7 @@ class Conforming {
         if (surgery_.has_edge(a, b))
             surgery_.set_edge_tag(a, b, tag);
         else if (share_neighbours(a, b))
-            join_trace_vertices(surgery_, target_, a, b, tag);
+            join_trace_vertices(surgery_, trace_.target(), a, b, tag);
     }
 
     /// Whether two vertices lie opposite each other across one edge.
@@ -185,7 +201,6 @@ class Conforming {
     }
 
     const Scene& scene_;
-    const MeshTarget& target_;
     const FailedFlow& failed_;
     const ConformLimits& limits_;
     TraceMesh trace_;
@@ -202,17 +217,23 @@ class Conforming {
 
 }  // namespace
 
-FeatureChanges find_feature_changes(const Scene& scene, const State& state, const ClothStars& stars)
+MeshChanges find_mesh_changes(const Scene& scene, const State& state, const ClothStars& stars)
 {
-    if (!scene.eol) return {};
-    return {find_releases(scene, state, stars), find_feature_sites(scene, state, stars)};
+    MeshChanges changes;
+    if (scene.eol) {
+        changes.released = find_releases(scene, state, stars);
+        changes.sites = find_feature_sites(scene, state, stars);
+    }
+    changes.misfits = find_misfits(scene, state, stars.topology);
+    return changes;
 }
 
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
-                            const FeatureChanges& changes, const FailedFlow& failed,
-                            const ConformLimits& limits, RelaxationMemo& relaxations)
+                            const MeshChanges& changes, const FailedFlow& failed, const ConformLimits& limits,
+                            RelaxationMemo& relaxations)
 {
-    if (!scene.eol || (state.eol.empty() && state.active.empty())) return {};
+    if (!changes_mesh(scene)) return {};
+    if (state.eol.empty() && state.active.empty() && changes.misfits.empty()) return {};
     if (changes.empty() && failed.empty() && !is_flowing(state)) return {};
     return Conforming(scene, dt, state, stars, failed, limits, relaxations).run(changes);
 }

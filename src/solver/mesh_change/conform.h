@@ -5,6 +5,7 @@
 // row, which is always safe.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -23,6 +24,7 @@ namespace arris {
 
 struct ConformReport {
     int inserted = 0, released = 0;
+    int remeshed = 0;  ///< operations where edges missed their cells' length
 };
 
 /// The mesh after surgery, and its EOL vertices.
@@ -33,15 +35,16 @@ struct ConformedMesh {
     ConformReport report;
 };
 
-/// Changes of the mesh that features require, before any limit on strain.
-struct FeatureChanges {
-    std::vector<EolRelease> released;  ///< in the order of the state's EOL vertices
-    std::vector<FeatureSite> sites;    ///< where new EOL vertices may be
-    bool empty() const { return released.empty() && sites.empty(); }
+/// Changes of the mesh that features and cell lengths require, before any limit on strain.
+struct MeshChanges {
+    std::vector<EolRelease> released;              ///< in the order of the state's EOL vertices
+    std::vector<FeatureSite> sites;                ///< where new EOL vertices may be
+    std::vector<std::array<VertexId, 2>> misfits;  ///< edges to split or merge (remesh/misfits.h)
+    bool empty() const { return released.empty() && sites.empty() && misfits.empty(); }
 };
 
-/// Finds releases and sites. `stars` belong to the state. Empty in a scene without EOL vertices.
-FeatureChanges find_feature_changes(const Scene& scene, const State& state, const ClothStars& stars);
+/// Finds these changes. `stars` belong to the state. Empty in a scene without EOL vertices and remeshing.
+MeshChanges find_mesh_changes(const Scene& scene, const State& state, const ClothStars& stars);
 
 /// Limits for making a mesh: on strain, and on EOL vertices that clearing loses.
 struct ConformLimits {
@@ -65,11 +68,12 @@ struct ConformOutcome {
 };
 
 /// Makes the mesh for the next step, of at most `dt` (s). Inserts EOL vertices where features pressed,
-/// releases others by `decide_retention`, clears the way of sliding ones and cleans up behind them. `stars`
+/// releases others by `decide_retention`, clears the way of sliding ones and cleans up behind them; splits
+/// and merges edges that miss their cells. `stars`
 /// and `changes` belong to the state, `relaxations` to the scene. Returns no mesh where nothing changes, or
 /// where clearing exceeds `limits.lost` or `limits.blocked`.
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
-                            const FeatureChanges& changes, const FailedFlow& failed,
-                            const ConformLimits& limits, RelaxationMemo& relaxations);
+                            const MeshChanges& changes, const FailedFlow& failed, const ConformLimits& limits,
+                            RelaxationMemo& relaxations);
 
 }  // namespace arris

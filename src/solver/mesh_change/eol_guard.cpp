@@ -8,6 +8,7 @@
 #include "geometry/sort_unique.h"
 #include "solver/mesh_change/strain_allowance.h"
 #include "solver/mesh_change/surgery_energy.h"
+#include "solver/model/cell_length.h"
 
 namespace arris {
 
@@ -60,7 +61,7 @@ double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) con
                 squared_speed = std::max(squared_speed, state_.velocity[v].squaredNorm());
     }
     const double motion = 0.5 * scene_.material.density * area * squared_speed +
-                          weight_over(scene_, area, scene_.eol->length(event.before[0].material[0]));
+                          weight_over(scene_, area, cell_length(scene_, state_, event.before[0].material[0]));
     constexpr double kStrain = 1e-6;  // invisible; unstrained cloth at rest has only round-off
     const double unseen = scene_.material.youngs_modulus * area * kStrain * kStrain;
     return (is_clearing_ ? clearing : 1.0) * (kShare * elastic_energy + kAllowedStrain * motion + unseen);

@@ -157,6 +157,7 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     after.active = before.active;
     after.self = before.self;
     if (after.mesh.faces == before.mesh.faces) after.coupled = before.coupled;
+    after.cell_lengths = before.cell_lengths;
     after.crossings = before.crossings;
     const std::size_t n = after.ids.size();
     after.velocity.resize(n);

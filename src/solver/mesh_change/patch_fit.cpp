@@ -10,6 +10,7 @@
 #include "solver/eol/eol_coordinates.h"
 #include "solver/mesh_change/patch_relaxation.h"
 #include "solver/mesh_change/strain_allowance.h"
+#include "solver/model/cell_length.h"
 #include "solver/model/pin_targets.h"
 
 namespace arris {
@@ -34,7 +35,8 @@ class PatchFitter {
     {
         TransferReport report;
         std::vector<VelocityField> fields;
-        for (const ChangedPatch& patch : patches) fields.push_back(old_field(patch));
+        for (const ChangedPatch& patch : patches)
+            fields.push_back(old_field(patch, before_.velocity, before_.material_velocity));
         for (const StrainedPatch& strained : find_strained(patches, fields)) {
             const ChangedPatch& patch = patches[strained.index];
             const double gain = relax_patch(patch, strained.energy_before);
@@ -69,7 +71,7 @@ class PatchFitter {
             const double gain = find_patch_energy(scene_, creases_, after_.mesh, patch.faces) - before;
             if (!(gain > 0.0)) continue;
             const double kinetic = compute_kinetic_energy(scene_.material.density, fields[i]);
-            const double bound = gain / moving_energy(kinetic, area_of(patch), scene_.eol->shortest);
+            const double bound = gain / moving_energy(kinetic, area_of(patch), shortest_cell(scene_));
             strained.push_back({i, before, kinetic, bound});
         }
         std::stable_sort(
@@ -78,7 +80,8 @@ class PatchFitter {
         return strained;
     }
 
-    VelocityField old_field(const ChangedPatch& patch) const
+    VelocityField old_field(const ChangedPatch& patch, const std::vector<Vec3>& velocity,
+                            const std::vector<Vec2>& flow) const
     {
         VelocityField field;
         for (const int f : patch.faces_before) {
@@ -90,8 +93,7 @@ class PatchFitter {
                 x[i] = before_.mesh.world[face[i]];
             }
             const Mat32 F = deformation_gradient(X, x);
-            for (int i = 0; i < 3; ++i)
-                w[i] = before_.velocity[face[i]] - F * before_.material_velocity[face[i]];
+            for (int i = 0; i < 3; ++i) w[i] = velocity[face[i]] - F * flow[face[i]];
             field.triangles.push_back(X);
             field.velocity.push_back(w);
         }
@@ -150,13 +152,13 @@ class PatchFitter {
     {
         const double area = area_of(patch);
         const auto strain = [&](double cell) { return gain / moving_energy(kinetic, area, cell); };
-        const double bound = strain(scene_.eol->shortest);
+        const double bound = strain(shortest_cell(scene_));
         if (!(bound > small)) return bound;
         double cell = 0.0;
         int last = -1;
         for (const int f : patch.faces)
             if (const int v = after_.mesh.faces[f][0]; v != last)
-                cell = std::max(cell, scene_.eol->length(after_.mesh.material[last = v]));
+                cell = std::max(cell, cell_length(scene_, after_, after_.mesh.material[last = v]));
         return strain(cell);
     }
 
@@ -172,12 +174,42 @@ class PatchFitter {
             const Face& face = after_.mesh.faces[f];
             patch.faces.push_back({local_[face[0]], local_[face[1]], local_[face[2]]});
         }
+        if (const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch))
+            for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
+                after_.velocity[changed.vertices[i]] = fit->velocity[i];
+                after_.material_velocity[changed.vertices[i]] = fit->material_velocity[i];
+            }
+        if (is_free_of_eol(changed)) fit_history(changed, std::move(patch));
+    }
+
+    /// Whether no material has flowed through the patch lately.
+    bool is_free_of_eol(const ChangedPatch& changed) const
+    {
+        const auto is_still = [](const State& state, int v) {
+            return state.eol_entry(state.ids[v]) < 0 && state.previous_material_velocity[v].isZero(0.0);
+        };
+        return std::all_of(changed.vertices.begin(), changed.vertices.end(),
+                           [&](int v) { return is_still(after_, v); }) &&
+               std::all_of(changed.faces_before.begin(), changed.faces_before.end(), [&](int f) {
+                   const Face& face = before_.mesh.faces[f];
+                   return std::all_of(face.begin(), face.end(), [&](int v) { return is_still(before_, v); });
+               });
+    }
+
+    /// Fits BDF2's velocity of one step ago, too: its momentum enters the step's. Beside EOL vertices, whose
+    /// features give and take momentum, the surface's velocity there stands.
+    void fit_history(const ChangedPatch& changed, FitPatch patch)
+    {
+        if (!(before_.previous_dt > 0.0)) return;
+        for (std::size_t i = 0; i < changed.vertices.size(); ++i)
+            patch.drift[i] =
+                patch.is_free[i] ? Vec3(Vec3::Zero()) : after_.previous_velocity[changed.vertices[i]];
+        const VelocityField old =
+            old_field(changed, before_.previous_velocity, before_.previous_material_velocity);
         const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch);
         if (!fit) return;
-        for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
-            after_.velocity[changed.vertices[i]] = fit->velocity[i];
-            after_.material_velocity[changed.vertices[i]] = fit->material_velocity[i];
-        }
+        for (std::size_t i = 0; i < changed.vertices.size(); ++i)
+            after_.previous_velocity[changed.vertices[i]] = fit->velocity[i];
     }
 
     void add_vertex(int v, bool is_inside, FitPatch& patch)

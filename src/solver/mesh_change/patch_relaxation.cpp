@@ -19,6 +19,7 @@
 #include "physics/term.h"
 #include "solver/mesh_change/patch_equations.h"
 #include "solver/mesh_change/strain_allowance.h"
+#include "solver/model/cell_length.h"
 
 namespace arris {
 
@@ -37,8 +38,9 @@ Terms make_energy_terms(const Scene& scene)
 double find_step_time(const Scene& scene)
 {
     const double weight = scene.gravity ? scene.gravity->acceleration.norm() : 0.0;
-    if (!(weight > 0.0) || !scene.eol) return 1.0;
-    return std::min(1.0, std::sqrt(kAllowedStrain * scene.eol->mean_length / (kMostSteps * weight)));
+    if (!(weight > 0.0) || !changes_mesh(scene)) return 1.0;
+    return std::min(1.0,
+                    std::sqrt(kAllowedStrain * initial_target(scene).mean_length / (kMostSteps * weight)));
 }
 
 /// Creases within a part of the cloth, whose vertex i is `vertices[i]` of the whole.
@@ -98,6 +100,13 @@ class Relaxation {
         return energy_ <= wanted;
     }
 
+    /// Lowers the energy to `wanted`, or as far as the steps go.
+    void run_on(double wanted)
+    {
+        for (int left = kMostSteps; left > 0 && energy_ > wanted; --left)
+            if (!descend(wanted)) return;
+    }
+
     /// Goes back along the last step to where the energy has just fallen to `wanted`: strain that the cloth
     /// had before must remain.
     void rise_to(double wanted)
@@ -122,15 +131,18 @@ class Relaxation {
     double energy() const { return energy_; }
     const std::vector<Vec3>& world() const { return patch_.mesh.world; }
 
-    bool is_way_free(const std::vector<Vec3>& begin, double time) const
+    /// Faces that meet an obstacle on the way from `begin`.
+    std::vector<int> find_met_faces(const std::vector<Vec3>& begin, double time) const
     {
+        std::vector<int> met;
         for (const Obstacle& obstacle : scene_.obstacles) {
             const Placement now = obstacle.at(time);
             const ClothMotion motion = {&patch_.mesh.faces, &edges_, to_frame(now, begin),
                                         to_frame(now, patch_.mesh.world)};
-            if (!check_sweep(obstacle, motion, scene_.material.thickness).is_clean()) return false;
+            const SweepReport swept = check_sweep(obstacle, motion, scene_.material.thickness);
+            met.insert(met.end(), swept.faces.begin(), swept.faces.end());
         }
-        return true;
+        return met;
     }
 
     /// Moves vertices that came within the stand-off back towards `begin` by halves, at last all the way,
@@ -302,7 +314,7 @@ bool is_stuck(const State& state, std::uint32_t vertex_id)
 
 double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state)
 {
-    constexpr int kMostHalvings = 4;
+    constexpr int kMostRetreats = 4;
     constexpr double kRounding = 1e-9;  // of sums over the patch: a split does not change the energy
     SubMesh part = extract_faces(state.mesh, patch.faces);
     LoosePatch loose{std::move(part.mesh), {}, {}, find_part(creases, part.vertices)};
@@ -310,28 +322,33 @@ double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& pat
         loose.is_free.push_back(patch.is_free[v]);
         loose.normals.push_back(patch.normals[v]);
     }
-    Relaxation relaxation(scene, std::move(loose));
-    const std::vector<Vec3> begin = relaxation.world();
-    const double before = relaxation.energy();
-    if (before - patch.wanted <= kRounding * std::abs(patch.wanted)) return before;
-    relaxation.run(patch.wanted);
-    relaxation.rise_to(patch.wanted);
-    relaxation.keep_off(begin, state.time);
-    if (!(relaxation.energy() < before)) return before;
-    const auto is_way_free = [&] {
-        return relaxation.is_way_free(begin, state.time) &&
-               is_way_free_of_cloth(scene, state, part.vertices, begin, relaxation.world());
-    };
-    for (int k = 0; !is_way_free(); ++k) {
-        if (k == kMostHalvings) return before;
-        relaxation.go_back_half(begin);
+    const std::vector<Vec3> begin = loose.mesh.world;
+    for (int k = 0; k < kMostRetreats; ++k) {
+        Relaxation relaxation(scene, loose);
+        const double before = relaxation.energy();
+        if (before - patch.wanted <= kRounding * std::abs(patch.wanted)) return before;
+        relaxation.run_on(patch.wanted);
+        relaxation.rise_to(patch.wanted);
+        relaxation.keep_off(begin, state.time);
+        if (!(relaxation.energy() < before)) return before;
+        std::vector<int> met = relaxation.find_met_faces(begin, state.time);
+        // Faces that meet an obstacle stay where they are, and the others give way once more.
+        for (const int f : met)
+            for (const int v : loose.mesh.faces[f]) loose.is_free[v] = 0;
+        if (!met.empty()) continue;
+        for (int halvings = 0; !is_way_free_of_cloth(scene, state, part.vertices, begin, relaxation.world());
+             ++halvings) {
+            if (halvings == kMostRetreats) return before;
+            relaxation.go_back_half(begin);
+        }
+        for (std::size_t i = 0; i < begin.size(); ++i) {
+            const Vec3 moved = relaxation.world()[i] - begin[i];
+            state.mesh.world[part.vertices[i]] += moved;
+            state.previous_world[part.vertices[i]] += moved;
+        }
+        return relaxation.energy();
     }
-    for (std::size_t i = 0; i < begin.size(); ++i) {
-        const Vec3 moved = relaxation.world()[i] - begin[i];
-        state.mesh.world[part.vertices[i]] += moved;
-        state.previous_world[part.vertices[i]] += moved;
-    }
-    return relaxation.energy();
+    return find_patch_energy(scene, creases, state.mesh, patch.faces);
 }
 
 bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop)

@@ -25,12 +25,12 @@ Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vert
 bool is_stuck(const State& state, std::uint32_t vertex_id);
 
 /// Moves free vertices in the world until the patch's stretch, bending and gravity energy has fallen to
-/// `wanted`. Stops earlier once a few steps are known not to reach `wanted`. Returns the energy, J. As in the
+/// `wanted`, or as far as a few steps go. Returns the energy, J. As in the
 /// pop filter of Narain, Pfaff and O'Brien 2013: otherwise a mesh change that strains the cloth would push it
 /// visibly. The vertices take a few implicit steps from rest. These are so short that falling cannot visibly
 /// pay for the strain of unsupported cloth. No vertex comes nearer to an obstacle than the stand-off or its
-/// current distance. The path is checked against obstacles: if not free, it is halved a few times, then not
-/// taken. History moves along, so that no velocity results. `creases` belong to the state.
+/// current distance. The path is checked: faces that meet an obstacle on it stay where they are, and all of it
+/// is halved where it meets the cloth itself; after a few such retreats nothing moves. History moves along, so that no velocity results. `creases` belong to the state.
 double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state);
 
 /// A patch as a mesh of its own; one entry a vertex.

@@ -61,7 +61,7 @@ std::optional<RowCause> SiteInsertion::insert_vertex(const FeatureSite& site, co
 TraceInsertion SiteInsertion::make_vertex(const Vec2& material, VertexId near, const TraceVertex& wanted)
 {
     making_ = &wanted;
-    const TraceInsertion made = insert_trace_point(trace_.surgery(), *scene_.eol, material, near, wanted);
+    const TraceInsertion made = insert_trace_point(trace_.surgery(), trace_.target(), material, near, wanted);
     ways_.erase_coming(proposed_);  // the last proposal need not be the one that was made
     if (made.verdict == Verdict::Done && !trace_.find(made.vertex)) ways_.add_coming(made.vertex, wanted.way);
     making_ = nullptr;
@@ -84,7 +84,7 @@ std::optional<VertexId> SiteInsertion::find_beside(const FeatureSite& bend) cons
 {
     const ClothSurgery& surgery = trace_.surgery();
     const int tag = trace_.tags().tag(bend.on);
-    const double h = scene_.eol->length(bend.material);
+    const double h = trace_.target().length(bend.material);
     double least = kSlidingBeside * h;
     std::optional<VertexId> nearest;
     for (const EolVertex& e : trace_.eol()) {

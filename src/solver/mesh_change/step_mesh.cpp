@@ -15,6 +15,7 @@
 #include "solver/mesh_change/mesh_transfer.h"
 #include "solver/mesh_change/relaxation_memo.h"
 #include "solver/mesh_change/strain_allowance.h"
+#include "solver/model/cell_length.h"
 #include "solver/model/stopwatch.h"
 
 namespace arris {
@@ -85,10 +86,11 @@ class MeshTries {
           state_(state),
           cache_(cache),
           failed_(failed),
-          changes_(find_feature_changes(scene, state, cache.stars)),
+          changes_(find_mesh_changes(scene, state, cache.stars)),
           watch_(watch),
           seconds_(seconds)
     {
+        if (!failed.remeshes) changes_.misfits.clear();
     }
 
     /// The best candidate. No mesh where the best one strains the cloth by more than kMostStrain: the step
@@ -96,6 +98,10 @@ class MeshTries {
     TriedMesh find_best()
     {
         TriedMesh best = choose();
+        if (best.outcome.mesh && best.outcome.mesh->report.remeshed > 0 && crosses_itself(best)) {
+            changes_.misfits.clear();
+            best = choose();
+        }
         const bool is_crossing = crosses_itself(best);
         if (!is_crossing &&
             (best.strain() <= kMostStrain || !failed_.given_up.empty() || !failed_.made_at.empty()))
@@ -137,12 +143,39 @@ class MeshTries {
     /// strained. The last try is a mesh made by force, where vertices are blocked or care has lost some.
     TriedMesh choose()
     {
-        TriedMesh giving = make({});
+        TriedMesh giving = make_without_strain();
         carry_over(giving, kTraceStrain);
         const int lost = giving.outcome.lost;
         TriedMesh careful = more_careful(std::move(giving));
         const bool is_costly = careful.outcome.lost > lost;
         return or_forced(std::move(careful), is_costly);
+    }
+
+    /// Makes a mesh in which no edge is mended where that strains the cloth: such edges wait.
+    TriedMesh make_without_strain()
+    {
+        constexpr int kMostTries = 2;
+        TriedMesh made = make({});
+        for (int k = 0; !changes_.misfits.empty(); ++k) {
+            carry_over(made, kAny);
+            if (made.strain() <= kPatchStrain) break;
+            if (k == kMostTries || !drop_strained_misfits(made)) changes_.misfits.clear();
+            made = make({});
+        }
+        return made;
+    }
+
+    /// Drops the misfits in strained patches; false where there are none.
+    bool drop_strained_misfits(const TriedMesh& made)
+    {
+        std::vector<VertexId> strained;
+        for (const std::vector<VertexId>& patch : made.transferred.strained)
+            strained.insert(strained.end(), patch.begin(), patch.end());
+        sort_unique(strained);
+        return std::erase_if(changes_.misfits, [&](const std::array<VertexId, 2>& edge) {
+                   return std::binary_search(strained.begin(), strained.end(), edge[0]) ||
+                          std::binary_search(strained.begin(), strained.end(), edge[1]);
+               }) > 0;
     }
 
     /// Makes a strained mesh again, with care at the strained patches known so far (a transfer stops at the
@@ -227,7 +260,7 @@ class MeshTries {
     const State& state_;
     const MeshCache& cache_;
     const FailedFlow& failed_;
-    FeatureChanges changes_;
+    MeshChanges changes_;
     RelaxationMemo relaxations_;
     Stopwatch& watch_;
     PhaseSeconds& seconds_;
@@ -242,13 +275,14 @@ StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& fail
     prepare_stars(state, cache);
     report.seconds.move += watch.lap();
     TriedMesh best;
-    if (scene.eol)
+    if (changes_mesh(scene))
         best = MeshTries(scene, end - state.time, state, cache, failed, watch, report.seconds).find_best();
     cache.refused = std::move(best.outcome.refused);
     const bool is_new = best.outcome.mesh.has_value();
     if (is_new) {
         report.inserted = best.outcome.mesh->report.inserted;
         report.released = best.outcome.mesh->report.released;
+        report.remeshed = best.outcome.mesh->report.remeshed;
         cache.conformed = std::move(*best.state);
         cache.stars = std::move(best.stars);
         cache.faces_of_stars = cache.conformed.mesh.faces;

@@ -13,7 +13,7 @@ namespace arris {
 void WayClearing::expect_flow(VertexId v, const Vec2& failed)
 {
     if (!trace_.is_on_trace(v)) return;
-    const double cell = scene_.eol->length(trace_.surgery().material(v)) / soon_;
+    const double cell = trace_.target().length(trace_.surgery().material(v)) / soon_;
     const double most = std::max(2.0 * trace_.flow(v).norm(), cell);
     trace_.set_flow(v, failed * std::min(1.0, most / failed.norm()));
 }
@@ -48,7 +48,7 @@ std::vector<TraceAdvance> WayClearing::find_advances() const
 ClearanceReport WayClearing::clear(const std::vector<TraceAdvance>& advances)
 {
     guard_.set_clearing(true);
-    ClearanceReport cleared = clear_ahead(trace_.surgery(), *scene_.eol, advances);
+    ClearanceReport cleared = clear_ahead(trace_.surgery(), trace_.target(), advances);
     guard_.set_clearing(false);
     ways_ = cleared.ways;
     needed_ = cleared.needed;

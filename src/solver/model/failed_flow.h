@@ -14,6 +14,7 @@ namespace arris {
 struct FailedFlow {
     std::map<VertexId, Vec2> flow;  ///< m/s: a flow for which the mesh had too little material at that vertex
     std::set<VertexId> given_up;    ///< vertices without room in any attempt: they are released
+    bool remeshes = true;           ///< whether edges that miss their cells' length are still mended
     std::vector<Vec2> made_at = {};  ///< material, m: places where new EOL vertices had too little material
     /// Whether one of `made_at` is nearer than `reach` (m) to a material point.
     bool has_failed_near(const Vec2& material, double reach) const

@@ -12,6 +12,7 @@
 #include "geometry/rigid_motion.h"
 #include "physics/effects.h"
 #include "physics/material.h"
+#include "solver/model/remeshing.h"
 
 namespace arris {
 
@@ -49,6 +50,7 @@ struct Scene {
     std::optional<Friction> friction;
     std::optional<ClothContact> self_contact;
     std::optional<MeshTarget> eol;  ///< target of the mesh near features; no EOL vertices without it
+    std::optional<Remeshing> remesh;
 };
 
 /// Whether any obstacle has a sharp edge, corner, wire or point.

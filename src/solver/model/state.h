@@ -86,6 +86,8 @@ struct State {
     /// Pairs of vertices that contacts of the cloth with itself couple in the matrix, ascending: they decide
     /// the order of elimination, and so the last bits of a step.
     std::vector<std::array<int, 2>> coupled;
+    /// Target edge lengths at the nodes of the scene's remeshing grid, m; empty without remeshing.
+    std::vector<float> cell_lengths;
     std::int64_t crossings = 0;  ///< passages through obstacles so far
 
     /// Index of the vertex with this id; -1 without such a vertex.

@@ -73,6 +73,8 @@ struct StepReport {
     int sticking = 0, sliding = 0;   ///< contacts with friction
     int eol_vertices = 0;
     int inserted = 0, released = 0;  ///< EOL vertices
+    int remeshed = 0;                ///< operations on edges that missed their cells' length
+    double remesh_energy = 0.0;      ///< J, added by all changes of the mesh, with remeshing
     PhaseSeconds seconds;
 
     void add_cost(const StepReport& other)

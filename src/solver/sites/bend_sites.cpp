@@ -11,6 +11,7 @@
 #include "geometry/closest_point.h"
 #include "geometry/obstacle/feature_path.h"
 #include "solver/eol/eol_features.h"
+#include "solver/model/cell_length.h"
 #include "solver/model/eol_limits.h"
 
 namespace arris {
@@ -122,14 +123,14 @@ class BendFinder {
     std::optional<FeatureSite> between(const Place& p, const Place& q, const std::vector<WireBend>& bends,
                                        double length) const
     {
-        const double cell = scene_.eol->length(p.material);
+        const double cell = cell_length(scene_, state_, p.material);
         if (!((p.material - q.material).norm() < kLongEdge * cell)) return std::nullopt;
         const WireBend* worst = nullptr;
         double most = kMissedByChord * scene_.material.thickness;
         for (const WireBend& bend : bends)
             for (const double along : {bend.along, bend.along + length}) {
                 if (!(along > p.along && along < q.along) || bend.point == p.bend || bend.point == q.bend ||
-                    !locks_at_bend(scene_, obstacle_, bend.bend, p.material))
+                    !locks_at_bend(scene_, state_, obstacle_, bend.bend, p.material))
                     continue;
                 const Vec3& at = obstacle_.mesh().points[static_cast<std::size_t>(bend.point)];
                 const double s = closest_on_segment(at, p.point, q.point);
@@ -181,10 +182,10 @@ class BendFinder {
 
 }  // namespace
 
-bool locks_at_bend(const Scene& scene, const Obstacle& obstacle, const FeatureBend& bend,
+bool locks_at_bend(const Scene& scene, const State& state, const Obstacle& obstacle, const FeatureBend& bend,
                    const Vec2& material)
 {
-    const double half_cell = 0.5 * scene.eol->length(material);
+    const double half_cell = 0.5 * cell_length(scene, state, material);
     return missed_by_chord(obstacle, bend, half_cell) > kMissedByChord * scene.material.thickness;
 }
 

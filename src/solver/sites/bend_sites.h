@@ -18,7 +18,7 @@ namespace arris {
 /// Whether a vertex is locked at this bend: a chord over a cell of the cloth at `material` misses the bend by
 /// more than 0.3 thicknesses. Sliding vertices can follow a wire of shorter edges as well as the cells allow.
 /// Vertices locked nearer to each other than a cell would hold the cloth.
-bool locks_at_bend(const Scene& scene, const Obstacle& obstacle, const FeatureBend& bend,
+bool locks_at_bend(const Scene& scene, const State& state, const Obstacle& obstacle, const FeatureBend& bend,
                    const Vec2& material);
 
 /// Site at a bend of obstacle `o`, in a face, on an edge or at a vertex of the cloth: `vertices`, -1 where

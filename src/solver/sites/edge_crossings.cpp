@@ -13,6 +13,7 @@
 #include "geometry/sort_unique.h"
 #include "solver/eol/eol_features.h"
 #include "solver/eol/wire_fold.h"
+#include "solver/model/cell_length.h"
 #include "solver/sites/wire_end.h"
 
 namespace arris {
@@ -31,7 +32,7 @@ EdgeCrossings::EdgeCrossings(const Scene& scene, const State& state, const Cloth
       obstacle_(scene.obstacles[obstacle]),
       o_(obstacle),
       thickness_(scene.material.thickness),
-      target_(*scene.eol),
+      target_(surgery_target(scene, state)),
       positions_(to_frame(obstacle_.at(state.time), state.mesh.world))
 {
 }

@@ -69,7 +69,7 @@ class EdgeCrossings {
     const Obstacle& obstacle_;
     std::int32_t o_;
     double thickness_;
-    const MeshTarget& target_;
+    MeshTarget target_;
     std::vector<Vec3> positions_;
 };
 

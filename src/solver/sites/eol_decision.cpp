@@ -9,6 +9,7 @@
 #include "geometry/obstacle/feature_path.h"
 #include "solver/eol/eol_features.h"
 #include "solver/eol/free_fold.h"
+#include "solver/model/cell_length.h"
 #include "solver/sites/border_room.h"
 #include "solver/sites/gathering.h"
 #include "solver/sites/wire_end.h"
@@ -93,7 +94,7 @@ bool is_on_feature(const Scene& scene, const State& state, const EolVertex& eol,
     const Vec2& X = state.mesh.material[state.index_of(eol.vertex_id)];
     return end < 0 || length_past_end(obstacle, eol.on.index, place) <
                           reach_past_end(obstacle, eol.on.index, end, scene.material.thickness, kPastEnd.stay,
-                                         scene.eol->length(X));
+                                         cell_length(scene, state, X));
 }
 
 /// Whether an EOL vertex is so near to the cloth's border that it is released.
@@ -103,7 +104,7 @@ bool is_at_border(const Scene& scene, const State& state, const ClothStars& star
     const Vec2& X = state.mesh.material[v];
     const double wanted = room_wanted(kRoomToStay, eol.on);
     const double room = room_to_border(scene, state, stars, X, v, stars.border_neighbours[v][0] >= 0, eol);
-    return !(room > wanted * scene.eol->longest) && !(room > wanted * scene.eol->length(X));
+    return !(room > wanted * longest_cell(scene)) && !(room > wanted * cell_length(scene, state, X));
 }
 
 }  // namespace
@@ -122,7 +123,7 @@ std::optional<RowCause> EolAdmission::find_refusal(const FeatureSite& site, int 
 std::optional<RowCause> EolAdmission::find_border_cause(const FeatureSite& site, int v,
                                                         const Vec2& flow) const
 {
-    const double h = scene_.eol->length(site.material);
+    const double h = cell_length(scene_, state_, site.material);
     const EolVertex eol{site.near, site.on, site.outward, 0};
     if (site.is_on_border && site.on.is_bend()) return RowCause::NearBorder;
     if (site.is_on_border && !site.on.is_corner() && is_along_border(scene_, state_, stars_, site.edge, eol))
@@ -157,7 +158,7 @@ bool EolAdmission::is_beside_other(const FeatureSite& site) const
     if (site.on.is_corner()) return false;
     const Obstacle& obstacle = scene_.obstacles[site.on.obstacle];
     const std::vector<FeatureEdge>& edges = obstacle.features().edges;
-    const double h = scene_.eol->length(site.material);
+    const double h = cell_length(scene_, state_, site.material);
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
         if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
             edges[e.on.index].polyline == edges[site.on.index].polyline ||
@@ -201,7 +202,7 @@ std::optional<RowCause> EolAdmission::find_fold_cause(const FeatureSite& site) c
     if (!way) return std::nullopt;
     const bool is_between = site.contact < 0;  // fills a gap, and does not press itself
     if (is_between || is_along_face(scene_.obstacles[site.on.obstacle], site)) return RowCause::FlatBehind;
-    return *way < kRoom * scene_.eol->length(site.material) ? std::optional(RowCause::BesideEol)
+    return *way < kRoom * cell_length(scene_, state_, site.material) ? std::optional(RowCause::BesideEol)
                                                             : std::nullopt;
 }
 
@@ -213,7 +214,7 @@ std::optional<double> EolAdmission::find_free_fold(const FeatureSite& site) cons
     const std::vector<FeatureEdge>& edges = obstacle.features().edges;
     const Vec3 here = obstacle.at(state_.time).inverse(world_at(site));
     const auto [from, to] = feature_segment(obstacle, site.on.index);
-    const double h = scene_.eol->length(site.material);
+    const double h = cell_length(scene_, state_, site.material);
     std::optional<double> least;
     for (const EolVertex& e : trace_.eol()) {
         if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
@@ -271,7 +272,7 @@ bool EolAdmission::is_on_side(const EolVertex& eol) const
 /// Whether a corner or bend has its EOL vertex already: cloth over it gets only one.
 bool EolAdmission::has_vertex_on(const FeatureSite& site) const
 {
-    const double h = scene_.eol->length(site.material);
+    const double h = cell_length(scene_, state_, site.material);
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
         return e.on.is_fixed() && e.on == site.on && trace_.is_on_trace(e.vertex_id) &&
                (trace_.surgery().material(e.vertex_id) - site.material).norm() < h;
@@ -285,7 +286,7 @@ EolRetention decide_retention(const Scene& scene, const State& state, const Clot
     if (eol.idle < kIdleSteps) return EolRetention::Firm;
     const double gap = way_off(at.frame, place).norm();
     const double cells = is_led_astray(scene, state, eol, at, place) ? kAstrayCells : kFlyingCells;
-    if (gap > cells * scene.eol->shortest && gap > cells * scene.eol->length(state.mesh.material[at.vertex]))
+    if (gap > cells * shortest_cell(scene) && gap > cells * cell_length(scene, state, state.mesh.material[at.vertex]))
         return EolRetention::None;
     const bool has_left = gap > kOnFeature * scene.material.thickness;
     if (has_left && is_corner_under_face(scene, state, eol)) return EolRetention::None;

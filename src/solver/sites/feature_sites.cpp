@@ -158,7 +158,7 @@ class SiteFinder {
     std::optional<FeatureBend> find_locked_bend(int point, int v) const
     {
         const std::optional<FeatureBend> bend = find_bend(obstacle_, point);
-        const bool is_held = bend && locks_at_bend(scene_, obstacle_, *bend, state_.mesh.material[v]);
+        const bool is_held = bend && locks_at_bend(scene_, state_, obstacle_, *bend, state_.mesh.material[v]);
         return is_held ? bend : std::nullopt;
     }
 

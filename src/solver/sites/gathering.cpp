@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "solver/eol/eol_features.h"
+#include "solver/model/cell_length.h"
 
 namespace arris {
 
@@ -50,7 +51,7 @@ double find_growth_rate(const Scene& scene, const State& state, const ClothStars
     const double e = std::max(strain, kLeast), area = area_at(state, stars, v);
     const double weight = scene.gravity ? material.density * area * scene.gravity->acceleration.norm() : 0.0;
     const double force = std::max(force_on(state, v), weight);
-    const double cell = scene.eol->length(state.mesh.material[v]);
+    const double cell = cell_length(scene, state, state.mesh.material[v]);
     double fastest = -std::numeric_limits<double>::infinity();
     for (const double q : {std::numbers::pi / cell, 0.5 * std::numbers::pi / cell}) {
         const double drive = 0.5 * material.youngs_modulus * e - kPlate * material.bending_stiffness * q * q -
@@ -89,7 +90,7 @@ double find_compression_with_pleats(const Scene& scene, const State& state, cons
     if (vertex.on.is_corner()) return 0.0;
     const int v = state.index_of(vertex.vertex_id);
     const Vec2& X = state.mesh.material[v];
-    const double reach = kReach * scene.eol->length(X);
+    const double reach = kReach * cell_length(scene, state, X);
     const Obstacle& obstacle = scene.obstacles[vertex.on.obstacle];
     const Placement now = obstacle.at(state.time);
     const Vec3 place = now.inverse(state.mesh.world[v]);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "geometry/obstacle/feature_path.h"
+#include "solver/model/cell_length.h"
 #include "solver/model/eol_limits.h"
 
 namespace arris {
@@ -27,7 +28,7 @@ int FeatureTags::tag(const FeatureId& on) const
 TraceMesh::TraceMesh(const Scene& scene, const State& state, const ClothStars& stars,
                      const std::vector<VertexId>& pinned)
     : obstacles_(scene.obstacles),
-      target_(*scene.eol),
+      target_(surgery_target(scene, state)),
       state_(state),
       tags_(scene.obstacles),
       surgery_(state.mesh, state.ids, state.next_id, pinned, stars.topology.edges),

@@ -39,6 +39,7 @@ class TraceMesh {
     ClothSurgery& surgery() { return surgery_; }
     const ClothSurgery& surgery() const { return surgery_; }
     const FeatureTags& tags() const { return tags_; }
+    const MeshTarget& target() const { return target_; }
 
     const std::vector<EolVertex>& eol() const { return eol_; }  ///< ascending by vertex_id
     const EolVertex* find(VertexId v) const;                    ///< nullptr without an entry
@@ -73,7 +74,7 @@ class TraceMesh {
     EolVertex& entry_of(VertexId v);
 
     const std::vector<Obstacle>& obstacles_;
-    const MeshTarget& target_;
+    MeshTarget target_;
     const State& state_;
     FeatureTags tags_;
     ClothSurgery surgery_;

@@ -226,6 +226,26 @@ TEST_F(Run, CtrlCLeavesACheckpointToGoOnFrom)
     expect_same_run(through, dir);
 }
 
+TEST_F(Run, RemeshedItIsTheSameRunResumedAndOnAnyNumberOfThreads)
+{
+    const std::vector<std::string> remeshed = {"--set", "remesh.edge_length=[0.02, 0.3]", "--set",
+                                               "remesh.angle=10"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.end(), remeshed.begin(), remeshed.end());
+        return more;
+    };
+    const std::string through = run_through("through", with({"--threads", "1"}));
+    double operations = 0.0;
+    for (const double n : read_csv(through + "/steps.csv").column("remeshed")) operations += n;
+    EXPECT_GT(operations, 20.0);
+    expect_same_run(through, run_through("two", with({"--threads", "2"})));
+    const std::string dir = run_through("parts", with({"--set", "duration=0.25"}));
+    Program resumed(folder, {"resume", dir, "--until", "0.5"});
+    EXPECT_EQ(resumed.wait(), 0) << resumed.err();
+    for (const char* file : {"frames/cloth_00007.ply", "frames/cloth_00012.ply"})
+        EXPECT_TRUE(read_bytes(through + "/" + file) == read_bytes(dir + "/" + file)) << file;
+}
+
 TEST_F(Run, UntilGoesOnPastTheEnd)
 {
     const std::string dir = run_through("through");

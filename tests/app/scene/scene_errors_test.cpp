@@ -743,10 +743,11 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[self_contact]\nthickness = 0\n",
      {},
      "s.toml:6: self_contact.thickness = 0: is out of range; allowed: a number > 0 and <= 1 (m)"},
-    {"Remesh",
-     kBase + "[remesh]\nangle = 10\n",
+    {"RemeshLengthsInReverse",
+     kBase + "[remesh]\nedge_length = [0.1, 0.01]\n",
      {},
-     "s.toml:5: remesh: is not built yet in this version; allowed: a scene without it"},
+     "s.toml:6: remesh.edge_length = [0.1, 0.01]: has a largest edge length that is not above the smallest; "
+     "allowed: two lengths, the second > 0.1 (m)"},
     {"FastKernel",
      kBase + "[solver]\nkernel = \"fast\"\n",
      {},
@@ -862,9 +863,9 @@ const std::vector<WrongScene> kWrongScenes = {
      "--set wind.velocity=[1,0,0]: line 1 of the file gives wind another type; allowed: a table, [wind]"},
     {"SetNotBuilt",
      kBase,
-     {"remesh.angle=20"},
-     "--set remesh.angle=20: remesh: is not built yet in this version; allowed: a scene without "
-     "it"},
+     {"solver.kernel=fast"},
+     "--set solver.kernel=fast: \"fast\" is not built yet in this version; "
+     "allowed: \"exact\""},
     {"SetObstacle",
      kBase,
      {"obstacle.0.box=[1,1]"},

@@ -71,16 +71,6 @@ TEST(SceneKeys, OfferEveryMaterialPreset)
     for (std::size_t i = 0; i < offered.size(); ++i) EXPECT_EQ(offered[i], kMaterialPresets[i].name);
 }
 
-TEST(SceneKeys, AreBuiltOnlyBelowBuiltTables)
-{
-    EXPECT_TRUE(is_built(*find_scene_key("pin[].release")));
-    EXPECT_TRUE(is_built(*find_scene_key("eol.enabled")));
-    EXPECT_TRUE(is_built(*find_scene_key("obstacle[].teeth.pitch")));
-    EXPECT_TRUE(is_built(*find_scene_key("obstacle[].friction")));
-    EXPECT_FALSE(is_built(*find_scene_key("remesh")));
-    EXPECT_FALSE(is_built(*find_scene_key("remesh.angle")));
-}
-
 TEST(EditDistance, CountsChangesAndSwaps)
 {
     EXPECT_EQ(edit_distance("", ""), 0);
@@ -103,7 +93,7 @@ TEST(ClosestKey, IsASiblingFirst)
     EXPECT_EQ(closest_key("cloth", "formats"), "output.formats");
     EXPECT_EQ(closest_key("obstacle[]", "velocity"), "motion.velocity");
     EXPECT_EQ(closest_key("pin[]", "translate"), "keyframes[].translate");
-    EXPECT_EQ(closest_key("obstacle[].rotate", "angle"), "") << "remesh.angle is not built";
+    EXPECT_EQ(closest_key("obstacle[].rotate", "angle"), "") << "remesh.angle is no rotation";
     EXPECT_EQ(closest_key("cloth", "qqqqqqqqq"), "");
     EXPECT_EQ(closest_key("cloth", std::string(1'000'000, 'x')), "");
 }

@@ -171,15 +171,16 @@ TEST(StepMesh, OfPatchesThatStayStrainedTheVerticesAreKnown)
 
 TEST(StepMesh, AMeshThatStaysStrainedIsCarriedOverWhole)
 {
-    EolCloth cloth = heading_for_two_pleats(200.0, -2.0, {0.1, 0.45}, false);
+    EolCloth cloth = heading_for_two_pleats(100.0, -0.5, {0.2, 0.3}, true);
     const Vec3 before = testing::momentum_of(cloth.scene, cloth.state);
+    const std::vector<Face> faces = cloth.state.mesh.faces;
     MeshCache cache;
     update_mesh_cache(cloth.scene, cloth.state, cache);
     StepReport report;
     const State& start =
         choose_step_mesh(cloth.scene, cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
             .start;
-    ASSERT_GT(report.released, 0);
+    ASSERT_NE(start.mesh.faces, faces) << "the mesh of the test before";
     const Vec3 change = testing::momentum_of(cloth.scene, start) - before;
     EXPECT_LT(change.norm(), 1e-12 * before.norm());
 }

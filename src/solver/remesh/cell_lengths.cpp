@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/remesh/cell_lengths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/surgery/initial_target.h"
+#include "solver/model/cell_length.h"
+#include "solver/remesh/wanted_lengths.h"
+
+namespace arris {
+
+namespace {
+
+constexpr double kRefineTime = 0.01;   // s, in which lengths may halve
+constexpr double kCoarsenTime = 0.07;  // s, in which lengths may double
+constexpr double kClearlyFiner = 0.8;  // a smaller change is no reason for surgery
+
+constexpr int kMostNodes = 1 << 18;  // of the grid of cell lengths: 1 MB in each checkpoint
+constexpr int kMostGrowth = 8;       // vertices, times those of the first mesh
+
+}  // namespace
+
+void measure_first_mesh(const ClothMesh& first, Remeshing& remesh)
+{
+    remesh.initial = make_initial_target(first, std::asin(remesh.aspect) * 180.0 / std::numbers::pi);
+    remesh.grid = make_material_grid(first.material, kMeanEdge * remesh.shortest, kMostNodes);
+    if (remesh.most_vertices == 0) remesh.most_vertices = kMostGrowth * first.vertex_count();
+}
+
+void start_cell_lengths(const Scene& scene, State& state)
+{
+    if (!scene.remesh) return;
+    const MaterialGrid& grid = scene.remesh->grid;
+    state.cell_lengths.resize(static_cast<std::size_t>(grid.size()));
+    for (int i = 0; i < grid.count[0]; ++i)
+        for (int j = 0; j < grid.count[1]; ++j)
+            state.cell_lengths[grid.index(i, j)] = static_cast<float>(std::clamp(
+                scene.remesh->initial.length(grid.node(i, j)), shortest_cell(scene), longest_cell(scene)));
+}
+
+void follow_wanted_lengths(const Scene& scene, const ClothStars& stars, double dt, State& state)
+{
+    if (!scene.remesh) return;
+    const std::vector<float> wanted = find_wanted_lengths(scene, state, stars);
+    const double finer = std::exp2(-dt / kRefineTime), coarser = std::exp2(dt / kCoarsenTime);
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        const double length = state.cell_lengths[k], goal = wanted[k];
+        if (goal < kClearlyFiner * length)
+            state.cell_lengths[k] = static_cast<float>(std::max(goal, finer * length));
+        else if (goal > length)
+            state.cell_lengths[k] = static_cast<float>(std::min(goal, coarser * length));
+    }
+}
+
+}  // namespace arris
