@@ -228,6 +228,13 @@ class SceneMaker:
             pin["release"] = self.log(0.02, 1.0)
         return pin
 
+    def remesh(self, cloth):
+        """Edges from a third of the cells to thrice as long."""
+        cell = max(size / cells for size, cells in zip(cloth["size"], cloth["resolution"]))
+        shortest = self.number(0.3, 1.0) * cell
+        return {"edge_length": [round(shortest, 6), round(self.number(1.2, 3.0) * cell, 6)],
+                "angle": self.chance.choice([15, 30, 60]), "vertices": 4000}
+
     def make(self, title):
         names = [f"o{k}" for k in range(self.chance.choice([1, 1, 1, 2, 2, 3]))]
         self.step = step = self.log(1e-3, 0.05)
@@ -246,6 +253,8 @@ class SceneMaker:
             scene["friction"] = {"coefficient": self.log(0.02, 3.0)}
         if self.is_true(0.3):
             scene["self_contact"] = {}
+        if self.is_true(0.2):
+            scene["remesh"] = self.remesh(scene["cloth"])
         scene["output"] = {"frames_per_second": self.chance.choice([10, 24, 60]), "formats": []}
         return RandomScene(scene, self.meshes)
 
