@@ -17,7 +17,7 @@ constexpr double kRefineTime = 0.01;   // s, in which lengths may halve
 constexpr double kCoarsenTime = 0.07;  // s, in which lengths may double
 constexpr double kClearlyFiner = 0.8;  // a smaller change is no reason for surgery
 
-constexpr int kMostNodes = 1 << 18;  // of the grid of cell lengths: 1 MB in each checkpoint
+constexpr int kMostNodes = 1 << 16;  // of the grid of cell lengths: they take a part of a step
 constexpr int kMostGrowth = 8;       // vertices, times those of the first mesh
 
 }  // namespace
@@ -25,7 +25,7 @@ constexpr int kMostGrowth = 8;       // vertices, times those of the first mesh
 void measure_first_mesh(const ClothMesh& first, Remeshing& remesh)
 {
     remesh.initial = make_initial_target(first, std::asin(remesh.aspect) * 180.0 / std::numbers::pi);
-    remesh.grid = make_material_grid(first.material, kMeanEdge * remesh.shortest, kMostNodes);
+    remesh.grid = make_material_grid(first.material, remesh.shortest, kMostNodes);
     if (remesh.most_vertices == 0) remesh.most_vertices = kMostGrowth * first.vertex_count();
 }
 
@@ -42,9 +42,10 @@ void start_cell_lengths(const Scene& scene, State& state)
 
 void follow_wanted_lengths(const Scene& scene, const ClothStars& stars, double dt, State& state)
 {
-    if (!scene.remesh) return;
+    if (!scene.remesh || state.step % kRemeshPeriod != 0) return;
     const std::vector<float> wanted = find_wanted_lengths(scene, state, stars);
-    const double finer = std::exp2(-dt / kRefineTime), coarser = std::exp2(dt / kCoarsenTime);
+    const double time = kRemeshPeriod * dt;
+    const double finer = std::exp2(-time / kRefineTime), coarser = std::exp2(time / kCoarsenTime);
     for (std::size_t k = 0; k < wanted.size(); ++k) {
         const double length = state.cell_lengths[k], goal = wanted[k];
         if (goal < kClearlyFiner * length)

@@ -7,13 +7,18 @@
 
 namespace arris {
 
+/// Steps from one measurement to the next, and from one new mesh to the next: each takes half a
+/// factorisation.
+inline constexpr int kRemeshPeriod = 4;
+
 /// Sets what depends on the first mesh: target, grid and, if it is 0, the number of vertices.
 void measure_first_mesh(const ClothMesh& first, Remeshing& remesh);
 
 /// Lengths of a mesh as it was made, within the limits of remeshing. Nothing without remeshing.
 void start_cell_lengths(const Scene& scene, State& state);
 
-/// Lets the state's cell lengths follow those that its shape and motion ask for. Cells become finer at most
+/// Lets the state's cell lengths follow those that its shape and motion ask for, after each kRemeshPeriod-th
+/// step. `dt`: of a step, s. Cells become finer at most
 /// twofold in kRefineTime, so that the cloth takes a new shape before it is measured on the finer mesh; and
 /// coarser more slowly, so that no cell is split and merged in turn.
 void follow_wanted_lengths(const Scene& scene, const ClothStars& stars, double dt, State& state);

@@ -6,12 +6,12 @@
 
 #include "geometry/cloth/mesh_limits.h"
 #include "solver/model/cell_length.h"
+#include "solver/remesh/cell_lengths.h"
 
 namespace arris {
 
 namespace {
 
-constexpr int kPeriod = 4;        // steps between new meshes, which take half a factorisation each
 constexpr double kUrgent = 2.0;   // an edge that misses by this factor does not wait
 constexpr std::size_t kFew = 16;  // edges: fewer wait until conforming makes a mesh anyway
 constexpr std::size_t kMost = 64;
@@ -35,7 +35,7 @@ std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const Stat
     }
     std::sort(misfits.begin(), misfits.end());
     const bool is_urgent = !misfits.empty() && -std::get<0>(misfits.front()) > kUrgent;
-    if (!is_urgent && (misfits.size() < kFew || state.step % kPeriod != 0)) return {};
+    if (!is_urgent && (misfits.size() < kFew || state.step % kRemeshPeriod != 0)) return {};
     misfits.resize(std::min(misfits.size(), kMost));
     std::vector<std::array<VertexId, 2>> edges;
     for (const Misfit& misfit : misfits) edges.push_back(std::get<1>(misfit));

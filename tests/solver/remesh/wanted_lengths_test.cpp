@@ -160,11 +160,11 @@ TEST(CellLengths, HalveInAHundredthOfASecondAndGrowMoreSlowly)
         return interpolate(sheet.scene.remesh->grid, sheet.state.cell_lengths, Vec2(0.5, 0.5));
     };
     const double begin = now();
-    follow_wanted_lengths(sheet.scene, stars, 0.01, sheet.state);
+    follow_wanted_lengths(sheet.scene, stars, 0.01 / kRemeshPeriod, sheet.state);
     EXPECT_NEAR(now(), 0.5 * begin, 1e-3 * begin);
     for (std::size_t v = 0; v < sheet.state.mesh.world.size(); ++v)
         sheet.state.mesh.world[v] = flat(sheet.state.mesh.material[v]);
-    follow_wanted_lengths(sheet.scene, stars, 0.07, sheet.state);
+    follow_wanted_lengths(sheet.scene, stars, 0.07 / kRemeshPeriod, sheet.state);
     EXPECT_NEAR(now(), begin, 1e-3 * begin);
 }
 
