@@ -13,6 +13,7 @@
 #include "app/scene/scene_estimate.h"
 #include "app/text/counted.h"
 #include "app/text/printable.h"
+#include "geometry/cloth/material_locator.h"
 #include "geometry/cloth/mesh_quality.h"
 
 namespace arris {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/cloth/material_locator.h"
 #include "physics/inertia.h"
 #include "solver/contact/contacts.h"
 #include "solver/eol/cloth_stars.h"

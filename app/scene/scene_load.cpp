@@ -21,6 +21,7 @@
 #include "app/scene/scene_warnings.h"
 #include "app/scene/start_strain.h"
 #include "app/text/counted.h"
+#include "geometry/cloth/material_locator.h"
 #include "geometry/cloth_input/cloth_file.h"
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/input_error.h"

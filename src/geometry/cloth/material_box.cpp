@@ -287,12 +287,8 @@ std::vector<int> vertices_in_box(const ClothMesh& mesh, const MaterialBox& box)
 {
     const double tolerance = kMaterialTolerance * material_size(mesh.material);
     std::vector<int> inside;
-    for (int v = 0; v < mesh.vertex_count(); ++v) {
-        const Vec2& X = mesh.material[v];
-        if ((X.array() >= box.min.array() - tolerance).all() &&
-            (X.array() <= box.max.array() + tolerance).all())
-            inside.push_back(v);
-    }
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+        if (box.contains(mesh.material[v], tolerance)) inside.push_back(v);
     return inside;
 }
 

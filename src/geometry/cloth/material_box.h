@@ -11,7 +11,16 @@ namespace arris {
 struct MaterialBox {
     Vec2 min = Vec2::Zero();
     Vec2 max = Vec2::Zero();
+
+    /// Whether `X` is in the box widened by `tolerance` (m) on each side.
+    bool contains(const Vec2& X, double tolerance) const
+    {
+        return (X.array() >= min.array() - tolerance).all() && (X.array() <= max.array() + tolerance).all();
+    }
 };
+
+/// Material coordinates this close, relative to `material_size`, count as equal.
+inline constexpr double kMaterialTolerance = 1e-9;
 
 /// Largest side of the box around the material coordinates, m: the scale of material tolerances.
 double material_size(const std::vector<Vec2>& material);
@@ -40,15 +49,5 @@ struct FaceShare {
 /// The load of `spread_over_box` listed by faces: a vertex's share there is the sum of its corners' weights
 /// here.
 std::vector<FaceShare> spread_over_faces(const ClothMesh& mesh, const MaterialBox& box);
-
-/// Position of a material point: a face and barycentric coordinates in it.
-struct MaterialLocation {
-    int face = -1;  ///< -1: the point meets no cloth
-    Vec3 weights = Vec3::Zero();
-};
-
-/// Finds the face that contains `point`. If none does, the nearest face within 1e-9 of `material_size` is
-/// taken, with the lowest index on ties.
-MaterialLocation locate(const ClothMesh& mesh, const Vec2& point);
 
 }  // namespace arris

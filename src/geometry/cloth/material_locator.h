@@ -8,8 +8,15 @@
 
 namespace arris {
 
-/// Material coordinates this close, relative to `material_size`, count as equal.
-inline constexpr double kMaterialTolerance = 1e-9;
+/// Position of a material point: a face and barycentric coordinates in it.
+struct MaterialLocation {
+    int face = -1;  ///< -1: the point meets no cloth
+    Vec3 weights = Vec3::Zero();
+};
+
+/// Finds the face that contains `point`. If none does, the nearest face within 1e-9 of `material_size` is
+/// taken, with the lowest index on ties.
+MaterialLocation locate(const ClothMesh& mesh, const Vec2& point);
 
 /// Finds many material points in one mesh, each in logarithmic time. Keeps references to its arguments.
 class MaterialLocator {

@@ -176,7 +176,7 @@ class ClothSurgery::Implementation {
     // rounding on a slanted border), the nearest place in the faces of `v` is used.
     VertexChange interpolated(const ClothSurgery& surgery, VertexId v, const Vec2& material) const
     {
-        MaterialLocation best;
+        FaceLocation best;
         if (const auto found = locate(surgery, material, v)) {
             best = *found;
         } else {

@@ -29,7 +29,7 @@ Vec3 clamped_weights(const std::array<Vec2, 3>& corners, const Vec2& point)
     return weights / weights.sum();
 }
 
-std::optional<MaterialLocation> locate(const ClothSurgery& surgery, const Vec2& material, VertexId near)
+std::optional<FaceLocation> locate(const ClothSurgery& surgery, const Vec2& material, VertexId near)
 {
     if (!material.allFinite() || !surgery.has_vertex(near)) return {};
     std::vector<IdFace> faces;
@@ -42,7 +42,7 @@ std::optional<MaterialLocation> locate(const ClothSurgery& surgery, const Vec2& 
         const IdFace face = faces[next];
         const PatchFace patch = surgery.patch_face(face);
         if (contains(patch.material, material))
-            return MaterialLocation{face, clamped_weights(patch.material, material)};
+            return FaceLocation{face, clamped_weights(patch.material, material)};
         for (int k = 0; k < 3; ++k) {
             const VertexId apex = surgery.apex(face[(k + 1) % 3], face[k]);
             if (apex != kNoVertex) add({face[(k + 1) % 3], face[k], apex});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/cloth/material_locator.h"
 #include "geometry/cloth_input/cloth_grid.h"
 
 namespace arris {
