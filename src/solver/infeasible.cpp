@@ -72,8 +72,7 @@ Infeasible name_self_contact(const State& state, const Workspace& work)
 {
     Infeasible named;
     for (const SelfRow& row : work.self_rows) {
-        const std::vector<int>& rows = work.solution.infeasible_rows;
-        if (std::find(rows.begin(), rows.end(), row.row) == rows.end()) continue;
+        if (!is_unmet(work, row.row)) continue;
         Infeasible found;
         found.is_with_itself = true;
         for (int i = 0; i < 4; ++i) {
@@ -94,6 +93,12 @@ Infeasible name_self_contact(const State& state, const Workspace& work)
 }
 
 }  // namespace
+
+bool is_unmet(const Workspace& work, int row)
+{
+    const std::vector<int>& rows = work.solution.infeasible_rows;
+    return std::find(rows.begin(), rows.end(), row) != rows.end();
+}
 
 Infeasible name_infeasible(const State& state, const Workspace& work,
                            const std::optional<int>& overconstrained)

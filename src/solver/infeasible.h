@@ -9,6 +9,9 @@
 
 namespace arris {
 
+/// Whether the last velocity solve could not meet the row (index); false for -1, a contact without a row.
+bool is_unmet(const Workspace& work, int row);
+
 /// Names what an infeasible step cannot meet together: a vertex, the pin that holds it, and the obstacles of
 /// its contacts. `overconstrained` is a vertex (index) without room between two contacts (`share_room`).
 /// Without one, the vertex is that of a row that the velocity solve could not meet, a pinned one if there is

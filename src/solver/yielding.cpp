@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/yielding.h"
 
-#include <algorithm>
-#include <vector>
-
 #include "solver/contact/contacts.h"
+#include "solver/infeasible.h"
 #include "solver/overconstrained.h"
 
 namespace arris {
@@ -13,15 +11,13 @@ bool yield_infeasible(const Scene& scene, const State& state, Workspace& work)
 {
     bool is_changed = false;
     for (Contact& contact : work.contacts) {
-        const std::vector<int>& rows = work.solution.infeasible_rows;
-        if (contact.row < 0 || std::find(rows.begin(), rows.end(), contact.row) == rows.end()) continue;
+        if (!is_unmet(work, contact.row)) continue;
         if (!yield_stand_off(work.obstacles, work.prediction, scene.material.thickness, contact)) continue;
         ++work.yielded;
         is_changed = true;
     }
     for (SelfRow& self : work.self_rows) {
-        const std::vector<int>& rows = work.solution.infeasible_rows;
-        if (std::find(rows.begin(), rows.end(), self.row) == rows.end()) continue;
+        if (!is_unmet(work, self.row)) continue;
         if (!yield_self_row(state, scene.self_contact->thickness, self)) continue;
         ++work.yielded;
         is_changed = true;
