@@ -33,7 +33,8 @@ constexpr Phase kPhases[] = {
     {"factorise", &PhaseSeconds::factorise, "factorises the matrix"},
     {"solve", &PhaseSeconds::solve, "finds the velocity that meets the contact conditions"},
     {"check", &PhaseSeconds::check, "proves that the motion passes through no obstacle"},
-    {"advance", &PhaseSeconds::advance, "commits the step; includes loading the scene"},
+    {"advance", &PhaseSeconds::advance,
+     "commits the step; includes loading the scene, and a last step that was cut off or failed"},
     {"output", &PhaseSeconds::output, "writes frames, tables, viewer and other formats"},
 };
 

@@ -60,6 +60,8 @@ struct Run {
     Audit audited;          ///< of the current cloth, if the time is that of a frame or the end
     SelfCrossings crossed;  ///< likewise
     double cpu_told = process_cpu_seconds();
+    Stopwatch since_row;                ///< wall time since the last row
+    double cut_off_seconds = 0.0;       ///< of the last step, if it was cut off or failed, and so has no row
     std::optional<StepReport> opening;  ///< first part of the current step, not yet written as a row
 
     Run(const RunConfig& config_, RunDirectory files_, Checkpoint at_)
@@ -97,6 +99,7 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     run.cpu_told = cpu;
     run.files.append_step(row);
     ++run.at.rows;
+    run.since_row.lap();
 }
 
 /// Makes one planned step and writes a row for each part; an opening has no row of its own. Throws
@@ -166,6 +169,7 @@ RunEnding simulate(Run& run, bool is_quiet)
         progress.update(run.at.state.time, fmt::format("{} vertices", run.at.state.mesh.vertex_count()));
     }
     progress.finish();
+    if (ending.status != RunStatus::Finished) run.cut_off_seconds = run.since_row.lap();
     run.files.write_checkpoint(run.at);
     return ending;
 }
@@ -192,7 +196,8 @@ RunReport make_report(const Run& run, const RunEnding& ending, const RunSummary&
     report.message = ending.message;
     report.totals = summary.totals;
     report.totals.phases.output += export_seconds;
-    report.totals.wall_seconds += export_seconds;
+    report.totals.phases.advance += run.cut_off_seconds;
+    report.totals.wall_seconds += export_seconds + run.cut_off_seconds;
     report.totals.cpu_seconds += process_cpu_seconds() - run.cpu_told;
     report.peak_memory_bytes = peak_memory_bytes();
     report.effects = list_effects(run.config);

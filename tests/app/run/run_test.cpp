@@ -246,6 +246,25 @@ TEST_F(Run, RemeshedItIsTheSameRunResumedAndOnAnyNumberOfThreads)
         EXPECT_TRUE(read_bytes(through + "/" + file) == read_bytes(dir + "/" + file)) << file;
 }
 
+TEST_F(Run, AStepThatCtrlCCutsOffCountsInTheSeconds)
+{
+    const std::string dir = folder / "stopped";
+    Program program(folder, {"run", scene, "-o", dir, "--set", "cloth.resolution=[160, 100]"});  // slow steps
+    for (int k = 0; k < 60000 && !fs::exists(dir + "/checkpoint"); ++k)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    constexpr double kWithin = 0.15;  // s, of the first step
+    ASSERT_EQ(program.stop_after(std::chrono::milliseconds(static_cast<int>(1e3 * kWithin)), SIGINT), 130);
+    const nlohmann::json report = nlohmann::json::parse(read_bytes(dir + "/report.json"));
+    const CsvTable steps = read_csv(dir + "/steps.csv");
+    double of_rows = 0.0;
+    for (const double seconds : steps.column("advance_s")) of_rows += seconds;
+    EXPECT_EQ(steps.row_count(), 1u) << "the first step was cut off";
+    EXPECT_GT(report["phases"]["advance"].get<double>() - of_rows, 0.5 * kWithin);
+    double sum = 0.0;
+    for (const auto& phase : report["phases"]) sum += phase.get<double>();
+    EXPECT_NEAR(report["wall_seconds"].get<double>(), sum, 1e-9 * sum);
+}
+
 TEST_F(Run, UntilGoesOnPastTheEnd)
 {
     const std::string dir = run_through("through");
