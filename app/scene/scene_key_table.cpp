@@ -170,7 +170,9 @@ std::vector<SceneKey> make_scene_keys()
         text("cloth.file", KeyType::Path, kPath, "",
              "OBJ mesh used instead of a rectangle. Its positions are the initial world positions; its UVs, "
              "times `uv_scale`, are the material coordinates. A flat mesh without UVs takes the material "
-             "coordinates from its positions."),
+             "coordinates from its positions; flat pieces in different planes, such as layers, are laid side "
+             "by "
+             "side along u, a tenth of the widest apart."),
         choice("cloth.units", kUnits, R"("m")", "Unit of the file's positions."),
         choice("cloth.up", kAxes, R"("z")", "Upward axis of the file, which is rotated to +z."),
         number("cloth.uv_scale", "m", {0.0, 1e3, true}, "1.0",

@@ -2,7 +2,6 @@
 #include "geometry/cloth_input/cloth_file.h"
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +11,12 @@
 
 #include "geometry/cgal.h"
 #include "geometry/cloth/euler_characteristic.h"
-#include "geometry/cloth/material_box.h"
+#include "geometry/cloth/mesh_pieces.h"
 #include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth/sub_mesh.h"
 #include "geometry/cloth_input/chart_overlap.h"
 #include "geometry/cloth_input/cloth_obj.h"
+#include "geometry/cloth_input/flat_charts.h"
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
 #include "geometry/mesh_text.h"
@@ -23,8 +24,6 @@
 
 namespace arris {
 namespace {
-
-constexpr double kFlat = 1e-6;  // relative to size; files are often written in single precision
 
 constexpr const char* kTubeAdvice =
     "; a tube cannot be simulated yet: open it along a seam, and move the two sides apart";
@@ -227,7 +226,7 @@ class ClothReader {
                                              kLargestCoordinate));
     }
 
-    // A place with two UVs is a seam, at which the cloth would come apart.
+    // A place with two UVs is a seam, at which the cloth would come apart, or two pieces touch there.
     void require_single_uvs() const
     {
         std::vector<int> order(file_.vertices.size());
@@ -237,13 +236,17 @@ class ClothReader {
         const auto twin = std::adjacent_find(order.begin(), order.end(),
                                              [&](int v, int w) { return place(v) == place(w); });
         if (twin == order.end()) return;
-        const FileVertex& a = file_.vertices[*twin];
-        const FileVertex& b = file_.vertices[*(twin + 1)];
+        const int first = std::min(*twin, *(twin + 1)), second = std::max(*twin, *(twin + 1));
+        const FileVertex &a = file_.vertices[first], &b = file_.vertices[second];
+        const std::vector<int> piece = label_pieces(static_cast<int>(file_.vertices.size()), file_.faces);
         refuse(fmt::format(
-            "vertex ({}, {}, {}) has two UVs, ({}, {}) and ({}, {}): a tube, or panels that share a UV seam, "
-            "cannot be simulated yet; allowed: one UV at each place (open the cloth along its seam, and move "
-            "the two sides apart)",
-            a.position.x(), a.position.y(), a.position.z(), a.uv.x(), a.uv.y(), b.uv.x(), b.uv.y()));
+            "vertex ({}, {}, {}) has two UVs, ({}, {}) and ({}, {}): {}", a.position.x(), a.position.y(),
+            a.position.z(), a.uv.x(), a.uv.y(), b.uv.x(), b.uv.y(),
+            piece[first] == piece[second]
+                ? "a tube, or a piece with a UV seam, cannot be simulated yet; allowed: one UV at each place "
+                  "(open the cloth along its seam, and move the two sides apart)"
+                : "two pieces touch there, and cannot be sewn together yet; allowed: pieces that are apart, "
+                  "such as layers with a distance between them, or one UV at each place"));
     }
 
     void place_in_world()
@@ -251,17 +254,6 @@ class ClothReader {
         mesh_.faces = file_.faces;
         for (const FileVertex& vertex : file_.vertices)
             mesh_.world.push_back(to_z_up_ * (unit_ * vertex.position));
-    }
-
-    double world_size() const
-    {
-        Vec3 low = mesh_.world.front();
-        Vec3 high = low;
-        for (const Vec3& x : mesh_.world) {
-            low = low.cwiseMin(x);
-            high = high.cwiseMax(x);
-        }
-        return (high - low).maxCoeff();
     }
 
     std::string describe(int face) const
@@ -294,34 +286,37 @@ class ClothReader {
         for (const FileVertex& vertex : file_.vertices) mesh_.material.push_back(vertex.uv);
     }
 
-    // Twice the area vector of the largest face.
-    Vec3 largest_area() const
-    {
-        Vec3 largest = Vec3::Zero();
-        for (const auto& [a, b, c] : mesh_.faces) {
-            const Vec3 area = (mesh_.world[b] - mesh_.world[a]).cross(mesh_.world[c] - mesh_.world[a]);
-            if (area.norm() > largest.norm()) largest = area;
-        }
-        return largest;
-    }
-
-    // Without UVs: uses the mesh's own plane, seen from the side on which faces are counter-clockwise.
+    // Without UVs: each flat piece is its own chart.
     void flatten()
     {
-        const Vec3& origin = mesh_.world.front();
-        const Vec3 normal = largest_area().stableNormalized();
-        for (const Vec3& x : mesh_.world)
-            if (!(std::abs((x - origin).dot(normal)) <= kFlat * world_size()))
-                refuse(fmt::format(
-                    "curved (by {:.3g} m at ({:.6g}, {:.6g}, {:.6g}) m) and without UVs; allowed: UVs in "
-                    "metres, or a flat mesh{}",
-                    std::abs((x - origin).dot(normal)), x.x(), x.y(), x.z(),
-                    euler_characteristic(mesh_) > 0 ? "" : kTubeAdvice));
-        // u is along x if possible: a horizontal mesh then keeps its x and y.
-        const Vec3 guide = std::abs(normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
-        const Vec3 along_u = (guide - guide.dot(normal) * normal).normalized();
-        const Vec3 along_v = normal.cross(along_u);
-        for (const Vec3& x : mesh_.world) mesh_.material.emplace_back(x.dot(along_u), x.dot(along_v));
+        FlatCharts charts = lay_flat(mesh_.world, mesh_.faces);
+        mesh_.material = std::move(charts.material);
+        if (charts.curved_at >= 0) refuse_curved(charts);
+        if (charts.pieces.empty()) return;
+        constexpr std::size_t kMostTold = 8;
+        std::string where;
+        for (std::size_t k = 0; k < std::min(charts.pieces.size(), kMostTold); ++k)
+            where +=
+                fmt::format("{}u = {:.6g} to {:.6g} (line {})", k > 0 ? ", " : "", charts.pieces[k].least_u,
+                            charts.pieces[k].greatest_u, file_.lines[charts.pieces[k].first_face]);
+        warnings_.push_back(
+            fmt::format("{}: its {} pieces are flat and have no UVs; they are laid side by side "
+                        "in the material, at {}{}",
+                        path_, charts.pieces.size(), where, charts.pieces.size() > kMostTold ? ", ..." : ""));
+    }
+
+    [[noreturn]] void refuse_curved(const FlatCharts& charts) const
+    {
+        const Vec3& x = mesh_.world[charts.curved_at];
+        const std::vector<int> piece = label_pieces(mesh_.vertex_count(), mesh_.faces);
+        std::vector<int> faces;
+        for (int f = 0; f < mesh_.face_count(); ++f)
+            if (piece[mesh_.faces[f][0]] == piece[charts.curved_at]) faces.push_back(f);
+        refuse(
+            fmt::format("curved (by {:.3g} m at ({:.6g}, {:.6g}, {:.6g}) m) and without UVs; allowed: UVs in "
+                        "metres, or flat pieces{}",
+                        charts.off_plane, x.x(), x.y(), x.z(),
+                        euler_characteristic(extract_faces(mesh_, faces).mesh) > 0 ? "" : kTubeAdvice));
     }
 
     int orientation_of(int face) const
@@ -371,8 +366,10 @@ class ClothReader {
     void require_no_overlap() const
     {
         if (const auto pair = find_overlap(mesh_.material, mesh_.faces))
-            refuse(fmt::format("{} and {} overlap in material space", describe((*pair)[0]),
-                               describe((*pair)[1])));
+            refuse(fmt::format("{} and {} overlap in material space; allowed: {}", describe((*pair)[0]),
+                               describe((*pair)[1]),
+                               file_.has_uv ? "UVs at which no two faces overlap"
+                                            : "faces beside each other, or pieces in planes of their own"));
     }
 
     std::string path_;

@@ -16,17 +16,17 @@ struct ClothFile {
 };
 
 /// Reads a cloth mesh. Polygons are cut in the material, or without UVs in their own plane. Positions become
-/// the initial world positions, and UVs times `uv_scale` (m) the material coordinates. A flat mesh without
-/// UVs is its own chart. `unit_in_metres` scales positions, not UVs. `up` is the file's up axis, 'x', 'y' or
-/// 'z'; a rotation about a single axis turns it to +z. The only format is OBJ. Coordinates are the doubles
-/// nearest to the file's numbers (times `unit_in_metres`). Several pieces are allowed if their charts do not
-/// overlap. Vertices are numbered in the order of their first use by faces. A chart that is mirrored as a
-/// whole is mirrored back, with a warning.
+/// the initial world positions, and UVs times `uv_scale` (m) the material coordinates. Flat pieces
+/// without UVs are their own charts (flat_charts.h). `unit_in_metres` scales positions, not UVs. `up` is the
+/// file's up axis, 'x', 'y' or 'z'; a rotation about a single axis turns it to +z. The only format is OBJ.
+/// Coordinates are the doubles nearest to the file's numbers (times `unit_in_metres`). Several pieces are
+/// allowed if their charts do not overlap. Vertices are numbered in the order of their first use by faces. A
+/// chart that is mirrored as a whole is mirrored back, with a warning.
 ///
 /// Throws InputError naming the file if the mesh cannot be cloth:
 ///  - file unreadable, truncated or without faces; coordinates not finite or out of range;
 ///  - mesh not manifold, faces twice, without area or crossing themselves;
-///  - UV seams (a place with two UVs), overlapping or folded charts, a curved mesh without UVs.
+///  - UV seams (a place with two UVs), overlapping or folded charts, a curved piece without UVs.
 ClothFile read_cloth_file(const std::string& path, double unit_in_metres, char up, double uv_scale = 1.0);
 
 }  // namespace arris

@@ -130,6 +130,64 @@ TEST_F(ClothFileTest, FlatMeshWithoutUvsIsItsOwnChart)
     }
 }
 
+/// Square pieces without UVs, of side 1, the k-th at height[k].
+std::string layers(const std::vector<double>& heights)
+{
+    std::string text;
+    for (const double z : heights) {
+        for (const char* corner : {"0 0", "1 0", "1 1", "0 1"}) text += fmt::format("v {} {}\n", corner, z);
+        text += "f -4 -3 -2 -1\n";
+    }
+    return text;
+}
+
+TEST_F(ClothFileTest, LayersWithoutUvsAreLaidSideBySide)
+{
+    const ClothFile file = read(layers({0.0, 0.01, 0.02}));
+    EXPECT_EQ(validate(file.mesh), "");
+    EXPECT_FALSE(file.has_uv);
+    ASSERT_EQ(file.mesh.vertex_count(), 12);
+    for (int v = 0; v < 12; ++v) {
+        const Vec3& x = file.mesh.world[v];
+        EXPECT_EQ(x.z(), 0.01 * (v / 4));
+        EXPECT_LT((file.mesh.material[v] - Vec2(x.x() + 1.1 * (v / 4), x.y())).norm(), 4 * kRounding) << v;
+    }
+    ASSERT_EQ(file.warnings.size(), 1u);
+    EXPECT_THAT(
+        file.warnings[0],
+        HasSubstr("its 3 pieces are flat and have no UVs; they are laid side by side in the material, "
+                  "at u = 0 to 1 (line 5), u = 1.1 to 2.1 (line 10), u = 2.2 to 3.2 (line 15)"));
+}
+
+TEST_F(ClothFileTest, EachPieceWithoutUvsHasAPlaneOfItsOwn)
+{
+    // A level triangle, one seen from below, and an upright one that is narrower.
+    const ClothFile file = read(
+        "v 3 0 0\nv 5 0 0\nv 3 2 0\nf 1 2 3\n"
+        "v 0 0 1\nv 0 2 1\nv 2 0 1\nf 4 5 6\n"
+        "v 0 0 2\nv 0.5 0 2\nv 0 0 3\nf 7 8 9\n");
+    EXPECT_EQ(validate(file.mesh), "");
+    const std::vector<Vec2>& X = file.mesh.material;
+    EXPECT_EQ(X[0], Vec2(3, 0)) << "the first piece stays";
+    const double left[] = {3.0, 5.2, 7.4};
+    for (int f = 0; f < 3; ++f) {
+        const auto& [a, b, c] = file.mesh.faces[f];
+        EXPECT_NEAR(twice_area(X[a], X[b], X[c]), f < 2 ? 4.0 : 0.5, 1e-14);
+        EXPECT_NEAR(std::min({X[a].x(), X[b].x(), X[c].x()}), left[f], 1e-14);
+    }
+    EXPECT_THAT(
+        refusal(layers({0.0, 0.01}) + "v 5 0 0\nv 6 0 0\nv 6 1 0\nv 5 1 0.3\nf 9 10 11\nf 9 11 12\n"),
+        HasSubstr("curved (by 0.276 m at (6, 0, 0) m) and without UVs; allowed: UVs in metres, or flat "
+                  "pieces"));
+}
+
+TEST_F(ClothFileTest, PiecesInOnePlaneKeepTheirPlaces)
+{
+    const ClothFile file = read("v 0 0 1\nv 1 0 1\nv 0 1 1\nv 5 0 1\nv 6 0 1\nv 5 1 1\nf 1 2 3\nf 4 5 6\n");
+    for (int v = 0; v < 6; ++v) EXPECT_EQ(file.mesh.material[v], Vec2(file.mesh.world[v].head<2>()));
+    EXPECT_THAT(file.warnings, IsEmpty());
+}
+
 TEST_F(ClothFileTest, AcceptsWhatTheFormatAllows)
 {
     // Carriage returns, comments, groups, negative indices, continued lines, normals, materials.
@@ -344,7 +402,10 @@ std::vector<Defect> defects()
         {"mixed uvs", kCorners + kUvs + "f 1/1 2/2 3/3\nf 1 3 4\n", "some faces have UVs"},
         {"overlapping pieces",
          kCorners + "v 5 0 0\nv 6 0 0\nv 6 1 0\n" + kUvs + "f 1/1 2/2 3/3\nf 5/1 6/2 7/3\n",
-         "overlap in material space"},
+         "overlap in material space; allowed: UVs at which no two faces overlap"},
+        {"overlapping pieces of one plane",
+         kCorners + "v 0.5 0.2 0\nv 2 0.2 0\nv 2 0.8 0\nf 1 2 3\nf 5 6 7\n",
+         "overlap in material space; allowed: faces beside each other, or pieces in planes of their own"},
         {"overlapping corners",
          kCorners + "v 5 0 0\nv 6 0 0\nv 6 1 0\n" + kUvs +
              "vt 0.9 0.1\nvt 2 0\nvt 2 1\nf 1/1 2/2 3/3\nf 5/5 6/6 7/7\n",
@@ -408,7 +469,9 @@ std::string tube(int n, bool has_seam, double tip = 1.0)
 TEST_F(ClothFileTest, SaysOfTubesAndSeamsWhatIsMissingAndWhatIsAllowed)
 {
     constexpr const char* kSeam =
-        "a tube, or panels that share a UV seam, cannot be simulated yet; allowed: one UV at each place";
+        "a tube, or a piece with a UV seam, cannot be simulated yet; allowed: one UV at each place";
+    constexpr const char* kPieces =
+        "two pieces touch there, and cannot be sewn together yet; allowed: pieces";
     constexpr const char* kTube = "a tube cannot be laid out with one UV at each place";
     const std::string panels =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
@@ -418,9 +481,10 @@ TEST_F(ClothFileTest, SaysOfTubesAndSeamsWhatIsMissingAndWhatIsAllowed)
         {"tube of 24 sides", tube(24, true), kSeam},
         {"cone", tube(12, true, 0.5), kSeam},
         {"tube with one UV at each place", tube(24, false), kTube},
-        {"panels sewn along a line", panels + "f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8\n", kSeam},
+        {"panels sewn along a line", panels + "f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8\n", kPieces},
         {"panels sewn at a corner", panels + "v 2 2 0\nv 1 2 0\nf 1/1 2/2 3/3 4/4\nf 3/5 6/6 7/7 8/8\n",
-         kSeam},
+         kPieces},
+        {"layers in one place", panels + "f 1/1 2/2 3/3 4/4\nf 1/5 2/6 3/7 4/8\n", kPieces},
         {"pillow", panels + "v 0.5 0.5 1\nvt 8 1\nf 1/1 2/2 3/3 4/4\nf 2/5 1/6 9/7\n", ""},
     };
     for (const Defect& seam : kSeams) {
