@@ -217,12 +217,13 @@ void describe_meetings(const RunConfig& config, Lines& lines)
     const Scene& scene = config.scene;
     for (std::size_t i = 0; i < scene.pins.size(); ++i) {
         const Pin& pin = scene.pins[i];
+        const std::string from = pin.start > 0.0 ? fmt::format(", from {:g} s", pin.start) : "";
         const std::string until =
             std::isfinite(pin.release) ? fmt::format(", until {:g} s", pin.release) : "";
         lines.push_back(
-            fmt::format("pin.{}: {} in {}, {}{}", i,
+            fmt::format("pin.{}: {} in {}, {}{}{}", i,
                         counted(vertices_in_box(config.cloth, pin.material).size(), "vertex", "vertices"),
-                        in_words(pin.material), pin_motion(scene, pin), until));
+                        in_words(pin.material), pin_motion(scene, pin), from, until));
     }
     for (std::size_t i = 0; i < scene.pulls.size(); ++i) {
         const Pull& pull = scene.pulls[i];

@@ -61,7 +61,7 @@ ClothMesh make_sheet(int side)
 /// contacts change each step.
 void drape(int side, Drop& drop)
 {
-    drop.scene.pins = {Pin{{Vec2(0, 0), Vec2(0, 1)}, {}, {true, true, true}, 1e9}};
+    drop.scene.pins = {Pin{{Vec2(0, 0), Vec2(0, 1)}, {}, {true, true, true}, 0.0, 1e9}};
     ClothMesh mesh = make_sheet(side);
     for (Vec3& x : mesh.world)
         x = x.x() < 0.4 ? Vec3(0.8 * x.x(), x.y(), 0.3 - 0.6 * x.x()) : Vec3(x.x() - 0.08, x.y(), 0.06);

@@ -216,6 +216,8 @@ class SceneMaker:
         if min(cloth["resolution"]) < 4:
             box = [[0, 0], [0, 0]]  # the box in the middle might hold no vertex
         pin = {"material": [[round(x, 4) for x in corner] for corner in box]}
+        if self.is_true(0.3):
+            pin["start"] = self.log(0.02, 0.5)
         if self.is_true(0.15):
             return {**pin, "follow": self.chance.choice(names)}
         if self.is_true(0.4):
@@ -225,7 +227,7 @@ class SceneMaker:
         if self.is_true(0.2):
             pin["directions"] = self.chance.choice([["x", "y"], ["z"], ["x", "z"]])
         if self.is_true(0.3):
-            pin["release"] = self.log(0.02, 1.0)
+            pin["release"] = pin.get("start", 0.0) + self.log(0.02, 1.0)
         return pin
 
     def remesh(self, cloth):

@@ -303,6 +303,8 @@ std::string find_defect(const Checkpoint& checkpoint)
     for (std::size_t k = 0; k < state.anchors.size(); ++k) {
         const PinAnchor& anchor = state.anchors[k];
         if (!anchor.origin.allFinite()) return fmt::format("anchor {} is not finite", k);
+        if (!std::binary_search(state.ids.begin(), state.ids.end(), anchor.vertex_id))
+            return fmt::format("anchor {} refers to an unknown vertex", k);
         if (k > 0 && std::pair(anchor.pin, anchor.vertex_id) <=
                          std::pair(state.anchors[k - 1].pin, state.anchors[k - 1].vertex_id))
             return "anchors are not in ascending order";

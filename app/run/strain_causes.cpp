@@ -106,18 +106,15 @@ struct HeldVertex {
     Vec2 material;
 };
 
-/// The vertices that a pin holds at `time`, at most about 60 of them.
+/// The vertices that a pin has held since time 0 at `time`, at most about 60 of them. Where a later pin takes
+/// hold of its vertices is not known.
 std::vector<HeldVertex> held_at(const RunConfig& config, const Pin& pin, double time)
 {
     constexpr std::size_t kMost = 60;
     std::vector<HeldVertex> held;
     const bool holds_all = pin.held[0] && pin.held[1] && pin.held[2];
-    if (!holds_all || !pin.holds_until(time)) return held;
-    Placement way = pin.motion.at(time);
-    if (pin.follows) {
-        const Obstacle& obstacle = config.scene.obstacles[static_cast<std::size_t>(*pin.follows)];
-        way = obstacle.at(time) * obstacle.at(0.0).inverse();
-    }
+    if (!holds_all || !pin.holds(0.0, time)) return held;
+    const Placement way = pin_placement(config.scene, pin, time);
     const std::vector<int> vertices = vertices_in_box(config.cloth, pin.material);
     const std::size_t stride = 1 + vertices.size() / kMost;
     for (std::size_t k = 0; k < vertices.size(); k += stride) {
@@ -162,7 +159,8 @@ Cause weight_on_pins(const RunConfig& config, const StrainPeak& peak, double edg
 {
     std::size_t count = 0;
     for (const Pin& pin : config.scene.pins)
-        if (pin.holds_until(peak.time)) count += vertices_in_box(config.cloth, pin.material).size();
+        if (pin.start <= peak.time && pin.holds(pin.start, peak.time))
+            count += vertices_in_box(config.cloth, pin.material).size();
     if (count == 0 || !config.scene.gravity || !is_next_to_pin(config, peak, edge)) return {};
     const Material& material = config.scene.material;
     const double weight =

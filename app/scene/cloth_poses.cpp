@@ -95,7 +95,7 @@ std::optional<PinMeeting> find_nearest_pins(const RunConfig& config)
         for (std::size_t p = 0; p < pins.size(); ++p)
             for (std::size_t q = 0; q < p; ++q) {
                 const double apart = (centres[p].material - centres[q].material).norm();
-                if (!(apart > 0.0) || !pins[p].holds_until(time) || !pins[q].holds_until(time)) continue;
+                if (!(apart > 0.0) || !pins[p].holds(0.0, time) || !pins[q].holds(0.0, time)) continue;
                 const double share = (places[p] - places[q]).norm() / apart;
                 if (!nearest || share < nearest->share) nearest = {{q, p}, time, share};
             }
@@ -108,7 +108,7 @@ double spread_of_pins(const RunConfig& config)
     Eigen::AlignedBox2d cloth, held;
     for (const Vec2& X : config.cloth.material) cloth.extend(X);
     for (const Pin& pin : config.scene.pins)
-        if (pin.holds_until(config.duration))
+        if (pin.holds(pin.start, config.duration))
             for (const int v : vertices_in_box(config.cloth, pin.material))
                 held.extend(config.cloth.material[v]);
     return diagonal(held) / diagonal(cloth);

@@ -27,8 +27,8 @@ struct PinMeeting {
     double share;                     ///< their distance over that of their material
 };
 
-/// The nearest meeting of any two pins, between the means of their vertices, while both hold. Nothing with
-/// less than two pins. Samples the run at 65 moments.
+/// The nearest meeting of any two pins that hold from time 0, between the means of their vertices, while both
+/// hold. Nothing with less than two such pins. Samples the run at 65 moments.
 std::optional<PinMeeting> find_nearest_pins(const RunConfig& config);
 
 /// Diagonal of the material that pins hold to the end of the run, relative to that of the cloth.

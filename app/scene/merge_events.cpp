@@ -19,7 +19,7 @@ std::vector<double*> event_times(Scene& scene, const std::vector<RigidMotion*>& 
 {
     std::vector<double*> times;
     for (Pin& pin : scene.pins) {
-        times.push_back(&pin.release);
+        times.insert(times.end(), {&pin.start, &pin.release});
         add_times(pin.motion, times);
     }
     for (RigidMotion* motion : motions) add_times(*motion, times);

@@ -208,17 +208,18 @@ std::vector<SceneKey> make_scene_keys()
         box("pin[].material",
             "Box in the material, bounds included. The pin holds the vertices whose material coordinates lie "
             "in the box."),
-        numbers("pin[].velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity of the pin."),
+        numbers("pin[].velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity of the pin from its `start` on."),
         numbers("pin[].angular_velocity", 3, "rad/s", kAnyNumber, kOrigin,
-                "Angular velocity of the pin about `pivot`; its direction is the axis."),
+                "Angular velocity of the pin about `pivot` from its `start` on; its direction is the axis."),
         numbers("pin[].pivot", 3, "m", kAnyNumber, kOrigin,
                 "World point about which `angular_velocity` rotates."),
         tables("pin[].keyframes",
-               "Motion of the pin as placements in time, instead of velocities: x(t) = translate + R x(0). "
-               "Translations are interpolated linearly, rotations by slerp along the shorter arc; before the "
-               "first and after the last keyframe the placement is constant."),
+               "Motion of the pin as placements P(t) in time, instead of velocities: x(t) = translate + R "
+               "x(0). With a later `start`, x(t) = P(t) P(start)^-1 x(start). Translations are interpolated "
+               "linearly, rotations by slerp along the shorter arc; before the first and after the last "
+               "keyframe the placement is constant."),
         number("pin[].keyframes[].time", "s", kNotNegative, kRequired,
-               "Time of the keyframe; later than the previous keyframe."),
+               "Time of the keyframe, counted from time 0; later than the previous keyframe."),
         numbers("pin[].keyframes[].translate", 3, "m", kAnyNumber, kOrigin, "Translation at this time."),
         table("pin[].keyframes[].rotate", kIdentity, "Rotation at this time, about the world's origin."),
         axis("pin[].keyframes[].rotate.axis"),
@@ -229,7 +230,13 @@ std::vector<SceneKey> make_scene_keys()
              "move as if fixed to the obstacle."),
         choices("pin[].directions", 1, kAxes, R"(["x", "y", "z"])",
                 "Components of the world position that the pin holds."),
-        number("pin[].release", "s", kNotNegative, kNever, "Time at which the pin releases its vertices."),
+        number(
+            "pin[].start", "s", kNotNegative, "0.0",
+            "Time at which the pin takes hold. After time 0, it holds the vertices that are then in the box "
+            "(or the nearest one, where the mesh has changed) at the places where they are."),
+        number("pin[].release", "s", kNotNegative, kNever,
+               "Time at which the pin releases its vertices; later than `start`. Other pins that hold them "
+               "then hold them where they are."),
 
         table("gravity", "", "Switches gravity on."),
         numbers("gravity.acceleration", 3, "m/s^2", kAnyNumber, "[0.0, 0.0, -9.81]",

@@ -46,6 +46,7 @@ RigidMotion to_pin_motion(const Json& pin)
     motion.velocity = to_vec3(pin["velocity"]);
     motion.angular_velocity = to_vec3(pin["angular_velocity"]);
     motion.pivot = to_vec3(pin["pivot"]);
+    motion.start = to_double(pin["start"]);
     return motion;
 }
 
@@ -64,6 +65,7 @@ Pin to_pin(const Json& scene, const Json& json)
     pin.motion = to_pin_motion(json);
     pin.held = {false, false, false};
     for (const Json& direction : json["directions"]) pin.held[direction.get<std::string>()[0] - 'x'] = true;
+    pin.start = to_double(json["start"]);
     pin.release = to_time(json["release"]);
     if (json.contains("follow")) pin.follows = find_obstacle(scene["obstacle"], json["follow"]);
     return pin;
@@ -288,7 +290,7 @@ void warn_of_first_keyframes(const SceneDocument& document, RunConfig& config)
     const double tolerance = 1e-12 * (1.0 + material_size(config.cloth.material));
     for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
         const Pin& pin = config.scene.pins[i];
-        if (pin.motion.keyframes.empty() || !(pin.release > 0.0)) continue;
+        if (pin.motion.keyframes.empty() || !pin.holds(0.0, 0.0)) continue;
         const Placement first = pin.motion.at(0.0);
         int moved = 0;
         for (const int v : vertices_in_box(config.cloth, pin.material)) {

@@ -107,6 +107,15 @@ void settle_pin_motion(const SceneDocument& document, const std::string& path, c
     }
 }
 
+/// Requires that a pin with a later start is released after it. Without one, `release = 0` switches it off.
+void check_pin_times(const SceneDocument& document, const std::string& path, const Json& pin)
+{
+    const double start = pin["start"].get<double>();
+    if (!(start > 0.0) || pin["release"].is_null() || pin["release"].get<double>() > start) return;
+    document.fail(path + ".release", "is not later than the pin's start",
+                  fmt::format("a number > {} (s)", start));
+}
+
 /// Requires exactly one shape, and removes the keys that only other shapes have.
 void settle_shape(const SceneDocument& document, const std::string& path, Json& obstacle)
 {
@@ -204,8 +213,10 @@ void apply_scene_rules(const SceneDocument& document, Json& scene)
     settle_cloth_source(document, scene["cloth"]);
     if (scene.contains("obstacle")) settle_obstacles(document, scene["obstacle"]);
     if (scene.contains("pin"))
-        for (std::size_t i = 0; i < scene["pin"].size(); ++i)
+        for (std::size_t i = 0; i < scene["pin"].size(); ++i) {
             settle_pin_motion(document, fmt::format("pin.{}", i), scene, scene["pin"][i]);
+            check_pin_times(document, fmt::format("pin.{}", i), scene["pin"][i]);
+        }
     if (scene.contains("pull"))
         for (std::size_t i = 0; i < scene["pull"].size(); ++i)
             check_pull_times(document, fmt::format("pull.{}", i), scene["pull"][i]);

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <tuple>
 
 #include "app/scene/layer_warnings.h"
+#include "app/scene/motion_warnings.h"
 #include "app/scene/placement_warnings.h"
 #include "app/scene/scene_estimate.h"
 #include "app/scene/still_scene.h"
@@ -23,16 +23,6 @@
 
 namespace arris {
 namespace {
-
-// An exact test suffices: these are values of the scene file, where 0 is written as 0.
-bool is_zero(double value)
-{
-    return !(value < 0.0) && !(value > 0.0);
-}
-bool is_zero(const Vec3& value)
-{
-    return is_zero(value.squaredNorm());
-}
 
 void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
 {
@@ -116,53 +106,6 @@ void check_pulls(const RunConfig& config, Warnings& warnings)
     }
 }
 
-/// Warns of keyframes that a motion until `end` does not reach.
-void check_keyframes(const RunConfig& config, const RigidMotion& motion, double end, const std::string& path,
-                     Warnings& warnings)
-{
-    for (std::size_t k = 1; k < motion.keyframes.size(); ++k) {
-        const std::string key = fmt::format("{}.keyframes.{}.time", path, k);
-        // A keyframe has an effect if the previous one precedes the end: the body then moves towards it.
-        if (motion.keyframes[k - 1].time >= end)
-            warnings.add(key, end < config.duration
-                                  ? "the previous keyframe is not before the release"
-                                  : "the previous keyframe is not before the end of the run");
-        else if (motion.keyframes[k].time > config.duration)
-            warnings.note(key, fmt::format("is not reached: the run ends at {:g} s, on the way to this "
-                                           "keyframe (times are in seconds, not frames)",
-                                           config.duration));
-    }
-}
-
-void check_pin_motion(const RunConfig& config, const Pin& pin, const std::string& path, Warnings& warnings)
-{
-    for (int d = 0; d < 3; ++d)
-        if (!pin.held[d] && !is_zero(pin.motion.velocity[d]))
-            warnings.add(path + ".velocity", fmt::format("the pin does not hold {}", "xyz"[d]));
-    if (is_zero(pin.motion.angular_velocity)) warnings.add(path + ".pivot", "there is no angular_velocity");
-    check_keyframes(config, pin.motion, std::min(config.duration, pin.release), path, warnings);
-}
-
-bool is_moving(const Scene& scene, const Pin& pin)
-{
-    if (pin.follows) return scene.obstacles[static_cast<std::size_t>(*pin.follows)].motion().is_moving();
-    return pin.motion.is_moving();
-}
-
-void check_obstacle_motion(const RunConfig& config, const RigidMotion& motion, const std::string& path,
-                           Warnings& warnings)
-{
-    if (is_zero(motion.velocity) && is_zero(motion.angular_velocity))
-        warnings.add(path + ".motion", "the motion has no velocity");
-    else if (is_zero(motion.angular_velocity))
-        warnings.add(path + ".motion.pivot", "there is no angular_velocity");
-    if (motion.start >= config.duration)
-        warnings.add(path + ".motion.start", "the motion starts after the end of the run");
-    else if (motion.stop >= config.duration)
-        warnings.add(path + ".motion.stop", "the run ends before that time");
-    check_keyframes(config, motion, config.duration, path, warnings);
-}
-
 /// Warns of a surface that is closed except for a hole: it looks solid, but is a sheet.
 void check_inside(const RunConfig& config, std::size_t i, Warnings& warnings)
 {
@@ -203,36 +146,6 @@ void check_obstacles(const RunConfig& config, Warnings& warnings)
         warnings.add("eol.enabled", "no obstacle has a sharp feature");
 }
 
-void check_pins(const RunConfig& config, Warnings& warnings)
-{
-    // The last pin so far that holds a component of a vertex. Where pins overlap, the last one moves it.
-    std::map<std::pair<int, int>, std::size_t> holder;
-    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
-        const Pin& pin = config.scene.pins[i];
-        const std::string path = fmt::format("pin.{}", i);
-        check_pin_motion(config, pin, path, warnings);
-        if (is_zero(pin.release))
-            warnings.add(path + ".release", "the pin is released before it holds anything");
-        else if (pin.release >= config.duration)
-            warnings.add(path + ".release", "the run ends before that time");
-
-        std::map<std::size_t, int> shared;
-        for (const int v : vertices_in_box(config.cloth, pin.material))
-            for (int d = 0; d < 3; ++d) {
-                if (!pin.held[d]) continue;
-                const auto [other, is_first] = holder.try_emplace({v, d}, i);
-                if (!is_first) ++shared[other->second];
-                other->second = i;
-            }
-        for (const auto& [other, count] : shared)
-            if (is_moving(config.scene, config.scene.pins[other]) || is_moving(config.scene, pin))
-                warnings.note(path + ".material",
-                              fmt::format("holds {} that pin.{} also holds; pin.{} alone moves {}",
-                                          counted(count, "position component", "position components"), other,
-                                          i, count == 1 ? "it" : "them"));
-    }
-}
-
 void check_time(const RunConfig& config, Warnings& warnings)
 {
     const double fps = config.output.frames_per_second;
@@ -243,30 +156,6 @@ void check_time(const RunConfig& config, Warnings& warnings)
         warnings.note(
             "time.step",
             fmt::format("is shortened to {:.6g} s: steps end at frames and at the duration", longest));
-}
-
-/// Warns of neighbouring keyframes more than 180 degrees apart: slerp takes the shorter arc instead.
-void check_turns(const std::string& key, const nlohmann::ordered_json& keyframes, Warnings& warnings)
-{
-    for (std::size_t k = 1; k < keyframes.size(); ++k) {
-        const auto &from = keyframes[k - 1]["rotate"], &to = keyframes[k]["rotate"];
-        const double turn = to["degrees"].get<double>() - from["degrees"].get<double>();
-        if (from["axis"] != to["axis"] || !(std::abs(turn) > 180.0)) continue;
-        warnings.note(key, fmt::format("rotates by {:.6g} degrees from keyframe {} to {}, but rotations take "
-                                       "the shorter arc; write keyframes at most 180 degrees apart",
-                                       turn, k - 1, k));
-    }
-}
-
-void check_turns(const RunConfig& config, Warnings& warnings)
-{
-    for (const char* table : {"pin", "obstacle"}) {
-        if (!config.as_run.contains(table)) continue;
-        const auto& elements = config.as_run[table];
-        for (std::size_t i = 0; i < elements.size(); ++i)
-            if (elements[i].contains("keyframes"))
-                check_turns(fmt::format("{}.{}.keyframes", table, i), elements[i]["keyframes"], warnings);
-    }
 }
 
 /// Square root of the world's area over the material's.

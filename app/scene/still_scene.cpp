@@ -18,11 +18,12 @@ bool is_nonzero(const Vec3& value)
     return value.squaredNorm() > 0.0;
 }
 
-bool acts_before(double end, const RigidMotion& motion)
+bool acts_between(double begin, double end, const RigidMotion& motion)
 {
-    const bool starts_in_time =
-        motion.keyframes.empty() ? motion.start < end : motion.keyframes.front().time < end;
-    return motion.is_moving() && starts_in_time;
+    const bool is_in_time = motion.keyframes.empty()
+                                ? motion.start < end
+                                : motion.keyframes.front().time < end && motion.keyframes.back().time > begin;
+    return motion.is_moving() && is_in_time;
 }
 
 bool has_load(const RunConfig& config)
@@ -40,10 +41,11 @@ bool has_moving_bodies(const RunConfig& config)
 {
     const std::vector<Pin>& pins = config.scene.pins;
     const std::vector<Obstacle>& obstacles = config.scene.obstacles;
-    return std::any_of(obstacles.begin(), obstacles.end(),
-                       [&](const Obstacle& body) { return acts_before(config.duration, body.motion()); }) ||
+    return std::any_of(
+               obstacles.begin(), obstacles.end(),
+               [&](const Obstacle& body) { return acts_between(0.0, config.duration, body.motion()); }) ||
            std::any_of(pins.begin(), pins.end(), [&](const Pin& pin) {
-               return acts_before(std::min(config.duration, pin.release), pin.motion);
+               return acts_between(pin.start, std::min(config.duration, pin.release), pin.motion);
            });
 }
 

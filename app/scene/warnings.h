@@ -8,8 +8,19 @@
 
 #include "app/scene/scene_document.h"
 #include "app/text/printable.h"
+#include "geometry/vectors.h"
 
 namespace arris {
+
+/// Whether a value of the scene file is 0. An exact test suffices, as 0 is written as 0.
+inline bool is_zero(double value)
+{
+    return !(value < 0.0) && !(value > 0.0);
+}
+inline bool is_zero(const Vec3& value)
+{
+    return is_zero(value.squaredNorm());
+}
 
 /// Collects warnings about keys that are written.
 class Warnings {

@@ -2,10 +2,13 @@
 #include "solver/commit.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "solver/contact/constraints.h"
 #include "solver/eol/eol_features.h"
+#include "solver/eol/stop_flow.h"
 #include "solver/feature_census.h"
+#include "solver/model/pin_targets.h"
 #include "solver/remesh/cell_lengths.h"
 #include "solver/sites/gathering.h"
 
@@ -45,7 +48,6 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     report.contacts = static_cast<int>(state.active.size() -
                                        std::count_if(state.active.begin(), state.active.end(), is_fold));
     report.self_contacts = static_cast<int>(state.self.size());
-    report.eol_vertices = static_cast<int>(state.eol.size());
     state.previous_world.swap(state.mesh.world);
     state.previous_velocity.swap(state.velocity);
     state.mesh.world.swap(work.proposal.world);
@@ -55,16 +57,20 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     state.mesh.material.swap(work.proposal.material);
     state.material_velocity.swap(work.proposal.material_velocity);
     state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // a rewound path is no history
-    state.time = end;
+    const double begin = std::exchange(state.time, end);
     ++state.step;
     follow_features(scene.obstacles, state);
     grow_gathering(scene, work.mesh.stars, report.dt, state);
     follow_wanted_lengths(scene, work.mesh.stars, report.dt, state);
     work.energies.known_at.world.clear();
-    if (report.rewound > 0) return;
-    work.energies.known = work.energies.proposed;
-    work.energies.known_at = {
-        state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
+    if (report.rewound == 0) {
+        work.energies.known = work.energies.proposed;
+        work.energies.known_at = {
+            state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}};
+    }
+    update_anchors(scene, begin, state);
+    release_pinned(scene, work.mesh.stars, state);  // may change velocities, unlike `known_at`
+    report.eol_vertices = static_cast<int>(state.eol.size());
 }
 
 }  // namespace arris

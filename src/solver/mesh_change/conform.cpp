@@ -194,7 +194,8 @@ class Conforming {
             if (const EolVertex* known = trace_.find(id))
                 made.eol.push_back(*known);
             else if (const auto between = trace_.like_neighbour(id, made.surgery.tags[v]);
-                     between && admission_.is_in_plane(*between) && !has_failed_near(surgery_.material(id)))
+                     between && admission_.is_in_plane(*between) && !has_failed_near(surgery_.material(id)) &&
+                     !admission_.is_pinned(surgery_.material(id)))
                 made.eol.push_back(*between);
         }
         return made;

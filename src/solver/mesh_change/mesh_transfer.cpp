@@ -8,6 +8,7 @@
 #include "geometry/cloth/mesh_topology.h"
 #include "physics/deformation_gradient.h"
 #include "solver/eol/eol_coordinates.h"
+#include "solver/eol/stop_flow.h"
 #include "solver/mesh_change/changed_patches.h"
 
 namespace arris {
@@ -203,50 +204,26 @@ std::vector<char> find_flowing(const Scene& scene, const State& state, const Clo
     return is_flowing;
 }
 
-/// Stops the flow through vertices without coordinates, which then move with the material around them. The
-/// fit has changed the flow, on which it depends whether a vertex can have coordinates. Returns the vertices
-/// that flow.
+/// Stops the flow through vertices without coordinates. The fit has changed the flow, on which it depends
+/// whether a vertex can have coordinates. Returns the vertices that flow.
 std::vector<char> stop_flow(const Scene& scene, const ClothStars& stars, State& state)
 {
     std::vector<char> is_flowing = find_flowing(scene, state, stars);
-    for (std::size_t v = 0; v < is_flowing.size(); ++v) {
-        if (is_flowing[v] || state.material_velocity[v].isZero()) continue;
-        Vec3 carried = Vec3::Zero();
-        double area = 0.0;
-        for (const int f : stars.faces[static_cast<int>(v)]) {
-            const auto& [a, b, c] = state.mesh.faces[f];
-            const std::vector<Vec2>& X = state.mesh.material;
-            const std::vector<Vec3>& x = state.mesh.world;
-            const double weight = twice_area(X[a], X[b], X[c]);
-            const Mat32 F = deformation_gradient({X[a], X[b], X[c]}, {x[a], x[b], x[c]});
-            carried += weight * (F * state.material_velocity[v]);
-            area += weight;
-        }
-        state.velocity[v] -= carried / area;
-        state.material_velocity[v].setZero();
-    }
+    for (std::size_t v = 0; v < is_flowing.size(); ++v)
+        if (!is_flowing[v]) stop_flow(stars, static_cast<int>(v), state);
     return is_flowing;
 }
 
-/// Gives vertices that have become or ceased to be EOL the history of constant motion at their current
-/// velocity.
+/// Gives vertices that have become or ceased to be EOL a new history.
 void begin_history(const State& before, const std::vector<char>& is_flowing, State& after)
 {
     for (const EolVertex& eol : after.eol) {
         const int v = after.index_of(eol.vertex_id);
-        if (before.eol_entry(eol.vertex_id) >= 0 || !is_flowing[v]) continue;
-        after.previous_world[v] = after.mesh.world[v] - after.previous_dt * after.velocity[v];
-        after.previous_material[v] = after.mesh.material[v] - after.previous_dt * after.material_velocity[v];
-        after.previous_velocity[v] = after.velocity[v];
-        after.previous_material_velocity[v] = after.material_velocity[v];
+        if (before.eol_entry(eol.vertex_id) < 0 && is_flowing[v]) begin_history(v, after);
     }
     for (const EolVertex& eol : before.eol) {
         const int v = after.index_of(eol.vertex_id);
-        if (v < 0 || is_flowing[v]) continue;
-        after.previous_world[v] = after.mesh.world[v] - after.previous_dt * after.velocity[v];
-        after.previous_material[v] = after.mesh.material[v];
-        after.previous_velocity[v] = after.velocity[v];
-        after.previous_material_velocity[v].setZero();
+        if (v >= 0 && !is_flowing[v]) begin_history(v, after);
     }
 }
 

@@ -4,20 +4,63 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/sort_unique.h"
+
 namespace arris {
 
 namespace {
 
-/// Place of the vertex at time 0; for one inserted later, its current place moved back with the pin.
+std::pair<std::uint32_t, std::uint32_t> key_of(const PinAnchor& anchor)
+{
+    return {anchor.pin, anchor.vertex_id};
+}
+
+/// Origin of a vertex; for one without an anchor, its current place moved back with the pin.
 Vec3 find_origin(const State& state, std::uint32_t pin, int vertex, const Placement& now)
 {
     const std::pair<std::uint32_t, std::uint32_t> key(pin, state.ids[vertex]);
-    const auto anchor = std::lower_bound(
-        state.anchors.begin(), state.anchors.end(), key,
-        [](const PinAnchor& a, const auto& wanted) { return std::pair(a.pin, a.vertex_id) < wanted; });
-    if (anchor != state.anchors.end() && std::pair(anchor->pin, anchor->vertex_id) == key)
-        return anchor->origin;
+    const auto anchor =
+        std::lower_bound(state.anchors.begin(), state.anchors.end(), key,
+                         [](const PinAnchor& a, const auto& wanted) { return key_of(a) < wanted; });
+    if (anchor != state.anchors.end() && key_of(*anchor) == key) return anchor->origin;
     return now.inverse(state.mesh.world[vertex]);
+}
+
+/// Vertices in the pin's box, and those that it has taken hold of; ascending.
+std::vector<int> find_held(const Pin& pin, std::uint32_t index, const State& state)
+{
+    std::vector<int> held = vertices_in_box(state.mesh, pin.material);
+    for (const PinAnchor& anchor : state.anchors)
+        if (anchor.pin == index) held.push_back(state.index_of(anchor.vertex_id));
+    sort_unique(held);
+    return held;
+}
+
+/// Vertices that a pin takes hold of: those in its box, else the nearest one (lowest index on ties).
+std::vector<int> find_to_hold(const ClothMesh& mesh, const MaterialBox& box)
+{
+    std::vector<int> inside = vertices_in_box(mesh, box);
+    if (!inside.empty() || mesh.material.empty()) return inside;
+    const auto squared_distance = [&](const Vec2& X) {
+        return (X - X.cwiseMax(box.min).cwiseMin(box.max)).squaredNorm();
+    };
+    const auto nearest = std::min_element(
+        mesh.material.begin(), mesh.material.end(),
+        [&](const Vec2& X, const Vec2& Y) { return squared_distance(X) < squared_distance(Y); });
+    return {static_cast<int>(nearest - mesh.material.begin())};
+}
+
+/// Ids of the vertices that pins released in the step from `begin` have held, ascending.
+std::vector<std::uint32_t> find_freed(const Scene& scene, double begin, const State& state)
+{
+    std::vector<std::uint32_t> freed;
+    for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
+        const Pin& pin = scene.pins[p];
+        if (!pin.holds(begin, pin.release) || pin.release > state.time) continue;
+        for (const int v : find_held(pin, p, state)) freed.push_back(state.ids[v]);
+    }
+    sort_unique(freed);
+    return freed;
 }
 
 }  // namespace
@@ -29,9 +72,9 @@ std::vector<PinTarget> find_pin_targets(const Scene& scene, const State& state, 
     std::vector<PinTarget> held;
     for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
         const Pin& pin = scene.pins[p];
-        if (!pin.holds_until(end)) continue;
+        if (!pin.holds(state.time, end)) continue;
         const Placement now = pin_placement(scene, pin, state.time), then = pin_placement(scene, pin, end);
-        for (const int v : vertices_in_box(state.mesh, pin.material)) {
+        for (const int v : find_held(pin, p, state)) {
             if (slot[v] < 0) {
                 slot[v] = static_cast<int>(held.size());
                 held.push_back({v, {false, false, false}, Vec3::Zero()});
@@ -63,7 +106,7 @@ void attach_pins(const Scene& scene, State& state)
     const std::vector<Vec3> placed = state.mesh.world;
     for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
         const Pin& pin = scene.pins[p];
-        if (!(pin.release > 0.0)) continue;
+        if (!pin.holds(0.0, 0.0)) continue;
         const Placement place = pin_placement(scene, pin, 0.0);
         for (const int v : vertices_in_box(state.mesh, pin.material)) {
             state.anchors.push_back({p, state.ids[v], placed[v]});
@@ -76,6 +119,28 @@ void attach_pins(const Scene& scene, State& state)
             }
         }
     }
+}
+
+void update_anchors(const Scene& scene, double begin, State& state)
+{
+    if (scene.pins.empty()) return;
+    const std::vector<std::uint32_t> freed = find_freed(scene, begin, state);
+    std::erase_if(state.anchors,
+                  [&](const PinAnchor& anchor) { return scene.pins[anchor.pin].release <= state.time; });
+    const auto origin_now = [&](std::uint32_t pin, int vertex) {
+        return pin_placement(scene, scene.pins[pin], state.time).inverse(state.mesh.world[vertex]);
+    };
+    for (PinAnchor& anchor : state.anchors)
+        if (std::binary_search(freed.begin(), freed.end(), anchor.vertex_id))
+            anchor.origin = origin_now(anchor.pin, state.index_of(anchor.vertex_id));
+    for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
+        const Pin& pin = scene.pins[p];
+        if (!(begin < pin.start) || !pin.holds(state.time, state.time)) continue;
+        for (const int v : find_to_hold(state.mesh, pin.material))
+            state.anchors.push_back({p, state.ids[v], origin_now(p, v)});
+    }
+    std::sort(state.anchors.begin(), state.anchors.end(),
+              [](const PinAnchor& a, const PinAnchor& b) { return key_of(a) < key_of(b); });
 }
 
 }  // namespace arris

@@ -33,7 +33,7 @@ enum class RowCause {
     NearBorder,  ///< border of the cloth: nearer than where a trace may begin, or where it had to end
     BorderAhead,   ///< border of the cloth: so fast that the vertex would be released within a few steps
     Guard,         ///< the mesh change would strain the cloth, or an obstacle is in the way
-    Quality,       ///< the mesh has no place: a corner, another trace, a face too thin
+    Quality,       ///< the mesh has no place: a corner, a pin, another trace, a face too thin
     OffPlane,      ///< the mesh's only place is off the edge's plane
     Blocked,       ///< cloth ahead of its trace could not be cleared
     Gathering,     ///< the cloth is compressed along the feature, so that it wants to leave it in pleats

@@ -36,7 +36,7 @@ std::vector<double> input_jumps(const Scene& scene)
     };
     for (const Pin& pin : scene.pins) {
         if (!pin.follows) add(pin.motion.jumps());
-        times.push_back(pin.release);
+        times.insert(times.end(), {pin.start, pin.release});
     }
     for (const Obstacle& obstacle : scene.obstacles) add(obstacle.motion().jumps());
     for (const Pull& pull : scene.pulls) times.insert(times.end(), {pull.start, pull.stop});

@@ -17,15 +17,17 @@
 namespace arris {
 
 /// Holds and moves cloth vertices whose material coordinates lie in `material`, in the `held` world
-/// directions.
+/// directions, from `start` to `release`. After time 0 it takes hold of them where they are (pin_targets.h).
 struct Pin {
     MaterialBox material;
-    RigidMotion motion;
+    RigidMotion motion;                                        ///< at absolute times
     std::array<bool, 3> held = {true, true, true};             ///< x, y, z
+    double start = 0.0;                                        ///< s
     double release = std::numeric_limits<double>::infinity();  ///< s
     std::optional<int> follows = {};  ///< obstacle (index) that they ride on instead of `motion`
 
-    bool holds_until(double end) const { return end <= release; }
+    /// Whether it holds its vertices during a step, or a longer time, from `begin` to `end`.
+    bool holds(double begin, double end) const { return start <= begin && begin < release && end <= release; }
 };
 
 /// Coulomb friction between cloth and obstacles, and between layers of cloth.
@@ -56,14 +58,14 @@ struct Scene {
 /// Whether any obstacle has a sharp edge, corner, wire or point.
 bool has_features(const Scene& scene);
 
-/// Maps the place at time 0 of something that `pin` holds to its place at `time` (s).
+/// Maps the origin (PinAnchor) of something that `pin` holds to its place at `time` (s).
 Placement pin_placement(const Scene& scene, const Pin& pin, double time);
 
 /// Velocity (m/s) just after `time` of something that `pin` holds at `place`.
 Vec3 pin_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place);
 
-/// Times after 0 at which the input jumps (motion starts or stops, keyframe, release, pull): ascending,
-/// unique. Steps end on them, and the step after one is implicit Euler.
+/// Times after 0 at which the input jumps (motion starts or stops, keyframe, pin, pull): ascending, unique.
+/// Steps end on them, and the step after one is implicit Euler.
 std::vector<double> input_jumps(const Scene& scene);
 
 }  // namespace arris

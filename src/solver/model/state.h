@@ -55,11 +55,11 @@ struct EolVertex {
     double gathering = 0.0;  ///< growth of a pleat along the feature (sites/gathering.h)
 };
 
-/// Place of a pinned vertex at time 0, which the pin's motion maps to the vertex's target.
+/// A vertex that a pin has taken hold of, and the point that the pin's placement maps to the vertex's target.
 struct PinAnchor {
     std::uint32_t pin;  ///< index in the scene
     std::uint32_t vertex_id;
-    Vec3 origin;  ///< x(0), m
+    Vec3 origin;  ///< m; x(0) where the pin holds from time 0
 };
 
 /// Exactly the data that a resumed run needs, and nothing that could be computed from them.
@@ -80,7 +80,7 @@ struct State {
     std::vector<Vec2> previous_material_velocity;
 
     std::vector<EolVertex> eol;           ///< ascending by vertex_id
-    std::vector<PinAnchor> anchors;       ///< ascending by (pin, vertex_id)
+    std::vector<PinAnchor> anchors;       ///< ascending by (pin, vertex_id), of pins that hold
     std::vector<ActiveContact> active;    ///< ascending by (vertex_ids, obstacle, kind, element)
     std::vector<ActiveSelfContact> self;  ///< ascending by (kind, vertex_ids)
     /// Pairs of vertices that contacts of the cloth with itself couple in the matrix, ascending: they decide

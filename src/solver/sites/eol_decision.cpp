@@ -111,12 +111,20 @@ bool is_at_border(const Scene& scene, const State& state, const ClothStars& star
 
 std::optional<RowCause> EolAdmission::find_refusal(const FeatureSite& site, int v, const Vec2& flow) const
 {
+    if (is_pinned(site.material)) return RowCause::Quality;
     if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
     if (is_beside_other(site)) return RowCause::OtherFeature;
     if (gathers(site, v)) return RowCause::Gathering;
     if (const std::optional<RowCause> fold = find_fold_cause(site)) return fold;
     if ((site.on.is_fixed()) && has_vertex_on(site)) return RowCause::BesideEol;
     return std::nullopt;
+}
+
+bool EolAdmission::is_pinned(const Vec2& material) const
+{
+    return std::any_of(scene_.pins.begin(), scene_.pins.end(), [&](const Pin& pin) {
+        return pin.holds(state_.time, state_.time) && pin.material.contains(material, material_tolerance_);
+    });
 }
 
 /// Cause if the cloth's border leaves no room for a vertex; nothing if there is room.

@@ -41,7 +41,12 @@ class EolAdmission {
     /// `soon` (s): time for which flowing material must find room.
     EolAdmission(const Scene& scene, const State& state, const ClothStars& stars, const TraceMesh& trace,
                  double soon)
-        : scene_(scene), state_(state), stars_(stars), trace_(trace), soon_(soon)
+        : scene_(scene),
+          state_(state),
+          stars_(stars),
+          trace_(trace),
+          soon_(soon),
+          material_tolerance_(kMaterialTolerance * material_size(state.mesh.material))
     {
     }
 
@@ -53,6 +58,9 @@ class EolAdmission {
     /// bends the surface slightly at the next. A vertex inserted off its plane or side could not return
     /// there. A fold around a wire may come down to the wire later.
     std::optional<RowCause> refuse_inserted(const EolVertex& eol, const FeatureSite& site) const;
+
+    /// Whether a pin holds vertices at this material point in the next step: a pinned vertex is never EOL.
+    bool is_pinned(const Vec2& material) const;
 
     /// Whether the coordinates of an EOL vertex can hold it at its place. On a convex edge this is the plane
     /// in which alone it moves; for a free fold, anywhere beyond both faces of the edge. On other edges it is
@@ -77,6 +85,7 @@ class EolAdmission {
     const ClothStars& stars_;
     const TraceMesh& trace_;
     double soon_;
+    double material_tolerance_;  ///< m, of boxes of pins
 };
 
 /// Whether an EOL vertex stays.

@@ -531,6 +531,80 @@ TEST_F(RunWithObstacles, KilledAndResumedWithoutTheMeshFileItIsTheSameRun)
     expect_same_run(through, dir);
 }
 
+// A napkin falls over the rim of a table. At 0.35 s a part of it that lies across the rim is picked up.
+constexpr const char* kPickedUp = R"(
+duration = 0.6
+[cloth]
+size = [0.5, 0.5]
+resolution = [12, 12]
+translate = [-0.25, -0.25, 0.01]
+[cloth.material]
+damping = 0.005
+[gravity]
+[[obstacle]]
+box = [0.3, 0.3, 0.1]
+translate = [0, 0, -0.055]
+[[pin]]
+material = [[0.3, 0.15], [0.46, 0.35]]
+start = 0.35
+velocity = [0, 0, 0.5]
+[output]
+frames_per_second = 20
+formats = []
+)";
+
+TEST_F(Run, ClothOnARimIsPickedUpWhereItLies)
+{
+    write_bytes(scene, kPickedUp);
+    const std::string dir = run_through("through");
+    const auto in_box = [](const Frame& frame, std::size_t v) {
+        const Vec2& X = frame.material[v];
+        return X.x() >= 0.3 && X.x() <= 0.46 && X.y() >= 0.15 && X.y() <= 0.35;
+    };
+    const auto count_eol = [&](const Frame& frame) {
+        int count = 0;
+        for (std::size_t v = 0; v < frame.eol.size(); ++v)
+            count += frame.eol[v] > 0 && in_box(frame, v) ? 1 : 0;
+        return count;
+    };
+    const auto read = [&](int k) {
+        return read_frame(dir + "/frames/cloth_0000" + std::to_string(k) + ".ply");
+    };
+    EXPECT_GT(count_eol(read(6)), 1) << "before, the cloth there slides over the rim";
+    const Frame start = read(7);
+    for (const int k : {8, 9}) {
+        const Frame later = read(k);
+        EXPECT_EQ(count_eol(later), 0);
+        int held = 0;
+        for (std::size_t v = 0; v < start.ids.size(); ++v) {
+            if (!in_box(start, v)) continue;
+            const auto same = std::find(later.ids.begin(), later.ids.end(), start.ids[v]);
+            ASSERT_NE(same, later.ids.end()) << "what a pin holds stays a vertex";
+            const Vec3 exact = start.world[v] + Vec3(0, 0, 0.5 * 0.05 * (k - 7));
+            EXPECT_LT((later.world[same - later.ids.begin()] - exact).norm(), 1e-14);
+            ++held;
+        }
+        EXPECT_GT(held, 8);
+    }
+}
+
+TEST_F(Run, APinThatStartsLaterIsTheSameAfterAResume)
+{
+    write_bytes(scene, kPickedUp);
+    const std::string through = run_through("through");
+    for (const std::string stop : {"0.2", "0.35", "0.45"}) {  // before the start, at it and after it
+        const std::string dir = run_through("until " + stop, {"--set", "duration=" + stop});
+        Program resumed(folder, {"resume", dir, "--until", "0.6", "--threads", "1"});
+        ASSERT_EQ(resumed.wait(), 0) << resumed.err();
+        EXPECT_EQ(timeless(through + "/steps.csv"), timeless(dir + "/steps.csv")) << stop;
+        for (int k = 0; k <= 12; ++k) {
+            const std::string frame =
+                "/frames/cloth_000" + std::string(k < 10 ? "0" : "") + std::to_string(k) + ".ply";
+            EXPECT_TRUE(read_bytes(through + frame) == read_bytes(dir + frame)) << stop << frame;
+        }
+    }
+}
+
 TEST_F(RunWithObstacles, WithoutItsStoredObstaclesARunIsNotResumed)
 {
     const std::string dir = run_through("through");

@@ -144,6 +144,16 @@ TEST(SceneLoad, TakesEveryKeyToItsPlace)
     EXPECT_THAT(config.output.formats, ElementsAre("obj", "usd", "viewer"));
 }
 
+TEST(SceneLoad, APinsMotionStartsWithThePin)
+{
+    const RunConfig config = load(kWholeScene, {"pin.0.start=0.5", "pin.1.start=0.5"});
+    EXPECT_EQ(config.scene.pins[0].start, 0.5);
+    EXPECT_EQ(config.scene.pins[0].motion.start, 0.5);
+    EXPECT_EQ(config.scene.pins[1].motion.keyframes[0].time,
+              load(kWholeScene).scene.pins[1].motion.keyframes[0].time)
+        << "keyframes have absolute times";
+}
+
 TEST(SceneLoad, GivesPinsTheirMotion)
 {
     const RunConfig config = load(kWholeScene);
@@ -195,7 +205,7 @@ TEST(SceneLoad, WritesOutWhatTheSceneLeavesToDefaults)
                          "bending_stiffness": 1e-5, "damping": 0.0, "thickness": 0.001}},
         "pin": [{"material": [[0.0, 0.0], [0.0, 1.0]], "velocity": [0.0, 0.0, 0.0],
                  "angular_velocity": [0.0, 0.0, 0.0], "pivot": [0.0, 0.0, 0.0],
-                 "directions": ["x", "y", "z"], "release": null}],
+                 "directions": ["x", "y", "z"], "start": 0.0, "release": null}],
         "gravity": {"acceleration": [0.0, 0.0, -9.81]},
         "wind": {"velocity": [1.0, 0.0, 0.0], "air_density": 1.2, "drag": 1.0},
         "pull": [{"material": [[1.0, 0.0], [1.0, 1.0]], "force": [0.0, 0.0, 1.0], "start": 0.0, "stop": null}],

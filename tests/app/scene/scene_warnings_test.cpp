@@ -76,6 +76,11 @@ const std::vector<IneffectiveKey> kIneffectiveKeys = {
      "7: pin.0.release = 1.5: has no effect: the run ends before that time"},
     {"EarlyRelease", kPin + "release = 0\n",
      "7: pin.0.release = 0: has no effect: the pin is released before it holds anything"},
+    {"LatePinStart", kPin + "start = 1\n",
+     "7: pin.0.start = 1: has no effect: the pin starts after the end of the run"},
+    {"KeyframeBeforePinStart",
+     kPin + "start = 0.5\nkeyframes = [ { time = 0.1 }, { time = 0.5 }, { time = 0.6 } ]\n",
+     "8: pin.0.keyframes.0.time = 0.1: has no effect: the next keyframe is not after the start of the pin"},
     {"Pivot", kPin + "pivot = [0, 0, 1]\n",
      "7: pin.0.pivot = [0, 0, 1]: has no effect: there is no angular_velocity"},
     {"VelocityAcross", kPin + "velocity = [1, 0, 0]\ndirections = [\"z\"]\n",
@@ -135,10 +140,20 @@ const std::vector<IneffectiveKey> kIneffectiveKeys = {
     {"OverlappingPins", kPin + "velocity = [0, 0, 1]\n[[pin]]\nmaterial = [[0, 0], [1, 0]]\n",
      "9: pin.1.material = [[0, 0], [1, 0]]: holds 3 position components that pin.0 also holds; pin.1 alone "
      "moves them"},
+    {"LaterOverlappingPins",
+     kPin + "release = 0.5\nvelocity = [0, 0, 1]\n[[pin]]\nmaterial = [[0, 0], [1, 0]]\nstart = 0.4\n",
+     "10: pin.1.material = [[0, 0], [1, 0]]: holds 3 position components that pin.0 also holds; pin.1 alone "
+     "moves them"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Scene, IneffectiveKeyTest, ::testing::ValuesIn(kIneffectiveKeys),
                          [](const auto& key) { return key.param.name; });
+
+TEST(IneffectiveKeys, PinsThatHoldOneAfterTheOtherDoNotOverlap)
+{
+    const std::string pins = kPin + "release = 0.5\nvelocity = [0, 0, 1]\n" + kPin + "start = 0.5\n";
+    EXPECT_THAT(load_scene(SceneSource{"s.toml", kBase + pins, {kMoving}}).warnings, IsEmpty());
+}
 
 struct Fall {
     std::string name, obstacle, set;
