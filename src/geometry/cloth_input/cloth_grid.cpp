@@ -8,6 +8,7 @@
 
 #include "geometry/cloth_input/cut_pattern.h"
 #include "geometry/cloth_input/fold_lines.h"
+#include "geometry/cloth_input/unstructured.h"
 #include "geometry/input_error.h"
 #include "geometry/rigid_motion.h"
 
@@ -114,7 +115,7 @@ double count_faces(double vertices, double border)
 // strip on either side.
 GridCount estimate_cut_pattern(const ClothGrid& grid)
 {
-    const FoldLines graph = make_fold_lines(grid.size, grid.folds);
+    const FoldLines graph = make_fold_lines(rectangle_border(grid.size), grid.folds);
     const Mat2 back = rotation_about(Vec3::UnitZ(), -grid.pattern_angle).topLeftCorner<2, 2>();
     const Vec2 cell(grid.size.x() / grid.resolution[0], grid.size.y() / grid.resolution[1]);
     double border = 0.0, inside = 0.0;
@@ -130,11 +131,16 @@ GridCount estimate_cut_pattern(const ClothGrid& grid)
     return {vertices, count_faces(vertices, border)};
 }
 
+double mean_side(const ClothGrid& grid)
+{
+    return 0.5 * (grid.size.x() / grid.resolution[0] + grid.size.y() / grid.resolution[1]);
+}
+
 // Faces have the cells' mean side. In a narrow rectangle, the least angle of 20.7 degrees lets no face be
 // much longer than the rectangle is wide.
 GridCount estimate_unstructured(const ClothGrid& grid)
 {
-    const double side = 0.5 * (grid.size.x() / grid.resolution[0] + grid.size.y() / grid.resolution[1]);
+    const double side = mean_side(grid);
     const double nu = grid.size.x() / side, nv = grid.size.y() / side;
     const double narrow = kAlongNarrow * grid.size.maxCoeff() / grid.size.minCoeff();
     const double vertices = std::max(kInside * nu * nv + kOnBorder * (nu + nv) + 1.0, narrow);
@@ -150,7 +156,8 @@ void require_few(const ClothGrid& grid, const char* how, double vertices)
 
 ClothMesh make_mesh(const ClothGrid& grid)
 {
-    if (grid.pattern == GridPattern::Unstructured) return make_unstructured(grid);
+    if (grid.pattern == GridPattern::Unstructured)
+        return make_unstructured(make_fold_lines(rectangle_border(grid.size), grid.folds), mean_side(grid));
     return is_cut(grid) ? make_cut_pattern(grid) : make_regular(grid);
 }
 

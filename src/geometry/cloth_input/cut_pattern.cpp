@@ -13,8 +13,6 @@
 //      kept    o---o---o---o---o         Coordinates are in cells: a cell is a unit square.
 #include "geometry/cloth_input/cut_pattern.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +21,6 @@
 #include "geometry/cloth_input/delaunay.h"
 #include "geometry/cloth_input/fold_lines.h"
 #include "geometry/cloth_input/pattern_lattice.h"
-#include "geometry/input_error.h"
 
 namespace arris {
 namespace {
@@ -49,7 +46,7 @@ struct CreaseVertex {
 class CutPattern {
   public:
     explicit CutPattern(const ClothGrid& grid)
-        : graph_(make_fold_lines(grid.size, grid.folds)),
+        : graph_(make_fold_lines(rectangle_border(grid.size), grid.folds)),
           lattice_(grid),
           index_(lattice_.vertex_count(), kFree)
     {
@@ -277,7 +274,7 @@ class CutPattern {
         for (const auto& edge : crease_edges_) gap_.edges.push_back(to_local(edge));
         for (const auto& edge : rim) {
             gap_.edges.push_back(to_local(edge));
-            filled_.push_back(to_local(edge));
+            gap_.outside.push_back(to_local(edge));
         }
     }
 
@@ -286,7 +283,7 @@ class CutPattern {
         gap_.points.clear();
         for (const int v : gap_vertices_) gap_.points.push_back(places_[v]);
         faces_.resize(kept_count_);
-        for (const Face& face : triangulate(gap_, filled_))
+        for (const Face& face : triangulate(gap_))
             faces_.push_back({gap_vertices_[face[0]], gap_vertices_[face[1]], gap_vertices_[face[2]]});
     }
 
@@ -338,7 +335,6 @@ class CutPattern {
     std::size_t kept_count_ = 0;
     PlanarGraph gap_;
     std::vector<int> gap_vertices_;
-    std::vector<std::array<int, 2>> filled_;
 };
 
 }  // namespace
@@ -346,37 +342,6 @@ class CutPattern {
 ClothMesh make_cut_pattern(const ClothGrid& grid)
 {
     return CutPattern(grid).build();
-}
-
-ClothMesh make_unstructured(const ClothGrid& grid)
-{
-    const FoldLines graph = make_fold_lines(grid.size, grid.folds);
-    const double side = 0.5 * (grid.size.x() / grid.resolution[0] + grid.size.y() / grid.resolution[1]);
-    PlanarGraph outline{graph.nodes, {}};
-    for (const auto& [a, b] : graph.segments) {
-        const Vec2 d = graph.nodes[b] - graph.nodes[a];
-        const int pieces = std::max(1, static_cast<int>(std::lround(d.norm() / side)));
-        int last = a;
-        for (int k = 1; k < pieces; ++k) {
-            outline.points.push_back(graph.nodes[a] + d * (double(k) / pieces));
-            outline.edges.push_back({last, static_cast<int>(outline.points.size()) - 1});
-            last = outline.edges.back()[1];
-        }
-        outline.edges.push_back({last, b});
-    }
-    const RefinedTriangulation refined =
-        refine(outline, 1.5 * side, static_cast<std::size_t>(kMostGridVertices));
-    if (!refined.is_complete)
-        throw InputError(fmt::format(
-            "unstructured cloth would have more than the {:.0e} vertices that are allowed: around ({:.6g}, "
-            "{:.6g}) m "
-            "it needs sides of {:.2g} m, as folds, or a fold and the border, come that near one another",
-            kMostGridVertices, refined.crowded.x(), refined.crowded.y(), refined.shortest));
-    ClothMesh mesh;
-    mesh.material = refined.points;
-    mesh.faces = refined.faces;
-    for (const Vec2& X : mesh.material) mesh.world.emplace_back(X.x(), X.y(), 0.0);
-    return mesh;
 }
 
 }  // namespace arris

@@ -9,7 +9,4 @@ namespace arris {
 /// Throws InputError as make_fold_lines does. Angles are judged in cell coordinates (pattern_lattice.h).
 ClothMesh make_cut_pattern(const ClothGrid& grid);
 
-/// CGAL's Delaunay refinement of the rectangle with its fold lines, edges about as long as the cells' sides.
-ClothMesh make_unstructured(const ClothGrid& grid);
-
 }  // namespace arris

@@ -111,7 +111,7 @@ void number_new_vertices(Triangulation& triangulation, std::vector<Vec2>& points
     }
 }
 
-void find_crowded(const Triangulation& triangulation, RefinedTriangulation& refined)
+void find_shortest_side(const Triangulation& triangulation, RefinedTriangulation& refined)
 {
     refined.shortest = std::numeric_limits<double>::infinity();
     for (const auto& [face, k] : triangulation.finite_edges()) {
@@ -130,48 +130,74 @@ bool has_side_in(const FaceHandle& face, const std::set<std::array<int, 2>>& dir
            directed.contains({f[2], f[0]});
 }
 
-}  // namespace
-
-std::vector<Face> triangulate(const PlanarGraph& graph, const std::vector<std::array<int, 2>>& filled)
+// Faces of the regions that the graph's edges enclose, but for those on the left of a side in `outside`.
+std::vector<FaceHandle> enclosed_faces(const Triangulation& triangulation,
+                                       const std::vector<std::array<int, 2>>& outside)
 {
-    const Triangulation triangulation = build(graph);
-    const std::set<std::array<int, 2>> filled_sides(filled.begin(), filled.end());
+    const std::set<std::array<int, 2>> outside_sides(outside.begin(), outside.end());
     std::set<FaceHandle> visited;
     region_of(triangulation.infinite_face(), visited);
-    std::vector<Face> faces;
+    std::vector<FaceHandle> faces;
     for (const FaceHandle start : triangulation.finite_face_handles()) {
         if (visited.contains(start)) continue;
         const std::vector<FaceHandle> region = region_of(start, visited);
-        const bool is_filled = std::any_of(region.begin(), region.end(), [&](const FaceHandle& face) {
-            return has_side_in(face, filled_sides);
+        const bool is_outside = std::any_of(region.begin(), region.end(), [&](const FaceHandle& face) {
+            return has_side_in(face, outside_sides);
         });
-        if (is_filled) continue;
-        for (const FaceHandle& face : region) faces.push_back(indices_of(face));
+        if (!is_outside) faces.insert(faces.end(), region.begin(), region.end());
     }
+    return faces;
+}
+
+}  // namespace
+
+std::vector<Face> triangulate(const PlanarGraph& graph)
+{
+    const Triangulation triangulation = build(graph);
+    std::vector<Face> faces;
+    for (const FaceHandle& face : enclosed_faces(triangulation, graph.outside))
+        faces.push_back(indices_of(face));
     make_canonical(faces);
     return faces;
 }
 
-RefinedTriangulation refine(const PlanarGraph& graph, double size, std::size_t most_points)
+RefinedTriangulation refine(const PlanarGraph& graph, double size, const RefinementLimits& limits)
 {
     Triangulation triangulation = build(graph);
     using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Triangulation>;
     CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(kAngleBound, size));
-    mesher.init();
-    while (triangulation.number_of_vertices() <= most_points)
-        if (!mesher.step_by_step_refine_mesh()) break;
+    for (const FaceHandle& face : enclosed_faces(triangulation, graph.outside)) face->set_in_domain(true);
+    constexpr bool kDomainIsMarked = true;
+    mesher.init(kDomainIsMarked);
 
     RefinedTriangulation refined;
-    refined.is_complete = triangulation.number_of_vertices() <= most_points;
-    if (!refined.is_complete) {
-        find_crowded(triangulation, refined);
-        return refined;
+    const auto is_within_limits = [&] {
+        find_shortest_side(triangulation, refined);
+        return triangulation.number_of_vertices() <= limits.most_points &&
+               refined.shortest >= limits.shortest_side;
+    };
+    std::size_t next_test = 0;
+    bool is_done = false;
+    while (!is_done && triangulation.number_of_vertices() <= limits.most_points) {
+        is_done = !mesher.step_by_step_refine_mesh();
+        if (triangulation.number_of_vertices() < next_test) continue;
+        if (!is_within_limits()) break;
+        next_test = 2 * triangulation.number_of_vertices();
     }
+    refined.is_complete = is_done && is_within_limits();
+    if (!refined.is_complete) return refined;
+
     refined.points = graph.points;
     number_new_vertices(triangulation, refined.points);
     for (const FaceHandle face : triangulation.finite_face_handles())
         if (face->is_in_domain()) refined.faces.push_back(indices_of(face));
     make_canonical(refined.faces);
+    for (const auto& [face, k] : triangulation.constrained_edges()) {
+        const int a = face->vertex(Triangulation::cw(k))->info().value;
+        const int b = face->vertex(Triangulation::ccw(k))->info().value;
+        refined.edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+    std::sort(refined.edges.begin(), refined.edges.end());
     return refined;
 }
 
