@@ -91,7 +91,9 @@ std::optional<Cause> start_of(const RunConfig& config)
     const double scale = cloth["scale"].get<double>();
     if (std::abs(scale - 1.0) > kCounts) {
         cause.what += fmt::format(", as cloth.scale = {:g} scales its positions but not its material", scale);
-        cause.remedy = cloth.contains("file") ? "scale cloth.uv_scale as well" : "change cloth.size instead";
+        cause.remedy = cloth.contains("file")      ? "scale cloth.uv_scale as well"
+                       : cloth.contains("outline") ? "change cloth.outline instead"
+                                                   : "change cloth.size instead";
     } else {
         cause.remedy = cloth.contains("file") ? "check the UVs of its file, cloth.uv_scale and cloth.units"
                                               : "start it farther from obstacles and from the places of pins";

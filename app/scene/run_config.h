@@ -37,7 +37,7 @@ struct RunConfig {
     std::vector<std::string> intersections;      ///< of the cloth with obstacles at time 0, one line each
 
     std::vector<std::string> warnings;
-    std::vector<std::string> notes;  ///< on obstacles' files: valid, but worth knowing
+    std::vector<std::string> notes;  ///< on the cloth and on obstacles' files: valid, but worth knowing
     nlohmann::ordered_json as_run;   ///< the scene by key, with every default filled in
 };
 

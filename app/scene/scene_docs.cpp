@@ -230,6 +230,11 @@ Json value_schema(const SceneKey& key)
             return array_schema(array_schema(number_schema(key), 2, 2), 2, 2);
         case KeyType::Points:
             return array_schema(array_schema(number_schema(key), 3, 3), key.count, kAnyCount);
+        case KeyType::Polygon:
+            return array_schema(array_schema(number_schema(key), 2, 2), key.count, kAnyCount);
+        case KeyType::Polygons:
+            return array_schema(array_schema(array_schema(number_schema(key), 2, 2), key.count, kAnyCount), 0,
+                                kAnyCount);
     }
     return {};
 }

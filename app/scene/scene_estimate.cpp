@@ -42,11 +42,19 @@ constexpr double kObjElementBytes = 50.0;
 
 }  // namespace
 
-void estimate_grid(const ClothGrid& grid, SceneEstimate& estimate)
+SceneEstimate to_estimate(const GridCount& count)
 {
-    const GridCount count = estimate_cloth_grid(grid);
+    SceneEstimate estimate;
     estimate.vertices = count.vertices;
     estimate.faces = count.faces;
+    return estimate;
+}
+
+void refuse_estimate(const SceneDocument& document, const std::string& key, double count,
+                     const std::string& what, double most)
+{
+    document.fail(key, fmt::format("the run would have about {:.7g} {}", count, what),
+                  fmt::format("at most {:.7g} {}", most, what));
 }
 
 EdgeLengths measure_edges(const ClothMesh& cloth, const MeshTopology& topology)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/scene/scene_document.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/obstacle/obstacle.h"
@@ -30,8 +31,12 @@ inline constexpr double kMaxSteps = 1e8;
 inline constexpr double kMaxFrames = 1e6;
 inline constexpr double kMaxObstacleElements = 5e6;
 
-/// Counts vertices and faces of a grid without making it. Throws what estimate_cloth_grid throws.
-void estimate_grid(const ClothGrid& grid, SceneEstimate& estimate);
+/// An estimate with the vertices and faces of the cloth alone.
+SceneEstimate to_estimate(const GridCount& count);
+
+/// Refuses a scene because of `key`: the run would have `count` of `what`, and at most `most` are allowed.
+[[noreturn]] void refuse_estimate(const SceneDocument& document, const std::string& key, double count,
+                                  const std::string& what, double most);
 
 /// Lengths of the cloth's edges in the material, m.
 struct EdgeLengths {

@@ -1,134 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of all keys of a scene file. A new key is added here and nowhere else.
-#include <array>
-
-#include "app/scene/scene_keys.h"
+#include "app/scene/scene_key_kinds.h"
 
 namespace arris {
 namespace {
-
-// Bounds far beyond any real cloth. They keep every product of two values finite.
-constexpr KeyRange kAnyNumber{-1e6, 1e6};
-constexpr KeyRange kPositive{0.0, 1e6, true};
-constexpr KeyRange kNotNegative{0.0, 1e6};
-constexpr KeyRange kSize{1e-6, 1e4};
-constexpr KeyRange kAngle{-360.0, 360.0};
-constexpr KeyRange kTitle{0.0, 200.0};
-constexpr KeyRange kPath{1.0, 4096.0};
-
-constexpr std::string_view kUnits = "m|cm|mm|in";
-constexpr std::string_view kAxes = "x|y|z";
-constexpr std::string_view kOrigin = "[0.0, 0.0, 0.0]";
-constexpr std::string_view kIdentity = R"({"axis": [0.0, 0.0, 1.0], "degrees": 0.0})";
-constexpr std::string_view kNever = "null";
-
-SceneKey table(std::string_view name, std::string_view fallback, std::string_view sentence)
-{
-    return {.name = name, .type = KeyType::Table, .fallback = fallback, .sentence = sentence};
-}
-
-SceneKey tables(std::string_view name, std::string_view sentence)
-{
-    return {.name = name, .type = KeyType::Tables, .sentence = sentence};
-}
-
-SceneKey number(std::string_view name, std::string_view unit, KeyRange range, std::string_view fallback,
-                std::string_view sentence)
-{
-    return {.name = name,
-            .type = KeyType::Number,
-            .unit = unit,
-            .range = range,
-            .fallback = fallback,
-            .sentence = sentence};
-}
-
-SceneKey integer(std::string_view name, KeyRange range, std::string_view fallback, std::string_view sentence)
-{
-    return {
-        .name = name, .type = KeyType::Integer, .range = range, .fallback = fallback, .sentence = sentence};
-}
-
-SceneKey numbers(std::string_view name, int count, std::string_view unit, KeyRange range,
-                 std::string_view fallback, std::string_view sentence)
-{
-    return {.name = name,
-            .type = KeyType::Numbers,
-            .unit = unit,
-            .range = range,
-            .count = count,
-            .fallback = fallback,
-            .sentence = sentence};
-}
-
-SceneKey points(std::string_view name, int least, std::string_view sentence)
-{
-    return {.name = name,
-            .type = KeyType::Points,
-            .unit = "m",
-            .range = kAnyNumber,
-            .count = least,
-            .sentence = sentence};
-}
-
-SceneKey box(std::string_view name, std::string_view sentence)
-{
-    return {.name = name,
-            .type = KeyType::Box,
-            .unit = "m",
-            .range = kAnyNumber,
-            .fallback = kRequired,
-            .sentence = sentence};
-}
-
-SceneKey text(std::string_view name, KeyType type, KeyRange range, std::string_view fallback,
-              std::string_view sentence)
-{
-    return {.name = name, .type = type, .range = range, .fallback = fallback, .sentence = sentence};
-}
-
-SceneKey axis(std::string_view name)
-{
-    return {.name = name,
-            .type = KeyType::Axis,
-            .range = kAnyNumber,
-            .count = 3,
-            .fallback = kRequired,
-            .sentence = "Axis of the rotation, of any length but zero."};
-}
-
-SceneKey choice(std::string_view name, std::string_view choices, std::string_view fallback,
-                std::string_view sentence)
-{
-    return {.name = name,
-            .type = KeyType::Choice,
-            .choices = choices,
-            .fallback = fallback,
-            .sentence = sentence};
-}
-
-SceneKey choices(std::string_view name, int least, std::string_view all, std::string_view fallback,
-                 std::string_view sentence)
-{
-    return {.name = name,
-            .type = KeyType::Choices,
-            .count = least,
-            .choices = all,
-            .fallback = fallback,
-            .sentence = sentence};
-}
-
-SceneKey boolean(std::string_view name, std::string_view fallback, std::string_view sentence)
-{
-    return {.name = name, .type = KeyType::Boolean, .fallback = fallback, .sentence = sentence};
-}
-
-/// Marks the given values of a key as not built yet.
-SceneKey not_built(SceneKey key, std::string_view values)
-{
-    key.unbuilt_choices = values;
-    return key;
-}
 
 std::vector<SceneKey> make_scene_keys()
 {
@@ -144,18 +19,26 @@ std::vector<SceneKey> make_scene_keys()
             "time.integrator", "bdf2|implicit_euler", R"("bdf2")",
             "Integrator: second order (bdf2), or first order with more numerical damping (implicit_euler)."),
 
-        table("cloth", "{}", "The cloth: a rectangle to be meshed, or a mesh from a file."),
+        table("cloth", "{}", "The cloth: a rectangle or an outline to be meshed, or a mesh from a file."),
         numbers("cloth.size", 2, "m", kSize, "",
-                "Sides of the material rectangle, u then v; required without `file`."),
+                "Sides of the material rectangle, u then v; required without `outline` and `file`."),
         {.name = "cloth.resolution",
          .type = KeyType::Integers,
          .range = {1.0, 5e6},
          .count = 2,
-         .sentence = "Cells along u and v; required without `file`."},
+         .sentence = "Cells along u and v; required with `size`."},
         choice("cloth.pattern", "diagonal|alternating|cross|unstructured", R"("cross")",
                "Pattern in which the cells are divided into triangles."),
         number("cloth.pattern_angle", "degrees", kAngle, "0.0",
                "Rotation of the mesh pattern in the material; the pattern is clipped to the rectangle."),
+        polygon("cloth.outline", KeyType::Polygon,
+                "Polygon in the material instead of a rectangle, clockwise or counter-clockwise. Its sides "
+                "must neither cross nor touch. Corners that are finer than `edge_length` are left out where "
+                "the border moves by at most 7 % of it."),
+        polygon("cloth.holes", KeyType::Polygons,
+                "Holes: polygons inside the outline, clear of it and of one another."),
+        number("cloth.edge_length", "m", kSize, "",
+               "Mean length of the mesh's edges; required with `outline`."),
         tables("cloth.folds", "Folds of the initial cloth, made one after the other without stretching it."),
         {.name = "cloth.folds[].line",
          .type = KeyType::Line,
@@ -168,7 +51,8 @@ std::vector<SceneKey> make_scene_keys()
                "Angle by which the material to the right of the line is rotated downward. At 180 degrees "
                "the two layers would coincide, and neither would be above the other."),
         text("cloth.file", KeyType::Path, kPath, "",
-             "OBJ mesh used instead of a rectangle. Its positions are the initial world positions; its UVs, "
+             "OBJ mesh used instead of a rectangle or an outline. Its positions are the initial world "
+             "positions; its UVs, "
              "times `uv_scale`, are the material coordinates. A flat mesh without UVs takes the material "
              "coordinates from its positions; flat pieces in different planes, such as layers, are laid side "
              "by "

@@ -133,6 +133,11 @@ std::string allowed_values(const SceneKey& key)
             return fmt::format("two different points, [[u, v], [u, v]], numbers {}", number_range(key));
         case KeyType::Points:
             return fmt::format("{} or more points [x, y, z], numbers {}", key.count, number_range(key));
+        case KeyType::Polygon:
+            return fmt::format("{} or more corners [u, v], numbers {}", key.count, number_range(key));
+        case KeyType::Polygons:
+            return fmt::format("polygons [[u, v], [u, v], ...] of {} or more corners, numbers {}", key.count,
+                               number_range(key));
     }
     return {};
 }

@@ -24,7 +24,9 @@ enum class KeyType {
     Axis,      ///< an array of three numbers: a direction
     Box,       ///< [[u, v], [u, v]]: least and greatest corner
     Line,      ///< [[u, v], [u, v]]: two different points
-    Points     ///< an array of at least `count` points [x, y, z]
+    Points,    ///< an array of at least `count` points [x, y, z]
+    Polygon,   ///< an array of at least `count` corners [u, v]
+    Polygons   ///< an array of polygons
 };
 
 /// Allowed values of a number, or of every number of an array. For a text, allowed numbers of characters.

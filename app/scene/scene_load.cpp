@@ -11,6 +11,7 @@
 
 #include "app/scene/merge_events.h"
 #include "app/scene/run_config.h"
+#include "app/scene/scene_cloth.h"
 #include "app/scene/scene_document.h"
 #include "app/scene/scene_estimate.h"
 #include "app/scene/scene_json.h"
@@ -22,8 +23,6 @@
 #include "app/scene/start_strain.h"
 #include "app/text/counted.h"
 #include "geometry/cloth/material_locator.h"
-#include "geometry/cloth_input/cloth_file.h"
-#include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/input_error.h"
 #include "geometry/sort_unique.h"
 #include "geometry/surgery/initial_target.h"
@@ -141,23 +140,6 @@ Settings to_settings(const Json& json)
 
 // ---- size of the run
 
-[[noreturn]] void refuse_estimate(const SceneDocument& document, const std::string& key, double count,
-                                  const std::string& what, double most)
-{
-    document.fail(key, fmt::format("the run would have about {:.7g} {}", count, what),
-                  fmt::format("at most {:.7g} {}", most, what));
-}
-
-void check_size(const SceneDocument& document, const RunConfig& config, SceneEstimate& estimate)
-{
-    const std::string cloth_key = document.find("cloth.file") ? "cloth.file" : "cloth.resolution";
-    if (estimate.vertices > kMaxVertices)
-        refuse_estimate(document, cloth_key, estimate.vertices, "vertices", kMaxVertices);
-    estimate_bytes(config.output.formats, estimate);
-    if (const std::optional<Excess> excess = find_memory_excess(estimate, machine_memory_bytes()))
-        document.fail(cloth_key, excess->wrong, excess->allowed);
-}
-
 /// Times at which the input jumps, including those of obstacles that are not yet in the scene.
 std::vector<double> all_jumps(const Scene& scene, const std::vector<ObstaclePlan>& plans)
 {
@@ -185,87 +167,6 @@ void check_length(const SceneDocument& document, const RunConfig& config,
         estimate.steps = count_steps(config.duration, step, fps, all_jumps(config.scene, plans));
     if (estimate.steps > kMaxSteps)
         refuse_estimate(document, written("time.step"), estimate.steps, "steps", kMaxSteps);
-}
-
-// ---- the cloth
-
-ClothGrid to_grid(const Json& cloth)
-{
-    ClothGrid grid;
-    grid.size = to_vec2(cloth["size"]);
-    grid.resolution = {cloth["resolution"][0].get<int>(), cloth["resolution"][1].get<int>()};
-    const std::string pattern = cloth["pattern"].get<std::string>();
-    grid.pattern = pattern == "diagonal"      ? GridPattern::Diagonal
-                   : pattern == "alternating" ? GridPattern::Alternating
-                   : pattern == "cross"       ? GridPattern::Cross
-                                              : GridPattern::Unstructured;
-    grid.pattern_angle = to_double(cloth["pattern_angle"]);
-    for (const Json& fold : cloth.value("folds", Json::array()))
-        grid.folds.push_back(
-            {{to_vec2(fold["line"][0]), to_vec2(fold["line"][1])}, to_double(fold["degrees"])});
-    return grid;
-}
-
-/// Runs `build` and reports an InputError of it as an error of `key`.
-template <typename Build>
-auto blame(const SceneDocument& document, const std::string& key, const Build& build)
-{
-    try {
-        return build();
-    } catch (const InputError& error) {
-        document.fail(document.find(key) ? key : "cloth", error.what());
-    }
-}
-
-ClothMesh make_rectangle(const SceneDocument& document, const ClothGrid& grid)
-{
-    return blame(document, "cloth.folds", [&] {
-        ClothMesh mesh = make_cloth_grid(grid);
-        fold_cloth(grid.folds, mesh);
-        return mesh;
-    });
-}
-
-ClothMesh read_cloth(const SceneDocument& document, const Json& cloth, std::vector<std::string>& warnings)
-{
-    const std::filesystem::path name(cloth["file"].get<std::string>());
-    const std::string path = (std::filesystem::path(document.path()).parent_path() / name).string();
-    const std::string unit = cloth["units"].get<std::string>();
-    std::string extension = name.extension().string();
-    for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    if (extension != ".obj")
-        document.fail("cloth.file", "a cloth of this format is not built yet in this version",
-                      "an .obj file");
-    ClothFile file = blame(document, "cloth.file", [&] {
-        return read_cloth_file(path, metres_of(unit), cloth["up"].get<std::string>()[0],
-                               cloth["uv_scale"].get<double>());
-    });
-    if (document.find("cloth.uv_scale") && !file.has_uv)
-        warnings.push_back(document.describe("cloth.uv_scale") + ": has no effect: the file has no UVs");
-    for (const std::string& warning : file.warnings)
-        warnings.push_back(fmt::format("{}: {}", document.describe("cloth.file"), warning));
-    return std::move(file.mesh);
-}
-
-ClothMesh make_cloth(const SceneDocument& document, RunConfig& config)
-{
-    const Json& cloth = config.as_run["cloth"];
-    SceneEstimate estimate;
-    ClothMesh mesh;
-    if (cloth.contains("file")) {
-        mesh = read_cloth(document, cloth, config.warnings);
-        estimate.vertices = mesh.vertex_count();
-        check_size(document, config, estimate);
-    } else {
-        const ClothGrid grid = to_grid(cloth);
-        blame(document, "cloth.folds", [&] { estimate_grid(grid, estimate); });
-        check_size(document, config, estimate);
-        mesh = make_rectangle(document, grid);
-    }
-    const double scale = to_double(cloth["scale"]);
-    const Placement placement = {to_rotation(cloth["rotate"]), to_vec3(cloth["translate"])};
-    for (Vec3& x : mesh.world) x = placement(scale * x);
-    return mesh;
 }
 
 // ---- pins, pulls, probes and obstacles against the cloth
@@ -382,7 +283,7 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     for (ObstaclePlan& plan : plans) motions.push_back(&plan.motion);
     merge_events(config, motions);
     check_length(document, config, plans);
-    config.cloth = options.cloth ? *options.cloth : make_cloth(document, config);
+    config.cloth = options.cloth ? *options.cloth : make_scene_cloth(document, config);
     config.cloth_velocity = to_vec3(json["cloth"]["velocity"]);
     check_meetings(document, config);
     load_obstacles(document, options, std::move(plans), config);

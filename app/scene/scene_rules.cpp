@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <map>
 
+#include "app/scene/scene_cloth.h"
 #include "app/scene/scene_keys.h"
 #include "app/text/printable.h"
 #include "physics/material.h"
@@ -34,25 +35,47 @@ void fill_material(Json& material)
     fill("bending_stiffness", preset.bending_stiffness);
 }
 
-/// Requires either the keys of a rectangle or cloth.file.
-void settle_cloth_source(const SceneDocument& document, Json& cloth)
+/// Refuses keys of a cloth's shape that is not the one chosen where they are written; else removes their
+/// defaults.
+void drop_cloth_keys(const SceneDocument& document, std::initializer_list<const char*> keys,
+                     const std::string& wrong, Json& cloth)
 {
-    if (!cloth.contains("file")) {
-        for (const std::string key : {"cloth.size", "cloth.resolution"})
-            if (!document.find(key))
-                document.fail(key, "is required and missing, as there is no cloth.file",
-                              allowed_values(*find_scene_key(key)));
-        cloth.erase("units");
-        cloth.erase("up");
-        cloth.erase("uv_scale");
-        return;
-    }
-    for (const std::string key : {"size", "resolution", "pattern", "pattern_angle", "folds"}) {
+    for (const std::string key : keys) {
         if (document.find("cloth." + key))
-            document.fail("cloth." + key, "contradicts cloth.file",
-                          "either a rectangle's keys or cloth.file");
+            document.fail("cloth." + key, wrong,
+                          "keys of one shape: a rectangle, cloth.outline or cloth.file");
         cloth.erase(key);
     }
+}
+
+void require_cloth_keys(const SceneDocument& document, std::initializer_list<const char*> keys,
+                        const std::string& why)
+{
+    for (const char* key : keys)
+        if (!document.find(key))
+            document.fail(key, "is required and missing, " + why, allowed_values(*find_scene_key(key)));
+}
+
+/// Requires one shape: a rectangle, cloth.outline or cloth.file. Keys that only refine a file's reading
+/// remain for a warning.
+void settle_cloth_shape(const SceneDocument& document, Json& cloth)
+{
+    const std::string shape = cloth_shape_key(document);
+    if (shape != "cloth.file")
+        for (const char* key : {"units", "up", "uv_scale"}) cloth.erase(key);
+    if (shape == "cloth.size") {
+        drop_cloth_keys(document, {"holes", "edge_length"}, "is written without cloth.outline", cloth);
+        require_cloth_keys(document, {"cloth.size", "cloth.resolution"},
+                           "as there is neither cloth.outline nor cloth.file");
+        return;
+    }
+    drop_cloth_keys(document, {"size", "resolution", "pattern", "pattern_angle"}, "contradicts " + shape,
+                    cloth);
+    if (shape == "cloth.outline")
+        require_cloth_keys(document, {"cloth.edge_length"}, "as there is cloth.outline");
+    else
+        drop_cloth_keys(document, {"outline", "holes", "edge_length", "folds"}, "contradicts " + shape,
+                        cloth);
 }
 
 /// `chosen` excludes `others`: refuses them where written, else removes their defaults.
@@ -210,7 +233,7 @@ void apply_scene_rules(const SceneDocument& document, Json& scene)
 {
     fill_title(document, scene);
     fill_material(scene["cloth"]["material"]);
-    settle_cloth_source(document, scene["cloth"]);
+    settle_cloth_shape(document, scene["cloth"]);
     if (scene.contains("obstacle")) settle_obstacles(document, scene["obstacle"]);
     if (scene.contains("pin"))
         for (std::size_t i = 0; i < scene["pin"].size(); ++i) {

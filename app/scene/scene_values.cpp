@@ -171,6 +171,28 @@ Json complete_points(const Check& check, const SceneValue& value)
     return result;
 }
 
+/// Errors name the corner, as polygons may be long.
+Json complete_polygon(const Check& check, const SceneValue& value)
+{
+    Json result = Json::array();
+    for (const SceneValue& corner : check.points(value, "[[0, 0], [1, 0], [0.5, 0.9]]")) {
+        const std::string path = fmt::format("{}.{}", check.path, result.size());
+        result.push_back(Check{check.document, check.key, path}.point(corner, 2));
+    }
+    if (static_cast<int>(result.size()) < check.key.count) check.fail("has too few corners");
+    return result;
+}
+
+Json complete_polygons(const Check& check, const SceneValue& value)
+{
+    Json result = Json::array();
+    for (const SceneValue& polygon : check.items(value)) {
+        const std::string path = fmt::format("{}.{}", check.path, result.size());
+        result.push_back(complete_polygon({check.document, check.key, path}, polygon));
+    }
+    return result;
+}
+
 Json complete_boolean(const Check& check, const SceneValue& value)
 {
     if (value.kind != Kind::Boolean) check.fail("is not a boolean");
@@ -235,6 +257,10 @@ Json complete_value(const Check& check, const SceneValue& value)
             return complete_corners(check, value);
         case KeyType::Points:
             return complete_points(check, value);
+        case KeyType::Polygon:
+            return complete_polygon(check, value);
+        case KeyType::Polygons:
+            return complete_polygons(check, value);
     }
     return {};
 }

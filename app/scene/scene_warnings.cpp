@@ -64,7 +64,7 @@ void check_cloth_size(const RunConfig& config, Warnings& warnings)
     for (const Vec2& X : config.cloth.material) material.extend(X);
     const Vec2 sides = material.sizes();
     if (sides.maxCoeff() >= kSmallest && sides.maxCoeff() <= kLargest) return;
-    const char* key = "cloth.size";
+    const char* key = warnings.is_written("cloth.outline") ? "cloth.outline" : "cloth.size";
     const char* advice = "sizes are in metres";
     if (warnings.is_written("cloth.units")) {
         key = "cloth.units";
@@ -201,15 +201,19 @@ void check_angles(const RunConfig& config, Warnings& warnings)
     }
     if (thin == 0) return;
     const bool is_from_file = warnings.is_written("cloth.file");
+    const bool is_outline = warnings.is_written("cloth.outline");
     const Vec2& X = cloth.material[cloth.faces[thinnest][0]];
     warnings.note(
-        is_from_file ? "cloth.file" : "cloth.resolution",
+        is_from_file ? "cloth.file"
+        : is_outline ? "cloth.outline"
+                     : "cloth.resolution",
         fmt::format(
             "{} of {} an angle below {:g} degrees, the least {:.2g} degrees at [{:.6g}, {:.6g}] "
             "(material): EOL vertices can hardly be placed in such thin faces; {}",
             thin, counted(cloth.face_count(), "face has", thin == 1 ? "faces has" : "faces have"), kThin,
             least, X.x(), X.y(),
-            is_from_file
+            is_outline ? "round off sharp corners"
+            : is_from_file
                 ? "remesh the file with more even faces"
                 : "use cells with more even sides, or folds and a pattern_angle that cut off no slivers"));
 }

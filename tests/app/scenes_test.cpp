@@ -23,11 +23,14 @@ std::vector<std::string> scene_files()
     return files;
 }
 
-/// Half the cells that a scene's line "resolution = [u, v]" has, as a setting; empty where it has none.
+/// Half the cells that a scene's line "resolution = [u, v]" has, or twice its edge_length, as a setting;
+/// empty where it has neither.
 std::string halved_resolution(const std::string& file)
 {
     const std::string text = read_bytes(file);
     std::smatch found;
+    if (std::regex_search(text, found, std::regex("\nedge_length = ([0-9.]+)")))
+        return "cloth.edge_length=" + std::to_string(2.0 * std::stod(found[1]));
     if (!std::regex_search(text, found, std::regex("\nresolution = \\[(\\d+), (\\d+)\\]"))) return {};
     return "cloth.resolution=[" + std::to_string((std::stoi(found[1]) + 1) / 2) + "," +
            std::to_string((std::stoi(found[2]) + 1) / 2) + "]";

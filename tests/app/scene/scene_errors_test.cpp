@@ -17,6 +17,8 @@ const std::string kRemedy =
     "move the cloth or the obstacle ('translate') until they are at least 0.001 m apart, the cloth's "
     "thickness";
 const std::string kBase = "duration = 1\n" + kCloth;
+const std::string kTriangle = "outline = [[0, 0], [1, 0], [0, 1]]\n";
+const std::string kOutlined = "duration = 1\n[cloth]\n" + kTriangle + "edge_length = 0.1\n";
 const std::string kNail = "[[obstacle]]\npoints = [[0, 0, 9]]\n";
 
 std::string many_nails(int count)
@@ -154,7 +156,8 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "step = 0.01\n",
      {},
      "s.toml:5: cloth.step = 0.01: unknown key, did you mean time.step?; allowed: size, resolution, pattern, "
-     "pattern_angle, folds, file, units, up, uv_scale, translate, rotate, scale, velocity, material"},
+     "pattern_angle, outline, holes, edge_length, folds, file, units, up, uv_scale, translate, rotate, "
+     "scale, velocity, material"},
     {"UnknownFarFromAll",
      kBase + "[solver]\nzzzzzzzz = 1\n",
      {},
@@ -162,7 +165,8 @@ const std::vector<WrongScene> kWrongScenes = {
     {"UnknownKeyWithControlCharacter",
      kBase + "\"a\\nb\" = 1\n",
      {},
-     "s.toml:5: cloth.a\\nb = 1: unknown key; allowed: size, resolution, pattern, pattern_angle, folds, "
+     "s.toml:5: cloth.a\\nb = 1: unknown key; allowed: size, resolution, pattern, pattern_angle, outline, "
+     "holes, edge_length, folds, "
      "file, units, up, uv_scale, translate, rotate, scale, velocity, material"},
     {"UnknownInInlineTable",
      kBase + "rotate = { axis = [0, 0, 1], degree = 10 }\n",
@@ -437,19 +441,22 @@ const std::vector<WrongScene> kWrongScenes = {
     {"NoCloth",
      "duration = 1\n",
      {},
-     "s.toml:1: cloth.size: is required and missing, as there is no cloth.file; allowed: 2 numbers from "
+     "s.toml:1: cloth.size: is required and missing, as there is neither cloth.outline nor cloth.file; "
+     "allowed: 2 numbers from "
      "1e-06 to "
      "10000 (m)"},
     {"NoResolution",
      "duration = 1\n[cloth]\nsize = [1, 1]\n",
      {},
-     "s.toml:2: cloth.resolution: is required and missing, as there is no cloth.file; allowed: 2 integers "
+     "s.toml:2: cloth.resolution: is required and missing, as there is neither cloth.outline nor cloth.file; "
+     "allowed: 2 integers "
      "from 1 "
      "to 5000000"},
     {"NoSize",
      "duration = 1\n[cloth]\nresolution = [1, 1]\n",
      {},
-     "s.toml:2: cloth.size: is required and missing, as there is no cloth.file; allowed: 2 numbers from "
+     "s.toml:2: cloth.size: is required and missing, as there is neither cloth.outline nor cloth.file; "
+     "allowed: 2 numbers from "
      "1e-06 to "
      "10000 (m)"},
     {"PinWithoutMaterial",
@@ -492,22 +499,101 @@ const std::vector<WrongScene> kWrongScenes = {
     {"SizeAndFile",
      "duration = 1\n[cloth]\nsize = [1, 1]\nfile = \"cloth.obj\"\n",
      {},
-     "s.toml:3: cloth.size = [1, 1]: contradicts cloth.file; allowed: either a rectangle's keys or "
-     "cloth.file"},
+     "s.toml:3: cloth.size = [1, 1]: contradicts cloth.file; allowed: keys of one shape: a rectangle, "
+     "cloth.outline or cloth.file"},
     {"ResolutionAndFile",
      "duration = 1\n[cloth]\nfile = \"cloth.obj\"\nresolution = [2, 2]\n",
      {},
-     "s.toml:4: cloth.resolution = [2, 2]: contradicts cloth.file; allowed: either a rectangle's keys or "
-     "cloth.file"},
+     "s.toml:4: cloth.resolution = [2, 2]: contradicts cloth.file; allowed: keys of one shape: a rectangle, "
+     "cloth.outline or cloth.file"},
     {"PatternAndFile",
      "duration = 1\n[cloth]\nfile = \"cloth.obj\"\npattern = \"cross\"\n",
      {},
-     "s.toml:4: cloth.pattern = \"cross\": contradicts cloth.file; allowed: either a rectangle's keys or "
-     "cloth.file"},
+     "s.toml:4: cloth.pattern = \"cross\": contradicts cloth.file; allowed: keys of one shape: a rectangle, "
+     "cloth.outline or cloth.file"},
     {"FoldsAndFile",
      "duration = 1\n[cloth]\nfile = \"cloth.obj\"\nfolds = []\n",
      {},
-     "s.toml:4: cloth.folds = []: contradicts cloth.file; allowed: either a rectangle's keys or cloth.file"},
+     "s.toml:4: cloth.folds = []: contradicts cloth.file; allowed: keys of one shape: a rectangle, "
+     "cloth.outline or cloth.file"},
+    {"OutlineAndFile",
+     "duration = 1\n[cloth]\nfile = \"cloth.obj\"\n" + kTriangle,
+     {},
+     "s.toml:4: cloth.outline = [[0, 0], [1, 0], [0, 1]]: contradicts cloth.file; allowed: keys of one "
+     "shape: "
+     "a rectangle, cloth.outline or cloth.file"},
+    {"OutlineAndSize",
+     "duration = 1\n[cloth]\nsize = [1, 1]\n" + kTriangle + "edge_length = 0.1\n",
+     {},
+     "s.toml:3: cloth.size = [1, 1]: contradicts cloth.outline; allowed: keys of one shape: a rectangle, "
+     "cloth.outline or cloth.file"},
+    {"OutlineAndPattern",
+     "duration = 1\n[cloth]\npattern = \"cross\"\n" + kTriangle + "edge_length = 0.1\n",
+     {},
+     "s.toml:3: cloth.pattern = \"cross\": contradicts cloth.outline; allowed: keys of one shape: a "
+     "rectangle, cloth.outline or cloth.file"},
+    {"OutlineWithoutEdgeLength",
+     "duration = 1\n[cloth]\n" + kTriangle,
+     {},
+     "s.toml:2: cloth.edge_length: is required and missing, as there is cloth.outline; allowed: a number "
+     "from 1e-06 to 10000 (m)"},
+    {"HolesWithoutOutline",
+     kBase + "holes = []\n",
+     {},
+     "s.toml:5: cloth.holes = []: is written without cloth.outline; allowed: keys of one shape: a rectangle, "
+     "cloth.outline or cloth.file"},
+    {"EdgeLengthWithoutOutline",
+     kBase + "edge_length = 0.1\n",
+     {},
+     "s.toml:5: cloth.edge_length = 0.1: is written without cloth.outline; allowed: keys of one shape: a "
+     "rectangle, cloth.outline or cloth.file"},
+    {"OutlineOfTwoCorners",
+     kOutlined,
+     {"cloth.outline=[[0,0],[1,0]]"},
+     "--set cloth.outline=[[0,0],[1,0]]: has too few corners; allowed: 3 or more corners [u, v], numbers "
+     "from -1000000 to 1000000 (m)"},
+    {"OutlineCorner",
+     kOutlined,
+     {"cloth.outline=[[0,0],[1,0],[0,inf]]"},
+     "--set cloth.outline=[[0,0],[1,0],[0,inf]]: cloth.outline.2 = [0,inf]: is not finite; allowed: 3 or "
+     "more corners [u, v], numbers from -1000000 to 1000000 (m)"},
+    {"OutlineOfNumbers",
+     kOutlined,
+     {"cloth.outline=[1,2,3]"},
+     "--set cloth.outline=[1,2,3]: is not an array of points, such as [[0, 0], [1, 0], [0.5, 0.9]]; allowed: "
+     "3 or more corners [u, v], numbers from -1000000 to 1000000 (m)"},
+    {"OutlineCrossesItself",
+     kOutlined,
+     {"cloth.outline=[[0,0],[1,1],[1,0],[0,1]]"},
+     "--set cloth.outline=[[0,0],[1,1],[1,0],[0,1]]: its side from [1, 0] to [0, 1] crosses the side from "
+     "[0, 0] to [1, 1]; allowed: sides that neither cross nor touch one another"},
+    {"HoleOfOnePolygon",
+     kOutlined + "holes = [[0.2, 0.2], [0.3, 0.2], [0.2, 0.3]]\n",
+     {},
+     "s.toml:5: cloth.holes.0 = [0.2, 0.2]: is not an array of points, such as [[0, 0], [1, 0], [0.5, 0.9]]; "
+     "allowed: polygons [[u, v], [u, v], ...] of 3 or more corners, numbers from -1000000 to 1000000 (m)"},
+    {"HoleOutside",
+     kOutlined + "holes = [[[2, 0], [3, 0], [2, 1]]]\n",
+     {},
+     "s.toml:5: cloth.holes.0 = [[2, 0], [3, 0], [2, 1]]: lies outside the outline; allowed: holes inside "
+     "the "
+     "outline, and not in one another"},
+    {"OutlineThatNearlyTouchesItself",
+     kOutlined,
+     {"cloth.outline=[[0,0],[1,0],[1,1e-8],[0,1e-8]]"},
+     "--set cloth.outline=[[0,0],[1,0],[1,1e-8],[0,1e-8]]: around (0.2, 5e-09) m the mesh would need sides "
+     "of 1e-08 m, or more than the 5e+06 vertices that are allowed, as sides of the border, or folds, come "
+     "that near one another"},
+    {"OutlineFoldThatMisses",
+     kOutlined + "folds = [ { line = [[2, 0], [2, 1]], degrees = 9 } ]\n",
+     {},
+     "s.toml:5: cloth.folds = [ { line = [[2, 0], [2, 1]], degrees = 9 } ]: fold [[2, 0], [2, 1]]: its line "
+     "does not run through the cloth"},
+    {"EdgeLengthTooSmall",
+     kOutlined,
+     {"cloth.edge_length=1e-6"},
+     "--set cloth.edge_length=1e-6: the run would have about 6.000015e+11 vertices; allowed: at most 5000000 "
+     "vertices"},
     {"VelocityAndKeyframes",
      kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nvelocity = [0, 0, 1]\nkeyframes = [ { time = 0 } ]\n",
      {},

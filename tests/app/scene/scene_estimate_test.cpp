@@ -21,8 +21,7 @@ TEST(SceneEstimate, CountsRegularGridsExactly)
 {
     for (const GridPattern pattern : {GridPattern::Diagonal, GridPattern::Alternating, GridPattern::Cross})
         for (const auto& [nu, nv] : {std::pair(1, 1), std::pair(7, 3), std::pair(2, 20)}) {
-            SceneEstimate estimate;
-            estimate_grid(grid(nu, nv, pattern), estimate);
+            const SceneEstimate estimate = to_estimate(estimate_cloth_grid(grid(nu, nv, pattern)));
             const ClothMesh mesh = make_cloth_grid(grid(nu, nv, pattern));
             EXPECT_EQ(estimate.vertices, mesh.vertex_count());
             EXPECT_EQ(estimate.faces, mesh.face_count());
@@ -38,8 +37,7 @@ TEST(SceneEstimate, IsNearForUnstructuredAndTurnedGrids)
     turned.pattern_angle = 30.0;
     unstructured.pattern = GridPattern::Unstructured;
     for (const ClothGrid& any : {turned, unstructured}) {
-        SceneEstimate estimate;
-        estimate_grid(any, estimate);
+        const SceneEstimate estimate = to_estimate(estimate_cloth_grid(any));
         const double vertices = make_cloth_grid(any).vertex_count();
         EXPECT_NEAR(estimate.vertices, vertices, kShare * vertices);
     }
@@ -47,8 +45,8 @@ TEST(SceneEstimate, IsNearForUnstructuredAndTurnedGrids)
 
 TEST(SceneEstimate, SurvivesGridsBeyondEveryInteger)
 {
-    SceneEstimate estimate;
-    estimate_grid(grid(5'000'000, 5'000'000, GridPattern::Cross), estimate);
+    const SceneEstimate estimate =
+        to_estimate(estimate_cloth_grid(grid(5'000'000, 5'000'000, GridPattern::Cross)));
     EXPECT_GT(estimate.vertices, 4.9e13);
 }
 

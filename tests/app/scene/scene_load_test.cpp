@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "geometry/input_error.h"
 #include "solver/step.h"
@@ -308,6 +309,50 @@ TEST(SceneLoad, DoesNotMoveVerticesToAnIdentityKeyframe)
         load(kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nkeyframes = [ { time = 0 } ]\n[gravity]\n");
     EXPECT_THAT(config.warnings, IsEmpty());
     EXPECT_EQ(config.cloth.world[0], Vec3(0.0, 0.0, 0.0));
+}
+
+// A frame: a square with a square hole.
+const std::string kFrameCloth =
+    "duration = 1\n[cloth]\noutline = [[0, 0], [0, 1], [1, 1], [1, 0]]\n"
+    "holes = [[[0.4, 0.4], [0.6, 0.4], [0.6, 0.6], [0.4, 0.6]]]\nedge_length = 0.1\n";
+
+double material_area(const ClothMesh& mesh)
+{
+    double area = 0.0;
+    for (const auto& [a, b, c] : mesh.faces)
+        area += 0.5 * twice_area(mesh.material[a], mesh.material[b], mesh.material[c]);
+    return area;
+}
+
+TEST(SceneLoad, MeshesFoldsAndPlacesAnOutline)
+{
+    const RunConfig config =
+        load(kFrameCloth +
+             "folds = [ { line = [[0.5, 0], [0.5, 1]], degrees = 90 } ]\n"
+             "scale = 2.0\ntranslate = [1, 2, 3]\n[[pin]]\nmaterial = [[0, 0], [0, 1]]\n");
+    EXPECT_THAT(config.notes, IsEmpty());
+    EXPECT_NEAR(material_area(config.cloth), 0.96, kRoundOff);
+    for (int v = 0; v < config.cloth.vertex_count(); ++v) {
+        const Vec2& X = config.cloth.material[v];
+        // The line points to +v, so the material with u > 0.5 is turned down.
+        const Vec3 folded = X.x() > 0.5 ? Vec3(0.5, X.y(), 0.5 - X.x()) : Vec3(X.x(), X.y(), 0.0);
+        EXPECT_NEAR((config.cloth.world[v] - (2.0 * folded + Vec3(1, 2, 3))).norm(), 0.0, 10 * kRoundOff);
+    }
+    EXPECT_FALSE(config.as_run["cloth"].contains("pattern"));
+    EXPECT_EQ(config.as_run["cloth"]["holes"][0][2][0], 0.6);
+}
+
+TEST(SceneLoad, NotesHowFarAnOutlineIsCoarsened)
+{
+    std::string corners;
+    for (int k = 0; k < 100; ++k)
+        corners += std::to_string(std::cos(0.02 * std::numbers::pi * k)) + "," +
+                   std::to_string(std::sin(0.02 * std::numbers::pi * k)) + "],[";
+    corners.resize(corners.size() - 3);
+    const RunConfig config =
+        load("duration = 1\n[cloth]\noutline = [[" + corners + "]]\nedge_length = 0.126\n");
+    EXPECT_THAT(config.notes, ElementsAre(HasSubstr("50 of 100 corners are left out, as they are finer than "
+                                                    "cloth.edge_length; this changes the area by -0.2 %")));
 }
 
 TEST(SceneLoad, FindsClothFilesBesideTheScene)

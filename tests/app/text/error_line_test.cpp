@@ -18,7 +18,7 @@ TEST(ErrorLine, NamesTheFileAndNotTheCallThatMetIt)
     } catch (const std::exception& error) {
         EXPECT_EQ(error_line(error), "/none/steps.csv: cannot be used: No such file or directory");
     }
-    EXPECT_EQ(error_line(std::bad_alloc()), "not enough memory; a coarser cloth.resolution needs less");
+    EXPECT_EQ(error_line(std::bad_alloc()), "not enough memory; a coarser cloth needs less");
     EXPECT_EQ(error_line(std::runtime_error("what it says")), "what it says");
 }
 
