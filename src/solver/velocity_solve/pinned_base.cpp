@@ -72,6 +72,24 @@ void add_springs(PinnedBase& base)
     }
 }
 
+/// Sets gradient and magnitude from velocity and row multipliers.
+void sum_gradient(const PinnedBase& base, Iterate& iterate)
+{
+    const VelocityProblem& problem = *base.problem;
+    const std::vector<ScaledRow>& rows = base.constraints->rows;
+    SymmetricProduct product = symmetric_product_with_magnitude(*problem.matrix, iterate.velocity);
+    iterate.gradient = std::move(product.value) - *problem.rhs;
+    iterate.magnitude = std::move(product.magnitude) + problem.rhs->cwiseAbs();
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const double multiplier = iterate.row_multipliers[static_cast<Eigen::Index>(k)];
+        if (!(std::abs(multiplier) > 0.0)) continue;
+        for (const auto& [coordinate, coefficient] : rows[k].entries) {
+            iterate.gradient[coordinate] -= coefficient * multiplier;
+            iterate.magnitude[coordinate] += std::abs(coefficient * multiplier);
+        }
+    }
+}
+
 }  // namespace
 
 bool has_room_for(const Matrix& matrix, const ScaledRow& row)
@@ -84,7 +102,6 @@ bool has_room_for(const Matrix& matrix, const ScaledRow& row)
 
 void evaluate_gradient(const PinnedBase& base, Iterate& iterate)
 {
-    const VelocityProblem& problem = *base.problem;
     const std::vector<ScaledRow>& rows = base.constraints->rows;
     for (std::size_t k = 0; k < base.is_pressing.size(); ++k)
         if (base.is_pressing[k])
@@ -94,17 +111,24 @@ void evaluate_gradient(const PinnedBase& base, Iterate& iterate)
         if (!iterate.is_exact[p])
             iterate.row_multipliers.segment<2>(2 * p) =
                 base.slips[p].at(slip_of(*base.constraints, p, iterate.velocity));
-    SymmetricProduct product = symmetric_product_with_magnitude(*problem.matrix, iterate.velocity);
-    iterate.gradient = std::move(product.value) - *problem.rhs;
-    iterate.magnitude = std::move(product.magnitude) + problem.rhs->cwiseAbs();
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-        const double multiplier = iterate.row_multipliers[static_cast<Eigen::Index>(k)];
-        if (!(std::abs(multiplier) > 0.0)) continue;
-        for (const auto& [coordinate, coefficient] : rows[k].entries) {
-            iterate.gradient[coordinate] -= coefficient * multiplier;
-            iterate.magnitude[coordinate] += std::abs(coefficient * multiplier);
-        }
+    sum_gradient(base, iterate);
+}
+
+void correct(const PinnedBase& base, const Eigen::VectorXd& change, Iterate& iterate)
+{
+    iterate.velocity += change;
+    for (std::size_t k = 0; k < base.is_pressing.size(); ++k) {
+        if (!base.is_pressing[k]) continue;
+        const ScaledRow& row = base.constraints->rows[k];
+        for (const auto& [coordinate, coefficient] : row.entries)
+            iterate.row_multipliers[static_cast<Eigen::Index>(k)] -=
+                coefficient * change[coordinate] / row.give;
     }
+    for (int p = 0; p < base.constraints->pair_count(); ++p)
+        if (!iterate.is_exact[p])
+            iterate.row_multipliers.segment<2>(2 * p) -=
+                base.slips[p].stiffness * slip_of(*base.constraints, p, change);
+    sum_gradient(base, iterate);
 }
 
 std::vector<char> find_pinned(const VelocityProblem& problem, const std::vector<char>& is_active)

@@ -41,9 +41,14 @@ struct PinnedBase {
     }
 };
 
-/// Sets the multipliers of the base's pressing rows, then gradient and magnitude of `iterate`, from its
-/// velocity and its other row multipliers.
+/// Sets the multipliers of the base's springs, then gradient and magnitude of `iterate`, from its velocity
+/// and its other row multipliers.
 void evaluate_gradient(const PinnedBase& base, Iterate& iterate);
+
+/// Adds `change` to the velocity, and what it changes in the multipliers of the base's springs to them; sets
+/// gradient and magnitude anew. A multiplier computed from the velocity itself has the round-off of a speed
+/// times the spring's stiffness; a multiplier that was corrected has that of the correction.
+void correct(const PinnedBase& base, const Eigen::VectorXd& change, Iterate& iterate);
 
 /// The coordinates that the factor leaves out when these bounds are active: their coordinates and the fixed
 /// ones.

@@ -315,17 +315,18 @@ bool WorkingSet::refine(Iterate& iterate) const
         columns_.accumulate(coefficients, forward);
     }
     const Eigen::VectorXd free = base_->factorization->solve_backward(forward);
+    Eigen::VectorXd correction = Eigen::VectorXd::Zero(free.size());
     for (int i = 0; i < free.size(); ++i)
-        if (!base_->is_pinned[i] && !iterate.is_active[i]) iterate.velocity[i] += free[i];
+        if (!base_->is_pinned[i] && !iterate.is_active[i]) correction[i] = free[i];
     for (std::size_t i = 0; i < equations.size(); ++i) {
         const Member& member = members_[equations[i]];
         const double change = step[static_cast<Eigen::Index>(i)];
-        if (member.kind == Kind::Released) iterate.velocity[member.index] += change;
+        if (member.kind == Kind::Released) correction[member.index] += change;
         if (member.kind != Kind::Row || is_slip(member)) continue;
         double& multiplier = iterate.row_multipliers[member.index];
         multiplier = std::max(multiplier + change, 0.0);
     }
-    evaluate_gradient(*base_, iterate);
+    correct(*base_, correction, iterate);
     return true;
 }
 

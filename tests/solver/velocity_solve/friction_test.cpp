@@ -189,6 +189,39 @@ TEST(Friction, MayFillTheWorkingSetWithPairs)
     }
 }
 
+// Two layers that stick to each other at a speed far above their slip: the springs' impulses would have the
+// round-off of that speed.
+TEST(Friction, IsAccurateWhereAllMovesFast)
+{
+    constexpr int kPairs = 20;
+    constexpr double kSpeed = 1e3;
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    const int size = 6 * kPairs;
+    const Eigen::VectorXd mass = Eigen::VectorXd::Constant(size, 0.1);
+    Eigen::VectorXd free = Eigen::VectorXd::NullaryExpr(size, [&] { return 1e-3 * normal(random); });
+    for (int v = 0; v < 2 * kPairs; ++v) free[3 * v] += kSpeed;
+    OwnedProblem owned(testing::lower_blocks(mass.asDiagonal().toDenseMatrix()), mass.cwiseProduct(free));
+    for (int p = 0; p < kPairs; ++p) {
+        FrictionPair pair;
+        for (int d = 0; d < 2; ++d) {  // along (1, 1, 0) and (0, 0, 1)
+            for (const int side : {-1, 1})
+                for (int c = d == 0 ? 0 : 2; c < (d == 0 ? 2 : 3); ++c) {
+                    const int k = pair.slip[d].count++;
+                    pair.slip[d].coordinate[k] = 6 * p + (side < 0 ? 0 : 3) + c;
+                    pair.slip[d].coefficient[k] = side * (d == 0 ? std::sqrt(0.5) : 1.0);
+                }
+            pair.last[d] = 0.0;
+        }
+        pair.budget = 1.0;
+        pair.mass = 0.1;
+        owned.problem.friction.push_back(pair);
+    }
+    const VelocitySolution solution = VelocitySolver().solve(owned.problem, Settings());
+    EXPECT_EQ(solution.status, SolveStatus::Certified);
+    EXPECT_LE(solution.kkt_residual, 1e-12);
+}
+
 TEST(Friction, WithoutBudgetChangesNothing)
 {
     std::mt19937 random(5);
