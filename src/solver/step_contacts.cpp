@@ -56,7 +56,8 @@ bool collect_contacts(const Scene& scene, const State& state, Workspace& work, S
 
 void make_room_for_self_rows(const Scene& scene, Workspace& work)
 {
-    constexpr std::size_t kFewPairs = 60;  // of vertices, for which a new analysis does not pay
+    constexpr std::size_t kFewPairs =
+        60;  // of vertices, for which a new analysis does not pay without friction
     LinearSystem& system = work.mesh.system;
     std::vector<std::array<int, 2>> pairs;
     std::size_t missing = 0;
@@ -75,7 +76,9 @@ void make_room_for_self_rows(const Scene& scene, Workspace& work)
                 missing += !system.has_pair(v, w);
             }
     const bool is_stale = system.coupled().size() > 4 * pairs.size() + kFewPairs;
-    if (missing <= kFewPairs && !is_stale) return;
+    // Newton's method for friction has no way to an impulse whose spring the matrix has no room for.
+    const std::size_t most_missing = do_many_rub ? 0 : kFewPairs;
+    if (missing <= most_missing && !is_stale) return;
     sort_unique(pairs);
     system.make_pattern(work.mesh.elements, std::move(pairs));
 }

@@ -135,6 +135,32 @@ TEST(SelfContactFriction, BetweenLayersObeysCoulombsLaw)
     }
 }
 
+// Hundreds of contacts change between sticking and sliding as one sheet after the other lands.
+TEST(SelfContactFriction, OfAStackThatLandsTakesFewFactorisations)
+{
+    constexpr int kSheets = 5, kCells = 8;
+    constexpr int kMostInAStep = 100,
+                  kMostInTheMean = 15;  // with tangents as springs 300 and 22
+    Scene scene;
+    scene.material = make_material();
+    scene.gravity = Gravity{{0.0, 0.0, -kG}};
+    scene.obstacles.push_back(make_floor());
+    scene.self_contact = ClothContact{kThickness};
+    scene.friction = Friction{.coefficients = {0.3}, .between_layers = 0.3};
+    ClothMesh cloth;
+    for (int k = 0; k < kSheets; ++k)
+        add_piece(make_square(kCells, GridPattern::Alternating), {0.0, 0.0, 0.01 + 0.005 * k}, 0.0, cloth);
+    ClothRun run(std::move(scene), cloth);
+    int steps = 0, all = 0;
+    run.advance(0.1, kStep, [&](const StepReport& report) {
+        ++steps;
+        all += report.factorisations;
+        EXPECT_LE(report.factorisations, kMostInAStep) << run.state.time;
+        EXPECT_LE(report.friction_residual, 0.1) << run.state.time;  // else a run warns
+    });
+    EXPECT_LE(all, kMostInTheMean * steps);
+}
+
 TEST(SelfContactFold, ClosesToItsThicknessWithoutPassing)
 {
     Scene scene;

@@ -38,8 +38,8 @@ constexpr int kWorkingSetCap = 400;
 constexpr int kHopeless = 3;
 
 /// Bases that may end by exceeding the cap; in kLastBases more U may grow to kLargestWorkingSet. Newton's
-/// method for the friction of a stack of layers takes up to 70 bases.
-constexpr int kCappedBases = 20, kCappedBasesWithFriction = 90;
+/// method for the friction of a stack of five layers takes up to 17 bases.
+constexpr int kCappedBases = 20, kCappedBasesWithFriction = 40;
 constexpr int kLastBases = 10;
 constexpr int kLargestWorkingSet = 2000;
 
@@ -50,12 +50,14 @@ constexpr int kMostRows = 600;
 constexpr int kFewRows = 150;
 constexpr double kFewShare = 0.01;
 
-/// Bases in which all may change at once (Newton's method): friction's tangents in all that have a cap, and
+/// Bases in which all may change at once (Newton's method): friction's springs in all that have a cap, and
 /// rows in kRowBases until at most kFewChanges remain. After them, a row that has pulled in one is not part
 /// of a later one: U decides about it.
 constexpr int kRowBases = 4;
-constexpr int kFullSteps = 20;  // of Newton's; the others go as far as the energy falls
 constexpr int kFewChanges = 30;
+
+/// Share of a Newton step below which all of it is taken: changed bounds make it rise from the start.
+constexpr double kLeastShare = 1e-6;
 
 /// Friction pairs that may join U at a time, and rows that may start in U beside pairs: so many that the
 /// dense work, about kPairFlops times the third power of their number, is that of another base.
@@ -281,11 +283,13 @@ void ActiveSetSearch::run_rounds(int cap)
     }
 }
 
-/// The next base has the rows that press now, and the tangents of friction at the present velocity.
+/// The next base has the rows that press now, and the springs of friction at the present velocity.
 void ActiveSetSearch::start_from_iterate()
 {
-    choose_rows(pressing_rows(constraints_, in_use_->iterate));
-    slips_ = springs_at(constraints_, in_use_->base.slips, in_use_->iterate.velocity);
+    const Iterate& iterate = in_use_->iterate;
+    choose_rows(pressing_rows(constraints_, iterate));
+    newton_point_ = iterate.velocity;
+    slips_ = springs_at(constraints_, iterate.row_multipliers, newton_point_);
 }
 
 void ActiveSetSearch::rebase_by_prediction()
@@ -308,22 +312,20 @@ bool ActiveSetSearch::has_many_changes(const Violators& violators) const
            std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
 }
 
-/// Newton's step: all rows violated now press in the next base, and no others.
+/// Newton's step: all rows violated now press in the next base. With friction it goes as far as the energy
+/// falls. Rows alone need no line search: what pulls is soon left to U.
 void ActiveSetSearch::rebase_with_violated_rows(const Violators& violators)
 {
-    const Eigen::VectorXd& velocity = in_use_->iterate.velocity;
-    // Rows alone need no line search: what pulls is soon left to U.
-    const bool is_newton =
-        best_.factorisations <= (problem_.friction.empty() ? kRowBases : capped_bases(problem_));
-    const bool is_full = best_.factorisations <= kFullSteps || newton_point_.size() == 0;
-    if (is_newton && !is_full)
-        newton_point_ +=
-            find_newton_share(problem_, constraints_, newton_point_, velocity) * (velocity - newton_point_);
+    const Iterate& iterate = in_use_->iterate;
+    double share = 1.0;
+    if (!problem_.friction.empty() && newton_point_.size() > 0)
+        share = find_newton_share(problem_, constraints_, newton_point_, iterate.velocity);
+    if (share < 1.0 && share > kLeastShare)
+        newton_point_ += share * (iterate.velocity - newton_point_);
     else
-        newton_point_ = velocity;
-    slips_ = springs_at(constraints_, in_use_->base.slips, newton_point_);
-    const std::vector<int> violated =
-        find_newton_rows(constraints_, in_use_->iterate.row_multipliers, newton_point_);
+        newton_point_ = iterate.velocity;
+    slips_ = springs_at(constraints_, iterate.row_multipliers, newton_point_);
+    const std::vector<int> violated = find_newton_rows(constraints_, iterate.row_multipliers, newton_point_);
     if (best_.factorisations > kRowBases)
         for (const int k : violators.pulling) has_pulled_[k] = 1;
     flip_bounds(violators.coordinates);

@@ -15,10 +15,17 @@ Eigen::Vector2d lower_of(const ConstraintRows& constraints, int pair)
     return {constraints.rows[2 * pair].lower, constraints.rows[2 * pair + 1].lower};
 }
 
-Eigen::Matrix2d stiffness_at(const ConstraintRows& constraints, int pair, const Eigen::Vector2d& y)
+/// Of the spring at y with this impulse. The pair's budget is positive.
+Eigen::Matrix2d stiffness_at(const ConstraintRows& constraints, int pair, const Eigen::Vector2d& y,
+                             const Eigen::Vector2d& impulse)
 {
-    return projection_slope(unlimited_at(constraints, pair, y), constraints.budgets[pair]) /
-           constraints.rows[2 * pair].give;
+    const double give = constraints.rows[2 * pair].give, budget = constraints.budgets[pair];
+    const Eigen::Vector2d v = unlimited_at(constraints, pair, y);
+    const double size = v.norm();
+    if (size <= budget) return Eigen::Matrix2d::Identity() / give;
+    const Eigen::Vector2d d = v / size, w = project_on_disc(impulse, budget) / budget;
+    return budget / (size * give) *
+           (Eigen::Matrix2d::Identity() - 0.5 * (w * d.transpose() + d * w.transpose()));
 }
 
 }  // namespace
@@ -42,27 +49,27 @@ Eigen::Vector2d friction_at(const ConstraintRows& constraints, int pair, const E
     return project_on_disc(unlimited_at(constraints, pair, y), constraints.budgets[pair]);
 }
 
-SlipSpring tangent_at(const ConstraintRows& constraints, int pair, const Eigen::Vector2d& y)
+SlipSpring spring_at(const ConstraintRows& constraints, int pair, const Eigen::Vector2d& y,
+                     const Eigen::Vector2d& impulse)
 {
     SlipSpring spring;
-    if (constraints.budgets[pair] > 0.0) spring.stiffness = stiffness_at(constraints, pair, y);
+    const double budget = constraints.budgets[pair];
+    if (budget > 0.0) spring.stiffness = stiffness_at(constraints, pair, y, impulse);
     return through(spring, constraints, pair, y);
 }
 
 SlipSpring through(const SlipSpring& spring, const ConstraintRows& constraints, int pair,
                    const Eigen::Vector2d& y)
 {
-    const Eigen::Vector2d unlimited = unlimited_at(constraints, pair, y);
-    const bool is_sliding = unlimited.norm() > constraints.budgets[pair];
-    const Eigen::Vector2d impulse = project_on_disc(unlimited, constraints.budgets[pair]);
-    return {spring.stiffness, impulse + spring.stiffness * y,
-            is_sliding ? impulse : Eigen::Vector2d(0.0, 0.0)};
+    return {spring.stiffness, friction_at(constraints, pair, y) + spring.stiffness * y};
 }
 
 bool is_near_law(const SlipSpring& spring, const ConstraintRows& constraints, int pair,
                  const Eigen::Vector2d& y)
 {
-    const Eigen::Matrix2d law = stiffness_at(constraints, pair, y);
+    const Eigen::Matrix2d law =
+        projection_slope(unlimited_at(constraints, pair, y), constraints.budgets[pair]) /
+        constraints.rows[2 * pair].give;
     return (spring.stiffness - law).norm() <= kNear * (law.norm() + constraints.masses[pair]);
 }
 
@@ -74,20 +81,18 @@ std::vector<SlipSpring> starting_springs(const VelocityProblem& problem, const C
         for (int d = 0; d < 2; ++d)
             y[d] = (problem.friction[pair].last[d] + problem.friction[pair].slip[d].lower) /
                    constraints.rows[2 * pair].scale;
-        springs.push_back(tangent_at(constraints, pair, y));
+        springs.push_back(spring_at(constraints, pair, y, friction_at(constraints, pair, y)));
     }
     return springs;
 }
 
-std::vector<SlipSpring> springs_at(const ConstraintRows& constraints, const std::vector<SlipSpring>& old,
+std::vector<SlipSpring> springs_at(const ConstraintRows& constraints, const Eigen::VectorXd& row_multipliers,
                                    const Eigen::VectorXd& velocity)
 {
     std::vector<SlipSpring> springs;
-    for (int pair = 0; pair < constraints.pair_count(); ++pair) {
-        Eigen::Vector2d y = slip_of(constraints, pair, velocity);
-        if (unlimited_at(constraints, pair, y).dot(old[pair].rim) < 0.0) y = lower_of(constraints, pair);
-        springs.push_back(tangent_at(constraints, pair, y));
-    }
+    for (int pair = 0; pair < constraints.pair_count(); ++pair)
+        springs.push_back(spring_at(constraints, pair, slip_of(constraints, pair, velocity),
+                                    row_multipliers.segment<2>(2 * pair)));
     return springs;
 }
 

@@ -56,7 +56,7 @@ std::vector<int> find_newton_rows(const ConstraintRows& constraints, const Eigen
         const ScaledRow& row = constraints.rows[k];
         const double here = row.entries.empty() ? 0.0 : gap(row, point, 0.0);
         if (!(here < 0.0)) continue;
-        if (multipliers[k] > 0.0) {
+        if (multipliers[k] > 0.0 || constraints.pair_count() > 0) {
             rows.push_back(k);
             continue;
         }

@@ -14,7 +14,8 @@ double find_newton_share(const VelocityProblem& problem, const ConstraintRows& c
 
 /// Rows to press in the next base, ascending: of those that are violated at `point`, all that press now (by
 /// `multipliers`), and of the others the worst of each group. Of rows that repeat each other, all at once
-/// would press far too much.
+/// would press far too much. With friction all of them, so that the next base's model of the energy has the
+/// energy's slope at `point`, from which its line search starts.
 std::vector<int> find_newton_rows(const ConstraintRows& constraints, const Eigen::VectorXd& multipliers,
                                   const Eigen::VectorXd& point);
 
