@@ -37,6 +37,13 @@ void count(const Workspace& work, StepReport& report)
     }
 }
 
+/// A vertex of the contact.
+int vertex_of(const Rub& rub, const Workspace& work)
+{
+    return rub.self_row >= 0 ? work.self_rows[rub.self_row].contact.vertices[0]
+                             : work.contacts[rub.contact].in_frame.vertices[0];
+}
+
 }  // namespace
 
 RubbingCloth rubbing_cloth(const Scene& scene, const State& state, const Workspace& work)
@@ -52,9 +59,11 @@ void solve_with_friction(const Scene& scene, const State& state,
     const auto budgets = [&](const VelocitySolution& solution) {
         return compute_budgets(rubbing_cloth(scene, state, work), work.mesh.terms, work.rubs, solution);
     };
-    const FrictionSweeps sweeps = sweep_friction(solve, budgets, work.problem);
+    FrictionSweeps sweeps = sweep_friction(solve, budgets, work.problem);
+    if (sweeps.certified) work.solution = *std::move(sweeps.certified);
     report.friction_sweeps += sweeps.count;
     report.friction_residual = sweeps.residual;
+    if (sweeps.worst >= 0) report.friction_place = state.mesh.world[vertex_of(work.rubs[sweeps.worst], work)];
     store(work);
     count(work, report);
 }

@@ -67,10 +67,11 @@ struct StepReport {
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;
-    int friction_sweeps = 0;         ///< velocity solves until budgets and impulses of friction agree
-    double friction_residual = 0.0;  ///< by how much they do not, relative to the largest budget
-    double friction_work = 0.0;      ///< J, lost to friction
-    int sticking = 0, sliding = 0;   ///< contacts with friction
+    int friction_sweeps = 0;             ///< velocity solves until budgets and impulses of friction agree
+    double friction_residual = 0.0;      ///< by how much they do not, relative to the largest budget
+    Vec3 friction_place = Vec3::Zero();  ///< m, a vertex of the contact that differs most
+    double friction_work = 0.0;          ///< J, lost to friction
+    int sticking = 0, sliding = 0;       ///< contacts with friction
     int eol_vertices = 0;
     int inserted = 0, released = 0;  ///< EOL vertices
     int remeshed = 0;                ///< operations on edges that missed their cells' length

@@ -141,11 +141,11 @@ ActiveSetSearch::ActiveSetSearch(const VelocityProblem& problem, Factorization& 
     budget_ = {kLeastFlops + kMostFactorisations * factorization.flops(), &settings};
 }
 
-VelocitySolution ActiveSetSearch::run(bool has_row_guess)
+VelocitySolution ActiveSetSearch::run(bool has_row_guess, int most_factorisations)
 {
     is_active_ = active_by_guess(problem_);
     if (has_row_guess) choose_rows(rows_of_guess());
-    return run_bases();
+    return run_bases(most_factorisations);
 }
 
 std::vector<int> ActiveSetSearch::rows_of_guess() const
@@ -160,10 +160,10 @@ std::vector<int> ActiveSetSearch::rows_of_guess() const
     return rows;
 }
 
-VelocitySolution ActiveSetSearch::run_bases()
+VelocitySolution ActiveSetSearch::run_bases(int most_factorisations)
 {
-    const int capped = capped_bases(problem_);
-    for (int base = 0; base < capped + kLastBases && budget_.flops > 0.0 && !is_over_; ++base)
+    const int capped = capped_bases(problem_), most = std::min(capped + kLastBases, most_factorisations);
+    for (int base = 0; base < most && budget_.flops > 0.0 && !is_over_; ++base)
         run_base(base < capped ? kWorkingSetCap : kLargestWorkingSet);
     if (in_use_) in_use_->measure_lag();
     best_.infeasible_rows = find_infeasible_rows(constraints_, best_.row_multipliers);
@@ -192,7 +192,7 @@ VelocitySolution ActiveSetSearch::run_bases()
     return best_;
 }
 
-VelocitySolution ActiveSetSearch::resume()
+VelocitySolution ActiveSetSearch::resume(int most_factorisations)
 {
     PinnedBase& base = in_use_->base;
     base.problem = &problem_;
@@ -203,7 +203,7 @@ VelocitySolution ActiveSetSearch::resume()
     in_use_->iterate = base.iterate;
     is_pressing_ = base.is_pressing;  // new rows are found as violators
     if (start_rows()) run_rounds(kWorkingSetCap);
-    return run_bases();
+    return run_bases(most_factorisations);
 }
 
 /// Ends with `is_over_`, or with the next base's pins in `is_active_` and its rows chosen.

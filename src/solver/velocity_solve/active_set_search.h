@@ -21,14 +21,14 @@ class ActiveSetSearch {
                     const Settings& settings);
 
     /// `has_row_guess`: whether to start with the rows expected to press.
-    VelocitySolution run(bool has_row_guess);
+    VelocitySolution run(bool has_row_guess, int most_factorisations);
 
     /// Goes on from the base in use, which belongs to this problem with fewer rows or other budgets of
     /// friction.
-    VelocitySolution resume();
+    VelocitySolution resume(int most_factorisations);
 
   private:
-    VelocitySolution run_bases();
+    VelocitySolution run_bases(int most_factorisations);
     void run_base(int cap);
     void run_rounds(int cap);
     bool start_rows();

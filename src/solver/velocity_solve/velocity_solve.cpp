@@ -69,6 +69,12 @@ VelocitySolver& VelocitySolver::operator=(VelocitySolver&&) noexcept = default;
 
 VelocitySolution VelocitySolver::solve(const VelocityProblem& problem, const Settings& settings)
 {
+    return solve_within(problem.most_factorisations, problem, settings);
+}
+
+VelocitySolution VelocitySolver::solve_within(int most_factorisations, const VelocityProblem& problem,
+                                              const Settings& settings)
+{
     Stopwatch watch;
     assert_shapes(problem);
     cache_->in_use.reset();
@@ -86,13 +92,15 @@ VelocitySolution VelocitySolver::solve(const VelocityProblem& problem, const Set
         for (const SearchAttempt& attempt : kAttempts) {
             const bool is_first = &attempt == kAttempts;
             if (!is_first && (solution.status != SolveStatus::NotConverged || problem.rows.empty())) break;
+            const int left = most_factorisations - solution.factorisations;
+            if (!is_first && left <= 0) break;
             if (attempt.softening > cache_->softening) {
                 cache_->softening = attempt.softening;
                 cache_->scale(problem);
             }
             VelocitySolution found =
                 ActiveSetSearch(problem, cache_->factorization, cache_->constraints, cache_->in_use, settings)
-                    .run(attempt.has_row_guess);
+                    .run(attempt.has_row_guess, left);
             found.add_cost(solution);
             solution = std::move(found);
         }
@@ -116,9 +124,10 @@ VelocitySolution VelocitySolver::resume(const VelocityProblem& problem, const Se
     } else {
         solution =
             ActiveSetSearch(problem, cache_->factorization, cache_->constraints, cache_->in_use, settings)
-                .resume();
-        if (solution.status == SolveStatus::NotConverged) {  // from the beginning, with a new budget
-            VelocitySolution again = solve(problem, settings);
+                .resume(problem.most_factorisations);
+        const int left = problem.most_factorisations - solution.factorisations;
+        if (solution.status == SolveStatus::NotConverged && left > 0) {  // from the beginning
+            VelocitySolution again = solve_within(left, problem, settings);
             again.add_cost(solution);
             solution = std::move(again);
         }

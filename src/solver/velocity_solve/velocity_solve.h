@@ -3,6 +3,7 @@
 
 #include <Eigen/SparseCore>
 #include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct VelocityProblem {
     std::vector<ConstraintRow> rows;
     std::vector<int> row_guess;  ///< rows expected active, ascending
     std::vector<FrictionPair> friction;
+    int most_factorisations = std::numeric_limits<int>::max();  ///< of a call; then it is NotConverged
 };
 
 enum class SolveStatus { Certified, NotConverged, NotFinite, Infeasible };
@@ -90,12 +92,15 @@ class VelocitySolver {
     VelocitySolution solve(const VelocityProblem& problem, const Settings& settings);
 
     /// `solve` for a problem to which rows were appended since this solver's last call; otherwise only
-    /// row_guess and the friction pairs' budgets may have changed. Goes on from the last base and working
-    /// set, which costs some solves and no factorisation. Factorises only where so many bounds change sides
-    /// that `solve` would factorise again.
+    /// row_guess, most_factorisations and the friction pairs' budgets may have changed. Goes on from the last
+    /// base and working set, which costs some solves and no factorisation. Factorises only where so many
+    /// bounds change sides that `solve` would factorise again.
     VelocitySolution resume(const VelocityProblem& problem, const Settings& settings);
 
   private:
+    VelocitySolution solve_within(int most_factorisations, const VelocityProblem& problem,
+                                  const Settings& settings);
+
     struct Cache;
     std::unique_ptr<Cache> cache_;
 };

@@ -189,6 +189,20 @@ TEST(Friction, MayFillTheWorkingSetWithPairs)
     }
 }
 
+TEST(Friction, TakesNoMoreFactorisationsThanAllowed)
+{
+    std::mt19937 random(11);
+    OwnedProblem owned = make_rubbing_problem(400, random);
+    VelocitySolver solver;
+    ASSERT_GT(solver.solve(owned.problem, Settings()).factorisations, 3);
+    for (int most = 1; most <= 3; ++most) {
+        owned.problem.most_factorisations = most;
+        EXPECT_LE(solver.solve(owned.problem, Settings()).factorisations, most);
+        for (FrictionPair& pair : owned.problem.friction) pair.budget *= most % 2 == 0 ? 3.0 : 1.0 / 3.0;
+        EXPECT_LE(solver.resume(owned.problem, Settings()).factorisations, most);
+    }
+}
+
 // Two layers that stick to each other at a speed far above their slip: the springs' impulses would have the
 // round-off of that speed.
 TEST(Friction, IsAccurateWhereAllMovesFast)
