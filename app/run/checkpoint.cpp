@@ -54,6 +54,24 @@ StrainPeak read_peak(BinaryReader& in)
     return peak;
 }
 
+void write_peak(BinaryWriter& out, const FrictionPeak& peak)
+{
+    out.number(peak.residual);
+    out.number(peak.time);
+    out.vector(peak.world);
+    out.number(peak.rows);
+}
+
+FrictionPeak read_friction_peak(BinaryReader& in)
+{
+    FrictionPeak peak;
+    peak.residual = in.number<double>();
+    peak.time = in.number<double>();
+    peak.world = in.vector();
+    peak.rows = in.number<std::int64_t>();
+    return peak;
+}
+
 std::vector<Vec2> read_vectors(BinaryReader& in)
 {
     return in.list<Vec2>(2 * sizeof(double), [&] {
@@ -317,6 +335,10 @@ std::string find_defect(const Checkpoint& checkpoint)
         checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1 ||
         checkpoint.strain.plane_rows < 0 || state.crossings < 0)
         return "a time or a count is invalid";
+    const FrictionPeak& friction = checkpoint.friction;
+    if (!std::isfinite(friction.residual) || !std::isfinite(friction.time) || !friction.world.allFinite() ||
+        friction.rows < 0)
+        return "the friction's peak is not valid";
     for (const StrainPeak* peak : peaks_of(checkpoint.strain))
         if (!std::isfinite(peak->strain) || !std::isfinite(peak->time) || !peak->world.allFinite() ||
             !peak->material.allFinite())
@@ -340,6 +362,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
     body.number(checkpoint.rows);
     for (const StrainPeak* peak : peaks_of(checkpoint.strain)) write_peak(body, *peak);
     body.number(checkpoint.strain.plane_rows);
+    write_peak(body, checkpoint.friction);
 
     write_sealed(path, kKind, body.bytes());
 }
@@ -360,6 +383,7 @@ Checkpoint read_checkpoint(const std::string& path)
     checkpoint.rows = in.number<std::int64_t>();
     for (StrainPeak* peak : peaks_of(checkpoint.strain)) *peak = read_peak(in);
     checkpoint.strain.plane_rows = in.number<std::int64_t>();
+    checkpoint.friction = read_friction_peak(in);
     if (!in.is_at_end()) in.fail("is damaged: it is longer than its counts say");
     if (const std::string defect = find_defect(checkpoint); !defect.empty()) in.fail("is damaged: " + defect);
     return checkpoint;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/run/friction_warning.h"
 #include "app/run/strain_warnings.h"
 #include "app/run/timeline.h"
 #include "app/scene/run_config.h"
@@ -19,6 +20,7 @@ struct RunProgress {
     std::int64_t frames = 0;  ///< written so far
     std::int64_t rows = 0;    ///< rows of steps.csv and probes.csv so far
     StrainPeaks strain;       ///< of the rows so far
+    FrictionPeak friction;    ///< of the rows so far
 };
 
 /// The input of `resume`. Contains no wall times, so that checkpoints of a resumed and an uninterrupted run

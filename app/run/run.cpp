@@ -87,6 +87,7 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
                                                     state.mesh, mesh.stars.faces);
     row.max_strain = strain.greatest();
     note_strain(state, strain, run.at.strain);
+    note_friction(report, state.time, run.at.friction);
     if (const std::int64_t index = run.timeline.frame_at(state.time); index >= 0) {
         run.files.write_frame(index, make_frame(run.config.scene.obstacles, state, run.work.mesh.elements,
                                                 run.work.mesh.terms));
@@ -184,7 +185,7 @@ RunSummary summarise(const Run& run, RunStatus status)
 {
     RunSummary summary;
     summary.totals = sum_steps(steps_file(run.files.path()));
-    summary.warnings = warn_at_end(run.config, run.at.strain, status, summary.totals);
+    summary.warnings = warn_at_end(run.config, run.at, status, summary.totals);
     return summary;
 }
 

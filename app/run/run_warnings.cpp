@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace arris {
 namespace {
@@ -22,10 +23,11 @@ std::vector<std::string> names_to_touch(const Scene& scene)
 
 }  // namespace
 
-std::vector<std::string> warn_at_end(const RunConfig& config, const StrainPeaks& strain, RunStatus status,
+std::vector<std::string> warn_at_end(const RunConfig& config, const RunProgress& progress, RunStatus status,
                                      const StepTotals& totals)
 {
-    std::vector<std::string> lines = warn_of_strain(strain, config);
+    std::vector<std::string> lines = warn_of_strain(progress.strain, config);
+    for (std::string& line : warn_of_friction(progress.friction)) lines.push_back(std::move(line));
     const std::vector<std::string> names = names_to_touch(config.scene);
     if (status == RunStatus::Finished && totals.touching_rows == 0 && !names.empty())
         lines.push_back(

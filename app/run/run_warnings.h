@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "app/report/report.h"
-#include "app/run/strain_warnings.h"
+#include "app/run/checkpoint.h"
 #include "app/scene/run_config.h"
 
 namespace arris {
 
-/// Warnings that only the end of a run can give: strains that cloth does not bear and, of a finished run,
-/// obstacles that the cloth never touched, if it touched none.
-std::vector<std::string> warn_at_end(const RunConfig& config, const StrainPeaks& strain, RunStatus status,
+/// Warnings that only the end of a run can give: strains that cloth does not bear, friction off its law and,
+/// of a finished run, obstacles that the cloth never touched, if it touched none.
+std::vector<std::string> warn_at_end(const RunConfig& config, const RunProgress& progress, RunStatus status,
                                      const StepTotals& totals);
 
 }  // namespace arris

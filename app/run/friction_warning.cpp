@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/friction_warning.h"
+
+#include <fmt/format.h>
+
+#include "app/text/counted.h"
+
+namespace arris {
+
+namespace {
+
+/// Residual worth a warning. Friction ends at 1e-4 but in a few steps; with 1e-2, single steps of a towel
+/// that folds would warn, whose motion they do not change.
+constexpr double kNotable = 0.1;
+
+}  // namespace
+
+void note_friction(const StepReport& report, double time, FrictionPeak& peak)
+{
+    if (report.friction_residual > kNotable) ++peak.rows;
+    if (report.friction_residual > peak.residual)
+        peak = {report.friction_residual, time, report.friction_place, peak.rows};
+}
+
+std::vector<std::string> warn_of_friction(const FrictionPeak& peak)
+{
+    if (peak.rows == 0) return {};
+    return {fmt::format(
+        "friction differed from its law by more than 10 % of the largest friction in {}, most by {:.3g} % "
+        "in the step to t = {:.6g} s, near [{:.4g}, {:.4g}, {:.4g}] m: contacts took turns to press or to "
+        "slide; "
+        "lower 'time.step', or add 'cloth.material.damping'",
+        counted(peak.rows, "step", "steps"), 100.0 * peak.residual, peak.time, peak.world.x(), peak.world.y(),
+        peak.world.z())};
+}
+
+}  // namespace arris
