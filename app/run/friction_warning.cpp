@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/text/counted.h"
+#include "solver/friction.h"
 
 namespace arris {
 
@@ -11,7 +12,7 @@ namespace {
 
 /// Residual worth a warning. Friction ends at 1e-4 but in a few steps; with 1e-2, single steps of a towel
 /// that folds would warn, whose motion they do not change.
-constexpr double kNotable = 0.1;
+constexpr double kNotable = kFarFromLaw;
 
 }  // namespace
 

@@ -52,7 +52,7 @@ RubbingCloth rubbing_cloth(const Scene& scene, const State& state, const Workspa
             work.obstacles, work.eol, work.contacts,   work.self_rows,     work.linearization};
 }
 
-void solve_with_friction(const Scene& scene, const State& state,
+void solve_with_friction(const Scene& scene, const State& state, Attempt attempt,
                          const std::function<const VelocitySolution&()>& solve, Workspace& work,
                          StepReport& report)
 {
@@ -60,7 +60,8 @@ void solve_with_friction(const Scene& scene, const State& state,
         return compute_budgets(rubbing_cloth(scene, state, work), work.mesh.terms, work.rubs, solution);
     };
     FrictionSweeps sweeps = sweep_friction(solve, budgets, work.problem);
-    if (sweeps.certified) work.solution = *std::move(sweeps.certified);
+    if (sweeps.certified && (sweeps.residual <= kFarFromLaw || attempt == Attempt::Last))
+        work.solution = *std::move(sweeps.certified);
     report.friction_sweeps += sweeps.count;
     report.friction_residual = sweeps.residual;
     if (sweeps.worst >= 0) report.friction_place = state.mesh.world[vertex_of(work.rubs[sweeps.worst], work)];

@@ -98,8 +98,8 @@ bool assemble(const Scene& scene, double end, const State& state, Workspace& wor
 
 /// Stage 5: minimises 1/2 u^T A u - b^T u under bounds and rows. Where only rows were added, the solve
 /// resumes on the existing factorisation. With friction, solves repeat until its budgets agree.
-void solve_velocity(const Scene& scene, const Settings& settings, const State& state, Workspace& work,
-                    StepReport& report)
+void solve_velocity(const Scene& scene, const Settings& settings, const State& state, Attempt attempt,
+                    Workspace& work, StepReport& report)
 {
     work.problem.matrix = &work.mesh.system.matrix();
     work.problem.rhs = &work.mesh.system.rhs();
@@ -118,7 +118,7 @@ void solve_velocity(const Scene& scene, const Settings& settings, const State& s
     if (work.problem.friction.empty())
         solve();
     else
-        solve_with_friction(scene, state, solve, work, report);
+        solve_with_friction(scene, state, attempt, solve, work, report);
     ++report.solves;
     report.kkt_residual = work.solution.kkt_residual;  // of the last solve, whose velocity is used
     switch (work.solution.status) {
@@ -228,7 +228,7 @@ bool solve_and_check(const Scene& scene, const Settings& settings, double end, c
 
     // 5. The constrained velocity, with its certificate. Contacts that cannot be met together yield, and fold
     // planes yield to other obstacles.
-    solve_velocity(scene, settings, state, work, report);
+    solve_velocity(scene, settings, state, attempt, work, report);
     watch.lap();
     if (report.status == StepStatus::Infeasible && report.solves < kMostSolves &&
         yield_infeasible(scene, state, work))
