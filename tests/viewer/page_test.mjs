@@ -74,6 +74,17 @@ test("the back has its own colour, and a frame before the fold has no EOL edge",
   await page.close();
 });
 
+test("a box in the address is what the view contains", async () => {
+  const page = await openFrame(0, "ui=0");
+  const [whole] = await shares(page, [kBlue]);
+  await page.evaluate('location.hash = "frame=0&play=0&ui=0&box=0.4,0.4,0.5,0.6,0.6,0.7"');
+  const [near] = await shares(page, [kBlue]);
+  await page.evaluate('location.hash = "frame=0&play=0&ui=0&box=-4,-4,-4,5,5,5"');
+  const [far] = await shares(page, [kBlue]);
+  assert.ok(near > 2 * whole && far < whole / 4, `${[near, whole, far]}`);
+  await page.close();
+});
+
 test("strain, speed and contact colour the cloth and have their legend", async () => {
   const page = await openFrame(30, "colour=checker");
   await page.press("c");

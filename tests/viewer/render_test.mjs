@@ -22,6 +22,7 @@ const kWrongViews = {
   "ui=0&color=strain": /^scripts\/render: --view color: unknown; allowed: colour, .*\n$/,
   "colour=red": /^scripts\/render: --view colour=red: allowed: none, checker, strain, speed, contact\n$/,
   "azimuth=north": /^scripts\/render: --view azimuth=north: allowed: a number\n$/,
+  "box=0,0,0,1,1": /^scripts\/render: --view box=0,0,0,1,1: allowed: x,y,z,x,y,z of two corners, m\n$/,
   "zoom=0": /^scripts\/render: --view zoom=0: allowed: a number above 0\n$/,
   "frame=3": /^scripts\/render: --view frame: frames stand behind OUT_PREFIX\n$/,
 };

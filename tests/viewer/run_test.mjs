@@ -6,6 +6,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { deflateSync, inflateSync } from "node:zlib";
 import { BrokenData } from "../../viewer/src/blocks.js";
+import { boxOf } from "../../viewer/src/boxes.js";
 import { Run, normalGroups } from "../../viewer/src/run.js";
 import { documentOf, makeRun, pageOf, readPly } from "./support.mjs";
 
@@ -221,6 +222,18 @@ test("the light covers whole obstacles near the cloth", () => {
   const reader = open(obstaclesPage);
   const { least, size } = reader.litBox(0);
   assert.ok(least[1] <= -0.1 + 1e-9 && least[1] + size[1] >= 1.1 - 1e-9, "the table from end to end");
+});
+
+test("the light covers a floor only near the cloth, so that shadows stay fine", () => {
+  const reader = open(obstaclesPage.replace(/"size":\[0.5,1.2,0.1\d*\]/, '"size":[4,4,0.1]'));
+  const { size } = reader.litBox(0);
+  assert.ok(size[0] < 3 && size[1] < 3, `${size}`);
+});
+
+test("a box is read from two opposite corners", () => {
+  assert.deepEqual(boxOf("1,2,3,0,4,-1"), { least: [0, 2, -1], size: [1, 2, 4] });
+  for (const text of [null, "", "1,2,3,4,5", "1,2,3,4,5,", "1,2,3,4,5,x", "1,2,3,4,5,6,7"])
+    assert.equal(boxOf(text), undefined, `${text}`);
 });
 
 const kMeshBreaks = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Operations on boxes { least, size }: the box around both; one enlarged by a margin; the intersection, or null.
+// Operations on boxes { least, size }: the box around both; one enlarged by a margin; the intersection, or null; one read.
 
 export function joined(a, b) {
   const least = a.least.map((value, axis) => Math.min(value, b.least[axis]));
@@ -19,4 +19,13 @@ export function clipped(a, b) {
   const size = least.map((value, axis) =>
     Math.min(a.least[axis] + a.size[axis], b.least[axis] + b.size[axis]) - value);
   return size.every((value) => value >= 0) ? { least, size } : null;
+}
+
+/** The box around two opposite corners, given as the text "x,y,z,x,y,z"; undefined if it is not that. */
+export function boxOf(text) {
+  const words = (text ?? "").split(",");
+  if (words.length !== 6 || words.some((word) => word.trim() === "" || !Number.isFinite(Number(word)))) return undefined;
+  const [one, other] = [words.slice(0, 3).map(Number), words.slice(3).map(Number)];
+  const least = one.map((value, axis) => Math.min(value, other[axis]));
+  return { least, size: least.map((value, axis) => Math.max(one[axis], other[axis]) - value) };
 }

@@ -10,6 +10,7 @@ import {
 } from "./panels.js";
 import { Obstacles } from "./obstacles.js";
 import { BrokenData } from "./blocks.js";
+import { boxOf } from "./boxes.js";
 import { Run } from "./run.js";
 import { Stage } from "./stage.js";
 
@@ -223,11 +224,12 @@ class Viewer {
     this.#stage.fit([this.#run.frames[this.#wanted]], { ...view, isWhole: false });
   }
 
-  /** Turns to one of the preset views, of the whole run. */
+  /** Turns to one of the preset views, of the whole run or of the box that `view` names. */
   #view(name, view = {}) {
     this.#asked = { name, view };
     this.#setInsets();
-    this.#stage.fit(this.#run.viewBoxes(), { view: name, ...view });
+    const boxes = view.box ? [view.box] : this.#run.viewBoxes();
+    this.#stage.fit(boxes, { view: name, ...view, isWhole: !view.box, isFixed: Boolean(view.box) });
   }
 
   /** Passes on what wide panels at the top and the bottom cover of the view. */
@@ -314,7 +316,7 @@ class Viewer {
     const wasBare = document.body.classList.contains("bare");
     document.body.classList.toggle("bare", asked.get("ui") === "0");
     const zoom = number("zoom") > 0 ? Math.min(Math.max(number("zoom"), 0.01), 100) : undefined;
-    const view = { azimuth: number("azimuth"), elevation: number("elevation"), zoom };
+    const view = { azimuth: number("azimuth"), elevation: number("elevation"), zoom, box: boxOf(asked.get("box")) };
     const preset = kViewNames.includes(asked.get("view")) ? asked.get("view") : undefined;
     const isAsked = preset !== undefined || Object.values(view).some((value) => value !== undefined);
     if (asked.get("fit") === "frame") this.#fit({ ...view, view: preset });

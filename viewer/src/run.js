@@ -4,8 +4,8 @@
 
 import { BrokenData, readBlock, require, unpack16, unpack32, unpack8, unpackIndices } from "./blocks.js";
 import { clipped, diagonal, grown, joined } from "./boxes.js";
+import { readMeta } from "./meta.js";
 
-const kFormat = 2;
 const kCacheBytes = 64e6;
 const kLevels = 65535;
 const kNear = 0.2; // margin around the cloth within which obstacles are shown, over the box's diagonal
@@ -14,53 +14,6 @@ const kLit = 4; // the same of an obstacle whose whole shadow is drawn
 const kFloor = 1.5; // horizontal sizes of an obstacle that is the ground, over those of the view
 const kFall = 1; // distance below the view down to which the ground follows falling cloth, over the view's diagonal
 const kWay = 2; // distance from its start, in cloth sizes, up to which cloth without obstacles is followed
-
-const isCount = (value) => Number.isSafeInteger(value) && value >= 0;
-const isNumbers = (value, count) =>
-  Array.isArray(value) && value.length === count && value.every((number) => Number.isFinite(number));
-
-/** Checks an obstacle's entry: one placement if it never moves, otherwise one for each frame. */
-function isMesh(mesh, frameCount) {
-  return typeof mesh?.name === "string" && isCount(mesh.points) && mesh.points > 0 && isCount(mesh.faces) &&
-    isCount(mesh.segments) && isCount(mesh.lone_points) && isNumbers(mesh.size, 3) && Array.isArray(mesh.placements) &&
-    (mesh.placements.length === 1 || mesh.placements.length === frameCount) &&
-    mesh.placements.every((placement) => isNumbers(placement, 12));
-}
-
-/** Reads and checks the JSON element. Code after this function can rely on the types that the format defines. */
-function readMeta(document) {
-  const element = document.getElementById("arris-meta");
-  require(element, "There is no run in this page: it is the viewer's template, or it was cut off.");
-  let meta;
-  try {
-    meta = JSON.parse(element.textContent);
-  } catch (error) {
-    throw new BrokenData(`The list of frames is not valid JSON (${error.message}).`);
-  }
-  require(meta.format === kFormat, `The data have format ${meta.format}; this page reads format ${kFormat}.`);
-  require(typeof meta.title === "string", "The run has no title.");
-  require(meta.frames_per_second > 0, "The number of frames a second is not positive.");
-  require(isCount(meta.run_frames) && isCount(meta.stride), "The number of frames is missing.");
-  require(Number.isFinite(meta.strain?.least) && Number.isFinite(meta.strain.greatest) &&
-          Number.isFinite(meta.strain.typical), "The range of strains is missing.");
-  require(Number.isFinite(meta.typical_speed), "The typical speed is missing.");
-  require(Array.isArray(meta.topologies) && meta.topologies.every((topology) =>
-    isCount(topology.id) && isCount(topology.vertices) && isCount(topology.faces) && isCount(topology.edges) &&
-    isCount(topology.corners) && isNumbers(topology.least, 2) && isNumbers(topology.size, 2)),
-  "The list of meshes is damaged.");
-  require(Array.isArray(meta.frames) && meta.frames.length > 0, "The run has no frames.");
-  const known = new Set(meta.topologies.map((topology) => topology.id));
-  for (const frame of meta.frames)
-    require(isCount(frame.index) && known.has(frame.topology) &&
-            isNumbers(frame.least, 3) && isNumbers(frame.size, 3) && isNumbers(frame.strain, 2) && Number.isFinite(frame.speed),
-    "The list of frames is damaged.");
-  meta.meshes ??= [];
-  meta.left_out ??= [];
-  require(Array.isArray(meta.meshes) && meta.meshes.every((mesh) => isMesh(mesh, meta.frames.length)) &&
-          Array.isArray(meta.left_out) && meta.left_out.every((name) => typeof name === "string"),
-  "The list of obstacles is damaged.");
-  return meta;
-}
 
 /**
  * Groups the corners of faces that share a normal: the corners of one vertex, except across an EOL edge, where the
@@ -209,17 +162,17 @@ export class Run {
   /** The stage and the parts of obstacles near it, in the first and the last frame: everything that a view shows. */
   #computeSurroundings() {
     const around = grown(this.stage, kNear * Math.hypot(...this.stage.size));
-    return [0, this.frames.length - 1].flatMap((position) => this.#obstaclesNear(around, position, kWhole))
+    return [0, this.frames.length - 1].flatMap((position) => this.#obstaclesNear(around, position))
       .reduce(joined, this.stage);
   }
 
-  /** Boxes of the obstacles near the box `around`: whole up to `whole` times the cloth's diagonal, else the near part. */
-  #obstaclesNear(around, position, whole) {
+  /** Boxes of the obstacles near `around`: whole up to `whole(mesh)` times the cloth's diagonal, else the near part. */
+  #obstaclesNear(around, position, whole = () => kWhole) {
     return this.meshes.flatMap((mesh) => {
       const box = this.#meshBox(mesh, position);
       const near = clipped(box, around);
       if (!near) return [];
-      return [diagonal(box) < whole * diagonal(this.stage) ? box : near];
+      return [diagonal(box) < whole(mesh) * diagonal(this.stage) ? box : near];
     });
   }
 
@@ -228,13 +181,14 @@ export class Run {
     const step = Math.max(1, Math.floor(this.frames.length / 32));
     const cloth = this.frames.filter((_, position) => position % step === 0).map((box) => clipped(box, this.stage));
     return [...cloth.filter((box) => box), ...[0, this.frames.length - 1].flatMap((position) =>
-      this.#obstaclesNear(grown(this.stage, kNear * diagonal(this.stage)), position, kWhole))];
+      this.#obstaclesNear(grown(this.stage, kNear * diagonal(this.stage)), position))];
   }
 
-  /** The box of all that casts a shadow in the `position`-th frame. */
+  /** The box of all that casts a shadow in the `position`-th frame; of a floor, which casts none in view, the near part. */
   litBox(position) {
     const around = grown(joined(this.frames[position], this.stage), kNear * diagonal(this.stage));
-    return this.#obstaclesNear(around, position, kLit).reduce(joined, this.frames[position]);
+    return this.#obstaclesNear(around, position, (mesh) => (this.#isFloor(mesh) ? 0 : kLit))
+      .reduce(joined, this.frames[position]);
   }
 
   /** How far the cloth's middle has left the stage in the `position`-th frame: a vector, m. The view follows by it. */
@@ -247,19 +201,21 @@ export class Run {
     });
   }
 
+  /** Whether an obstacle is flat and far wider than the view. */
+  #isFloor(mesh) {
+    const { size } = this.#meshBox(mesh, 0);
+    return [0, 1].every((axis) => size[axis] > kFloor * this.surroundings.size[axis]) &&
+      size[2] < Math.min(size[0], size[1]) / 3;
+  }
+
   /**
    * Height of the ground, m: the lowest point of the view, or of cloth that falls a little further. null if an
    * obstacle is the ground, or the cloth falls through every place where a ground could be.
    */
   groundHeight() {
     const view = this.surroundings;
-    const isFloor = (mesh) => {
-      const box = this.#meshBox(mesh, 0);
-      return [0, 1].every((axis) => box.size[axis] > kFloor * view.size[axis]) &&
-        box.size[2] < Math.min(box.size[0], box.size[1]) / 3;
-    };
     const lowest = this.bounds.least[2];
-    if (this.meshes.some(isFloor) || lowest < view.least[2] - kFall * diagonal(view)) return null;
+    if (this.meshes.some((mesh) => this.#isFloor(mesh)) || lowest < view.least[2] - kFall * diagonal(view)) return null;
     return Math.min(lowest, view.least[2]);
   }
 

@@ -65,6 +65,7 @@ export class Stage {
   #grid;
   #floor;
   #drift = new Vector3();
+  #isFixed = false;
   #insets = [0.06, 0.06];
   isStale = true;
   isTurned = false; // by the reader, since the last fit
@@ -111,8 +112,9 @@ export class Stage {
    * Turns the camera so that boxes { least, size } fill the view. The direction is the present one unless a preset
    * `view`, `azimuth` (degrees from +x about z) or `elevation` (degrees) are given. A `zoom` above 1 comes nearer.
    * `isWhole`: the boxes are those of the whole run, so the view goes on following cloth that leaves them.
+   * `isFixed`: the view follows nothing.
    */
-  fit(boxes, { view, azimuth, elevation, zoom = 1, isWhole = true } = {}) {
+  fit(boxes, { view, azimuth, elevation, zoom = 1, isWhole = true, isFixed = false } = {}) {
     const direction = this.#camera.position.clone().sub(this.#controls.target).normalize();
     if (view !== undefined || azimuth !== undefined || elevation !== undefined) {
       const [firstAzimuth, firstElevation] = kViews[view ?? "first"];
@@ -122,6 +124,7 @@ export class Stage {
     }
     const { centre, distance } = this.#fitted(boxes, direction);
     this.isTurned = false;
+    this.#isFixed = isFixed;
     if (isWhole) centre.add(this.#drift);
     this.#controls.target.copy(centre);
     this.#camera.position.copy(centre).addScaledVector(direction, distance / zoom);
@@ -171,6 +174,7 @@ export class Stage {
     const change = new Vector3(...drift).sub(this.#drift);
     if (change.lengthSq() === 0) return;
     this.#drift.add(change);
+    if (this.#isFixed) return;
     this.#controls.target.add(change);
     this.#camera.position.add(change);
     this.#controls.update();

@@ -15,10 +15,13 @@ const kUsage = `usage: scripts/render ${kOptions} RUN_DIR OUT_PREFIX [FRAME...]\
 const isNumber = (text) => text.trim() !== "" && Number.isFinite(Number(text));
 const kNumber = { holds: isNumber, allowed: "a number" };
 const kPositive = { holds: (text) => isNumber(text) && Number(text) > 0, allowed: "a number above 0" };
+const kBox = {
+  holds: (text) => text.split(",").length === 6 && text.split(",").every(isNumber), allowed: "x,y,z,x,y,z of two corners, m",
+};
 const oneOf = (...values) => ({ holds: (text) => values.includes(text), allowed: values.join(", ") });
 const kView = {
   colour: oneOf("none", "checker", "strain", "speed", "contact"), top: kPositive, edges: oneOf("0", "1"), ui: oneOf("0", "1"),
-  azimuth: kNumber, elevation: kNumber, zoom: kPositive, fit: oneOf("frame"), play: oneOf("0", "1"),
+  azimuth: kNumber, elevation: kNumber, zoom: kPositive, box: kBox, fit: oneOf("frame"), play: oneOf("0", "1"),
   eol: oneOf("0", "1"), obstacles: oneOf("0", "1"), view: oneOf("front", "side", "top", "first"),
 };
 
