@@ -141,15 +141,21 @@ std::vector<Fact> quality_facts(const RunReport& report, std::optional<double> t
 {
     const StepTotals& totals = report.totals;
     std::vector<Fact> facts;
-    // Without an obstacle, penetration and crossings have no meaning.
-    if (is_on(report.effects, "obstacle")) {
+    // Figures of an effect that is off have no meaning.
+    const bool has_obstacles = is_on(report.effects, "obstacle"),
+               has_layers = is_on(report.effects, "self_contact");
+    if (has_obstacles)
         facts.push_back({"Greatest penetration", fmt::format("{:.3g} m", totals.max_penetration), "",
                          "Largest depth of the cloth in an obstacle, measured at each frame; must be 0.",
                          totals.max_penetration > 0});
-        facts.push_back({"Crossings", fmt::format("{}", totals.crossings), "",
-                         "Number of times the cloth has passed through an obstacle; must be 0.",
-                         totals.crossings > 0});
-    }
+    if (has_obstacles || has_layers)
+        facts.push_back(
+            {"Crossings", fmt::format("{}", totals.crossings), "",
+             !has_layers ? "Number of times the cloth has passed through an obstacle; must be 0."
+             : !has_obstacles
+                 ? "Number of times the cloth has passed through itself; must be 0."
+                 : "Number of times the cloth has passed through an obstacle or itself; must be 0.",
+             totals.crossings > 0});
     if (totals.features)
         facts.push_back({"EOL share", format_share(totals.features->eol_share()), "",
                          "Share of EOL vertices among the contacts that press on sharp features for at least "

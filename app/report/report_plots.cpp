@@ -76,11 +76,12 @@ const std::vector<PlotSpec>& step_plots()
          kLines,
          Shown::IfPositive,
          1.0,
-         "Constraints that press; EOL vertices, which lie on sharp features of obstacles; and pressing "
-         "contacts on features that are rows of the velocity solve.",
+         "Constraints that press; EOL vertices, which lie on sharp features of obstacles; pressing contacts "
+         "on features that are rows of the velocity solve; and pressing contacts of the cloth with itself.",
          {{"pressing constraints", {"contacts"}},
           {"EOL vertices", {"eol_vertices"}},
-          {"feature rows", {"feature_rows"}}}},
+          {"feature rows", {"feature_rows"}},
+          {"between layers", {"self_contacts"}}}},
         {"KKT residual of the velocity solve",
          "relative",
          PlotKind::LogLines,
@@ -138,8 +139,8 @@ const std::vector<PlotSpec>& step_plots()
          kLines,
          Shown::IfPositive,
          1.0,
-         "Number of times the cloth has passed through an obstacle; a value above 0 is an error of the "
-         "program.",
+         "Number of times the cloth has passed through an obstacle or itself; a value above 0 is an error of "
+         "the program.",
          {{"crossings", {"crossings"}}}},
     };
     return kSpecs;

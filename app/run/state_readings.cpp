@@ -49,6 +49,8 @@ Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, con
                 continue;  // a fold plane is not an obstacle's surface
             frame.contact[state.index_of(id)] = 1;
         }
+    for (const ActiveSelfContact& contact : state.self)
+        for (const std::uint32_t id : contact.vertex_ids) frame.contact[state.index_of(id)] = 1;
     frame.faces = state.mesh.faces;
     FaceReadings readings = compute_face_readings(elements, terms, state.mesh.world);
     frame.strain = std::move(readings.strain);

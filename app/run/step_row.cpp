@@ -34,20 +34,21 @@ StepRow make_step_row(const RunConfig& config, const State& state, const Workspa
             row.eol_pressing = report.eol_pressing;
             row.rows_by_cause = report.rows_by_cause;
         }
-        if (scene.friction) {
-            row.friction_sweeps = report.friction_sweeps;
-            row.friction_residual = report.friction_residual;
-            row.friction_work = report.friction_work;
-            row.sticking = report.sticking;
-            row.sliding = report.sliding;
-        }
-        row.rewound = report.rewound;
         row.yielded = report.yielded;
     }
     if (scene.self_contact) row.self_contacts = report.self_contacts;
     if (scene.remesh) {
         row.remeshed = report.remeshed;
         row.remesh_energy = report.remesh_energy;
+    }
+    const bool has_contact = scene.self_contact || !scene.obstacles.empty();
+    if (has_contact) row.rewound = report.rewound;
+    if (has_contact && scene.friction) {
+        row.friction_sweeps = report.friction_sweeps;
+        row.friction_residual = report.friction_residual;
+        row.friction_work = report.friction_work;
+        row.sticking = report.sticking;
+        row.sliding = report.sliding;
     }
     row.energy_rise = report.energy_rise;
     row.material_area = material_area(state.mesh);

@@ -99,7 +99,7 @@ std::optional<Friction> to_friction(const Json& json)
     if (json.contains("self_contact")) {
         const Json& layers = json["self_contact"];
         has_own = layers.contains("friction");
-        friction.between_layers = has_own ? to_double(layers["friction"]) : common;
+        if (has_own) friction.between_layers = to_double(layers["friction"]);
     }
     for (const Json& obstacle : json.value("obstacle", Json::array())) {
         const bool is_own = obstacle.contains("friction");
@@ -121,11 +121,8 @@ Scene to_scene(const Json& json)
                                to_double(pull["start"]), to_time(pull["stop"])});
     for (const Json& pin : json.value("pin", Json::array())) scene.pins.push_back(to_pin(json, pin));
     scene.friction = to_friction(json);
-    if (json.contains("self_contact")) {
-        const Json& own = json["self_contact"];
-        scene.self_contact =
-            ClothContact{own.contains("thickness") ? to_double(own["thickness"]) : scene.material.thickness};
-    }
+    if (json.contains("self_contact"))
+        scene.self_contact = ClothContact{to_double(json["self_contact"]["thickness"])};
     return scene;
 }
 

@@ -207,6 +207,15 @@ void check_edge_lengths(const SceneDocument& document, const Json& remesh)
                   fmt::format("two lengths, the second > {} (m)", least));
 }
 
+/// Contact between layers takes from other tables what its own does not name.
+void fill_self_contact(Json& scene)
+{
+    Json& layers = scene["self_contact"];
+    if (!layers.contains("thickness")) layers["thickness"] = scene["cloth"]["material"]["thickness"];
+    if (!layers.contains("friction") && scene.contains("friction"))
+        layers["friction"] = scene["friction"]["coefficient"];
+}
+
 /// Requires unique names of obstacles and probes, none of them "cloth".
 void check_names(const SceneDocument& document, const Json& scene)
 {
@@ -234,6 +243,7 @@ void apply_scene_rules(const SceneDocument& document, Json& scene)
     fill_title(document, scene);
     fill_material(scene["cloth"]["material"]);
     settle_cloth_shape(document, scene["cloth"]);
+    if (scene.contains("self_contact")) fill_self_contact(scene);
     if (scene.contains("obstacle")) settle_obstacles(document, scene["obstacle"]);
     if (scene.contains("pin"))
         for (std::size_t i = 0; i < scene["pin"].size(); ++i) {

@@ -241,6 +241,23 @@ TEST(ReportHtml, ExplainsEveryFigureItShows)
     EXPECT_EQ(count(html, "<dd class=\"why\"></dd>"), 0U);
 }
 
+TEST(ReportHtml, CountsCrossingsWhereTheClothMeetsAnythingAndNamesWhat)
+{
+    const TemporaryDirectory dir;
+    write_steps(dir, 20);
+    const auto crossings_of = [&](bool has_obstacles, bool has_layers) {
+        RunReport report;
+        report.effects = {{"obstacle", has_obstacles, ""}, {"self_contact", has_layers, ""}};
+        const std::string html = html_of(dir, report);
+        const std::size_t at = html.find("<dt>Crossings</dt>");
+        return at == std::string::npos ? "" : html.substr(at, html.find("</div>", at) - at);
+    };
+    EXPECT_EQ(crossings_of(false, false), "");
+    EXPECT_THAT(crossings_of(true, false), HasSubstr("passed through an obstacle; must be 0"));
+    EXPECT_THAT(crossings_of(false, true), HasSubstr("passed through itself; must be 0"));
+    EXPECT_THAT(crossings_of(true, true), HasSubstr("passed through an obstacle or itself; must be 0"));
+}
+
 TEST(ReportHtml, ShowsRunsWithoutStepsFramesOrRows)
 {
     const TemporaryDirectory dir;

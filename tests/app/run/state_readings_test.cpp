@@ -33,7 +33,7 @@ TEST(Probes, ReadTheMaterialsVelocityWhereItFlowsThroughAVertexAtRest)
     }
 }
 
-TEST(Frames, MarkWhatAnObstaclePressesAndNoPlaneBehindAWire)
+TEST(Frames, MarkWhatAnObstacleOrALayerPressesAndNoPlaneBehindAWire)
 {
     ClothGrid grid;
     grid.resolution = {4, 4};
@@ -42,11 +42,12 @@ TEST(Frames, MarkWhatAnObstaclePressesAndNoPlaneBehindAWire)
     state.active = {{{2, kNo, kNo}, ContactKind::Vertex, 0, -1, Vec3::UnitZ(), 1.0},
                     {{3, 8, kNo}, ContactKind::Edge, 0, 0, Vec3::UnitZ(), 1.0},
                     {{5, kNo, kNo}, ContactKind::Vertex, 0, kFoldElement, Vec3::UnitX(), 1.0}};
+    state.self = {{SelfContactKind::VertexFace, {10, 11, 12, 13}, Vec3::UnitZ(), 1.0}};
     const ClothElements elements =
         make_elements(state.mesh, make_topology(state.mesh.vertex_count(), state.mesh.faces));
     const Frame frame = make_frame({}, state, elements, {});
     for (std::size_t v = 0; v < frame.contact.size(); ++v)
-        EXPECT_EQ(frame.contact[v], v == 2 || v == 3 || v == 8) << v;
+        EXPECT_EQ(frame.contact[v], v == 2 || v == 3 || v == 8 || (v >= 10 && v <= 13)) << v;
 }
 
 }  // namespace
