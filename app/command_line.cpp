@@ -64,6 +64,7 @@ struct ExportRequest {
     std::vector<std::string> formats;
     std::string topology = "simulated";
     std::string grid;
+    std::string up = "z";
 };
 
 constexpr const char* kExitStatus =
@@ -161,6 +162,8 @@ CLI::App* add_export(CLI::App& app, ExportRequest& request)
         ->add_option("--grid", request.grid,
                      "Cells of the constant mesh of a rectangular cloth; default: the first frame's mesh")
         ->type_name("NxM");
+    command->add_option("--up", request.up, "Upward axis of obj, vtk, pc2 and mdd; the others state theirs")
+        ->check(CLI::IsMember({"y", "z"}));
     return command;
 }
 
@@ -207,6 +210,7 @@ int export_formats(const ExportRequest& request)
     ExportOptions options = read_export_options(request.directory);
     options.is_topology_constant = request.topology == "constant";
     if (!request.grid.empty()) options.grid = parse_grid(request.grid);
+    if (request.up == "y") options.up = UpAxis::Y;
     tell_warnings(warn_of_missing_files(request.directory));
     export_frames(request.directory, request.formats, options);
     for (const std::string& format : request.formats)

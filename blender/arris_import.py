@@ -88,11 +88,14 @@ def read_obstacle(path):
     """Points (n x 3, m), faces (m x 3) and segments of wires (k x 2) of an obstacle's OBJ file."""
     rows = {"v": [], "f": [], "l": []}
     try:
-        for line in read_bytes(path).decode().splitlines():
+        text = read_bytes(path).decode()
+        for line in text.splitlines():
             words = line.split()
             if words and words[0] in rows:
                 rows[words[0]].append([float(w) if words[0] == "v" else int(w) - 1 for w in words[1:]])
         points = np.array(rows["v"], float).reshape(-1, 3)
+        if text.startswith("# Arris: m, y is up"):  # exported with --up y; Blender and the cloth's frames have z
+            points = points[:, [0, 2, 1]] * (1, -1, 1)
         faces = np.array(rows["f"], np.int32).reshape(-1, 3)
         segments = np.array(rows["l"], np.int32).reshape(-1, 2)
     except ValueError as error:

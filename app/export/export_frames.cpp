@@ -21,7 +21,7 @@
 namespace arris {
 namespace {
 
-/// Input of all formats.
+/// Input of all formats, with cloth and obstacles turned to `options.up`.
 struct Source {
     const std::string& run_dir;
     FrameSource frames;    ///< as the run wrote them, or resampled by request
@@ -42,12 +42,12 @@ void write_each(const Source& run, const char* extension, const Write& write)
     for (std::size_t i = 0; i < run.frames.count; ++i) write(path(i, "cloth"), run.frames.read(i));
     for (const ObstacleRecord& obstacle : run.obstacles)
         for (std::size_t i = 0; i < count_obstacle_frames(obstacle, run.frames.count); ++i)
-            write(path(i, obstacle.name), obstacle, obstacle.at(run.time(i)));
+            write(path(i, obstacle.name), obstacle, turn_to(run.options.up) * obstacle.at(run.time(i)));
 }
 
 void export_obj(const Source& run)
 {
-    write_each(run, "obj", [](const auto&... parts) { write_obj(parts...); });
+    write_each(run, "obj", [up = run.options.up](const auto&... parts) { write_obj(parts..., up); });
 }
 
 void export_usd(const Source& run)
@@ -65,7 +65,7 @@ void export_vtk(const Source& run)
 /// The mesh that a cache moves.
 void export_base(const Source& run)
 {
-    write_obj(run.run_dir + "/cloth_base.obj", run.constant.read(0));
+    write_obj(run.run_dir + "/cloth_base.obj", run.constant.read(0), run.options.up);
 }
 
 void export_pc2(const Source& run)
@@ -100,13 +100,14 @@ struct Format {
     void (*make)(const Source&);
     const char* place;  ///< relative to the run's folder
     bool is_constant;   ///< reads Source::constant
+    bool has_own_axis;  ///< states in the file which axis is up, or turns it itself
 };
 
 constexpr Format kFormats[] = {
-    {"obj", export_obj, "frames/cloth_*.obj", false}, {"usd", export_usd, "cloth.usda", false},
-    {"viewer", export_viewer, "viewer.html", false},  {"vtk", export_vtk, "cloth.pvd", false},
-    {"pc2", export_pc2, "cloth.pc2", true},           {"mdd", export_mdd, "cloth.mdd", true},
-    {"gltf", export_gltf, "cloth.glb", true},
+    {"obj", export_obj, "frames/cloth_*.obj", false, false}, {"usd", export_usd, "cloth.usda", false, true},
+    {"viewer", export_viewer, "viewer.html", false, true},   {"vtk", export_vtk, "cloth.pvd", false, false},
+    {"pc2", export_pc2, "cloth.pc2", true, false},           {"mdd", export_mdd, "cloth.mdd", true, false},
+    {"gltf", export_gltf, "cloth.glb", true, true},
 };
 
 const Format& find_format(const std::string& name)
@@ -142,6 +143,10 @@ void export_frames(const std::string& run_dir, const std::vector<std::string>& f
                 "formats: \"viewer\" shows the frames as simulated; allowed with --topology constant: all "
                 "others");
         needs_constant = needs_constant || find_format(name).is_constant;
+        if (options.up != UpAxis::Z && find_format(name).has_own_axis)
+            throw InputError(
+                fmt::format("--up {}: \"{}\" has its own axis; allowed with formats obj, vtk, pc2, mdd",
+                            to_string(options.up), name));
     }
     if (options.grid && !needs_constant)
         throw InputError("--grid: no format uses it; allowed: with --topology constant, pc2, mdd or gltf");
@@ -150,8 +155,8 @@ void export_frames(const std::string& run_dir, const std::vector<std::string>& f
         throw InputError(frames_directory(run_dir) + ": has no frames (cloth_00000.ply, ...)");
     const FrameSource constant =
         needs_constant ? resampled_frames(frames, make_constant_mesh(frames.read(0), options.grid)) : frames;
-    const Source source{run_dir, options.is_topology_constant ? constant : frames, constant, options,
-                        read_obstacles(run_dir)};
+    const Source source{run_dir, turned(options.is_topology_constant ? constant : frames, options.up),
+                        turned(constant, options.up), options, read_obstacles(run_dir)};
     for (const std::string& name : formats) find_format(name).make(source);
 }
 

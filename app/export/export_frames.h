@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/export/resampled_frames.h"
+#include "app/export/up_axis.h"
 
 namespace arris {
 
@@ -15,6 +16,7 @@ struct ExportOptions {
     double frames_per_second = 24.0;    ///< > 0
     bool is_topology_constant = false;  ///< every format is made from resampled_frames
     std::optional<GridSize> grid = {};  ///< of the constant mesh; without it, the first frame's mesh
+    UpAxis up = UpAxis::Z;              ///< of formats that state no axis of their own
 };
 
 /// Path of a format's file, or a pattern where there is one file per frame.
@@ -25,8 +27,8 @@ void require_known_formats(const std::vector<std::string>& formats);
 
 /// Makes formats from the frames in run_dir/frames and the obstacles in run_dir/obstacles; each file is
 /// written atomically. "pc2", "mdd" and "gltf" always have constant topology. Throws InputError for an
-/// unknown format, a viewer of constant topology, a grid that no format uses, a run without frames or an
-/// invalid frame file, std::system_error if writing fails.
+/// unknown format, a viewer of constant topology, a grid that no format uses, y up for a format that states
+/// its axis, a run without frames or an invalid frame file, std::system_error if writing fails.
 void export_frames(const std::string& run_dir, const std::vector<std::string>& formats,
                    const ExportOptions& options);
 

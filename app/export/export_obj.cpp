@@ -9,13 +9,15 @@
 
 namespace arris {
 
-void write_obj(const std::string& path, const Frame& frame)
+void write_obj(const std::string& path, const Frame& frame, UpAxis up)
 {
     fmt::memory_buffer text;
     const auto out = std::back_inserter(text);
-    fmt::format_to(out,
-                   "# Arris: m, z is up; vt: material coordinates; l: edges on a sharp feature, or on a fold "
-                   "that has just left it\no cloth\n");
+    fmt::format_to(
+        out,
+        "# Arris: m, {} is up; vt: material coordinates; l: edges on a sharp feature, or on a fold "
+        "that has just left it\no cloth\n",
+        to_string(up));
     for (const Vec3& x : frame.world) fmt::format_to(out, "v {} {} {}\n", x[0], x[1], x[2]);
     for (const Vec2& X : frame.material) fmt::format_to(out, "vt {} {}\n", X[0], X[1]);
     for (const Face& face : frame.faces)
@@ -26,12 +28,13 @@ void write_obj(const std::string& path, const Frame& frame)
     write_atomically(path, {text.data(), text.size()});
 }
 
-void write_obj(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement)
+void write_obj(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement, UpAxis up)
 {
     fmt::memory_buffer text;
     const auto out = std::back_inserter(text);
     const ObstacleMesh& mesh = obstacle.mesh;
-    fmt::format_to(out, "# Arris: m, z is up; l: wires; p: lone points\no {}\n", obstacle.name);
+    fmt::format_to(out, "# Arris: m, {} is up; l: wires; p: lone points\no {}\n", to_string(up),
+                   obstacle.name);
     for (const Vec3& point : mesh.points) {
         const Vec3 x = placement(point);
         fmt::format_to(out, "v {} {} {}\n", x[0], x[1], x[2]);

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "app/export/up_axis.h"
 #include "app/files/frame.h"
 #include "app/scene/obstacle_records.h"
 
@@ -10,12 +11,13 @@ namespace arris {
 
 /// Writes the cloth of one frame as Wavefront OBJ, atomically: `v` world positions and `vt` material
 /// coordinates, both in metres and one per vertex; object `cloth`: `f` triangles as v/vt; object `cloth_eol`,
-/// if there are EOL edges: these as `l`. Numbers read back to the same double. Throws std::system_error
-/// naming the path if writing fails.
-void write_obj(const std::string& path, const Frame& frame);
+/// if there are EOL edges: these as `l`. Numbers read back to the same double. The first line names `up`, to
+/// which the positions have been turned. Throws std::system_error naming the path if writing fails.
+void write_obj(const std::string& path, const Frame& frame, UpAxis up);
 
-/// Writes an obstacle whose frame has the given placement in the world: `v` world positions in metres, `f`
+/// Writes an obstacle whose frame has the given placement in the file: `v` world positions in metres, `f`
 /// triangles, `l` segments of wires, `p` lone points. Otherwise as for the cloth.
-void write_obj(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement);
+void write_obj(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement,
+               UpAxis up);
 
 }  // namespace arris

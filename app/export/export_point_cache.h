@@ -8,7 +8,7 @@
 namespace arris {
 
 // Caches of the points of one mesh: every frame must have as many vertices as the first. Positions are floats
-// in metres, z up, in the order of vertices. One frame is in memory. Both throw InputError for an invalid
+// in metres, in the order of vertices. One frame is in memory. Both throw InputError for an invalid
 // frame or more frames or vertices than the format's 32-bit counts hold, std::system_error if writing fails.
 
 /// Writes a Point Cache 2 file, atomically: little-endian, sample i is frame i.

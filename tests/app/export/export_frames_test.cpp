@@ -5,9 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+#include <sstream>
+
 #include "app/files/frame_files.h"
 #include "app/report/report.h"
 #include "geometry/input_error.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
 #include "tests/app/error_of.h"
 #include "tests/app/example_frame.h"
 #include "tests/app/temporary_directory.h"
@@ -94,6 +98,68 @@ TEST(ExportFrames, RefusesAGridThatNoFormatUses)
     EXPECT_THAT(error_of([&] { export_frames(dir.path(), {"obj"}, options); }),
                 HasSubstr("no format uses it"));
     EXPECT_THAT(error_of([&] { export_frames(dir.path(), {"pc2"}, options); }), HasSubstr("rectangle"));
+}
+
+/// Positions in an OBJ file, in order.
+std::vector<Vec3> obj_points(const std::string& path)
+{
+    std::istringstream text(read_bytes(path));
+    std::vector<Vec3> points;
+    for (std::string word; text >> word;) {
+        if (word != "v") continue;
+        Vec3& x = points.emplace_back();
+        text >> x[0] >> x[1] >> x[2];
+    }
+    return points;
+}
+
+TEST(ExportFrames, TurnsClothAndObstaclesForProgramsWithYUp)
+{
+    const TemporaryDirectory dir;
+    write_run(dir, 2, kScene);
+    ObstacleRecord box{"box", make_box({1.0, 2.0, 3.0}), {}, {}};
+    box.placement.translation = {0.1, 0.2, 0.3};
+    write_obstacles(dir.path(), {box});
+    ExportOptions options = read_export_options(dir.path());
+    const std::vector<std::string> formats = {"obj", "vtk", "pc2", "mdd"};
+    const auto read_all = [&] {
+        std::map<std::string, std::vector<Vec3>> points;
+        for (const char* name : {"frames/cloth_00001.obj", "frames/box_00000.obj", "cloth_base.obj"})
+            points[name] = obj_points(dir / name);
+        return points;
+    };
+    export_frames(dir.path(), formats, options);
+    const auto upright = read_all();
+    const std::string vtp = read_bytes(dir / "frames/box_00000.vtp"), pc2 = read_bytes(dir / "cloth.pc2");
+    options.up = UpAxis::Y;
+    export_frames(dir.path(), formats, options);
+    for (const auto& [name, lying] : read_all()) {
+        ASSERT_EQ(lying.size(), upright.at(name).size());
+        for (std::size_t v = 0; v < lying.size(); ++v) {
+            const Vec3& x = upright.at(name)[v];
+            EXPECT_EQ(lying[v], Vec3(x[0], x[2], -x[1])) << name;
+        }
+    }
+    EXPECT_NE(read_bytes(dir / "frames/box_00000.vtp"), vtp);
+    EXPECT_NE(read_bytes(dir / "cloth.pc2"), pc2);
+    EXPECT_THAT(read_bytes(dir / "frames/box_00000.obj"), HasSubstr("# Arris: m, y is up"));
+    for (const char* format : {"usd", "gltf", "viewer"})
+        EXPECT_THAT(error_of([&] {
+                        export_frames(dir.path(), {"obj", format}, options);
+                    }),
+                    AllOf(HasSubstr("--up y"), HasSubstr(format), HasSubstr("obj, vtk, pc2, mdd")));
+}
+
+TEST(ExportFrames, TurnsVelocitiesWithTheCloth)
+{
+    Frame frame = make_tame_frame(0);
+    frame.vertex_velocity[0] = {1.0, 2.0, 3.0};
+    frame.material_velocity[0] = {4.0, 5.0, 6.0};
+    const FrameSource source{1, [&](std::size_t) { return frame; }};
+    const Frame lying = turned(source, UpAxis::Y).read(0);
+    EXPECT_EQ(lying.vertex_velocity[0], Vec3(1.0, 3.0, -2.0));
+    EXPECT_EQ(lying.material_velocity[0], Vec3(4.0, 6.0, -5.0));
+    EXPECT_EQ(turned(source, UpAxis::Z).read(0).vertex_velocity[0], frame.vertex_velocity[0]);
 }
 
 TEST(ExportFrames, SaysWhatIsMissing)

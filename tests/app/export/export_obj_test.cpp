@@ -33,7 +33,7 @@ std::vector<std::vector<std::string>> lines_of(const std::string& text, const st
 std::string export_text(const Frame& frame)
 {
     const TemporaryDirectory dir;
-    write_obj(dir / "a.obj", frame);
+    write_obj(dir / "a.obj", frame, UpAxis::Z);
     EXPECT_EQ(dir.entry_count(), 1U);
     return read_bytes(dir / "a.obj");
 }
@@ -94,7 +94,7 @@ TEST(ExportObj, WritesObstaclesWhereTheyArePlaced)
     thing.mesh.faces = {{0, 1, 2}};
     thing.mesh.segments = {{2, 3}};
     thing.mesh.lone_points = {3};
-    write_obj(dir / "thing.obj", thing, {rotation_about(Vec3::UnitZ(), 90.0), {0.0, 0.0, 2.0}});
+    write_obj(dir / "thing.obj", thing, {rotation_about(Vec3::UnitZ(), 90.0), {0.0, 0.0, 2.0}}, UpAxis::Z);
     EXPECT_EQ(read_bytes(dir / "thing.obj"),
               "# Arris: m, z is up; l: wires; p: lone points\no thing\n"
               "v 0 0 2\nv 0 1 2\nv -1 0 2\nv -0.2 0.1 2.3333333333333335\n"
