@@ -166,29 +166,29 @@ export class Run {
       .reduce(joined, this.stage);
   }
 
-  /** Boxes of the obstacles near `around`: whole up to `whole(mesh)` times the cloth's diagonal, else the near part. */
-  #obstaclesNear(around, position, whole = () => kWhole) {
-    return this.meshes.flatMap((mesh) => {
+  /** Boxes of the `meshes` near `around`: whole up to `whole` times the cloth's diagonal, else the near part. */
+  #obstaclesNear(around, position, meshes = this.meshes, whole = kWhole) {
+    return meshes.flatMap((mesh) => {
       const box = this.#meshBox(mesh, position);
       const near = clipped(box, around);
       if (!near) return [];
-      return [diagonal(box) < whole(mesh) * diagonal(this.stage) ? box : near];
+      return [diagonal(box) < whole * diagonal(this.stage) ? box : near];
     });
   }
 
-  /** The boxes that the first view contains: the cloth in some frames, and the obstacles near it. */
+  /** The boxes that the first view contains: the cloth in some frames, and the obstacles near it but for a floor. */
   viewBoxes() {
     const step = Math.max(1, Math.floor(this.frames.length / 32));
     const cloth = this.frames.filter((_, position) => position % step === 0).map((box) => clipped(box, this.stage));
+    const around = grown(this.stage, kNear * diagonal(this.stage));
     return [...cloth.filter((box) => box), ...[0, this.frames.length - 1].flatMap((position) =>
-      this.#obstaclesNear(grown(this.stage, kNear * diagonal(this.stage)), position))];
+      this.#obstaclesNear(around, position, this.#standing()))];
   }
 
-  /** The box of all that casts a shadow in the `position`-th frame; of a floor, which casts none in view, the near part. */
+  /** The box of all that casts a shadow in view in the `position`-th frame. */
   litBox(position) {
     const around = grown(joined(this.frames[position], this.stage), kNear * diagonal(this.stage));
-    return this.#obstaclesNear(around, position, (mesh) => (this.#isFloor(mesh) ? 0 : kLit))
-      .reduce(joined, this.frames[position]);
+    return this.#obstaclesNear(around, position, this.#standing(), kLit).reduce(joined, this.frames[position]);
   }
 
   /** How far the cloth's middle has left the stage in the `position`-th frame: a vector, m. The view follows by it. */
@@ -206,6 +206,11 @@ export class Run {
     const { size } = this.#meshBox(mesh, 0);
     return [0, 1].every((axis) => size[axis] > kFloor * this.surroundings.size[axis]) &&
       size[2] < Math.min(size[0], size[1]) / 3;
+  }
+
+  /** The obstacles but for floors. */
+  #standing() {
+    return this.meshes.filter((mesh) => !this.#isFloor(mesh));
   }
 
   /**
