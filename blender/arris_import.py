@@ -15,7 +15,12 @@ import sys
 from pathlib import Path
 
 import bpy
-import numpy as np
+
+try:
+    import numpy as np
+except ImportError as error:
+    raise ImportError("the Arris add-on needs NumPy, which this Blender lacks; on Debian: "
+                      "apt-get install python3-numpy") from error
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, FloatProperty, IntProperty, StringProperty
 
