@@ -230,6 +230,14 @@ test("neither light nor first view reaches for a floor, so that shadows stay fin
     assert.ok(least[1] > -0.2 && least[1] + size[1] < 1.2, `${least} ${size}`);
 });
 
+test("a vessel is an obstacle that the cloth ends in", () => {
+  assert.equal(open(obstaclesPage).endsInVessel(), false);
+  const tub = (size) => open(obstaclesPage.replace(/"size":\[0.5,1.2,0.1\d*\]/, `"size":${size}`)).endsInVessel();
+  assert.equal(tub("[4,4,2]"), true);
+  assert.equal(tub("[4,4,0.1]"), false, "the cloth is above it");
+  assert.equal(tub("[4,0.5,2]"), false, "the cloth reaches beyond it");
+});
+
 test("a box is read from two opposite corners", () => {
   assert.deepEqual(boxOf("1,2,3,0,4,-1"), { least: [0, 2, -1], size: [1, 2, 4] });
   for (const text of [null, "", "1,2,3,4,5", "1,2,3,4,5,", "1,2,3,4,5,x", "1,2,3,4,5,6,7"])

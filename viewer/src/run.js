@@ -11,7 +11,7 @@ const kLevels = 65535;
 const kNear = 0.2; // margin around the cloth within which obstacles are shown, over the box's diagonal
 const kWhole = 1.5; // diagonal of an obstacle that a view contains whole, over that of the cloth's boxes
 const kLit = 4; // the same of an obstacle whose whole shadow is drawn
-const kFloor = 1.5; // horizontal sizes of an obstacle that is the ground, over those of the view
+const kFloor = 1.5; // horizontal sizes of an obstacle that is the ground, over those of the cloth's boxes
 const kFall = 1; // distance below the view down to which the ground follows falling cloth, over the view's diagonal
 const kWay = 2; // distance from its start, in cloth sizes, up to which cloth without obstacles is followed
 
@@ -185,6 +185,17 @@ export class Run {
       this.#obstaclesNear(around, position, this.#standing()))];
   }
 
+  /** Whether the cloth ends in a vessel, such as a bowl: within an obstacle's box, and below its top. */
+  endsInVessel() {
+    const last = this.frames.length - 1;
+    const { least, size } = this.frames[last];
+    return this.meshes.some((mesh) => {
+      const box = this.#meshBox(mesh, last);
+      const isBelow = (axis) => least[axis] + size[axis] <= box.least[axis] + box.size[axis];
+      return [0, 1, 2].every((axis) => least[axis] >= box.least[axis] && isBelow(axis));
+    });
+  }
+
   /** The box of all that casts a shadow in view in the `position`-th frame. */
   litBox(position) {
     const around = grown(joined(this.frames[position], this.stage), kNear * diagonal(this.stage));
@@ -201,10 +212,10 @@ export class Run {
     });
   }
 
-  /** Whether an obstacle is flat and far wider than the view. */
+  /** Whether an obstacle is flat and far wider than the cloth's stage. */
   #isFloor(mesh) {
     const { size } = this.#meshBox(mesh, 0);
-    return [0, 1].every((axis) => size[axis] > kFloor * this.surroundings.size[axis]) &&
+    return [0, 1].every((axis) => size[axis] > kFloor * this.stage.size[axis]) &&
       size[2] < Math.min(size[0], size[1]) / 3;
   }
 

@@ -12,6 +12,7 @@ import { linear, palette } from "./colours.js";
 const kFieldOfView = 32; // degrees, vertical
 const kAzimuth = -62; // degrees from +x of the first view
 const kElevation = 24; // degrees above the horizon
+const kVesselElevation = 50; // the same where the rim of a vessel would hide the cloth
 const kShadowMap = 2048; // texels a side
 const kShadowTexels = 3; // lift of a surface above its own shadow
 const kKeyLight = new Vector3(-0.8, -0.55, 1.15).normalize();
@@ -117,7 +118,9 @@ export class Stage {
   fit(boxes, { view, azimuth, elevation, zoom = 1, isWhole = true, isFixed = false } = {}) {
     const direction = this.#camera.position.clone().sub(this.#controls.target).normalize();
     if (view !== undefined || azimuth !== undefined || elevation !== undefined) {
-      const [firstAzimuth, firstElevation] = kViews[view ?? "first"];
+      const [firstAzimuth, usualElevation] = kViews[view ?? "first"];
+      const isFirst = (view ?? "first") === "first";
+      const firstElevation = isFirst && this.#run.endsInVessel() ? kVesselElevation : usualElevation;
       const a = ((azimuth ?? firstAzimuth) * Math.PI) / 180;
       const e = (Math.min(Math.max(elevation ?? firstElevation, -89.9), 89.9) * Math.PI) / 180;
       direction.set(Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e));
