@@ -110,5 +110,24 @@ INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(scene_files()), [](const
     return std::filesystem::path(scene.param).stem().string();
 });
 
+/// Height (m) at which the middle of the tablecloth ends.
+double tablecloth_height(const std::string& has_eol)
+{
+    const TemporaryDirectory folder;
+    const std::string dir = folder / "run";
+    Program program(folder, {"run", ARRIS_SOURCE_DIR "/data/scenes/tablecloth.toml", "-o", dir, "--set",
+                             "eol.enabled=" + has_eol, "--set", "probe.0.name=middle", "--set",
+                             "probe.0.material=[0.55, 0.55]", "--set", "output.formats=[]"});
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    return read_csv(dir + "/probes.csv").column("middle_z").back();
+}
+
+TEST(Tablecloth, ComesOffTheTableWithEolVerticesAndHangsThereWithout)
+{
+    constexpr double kTableTop = 0.876;  // m
+    EXPECT_LT(tablecloth_height("true"), 0.5 * kTableTop);
+    EXPECT_GT(tablecloth_height("false"), kTableTop);
+}
+
 }  // namespace
 }  // namespace arris
