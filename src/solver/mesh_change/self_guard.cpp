@@ -35,7 +35,6 @@ bool is_crossing(const PatchFace& first, const PatchFace& second)
 
 SelfGuard::SelfGuard(const State& state)
 {
-    std::vector<BoxTree::Box> boxes;
     for (const Face& face : state.mesh.faces) {
         PatchFace made;
         for (int i = 0; i < 3; ++i) {
@@ -44,10 +43,8 @@ SelfGuard::SelfGuard(const State& state)
             made.world[i] = state.mesh.world[face[i]];
         }
         add(made);
-        boxes.push_back(parts_.back().box);
     }
-    first_count_ = parts_.size();
-    tree_ = BoxTree(boxes);
+    group_parts();
 }
 
 void SelfGuard::add(const PatchFace& face)
@@ -66,6 +63,22 @@ void SelfGuard::follow(const std::vector<SurgeryEvent>& events)
             }
         for (const PatchFace& face : events[followed_].after) add(face);
     }
+    group_parts();
+}
+
+/// Puts new parts into a tree, together with groups that are no larger: each part enters log n trees (Bentley
+/// and Saxe 1980, "Decomposable searching problems").
+void SelfGuard::group_parts()
+{
+    constexpr std::size_t kFew = 32;  // parts that are faster without a tree
+    if (parts_.size() < grouped_ + kFew) return;
+    std::size_t first = grouped_;
+    for (; !groups_.empty() && groups_.back().count <= parts_.size() - first; groups_.pop_back())
+        first = groups_.back().first;
+    std::vector<BoxTree::Box> boxes;
+    for (std::size_t p = first; p < parts_.size(); ++p) boxes.push_back(parts_[p].box);
+    groups_.push_back({first, boxes.size(), BoxTree(boxes)});
+    grouped_ = parts_.size();
 }
 
 bool SelfGuard::crosses(const PatchFace& made, const SurgeryEvent& event)
@@ -79,9 +92,12 @@ bool SelfGuard::crosses(const PatchFace& made, const SurgeryEvent& event)
                         [&](const PatchFace& old) { return from_least(old.vertices) == face; });
         return !is_replaced && is_crossing(made, part.face);
     };
-    tree_.find(box, found_);
-    return std::any_of(found_.begin(), found_.end(), [&](int f) { return meets(parts_[f]); }) ||
-           std::any_of(parts_.begin() + static_cast<std::ptrdiff_t>(first_count_), parts_.end(), meets);
+    for (const Group& group : groups_) {
+        group.tree.find(box, found_);
+        if (std::any_of(found_.begin(), found_.end(), [&](int p) { return meets(parts_[group.first + p]); }))
+            return true;
+    }
+    return std::any_of(parts_.begin() + static_cast<std::ptrdiff_t>(grouped_), parts_.end(), meets);
 }
 
 bool SelfGuard::allows(const SurgeryEvent& event, const std::vector<SurgeryEvent>& events)

@@ -26,15 +26,21 @@ class SelfGuard {
         BoxTree::Box box;
         bool is_there = true;
     };
+    /// Boxes of the parts from `first` on, as many as `count`.
+    struct Group {
+        std::size_t first, count;
+        BoxTree tree;
+    };
     void add(const PatchFace& face);
     void follow(const std::vector<SurgeryEvent>& events);
+    void group_parts();
     bool crosses(const PatchFace& made, const SurgeryEvent& event);
 
     std::vector<Part> parts_;         ///< the faces at the start, then those made
-    std::size_t first_count_ = 0;     ///< faces at the start, which `tree_` holds
     std::map<IdFace, int> index_of_;  ///< by face that begins with its least vertex
-    BoxTree tree_;
-    std::size_t followed_ = 0;  ///< events
+    std::vector<Group> groups_;       ///< of the first parts, each larger than all that follow
+    std::size_t grouped_ = 0;         ///< parts in groups
+    std::size_t followed_ = 0;        ///< events
     std::vector<int> found_;
 };
 
