@@ -7,6 +7,7 @@
 #include "geometry/sort_unique.h"
 #include "solver/contact/constraints.h"
 #include "solver/contact/eol_contacts.h"
+#include "solver/contact/impact_friction.h"
 #include "solver/infeasible.h"
 #include "solver/not_finite.h"
 
@@ -14,10 +15,18 @@ namespace arris {
 
 namespace {
 
+/// Flattens the history of cloth that presses on obstacles. True where anything was flattened.
+bool flatten_history(const Scene& scene, const State& state, Workspace& work, std::size_t first)
+{
+    flatten_friction(scene, state, work.obstacles, first, work.contacts, work.prediction);
+    return flatten_history(scene, state, work.obstacles, work.eol, first, work.contacts, work.prediction);
+}
+
 /// Flattens the history of parts of the cloth that press on each other. True where anything was flattened.
-bool flatten_self_history(const State& state, Workspace& work, std::size_t first)
+bool flatten_self_history(const Scene& scene, const State& state, Workspace& work, std::size_t first)
 {
     if (first == work.self_rows.size()) return false;
+    flatten_self_friction(scene, state, work.mobility, first, work.self_rows, work.prediction);
     const std::vector<Vec3> free_end = find_free_end(state, work.prediction, work.pin_targets);
     if (!flatten_self_history(state, free_end, work.mobility, first, work.self_rows, work.prediction))
         return false;
@@ -40,11 +49,11 @@ bool collect_contacts(const Scene& scene, const State& state, Workspace& work, S
     }
     const std::optional<int> overconstrained =
         share_room(work.obstacles, work.prediction, work.contacts).overconstrained;
-    flatten_history(scene, state, work.obstacles, work.eol, 0, work.contacts, work.prediction);
+    flatten_history(scene, state, work, 0);
     work.self_rows = find_self_rows(scene, state, work.prediction, work.pin_targets, work.mesh.self_surface);
     if (scene.self_contact)
         work.mobility = find_mobility(scene.material.density, work.mesh.elements, work.eol, work.pin_targets);
-    flatten_self_history(state, work, 0);
+    flatten_self_history(scene, state, work, 0);
     work.has_system = false;
     work.yielded = 0;
     if (note_not_finite(CheckedStage::Contacts, state, work, report)) return false;
@@ -90,9 +99,8 @@ bool add_violations(const Scene& scene, const State& state, const Violations& vi
     work.self_rows.insert(work.self_rows.end(), violations.self_rows.begin(), violations.self_rows.end());
     work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());
     const bool is_shared = share_room(work.obstacles, work.prediction, work.contacts).is_changed;
-    const bool is_flattened =
-        flatten_history(scene, state, work.obstacles, work.eol, first, work.contacts, work.prediction);
-    if (flatten_self_history(state, work, first_self) || is_flattened || is_shared) {
+    const bool is_flattened = flatten_history(scene, state, work, first);
+    if (flatten_self_history(scene, state, work, first_self) || is_flattened || is_shared) {
         work.has_system = false;
         return true;
     }
