@@ -82,7 +82,11 @@ std::vector<SceneKey> make_scene_keys()
         number("cloth.material.poisson_ratio", "", {0.0, 0.5}, "(the preset's)",
                "Poisson's ratio: lateral contraction per extension."),
         number("cloth.material.bending_stiffness", "J", kNotNegative, "(the preset's)",
-               "Bending stiffness, K of the hinge energy; 0 switches bending off."),
+               "Bending stiffness K, bending moment per width and curvature; 0 switches bending off."),
+        choice(
+            "cloth.material.bending_model", "hinge|plate", R"("hinge")",
+            "Bending model: every hinge for itself, with a rigidity that depends on the mesh (hinge), or a "
+            "plate whose rigidity is K on any mesh (plate)."),
         number("cloth.material.damping", "s", {0.0, 1e3}, "0.0",
                "Damping proportional to the elastic stiffness; 0 switches damping off."),
         number("cloth.material.thickness", "m", {0.0, 1.0, true}, "0.001",

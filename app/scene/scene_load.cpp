@@ -84,9 +84,13 @@ Wind to_wind(const Json& json)
 
 Material to_material(const Json& json)
 {
-    return {to_double(json["density"]),       to_double(json["youngs_modulus"]),
-            to_double(json["poisson_ratio"]), to_double(json["bending_stiffness"]),
-            to_double(json["damping"]),       to_double(json["thickness"])};
+    return {to_double(json["density"]),
+            to_double(json["youngs_modulus"]),
+            to_double(json["poisson_ratio"]),
+            to_double(json["bending_stiffness"]),
+            to_double(json["damping"]),
+            to_double(json["thickness"]),
+            json["bending_model"] == "plate" ? BendingModel::Plate : BendingModel::Hinge};
 }
 
 /// Nothing where neither [friction] nor a coefficient of an obstacle or of the layers is given.

@@ -46,6 +46,8 @@ struct ClothElements {
     int vertex_count = 0;
     std::vector<FaceElement> faces;
     std::vector<HingeElement> hinges;
+    std::vector<FaceElement> rim;  ///< where `faces` are a part of a cloth: further faces of `hinges`, which
+                                   ///< have the indices from faces.size() on, and no terms of their own
     HingeUse hinge_use = HingeUse::Terms;
     ElementColors face_colors, hinge_colors;
 };

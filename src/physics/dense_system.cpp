@@ -40,8 +40,9 @@ void DenseSystem::assemble(const ClothElements& elements, const Terms& terms, co
     for (const FaceElement& face : elements.faces)
         scatter<3>(face.vertices, sum_terms<3>(FaceState(face, at.position), terms.faces, at));
     if (terms.hinges.empty()) return;
-    for (const HingeElement& hinge : elements.hinges)
-        scatter<4>(hinge.vertices, sum_terms<4>(HingeState(hinge, at.position), terms.hinges, at));
+    const HingeStates hinges(elements, terms, at.position);
+    for (std::size_t h = 0; h < elements.hinges.size(); ++h)
+        scatter<4>(elements.hinges[h].vertices, sum_terms<4>(hinges[h], terms.hinges, at));
 }
 
 }  // namespace arris

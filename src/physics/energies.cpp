@@ -47,8 +47,9 @@ Energies compute_energies(const ClothElements& elements, const Terms& terms,
                 energy_of(energies, kind) += term->energy(face);
     }
     if (terms.hinges.empty()) return energies;
-    for (const HingeElement& element : elements.hinges) {
-        const HingeState hinge(element, position);
+    const HingeStates hinges(elements, terms, position);
+    for (std::size_t h = 0; h < elements.hinges.size(); ++h) {
+        const HingeState hinge = hinges[h];
         for (const auto& term : terms.hinges)
             if (const EnergyKind kind = term->energy_kind(); kind != EnergyKind::None)
                 energy_of(energies, kind) += term->energy(hinge);
@@ -93,11 +94,12 @@ FaceReadings compute_face_readings(const ClothElements& elements, const Terms& t
             if (term->energy_kind() == EnergyKind::Stretch) readings.stretch_energy[f] += term->energy(face);
     }
     if (terms.hinges.empty()) return readings;
-    for (const HingeElement& hinge : elements.hinges)
+    const HingeStates hinges(elements, terms, position);
+    for (std::size_t h = 0; h < elements.hinges.size(); ++h)
         for (const auto& term : terms.hinges)
             if (term->energy_kind() == EnergyKind::Bending)
-                for (const int f : hinge.faces)
-                    readings.bending_energy[f] += 0.5 * term->energy(HingeState(hinge, position));
+                for (const int f : elements.hinges[h].faces)
+                    readings.bending_energy[f] += 0.5 * term->energy(hinges[h]);
     return readings;
 }
 

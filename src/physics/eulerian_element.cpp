@@ -44,15 +44,15 @@ FaceSystem eulerian_elasticity(const Face& face, const Terms& terms, const Linea
     return local;
 }
 
-HingeSystem eulerian_hinge(const HingeElement& hinge, const ClothElements& elements, const Terms& terms,
-                           const Linearization& at)
+HingeSystem eulerian_hinge(const HingeElement& hinge, const HingeMoment* moment,
+                           const ClothElements& elements, const Terms& terms, const Linearization& at)
 {
     const std::vector<Vec2>& X = at.flow->position;
     const FaceElement c = make_face_element(X, elements.faces[hinge.faces[0]].vertices);
     const FaceElement d = make_face_element(X, elements.faces[hinge.faces[1]].vertices);
     HingeElement element = hinge;
     element.weight = compute_hinge_weight(X, hinge, c.area, d.area);
-    HingeState state(element, at.position);
+    HingeState state(element, at.position, moment);
     state.weight_gradients = compute_hinge_weight_gradients(X, hinge, c, d);
 
     // Vertices a and b belong to both faces, c and d to one each.

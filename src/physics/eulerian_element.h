@@ -25,9 +25,10 @@ FaceSystem eulerian_inertia_and_loads(const Face& face, const Terms& terms, cons
 /// A face's elastic terms.
 FaceSystem eulerian_elasticity(const Face& face, const Terms& terms, const Linearization& at);
 
-/// A hinge's terms. F at a corner is the mean over the hinge's faces at that corner.
-HingeSystem eulerian_hinge(const HingeElement& hinge, const ClothElements& elements, const Terms& terms,
-                           const Linearization& at);
+/// A hinge's terms. F at a corner is the mean over the hinge's faces at that corner. `moment` is that of the
+/// hinge (HingeStates, at.flow).
+HingeSystem eulerian_hinge(const HingeElement& hinge, const HingeMoment* moment,
+                           const ClothElements& elements, const Terms& terms, const Linearization& at);
 
 /// Reduces an element to the coordinates of its vertices.
 template <int N>

@@ -93,8 +93,9 @@ void add_face(const FaceElement& element, const Terms& terms, const Linearizatio
         }
 }
 
-void add_hinge(const HingeElement& hinge, const ClothElements& elements, const Terms& terms,
-               const Linearization& at, const Eigen::VectorXd& u, SidesByVertex& by_vertex)
+void add_hinge(const HingeElement& hinge, const HingeMoment* moment, const ClothElements& elements,
+               const Terms& terms, const Linearization& at, const Eigen::VectorXd& u,
+               SidesByVertex& by_vertex)
 {
     const auto put = [&](int v, const Vec3& residual) {
         TraceSides* sides = by_vertex.find(v);
@@ -107,7 +108,19 @@ void add_hinge(const HingeElement& hinge, const ClothElements& elements, const T
         }
         for (const int k : at_vertex) sides->impulse[k] += residual / static_cast<double>(at_vertex.size());
     };
-    visit_residual<4>(hinge.vertices, eulerian_hinge(hinge, elements, terms, at), at, u, put);
+    visit_residual<4>(hinge.vertices, eulerian_hinge(hinge, moment, elements, terms, at), at, u, put);
+}
+
+/// Calls `visit(hinge, moment)` for each hinge with terms and an EOL vertex.
+template <typename Visit>
+void visit_eulerian_hinges(const ClothElements& elements, const Terms& terms, const Linearization& at,
+                           const Visit& visit)
+{
+    if (terms.hinges.empty()) return;
+    const HingeStates states(elements, terms, at.position, &*at.flow);
+    for (std::size_t h = 0; h < elements.hinges.size(); ++h)
+        if (has_eulerian_vertex(*at.flow, elements.hinges[h].vertices))
+            visit(elements.hinges[h], states.moment(h));
 }
 
 }  // namespace
@@ -125,10 +138,9 @@ std::vector<Vec3> compute_feature_impulses(const ClothMesh& mesh, const ClothEle
         visit_residual<3>(face, eulerian_inertia_and_loads(face, terms, at), at, u, put);
         visit_residual<3>(face, eulerian_elasticity(face, terms, at), at, u, put);
     }
-    if (!terms.hinges.empty())
-        for (const HingeElement& hinge : elements.hinges)
-            if (has_eulerian_vertex(*at.flow, hinge.vertices))
-                visit_residual<4>(hinge.vertices, eulerian_hinge(hinge, elements, terms, at), at, u, put);
+    visit_eulerian_hinges(elements, terms, at, [&](const HingeElement& hinge, const HingeMoment* moment) {
+        visit_residual<4>(hinge.vertices, eulerian_hinge(hinge, moment, elements, terms, at), at, u, put);
+    });
     for (const CreaseForce& crease : find_momentum_flux(terms.density, elements, at))
         for (int i = 0; i < 2; ++i)
             if (at.flow->is_eulerian[crease.vertices[i]])
@@ -144,10 +156,9 @@ std::vector<TraceSides> compute_trace_sides(const std::vector<TraceVertex>& vert
     SidesByVertex by_vertex(vertices, at);
     for (const FaceElement& element : elements.faces)
         if (has_eulerian_vertex(*at.flow, element.vertices)) add_face(element, terms, at, u, by_vertex);
-    if (!terms.hinges.empty())
-        for (const HingeElement& hinge : elements.hinges)
-            if (has_eulerian_vertex(*at.flow, hinge.vertices))
-                add_hinge(hinge, elements, terms, at, u, by_vertex);
+    visit_eulerian_hinges(elements, terms, at, [&](const HingeElement& hinge, const HingeMoment* moment) {
+        add_hinge(hinge, moment, elements, terms, at, u, by_vertex);
+    });
     for (const CreaseForce& crease : find_momentum_flux(terms.density, elements, at))
         for (int i = 0; i < 2; ++i)
             if (TraceSides* sides = by_vertex.find(crease.vertices[i]))

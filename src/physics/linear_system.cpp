@@ -219,11 +219,11 @@ void LinearSystem::scatter(const std::array<int, N>& vertices, const int* blocks
 }
 
 /// Sums elements colour by colour; those with an EOL vertex through `add_eulerian`.
-template <typename State, int N, typename Element, typename Blocks, typename ElementTerms,
+template <int N, typename Element, typename Blocks, typename MakeState, typename ElementTerms,
           typename AddEulerian>
 void LinearSystem::add_elements(const ElementColors& colors, const std::vector<Element>& elements,
-                                const Blocks& blocks, const ElementTerms& terms, const Linearization& at,
-                                const AddEulerian& add_eulerian)
+                                const Blocks& blocks, const MakeState& make_state, const ElementTerms& terms,
+                                const Linearization& at, const AddEulerian& add_eulerian)
 {
     for_each_by_color(colors, elements.size(), [&](int e) {
         const Element& element = elements[e];
@@ -231,7 +231,7 @@ void LinearSystem::add_elements(const ElementColors& colors, const std::vector<E
             add_eulerian(e);
             return;
         }
-        LocalSystem<N> local = sum_terms<N>(State(element, at.position), terms, at);
+        LocalSystem<N> local = sum_terms<N>(make_state(e), terms, at);
         reduce<N>(element.vertices, at, local);
         scatter<N>(element.vertices, blocks[e].data(), local);
     });
@@ -277,8 +277,10 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
     matrix_.coeffs().setZero();
     set_loads(mesh, terms, at);
     add_momentum_flux(terms.density, elements, at, rhs_);
-    add_elements<FaceState, 3>(
-        elements.face_colors, elements.faces, face_blocks_, terms.faces, at, [&](int f) {
+    add_elements<3>(
+        elements.face_colors, elements.faces, face_blocks_,
+        [&](int f) { return FaceState(elements.faces[f], at.position); }, terms.faces, at,
+        [&](int f) {
             const Face& face = elements.faces[f].vertices;
             for (FaceSystem local :
                  {eulerian_inertia_and_loads(face, terms, at), eulerian_elasticity(face, terms, at)}) {
@@ -287,13 +289,16 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
             }
         });
     if (terms.hinges.empty()) return;
-    add_elements<HingeState, 4>(elements.hinge_colors, elements.hinges, hinge_blocks_, terms.hinges, at,
-                                [&](int h) {
-                                    const HingeElement& hinge = elements.hinges[h];
-                                    HingeSystem local = eulerian_hinge(hinge, elements, terms, at);
-                                    reduce_eulerian<4>(hinge.vertices, at, local);
-                                    scatter<4>(hinge.vertices, hinge_blocks_[h].data(), local);
-                                });
+    const HingeStates hinges(elements, terms, at.position, at.flow ? &*at.flow : nullptr);
+    add_elements<4>(
+        elements.hinge_colors, elements.hinges, hinge_blocks_, [&](int h) { return hinges[h]; }, terms.hinges,
+        at,
+        [&](int h) {
+            const HingeElement& hinge = elements.hinges[h];
+            HingeSystem local = eulerian_hinge(hinge, hinges.moment(h), elements, terms, at);
+            reduce_eulerian<4>(hinge.vertices, at, local);
+            scatter<4>(hinge.vertices, hinge_blocks_[h].data(), local);
+        });
 }
 
 }  // namespace arris

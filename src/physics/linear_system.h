@@ -57,10 +57,11 @@ class LinearSystem {
     void scatter(const std::array<int, N>& vertices, const int* blocks, const LocalSystem<N>& local);
 
     void set_loads(const ClothMesh& mesh, const Terms& terms, const Linearization& at);
-    template <typename State, int N, typename Element, typename Blocks, typename ElementTerms,
+    template <int N, typename Element, typename Blocks, typename MakeState, typename ElementTerms,
               typename AddEulerian>
     void add_elements(const ElementColors& colors, const std::vector<Element>& elements, const Blocks& blocks,
-                      const ElementTerms& terms, const Linearization& at, const AddEulerian& add_eulerian);
+                      const MakeState& make_state, const ElementTerms& terms, const Linearization& at,
+                      const AddEulerian& add_eulerian);
 
     Eigen::SparseMatrix<double> matrix_;
     Eigen::VectorXd rhs_;

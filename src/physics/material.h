@@ -7,14 +7,19 @@
 
 namespace arris {
 
+/// What bends: every hinge for itself (bending.h), with a rigidity that depends on the mesh; or the cloth as
+/// a plate (plate_bending.h), with a rigidity that does not.
+enum class BendingModel { Hinge, Plate };
+
 /// The cloth's material. All values are those of a sheet: areal where a solid's would be volumetric.
 struct Material {
     double density = 0.0;         ///< areal, kg/m^2
     double youngs_modulus = 0.0;  ///< membrane, N/m
     double poisson_ratio = 0.0;
-    double bending_stiffness = 0.0;  ///< K of the hinge energy, J; 0 leaves bending out
+    double bending_stiffness = 0.0;  ///< K, J, per width; 0 leaves bending out
     double damping = 0.0;            ///< s, stiffness-proportional; 0 leaves damping out
     double thickness = 1e-3;         ///< m, the distance kept between the cloth's surface and obstacles
+    BendingModel bending_model = BendingModel::Hinge;
 };
 
 struct MaterialPreset {

@@ -7,6 +7,7 @@
 #include "physics/gravity_force.h"
 #include "physics/inertia.h"
 #include "physics/membrane.h"
+#include "physics/plate_bending.h"
 #include "physics/pull_force.h"
 #include "physics/wind_force.h"
 
@@ -138,9 +139,26 @@ FaceState::FaceState(const FaceElement& face, const std::vector<Vec3>& position)
     }
 }
 
-HingeState::HingeState(const HingeElement& hinge, const std::vector<Vec3>& position) : element(hinge)
+HingeState::HingeState(const HingeElement& hinge, const std::vector<Vec3>& position,
+                       const HingeMoment* moment_of_hinge)
+    : element(hinge), moment(moment_of_hinge)
 {
     for (int i = 0; i < 4; ++i) x[i] = position[hinge.vertices[i]];
+}
+
+const HingeTerm* Terms::coupled_hinges() const
+{
+    for (const auto& term : hinges)
+        if (term->is_coupled()) return term.get();
+    return nullptr;
+}
+
+HingeStates::HingeStates(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& position,
+                         const MaterialFlow* flow)
+    : elements_(elements), position_(position)
+{
+    if (const HingeTerm* coupled = terms.coupled_hinges())
+        moments_ = coupled->find_moments(elements, position, flow);
 }
 
 Terms make_terms(const Material& material, const std::optional<Gravity>& gravity,
@@ -150,8 +168,13 @@ Terms make_terms(const Material& material, const std::optional<Gravity>& gravity
     terms.density = material.density;
     terms.faces.push_back(std::make_unique<Inertia>(material.density));
     terms.faces.push_back(std::make_unique<Membrane>(material.youngs_modulus, material.poisson_ratio));
-    if (material.bending_stiffness > 0.0)
-        terms.hinges.push_back(std::make_unique<Bending>(material.bending_stiffness));
+    if (material.bending_stiffness > 0.0) {
+        if (material.bending_model == BendingModel::Plate)
+            terms.hinges.push_back(
+                std::make_unique<PlateBending>(material.bending_stiffness, material.poisson_ratio));
+        else
+            terms.hinges.push_back(std::make_unique<Bending>(material.bending_stiffness));
+    }
     if (gravity) terms.faces.push_back(std::make_unique<GravityForce>(material.density, *gravity));
     if (wind) terms.faces.push_back(std::make_unique<WindForce>(*wind));
     for (const Pull& pull : pulls) terms.loads.push_back(std::make_unique<PullForce>(pull));

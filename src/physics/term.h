@@ -80,13 +80,24 @@ struct FaceState {
     FaceState(const FaceElement& face, const std::vector<Vec3>& position);
 };
 
+/// What a hinge exerts where all hinges depend on each other (hinge_moments.h).
+struct HingeMoment {
+    double energy = 0.0;     ///< J, the hinge's share of the whole
+    double moment = 0.0;     ///< N m, along the whole edge
+    double stiffness = 0.0;  ///< J, upper bound of the moment's derivative by s = 2 sin(theta/2)
+    /// N, -dV/dX at fixed positions; zero unless the hinge has an EOL vertex.
+    std::array<Vec2, 4> material_force = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+};
+
 /// A hinge at its present positions.
 struct HingeState {
     const HingeElement& element;
+    const HingeMoment* moment;                            ///< null unless a term is coupled
     std::array<Vec3, 4> x;                                ///< m
     std::optional<std::array<Vec2, 4>> weight_gradients;  ///< 1/m, if the hinge has an EOL vertex
 
-    HingeState(const HingeElement& hinge, const std::vector<Vec3>& position);
+    HingeState(const HingeElement& hinge, const std::vector<Vec3>& position,
+               const HingeMoment* moment = nullptr);
 };
 
 /// Kind of a term's energy: the columns of steps.csv.
@@ -111,6 +122,15 @@ class HingeTerm {
   public:
     virtual ~HingeTerm() = default;
     virtual EnergyKind energy_kind() const { return EnergyKind::None; }
+    /// Whether a hinge depends on the others, by way of `moment` in its state. At most one term of a scene
+    /// may.
+    virtual bool is_coupled() const { return false; }
+    /// `moment` of each hinge, for a coupled term. `flow` is null where no material flows.
+    virtual std::vector<HingeMoment> find_moments(const ClothElements&, const std::vector<Vec3>& /*position*/,
+                                                  const MaterialFlow* /*flow*/) const
+    {
+        return {};
+    }
     virtual double energy(const HingeState&) const { return 0.0; }  ///< J
     virtual void add(const HingeState& hinge, HingeSystem& system) const = 0;
 };
@@ -146,6 +166,24 @@ struct Terms {
     std::vector<std::unique_ptr<const HingeTerm>> hinges;
     std::vector<std::unique_ptr<const LoadTerm>> loads;
     double density = 0.0;  ///< areal, kg/m^2, as used by the inertia in `faces`
+
+    /// The hinge term whose hinges depend on each other; null if there is none.
+    const HingeTerm* coupled_hinges() const;
+};
+
+/// All hinges of `elements` at `position`, with their moments if a term is coupled.
+class HingeStates {
+  public:
+    HingeStates(const ClothElements& elements, const Terms& terms, const std::vector<Vec3>& position,
+                const MaterialFlow* flow = nullptr);
+
+    const HingeMoment* moment(std::size_t h) const { return moments_.empty() ? nullptr : &moments_[h]; }
+    HingeState operator[](std::size_t h) const { return {elements_.hinges[h], position_, moment(h)}; }
+
+  private:
+    const ClothElements& elements_;
+    const std::vector<Vec3>& position_;
+    std::vector<HingeMoment> moments_;
 };
 
 /// Always inertia and membrane; other terms if their effect is present. A new term takes one file and one

@@ -12,6 +12,7 @@
 #include "physics/gravity_force.h"
 #include "physics/inertia.h"
 #include "physics/membrane.h"
+#include "physics/plate_bending.h"
 #include "physics/pull_force.h"
 
 namespace arris {
@@ -54,7 +55,7 @@ TEST(EulerianForces, ForcesAreMinusTheGradientsOfTheWholeSheetsEnergy)
     // Gravity's gradient is exact for the whole sheet only, because material that leaves a face enters the
     // next one. At the border material cannot flow out.
     for (const GridPattern pattern : {GridPattern::Diagonal, GridPattern::Alternating, GridPattern::Cross})
-        for (const char* effect : {"stretch", "bending", "gravity", "all"}) {
+        for (const char* effect : {"stretch", "bending", "plate", "gravity", "all"}) {
             SCOPED_TRACE(effect);
             const ClothMesh mesh = crumpled_sheet({4, 4}, pattern, 7);
             const std::string name = effect;
@@ -62,6 +63,7 @@ TEST(EulerianForces, ForcesAreMinusTheGradientsOfTheWholeSheetsEnergy)
             if (name == "stretch" || name == "all")
                 terms.faces.push_back(std::make_unique<Membrane>(5.0, 0.3));
             if (name == "bending" || name == "all") terms.hinges.push_back(std::make_unique<Bending>(1e-2));
+            if (name == "plate") terms.hinges.push_back(std::make_unique<PlateBending>(1e-2, 0.3));
             if (name == "gravity" || name == "all")
                 terms.faces.push_back(std::make_unique<GravityForce>(0.15, Gravity{}));
             const MeshTopology topology = make_topology(mesh.vertex_count(), mesh.faces);

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cantilever.h"
 #include "cloth_run.h"
 #include "refinement.h"
 
@@ -49,10 +50,6 @@ const std::vector<Pattern> kPatterns = {
     {GridPattern::Unstructured, "unstructured", 4, 4.0 / 3.0, 0.015},
 };
 
-struct Tip {
-    double x, y, sideways;  ///< position from the clamp, in strip lengths; y downward
-};
-
 /// Settles two cantilevers of length 1 and `cells` cells under the loads G and P, made dimensionless with
 /// rigidity `D`.
 Tip settle_cantilever(const Pattern& pattern, int cells, double weight, double tip_load, double D,
@@ -67,26 +64,8 @@ Tip settle_cantilever(const Pattern& pattern, int cells, double weight, double t
         GridPattern::Unstructured)  // a fold by 0 degrees puts mesh edges on the clamp's line
         grid.folds = {Fold{{Vec2(1.0, -1.0), Vec2(1.0, 1.0)}, 0.0}};
 
-    Scene scene;
-    scene.material = {1.0, modulus_of(thickness), 0.0, kBending, 0.0, 1e-3};
-    scene.gravity = Gravity{Vec3(0.0, 0.0, -weight * D)};
-    scene.pins.push_back({{Vec2(1.0, 0.0), Vec2(1.0, width)}, {}, {true, true, true}});
-    if (tip_load > 0.0)
-        for (const double u : {0.0, 2.0})
-            scene.pulls.push_back({{Vec2(u, 0.0), Vec2(u, width)}, Vec3(0.0, 0.0, -tip_load * D * width)});
-
-    ClothRun run(scene, make_cloth_grid(grid));
-    settle(run);
-    Tip tip{0.0, 0.0, 0.0};
-    const std::vector<int> line = vertices_in_box(run.state.mesh, {Vec2(2.0, 0.0), Vec2(2.0, width)});
-    const auto count = static_cast<double>(line.size());
-    for (const int v : line) {
-        const Vec3 moved = run.state.mesh.world[v] - Vec3(1.0, run.state.mesh.material[v].y(), 0.0);
-        tip.x += moved.x() / count;
-        tip.y -= moved.z() / count;
-        tip.sideways += std::abs(moved.y()) / count;
-    }
-    return tip;
+    const Material material = {1.0, modulus_of(thickness), 0.0, kBending, 0.0, 1e-3};
+    return settle_cantilever(make_cloth_grid(grid), material, weight * D, tip_load * D);
 }
 
 TEST(Elastica, ReferenceReproducesThePublishedTables)

@@ -78,7 +78,8 @@ class Relaxation {
         MeshTopology topology = make_topology(patch_.mesh.vertex_count(), patch_.mesh.faces);
         elements_ = list_elements(patch_.mesh, topology);
         mark_creases(patch_.creases, patch_.mesh, elements_);
-        const ClothElements held = take_held();
+        // A coupled hinge depends on all others, so that no energy is constant.
+        const ClothElements held = terms_.coupled_hinges() ? ClothElements{} : take_held();
         edges_ = std::move(topology.edges);
         held_energy_ = compute_energies(held, terms_, patch_.mesh.world).sum();
         energy_ = energy_at(patch_.mesh.world);
@@ -239,7 +240,7 @@ class Relaxation {
     std::vector<int> free_;   ///< vertices, ascending
     std::vector<int> place_;  ///< place of each vertex in `free_`; -1 where it is held
     std::vector<MeshEdge> edges_;
-    ClothElements elements_;  ///< with a free vertex; their hinges' face indices are invalid
+    ClothElements elements_;  ///< with a free vertex, and invalid face indices of hinges; or all elements
     Terms terms_;
     double step_time_;                 ///< s
     double held_energy_ = 0.0;         ///< J, of elements without a free vertex

@@ -50,11 +50,11 @@ class PatchElements {
     {
         const Face& face = elements_.faces[f].vertices;
         const int a = face[k], b = face[(k + 1) % 3], c = face[(k + 2) % 3];
-        int d = apex_within(b, a);
-        if (d >= 0 && ids_[a] > ids_[b]) return;
-        if (d < 0) d = apex_around(b, a);
+        const int inner = face_within(b, a);
+        if (inner >= 0 && ids_[a] > ids_[b]) return;
+        const int d = inner >= 0 ? apex_of(inner, a, b) : apex_around(b, a);
         if (d < 0) return;
-        HingeElement hinge{{a, b, c, d}, {f, -1}};
+        HingeElement hinge{{a, b, c, d}, {f, inner >= 0 ? inner : add_rim({b, a, d})}};
         const bool is_crease = crease_width > 0.0 && is_on_trace(surgery_, event_, ids_[a], ids_[b]);
         hinge.crease_width = is_crease ? crease_width : 0.0;
         const double area_d = 0.5 * twice_area(material_[b], material_[a], material_[d]);
@@ -62,13 +62,32 @@ class PatchElements {
         elements_.hinges.push_back(hinge);
     }
 
-    int apex_within(int a, int b) const
+    /// The face with the directed edge (a, b), or -1.
+    int face_within(int a, int b) const
     {
-        for (const FaceElement& face : elements_.faces)
+        for (std::size_t f = 0; f < elements_.faces.size(); ++f) {
+            const Face& face = elements_.faces[f].vertices;
             for (int k = 0; k < 3; ++k)
-                if (face.vertices[k] == a && face.vertices[(k + 1) % 3] == b)
-                    return face.vertices[(k + 2) % 3];
+                if (face[k] == a && face[(k + 1) % 3] == b) return static_cast<int>(f);
+        }
         return -1;
+    }
+
+    int apex_of(int f, int a, int b) const
+    {
+        const Face& face = elements_.faces[f].vertices;
+        return *std::find_if(face.begin(), face.end(), [&](int v) { return v != a && v != b; });
+    }
+
+    /// Index of a face beside the patch.
+    int add_rim(const Face& face)
+    {
+        const auto found = std::find_if(elements_.rim.begin(), elements_.rim.end(), [&](const auto& listed) {
+            return std::is_permutation(face.begin(), face.end(), listed.vertices.begin());
+        });
+        const auto index = elements_.faces.size() + static_cast<std::size_t>(found - elements_.rim.begin());
+        if (found == elements_.rim.end()) elements_.rim.push_back(make_face_element(material_, face));
+        return static_cast<int>(index);
     }
 
     int apex_around(int a, int b)

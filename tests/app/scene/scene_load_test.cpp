@@ -66,6 +66,7 @@ density           = 0.16
 youngs_modulus    = 600.0
 poisson_ratio     = 0.2
 bending_stiffness = 2e-5
+bending_model     = "plate"
 damping           = 0.01
 thickness         = 2e-3
 [[pin]]
@@ -118,6 +119,7 @@ TEST(SceneLoad, TakesEveryKeyToItsPlace)
     EXPECT_EQ(material.youngs_modulus, 600.0);
     EXPECT_EQ(material.poisson_ratio, 0.2);
     EXPECT_EQ(material.bending_stiffness, 2e-5);
+    EXPECT_EQ(material.bending_model, BendingModel::Plate);
     EXPECT_EQ(material.damping, 0.01);
     EXPECT_EQ(material.thickness, 2e-3);
 
@@ -203,7 +205,8 @@ TEST(SceneLoad, WritesOutWhatTheSceneLeavesToDefaults)
             "translate": [0.0, 0.0, 0.0], "rotate": {"axis": [0.0, 0.0, 1.0], "degrees": 0.0}, "scale": 1.0,
             "velocity": [0.0, 0.0, 0.0],
             "material": {"preset": "cotton", "density": 0.15, "youngs_modulus": 500.0, "poisson_ratio": 0.3,
-                         "bending_stiffness": 1e-5, "damping": 0.0, "thickness": 0.001}},
+                         "bending_stiffness": 1e-5, "bending_model": "hinge", "damping": 0.0,
+                         "thickness": 0.001}},
         "pin": [{"material": [[0.0, 0.0], [0.0, 1.0]], "velocity": [0.0, 0.0, 0.0],
                  "angular_velocity": [0.0, 0.0, 0.0], "pivot": [0.0, 0.0, 0.0],
                  "directions": ["x", "y", "z"], "start": 0.0, "release": null}],
@@ -271,6 +274,7 @@ TEST(SceneLoad, OverridesThePresetKeyByKey)
     EXPECT_EQ(config.scene.material.density, 0.3);
     EXPECT_EQ(config.scene.material.youngs_modulus, denim.youngs_modulus);
     EXPECT_EQ(config.scene.material.bending_stiffness, denim.bending_stiffness);
+    EXPECT_EQ(config.scene.material.bending_model, BendingModel::Hinge);
     EXPECT_EQ(config.as_run["cloth"]["material"]["youngs_modulus"], denim.youngs_modulus);
 }
 

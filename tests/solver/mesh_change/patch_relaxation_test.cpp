@@ -68,6 +68,20 @@ TEST(PatchRelaxation, LowersTheEnergyAndReturnsWhatThereIs)
             }
 }
 
+TEST(PatchRelaxation, LowersTheEnergyOfAPlate)
+{
+    // The patch is the whole cloth, so its moments are those of the step.
+    for (const double rough : {1e-6, 1e-3, 5e-3}) {
+        Setting setting(rough);
+        setting.cloth.scene.material.bending_stiffness = 1e-2;
+        setting.cloth.scene.material.bending_model = BendingModel::Plate;
+        const double before = setting.energy();
+        const double after = setting.relax();
+        EXPECT_NEAR(after, setting.energy(), 1e-9 * before);
+        EXPECT_LT(after, 0.2 * before) << rough;
+    }
+}
+
 TEST(PatchRelaxation, RelaxesUnderAGravityOfNothingAsWithout)
 {
     Setting without(5e-3), nothing(5e-3);
