@@ -178,12 +178,13 @@ std::vector<SceneKey> make_scene_keys()
               "unevenly, and coarser elsewhere. Without it the mesh changes only near sharp features."),
         numbers("remesh.edge_length", 2, "m", kPositive, "[0.01, 0.1]",
                 "Smallest and largest edge length to aim at; edges may have half the smallest, and half as "
-                "much again as the largest."),
+                "much again as the largest. The largest grows where it needs more than `vertices`."),
         number("remesh.angle", "degrees", {0.0, 180.0, true}, "30.0",
                "Angle by which the surface may turn over one edge."),
         integer("remesh.vertices", {3.0, 1e7}, "",
-                "Number of vertices to stay below, by coarser cells everywhere; without it eight times the "
-                "first mesh's."),
+                "Number of vertices from which on no edge is split because it is too long, and which coarser "
+                "cells everywhere aim at. One step's changes and EOL vertices may exceed it, seldom by a "
+                "third. Without it eight times the first mesh's."),
         number("remesh.compression", "", {0.0, 1.0, true}, "0.005",
                "Compressive strain above which cells become finer, so that the cloth can buckle."),
         number("remesh.velocity", "m/s", kPositive, "0.5", "Velocity difference allowed over one edge."),

@@ -260,6 +260,20 @@ void check_stillness(const RunConfig& config, const MeshTopology& topology, Warn
             "obstacle and no cloth.velocity, and the cloth starts flat and unstrained");
 }
 
+/// Warns of remeshing whose longest edges need more vertices than it may make.
+void check_remeshing(const RunConfig& config, Warnings& warnings)
+{
+    if (!config.scene.remesh) return;
+    const Remeshing& remesh = *config.scene.remesh;
+    const double written = config.as_run["remesh"]["edge_length"][1].get<double>();
+    if (!(remesh.longest > written)) return;
+    warnings.note(
+        warnings.is_written("remesh.vertices") ? "remesh.vertices" : "remesh",
+        fmt::format("edges of {:g} m need more than {} vertices on this cloth, so edges may be as long as "
+                    "{:.3g} m; allow more vertices or longer edges",
+                    written, remesh.most_vertices, remesh.longest));
+}
+
 }  // namespace
 
 std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config,
@@ -282,6 +296,7 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_layers(config, topology, warnings);
     check_bends(config, warnings);
     check_stillness(config, topology, warnings);
+    check_remeshing(config, warnings);
     return warnings.lines_;
 }
 

@@ -3,6 +3,8 @@
 // state's cell lengths say.
 #pragma once
 
+#include <numbers>
+
 #include "geometry/cloth/mesh_target.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
@@ -34,5 +36,11 @@ MeshTarget surgery_target(const Scene& scene, const State& state);
 /// Edges of a mesh that fits have this part, on average, of the edge length that is asked for: they lie
 /// between half and twice this value.
 inline constexpr double kMeanEdge = 0.7;
+
+/// Material for each vertex, m^2, in an even mesh of equilateral faces with edges of this length, m.
+inline double vertex_area(double cell)
+{
+    return 0.5 * std::numbers::sqrt3 * cell * cell;
+}
 
 }  // namespace arris

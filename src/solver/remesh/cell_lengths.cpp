@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/cloth/mesh_quality.h"
 #include "geometry/surgery/initial_target.h"
 #include "solver/model/cell_length.h"
 #include "solver/remesh/wanted_lengths.h"
@@ -27,6 +28,9 @@ void measure_first_mesh(const ClothMesh& first, Remeshing& remesh)
     remesh.initial = make_initial_target(first, std::asin(remesh.aspect) * 180.0 / std::numbers::pi);
     remesh.grid = make_material_grid(first.material, remesh.shortest, kMostNodes);
     if (remesh.most_vertices == 0) remesh.most_vertices = kMostGrowth * first.vertex_count();
+    // Where even the longest edges need more vertices, they become longer.
+    const double area = material_area(first) / remesh.most_vertices;
+    remesh.longest *= std::max(1.0, std::sqrt(area / vertex_area(kMeanEdge * remesh.longest)));
 }
 
 void start_cell_lengths(const Scene& scene, State& state)

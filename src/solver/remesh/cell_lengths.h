@@ -11,7 +11,8 @@ namespace arris {
 /// factorisation.
 inline constexpr int kRemeshPeriod = 4;
 
-/// Sets what depends on the first mesh: target, grid and, if it is 0, the number of vertices.
+/// Sets what depends on the first mesh: target, grid and, if it is 0, the number of vertices. Makes the
+/// longest edges longer where they need more vertices than that.
 void measure_first_mesh(const ClothMesh& first, Remeshing& remesh);
 
 /// Lengths of a mesh as it was made, within the limits of remeshing. Nothing without remeshing.

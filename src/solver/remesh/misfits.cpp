@@ -21,7 +21,11 @@ constexpr std::size_t kMost = 64;
 std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const State& state,
                                                   const MeshTopology& topology)
 {
-    using Misfit = std::tuple<double, std::array<VertexId, 2>>;
+    struct Misfit {
+        double miss;  // factor by which the edge misses its cell's bounds
+        bool is_long;
+        std::array<VertexId, 2> edge;
+    };
     std::vector<Misfit> misfits;
     if (!scene.remesh) return {};
     const std::vector<Vec2>& X = state.mesh.material;
@@ -31,14 +35,18 @@ std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const Stat
             continue;
         const double cells = length / cell_length(scene, state, 0.5 * (X[e.a] + X[e.b]));
         const double miss = std::max(cells / kLongEdge, kShortEdge / cells);
-        if (miss > 1.0) misfits.push_back({-miss, {state.ids[e.a], state.ids[e.b]}});
+        if (miss > 1.0) misfits.push_back({miss, cells > 1.0, {state.ids[e.a], state.ids[e.b]}});
     }
-    std::sort(misfits.begin(), misfits.end());
-    const bool is_urgent = !misfits.empty() && -std::get<0>(misfits.front()) > kUrgent;
+    std::sort(misfits.begin(), misfits.end(), [](const Misfit& a, const Misfit& b) {
+        return std::tie(b.miss, a.edge) < std::tie(a.miss, b.edge);
+    });
+    int room = scene.remesh->most_vertices - state.mesh.vertex_count();  // a split makes a vertex
+    std::erase_if(misfits, [&](const Misfit& misfit) { return misfit.is_long && room-- <= 0; });
+    const bool is_urgent = !misfits.empty() && misfits.front().miss > kUrgent;
     if (!is_urgent && (misfits.size() < kFew || state.step % kRemeshPeriod != 0)) return {};
     misfits.resize(std::min(misfits.size(), kMost));
     std::vector<std::array<VertexId, 2>> edges;
-    for (const Misfit& misfit : misfits) edges.push_back(std::get<1>(misfit));
+    for (const Misfit& misfit : misfits) edges.push_back(misfit.edge);
     return edges;
 }
 

@@ -297,6 +297,19 @@ TEST(SceneWarnings, TellOfFacesThatAreThinAndWhatToDo)
                           HasSubstr("remesh the file"))));
 }
 
+TEST(SceneWarnings, TellOfMoreVerticesThanRemeshingMayMake)
+{
+    const auto of = [](const std::string& keys) {
+        return load_scene(SceneSource{"s.toml", kBase + "[remesh]\n" + keys, {kMoving}}).warnings;
+    };
+    EXPECT_THAT(
+        of("edge_length = [1e-4, 2e-4]\nvertices = 300\n"),
+        Contains(HasSubstr("remesh.vertices = 300: edges of 0.0002 m need more than 300 vertices on this "
+                           "cloth, so edges may be as long as ")));
+    EXPECT_THAT(of("edge_length = [1e-4, 2e-4]\n"), Contains(HasSubstr("remesh: edges of 0.0002 m need ")));
+    EXPECT_THAT(of("edge_length = [0.01, 0.1]\nvertices = 300\n"), IsEmpty());
+}
+
 TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
 {
     const auto load = [](const std::string& thickness) {

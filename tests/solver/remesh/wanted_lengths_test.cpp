@@ -12,6 +12,7 @@
 #include "geometry/cloth_input/cloth_grid.h"
 #include "solver/model/cell_length.h"
 #include "solver/remesh/cell_lengths.h"
+#include "solver/remesh/misfits.h"
 #include "solver/step.h"
 
 namespace arris {
@@ -148,6 +149,39 @@ TEST(WantedLengths, GrowByOneFactorWhereTheBudgetIsSmaller)
     const double vertices = sheet.state.mesh.vertex_count() * cell * cell / (free * free);
     sheet.scene.remesh->most_vertices = static_cast<int>(vertices / 4.0);
     EXPECT_NEAR(sheet.in_the_middle(), 2.0 * free, 0.3 * free);
+}
+
+TEST(CellLengths, BecomeLongerThanAskedForWhereTheBudgetIsSmaller)
+{
+    Sheet sheet = make_sheet(GridPattern::Cross, 10, flat);
+    Remeshing& remesh = *sheet.scene.remesh;
+    remesh.shortest = 1e-4;
+    remesh.longest = 2e-4;
+    remesh.most_vertices = 300;
+    measure_first_mesh(sheet.state.mesh, remesh);
+    // 300 vertices have 600 equilateral faces, with edges of kMeanEdge of the length that is asked for.
+    const double edge = kMeanEdge * remesh.longest;
+    EXPECT_NEAR(600.0 * std::sqrt(3.0) / 4.0 * edge * edge, 1.0, 1e-9);
+
+    remesh.longest = 0.5;
+    measure_first_mesh(sheet.state.mesh, remesh);
+    EXPECT_EQ(remesh.longest, 0.5);
+}
+
+TEST(Misfits, AreNoMoreLongEdgesThanTheBudgetHasRoomFor)
+{
+    Sheet sheet = make_sheet(GridPattern::Cross, 10, flat);
+    const MeshTopology topology = make_topology(sheet.state.mesh.vertex_count(), sheet.state.mesh.faces);
+    const auto count = [&](int room) {
+        sheet.scene.remesh->most_vertices = sheet.state.mesh.vertex_count() + room;
+        return find_misfits(sheet.scene, sheet.state, topology).size();
+    };
+    std::fill(sheet.state.cell_lengths.begin(), sheet.state.cell_lengths.end(), 0.01f);
+    EXPECT_EQ(count(5), 5u);
+    EXPECT_EQ(count(0), 0u);
+    EXPECT_EQ(count(-5), 0u);
+    std::fill(sheet.state.cell_lengths.begin(), sheet.state.cell_lengths.end(), 0.35f);
+    EXPECT_GT(count(-5), 0u) << "short edges give room";
 }
 
 TEST(CellLengths, HalveInAHundredthOfASecondAndGrowMoreSlowly)
