@@ -12,8 +12,8 @@ namespace arris {
 
 namespace {
 
-constexpr double kUrgent = 2.0;   // an edge that misses by this factor does not wait
-constexpr std::size_t kFew = 16;  // edges: fewer wait until conforming makes a mesh anyway
+constexpr std::size_t kFew = 16;  // edges: fewer wait until they are more
+constexpr double kUrgent = 2.0;   // but not for an edge that misses by this factor
 constexpr std::size_t kMost = 64;
 
 }  // namespace
@@ -27,7 +27,7 @@ std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const Stat
         std::array<VertexId, 2> edge;
     };
     std::vector<Misfit> misfits;
-    if (!scene.remesh) return {};
+    if (!scene.remesh || state.step % kRemeshPeriod != 0) return {};
     const std::vector<Vec2>& X = state.mesh.material;
     for (const MeshEdge& e : topology.edges) {
         const double length = (X[e.b] - X[e.a]).norm();
@@ -43,7 +43,7 @@ std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const Stat
     int room = scene.remesh->most_vertices - state.mesh.vertex_count();  // a split makes a vertex
     std::erase_if(misfits, [&](const Misfit& misfit) { return misfit.is_long && room-- <= 0; });
     const bool is_urgent = !misfits.empty() && misfits.front().miss > kUrgent;
-    if (!is_urgent && (misfits.size() < kFew || state.step % kRemeshPeriod != 0)) return {};
+    if (misfits.size() < kFew && !is_urgent) return {};
     misfits.resize(std::min(misfits.size(), kMost));
     std::vector<std::array<VertexId, 2>> edges;
     for (const Misfit& misfit : misfits) edges.push_back(misfit.edge);
