@@ -288,7 +288,6 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
 
     // 1. The mesh, with EOL vertices on the features that press; new elements where the mesh has changed.
     const StepMesh mesh = choose_step_mesh(scene, end, work.retry.flow(), state, work.mesh, report);
-    const bool had_energy = !work.energies.known_at.world.empty();
     if (mesh.is_changed) work.energies.known_at.world.clear();
     State& start = mesh.start;
     watch.lap();
@@ -307,8 +306,6 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
     // Cloth that is compressed exactly in a plane has no force across it, and could never fold by itself.
     seed_buckling(scene, start, work.mesh, work.contacts, work.prediction);
     measure_start_energy(scene, start, work);
-    if (scene.remesh && had_energy)
-        report.remesh_energy = work.energies.start.sum() - work.energies.known.sum();
     report.seconds.move += watch.lap();
 
     // 4 - 6. Solve, propose and check, in bounded rounds: violations become rows. A mesh with EOL vertices

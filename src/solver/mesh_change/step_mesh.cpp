@@ -13,6 +13,7 @@
 #include "solver/eol/creases.h"
 #include "solver/mesh_change/conform.h"
 #include "solver/mesh_change/mesh_transfer.h"
+#include "solver/mesh_change/patch_relaxation.h"
 #include "solver/mesh_change/relaxation_memo.h"
 #include "solver/mesh_change/strain_allowance.h"
 #include "solver/model/cell_length.h"
@@ -58,6 +59,12 @@ bool prepare_elements(const Scene& scene, const State& state, MeshCache& cache)
     cache.faces_of_elements = state.mesh.faces;
     cache.material_of_elements = state.mesh.material;
     return true;
+}
+
+/// Stretch, bending and gravity energy, J. From the state alone, so that a resumed run has the same bits.
+double find_potential_energy(const Scene& scene, const State& state, const ClothStars& stars)
+{
+    return find_patch_energy(scene, find_creases(scene, state, stars), state.mesh);
 }
 
 constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -284,6 +291,9 @@ StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& fail
         report.released = best.outcome.mesh->report.released;
         report.remeshed = best.outcome.mesh->report.remeshed;
         cache.conformed = std::move(*best.state);
+        if (scene.remesh)
+            report.remesh_energy = find_potential_energy(scene, cache.conformed, best.stars) -
+                                   find_potential_energy(scene, state, cache.stars);
         cache.stars = std::move(best.stars);
         cache.faces_of_stars = cache.conformed.mesh.faces;
     }

@@ -244,6 +244,8 @@ TEST_F(Run, RemeshedItIsTheSameRunResumedAndOnAnyNumberOfThreads)
     EXPECT_EQ(resumed.wait(), 0) << resumed.err();
     for (const char* file : {"frames/cloth_00007.ply", "frames/cloth_00012.ply"})
         EXPECT_TRUE(read_bytes(through + "/" + file) == read_bytes(dir + "/" + file)) << file;
+    EXPECT_EQ(read_csv(through + "/steps.csv").column("remesh_energy"),
+              read_csv(dir + "/steps.csv").column("remesh_energy"));
 }
 
 TEST_F(Run, AStepThatCtrlCCutsOffCountsInTheSeconds)
