@@ -8,17 +8,10 @@
 
 namespace arris {
 
-namespace {
-
-/// Residual worth a warning. Friction ends at 1e-4 but in a few steps; with 1e-2, single steps of a towel
-/// that folds would warn, whose motion they do not change.
-constexpr double kNotable = kFarFromLaw;
-
-}  // namespace
-
 void note_friction(const StepReport& report, double time, FrictionPeak& peak)
 {
-    if (report.friction_residual > kNotable) ++peak.rows;
+    // With a limit of 1e-2, single steps of a towel that folds would warn, whose motion they do not change.
+    if (report.friction_residual > kFarFromLaw) ++peak.rows;
     if (report.friction_residual > peak.residual)
         peak = {report.friction_residual, time, report.friction_place, peak.rows};
 }

@@ -4,13 +4,13 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <set>
 
 #include "geometry/cloth/material_grid.h"
 #include "geometry/cloth/mesh_topology.h"
-#include "geometry/polygon.h"
 #include "physics/deformation_gradient.h"
+#include "physics/hinge_fold.h"
 #include "solver/eol/eol_features.h"
 #include "solver/model/cell_length.h"
 
@@ -33,19 +33,19 @@ double largest_eigenvalue(const Sym2& S)
     return std::abs(mean) + std::sqrt(half * half + S[1] * S[1]);
 }
 
-/// What is summed over the material: area, curvature with and without sign, compression, squared gradient of
+/// Sums over the material: area, curvature with and without sign, compression, squared gradient of
 /// velocity. All but the first are weighted by area.
 constexpr int kChannels = 9;
 using Measures = Eigen::Matrix<double, kChannels, 1>;
 enum Channel { kArea = 0, kSigned = 1, kSizes = 4, kCompression = 7, kVelocity = 8 };
 
-/// Angle, rad, by which the surface turns over a hinge.
+/// Signed angle, rad, by which the surface turns over a hinge. 0 where a face has collapsed.
 double turn(const std::vector<Vec3>& x, const Hinge& hinge)
 {
-    const Vec3 edge = x[hinge.b] - x[hinge.a];
-    const Vec3 left = edge.cross(x[hinge.c] - x[hinge.a]);
-    const Vec3 right = (x[hinge.d] - x[hinge.a]).cross(edge);
-    return std::atan2(left.cross(right).dot(edge.normalized()), left.dot(right));
+    const std::array<Vec3, 4> corners = {x[hinge.a], x[hinge.b], x[hinge.c], x[hinge.d]};
+    const std::optional<HingeFold> fold = find_fold(corners);
+    if (!fold) return 0.0;
+    return std::atan2(sine_of_angle(*fold, corners), fold->normal_c.dot(fold->normal_d));
 }
 
 /// Adds half of each hinge's second fundamental form to the two faces beside it.
