@@ -236,7 +236,8 @@ TEST_F(Run, RemeshedItIsTheSameRunResumedAndOnAnyNumberOfThreads)
     };
     const std::string through = run_through("through", with({"--threads", "1"}));
     double operations = 0.0;
-    for (const double n : read_csv(through + "/steps.csv").column("remeshed")) operations += n;
+    const CsvTable steps = read_csv(through + "/steps.csv");
+    for (const double n : steps.column("remeshed")) operations += n;
     EXPECT_GT(operations, 20.0);
     expect_same_run(through, run_through("two", with({"--threads", "2"})));
     const std::string dir = run_through("parts", with({"--set", "duration=0.25"}));
