@@ -18,7 +18,9 @@
 #include "solver/buckling_seed.h"
 #include "solver/contact/audit.h"
 #include "solver/contact/proposal.h"
+#include "solver/contact/self_contacts.h"
 #include "solver/mesh_change/step_mesh.h"
+#include "solver/remesh/cell_lengths.h"
 #include "solver/step.h"
 #include "tests/solver/on_demand/allocations.h"
 
@@ -110,6 +112,10 @@ std::map<std::string, double> count(const SheetRun& run)
         {"moved obstacles", run.work.obstacles.size()},
         {"contacts", run.work.contacts.size()},
         {"seconds of contacts", run.seconds.contacts},
+        {"rubbing contacts", run.work.rubs.size()},
+        {"faces to search for contact with itself", mesh.self_surface.faces.size()},
+        {"mobility of vertices", run.work.mobility.size()},
+        {"target edge lengths", run.state.cell_lengths.size()},
         {"EOL vertices", run.most_eol},
         {"conformed meshes", run.work.mesh.conformed.mesh.faces.size()},
         {"flow of material", run.work.linearization.flow.has_value() ? 1.0 : 0.0},
@@ -166,6 +172,23 @@ const Effect kEffects[] = {
      {"loads"}},
     {"pin", [](Scene& s) { s.pins.push_back(pin_at_border()); }, {"targets of pins", "anchors of pins"}},
     {"obstacle", add_table, kObstacle},
+    {"friction",
+     [](Scene& s) {
+         add_table(s);
+         s.friction.emplace().coefficients = {0.5};
+     },
+     with_obstacle({"rubbing contacts"})},
+    {"self_contact",
+     [](Scene& s) { s.self_contact = ClothContact{1e-3}; },
+     {"faces to search for contact with itself", "mobility of vertices"}},
+    {"remesh",
+     [](Scene& s) {
+         Remeshing remesh;
+         remesh.shortest = remesh.longest = 0.5 * kSide / kCells;  // finer at once
+         measure_first_mesh(make_sheet(), remesh);
+         s.remesh = remesh;
+     },
+     {"target edge lengths", "conformed meshes", "seconds of conform", "seconds of transfer"}},
     {"eol",
      [](Scene& s) {
          add_table(s);
@@ -241,6 +264,12 @@ const Stage kStages[] = {
      [](SheetRun& r) {
          check_proposal(r.scene, r.state, r.work.mesh.self_surface, r.work.proposal, r.work.prediction,
                         r.work.obstacles);
+     }},
+    {"follow_wanted_lengths", "remesh",
+     [](SheetRun& r) { follow_wanted_lengths(r.scene, r.work.mesh.stars, kStep, r.state); }},
+    {"find_self_rows", "self_contact",
+     [](SheetRun& r) {
+         find_self_rows(r.scene, r.state, r.work.prediction, r.work.pin_targets, r.work.mesh.self_surface);
      }},
     {"audit", "obstacle", [](SheetRun& r) { audit(r.scene, r.state); }},
     {"compute_load_work", "pull",
