@@ -3,9 +3,10 @@
 // rows, and pins with a negative multiplier, form a working set U. NLopt solves the dense problem condensed
 // on U, and one backward solve gives the velocity. New violators join U until there are none. Few rows
 // expected active start in U. Many become springs in the matrix of the base (Newton's method for the
-// springs): then no dense problem is as large as their number. All bases together are bounded, and
-// the dense work is bounded too. If the guess is too far off for a small U, NLopt on the sparse problem
-// predicts the next base's guess. Whatever happened, the certificate judges the answer.
+// springs): then no dense problem is as large as their number. Few springs that pull join U, which takes
+// them out; many make a new base. All bases together are bounded, and so is the dense work. If the guess is
+// too far off for a small U, NLopt on the sparse problem predicts the next base's guess. Whatever happened,
+// the certificate judges the answer.
 #include "solver/velocity_solve/active_set_search.h"
 
 #include <algorithm>
@@ -51,25 +52,25 @@ constexpr int kFewRows = 150;
 constexpr double kFewShare = 0.01;
 
 /// Bases in which all may change at once (Newton's method): friction's springs in all that have a cap, and
-/// rows in kRowBases until at most kFewChanges remain. After them, a row that has pulled in one is not part
-/// of a later one: U decides about it.
+/// rows in kRowBases. After them, a row that has pulled in one is not part of a later one: U decides about
+/// it.
 constexpr int kRowBases = 4;
-constexpr int kFewChanges = 30;
 
 /// Share of a Newton step below which all of it is taken: changed bounds make it rise from the start.
 constexpr double kLeastShare = 1e-6;
 
-/// Friction pairs that may join U at a time, and rows that may start in U beside pairs: so many that the
-/// dense work, about kPairFlops times the third power of their number, is that of another base.
-constexpr double kPairFlops = 50.0;
-constexpr int kLeastPairs = 10, kMostPairs = 150;
+/// Friction pairs, or rows that change sides, that may join U at a time, and rows that may start in U beside
+/// pairs: so many that the dense work, about kMemberFlops times the third power of their number, is that of
+/// another base.
+constexpr double kMemberFlops = 50.0;
+constexpr int kLeastMembers = 10, kMostMembers = 150;
 
 /// Floating-point operations on dense problems in one solve: as many as this number of factorisations take,
 /// and kLeastFlops, about a second's work.
 constexpr double kMostFactorisations = 30.0;
 constexpr double kLeastFlops = 2e9;
 
-/// Number of rows that U takes more cheaply than a base.
+/// Number of rows that U takes more cheaply than a base from the start.
 double few_rows(const VelocityProblem& problem)
 {
     return std::max<double>(kFewRows, kFewShare / 3.0 * static_cast<double>(problem.lower.size()));
@@ -80,11 +81,11 @@ int capped_bases(const VelocityProblem& problem)
     return problem.friction.empty() ? kCappedBases : kCappedBasesWithFriction;
 }
 
-/// Number of friction pairs, or of rows beside them.
-int few_pairs(const Factorization& factorization)
+/// Number of friction pairs, or of rows, that U takes more cheaply than a base.
+int few_members(const Factorization& factorization)
 {
-    const int few = static_cast<int>(std::cbrt(factorization.flops() / kPairFlops));
-    return std::clamp(few, kLeastPairs, kMostPairs);
+    const int few = static_cast<int>(std::cbrt(factorization.flops() / kMemberFlops));
+    return std::clamp(few, kLeastMembers, kMostMembers);
 }
 
 std::vector<char> active_by_guess(const VelocityProblem& problem)
@@ -110,16 +111,6 @@ std::vector<int> pressing_rows(const ConstraintRows& constraints, const Iterate&
 bool wants_rows_in_matrix(const VelocityProblem& problem, std::size_t pressing)
 {
     return static_cast<double>(pressing) > few_rows(problem);
-}
-
-VelocitySolution make_zero_solution(const VelocityProblem& problem)
-{
-    VelocitySolution solution;
-    solution.velocity = solution.multipliers = Eigen::VectorXd::Zero(problem.rhs->size());
-    solution.row_multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.rows.size()));
-    solution.friction.assign(problem.friction.size(), Eigen::Vector2d::Zero());
-    solution.slip = solution.unlimited = solution.friction;
-    return solution;
 }
 
 ActiveSetSearch::ActiveSetSearch(const VelocityProblem& problem, Factorization& factorization,
@@ -198,6 +189,7 @@ VelocitySolution ActiveSetSearch::resume(int most_factorisations)
     base.problem = &problem_;
     base.is_pressing.resize(constraints_.rows.size(), 0);
     base.iterate.row_multipliers.conservativeResizeLike(best_.row_multipliers);
+    base.iterate.has_let_go.resize(constraints_.rows.size(), 0);
     in_use_->set.see_new_rows();
     rows_ = in_use_->move_springs();
     in_use_->iterate = base.iterate;
@@ -232,7 +224,7 @@ void ActiveSetSearch::choose_rows(const std::vector<int>& expected)
 {
     rows_.clear();
     is_pressing_.assign(constraints_.rows.size(), 0);
-    const double few = problem_.friction.empty() ? few_rows(problem_) : few_pairs(factorization_);
+    const double few = problem_.friction.empty() ? few_rows(problem_) : few_members(factorization_);
     const bool is_few = static_cast<double>(expected.size()) <= few;
     for (const int k : expected) {
         if (!is_few && !has_pulled_[k] && has_room_for(*problem_.matrix, constraints_.rows[k]))
@@ -264,8 +256,8 @@ void ActiveSetSearch::run_rounds(int cap)
             if (finish()) return;
             continue;
         }
-        if (!violators.pulling.empty() || has_many_changes(violators))
-            return rebase_with_violated_rows(violators);
+        if (has_many_changes(violators)) return rebase_with_violated_rows(violators);
+        violators.rows.insert(violators.rows.end(), violators.pulling.begin(), violators.pulling.end());
         const int count = static_cast<int>(violators.coordinates.size()),
                   row_count = static_cast<int>(violators.rows.size()),
                   pair_count = static_cast<int>(violators.pairs.size());
@@ -279,7 +271,8 @@ void ActiveSetSearch::run_rounds(int cap)
         for (const int pair : violators.pairs)
             violators.rows.insert(violators.rows.end(), {2 * pair, 2 * pair + 1});
         set.extend(violators.coordinates, violators.rows);
-        if (!set.solve(iterate, best_.nlopt_evaluations, budget_)) return rebase_by_prediction();
+        if (set.solve(iterate, best_.nlopt_evaluations, budget_)) continue;
+        return violators.pulling.empty() ? rebase_by_prediction() : rebase_with_violated_rows(violators);
     }
 }
 
@@ -306,10 +299,12 @@ void ActiveSetSearch::rebase_by_prediction()
 bool ActiveSetSearch::has_many_changes(const Violators& violators) const
 {
     const std::vector<char>& in_base = in_use_->base.is_pressing;
-    const int pairs = static_cast<int>(violators.pairs.size());
-    if (best_.factorisations <= capped_bases(problem_) && pairs > few_pairs(factorization_)) return true;
-    return best_.factorisations <= kRowBases && static_cast<int>(violators.rows.size()) > kFewChanges &&
-           std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
+    const int few = few_members(factorization_), pairs = static_cast<int>(violators.pairs.size()),
+              rows = static_cast<int>(violators.rows.size() + violators.pulling.size());
+    if (best_.factorisations <= capped_bases(problem_) && pairs > few) return true;
+    if (rows <= few) return false;
+    const bool has_rows = std::find(in_base.begin(), in_base.end(), 1) != in_base.end();
+    return !violators.pulling.empty() || (best_.factorisations <= kRowBases && has_rows);
 }
 
 /// Newton's step: all rows violated now press in the next base. With friction it goes as far as the energy

@@ -106,7 +106,7 @@ void evaluate_gradient(const PinnedBase& base, Iterate& iterate)
     for (std::size_t k = 0; k < base.is_pressing.size(); ++k)
         if (base.is_pressing[k])
             iterate.row_multipliers[static_cast<Eigen::Index>(k)] =
-                -gap(rows[k], iterate.velocity, 0.0) / rows[k].give;
+                iterate.has_let_go[k] ? 0.0 : -gap(rows[k], iterate.velocity, 0.0) / rows[k].give;
     for (int p = 0; p < base.constraints->pair_count(); ++p)
         if (!iterate.is_exact[p])
             iterate.row_multipliers.segment<2>(2 * p) =
@@ -118,7 +118,7 @@ void correct(const PinnedBase& base, const Eigen::VectorXd& change, Iterate& ite
 {
     iterate.velocity += change;
     for (std::size_t k = 0; k < base.is_pressing.size(); ++k) {
-        if (!base.is_pressing[k]) continue;
+        if (!base.is_pressing[k] || iterate.has_let_go[k]) continue;
         const ScaledRow& row = base.constraints->rows[k];
         for (const auto& [coordinate, coefficient] : row.entries)
             iterate.row_multipliers[static_cast<Eigen::Index>(k)] -=
@@ -185,7 +185,8 @@ void solve_with_forces(PinnedBase& base)
                     Eigen::VectorXd::Zero(static_cast<Eigen::Index>(constraints.rows.size())),
                     {},
                     {},
-                    std::vector<char>(base.slips.size(), 0)};
+                    std::vector<char>(base.slips.size(), 0),
+                    std::vector<char>(constraints.rows.size(), 0)};
     evaluate_gradient(base, base.iterate);
 }
 

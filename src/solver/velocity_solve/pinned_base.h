@@ -17,7 +17,8 @@ struct Iterate {
     Eigen::VectorXd row_multipliers;  ///< of the scaled rows; a base's pressing rows may pull (< 0)
     Eigen::VectorXd gradient;         ///< A u - b - C^T lambda: the multiplier where active, else a residual
     Eigen::VectorXd magnitude;        ///< |A||u| + |b| + |C^T||lambda|: scale of the round-off in `gradient`
-    std::vector<char> is_exact;  ///< by friction pair: its impulse follows its law, not the base's spring
+    std::vector<char> is_exact;    ///< by friction pair: its impulse follows its law, not the base's spring
+    std::vector<char> has_let_go;  ///< by row: the base has its spring, but it would pull, and does not act
 };
 
 /// The problem with chosen bounds pinned and chosen rows pressing, solved by one factorisation: u = lower

@@ -45,6 +45,16 @@ void assert_shapes([[maybe_unused]] const VelocityProblem& problem)
 
 }  // namespace
 
+VelocitySolution make_zero_solution(const VelocityProblem& problem)
+{
+    VelocitySolution solution;
+    solution.velocity = solution.multipliers = Eigen::VectorXd::Zero(problem.rhs->size());
+    solution.row_multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.rows.size()));
+    solution.friction.assign(problem.friction.size(), Eigen::Vector2d::Zero());
+    solution.slip = solution.unlimited = solution.friction;
+    return solution;
+}
+
 struct VelocitySolver::Cache {
     Factorization factorization;
     ConstraintRows constraints;

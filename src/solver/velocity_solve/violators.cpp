@@ -85,7 +85,8 @@ Violators find_violators(const PinnedBase& base, const Iterate& iterate, const W
     const double row_margin = std::max({margin, least, 2.0 * error});
     violators.rows = find_rows(base, iterate, set, row_margin);
     for (int k = 0; k < static_cast<int>(base.is_pressing.size()); ++k)
-        if (base.is_pressing[k] && gap(base.constraints->rows[k], iterate.velocity, 0.0) > row_margin)
+        if (base.is_pressing[k] && !set.contains_row(k) &&
+            gap(base.constraints->rows[k], iterate.velocity, 0.0) > row_margin)
             violators.pulling.push_back(k);
     violators.pairs = find_pairs(base, iterate, set);
     return violators;

@@ -133,7 +133,6 @@ double WorkingSet::mixed(int i, int j) const
     return members_[j].kind == Kind::Released ? -rest : rest;
 }
 
-/// S and q by eliminating dR = C^-1 (lambda_R - gradient0_R - B lambda_a).
 std::optional<CondensedQp> WorkingSet::condense() const
 {
     const Eigen::MatrixXd& gram = columns_.gram();
@@ -144,22 +143,28 @@ std::optional<CondensedQp> WorkingSet::condense() const
         qp.hessian(k, k) += give_of(members_[k]);
         qp.linear[k] = gap_of(members_[k], base_->iterate);
     }
-    if (released.empty()) {
-        add_discs(qp);
-        return qp;
-    }
+    if (!released.empty() && !release_pins(released, stopped, qp)) return std::nullopt;
+    take_out_springs(springs_of_members(), qp);
+    add_discs(qp);
+    return qp;
+}
 
+/// S and q by eliminating dR = C^-1 (lambda_R - gradient0_R - B lambda_a).
+bool WorkingSet::release_pins(const std::vector<int>& released, const std::vector<int>& stopped,
+                              CondensedQp& qp) const
+{
+    const Eigen::MatrixXd& gram = columns_.gram();
     Eigen::VectorXd gradient(static_cast<Eigen::Index>(released.size()));
     for (std::size_t k = 0; k < released.size(); ++k)
         gradient[static_cast<Eigen::Index>(k)] = base_->iterate.gradient[members_[released[k]].index];
     const Eigen::LLT<Eigen::MatrixXd> stiffness(direct_(released, released) - gram(released, released));
-    if (stiffness.info() != Eigen::Success) return std::nullopt;
+    if (stiffness.info() != Eigen::Success) return false;
     const Eigen::MatrixXd compliance =
         stiffness.solve(Eigen::MatrixXd::Identity(gradient.size(), gradient.size()));
     const Eigen::VectorXd step = stiffness.solve(gradient);
     qp.hessian(released, released) = 0.5 * (compliance + compliance.transpose());
     qp.linear(released) = -step;
-    if (stopped.empty()) return qp;  // no slip rows
+    if (stopped.empty()) return true;
 
     const Eigen::MatrixXd coupling = gram(released, stopped) - direct_(released, stopped);
     const Eigen::MatrixXd moved = stiffness.solve(coupling);
@@ -167,44 +172,46 @@ std::optional<CondensedQp> WorkingSet::condense() const
     qp.hessian(stopped, released) = -moved.transpose();
     qp.hessian(stopped, stopped) += coupling.transpose() * moved;
     qp.linear(stopped) += coupling.transpose() * step;
-    add_discs(qp);
-    return qp;
+    return true;
 }
 
-/// Friction pairs as discs. With w0 = g u - lower, the base's spring gives the force f0 - K (w0 + lower) that
-/// the disc's z replaces: w0 = S (z - f0 + K (w0 + lower)) + q, so w0 = (1 - S K)^-1 (S z + q - S (f0 - K
-/// lower)). Then w = w0 + give z.
-void WorkingSet::add_discs(CondensedQp& qp) const
+MemberSprings WorkingSet::springs_of_members() const
 {
     const ConstraintRows& constraints = *base_->constraints;
-    const std::vector<std::array<int, 2>> place = places_of_pairs();
-    Eigen::MatrixXd spring = Eigen::MatrixXd::Zero(size(), size());
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(size());
-    bool has_spring = false;
-    for (std::size_t p = 0; p < place.size(); ++p) {
-        const auto [i, j] = place[p];
-        if (i < 0) continue;
-        qp.discs.push_back({i, j, constraints.budgets[p]});
+    MemberSprings springs;
+    for (int k = 0; k < size(); ++k)
+        if (is_spring(members_[k]) || is_slip(members_[k])) springs.members.push_back(k);
+    const auto count = static_cast<Eigen::Index>(springs.members.size());
+    springs.force = Eigen::VectorXd::Zero(count);
+    springs.gives.resize(count);
+    std::vector<Eigen::Triplet<double>> entries;
+    std::vector<int> place(members_.size(), -1);
+    for (int i = 0; i < count; ++i) {
+        const int k = springs.members[i];
+        place[k] = i;
+        springs.gives[i] = row_of(members_[k]).give;
+        if (is_spring(members_[k])) entries.emplace_back(i, i, 1.0 / row_of(members_[k]).give);
+    }
+    const std::vector<std::array<int, 2>> of_pairs = places_of_pairs();
+    for (std::size_t p = 0; p < of_pairs.size(); ++p) {
+        if (of_pairs[p][0] < 0) continue;
         const SlipSpring& base = base_->slips[p];
-        has_spring = has_spring || base.is_in_matrix();
-        spring({i, j}, {i, j}) = base.stiffness;
-        const Eigen::Vector2d at_lower =
-            base.at({constraints.rows[2 * p].lower, constraints.rows[2 * p + 1].lower});
-        force[i] = at_lower[0];
-        force[j] = at_lower[1];
+        const std::array<int, 2> at = {place[of_pairs[p][0]], place[of_pairs[p][1]]};
+        springs.force(at) = base.at({constraints.rows[2 * p].lower, constraints.rows[2 * p + 1].lower});
+        if (!base.is_in_matrix()) continue;
+        for (const int i : {0, 1})
+            for (const int j : {0, 1}) entries.emplace_back(at[i], at[j], base.stiffness(i, j));
     }
-    if (qp.discs.empty()) return;
-    qp.linear -= qp.hessian * force;
-    if (has_spring) {
-        Eigen::MatrixXd right(size(), size() + 1);
-        right << qp.hessian, qp.linear;
-        const Eigen::MatrixXd solved =
-            solve_dense(Eigen::MatrixXd::Identity(size(), size()) - qp.hessian * spring, std::move(right));
-        qp.hessian = 0.5 * (solved.leftCols(size()) + solved.leftCols(size()).transpose());
-        qp.linear = solved.col(size());
-    }
-    for (const CondensedDisc& disc : qp.discs)
-        for (const int k : {disc.first, disc.second}) qp.hessian(k, k) += row_of(members_[k]).give;
+    springs.stiffness.resize(count, count);
+    springs.stiffness.setFromTriplets(entries.begin(), entries.end());
+    return springs;
+}
+
+void WorkingSet::add_discs(CondensedQp& qp) const
+{
+    const std::vector<std::array<int, 2>> place = places_of_pairs();
+    for (std::size_t p = 0; p < place.size(); ++p)
+        if (place[p][0] >= 0) qp.discs.push_back({place[p][0], place[p][1], base_->constraints->budgets[p]});
 }
 
 /// The members that are a friction pair's two slip rows, by pair; -1 for pairs outside U.
@@ -219,7 +226,7 @@ std::vector<std::array<int, 2>> WorkingSet::places_of_pairs() const
 /// u - lower, or g^T u - lower + give * multiplier.
 double WorkingSet::gap_of(const Member& member, const Iterate& iterate) const
 {
-    if (is_slip(member)) return gap(row_of(member), iterate.velocity, 0.0);
+    if (is_slip(member) || is_spring(member)) return gap(row_of(member), iterate.velocity, 0.0);
     if (member.kind == Kind::Row)
         return gap(row_of(member), iterate.velocity, iterate.row_multipliers[member.index]);
     return iterate.velocity[member.index] - base_->problem->lower[member.index];
@@ -242,17 +249,8 @@ bool WorkingSet::solve(Iterate& iterate, int& nlopt_evaluations, DenseBudget& bu
     Eigen::VectorXd coefficients(size());
     for (int k = 0; k < size(); ++k)
         coefficients[k] = members_[k].kind == Kind::Released ? -answer->w[k] : answer->z[k];
-    // The base's springs already give a part f0 - K y of the impulses of friction, y = w - give z + lower.
-    const std::vector<std::array<int, 2>> place = places_of_pairs();
-    for (std::size_t p = 0; p < place.size(); ++p) {
-        if (place[p][0] < 0) continue;
-        Eigen::Vector2d y;
-        for (int d = 0; d < 2; ++d) {
-            const ScaledRow& row = base_->constraints->rows[2 * p + d];
-            y[d] = answer->w[place[p][d]] - row.give * answer->z[place[p][d]] + row.lower;
-        }
-        coefficients(place[p]) -= base_->slips[p].at(y);
-    }
+    const MemberSprings springs = springs_of_members();
+    coefficients(springs.members) = beyond_springs(springs, *answer);
     Eigen::VectorXd forward = base_->forward;
     columns_.accumulate(coefficients, forward);
     set_members(*answer, base_->factorization->solve_backward(forward), iterate);
@@ -273,6 +271,7 @@ void WorkingSet::set_member(int k, const CondensedAnswer& answer, Iterate& itera
     const auto [kind, i] = members_[k];
     if (kind == Kind::Row) {
         iterate.row_multipliers[i] = answer.z[k];
+        iterate.has_let_go[i] = is_spring(members_[k]) && !answer.is_positive[k];
         if (is_slip(members_[k])) iterate.is_exact[i / 2] = 1;
         return;
     }
@@ -284,12 +283,13 @@ void WorkingSet::set_member(int k, const CondensedAnswer& answer, Iterate& itera
 }
 
 /// Whether refinement treats the member as an equation: pins that are free now, coordinates stopped now, rows
-/// that press, and friction whose spring the base has. Impulses of friction stay as they are.
+/// that press, and springs of the base that do not act. Impulses of friction stay as they are.
 bool WorkingSet::is_equation(const Member& member, const Iterate& iterate) const
 {
     if (member.kind != Kind::Row)
         return (member.kind == Kind::Released) != (iterate.is_active[member.index] != 0);
     if (is_slip(member)) return base_->slips[member.index / 2].is_in_matrix();
+    if (is_spring(member)) return iterate.has_let_go[member.index] != 0;
     return iterate.row_multipliers[member.index] > 0.0;
 }
 
@@ -322,7 +322,7 @@ bool WorkingSet::refine(Iterate& iterate) const
         const Member& member = members_[equations[i]];
         const double change = step[static_cast<Eigen::Index>(i)];
         if (member.kind == Kind::Released) correction[member.index] += change;
-        if (member.kind != Kind::Row || is_slip(member)) continue;
+        if (member.kind != Kind::Row || is_slip(member) || is_spring(member)) continue;
         double& multiplier = iterate.row_multipliers[member.index];
         multiplier = std::max(multiplier + change, 0.0);
     }
@@ -331,8 +331,8 @@ bool WorkingSet::refine(Iterate& iterate) const
 }
 
 /// (dR, lambda_a) from [C, B; -B^T, Y^T Y] (dR; lambda) = (r_R - W^T f; -gap_a - Y^T f). The gap of a bound
-/// is exactly zero. Friction in U with a spring K in the base gets lambda = K dy in place of its row, which
-/// takes the spring out: its impulse does not change with dy = Y^T f + [-B^T, Y^T Y] (dR; lambda).
+/// is exactly zero. What has a spring K in the base gets lambda = K dy in place of its row, which takes the
+/// spring out: its multiplier does not change with dy = Y^T f + [-B^T, Y^T Y] (dR; lambda).
 Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Iterate& iterate,
                                     const Eigen::VectorXd& forward) const
 {
@@ -347,10 +347,10 @@ Eigen::VectorXd WorkingSet::step_of(const std::vector<int>& equations, const Ite
         const Member& member = members_[k];
         double known = 0.0;
         if (member.kind == Kind::Released) known = -iterate.gradient[member.index];
-        if (member.kind == Kind::Row) known = -gap_of(member, iterate);
+        if (member.kind == Kind::Row && !is_spring(member)) known = -gap_of(member, iterate);
         rhs[i] = known - product[k];
         for (Eigen::Index j = 0; j < count; ++j) matrix(i, j) = mixed(k, equations[j]);
-        matrix(i, i) += give_of(member);
+        matrix(i, i) += is_spring(member) ? -row_of(member).give : give_of(member);
         if (is_slip(member)) {
             const double unit = columns_.gram()(k, k);  // 1/kg
             matrix.row(i).setZero();

@@ -6,6 +6,7 @@
 
 #include "solver/velocity_solve/condensed_qp.h"
 #include "solver/velocity_solve/forward_columns.h"
+#include "solver/velocity_solve/member_springs.h"
 #include "solver/velocity_solve/pinned_base.h"
 
 namespace arris {
@@ -20,7 +21,7 @@ namespace arris {
 /// condensed problem w = S lambda + q with S = g^T (A_F+R)^-1 g + diag(give). S is SPD. U only grows. A row
 /// brings the release of the pins among its coordinates: without them a row on pinned coordinates alone would
 /// only give way. The two slip rows of a friction pair join together, as a disc. Where the base has a spring
-/// (K, force) of theirs, the spring is taken out of S and q.
+/// (K, force) of a row or a pair in U, the spring is taken out of S and q.
 class WorkingSet {
   public:
     explicit WorkingSet(const PinnedBase& base);
@@ -61,7 +62,14 @@ class WorkingSet {
     const ScaledRow& row_of(const Member& member) const { return base_->constraints->rows[member.index]; }
 
     std::optional<CondensedQp> condense() const;
+    bool release_pins(const std::vector<int>& released, const std::vector<int>& stopped,
+                      CondensedQp& qp) const;
+    MemberSprings springs_of_members() const;
     void add_discs(CondensedQp& qp) const;
+    bool is_spring(const Member& member) const  ///< a row for which the base has a spring
+    {
+        return member.kind == Kind::Row && base_->is_pressing[member.index];
+    }
     bool is_slip(const Member& member) const
     {
         return member.kind == Kind::Row && member.index < base_->constraints->slip_count();
@@ -69,7 +77,7 @@ class WorkingSet {
     std::vector<std::array<int, 2>> places_of_pairs() const;
     double give_of(const Member& member) const
     {
-        return member.kind == Kind::Row && !is_slip(member) ? row_of(member).give : 0.0;
+        return member.kind == Kind::Row && !is_slip(member) && !is_spring(member) ? row_of(member).give : 0.0;
     }
     double gap_of(const Member& member, const Iterate& iterate) const;
     void set_member(int k, const CondensedAnswer& answer, Iterate& iterate) const;

@@ -233,7 +233,7 @@ TEST(ConstraintRows, OfWhichManyPressTakeFewFactorisationsFromAnyGuess)
             cloth.owned.problem.row_guess = random_subset(700, share, random);
             const VelocitySolution warm = solve(cloth.owned.problem);
             ASSERT_EQ(warm.status, SolveStatus::Certified) << warm.kkt_residual;
-            EXPECT_LE(warm.factorisations, 40);  // at most 30 from the guess, then without it
+            EXPECT_LE(warm.factorisations, 12);
             EXPECT_LE(warm.kkt_residual, kAccurate);
             expect_same_velocity(warm, cold);
             EXPECT_EQ(pressing(warm), pressing(cold));

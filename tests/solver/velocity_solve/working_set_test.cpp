@@ -10,6 +10,7 @@
 
 #include "tests/solver/cloth_system.h"
 #include "tests/solver/dense_reference.h"
+#include "tests/solver/row_problems.h"
 
 namespace arris {
 namespace {
@@ -113,6 +114,56 @@ TEST_F(WorkingSetOfACloth, RefinementTakesAnErrorOutAtOnce)
     ASSERT_TRUE(set.refine(iterate));
     EXPECT_LE(worst_residual_of_the_free(iterate), kRoundOff);
     EXPECT_LE((iterate.velocity - reference.velocity).norm(), 1e-10 * reference.velocity.norm());
+}
+
+// The base has a spring for every row, and so also for those that do not press: they pull.
+TEST(WorkingSet, TakesOutTheSpringsThatPull)
+{
+    testing::ClothShape shape;
+    shape.side = 10;
+    testing::OwnedProblem owned = testing::make_resting_cloth(shape, 0.4);
+    VelocityProblem& problem = owned.problem;
+    const VelocitySolution resting = VelocitySolver().solve(problem, Settings());
+    for (const testing::RowPattern pattern : {testing::RowPattern::Spread, testing::RowPattern::Clusters}) {
+        problem.rows = testing::make_rows(shape, resting.velocity, pattern, 150, 0.01, 3);
+        const VelocitySolution answer = VelocitySolver().solve(problem, Settings());
+        ASSERT_EQ(answer.status, SolveStatus::Certified);
+
+        const ConstraintRows constraints = scale_rows(problem, estimate_free_speed(problem));
+        std::vector<char> is_active(problem.is_fixed.size(), 0);
+        std::vector<int> bounded, rows;
+        for (int i = 0; i < problem.lower.size(); ++i)
+            if (std::isfinite(problem.lower[i]) && !problem.is_fixed[i]) bounded.push_back(i);
+        for (int k = 0; k < static_cast<int>(constraints.rows.size()); ++k)
+            if (!constraints.rows[k].entries.empty()) rows.push_back(k);
+        Factorization factorization;
+        factorization.analyse(owned.matrix);
+        const std::optional<PinnedBase> base = solve_pinned(
+            problem, constraints, is_active, std::vector<char>(rows.size(), 1), {}, factorization);
+        ASSERT_TRUE(base);
+        ASSERT_LT(base->iterate.row_multipliers.minCoeff(), 0.0) << "no spring pulls";
+
+        WorkingSet set(*base);
+        set.extend(bounded, rows);
+        Iterate iterate;
+        int evaluations = 0;
+        DenseBudget unlimited = {std::numeric_limits<double>::infinity()};
+        ASSERT_TRUE(set.solve(iterate, evaluations, unlimited));
+        const auto expect_answer = [&] {
+            EXPECT_LE((iterate.velocity - answer.velocity).norm(), 1e-10 * answer.velocity.norm());
+            for (const int k : rows)
+                EXPECT_NEAR(iterate.row_multipliers[k], answer.row_multipliers[k] * constraints.rows[k].scale,
+                            1e-7 * answer.row_multipliers.maxCoeff());
+            EXPECT_GE(iterate.row_multipliers.minCoeff(), 0.0);
+        };
+        expect_answer();
+        // Refinement keeps them out, too.
+        for (int i = 0; i < iterate.velocity.size(); ++i)
+            if (!problem.is_fixed[i] && !iterate.is_active[i]) iterate.velocity[i] += 1e-3 * std::cos(i);
+        evaluate_gradient(*base, iterate);
+        ASSERT_TRUE(set.refine(iterate));
+        expect_answer();
+    }
 }
 
 }  // namespace
