@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cloth on a mesh that follows its shape: what remeshing must not change, and where it must end.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "geometry/surgery/initial_target.h"
 #include "grid_patterns.h"
+#include "sliding_strip.h"
 #include "solver/remesh/cell_lengths.h"
 
 namespace arris {
@@ -118,7 +120,8 @@ TEST(Remeshing, KeepsMomentum)
 TEST(Remeshing, AddsLittleEnergyWhereASheetBends)
 {
     ClothRun run = make_free_bent_sheet();
-    const double bent = measure_energy(run).sum() - 0.5 * 0.15 * 0.24 * 0.12 * Vec3(0.3, -0.2, 0.5).squaredNorm();
+    const double bent =
+        measure_energy(run).sum() - 0.5 * 0.15 * 0.24 * 0.12 * Vec3(0.3, -0.2, 0.5).squaredNorm();
     double added = 0.0;
     int operations = 0;
     run.advance(0.2, 0.002, [&](const StepReport& report) {
@@ -127,6 +130,53 @@ TEST(Remeshing, AddsLittleEnergyWhereASheetBends)
     });
     EXPECT_GT(operations, 50);
     EXPECT_LT(added, 0.05 * bent);
+}
+
+struct Slide {
+    double length = 0.0;    ///< m, over the edge shortly before the strip lifts off, over that of a chain
+    int most_vertices = 0;  ///< of all steps
+};
+
+Slide slide(const StripCase& strip, bool is_remeshed)
+{
+    ClothRun run = make_strip_run(strip);
+    if (is_remeshed) {
+        const double cell = strip.length / strip.cells[0];
+        Remeshing remesh;
+        remesh.shortest = 0.25 * cell;
+        remesh.longest = 1.5 * cell;
+        measure_first_mesh(run.state.mesh, remesh);
+        Scene scene = run.scene;
+        scene.remesh = remesh;
+        run = ClothRun(std::move(scene), run.state.mesh);
+    }
+    const SlidingChain chain(strip.slopes, strip.length, strip.start);
+    const double duration = 0.9 * chain.lift_off();
+    Slide found;
+    run.advance(duration, 0.005, [&](const StepReport&) {
+        found.most_vertices = std::max(found.most_vertices, run.state.mesh.vertex_count());
+    });
+    found.length = measure_length_after(strip, run) / chain.length_after(duration);
+    return found;
+}
+
+// The fold on the edge turns by 90 degrees and asks for no finer cells, as its EOL vertices resolve it. The
+// rest of the strip is flat. Only short edges that the fold leaves behind are merged.
+TEST(Remeshing, MakesNoFinerCellsWhereAStripSlidesOverAnEdge)
+{
+    constexpr double kTimeError = 5e-4;  // of BDF2 at 5 ms, as without remeshing
+    constexpr double kMeshError = 1e-5;  // allowed effect of the mesh
+    for (const double bending : {1e-5, 1e-4})
+        for (const std::array<int, 2> cells : {std::array{8, 2}, {16, 4}}) {
+            SCOPED_TRACE(fmt::format("K {:g} J, {} cells", bending, cells[0]));
+            StripCase strip;
+            strip.bending_stiffness = bending;
+            strip.cells = cells;
+            const Slide plain = slide(strip, false), remeshed = slide(strip, true);
+            EXPECT_LE(remeshed.most_vertices, plain.most_vertices);
+            EXPECT_NEAR(remeshed.length, 1.0, kTimeError);
+            EXPECT_NEAR(remeshed.length / plain.length, 1.0, kMeshError);
+        }
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ void add_curvature(const Scene& scene, const State& state, const ClothStars& sta
     std::set<std::array<int, 2>> folds;
     for (const auto& [a, b] : find_trace_edges(scene.obstacles, state, stars)) {
         const auto [first, second] =
-            std::minmax(state.index_of(state.eol[a].vertex_id), state.index_of(state.eol[b].vertex_id));
+            std::minmax({state.index_of(state.eol[a].vertex_id), state.index_of(state.eol[b].vertex_id)});
         folds.insert({first, second});
     }
     for (const Hinge& hinge : stars.topology.hinges) {
