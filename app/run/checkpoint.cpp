@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/run/checkpoint.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <string_view>
-#include <tuple>
-#include <utility>
 
 #include "app/files/binary_stream.h"
+#include "app/run/checkpoint_defect.h"
 #include "app/text/version.h"
-#include "geometry/cloth/mesh_topology.h"
 
 namespace arris {
 
@@ -150,6 +143,11 @@ void write_state(BinaryWriter& out, const State& state)
         for (const int v : pair) out.number(static_cast<std::int32_t>(v));
     });
     out.list(state.cell_lengths, [&](float length) { out.number(length); });
+    out.list(state.refused_edges, [&](const RefusedEdge& edge) {
+        for (const std::uint32_t id : edge.vertex_ids) out.number(id);
+        out.number(edge.refusals);
+        out.number(edge.until);
+    });
     out.number(state.crossings);
 }
 
@@ -225,125 +223,16 @@ State read_state(BinaryReader& in)
         return pair;
     });
     state.cell_lengths = in.list<float>(sizeof(float), [&] { return in.number<float>(); });
+    constexpr std::size_t kRefusedBytes = 3 * sizeof(std::int32_t) + sizeof(std::int64_t);
+    state.refused_edges = in.list<RefusedEdge>(kRefusedBytes, [&] {
+        RefusedEdge edge;
+        for (std::uint32_t& id : edge.vertex_ids) id = in.number<std::uint32_t>();
+        edge.refusals = in.number<std::int32_t>();
+        edge.until = in.number<std::int64_t>();
+        return edge;
+    });
     state.crossings = in.number<std::int64_t>();
     return state;
-}
-
-template <typename Contact>
-bool is_finite(const Contact& contact)
-{
-    const ContactFriction& friction = contact.friction;
-    return contact.normal.allFinite() && std::isfinite(contact.multiplier) && friction.force.allFinite() &&
-           friction.slip.allFinite() && friction.budget >= 0.0 && std::isfinite(friction.budget);
-}
-
-/// Describes the first invalid contact of the cloth with itself; empty if there is none.
-std::string find_defect(const std::vector<ActiveSelfContact>& contacts, const std::vector<std::uint32_t>& ids)
-{
-    for (std::size_t k = 0; k < contacts.size(); ++k) {
-        const ActiveSelfContact& contact = contacts[k];
-        if (k > 0 && std::tie(contact.kind, contact.vertex_ids) <=
-                         std::tie(contacts[k - 1].kind, contacts[k - 1].vertex_ids))
-            return "contacts of the cloth with itself are not in ascending order";
-        if (!is_finite(contact)) return fmt::format("contact {} of the cloth with itself is not finite", k);
-        if (contact.kind != SelfContactKind::VertexFace && contact.kind != SelfContactKind::EdgeEdge)
-            return fmt::format("contact {} of the cloth with itself has an unknown kind", k);
-        for (const std::uint32_t id : contact.vertex_ids)
-            if (!std::binary_search(ids.begin(), ids.end(), id))
-                return fmt::format("contact {} of the cloth with itself refers to an unknown vertex", k);
-    }
-    return {};
-}
-
-/// Describes the first invalid contact on vertices `ids`; empty if there is none.
-std::string find_defect(const std::vector<ActiveContact>& contacts, const std::vector<std::uint32_t>& ids)
-{
-    const auto order = [](const ActiveContact& contact) {
-        return std::tuple(contact.vertex_ids, contact.obstacle, contact.kind, contact.element);
-    };
-    for (std::size_t k = 0; k < contacts.size(); ++k) {
-        const ActiveContact& contact = contacts[k];
-        if (k > 0 && !(order(contacts[k - 1]) < order(contact))) return "contacts are not in ascending order";
-        if (!is_finite(contact)) return fmt::format("contact {} is not finite", k);
-        if (contact.kind < ContactKind::Vertex || contact.kind > ContactKind::Triangle)
-            return fmt::format("contact {} has an unknown kind", k);
-        for (const std::uint32_t id : contact.vertex_ids)
-            if (id != ActiveContact::kNoVertex && !std::binary_search(ids.begin(), ids.end(), id))
-                return fmt::format("contact {} refers to an unknown vertex", k);
-    }
-    return {};
-}
-
-/// Describes the first invalid EOL vertex; empty if there is none.
-std::string find_defect(const std::vector<EolVertex>& eol, const std::vector<std::uint32_t>& ids)
-{
-    for (std::size_t k = 0; k < eol.size(); ++k) {
-        if (k > 0 && eol[k].vertex_id <= eol[k - 1].vertex_id)
-            return "EOL vertices are not in ascending order";
-        const FeatureId& on = eol[k].on;
-        const bool is_kind = on.kind >= FeatureId::Kind::Edge && on.kind <= FeatureId::Kind::Bend;
-        const bool is_end_sound = on.is_bend() ? on.end == 0 || on.end == 1 : on.end == -1;
-        if (!eol[k].outward.allFinite() || !(eol[k].gathering >= 0.0) || !std::isfinite(eol[k].gathering) ||
-            eol[k].idle < 0 || std::abs(eol[k].side) > 1 || !is_kind || !is_end_sound)
-            return fmt::format("EOL vertex {} has an invalid value", k);
-        if (!std::binary_search(ids.begin(), ids.end(), eol[k].vertex_id))
-            return fmt::format("EOL vertex {} refers to an unknown vertex", k);
-    }
-    return {};
-}
-
-/// Describes the first invalid value; empty if there is none.
-std::string find_defect(const Checkpoint& checkpoint)
-{
-    const State& state = checkpoint.state;
-    const std::size_t n = state.mesh.world.size();
-    if (state.ids.size() != n || state.velocity.size() != n || state.previous_world.size() != n ||
-        state.previous_velocity.size() != n || state.mesh.material.size() != n ||
-        state.material_velocity.size() != n || state.previous_material.size() != n ||
-        state.previous_material_velocity.size() != n)
-        return "its arrays differ in length";
-    for (std::size_t v = 1; v < n; ++v)
-        if (state.ids[v] <= state.ids[v - 1]) return "vertex ids are not in ascending order";
-    for (std::size_t v = 0; v < n; ++v)
-        if (!state.velocity[v].allFinite() || !state.previous_world[v].allFinite() ||
-            !state.previous_velocity[v].allFinite() || !state.material_velocity[v].allFinite() ||
-            !state.previous_material[v].allFinite() || !state.previous_material_velocity[v].allFinite())
-            return fmt::format("vertex {} is not finite", v);
-    if (const std::string defect = find_defect(state.active, state.ids); !defect.empty()) return defect;
-    if (const std::string defect = find_defect(state.self, state.ids); !defect.empty()) return defect;
-    for (std::size_t k = 0; k < state.coupled.size(); ++k) {
-        const auto& [v, w] = state.coupled[k];
-        if (v < 0 || v >= w || w >= static_cast<int>(n) ||
-            (k > 0 && state.coupled[k] <= state.coupled[k - 1]))
-            return fmt::format("coupled pair {} is invalid", k);
-    }
-    if (const std::string defect = find_defect(state.eol, state.ids); !defect.empty()) return defect;
-    for (std::size_t k = 0; k < state.anchors.size(); ++k) {
-        const PinAnchor& anchor = state.anchors[k];
-        if (!anchor.origin.allFinite()) return fmt::format("anchor {} is not finite", k);
-        if (!std::binary_search(state.ids.begin(), state.ids.end(), anchor.vertex_id))
-            return fmt::format("anchor {} refers to an unknown vertex", k);
-        if (k > 0 && std::pair(anchor.pin, anchor.vertex_id) <=
-                         std::pair(state.anchors[k - 1].pin, state.anchors[k - 1].vertex_id))
-            return "anchors are not in ascending order";
-    }
-    for (std::size_t k = 0; k < state.cell_lengths.size(); ++k)
-        if (!(state.cell_lengths[k] > 0.0f) || !std::isfinite(state.cell_lengths[k]))
-            return fmt::format("cell length {} is not positive", k);
-    if (!std::isfinite(state.time) || !(state.previous_dt >= 0.0) ||
-        !std::isfinite(checkpoint.position.begin) || checkpoint.position.begin < 0.0 ||
-        checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1 ||
-        checkpoint.strain.plane_rows < 0 || state.crossings < 0)
-        return "a time or a count is invalid";
-    const FrictionPeak& friction = checkpoint.friction;
-    if (!std::isfinite(friction.residual) || !std::isfinite(friction.time) || !friction.world.allFinite() ||
-        friction.rows < 0)
-        return "the friction's peak is not valid";
-    for (const StrainPeak* peak : peaks_of(checkpoint.strain))
-        if (!std::isfinite(peak->strain) || !std::isfinite(peak->time) || !peak->world.allFinite() ||
-            !peak->material.allFinite())
-            return "a strain is not finite";
-    return validate(state.mesh);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "solver/feature_census.h"
 #include "solver/model/pin_targets.h"
 #include "solver/remesh/cell_lengths.h"
+#include "solver/remesh/misfits.h"
 #include "solver/sites/gathering.h"
 
 namespace arris {
@@ -61,6 +62,7 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     ++state.step;
     follow_features(scene.obstacles, state);
     grow_gathering(scene, work.mesh.stars, report.dt, state);
+    note_refused_edges(work.mesh.misfits, work.mesh.stars, state);
     follow_wanted_lengths(scene, work.mesh.stars, report.dt, state);
     work.energies.known_at.world.clear();
     if (report.rewound == 0) {

@@ -28,7 +28,8 @@ struct MeshCache {
 
     // choose_step_mesh
     std::vector<RefusedContact> refused;  ///< contacts that pressed on a feature and are rows in this step
-    State conformed;                      ///< the state on the step's mesh, where that mesh is new
+    std::vector<std::array<std::uint32_t, 2>> misfits;  ///< edges that were to be split or merged
+    State conformed;  ///< the state on the step's mesh, where that mesh is new
 };
 
 }  // namespace arris

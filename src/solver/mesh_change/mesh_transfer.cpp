@@ -159,6 +159,7 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     after.self = before.self;
     if (after.mesh.faces == before.mesh.faces) after.coupled = before.coupled;
     after.cell_lengths = before.cell_lengths;
+    after.refused_edges = before.refused_edges;
     after.crossings = before.crossings;
     const std::size_t n = after.ids.size();
     after.velocity.resize(n);

@@ -97,8 +97,12 @@ class MeshTries {
           watch_(watch),
           seconds_(seconds)
     {
+        misfits_ = changes_.misfits;
         if (!failed.remeshes) changes_.misfits.clear();
     }
+
+    /// Edges to split or merge that this step may try.
+    const std::vector<std::array<VertexId, 2>>& misfits() const { return misfits_; }
 
     /// The best candidate. No mesh where the best one strains the cloth by more than kMostStrain: the step
     /// then keeps the mesh it has. This no longer holds once attempts at the step have given vertices up.
@@ -268,6 +272,7 @@ class MeshTries {
     const MeshCache& cache_;
     const FailedFlow& failed_;
     MeshChanges changes_;
+    std::vector<std::array<VertexId, 2>> misfits_;  ///< as found
     RelaxationMemo relaxations_;
     Stopwatch& watch_;
     PhaseSeconds& seconds_;
@@ -282,8 +287,12 @@ StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& fail
     prepare_stars(state, cache);
     report.seconds.move += watch.lap();
     TriedMesh best;
-    if (changes_mesh(scene))
-        best = MeshTries(scene, end - state.time, state, cache, failed, watch, report.seconds).find_best();
+    cache.misfits.clear();
+    if (changes_mesh(scene)) {
+        MeshTries tries(scene, end - state.time, state, cache, failed, watch, report.seconds);
+        cache.misfits = tries.misfits();
+        best = tries.find_best();
+    }
     cache.refused = std::move(best.outcome.refused);
     const bool is_new = best.outcome.mesh.has_value();
     if (is_new) {

@@ -62,6 +62,13 @@ struct PinAnchor {
     Vec3 origin;  ///< m; x(0) where the pin holds from time 0
 };
 
+/// An edge of the mesh that remeshing has tried to split or merge, and that was refused.
+struct RefusedEdge {
+    std::array<std::uint32_t, 2> vertex_ids;  ///< ascending
+    std::int32_t refusals = 0;                ///< at least 1
+    std::int64_t until = 0;                   ///< step before which it is not tried again
+};
+
 /// Exactly the data that a resumed run needs, and nothing that could be computed from them.
 struct State {
     double time = 0.0;  ///< s
@@ -88,7 +95,8 @@ struct State {
     std::vector<std::array<int, 2>> coupled;
     /// Target edge lengths at the nodes of the scene's remeshing grid, m; empty without remeshing.
     std::vector<float> cell_lengths;
-    std::int64_t crossings = 0;  ///< passages through obstacles so far
+    std::vector<RefusedEdge> refused_edges;  ///< ascending by vertex_ids
+    std::int64_t crossings = 0;              ///< passages through obstacles so far
 
     /// Index of the vertex with this id; -1 without such a vertex.
     int index_of(std::uint32_t id) const

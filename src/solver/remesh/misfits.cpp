@@ -2,6 +2,7 @@
 #include "solver/remesh/misfits.h"
 
 #include <algorithm>
+#include <span>
 #include <tuple>
 
 #include "geometry/cloth/mesh_limits.h"
@@ -15,6 +16,33 @@ namespace {
 constexpr std::size_t kFew = 16;  // edges: fewer wait until they are more
 constexpr double kUrgent = 2.0;   // but not for an edge that misses by this factor
 constexpr std::size_t kMost = 64;
+constexpr int kMostDoublings = 5;  // of the wait after a refusal
+
+/// First entry that is not before `edge`.
+template <typename Edges>
+auto find_place(Edges& edges, const std::array<VertexId, 2>& edge)
+{
+    return std::lower_bound(
+        edges.begin(), edges.end(), edge,
+        [](const RefusedEdge& refused, const auto& ids) { return refused.vertex_ids < ids; });
+}
+
+bool is_waiting(const State& state, const std::array<VertexId, 2>& edge)
+{
+    const auto at = find_place(state.refused_edges, edge);
+    return at != state.refused_edges.end() && at->vertex_ids == edge && state.step < at->until;
+}
+
+bool has_edge(const ClothStars& stars, const State& state, const std::array<VertexId, 2>& edge)
+{
+    const int a = state.index_of(edge[0]), b = state.index_of(edge[1]);
+    if (a < 0 || b < 0) return false;
+    const std::span<const int> around = stars.faces[a];
+    return std::any_of(around.begin(), around.end(), [&](int f) {
+        const Face& face = state.mesh.faces[f];
+        return std::find(face.begin(), face.end(), b) != face.end();
+    });
+}
 
 }  // namespace
 
@@ -35,7 +63,8 @@ std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const Stat
             continue;
         const double cells = length / cell_length(scene, state, 0.5 * (X[e.a] + X[e.b]));
         const double miss = std::max(cells / kLongEdge, kShortEdge / cells);
-        if (miss > 1.0) misfits.push_back({miss, cells > 1.0, {state.ids[e.a], state.ids[e.b]}});
+        const std::array<VertexId, 2> edge = {state.ids[e.a], state.ids[e.b]};
+        if (miss > 1.0 && !is_waiting(state, edge)) misfits.push_back({miss, cells > 1.0, edge});
     }
     std::sort(misfits.begin(), misfits.end(), [](const Misfit& a, const Misfit& b) {
         return std::tie(b.miss, a.edge) < std::tie(a.miss, b.edge);
@@ -48,6 +77,25 @@ std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const Stat
     std::vector<std::array<VertexId, 2>> edges;
     for (const Misfit& misfit : misfits) edges.push_back(misfit.edge);
     return edges;
+}
+
+void note_refused_edges(const std::vector<std::array<VertexId, 2>>& misfits, const ClothStars& stars,
+                        State& state)
+{
+    const auto steps_after = [](int refusals) { return kRemeshPeriod << std::min(refusals, kMostDoublings); };
+    // An edge is forgotten with the edge itself, or once it has not been tried for as long as it has waited.
+    std::erase_if(state.refused_edges, [&](const RefusedEdge& edge) {
+        return state.step > edge.until + steps_after(edge.refusals) ||
+               !has_edge(stars, state, edge.vertex_ids);
+    });
+    for (const std::array<VertexId, 2>& edge : misfits) {
+        if (!has_edge(stars, state, edge)) continue;
+        auto at = find_place(state.refused_edges, edge);
+        if (at == state.refused_edges.end() || at->vertex_ids != edge)
+            at = state.refused_edges.insert(at, RefusedEdge{edge});
+        at->refusals = std::min(at->refusals + 1, kMostDoublings);
+        at->until = state.step - 1 + steps_after(at->refusals);
+    }
 }
 
 }  // namespace arris

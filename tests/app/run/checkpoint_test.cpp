@@ -30,6 +30,7 @@ Checkpoint make_checkpoint()
     checkpoint.state.eol = {{1, FeatureId::bend(0, 4, 1), Vec3::UnitZ(), 0, 0},
                             {5, FeatureId::corner(1, 2), Vec3::UnitX(), 2, -1}};
     checkpoint.state.material_velocity[1] = Vec2(0.25, -1e-310);
+    checkpoint.state.refused_edges = {{{1, 5}, 2, 24}, {{2, 3}, 1, 20}};
     checkpoint.state.crossings = 3;
     checkpoint.position = {0.0625, 3};
     checkpoint.frames = 4;
@@ -64,6 +65,10 @@ TEST(Checkpoint, ReadsBackToTheSameBytes)
     EXPECT_EQ(read.state.active[0].element, 3);
     EXPECT_EQ(read.state.active[0].normal, Vec3::UnitX());
     EXPECT_EQ(read.state.active[1].obstacle, 1);
+    ASSERT_EQ(read.state.refused_edges.size(), 2u);
+    EXPECT_EQ(read.state.refused_edges[0].vertex_ids[1], 5u);
+    EXPECT_EQ(read.state.refused_edges[0].refusals, 2);
+    EXPECT_EQ(read.state.refused_edges[1].until, 20);
     EXPECT_EQ(read.state.eol[1].vertex_id, 5u);
     EXPECT_TRUE(read.state.eol[1].on.is_corner());
     EXPECT_EQ(read.state.eol[1].on.index, 2);
@@ -158,6 +163,10 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("EOL bend without an end", [](Checkpoint& c) { c.state.eol[0].on.end = -1; });
     refused("EOL end of a corner", [](Checkpoint& c) { c.state.eol[1].on.end = 0; });
     refused("EOL count", [](Checkpoint& c) { c.state.eol[0].idle = -1; });
+    refused("refused edges",
+            [](Checkpoint& c) { std::swap(c.state.refused_edges[0], c.state.refused_edges[1]); });
+    refused("refused edge", [](Checkpoint& c) { c.state.refused_edges[1].vertex_ids[1] = 99; });
+    refused("refusals", [](Checkpoint& c) { c.state.refused_edges[0].refusals = 0; });
     refused("strain", [&](Checkpoint& c) { c.strain.stretch.strain = kNan; });
     refused("place of a strain", [&](Checkpoint& c) { c.strain.in_plane.world.z() = INFINITY; });
     refused("rows of plane cloth", [](Checkpoint& c) { c.strain.plane_rows = -1; });
