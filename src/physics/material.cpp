@@ -42,6 +42,12 @@ const std::array<MaterialPreset, 6> kMaterialPresets = {{
      "incompressible (plate rigidity 2.1e-5 J over 1.5)."},
 }};
 
+double plate_rigidity(const Material& material)
+{
+    constexpr double kHinge = 4.0 / 3.0;  // docs/validation.md, "The bending stiffness depends on the mesh"
+    return (material.bending_model == BendingModel::Plate ? 1.0 : kHinge) * material.bending_stiffness;
+}
+
 std::optional<Material> find_material_preset(std::string_view name)
 {
     const auto preset = std::find_if(kMaterialPresets.begin(), kMaterialPresets.end(),

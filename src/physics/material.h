@@ -22,6 +22,10 @@ struct Material {
     BendingModel bending_model = BendingModel::Hinge;
 };
 
+/// D, J: moment per width and curvature of smoothly bent cloth. K for BendingModel::Plate; 4/3 K for
+/// BendingModel::Hinge, whose rigidity is that on equilateral faces.
+double plate_rigidity(const Material& material);
+
 struct MaterialPreset {
     std::string_view name;
     Material material;

@@ -135,12 +135,10 @@ double find_length(const Scene& scene, const Measures& sum, double present)
     if (const double gradient = std::sqrt(mean[kVelocity]); length * gradient > remesh.velocity)
         length = remesh.velocity / gradient;
     if (const double strain = mean[kCompression]; strain > remesh.compression) {
-        // A quarter of the wave length at which cloth under this strain buckles: 2 pi sqrt(D / (E strain)), D
-        // = 4/3 K.
+        // A quarter of the wave length at which cloth under this strain buckles: 2 pi sqrt(D / (E strain)).
         const Material& material = scene.material;
         const double quarter =
-            0.5 * M_PI *
-            std::sqrt(4.0 / 3.0 * material.bending_stiffness / (material.youngs_modulus * strain));
+            0.5 * M_PI * std::sqrt(plate_rigidity(material) / (material.youngs_modulus * strain));
         length = std::min(length, std::max(quarter, 0.5 * present));
     }
     return std::max(length, remesh.shortest);

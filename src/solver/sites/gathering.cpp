@@ -45,8 +45,7 @@ double force_on(const State& state, int v)
 /// Growth rate, 1/s, of the pleat that grows fastest; negative where none pays. `strain`: compression.
 double find_growth_rate(const Scene& scene, const State& state, const ClothStars& stars, int v, double strain)
 {
-    constexpr double kPlate = 4.0 / 3.0;  // plate stiffness over that of the hinges
-    constexpr double kLeast = 1e-12;      // compression: a smaller one is round-off
+    constexpr double kLeast = 1e-12;  // compression: a smaller one is round-off
     const Material& material = scene.material;
     const double e = std::max(strain, kLeast), area = area_at(state, stars, v);
     const double weight = scene.gravity ? material.density * area * scene.gravity->acceleration.norm() : 0.0;
@@ -54,7 +53,7 @@ double find_growth_rate(const Scene& scene, const State& state, const ClothStars
     const double cell = cell_length(scene, state, state.mesh.material[v]);
     double fastest = -std::numeric_limits<double>::infinity();
     for (const double q : {std::numbers::pi / cell, 0.5 * std::numbers::pi / cell}) {
-        const double drive = 0.5 * material.youngs_modulus * e - kPlate * material.bending_stiffness * q * q -
+        const double drive = 0.5 * material.youngs_modulus * e - plate_rigidity(material) * q * q -
                              2.0 * force / (area * q * std::sqrt(e));
         const double rate = q * std::sqrt(2.0 * std::abs(drive) / material.density);
         fastest = std::max(fastest, drive > 0.0 ? rate : -rate);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "geometry/cloth_input/cloth_grid.h"
 #include "solver/model/cell_length.h"
@@ -117,6 +118,22 @@ TEST(WantedLengths, HalveWhereClothIsCompressedAndCouldBuckle)
     const double now =
         interpolate(sheet.scene.remesh->grid, sheet.state.cell_lengths, Vec2(0.5, 0.5)) / kMeanEdge;
     EXPECT_NEAR(sheet.in_the_middle(), 0.5 * now, 0.01 * now);
+}
+
+TEST(WantedLengths, GiveAWrinkleFourCellsWhateverTheBendingModel)
+{
+    constexpr double kStrain = 0.05, kStiffness = 0.08;  // J, so stiff that no halving limits the length
+    Sheet sheet = make_sheet(GridPattern::Cross, 8,
+                             [](const Vec2& X) { return Vec3((1.0 - kStrain) * X.x(), X.y(), 0.0); });
+    Material& material = sheet.scene.material;
+    material.bending_stiffness = kStiffness;
+    for (const auto& [model, rigidity] : {std::pair(BendingModel::Hinge, 4.0 / 3.0 * kStiffness),
+                                          std::pair(BendingModel::Plate, kStiffness)}) {
+        material.bending_model = model;
+        const double wave =
+            2.0 * std::numbers::pi * std::sqrt(rigidity / (material.youngs_modulus * kStrain));
+        EXPECT_NEAR(sheet.in_the_middle(), 0.25 * wave, 1e-3 * wave);
+    }
 }
 
 TEST(WantedLengths, HaveNoSteps)
