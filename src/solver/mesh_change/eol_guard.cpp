@@ -62,9 +62,8 @@ double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) con
     }
     const double motion = 0.5 * scene_.material.density * area * squared_speed +
                           weight_over(scene_, area, cell_length(scene_, state_, event.before[0].material[0]));
-    constexpr double kStrain = 1e-6;  // invisible; unstrained cloth at rest has only round-off
-    const double unseen = scene_.material.youngs_modulus * area * kStrain * kStrain;
-    return (is_clearing_ ? clearing : 1.0) * (kShare * elastic_energy + kAllowedStrain * motion + unseen);
+    return (is_clearing_ ? clearing : 1.0) *
+           (kShare * elastic_energy + kAllowedStrain * motion + unseen_energy(scene_, area));
 }
 
 bool EolGuard::strains(const SurgeryEvent& event)

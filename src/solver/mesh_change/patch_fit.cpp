@@ -42,7 +42,7 @@ class PatchFitter {
             const double gain = relax_patch(patch, strained.energy_before);
             if (!(gain > 0.0)) continue;
             const double small = std::min(report.strain, kPatchStrain);
-            const double strain = strain_of(patch, gain, strained.kinetic, small);
+            const double strain = strain_of(patch, gain, strained, small);
             if (strain > kPatchStrain) report.strained.push_back(vertices_before(patch));
             report.strain = std::max(report.strain, strain);
             if (report.strain > most_strain) return report;
@@ -71,7 +71,7 @@ class PatchFitter {
             const double gain = find_patch_energy(scene_, creases_, after_.mesh, patch.faces) - before;
             if (!(gain > 0.0)) continue;
             const double kinetic = compute_kinetic_energy(scene_.material.density, fields[i]);
-            const double bound = gain / moving_energy(kinetic, area_of(patch), shortest_cell(scene_));
+            const double bound = gain / moving_energy(before, kinetic, area_of(patch), shortest_cell(scene_));
             strained.push_back({i, before, kinetic, bound});
         }
         std::stable_sort(
@@ -131,10 +131,13 @@ class PatchFitter {
         return area;
     }
 
-    /// Kinetic energy of a patch plus the work of its weight when it falls by one cell's length, J.
-    double moving_energy(double kinetic, double area, double cell) const
+    /// Energy that moves a patch, J: its kinetic energy plus the work of its weight when it falls by one
+    /// cell's length, or plus its elastic energy (`before`) where nothing has weight. At least what is
+    /// invisible.
+    double moving_energy(double before, double kinetic, double area, double cell) const
     {
-        return kinetic + weight_over(scene_, area, cell);
+        const double potential = scene_.gravity ? weight_over(scene_, area, cell) : before;
+        return kinetic + potential + unseen_energy(scene_, area) / kAllowedStrain;
     }
 
     std::vector<VertexId> vertices_before(const ChangedPatch& patch) const
@@ -148,10 +151,13 @@ class PatchFitter {
 
     /// Strain: `gain` relative to the patch's moving energy, over its longest cell. Returns only an upper
     /// bound where that is at most `small`.
-    double strain_of(const ChangedPatch& patch, double gain, double kinetic, double small) const
+    double strain_of(const ChangedPatch& patch, double gain, const StrainedPatch& strained,
+                     double small) const
     {
         const double area = area_of(patch);
-        const auto strain = [&](double cell) { return gain / moving_energy(kinetic, area, cell); };
+        const auto strain = [&](double cell) {
+            return gain / moving_energy(strained.energy_before, strained.kinetic, area, cell);
+        };
         const double bound = strain(shortest_cell(scene_));
         if (!(bound > small)) return bound;
         double cell = 0.0;

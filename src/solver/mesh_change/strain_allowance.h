@@ -27,6 +27,14 @@ inline constexpr double kTraceStrain = 0.06;
 /// smaller one, cloth on thin blades, whose mesh changes all the time, would be held by its old mesh.
 inline constexpr double kMostStrain = 0.5;
 
+/// Elastic energy, J, that is invisible on cloth of `area` (material, m^2): that of a strain of 1e-6.
+/// Unstrained cloth at rest has only round-off.
+inline double unseen_energy(const Scene& scene, double area)
+{
+    constexpr double kStrain = 1e-6;
+    return scene.material.youngs_modulus * area * kStrain * kStrain;
+}
+
 /// Work of gravity, J, on cloth of `area` (material, m^2) that falls by `length` (m).
 inline double weight_over(const Scene& scene, double area, double length)
 {

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <random>
 
 #include "geometry/surgery/cloth_surgery.h"
 #include "physics/inertia.h"
+#include "solver/model/pin_targets.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
@@ -357,7 +359,7 @@ TEST(MeshTransfer, WhatCanHaveNoCoordinatesAnyMoreIsOfTheMaterialThoughItsEntryI
 
 TEST(MeshTransfer, FitsNothingWhereAPatchIsStrainedByMoreThanItMay)
 {
-    // Cloth at rest without weight may not be strained. Cutting off a fold at two places strains it.
+    // Cutting off a fold at two places strains cloth at rest by more than its elastic energy.
     EolCloth cloth(make_ridge(60.0), make_draped({16, 0.0, 90.0}));
     for (Vec3& x : cloth.state.mesh.world) x.z() += 1.0;
     set_history(cloth.state);
@@ -559,6 +561,33 @@ TEST(MeshTransfer, StiffClothIsNotStrainedByAChangeOfItsMesh)
         EXPECT_LT((after.previous_world[i] - after.mesh.world[i]).norm(), 1e-14) << "no velocity comes of it";
         EXPECT_TRUE(after.velocity[i].isZero(1e-14));
     }
+}
+
+TEST(MeshTransfer, StrainOfClothAtRestWithoutWeightIsRelativeToItsElasticEnergy)
+{
+    // A vertex is removed from a fold whose vertices are all held, so that nothing gives way.
+    const auto strain_of = [](double stiffness) {
+        EolCloth cloth = bent_cloth();
+        cloth.scene.material.youngs_modulus *= stiffness;
+        cloth.scene.material.bending_stiffness *= stiffness;
+        Pin pin;
+        pin.material = {Vec2(-10.0, -10.0), Vec2(10.0, 10.0)};
+        cloth.scene.pins = {pin};
+        attach_pins(cloth.scene, cloth.state);
+        ClothSurgery surgery = operate(cloth.state);
+        const VertexId v = cloth.state.ids[cloth.vertex_at(0.2, 0.2)];
+        EXPECT_EQ(surgery.commit(surgery.propose_collapse(v, surgery.ring(v).vertices[0])), Verdict::Done);
+        const ConformedMesh mesh = conformed(surgery, {});
+        const double before = testing::elastic_energy_of(cloth.scene, cloth.state.mesh);
+        const double gain = testing::elastic_energy_of(cloth.scene, mesh.surgery.mesh) - before;
+        TransferReport report;
+        transfer(cloth.scene, cloth.state, cloth.stars(), mesh, testing::stars_of(mesh.surgery.mesh), report);
+        EXPECT_GE(report.strain, 0.99 * gain / before) << "the patch has a part of the energy";
+        return report.strain;
+    };
+    const double strain = strain_of(1.0);
+    EXPECT_TRUE(std::isfinite(strain));
+    EXPECT_NEAR(strain_of(16.0), strain, 1e-6 * strain);
 }
 
 }  // namespace
