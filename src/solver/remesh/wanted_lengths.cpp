@@ -176,26 +176,61 @@ void keep_budget(const Scene& scene, const State& state, const std::vector<Measu
     for (float& length : wanted) length = static_cast<float>(std::min(high * length, longest));
 }
 
-/// Makes cells along sliding folds so long that a step takes at most half of one. A fixed EOL vertex, at a
+/// Least edge lengths at some places, which grow less than kGradation allows away from them.
+class LeastLengths {
+  public:
+    explicit LeastLengths(const MaterialGrid& grid)
+        : grid_(grid), negative_(static_cast<std::size_t>(grid.size()), 0.0f)
+    {
+    }
+
+    void require(const Vec2& X, double length)
+    {
+        for (const int k : find_place(grid_, X).node)
+            negative_[k] = std::min(negative_[k], static_cast<float>(-length));
+        is_any_ = true;
+    }
+
+    void apply(std::vector<float>& wanted)
+    {
+        if (!is_any_) return;
+        limit_slope(grid_, kGradation, negative_);
+        for (std::size_t k = 0; k < wanted.size(); ++k) wanted[k] = std::max(wanted[k], -negative_[k]);
+    }
+
+  private:
+    const MaterialGrid& grid_;
+    std::vector<float> negative_;  ///< m, with the opposite sign, so that the slope can be limited
+    bool is_any_ = false;
+};
+
+/// Cells along sliding folds are so long that a step takes at most half of one. A fixed EOL vertex, at a
 /// corner or a nail, needs fine cells more than long steps.
-void leave_room_for_flow(const Scene& scene, const State& state, std::vector<float>& wanted)
+void require_room_for_flow(const Scene& scene, const State& state, LeastLengths& least)
 {
     constexpr double kCellsPerStep = 0.5;
-    const MaterialGrid& grid = scene.remesh->grid;
-    std::vector<float> room(wanted.size(), 0.0f);  // with the opposite sign, so that its slope can be limited
-    bool is_any = false;
     for (const EolVertex& eol : state.eol) {
         if (eol.on.is_fixed()) continue;
         const int v = state.index_of(eol.vertex_id);
         const double way = scene.remesh->step * state.material_velocity[v].norm();
         const double cell = std::min(way / kCellsPerStep, longest_cell(scene));
-        for (const int k : find_place(grid, state.mesh.material[v]).node)
-            room[k] = std::min(room[k], static_cast<float>(-cell));
-        is_any = is_any || cell > shortest_cell(scene);
+        if (cell > shortest_cell(scene)) least.require(state.mesh.material[v], cell);
     }
-    if (!is_any) return;
-    limit_slope(grid, kGradation, room);
-    for (std::size_t k = 0; k < wanted.size(); ++k) wanted[k] = std::max(wanted[k], -room[k]);
+}
+
+/// A load on a point bends and stretches cloth without limit as cells become finer: there, the cells of the
+/// first mesh say how wide the support is.
+void require_width_of_points(const Scene& scene, const State& state, LeastLengths& least)
+{
+    const auto require = [&](const MaterialBox& box) {
+        const Vec2 middle = 0.5 * (box.min + box.max);
+        const double cell = scene.remesh->initial.length(middle);
+        if ((box.max - box.min).maxCoeff() < cell) least.require(middle, std::min(cell, longest_cell(scene)));
+    };
+    for (const Pin& pin : scene.pins)
+        if (pin.holds(state.time, state.time)) require(pin.material);
+    for (const Pull& pull : scene.pulls)
+        if (pull.acts_between(state.time, state.time)) require(pull.material);
 }
 
 }  // namespace
@@ -215,7 +250,10 @@ std::vector<float> find_wanted_lengths(const Scene& scene, const State& state, c
             wanted[k] = static_cast<float>(kMeanEdge * find_length(scene, sum, cell / kMeanEdge));
         }
     limit_slope(grid, kGradation, wanted);
-    leave_room_for_flow(scene, state, wanted);
+    LeastLengths least(grid);
+    require_room_for_flow(scene, state, least);
+    require_width_of_points(scene, state, least);
+    least.apply(wanted);
     keep_budget(scene, state, nodes, wanted);
     return wanted;
 }

@@ -18,8 +18,10 @@ namespace arris {
 ///  - cloth compressed by more than `compression` has at least two cells to a wrinkle's half wave, and at
 ///    most twice as many as before.
 ///  - velocity differs by at most `velocity` over an edge.
-/// A cell is at most kGradation longer than another for each metre between them. All are longer by one factor
-/// where the mesh would have more than `most_vertices` vertices.
+/// Along sliding folds, cells are at least so long that a step's flow takes half of one. At pins and pulls on
+/// a single point they are at least as long as those of the first mesh. A cell is at most kGradation longer
+/// than another for each metre between them. All are longer by one factor where the mesh would have more than
+/// `most_vertices` vertices.
 std::vector<float> find_wanted_lengths(const Scene& scene, const State& state, const ClothStars& stars);
 
 }  // namespace arris

@@ -184,6 +184,30 @@ TEST(CellLengths, BecomeLongerThanAskedForWhereTheBudgetIsSmaller)
     EXPECT_EQ(remesh.longest, 0.5);
 }
 
+TEST(WantedLengths, AreAtAPinnedPointNoShorterThanTheFirstMeshs)
+{
+    Sheet sheet = make_sheet(GridPattern::Cross, 10, [](const Vec2& X) {
+        return Vec3(0.05 * std::sin(X.x() / 0.05), X.y(), 0.05 * std::cos(X.x() / 0.05));
+    });
+    const auto at_corner = [&] {
+        return interpolate(sheet.scene.remesh->grid, sheet.wanted(), Vec2(0.1, 0.1)) / kMeanEdge;
+    };
+    const double fine = sheet.in_the_middle(), fine_at_corner = at_corner();
+    const double first = sheet.scene.remesh->initial.length(Vec2(0.5, 0.5)) / kMeanEdge;
+    EXPECT_LT(fine, 0.5 * first);
+    Pin pin;
+    pin.material = {Vec2(0.5, 0.5), Vec2(0.5, 0.5)};
+    pin.release = 1.0;
+    sheet.scene.pins = {pin};
+    EXPECT_NEAR(sheet.in_the_middle(), first, 1e-6);
+    EXPECT_NEAR(at_corner(), fine_at_corner, 1e-6);
+    sheet.scene.pins[0].material = {Vec2(0.5, 0.0), Vec2(0.5, 1.0)};
+    EXPECT_NEAR(sheet.in_the_middle(), fine, 1e-6) << "a line bears any load";
+    sheet.scene.pins = {pin};
+    sheet.state.time = 2.0;
+    EXPECT_NEAR(sheet.in_the_middle(), fine, 1e-6) << "after its release";
+}
+
 TEST(CellLengths, HalveInAHundredthOfASecondAndGrowMoreSlowly)
 {
     Sheet sheet = make_sheet(GridPattern::Cross, 8, [](const Vec2& X) {
