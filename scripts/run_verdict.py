@@ -112,6 +112,12 @@ def is_moving(thing):
         any(p != placements[0] for p in placements)
 
 
+def is_pin_moving(scene, pin):
+    """Whether a pin moves, by itself or with the obstacle that it follows."""
+    followed = [thing for thing in scene.get("obstacle", []) if thing["name"] == pin.get("follow")]
+    return any(map(is_moving, [pin, *followed]))
+
+
 def is_driven(scene):
     """Whether anything but gravity does work on the cloth of a scene. A pin that follows an obstacle moves with it."""
     return "wind" in scene or bool(scene.get("pull")) or any(map(is_moving, scene.get("pin", []))) or \
@@ -151,15 +157,21 @@ def find_row_faults(run):
 
 
 def is_explained(run):
-    """Whether a run ended as infeasible and names the vertex, and the pin and obstacle, or the two obstacles one of which
-    moves, that cannot be met together."""
+    """Whether a run ended as infeasible and names a vertex and what cannot be met together: a pin and an obstacle; two
+    obstacles one of which moves; an obstacle that presses cloth against a pinned layer, or pins that press layers into
+    each other, where one of those named moves."""
     if run.status != "infeasible":
         return False
-    message = run.report["message"]
-    moving = [thing["name"] for thing in run.report["scene"].get("obstacle", []) if is_moving(thing)]
-    pinned = re.search(r"vertex \d+.*pin\.\d+ holds the vertex where \w+ is", message)
-    crushed = re.search(r"vertex \d+.* out of (\w+) and (\w+) in the step.*leave it no room", message)
-    return bool(pinned or crushed and (crushed[1] in moving or crushed[2] in moving))
+    message, scene = run.report["message"], run.report["scene"]
+    moving = [thing["name"] for thing in scene.get("obstacle", []) if is_moving(thing)]
+    moving += [f"pin.{k}" for k, pin in enumerate(scene.get("pin", [])) if is_pin_moving(scene, pin)]
+    if re.search(r"vertex \d+.*pin\.\d+ holds the vertex where \w+ is", message):
+        return True
+    pressed = re.search(r"vertex \d+.* out of (\w+) and (\w+) in the step.*leave it no room", message) or \
+        re.search(r"vertex \d+.*: (\w+) presses another layer into it, and (pin\.\d+) holds it", message) or \
+        re.search(r"vertex \d+.*: (pin\.\d+) and (pin\.\d+) press two layers into each other", message) or \
+        re.search(r"vertex \d+.*: (pin\.\d+) presses it into another layer", message)
+    return bool(pressed) and any(name in moving for name in pressed.groups())
 
 
 def find_faults(outcome, run):

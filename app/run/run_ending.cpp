@@ -24,14 +24,21 @@ std::string name_vertex(const State& state, std::int64_t id)
                        x.y(), x.z(), X.x(), X.y());
 }
 
-/// Says which pins press two layers of the cloth into each other.
-std::string explain_layers(const Infeasible& infeasible, const State& state, const std::string& place)
+/// Says which pins and obstacle press two layers of the cloth into each other.
+std::string explain_layers(const Infeasible& infeasible, const Scene& scene, const State& state,
+                           const std::string& place)
 {
+    const int presser = infeasible.obstacles[0];
     std::string why = "layers, pins and obstacles leave it no room";
     if (infeasible.layer_pin >= 0)
         why = fmt::format(
             "pin.{} and pin.{} press two layers into each other; change the motion of one of them",
             infeasible.pin, infeasible.layer_pin);
+    else if (infeasible.pin >= 0 && presser >= 0)
+        why = fmt::format(
+            "{} presses another layer into it, and pin.{} holds it; change the motion of one of them, or "
+            "release the pin earlier",
+            scene.obstacles[static_cast<std::size_t>(presser)].name(), infeasible.pin);
     else if (infeasible.pin >= 0)
         why = fmt::format("pin.{} presses it into another layer; change its motion, or release it earlier",
                           infeasible.pin);
@@ -43,7 +50,7 @@ std::string explain_layers(const Infeasible& infeasible, const State& state, con
 std::string explain_infeasible(const Infeasible& infeasible, const Scene& scene, const State& state,
                                const std::string& place)
 {
-    if (infeasible.is_with_itself) return explain_layers(infeasible, state, place);
+    if (infeasible.is_with_itself) return explain_layers(infeasible, scene, state, place);
     const auto name = [&](int obstacle) {
         return scene.obstacles[static_cast<std::size_t>(obstacle)].name();
     };

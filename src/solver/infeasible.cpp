@@ -2,6 +2,7 @@
 #include "solver/infeasible.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace arris {
@@ -66,6 +67,22 @@ int find_opponent(const Workspace& work, int vertex, const Contact& unmet)
     return opponent;
 }
 
+/// Obstacle that presses one element of the row most directly towards the other; -1 without one.
+int find_presser(const Workspace& work, const SelfContact& pair)
+{
+    int presser = -1;
+    double least = 0.0;
+    for (const Contact& contact : work.contacts)
+        for (int i = 0; i < 4; ++i) {
+            if (pair.weights[i] == 0.0 || !has_vertex(contact, pair.vertices[i])) continue;
+            const double cosine = std::copysign(1.0, pair.weights[i]) * contact.normal.dot(pair.normal);
+            if (!(cosine < least)) continue;
+            presser = contact.obstacle;
+            least = cosine;
+        }
+    return presser;
+}
+
 /// Names a contact of the cloth with itself that the velocity solve could not meet; one with pins before
 /// others. Without such a contact nothing is named.
 Infeasible name_self_contact(const State& state, const Workspace& work)
@@ -86,6 +103,7 @@ Infeasible name_self_contact(const State& state, const Workspace& work)
                 found.layer_pin = pin;
             }
         }
+        if (found.layer_pin < 0) found.obstacles[0] = find_presser(work, row.contact);
         const auto pins = [](const Infeasible& of) { return (of.pin >= 0) + (of.layer_pin >= 0); };
         if (!named.is_with_itself || pins(found) > pins(named)) named = found;
     }
@@ -106,9 +124,15 @@ Infeasible name_infeasible(const State& state, const Workspace& work,
     Infeasible named;
     const std::vector<const Contact*> unmet = list_unmet(work, overconstrained);
     const int vertex = overconstrained ? *overconstrained : find_vertex(work, unmet);
-    if (vertex < 0) return name_self_contact(state, work);
+    const int pin = vertex < 0 ? -1 : find_pin(work, vertex);
+    // An obstacle that presses free cloth against pinned cloth leaves both contacts unmet: the pin tells
+    // more.
+    if (pin < 0) {
+        const Infeasible layers = name_self_contact(state, work);
+        if (vertex < 0 || layers.pin >= 0) return layers;
+    }
     named.vertex = state.ids[vertex];
-    named.pin = find_pin(work, vertex);
+    named.pin = pin;
     for (const Contact* contact : unmet) {
         if (!has_vertex(*contact, vertex)) continue;
         if (named.obstacles[0] < 0) named.obstacles[0] = contact->obstacle;

@@ -15,8 +15,8 @@ bool is_unmet(const Workspace& work, int row);
 /// Names what an infeasible step cannot meet together: a vertex, the pin that holds it, and the obstacles of
 /// its contacts. `overconstrained` is a vertex (index) without room between two contacts (`share_room`).
 /// Without one, the vertex is that of a row that the velocity solve could not meet, a pinned one if there is
-/// any. Where only contacts of the cloth with itself cannot be met, the vertex is one of such a contact, and
-/// the pin of the other layer is named, too.
+/// any. Where this is a contact of the cloth with itself, the pin of the other layer is named, too, or else
+/// the obstacle that presses the two layers together.
 Infeasible name_infeasible(const State& state, const Workspace& work,
                            const std::optional<int>& overconstrained = std::nullopt);
 

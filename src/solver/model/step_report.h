@@ -34,7 +34,8 @@ enum class StepPart { Ordinary, Opening, Rest };
 struct Infeasible {
     std::int64_t vertex = -1;                 ///< id
     int pin = -1;                             ///< index in the scene of the pin that holds the vertex
-    std::array<int, 2> obstacles = {-1, -1};  ///< indices in the scene; the second where no pin holds it
+    std::array<int, 2> obstacles = {-1, -1};  ///< indices in the scene; the second where no pin holds it and
+                                              ///< the cloth is not kept out of cloth
     bool is_with_itself = false;              ///< cloth cannot be kept out of cloth
     int layer_pin = -1;                       ///< index of the pin that holds the other layer
 };

@@ -82,6 +82,12 @@ const EndingCase kEndings[] = {
              "keyframes = [{time = 0}, {time = 0.3, translate = [-0.3, 0, 0.1]}, "
              "{time = 0.9, translate = [-0.3, 0, -0.2]}]"),
      "the cloth itself in the step .*: pin.0 and pin.1 press two layers into each other.*"},
+    {"an obstacle presses a free layer against a pinned one",
+     "[self_contact]\n" + pin("[[0.25, 0], [0.5, 0.5]]") +
+         box("ram", "[0.1, 0.7, 0.04]",
+             "keyframes = [{time = 0.2, translate = [-0.2, 0, -0.05]}, "
+             "{time = 0.6, translate = [0.07, 0, -0.05]}, {time = 1, translate = [0.07, 0, 0.2]}]"),
+     "the cloth itself in the step .*: ram presses another layer into it, and pin.0 holds it.*"},
     {"plates that meet far from others",
      box("other", "[0.3, 0.3, 0.1]", "translate = [9, 0, 0]") +
          box("lid", "[0.3, 0.3, 0.1]", "translate = [0, 0, 0.3]\nmotion = { velocity = [0, 0, -1] }") +
