@@ -18,6 +18,7 @@ struct Meeting {
     int element;
     Vec3 point;
     double thickness;
+    double touch;  ///< m, touch_distance
 
     Vec3 begin() const { return cloth_point.at(motion.begin); }
     Vec3 end() const { return cloth_point.at(motion.end); }
@@ -25,7 +26,8 @@ struct Meeting {
 
 /// Returns nothing unless the plane separates the cloth's point at begin, which came along `way`, from that
 /// point at the end. Only the begin determines the stand-off. In contacts made before the solve, the end
-/// shows what slides along a curve; here the end is the violation.
+/// shows what slides along a curve; here the end is the violation. A gap below the touch distance has to grow
+/// to it: rounding would close such a gap again, solve after solve.
 std::optional<ObstacleContact> as_violation(const Meeting& meeting, ObstacleContact contact,
                                             double least_sine)
 {
@@ -33,7 +35,7 @@ std::optional<ObstacleContact> as_violation(const Meeting& meeting, ObstacleCont
     const Vec3 way = cloth_point.at(meeting.motion.begin) - contact.point;
     const double begin_gap = contact.normal.dot(way);
     if (!(begin_gap > least_sine * way.norm())) return std::nullopt;
-    contact.least_gap = std::min(meeting.thickness, begin_gap);
+    contact.least_gap = std::min(meeting.thickness, std::max(begin_gap, meeting.touch));
     const double end_gap = contact.normal.dot(cloth_point.at(meeting.motion.end) - contact.point);
     if (!(end_gap < contact.least_gap)) return std::nullopt;
     return contact;
@@ -62,8 +64,8 @@ std::optional<ObstacleContact> make_vertex_violation(const Obstacle& obstacle, c
                                                      int vertex, int face, const SweepHit& hit,
                                                      double thickness)
 {
-    const Meeting meeting{motion, ContactKind::Vertex, {{vertex, -1, -1}, hit.weights},
-                          face,   hit.point,           thickness};
+    const Meeting meeting{motion,    ContactKind::Vertex, {{vertex, -1, -1}, hit.weights},    face,
+                          hit.point, thickness,           touch_distance(obstacle, thickness)};
     const Vec3& normal = obstacle.topology().face_normals[face];
     const bool is_above = normal.dot(meeting.begin() - hit.point) > 0.0;
     const auto contact = try_normal(meeting, is_above ? normal : Vec3(-normal), kAlongPlane);
@@ -75,8 +77,8 @@ std::optional<ObstacleContact> make_edge_violation(const Obstacle& obstacle, con
                                                    double thickness)
 {
     const MeshEdge& cloth = (*motion.edges)[cloth_edge];
-    const Meeting meeting{motion, ContactKind::Edge, {{cloth.a, cloth.b, -1}, hit.weights},
-                          edge,   hit.point,         thickness};
+    const Meeting meeting{motion,    ContactKind::Edge, {{cloth.a, cloth.b, -1}, hit.weights}, edge,
+                          hit.point, thickness,         touch_distance(obstacle, thickness)};
     const auto found = make_edge_contact(obstacle, motion, motion.end, {cloth.a, cloth.b}, edge, thickness);
     // The begin determines the side, however nearly the cloth moved along the edge: the hit's own normal may
     // point inside.
@@ -88,9 +90,13 @@ std::optional<ObstacleContact> make_face_violation(const Obstacle& obstacle, con
                                                    int cloth_face, int point, const SweepHit& hit,
                                                    double thickness)
 {
-    const Meeting meeting{
-        motion,   ContactKind::Triangle, {(*motion.faces)[cloth_face], hit.weights}, point, hit.point,
-        thickness};
+    const Meeting meeting{motion,
+                          ContactKind::Triangle,
+                          {(*motion.faces)[cloth_face], hit.weights},
+                          point,
+                          hit.point,
+                          thickness,
+                          touch_distance(obstacle, thickness)};
     const auto found = make_face_contact(obstacle, motion, motion.end, cloth_face, point, thickness);
     const auto contact = found ? as_violation(meeting, *found, kAlongPlane) : std::nullopt;
     return contact ? contact : by_hit(meeting, hit);

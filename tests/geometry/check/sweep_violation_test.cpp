@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/cloth/mesh_topology.h"
+#include "geometry/contact/contact_plane.h"
 #include "tests/geometry/sample_obstacles.h"
 
 namespace arris {
@@ -55,6 +56,13 @@ TEST(SweepViolation, TheStandOffIsNoMoreThanTheGapAtBegin)
 {
     EXPECT_EQ(Meeting(Vec3(0, 0, 1), Vec3(0, 0, -1)).contact(Vec3::UnitZ())->least_gap, kThickness);
     EXPECT_EQ(Meeting(Vec3(0, 0, 1e-6), Vec3(0, 0, -1)).contact(Vec3::UnitZ())->least_gap, 1e-6);
+}
+
+// The rounding of a step's positions closes smaller gaps, so a row that kept one would be violated again.
+TEST(SweepViolation, AGapBelowTheTouchDistanceHasToGrowToIt)
+{
+    const Meeting meeting(Vec3(0, 0, 1e-15), Vec3(0, 0, -1));
+    EXPECT_EQ(meeting.contact(Vec3::UnitZ())->least_gap, touch_distance(meeting.obstacle, kThickness));
 }
 
 // At a face's rim, for a motion from the side, the face's plane neither gives a side nor restrains the
