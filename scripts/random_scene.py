@@ -182,7 +182,8 @@ class SceneMaker:
         return {"translate": at, **turn, "motion": motion}
 
     def material(self):
-        return {"density": self.log(1e-3, 10.0), "youngs_modulus": self.log(1.0, 1e6),
+        plate = {"bending_model": "plate"} if self.is_true(0.25) else {}
+        return {**plate, "density": self.log(1e-3, 10.0), "youngs_modulus": self.log(1.0, 1e6),
                 "poisson_ratio": self.number(0.0, 0.49),
                 "bending_stiffness": self.log(1e-8, 1e-2) if self.is_true(0.9) else 0.0,
                 "damping": self.log(1e-4, 1e-2) if self.is_true(0.3) else 0.0, "thickness": self.log(5e-5, 5e-3)}
@@ -209,12 +210,33 @@ class SceneMaker:
                               round(self.log(1e-5, 0.05) - lowest, 9)]
         return cloth
 
-    def pin(self, cloth, names):
+    def cut_out(self, cloth):
+        """The cloth with a star-shaped outline inside its rectangle, with a hole in half of the cases."""
+        (u, v), corners_out, corners_in = cloth["size"], self.chance.randint(3, 9), self.chance.randint(3, 6)
+        star = lambda n, least, most: [
+            [round(0.5 * u * (1 + r * math.cos(2 * math.pi * k / n)), 4), round(0.5 * v * (1 + r * math.sin(2 * math.pi * k / n)), 4)]
+            for k, r in ((k, self.chance.uniform(least, most)) for k in range(n))]
+        shape = {"outline": star(corners_out, 0.5, 1.0)}
+        if self.is_true(0.5):
+            shape["holes"] = [star(corners_in, 0.05, 0.2)]
+        shape["edge_length"] = round(max(cloth["size"]) / max(cloth["resolution"]), 5)
+        grid = ("size", "resolution", "pattern", "pattern_angle")
+        return {**shape, **{key: value for key, value in cloth.items() if key not in grid}}
+
+    def pinned_box(self, cloth):
+        """A box of material that holds a vertex at least."""
+        if "outline" in cloth:
+            corner = self.chance.choice(cloth["outline"])
+            return [corner, corner]
         u, v = cloth["size"]
         box = self.chance.choice([[[0, 0], [0, 0]], [[u, v], [u, v]], [[0, 0], [0, v]], [[0, v], [u, v]],
                                   [[0.3 * u, 0.3 * v], [0.7 * u, 0.7 * v]]])
         if min(cloth["resolution"]) < 4:
             box = [[0, 0], [0, 0]]  # the box in the middle might hold no vertex
+        return box
+
+    def pin(self, cloth, names):
+        box = self.pinned_box(cloth)
         pin = {"material": [[round(x, 4) for x in corner] for corner in box]}
         if self.is_true(0.3):
             pin["start"] = self.log(0.02, 0.5)
@@ -232,7 +254,7 @@ class SceneMaker:
 
     def remesh(self, cloth):
         """Edges from a third of the cells to thrice as long."""
-        cell = max(size / cells for size, cells in zip(cloth["size"], cloth["resolution"]))
+        cell = cloth.get("edge_length") or max(map(lambda side, cells: side / cells, cloth["size"], cloth["resolution"]))
         shortest = self.number(0.3, 1.0) * cell
         return {"edge_length": [round(shortest, 6), round(self.number(1.2, 3.0) * cell, 6)],
                 "angle": self.chance.choice([15, 30, 60]), "vertices": 4000}
@@ -241,6 +263,8 @@ class SceneMaker:
         names = [f"o{k}" for k in range(self.chance.choice([1, 1, 1, 2, 2, 3]))]
         self.step = step = self.log(1e-3, 0.05)
         obstacles, cloth = [self.obstacle(name) for name in names], self.cloth()
+        if self.is_true(0.2):
+            cloth = self.cut_out(cloth)
         duration = round(min(self.log(0.15, 1.5), 300 * step), 4)
         scene = {"title": title, "duration": duration,
                  "time": {"step": step, "integrator": self.chance.choice(["bdf2", "bdf2", "bdf2", "implicit_euler"])},

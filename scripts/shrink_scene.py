@@ -27,7 +27,12 @@ def list_smaller(scene):
     if scene["duration"] > 2 * scene["time"]["step"]:
         yield changed(lambda s: s.update(duration=round(0.5 * s["duration"], 6)))
         yield changed(lambda s: s.update(duration=round(0.8 * s["duration"], 6)))
-    cells = scene["cloth"]["resolution"]
+    if "outline" in scene["cloth"]:
+        yield changed(lambda s: s["cloth"].update(edge_length=2 * s["cloth"]["edge_length"]))
+        yield changed(lambda s: s["cloth"].update(edge_length=1.25 * s["cloth"]["edge_length"]))
+        if "holes" in scene["cloth"]:
+            yield changed(lambda s: s["cloth"].pop("holes"))
+    cells = scene["cloth"].get("resolution", [1])
     if max(cells) > 2:
         yield changed(lambda s: s["cloth"].update(resolution=[max(1, n // 2) for n in cells]))
         yield changed(lambda s: s["cloth"].update(resolution=[max(1, n * 4 // 5) for n in cells]))
@@ -36,6 +41,8 @@ def list_smaller(scene):
             for key in ("motion", "velocity", "angular_velocity", "release", "directions", "rotate", "follow"):
                 if key in thing:
                     yield changed(lambda s: s[part][k].pop(key))
+    if "bending_model" in scene["cloth"]["material"]:
+        yield changed(lambda s: s["cloth"]["material"].pop("bending_model"))
     for key, plain in PLAIN_CLOTH.items():
         if scene["cloth"].get(key, plain) != plain:
             yield changed(lambda s: s["cloth"].pop(key))
