@@ -16,6 +16,14 @@ namespace {
 constexpr double kNear = 2.0;  // thicknesses: nearer pairs have a plane at their closest points
 const double kSameNormal = std::cos(20.0 * M_PI / 180.0);
 
+/// Cosine of 45 degrees. A vertex is above a border where its direction from the border leans by less from
+/// the normal of the border's face.
+const double kAbove = std::sqrt(0.5);
+
+/// Of the thickness: where a vertex leaves a layer over its border, it keeps the layer's plane from this
+/// height on. Lower vertices hang over the border, and a plane that leans lets them down.
+constexpr double kFull = 0.9;
+
 /// Directions along a surface that lead nearer by less than this cosine count as level. Level parts, as of
 /// two plane layers, have a plane wherever they face each other.
 constexpr double kLevel = 1e-6;
@@ -27,7 +35,8 @@ constexpr double kRidge = 0.1;
 /// A closest pair of points, and whether moving either along its surface leads no nearer.
 struct Closest {
     ClothPointPair pair;
-    Vec3 difference;
+    double distance;
+    Vec3 normal;  ///< of the plane between them, unit; zero where they touch
     bool is_least;
 };
 
@@ -45,9 +54,12 @@ class Search {
         if (is_near_at_begin(box_at(v), box_at(f[0], f[1], f[2])) &&
             take_near(closest_vertex_face(v, face), found))
             return;
-        if (const auto hit = sweep_cloth_vertex_face(corners(motion_.begin, vertices),
-                                                     corners(motion_.end, vertices), thickness_))
-            take_hit({SelfContactKind::VertexFace, vertices, hit->weights}, hit->normal, found);
+        const auto hit = sweep_cloth_vertex_face(corners(motion_.begin, vertices),
+                                                 corners(motion_.end, vertices), thickness_);
+        if (!hit) return;
+        const auto over_border = normal_over_border(v, face, hit->time);
+        take_hit({SelfContactKind::VertexFace, vertices, hit->weights}, over_border.value_or(hit->normal),
+                 found);
     }
 
     void edge_edge(int first, int second, std::vector<SelfContact>& found) const
@@ -116,28 +128,102 @@ class Search {
         return true;
     }
 
+    Vec3 normal_of(int face, double time) const
+    {
+        const Face& f = surface_.faces[face];
+        const Vec3 a = place(f[0], time);
+        return (place(f[1], time) - a).cross(place(f[2], time) - a).stableNormalized();
+    }
+
+    PointOnTriangle closest_on(int face, int v, double time) const
+    {
+        const Face& f = surface_.faces[face];
+        return closest_on_triangle(place(v, time), {place(f[0], time), place(f[1], time), place(f[2], time)},
+                                   normal_of(face, time));
+    }
+
     Closest closest_vertex_face(int v, int face) const
     {
-        const std::vector<Vec3>& x = motion_.begin;
         const Face& f = surface_.faces[face];
-        const Vec3 normal = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]).stableNormalized();
-        const PointOnTriangle at = closest_on_triangle(x[v], {x[f[0]], x[f[1]], x[f[2]]}, normal);
+        const PointOnTriangle at = closest_on(face, v, 0.0);
+        const Vec3 gap = motion_.begin[v] - at.point;
         Closest closest{{SelfContactKind::VertexFace,
                          {v, f[0], f[1], f[2]},
                          {1.0, -at.weights[0], -at.weights[1], -at.weights[2]}},
-                        x[v] - at.point,
+                        gap.norm(),
+                        gap.stableNormalized(),
                         true};
-        if (at.edge >= 0) {  // told once, by the left face
+        if (at.edge >= 0) {  // reported once, by the left face
             const MeshEdge& edge = surface_.edges[surface_.edges_of[face][at.edge]];
-            closest.is_least = face == edge.face_left &&
-                               (edge.face_right < 0 ||
-                                leads_no_nearer(way_across(edge, edge.face_right, 0.0), closest.difference));
-        } else if (at.corner >= 0) {  // told once, by the first face
-            const int corner = f[at.corner];
             closest.is_least =
-                face == surface_.faces_at[corner].front() && leads_no_nearer(corner, closest.difference);
+                face == edge.face_left &&
+                (edge.face_right < 0 || leads_no_nearer(way_across(edge, edge.face_right, 0.0), gap));
+        } else if (at.corner >= 0) {  // reported once, by the first face
+            const int corner = f[at.corner];
+            closest.is_least = face == surface_.faces_at[corner].front() && leads_no_nearer(corner, gap);
         }
+        if (closest.is_least) closest.normal = normal_over_border(v, face, 0.0).value_or(closest.normal);
         return closest;
+    }
+
+    /// Edges of the cloth's border that hold the point of a face; none where it is not on the border.
+    std::vector<int> border_at(int face, const PointOnTriangle& at) const
+    {
+        std::vector<int> border;
+        if (at.edge >= 0) {
+            const int e = surface_.edges_of[face][at.edge];
+            if (surface_.edges[e].face_right < 0) border.push_back(e);
+        } else if (at.corner >= 0) {
+            const int corner = surface_.faces[face][at.corner];
+            for (const int f : surface_.faces_at[corner])
+                for (const int e : surface_.edges_of[f]) {
+                    const MeshEdge& edge = surface_.edges[e];
+                    if (edge.face_right < 0 && (edge.a == corner || edge.b == corner)) border.push_back(e);
+                }
+        }
+        return border;
+    }
+
+    /// Distance of a vertex from an edge of the border, across it; negative on the face's side.
+    double distance_beyond(const MeshEdge& edge, int v, double time) const
+    {
+        return -way_across(edge, edge.face_left, time)
+                    .stableNormalized()
+                    .dot(place(v, time) - place(edge.a, time));
+    }
+
+    /// Normal of the border's face at `time`, towards a vertex whose nearest point of `face` is on the
+    /// border. None where the vertex is not above the border: neither at `time` nor where its free motion
+    /// ends, or reaches the layer's surface before. The direction from the nearest point leans, and as a
+    /// plane it would stop a border that slides over the vertex.
+    std::optional<Vec3> normal_over_border(int v, int face, double time) const
+    {
+        const PointOnTriangle at = closest_on(face, v, time);
+        const std::vector<int> border = border_at(face, at);
+        if (border.empty()) return std::nullopt;
+        const Vec3 gap = place(v, time) - at.point;
+        int seen = face;  // of the border's faces the one that `gap` is nearest to the normal of
+        for (const int e : border) {
+            const int other = surface_.edges[e].face_left;
+            if (std::abs(normal_of(other, time).dot(gap)) > std::abs(normal_of(seen, time).dot(gap)))
+                seen = other;
+        }
+        const Vec3 normal = normal_of(seen, time);
+        const double side = normal.dot(gap) > 0.0 ? 1.0 : -1.0, height = side * normal.dot(gap);
+        if (height >= std::max(kFull * thickness_, kAbove * gap.norm())) return side * normal;
+        // Low beside the border, the vertex comes at it from the side.
+        if (height < kAbove * std::min(gap.norm(), thickness_)) return std::nullopt;
+        const Face& f = surface_.faces[face];
+        Vec3 gap_at_end = motion_.end[v];
+        for (int k = 0; k < 3; ++k) gap_at_end -= at.weights[k] * motion_.end[f[k]];
+        const double height_at_end = side * normal_of(seen, 1.0).dot(gap_at_end);
+        const double share = height_at_end < 0.0 ? height / (height - height_at_end) : 1.0;
+        for (const int e : border) {
+            const double from = distance_beyond(surface_.edges[e], v, time),
+                         to = distance_beyond(surface_.edges[e], v, 1.0);
+            if (from + share * (to - from) >= std::max(height_at_end, 0.0)) return std::nullopt;
+        }
+        return side * normal;
     }
 
     Closest closest_edges(int first, int second) const
@@ -145,22 +231,21 @@ class Search {
         const std::vector<Vec3>& x = motion_.begin;
         const MeshEdge &a = surface_.edges[first], &b = surface_.edges[second];
         const SegmentPair at = closest_between_segments({x[a.a], x[a.b]}, {x[b.a], x[b.b]});
-        const Vec3 difference = at.first - at.second, direction = difference.stableNormalized();
+        const Vec3 difference = at.first - at.second, normal = difference.stableNormalized();
         const auto is_inside = [](double s) { return s > 0.0 && s < 1.0; };
         return {{SelfContactKind::EdgeEdge, {a.a, a.b, b.a, b.b}, {1.0 - at.s, at.s, at.t - 1.0, -at.t}},
-                difference,
-                is_inside(at.s) && is_inside(at.t) && is_ridge(a, -direction, 0.0) &&
-                    is_ridge(b, direction, 0.0)};
+                difference.norm(),
+                normal,
+                is_inside(at.s) && is_inside(at.t) && is_ridge(a, -normal, 0.0) && is_ridge(b, normal, 0.0)};
     }
 
     /// True where the pair is near: its plane is known, or that of a nearer pair beside it is.
     bool take_near(const Closest& closest, std::vector<SelfContact>& found) const
     {
-        const double gap = closest.difference.norm();
-        if (!(gap > 0.0) || gap >= kNear * thickness_) return false;
+        if (!(closest.distance > 0.0) || closest.distance >= kNear * thickness_) return false;
         if (!closest.is_least) return true;
         const SelfContact contact =
-            make_self_contact(closest.pair, closest.difference / gap, motion_.begin, thickness_);
+            make_self_contact(closest.pair, closest.normal, motion_.begin, thickness_);
         if (contact.normal.dot(contact.difference(motion_.end)) < contact.least_gap + thickness_)
             found.push_back(contact);
         return true;

@@ -11,8 +11,9 @@ namespace arris {
 /// Contacts of the cloth with itself that a step may meet, found before its solve. `motion` ends where the
 /// cloth would be without contacts. One plane at each local minimum of the distance between two parts of the
 /// cloth that is below twice the thickness (m) at begin, if the cloth may come nearer; farther off, one at
-/// each first touch of the motion. A vertex has at most three planes, the nearest first, with normals more
-/// than 20 degrees apart. Contacts of vertices come first.
+/// each first touch of the motion. Between a vertex and a border that pass over each other, the plane is that
+/// of the border's face. A vertex has at most three planes, the nearest first, with normals more than 20
+/// degrees apart. Contacts of vertices come first.
 std::vector<SelfContact> find_self_contacts(const SelfSurface& surface, const SelfMotion& motion,
                                             double thickness);
 

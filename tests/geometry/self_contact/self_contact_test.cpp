@@ -86,6 +86,54 @@ TEST(SelfContact, ClothBesideAnEdgeIsNotHeldSideways)
     for (const SelfContact& contact : sheets.contacts()) EXPECT_NEAR(std::abs(contact.normal.z()), 1.0, 1e-9);
 }
 
+TEST(SelfContact, NoPlaneStopsABorderThatSlidesOverVertices)
+{
+    // A sheet slides on a larger one: its border begins beside vertices and ends beyond them, or before. The
+    // upper sheet moves, or the lower one the other way.
+    for (const bool is_upper : {true, false})
+        for (const double way : {0.0, 0.3, 0.7, 1.5, 5.0, 50.0})     // thicknesses
+            for (const double ahead : {-0.5, 0.2, 0.6, 0.9, 1.6}) {  // of the border, thicknesses
+                Sheets sheets;
+                sheets.add(10, GridPattern::Diagonal, Vec3::Zero());
+                const std::size_t first = sheets.begin.size();
+                sheets.add(3, GridPattern::Cross, Vec3::Zero());
+                const double border = 0.7 - ahead * kThickness;
+                for (std::size_t v = 0; v < sheets.begin.size(); ++v) {
+                    Vec3& x = sheets.begin[v];
+                    const bool is_above = v >= first;
+                    if (is_above) x = Vec3(border + 0.35 * (x.x() - 1.0), 0.35 * x.y() + 0.33, kThickness);
+                    sheets.end[v] = x;
+                    if (is_above == is_upper) sheets.end[v].x() += (is_upper ? 1.0 : -1.0) * way * kThickness;
+                }
+                const std::vector<SelfContact> contacts = sheets.contacts();
+                ASSERT_FALSE(contacts.empty());
+                for (const SelfContact& contact : contacts)
+                    EXPECT_GT(contact.normal.dot(contact.difference(sheets.end)),
+                              (1.0 - 1e-9) * contact.least_gap)
+                        << is_upper << " " << way << " " << ahead;
+            }
+}
+
+TEST(SelfContact, ABorderHoldsWhatMeetsItFromTheSide)
+{
+    Sheets sheets;
+    sheets.add(1, GridPattern::Diagonal, Vec3::Zero());
+    // A vertex at about the sheet's height, which would pass over the border in this step.
+    const double t = kThickness;
+    for (const Vec3& corner : {Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.1, 0.2), Vec3(0.0, -0.1, 0.2)}) {
+        sheets.begin.push_back(corner + Vec3(1.0 + 1.5 * t, 0.5, 0.2 * t));
+        sheets.end.push_back(corner + Vec3(1.0 - 3.0 * t, 0.5, 0.2 * t));
+    }
+    sheets.faces.push_back({4, 5, 6});
+    std::vector<SelfContact> planes;
+    for (const SelfContact& contact : sheets.contacts())
+        if (contact.kind == SelfContactKind::VertexFace && contact.vertices[0] == 4)
+            planes.push_back(contact);
+    ASSERT_EQ(planes.size(), 1u);
+    EXPECT_GT(planes[0].normal.x(), 0.9);
+    EXPECT_NEAR(planes[0].least_gap, t, 1e-15);
+}
+
 TEST(SelfContact, FastLayersMeetInTheSearchAndInTheCheck)
 {
     Sheets sheets;
