@@ -245,7 +245,9 @@ std::optional<BorderDefect> find_size_defect(const BorderLoops& border)
 std::optional<BorderDefect> find_border_defect(const BorderLoops& border)
 {
     if (std::optional<BorderDefect> defect = find_size_defect(border)) return defect;
-    return BorderCheck(border).find();
+    // The outline alone comes first: where it crosses itself, holes are not to blame.
+    if (std::optional<BorderDefect> defect = BorderCheck({border[0]}).find()) return defect;
+    return border.size() > 1 ? BorderCheck(border).find() : std::nullopt;
 }
 
 }  // namespace arris

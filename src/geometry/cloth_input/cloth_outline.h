@@ -31,7 +31,7 @@ struct BorderDefect {
 
 /// Finds the first defect of a border: a loop without three different corners, sides that cross or touch, a
 /// hole that is outside the outline or in another hole, more than kMostOutlineCorners corners, a place more
-/// than 1000 times its size from the origin. Exact.
+/// than 1000 times its size from the origin. The outline is tested before its holes. Exact.
 std::optional<BorderDefect> find_border_defect(const BorderLoops& border);
 
 /// Area inside the outline without the holes, m^2.
