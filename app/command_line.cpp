@@ -65,6 +65,7 @@ struct ExportRequest {
     std::string topology = "simulated";
     std::string grid;
     std::string up = "z";
+    bool is_overwriting = false;
 };
 
 constexpr const char* kExitStatus =
@@ -164,6 +165,8 @@ CLI::App* add_export(CLI::App& app, ExportRequest& request)
         ->type_name("NxM");
     command->add_option("--up", request.up, "Upward axis of obj, vtk, pc2 and mdd; the others state theirs")
         ->check(CLI::IsMember({"y", "z"}));
+    command->add_flag("--overwrite", request.is_overwriting,
+                      "Replace files by those of another topology, grid or axis");
     return command;
 }
 
@@ -211,6 +214,7 @@ int export_formats(const ExportRequest& request)
     options.is_topology_constant = request.topology == "constant";
     if (!request.grid.empty()) options.grid = parse_grid(request.grid);
     if (request.up == "y") options.up = UpAxis::Y;
+    options.is_overwriting = request.is_overwriting;
     tell_warnings(warn_of_missing_files(request.directory));
     export_frames(request.directory, request.formats, options);
     for (const std::string& format : request.formats)

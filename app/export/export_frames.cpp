@@ -62,10 +62,13 @@ void export_vtk(const Source& run)
     write_pvd(run.run_dir + "/cloth.pvd", run.obstacles, run.frames.count, run.options.frames_per_second);
 }
 
+constexpr const char* kBaseFile = "cloth_base.obj";
+
 /// The mesh that a cache moves.
 void export_base(const Source& run)
 {
-    write_obj(run.run_dir + "/cloth_base.obj", run.constant.read(0), run.options.up);
+    write_obj((std::filesystem::path(run.run_dir) / kBaseFile).string(), run.constant.read(0),
+              run.options.up);
 }
 
 void export_pc2(const Source& run)
@@ -120,6 +123,39 @@ const Format& find_format(const std::string& name)
     throw InputError(fmt::format("formats: \"{}\" is unknown; allowed: {}", name, fmt::join(names, ", ")));
 }
 
+/// The option by which an export differs from what the run itself makes, as it is written; or "".
+std::string differing_option(const ExportOptions& options)
+{
+    if (options.is_topology_constant) return "--topology constant";
+    if (options.grid) return fmt::format("--grid {}x{}", options.grid->u, options.grid->v);
+    return options.up == UpAxis::Z ? "" : fmt::format("--up {}", to_string(options.up));
+}
+
+/// The file by which an export of `format` is recognised that is there already, relative to the folder; or
+/// "".
+std::string find_export(const std::string& run_dir, const Format& format)
+{
+    const std::filesystem::path folder(run_dir);
+    std::string file = format.place;
+    if (const std::size_t star = file.find('*'); star != std::string::npos) file.replace(star, 1, "00000");
+    if (std::filesystem::exists(folder / file)) return file;
+    const bool is_cache = format.make == export_pc2 || format.make == export_mdd;
+    return is_cache && std::filesystem::exists(folder / kBaseFile) ? kBaseFile : "";
+}
+
+/// Throws InputError if the export would replace files by others of another mesh or axis.
+void require_no_other_export(const std::string& run_dir, const std::vector<std::string>& formats,
+                             const ExportOptions& options)
+{
+    const std::string option = differing_option(options);
+    if (options.is_overwriting || option.empty()) return;
+    for (const std::string& name : formats)
+        if (const std::string file = find_export(run_dir, find_format(name)); !file.empty())
+            throw InputError(fmt::format(
+                "{}: holds {}, which \"{}\" with {} would replace; allowed: --overwrite, or another format",
+                run_dir, file, name, option));
+}
+
 }  // namespace
 
 std::string exported_path(const std::string& run_dir, const std::string& format)
@@ -150,6 +186,7 @@ void export_frames(const std::string& run_dir, const std::vector<std::string>& f
     }
     if (options.grid && !needs_constant)
         throw InputError("--grid: no format uses it; allowed: with --topology constant, pc2, mdd or gltf");
+    require_no_other_export(run_dir, formats, options);
     const FrameSource frames = read_frames_of(run_dir);
     if (frames.count == 0)
         throw InputError(frames_directory(run_dir) + ": has no frames (cloth_00000.ply, ...)");

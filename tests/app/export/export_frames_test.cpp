@@ -84,9 +84,42 @@ TEST(ExportFrames, ConstantTopologyIsOfEveryFormatButTheViewer)
     export_frames(dir.path(), {"obj"}, options);
     EXPECT_THAT(read_bytes(dir / "frames/cloth_00001.obj"), HasSubstr("\nl "));
     options.is_topology_constant = true;
+    options.is_overwriting = true;
     export_frames(dir.path(), {"obj"}, options);
     EXPECT_THAT(read_bytes(dir / "frames/cloth_00001.obj"), Not(HasSubstr("\nl ")));
     EXPECT_THAT(error_of([&] { export_frames(dir.path(), {"viewer"}, options); }), HasSubstr("\"viewer\""));
+}
+
+TEST(ExportFrames, ReplacesFilesOfAnotherMeshOrAxisOnlyOnRequest)
+{
+    const TemporaryDirectory dir;
+    write_run(dir, 2, kScene);
+    const ExportOptions plain = read_export_options(dir.path());
+    export_frames(dir.path(), {"obj", "mdd"}, plain);
+    export_frames(dir.path(), {"obj", "mdd"}, plain);  // makes the same files again
+    const std::string obj = read_bytes(dir / "frames/cloth_00001.obj");
+
+    ExportOptions constant = plain, turned = plain;
+    constant.is_topology_constant = true;
+    turned.up = UpAxis::Y;
+    const auto error_with = [&](const std::vector<std::string>& formats, const ExportOptions& options) {
+        return error_of([&] { export_frames(dir.path(), formats, options); });
+    };
+    EXPECT_THAT(error_with({"usd", "obj"}, constant),
+                HasSubstr(": holds frames/cloth_00000.obj, which \"obj\" with --topology constant would "
+                          "replace; allowed: --overwrite, or another format"));
+    EXPECT_FALSE(std::filesystem::exists(dir / "cloth.usda")) << "nothing is written";
+    EXPECT_THAT(error_with({"mdd"}, turned), HasSubstr("holds cloth.mdd, which \"mdd\" with --up y"));
+    EXPECT_THAT(error_with({"pc2"}, turned), HasSubstr("holds cloth_base.obj, which \"pc2\" with --up y"));
+    ExportOptions grid = plain;
+    grid.grid = GridSize{2, 3};
+    EXPECT_THAT(error_with({"mdd"}, grid), HasSubstr("holds cloth.mdd, which \"mdd\" with --grid 2x3"));
+    EXPECT_EQ(read_bytes(dir / "frames/cloth_00001.obj"), obj);
+
+    EXPECT_EQ(error_with({"usd"}, constant), "") << "no such file is there";
+    constant.is_overwriting = true;
+    EXPECT_EQ(error_with({"usd", "obj"}, constant), "");
+    EXPECT_NE(read_bytes(dir / "frames/cloth_00001.obj"), obj);
 }
 
 TEST(ExportFrames, RefusesAGridThatNoFormatUses)
@@ -132,6 +165,7 @@ TEST(ExportFrames, TurnsClothAndObstaclesForProgramsWithYUp)
     const auto upright = read_all();
     const std::string vtp = read_bytes(dir / "frames/box_00000.vtp"), pc2 = read_bytes(dir / "cloth.pc2");
     options.up = UpAxis::Y;
+    options.is_overwriting = true;
     export_frames(dir.path(), formats, options);
     for (const auto& [name, lying] : read_all()) {
         ASSERT_EQ(lying.size(), upright.at(name).size());
