@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -104,17 +106,42 @@ std::size_t count_corners(const BorderLoops& border)
     return count;
 }
 
-/// Notes how many corners of the border are finer than the mesh.
-void note_coarsening(const SceneDocument& document, const BorderLoops& border, const BorderLoops& coarse,
-                     RunConfig& config)
+Vec2 extent_of(const std::vector<Vec2>& loop)
 {
-    const std::size_t before = count_corners(border), after = count_corners(coarse);
+    Eigen::AlignedBox2d box;
+    for (const Vec2& corner : loop) box.extend(corner);
+    return box.sizes();
+}
+
+/// Refuses an edge length whose mesh is not of the outline's shape, mostly because its unit is wrong; tells
+/// of a mesh that leaves out corners, as a warning where that changes the area by more than rounding off
+/// does.
+void check_coarsening(const SceneDocument& document, const BorderLoops& border, const ClothOutline& outline,
+                      RunConfig& config)
+{
+    constexpr double kWorthWarning = 0.01;  // of the area; a disc divided into 25 sides loses as much
+    constexpr double kOtherShape = 0.1;     // of the area; a disc becomes an octagon
+    const Vec2 extent = extent_of(border[0]);
+    const auto refuse = [&](const std::string& wrong) {
+        document.fail(
+            "cloth.edge_length", wrong,
+            fmt::format("lengths (m) below the outline's extent of {:.4g} x {:.4g} m, with which its "
+                        "area changes by at most {:g} %",
+                        extent.x(), extent.y(), 100.0 * kOtherShape));
+    };
+    if (outline.edge_length > extent.norm())
+        refuse(fmt::format("exceeds the outline's diagonal of {:.4g} m", extent.norm()));
+    const std::size_t before = count_corners(border), after = count_corners(outline.border);
     if (after == before) return;
-    const double change = area_of(coarse) / area_of(border) - 1.0;
-    config.notes.push_back(
-        fmt::format("{}: {} of {} corners are left out, as they are finer than cloth.edge_length; this "
-                    "changes the area by {:.2g} %",
-                    document.describe("cloth.outline"), before - after, before, 100.0 * change));
+    const double change = area_of(outline.border) / area_of(border) - 1.0;
+    const std::string left_out = fmt::format("{} of {} corners", before - after, before);
+    if (std::abs(change) > kOtherShape)
+        refuse(fmt::format("would leave out {} of the outline and its holes, and change the area by {:.2g} %",
+                           left_out, 100.0 * change));
+    auto& lines = std::abs(change) > kWorthWarning ? config.warnings : config.notes;
+    lines.push_back(fmt::format(
+        "{}: {} are left out, as they are finer than cloth.edge_length; this changes the area by {:.2g} %",
+        document.describe("cloth.outline"), left_out, 100.0 * change));
 }
 
 ClothMesh make_outlined(const SceneDocument& document, RunConfig& config, const Json& cloth)
@@ -125,7 +152,7 @@ ClothMesh make_outlined(const SceneDocument& document, RunConfig& config, const 
     outline.folds = to_folds(cloth);
     outline.border = coarsen_border(border, outline.edge_length);
     check_size(document, config, to_estimate(estimate_cloth_outline(outline)));
-    note_coarsening(document, border, outline.border, config);
+    check_coarsening(document, border, outline, config);
     return blame(document, outline.folds.empty() ? "cloth.outline" : "cloth.folds", [&] {
         ClothMesh mesh = make_cloth_outline(outline);
         fold_cloth(outline.folds, mesh);

@@ -38,7 +38,8 @@ std::vector<SceneKey> make_scene_keys()
         polygon("cloth.holes", KeyType::Polygons,
                 "Holes: polygons inside the outline, clear of it and of one another."),
         number("cloth.edge_length", "m", kSize, "",
-               "Mean length of the mesh's edges; required with `outline`."),
+               "Mean length of the mesh's edges; required with `outline`. It must be below the outline's "
+               "diagonal, and change the outline's area by at most 10 %."),
         tables("cloth.folds", "Folds of the initial cloth, made one after the other without stretching it."),
         {.name = "cloth.folds[].line",
          .type = KeyType::Line,
@@ -95,7 +96,8 @@ std::vector<SceneKey> make_scene_keys()
         tables("pin", "Pins hold or move vertices. Without a pin nothing holds the cloth."),
         box("pin[].material",
             "Box in the material, bounds included. The pin holds the vertices whose material coordinates lie "
-            "in the box."),
+            "in the box. About a line of held vertices the cloth turns freely, so a clamped edge needs a box "
+            "that holds two rows of vertices."),
         numbers("pin[].velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity of the pin from its `start` on."),
         numbers("pin[].angular_velocity", 3, "rad/s", kAnyNumber, kOrigin,
                 "Angular velocity of the pin about `pivot` from its `start` on; its direction is the axis."),

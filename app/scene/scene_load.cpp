@@ -290,8 +290,7 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     load_obstacles(document, options, std::move(plans), config);
     if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))
         config.scene.eol = make_initial_target(config.cloth);
-    if (json.contains("remesh"))
-        config.scene.remesh = to_remeshing(json["remesh"], config.settings.step, config.cloth);
+    if (json.contains("remesh")) config.scene.remesh = to_remeshing(document, config);
     const StrainRange placed = measure_strain(config.cloth);
     if (!options.cloth) check_start(document, options, placed, config);
     warn_of_first_keyframes(document, config);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "app/scene/scene_json.h"
-#include "geometry/cloth/cloth_mesh.h"
+#include "app/scene/run_config.h"
+#include "app/scene/scene_document.h"
 #include "solver/model/remeshing.h"
 
 namespace arris {
 
-/// Reads the table [remesh] of a complete scene. `step`: of time, s. `cloth`: the first mesh.
-Remeshing to_remeshing(const nlohmann::ordered_json& table, double step, const ClothMesh& cloth);
+/// Reads the table [remesh] of `config.as_run`; `config.cloth` is the first mesh. Throws InputError if no
+/// edge of the cloth can be as long as the smallest edge length.
+Remeshing to_remeshing(const SceneDocument& document, const RunConfig& config);
 
 }  // namespace arris

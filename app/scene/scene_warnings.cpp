@@ -260,11 +260,16 @@ void check_stillness(const RunConfig& config, const MeshTopology& topology, Warn
             "obstacle and no cloth.velocity, and the cloth starts flat and unstrained");
 }
 
-/// Warns of remeshing whose longest edges need more vertices than it may make.
+/// Warns of remeshing that may make fewer vertices than the first mesh has, or than its longest edges need.
 void check_remeshing(const RunConfig& config, Warnings& warnings)
 {
     if (!config.scene.remesh) return;
     const Remeshing& remesh = *config.scene.remesh;
+    if (remesh.most_vertices < config.cloth.vertex_count())
+        warnings.note("remesh.vertices",
+                      fmt::format("is below the {} vertices of the first mesh, so cells become coarser "
+                                  "everywhere",
+                                  config.cloth.vertex_count()));
     const double written = config.as_run["remesh"]["edge_length"][1].get<double>();
     if (!(remesh.longest > written)) return;
     warnings.note(

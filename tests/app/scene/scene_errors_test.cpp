@@ -594,6 +594,23 @@ const std::vector<WrongScene> kWrongScenes = {
      {"cloth.edge_length=1e-6"},
      "--set cloth.edge_length=1e-6: the run would have about 6.000015e+11 vertices; allowed: at most 5000000 "
      "vertices"},
+    {"EdgeLengthInMillimetres",
+     kOutlined,
+     {"cloth.edge_length=60"},
+     "--set cloth.edge_length=60: exceeds the outline's diagonal of 1.414 m; allowed: lengths (m) below the "
+     "outline's extent of 1 x 1 m, with which its area changes by at most 10 %"},
+    {"EdgeLengthThatCutsOffCorners",
+     "duration = 1\n[cloth]\noutline = [[0, 0], [1, 0], [1, 0.02], [0.5, 0.08], [0, 0.02]]\n"
+     "edge_length = 0.9\n",
+     {},
+     "s.toml:4: cloth.edge_length = 0.9: would leave out 2 of 5 corners of the outline and its holes, and "
+     "change the area by -20 %; allowed: lengths (m) below the outline's extent of 1 x 0.08 m, with which "
+     "its area changes by at most 10 %"},
+    {"RemeshingInMillimetres",
+     kBase + "[remesh]\nedge_length = [30, 120]\n",
+     {},
+     "s.toml:6: remesh.edge_length = [30, 120]: the smallest, 30 m, exceeds the cloth's diagonal of 1.414 m; "
+     "allowed: lengths (m) whose smallest is below the cloth's extent of 1 x 1 m"},
     {"VelocityAndKeyframes",
      kBase + "[[pin]]\nmaterial = [[0, 0], [0, 1]]\nvelocity = [0, 0, 1]\nkeyframes = [ { time = 0 } ]\n",
      {},

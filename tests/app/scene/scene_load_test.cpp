@@ -364,17 +364,26 @@ TEST(SceneLoad, MeshesFoldsAndPlacesAnOutline)
     EXPECT_EQ(config.as_run["cloth"]["holes"][0][2][0], 0.6);
 }
 
-TEST(SceneLoad, NotesHowFarAnOutlineIsCoarsened)
+TEST(SceneLoad, TellsHowFarAnOutlineIsCoarsened)
 {
     std::string corners;
     for (int k = 0; k < 100; ++k)
         corners += std::to_string(std::cos(0.02 * std::numbers::pi * k)) + "," +
                    std::to_string(std::sin(0.02 * std::numbers::pi * k)) + "],[";
     corners.resize(corners.size() - 3);
-    const RunConfig config =
-        load("duration = 1\n[cloth]\noutline = [[" + corners + "]]\nedge_length = 0.126\n");
-    EXPECT_THAT(config.notes, ElementsAre(HasSubstr("50 of 100 corners are left out, as they are finer than "
-                                                    "cloth.edge_length; this changes the area by -0.2 %")));
+    const std::string disc =
+        "duration = 1\n[gravity]\n[cloth]\noutline = [[" + corners + "]]\nedge_length = ";
+    const RunConfig fine = load(disc + "0.126\n");
+    EXPECT_THAT(fine.notes, ElementsAre(HasSubstr("50 of 100 corners are left out, as they are finer than "
+                                                  "cloth.edge_length; this changes the area by -0.2 %")));
+    EXPECT_THAT(fine.warnings, IsEmpty());
+
+    // A polygon of 13 corners: its area is 13 / (2 pi) sin(2 pi / 13) = 0.962 of the circle's.
+    const RunConfig coarse = load(disc + "0.5\n");
+    EXPECT_THAT(coarse.notes, IsEmpty());
+    EXPECT_THAT(coarse.warnings,
+                ElementsAre(HasSubstr("87 of 100 corners are left out, as they are finer than "
+                                      "cloth.edge_length; this changes the area by -3.8 %")));
 }
 
 TEST(SceneLoad, FindsClothFilesBesideTheScene)

@@ -310,6 +310,21 @@ TEST(SceneWarnings, TellOfMoreVerticesThanRemeshingMayMake)
     EXPECT_THAT(of("edge_length = [0.01, 0.1]\nvertices = 300\n"), IsEmpty());
 }
 
+TEST(SceneWarnings, TellOfRemeshingBelowTheFirstMesh)
+{
+    const auto with = [](int vertices) {  // first mesh: 20 x 20 cells, of at least 441 vertices
+        return load_scene(SceneSource{"s.toml",
+                                      kBase + "[remesh]\nedge_length = [0.01, 0.5]\nvertices = " +
+                                          std::to_string(vertices) + "\n",
+                                      {kMoving, "cloth.resolution=[20, 20]"}})
+            .warnings;
+    };
+    EXPECT_THAT(with(440),
+                ElementsAre(AllOf(HasSubstr("remesh.vertices = 440: is below the "),
+                                  HasSubstr(" vertices of the first mesh, so cells become coarser"))));
+    EXPECT_THAT(with(900), IsEmpty());
+}
+
 TEST(SceneWarnings, TellOfAStandOffInOtherUnits)
 {
     const auto load = [](const std::string& thickness) {
