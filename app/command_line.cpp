@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "app/export/export_frames.h"
 #include "app/run/run.h"
 #include "app/run/run_export_options.h"
+#include "app/scene/mesh_forecast.h"
 #include "app/scene/scene_docs.h"
 #include "app/study/study.h"
 #include "app/text/printable.h"
@@ -199,7 +201,12 @@ int check(const CheckRequest& request)
 {
     LoadOptions options;
     options.tells_intersections = true;
-    const RunConfig config = load_scene(request.scene, request.overrides, options);
+    const SceneSource source = read_scene_source(request.scene, request.overrides);
+    if (const std::optional<std::string> line = forecast_long_meshing(source)) {
+        fmt::print("{}\n", *line);
+        std::fflush(stdout);
+    }
+    const RunConfig config = load_scene(source, options);
     for (const std::string& line : describe_scene(config)) fmt::print("{}\n", line);
     std::fflush(stdout);  // so that it precedes what follows on standard error
     tell_warnings(config.warnings);

@@ -23,6 +23,7 @@
 #include "app/run/state_readings.h"
 #include "app/run/step_row.h"
 #include "app/run/timeline.h"
+#include "app/scene/mesh_forecast.h"
 #include "app/scene/run_config.h"
 #include "app/scene/scene_effects.h"
 #include "app/text/error_line.h"
@@ -295,6 +296,11 @@ RunStatus run(const RunRequest& request)
     Stopwatch watch;
     Checkpoint start;
     start.source = read_scene_source(request.scene, request.overrides);
+    if (const std::optional<std::string> line = forecast_long_meshing(start.source);
+        line && !request.is_quiet) {
+        fmt::print("{}\n", *line);
+        std::fflush(stdout);
+    }
     const RunConfig config = load_scene(start.source);
     start.source.path =
         std::filesystem::absolute(start.source.path).string();  // resume may run in another working directory

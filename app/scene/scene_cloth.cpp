@@ -6,10 +6,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 #include <utility>
 
-#include "app/scene/scene_estimate.h"
 #include "app/scene/scene_json.h"
 #include "geometry/cloth_input/cloth_file.h"
 #include "geometry/cloth_input/cloth_grid.h"
@@ -67,11 +65,15 @@ ClothGrid to_grid(const Json& cloth)
     return grid;
 }
 
+SceneEstimate estimate_grid(const SceneDocument& document, const ClothGrid& grid)
+{
+    return to_estimate(blame(document, "cloth.folds", [&] { return estimate_cloth_grid(grid); }));
+}
+
 ClothMesh make_rectangle(const SceneDocument& document, const RunConfig& config, const Json& cloth)
 {
     const ClothGrid grid = to_grid(cloth);
-    const GridCount count = blame(document, "cloth.folds", [&] { return estimate_cloth_grid(grid); });
-    check_size(document, config, to_estimate(count));
+    check_size(document, config, estimate_grid(document, grid));
     return blame(document, "cloth.folds", [&] {
         ClothMesh mesh = make_cloth_grid(grid);
         fold_cloth(grid.folds, mesh);
@@ -144,13 +146,19 @@ void check_coarsening(const SceneDocument& document, const BorderLoops& border, 
         document.describe("cloth.outline"), left_out, 100.0 * change));
 }
 
-ClothMesh make_outlined(const SceneDocument& document, RunConfig& config, const Json& cloth)
+ClothOutline to_outline(const BorderLoops& border, const Json& cloth)
 {
-    const BorderLoops border = read_border(document, cloth);
     ClothOutline outline;
     outline.edge_length = to_double(cloth["edge_length"]);
     outline.folds = to_folds(cloth);
     outline.border = coarsen_border(border, outline.edge_length);
+    return outline;
+}
+
+ClothMesh make_outlined(const SceneDocument& document, RunConfig& config, const Json& cloth)
+{
+    const BorderLoops border = read_border(document, cloth);
+    const ClothOutline outline = to_outline(border, cloth);
     check_size(document, config, to_estimate(estimate_cloth_outline(outline)));
     check_coarsening(document, border, outline, config);
     return blame(document, outline.folds.empty() ? "cloth.outline" : "cloth.folds", [&] {
@@ -208,6 +216,14 @@ std::string cloth_fineness_key(const SceneDocument& document)
     const std::string shape = cloth_shape_key(document);
     if (shape == "cloth.file") return shape;
     return shape == "cloth.outline" ? "cloth.edge_length" : "cloth.resolution";
+}
+
+std::optional<SceneEstimate> estimate_scene_cloth(const SceneDocument& document, const Json& as_run)
+{
+    const Json& cloth = as_run["cloth"];
+    if (cloth.contains("file")) return std::nullopt;
+    if (!cloth.contains("outline")) return estimate_grid(document, to_grid(cloth));
+    return to_estimate(estimate_cloth_outline(to_outline(read_border(document, cloth), cloth)));
 }
 
 ClothMesh make_scene_cloth(const SceneDocument& document, RunConfig& config)
