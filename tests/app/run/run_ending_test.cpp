@@ -83,10 +83,10 @@ const EndingCase kEndings[] = {
              "{time = 0.9, translate = [-0.3, 0, -0.2]}]"),
      "the cloth itself in the step .*: pin.0 and pin.1 press two layers into each other.*"},
     {"an obstacle presses a free layer against a pinned one",
-     "[self_contact]\n" + pin("[[0.25, 0], [0.5, 0.5]]") +
+     "[self_contact]\n[friction]\n" + pin("[[0.25, 0], [0.5, 0.5]]") +
          box("ram", "[0.1, 0.7, 0.04]",
              "keyframes = [{time = 0.2, translate = [-0.2, 0, -0.05]}, "
-             "{time = 0.6, translate = [0.07, 0, -0.05]}, {time = 1, translate = [0.07, 0, 0.2]}]"),
+             "{time = 0.6, translate = [0.1, 0, -0.05]}, {time = 1, translate = [0.1, 0, 0.2]}]"),
      "the cloth itself in the step .*: ram presses another layer into it, and pin.0 holds it.*"},
     {"plates that meet far from others",
      box("other", "[0.3, 0.3, 0.1]", "translate = [9, 0, 0]") +
