@@ -133,7 +133,7 @@ double WorkingSet::mixed(int i, int j) const
     return members_[j].kind == Kind::Released ? -rest : rest;
 }
 
-std::optional<CondensedQp> WorkingSet::condense() const
+std::optional<CondensedQp> WorkingSet::condense(const MemberSprings& springs) const
 {
     const Eigen::MatrixXd& gram = columns_.gram();
     std::vector<int> released, stopped;  // rows count as stopped
@@ -144,7 +144,7 @@ std::optional<CondensedQp> WorkingSet::condense() const
         qp.linear[k] = gap_of(members_[k], base_->iterate);
     }
     if (!released.empty() && !release_pins(released, stopped, qp)) return std::nullopt;
-    take_out_springs(springs_of_members(), qp);
+    take_out_springs(springs, qp);
     add_discs(qp);
     return qp;
 }
@@ -237,7 +237,8 @@ bool WorkingSet::solve(Iterate& iterate, int& nlopt_evaluations, DenseBudget& bu
     const double released = static_cast<double>(std::count_if(
         members_.begin(), members_.end(), [](const Member& m) { return m.kind == Kind::Released; }));
     if (!budget.spend(2.0 * released * released * static_cast<double>(size()))) return false;
-    const std::optional<CondensedQp> qp = condense();
+    const MemberSprings springs = springs_of_members();
+    const std::optional<CondensedQp> qp = condense(springs);
     if (!qp) return false;
     const std::optional<CondensedAnswer> answer = solve_condensed_qp(*qp, multipliers_, budget);
     if (!answer) return false;
@@ -249,7 +250,6 @@ bool WorkingSet::solve(Iterate& iterate, int& nlopt_evaluations, DenseBudget& bu
     Eigen::VectorXd coefficients(size());
     for (int k = 0; k < size(); ++k)
         coefficients[k] = members_[k].kind == Kind::Released ? -answer->w[k] : answer->z[k];
-    const MemberSprings springs = springs_of_members();
     coefficients(springs.members) = beyond_springs(springs, *answer);
     Eigen::VectorXd forward = base_->forward;
     columns_.accumulate(coefficients, forward);

@@ -61,7 +61,7 @@ class WorkingSet {
     void add_released(int first, const std::vector<int>& place, std::vector<SparseVector>& columns);
     const ScaledRow& row_of(const Member& member) const { return base_->constraints->rows[member.index]; }
 
-    std::optional<CondensedQp> condense() const;
+    std::optional<CondensedQp> condense(const MemberSprings& springs) const;
     bool release_pins(const std::vector<int>& released, const std::vector<int>& stopped,
                       CondensedQp& qp) const;
     MemberSprings springs_of_members() const;
