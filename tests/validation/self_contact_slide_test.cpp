@@ -2,7 +2,6 @@
 // A stiff sheet slides without friction on another one: borders pass vertices of the other layer.
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cloth_pieces.h"
 #include "cloth_run.h"
 #include "grid_patterns.h"
 
@@ -17,18 +17,6 @@ namespace arris {
 namespace {
 
 constexpr double kG = 9.81, kThickness = 1e-3;  // m/s^2, m
-
-/// Adds a sheet as a piece of its own: its corner in the world, turned about the vertical.
-void add_piece(const ClothMesh& sheet, const Vec3& corner, double degrees, ClothMesh& cloth)
-{
-    const int first = cloth.vertex_count();
-    const Mat3 turn = Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, Vec3::UnitZ()).toRotationMatrix();
-    for (const Face& f : sheet.faces) cloth.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
-    for (const Vec2& p : sheet.material) {
-        cloth.material.push_back(p + Vec2(first, 0.0));
-        cloth.world.push_back(corner + turn * Vec3(p.x(), p.y(), 0.0));
-    }
-}
 
 /// Which sheet slides on the other one, which is pinned.
 enum class Slider {

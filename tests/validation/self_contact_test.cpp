@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cloth_pieces.h"
 #include "cloth_run.h"
 #include "grid_patterns.h"
 #include "solver/contact/audit.h"
@@ -20,18 +21,6 @@ constexpr double kG = 9.81, kThickness = 1e-3, kStep = 0.005;
 Material make_material(double damping = 0.0)
 {
     return {0.15, 500.0, 0.3, 1e-5, damping, kThickness};
-}
-
-/// Adds a sheet of .3 m as a piece of its own: its corner in the world, and turned about the vertical.
-void add_piece(const ClothMesh& sheet, const Vec3& corner, double degrees, ClothMesh& cloth)
-{
-    const int first = cloth.vertex_count();
-    const Mat3 turn = Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, Vec3::UnitZ()).toRotationMatrix();
-    for (const Face& f : sheet.faces) cloth.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
-    for (const Vec2& p : sheet.material) {
-        cloth.material.push_back(p + Vec2(first, 0.0));
-        cloth.world.push_back(corner + turn * Vec3(p.x(), p.y(), 0.0));
-    }
 }
 
 ClothMesh make_square(int cells, GridPattern pattern)
