@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "geometry/sort_unique.h"
 #include "physics/deformation_gradient.h"
@@ -37,16 +38,19 @@ class PatchFitter {
         std::vector<VelocityField> fields;
         for (const ChangedPatch& patch : patches)
             fields.push_back(old_field(patch, before_.velocity, before_.material_velocity));
+        double gained = 0.0;
         for (const StrainedPatch& strained : find_strained(patches, fields)) {
             const ChangedPatch& patch = patches[strained.index];
             const double gain = relax_patch(patch, strained.energy_before);
             if (!(gain > 0.0)) continue;
+            gained += gain;
             const double small = std::min(report.strain, kPatchStrain);
             const double strain = strain_of(patch, gain, strained, small);
             if (strain > kPatchStrain) report.strained.push_back(vertices_before(patch));
             report.strain = std::max(report.strain, strain);
             if (report.strain > most_strain) return report;
         }
+        if (gained > 0.0) report.cloth_strain = gained / moving_energy_of_cloth();
         for (std::size_t i = 0; i < patches.size(); ++i) fit_patch(patches[i], fields[i]);
         return report;
     }
@@ -83,8 +87,14 @@ class PatchFitter {
     VelocityField old_field(const ChangedPatch& patch, const std::vector<Vec3>& velocity,
                             const std::vector<Vec2>& flow) const
     {
+        return old_field(patch.faces_before, velocity, flow);
+    }
+
+    VelocityField old_field(const std::vector<int>& faces, const std::vector<Vec3>& velocity,
+                            const std::vector<Vec2>& flow) const
+    {
         VelocityField field;
-        for (const int f : patch.faces_before) {
+        for (const int f : faces) {
             const Face& face = before_.mesh.faces[f];
             std::array<Vec2, 3> X;
             std::array<Vec3, 3> x, w;
@@ -120,11 +130,13 @@ class PatchFitter {
         return relax(scene_, creases_, relaxed_, after_) - before;
     }
 
-    double area_of(const ChangedPatch& patch) const
+    double area_of(const ChangedPatch& patch) const { return area_of(patch.faces); }
+
+    double area_of(const std::vector<int>& faces) const
     {
         const std::vector<Vec2>& X = after_.mesh.material;
         double area = 0.0;
-        for (const int f : patch.faces) {
+        for (const int f : faces) {
             const auto& [a, b, c] = after_.mesh.faces[f];
             area += 0.5 * twice_area(X[a], X[b], X[c]);
         }
@@ -138,6 +150,22 @@ class PatchFitter {
     {
         const double potential = scene_.gravity ? weight_over(scene_, area, cell) : before;
         return kinetic + potential + unseen_energy(scene_, area) / kAllowedStrain;
+    }
+
+    /// The moving energy of the whole cloth, over its shortest cell, J.
+    double moving_energy_of_cloth() const
+    {
+        const auto all_faces = [](const ClothMesh& mesh) {
+            std::vector<int> faces(static_cast<std::size_t>(mesh.face_count()));
+            std::iota(faces.begin(), faces.end(), 0);
+            return faces;
+        };
+        const std::vector<int> faces = all_faces(before_.mesh);
+        const VelocityField field = old_field(faces, before_.velocity, before_.material_velocity);
+        const double elastic =
+            scene_.gravity ? 0.0 : find_patch_energy(scene_, creases_before_, before_.mesh, faces);
+        return moving_energy(elastic, compute_kinetic_energy(scene_.material.density, field),
+                             area_of(all_faces(after_.mesh)), shortest_cell(scene_));
     }
 
     std::vector<VertexId> vertices_before(const ChangedPatch& patch) const

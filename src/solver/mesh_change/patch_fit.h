@@ -14,6 +14,9 @@ struct TransferReport {
     /// Largest strain of a patch that could not give way: its rise in elastic energy, relative to its kinetic
     /// energy plus its weight over one cell.
     double strain = 0.0;
+    /// Strain of the whole cloth: the sum of the patches' rises, relative to the cloth's kinetic energy plus
+    /// its weight over its shortest cell.
+    double cloth_strain = 0.0;
     /// Old vertices, ascending, of each tested patch whose strain stays above kPatchStrain.
     std::vector<std::vector<VertexId>> strained;
 };

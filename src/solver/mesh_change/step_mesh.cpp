@@ -104,8 +104,9 @@ class MeshTries {
     /// Edges to split or merge that this step may try.
     const std::vector<std::array<VertexId, 2>>& misfits() const { return misfits_; }
 
-    /// The best candidate. No mesh where the best one strains the cloth by more than kMostStrain: the step
-    /// then keeps the mesh it has. This no longer holds once attempts at the step have given vertices up.
+    /// The best candidate. No mesh where the best one strains a patch by more than kMostStrain, or the whole
+    /// cloth by more than kMostClothStrain: the step then keeps the mesh it has. This no longer holds once
+    /// attempts at the step have given vertices up.
     TriedMesh find_best()
     {
         TriedMesh best = choose();
@@ -114,8 +115,9 @@ class MeshTries {
             best = choose();
         }
         const bool is_crossing = crosses_itself(best);
-        if (!is_crossing &&
-            (best.strain() <= kMostStrain || !failed_.given_up.empty() || !failed_.made_at.empty()))
+        const bool is_strained =
+            best.strain() > kMostStrain || best.transferred.cloth_strain > kMostClothStrain;
+        if (!is_crossing && (!is_strained || !failed_.given_up.empty() || !failed_.made_at.empty()))
             return best;
         TriedMesh none;
         none.outcome.refused = std::move(best.outcome.refused);
