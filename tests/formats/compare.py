@@ -57,6 +57,10 @@ def check_usd(run_dir, frames):
         require(points.shape == vertices["x"].shape, f"USD at time code {time}: {len(points)} points")
         error = np.abs(points - vertices["x"]).max()
         require(error < FLOAT_TOLERANCE, f"USD at time code {time}: points differ by {error} m")
+        require(cloth.get("st"), f"USD at time code {time}: no UVs")
+        uv = np.array(cloth["st"]).reshape(-1, 2)
+        require(uv.shape == vertices["u"].shape and np.abs(uv - vertices["u"]).max() < FLOAT_TOLERANCE,
+                f"USD at time code {time}: other UVs")
     require(any("/obstacles/" in path for path in read["0.0"]), "USD: no obstacle is below the root")
     return f"USD at {len(wanted)} time codes, {2 * len(changes)} of them between different meshes"
 

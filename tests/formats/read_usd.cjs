@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Writes, as JSON, the points and triangles of each mesh of a USD stage at each time code, as OpenUSD gives
+// Writes, as JSON, points, triangles and UVs of each mesh of a USD stage at each time code, as OpenUSD gives
 // them to a renderer. The file is named by ARRIS_OUTPUT, since OpenUSD prints on both streams.
 // usage: node --require ./browser_shim.cjs read_usd.cjs STAGE TIME...
 const fs = require('fs');
@@ -26,7 +26,8 @@ class Renderer {
       updateIndices(indices) { mesh.faces = Array.from(indices); },
       updatePoints(points) { mesh.points = Array.from(points); },
       setTransform(matrix) { mesh.transform = Array.from(matrix); },
-      updateNormals() {}, setMaterial() {}, updatePrimvar() {}, commit() {},
+      updatePrimvar(name, data) { if (name === 'st') mesh.st = Array.from(data); },
+      updateNormals() {}, setMaterial() {}, commit() {},
     };
   }
   createBPrim() { return ignored(); }
