@@ -2,10 +2,12 @@
 """Makes a scene that fails smaller while it still fails in the same way, for scripts/fuzz."""
 import copy
 import itertools
+import time
 
 from random_scene import RandomScene
 
-MOST_RUNS = 150  # of the program, for one failure
+MOST_RUNS = 150       # of the program, for one failure
+MOST_SECONDS = 600    # after these no further run is begun for it
 PLAIN_MATERIAL = {"density": 0.05, "youngs_modulus": 50.0, "poisson_ratio": 0.01, "bending_stiffness": 1e-5,
                   "damping": 0.0, "thickness": 1e-3}
 PLAIN_CLOTH = {"pattern": "diagonal", "pattern_angle": 0, "velocity": [0.0, 0.0, 0.0]}
@@ -21,7 +23,7 @@ def list_smaller(scene):
     for part in ("obstacle", "pin"):
         for k in range(len(scene.get(part, []))):
             yield changed(lambda s: s[part].pop(k) if len(s[part]) > 1 else s.pop(part))
-    for part in ("friction", "wind", "gravity"):
+    for part in ("self_contact", "remesh", "friction", "wind", "gravity"):
         if part in scene:
             yield changed(lambda s: s.pop(part))
     if scene["duration"] > 2 * scene["time"]["step"]:
@@ -87,11 +89,12 @@ def list_candidates(failing):
 def shrink(failing, kind_of):
     """The smallest scene found whose fault is of the same kind. `kind_of` runs a scene and returns the kind of its first
     fault, or None."""
+    end = time.monotonic() + MOST_SECONDS
     kind, runs = kind_of(failing), 0
     is_smaller = kind is not None
     while is_smaller:
         is_smaller, at = False, 0
-        while runs < MOST_RUNS:
+        while runs < MOST_RUNS and time.monotonic() < end:
             candidate = next(itertools.islice(list_candidates(failing), at, None), None)
             if candidate is None:
                 break

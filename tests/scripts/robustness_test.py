@@ -105,11 +105,12 @@ class Shrinking(unittest.TestCase):
     def test_what_does_not_matter_is_dropped(self):
         made = SceneMaker(random.Random(5)).make("scene")
         made.scene["obstacle"] = [{"name": "o0", "box": [1, 1, 1]}, {"name": "o1", "points": [[0, 0, 0]]}]
-        made.scene["wind"] = {"velocity": [1, 0, 0]}
+        made.scene.update(wind={"velocity": [1, 0, 0]}, self_contact={}, remesh={"vertices": 4000})
         has_nail = lambda candidate: any("points" in o for o in candidate.scene.get("obstacle", []))
         small = shrink(made, lambda candidate: "fails" if has_nail(candidate) else None).scene
         self.assertEqual([o["name"] for o in small["obstacle"]], ["o1"])
-        self.assertNotIn("wind", small)
+        for effect in ("wind", "self_contact", "remesh"):
+            self.assertNotIn(effect, small)
         self.assertLessEqual(max(small["cloth"]["resolution"]), 2)
 
     def test_faces_of_a_mesh_are_dropped(self):
