@@ -193,6 +193,8 @@ std::string explain_unknown(std::string_view parent, std::string_view leaf)
         std::find(kSizesOfWires.begin(), kSizesOfWires.end(), leaf) != kSizesOfWires.end())
         return "unknown key: obstacles, wires and nails too, have no thickness of their own; "
                "cloth.material.thickness is the distance that the cloth keeps from them";
+    if (parent.empty() && leaf == "scene")
+        return "unknown key: a file with it is a study, which `arris study` runs";
     const std::string meant = closest_key(parent, leaf);
     if (meant.empty()) return "unknown key";
     const SceneKey* key = find_scene_key(meant);

@@ -12,10 +12,16 @@
 namespace arris {
 namespace {
 
+bool is_mesh_size(const std::string& key)
+{
+    return key == "cloth.resolution" || key == "cloth.edge_length";
+}
+
 std::string axis_label(const std::string& key, bool has_error)
 {
-    if (key == "cloth.resolution" && !has_error) return "vertices of the cloth";
+    if (is_mesh_size(key) && !has_error) return "vertices of the cloth";
     if (key == "cloth.resolution") return "cells along the cloth's longer side";
+    if (key == "cloth.edge_length") return "edge length (m)";
     if (key == "time.step") return "time step (s)";
     return key;
 }
@@ -154,7 +160,7 @@ std::string tell_quantity(const ErrorRule& rule)
 
 double abscissa(const RunOutcome& outcome, const std::string& key, bool has_error)
 {
-    return !has_error && key == "cloth.resolution" ? outcome.vertices : number_of(outcome, key);
+    return !has_error && is_mesh_size(key) ? outcome.vertices : number_of(outcome, key);
 }
 
 double cpu_seconds_a_step(const RunOutcome& outcome)

@@ -31,7 +31,7 @@ struct CheapestRun {
 };
 
 /// Where a run stands on a numeric key's axis: at its number; in a study without error, which measures cost,
-/// cloth.resolution stands for the cloth's vertices.
+/// cloth.resolution and cloth.edge_length stand for the cloth's vertices.
 double abscissa(const RunOutcome& outcome, const std::string& key, bool has_error);
 
 /// 0 without a step.

@@ -124,6 +124,12 @@ const std::vector<WrongScene> kWrongScenes = {
      "units, up, "
      "box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, keyframes, "
      "friction"},
+    {"StudyForAScene",
+     "scene = \"strip.toml\"\n" + kBase,
+     {},
+     "s.toml:1: scene = \"strip.toml\": unknown key: a file with it is a study, which `arris study` runs; "
+     "allowed: title, duration, time, cloth, pin, gravity, wind, pull, friction, self_contact, eol, remesh, "
+     "obstacle, probe, solver, output"},
     {"DuplicateKey", "duration = 1\nduration = 2\n", {}, "s.toml:2: is not TOML: "},
     {"UnclosedHeader", "[cloth\n", {}, "s.toml:1: is not TOML: "},
     {"ControlCharacter", "title = \"a\033b\"\n", {}, "s.toml:1: is not TOML: "},

@@ -66,6 +66,15 @@ TEST_F(StudyAnalysis, FitsTheOrderOfEachMethodAndLeavesFailedRunsOut)
     EXPECT_NEAR(*curves[1].slope, 1.0, 1e-12);
 }
 
+TEST(StudyAxes, EdgeLengthStandsForVerticesWhereTimeAloneIsMeasured)
+{
+    RunOutcome outcome;
+    outcome.run.settings = {number("cloth.edge_length", 0.05)};
+    outcome.vertices = 500;
+    EXPECT_EQ(abscissa(outcome, "cloth.edge_length", false), 500.0);
+    EXPECT_EQ(abscissa(outcome, "cloth.edge_length", true), 0.05);
+}
+
 TEST_F(StudyAnalysis, TheFrontIsWhatNoRunBeatsInBoth)
 {
     add(0.1, true, 4, 0.1);   // best
