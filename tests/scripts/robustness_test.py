@@ -4,6 +4,7 @@ import copy
 import json
 import pathlib
 import random
+import subprocess
 import sys
 import tempfile
 import tomllib
@@ -120,6 +121,17 @@ class Shrinking(unittest.TestCase):
         has_corner = lambda candidate: "v 0 0 1" in candidate.meshes.get("random.obj", "")
         small = shrink(RandomScene(scene, {"random.obj": text}), lambda c: "fails" if has_corner(c) else None)
         self.assertEqual(sum(line.startswith("f ") for line in small.meshes["random.obj"].splitlines()), 1)
+
+
+class EveryScene(unittest.TestCase):
+    def test_is_run_in_several_variants(self):
+        root = pathlib.Path(__file__).resolve().parents[2]
+        lines = subprocess.run([root / "scripts/scenes", "--list"], check=True, capture_output=True, text=True).stdout
+        runs = [line.split()[:3] for line in lines.splitlines()]
+        scenes = {path.stem for path in (root / "data/scenes").glob("*.toml")}
+        self.assertEqual({run[0] for run in runs}, scenes)
+        for scene in scenes:
+            self.assertGreaterEqual(len({tuple(run) for run in runs if run[0] == scene}), 6, scene)
 
 
 class RandomScenes(unittest.TestCase):
