@@ -226,8 +226,8 @@ class SceneMaker:
     def pinned_box(self, cloth):
         """A box of material that holds a vertex at least."""
         if "outline" in cloth:
-            corner = self.chance.choice(cloth["outline"])
-            return [corner, corner]
+            corner, reach = self.chance.choice(cloth["outline"]), cloth["edge_length"]  # a blunt corner may be left out
+            return [[x - reach for x in corner], [x + reach for x in corner]]
         u, v = cloth["size"]
         box = self.chance.choice([[[0, 0], [0, 0]], [[u, v], [u, v]], [[0, 0], [0, v]], [[0, v], [u, v]],
                                   [[0.3 * u, 0.3 * v], [0.7 * u, 0.7 * v]]])

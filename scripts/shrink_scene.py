@@ -30,8 +30,10 @@ def list_smaller(scene):
         yield changed(lambda s: s.update(duration=round(0.5 * s["duration"], 6)))
         yield changed(lambda s: s.update(duration=round(0.8 * s["duration"], 6)))
     if "outline" in scene["cloth"]:
-        yield changed(lambda s: s["cloth"].update(edge_length=2 * s["cloth"]["edge_length"]))
-        yield changed(lambda s: s["cloth"].update(edge_length=1.25 * s["cloth"]["edge_length"]))
+        for factor in (2, 1.25):
+            longer = round(factor * scene["cloth"]["edge_length"], 6)
+            if longer < max(map(max, scene["cloth"]["outline"])):
+                yield changed(lambda s: s["cloth"].update(edge_length=longer))
         if "holes" in scene["cloth"]:
             yield changed(lambda s: s["cloth"].pop("holes"))
     cells = scene["cloth"].get("resolution", [1])
