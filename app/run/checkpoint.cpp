@@ -251,6 +251,8 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
     body.number(checkpoint.rows);
     for (const StrainPeak* peak : peaks_of(checkpoint.strain)) write_peak(body, *peak);
     body.number(checkpoint.strain.plane_rows);
+    body.number(checkpoint.strain.last_stretch);
+    body.number(checkpoint.strain.last_compression);
     write_peak(body, checkpoint.friction);
 
     write_sealed(path, kKind, body.bytes());
@@ -272,6 +274,8 @@ Checkpoint read_checkpoint(const std::string& path)
     checkpoint.rows = in.number<std::int64_t>();
     for (StrainPeak* peak : peaks_of(checkpoint.strain)) *peak = read_peak(in);
     checkpoint.strain.plane_rows = in.number<std::int64_t>();
+    checkpoint.strain.last_stretch = in.number<double>();
+    checkpoint.strain.last_compression = in.number<double>();
     checkpoint.friction = read_friction_peak(in);
     if (!in.is_at_end()) in.fail("is damaged: it is longer than its counts say");
     if (const std::string defect = find_defect(checkpoint); !defect.empty()) in.fail("is damaged: " + defect);

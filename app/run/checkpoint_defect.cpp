@@ -142,6 +142,8 @@ std::string find_defect(const Checkpoint& checkpoint)
     if (!std::isfinite(friction.residual) || !std::isfinite(friction.time) || !friction.world.allFinite() ||
         friction.rows < 0)
         return "the friction's peak is not valid";
+    if (!std::isfinite(checkpoint.strain.last_stretch) || !std::isfinite(checkpoint.strain.last_compression))
+        return "a strain is not finite";
     for (const StrainPeak* peak :
          {&checkpoint.strain.stretch, &checkpoint.strain.compression, &checkpoint.strain.in_plane})
         if (!std::isfinite(peak->strain) || !std::isfinite(peak->time) || !peak->world.allFinite() ||

@@ -22,17 +22,14 @@ constexpr double kGreatestInPlane = 0.05;
 // preset "cotton" folds within 10.
 constexpr std::int64_t kRowsToFold = 20;
 
-void note(const State& state, const FaceStrain& found, StrainPeak& peak)
+void note(const State& state, const VertexStrain& found, StrainPeak& peak)
 {
-    if (found.face < 0 || !(std::abs(found.strain) > std::abs(peak.strain))) return;
-    peak = {found.strain, state.time};
-    for (const int v : state.mesh.faces[static_cast<std::size_t>(found.face)]) {
-        peak.world += state.mesh.world[static_cast<std::size_t>(v)] / 3.0;
-        peak.material += state.mesh.material[static_cast<std::size_t>(v)] / 3.0;
-    }
+    if (found.vertex < 0 || !(std::abs(found.strain) > std::abs(peak.strain))) return;
+    const std::size_t v = static_cast<std::size_t>(found.vertex);
+    peak = {found.strain, state.time, state.mesh.world[v], state.mesh.material[v]};
 }
 
-/// Whether two peaks are of one face at one moment.
+/// Whether two peaks are at one vertex at one moment.
 bool is_same(const StrainPeak& a, const StrainPeak& b)
 {
     return a.time <= b.time && a.time >= b.time && a.material == b.material;
@@ -74,8 +71,11 @@ std::vector<std::string> join_by_cause(const std::vector<Finding>& found)
 
 void note_strain(const State& state, const ClothStrain& strain, StrainPeaks& peaks)
 {
-    note(state, strain.stretch, peaks.stretch);
-    note(state, strain.compression, peaks.compression);
+    note(state, {std::min(strain.stretch.strain, peaks.last_stretch), strain.stretch.vertex}, peaks.stretch);
+    note(state, {std::max(strain.compression.strain, peaks.last_compression), strain.compression.vertex},
+         peaks.compression);
+    peaks.last_stretch = strain.stretch.strain;
+    peaks.last_compression = strain.compression.strain;
     peaks.plane_rows = strain.in_plane.strain < -kGreatestInPlane ? peaks.plane_rows + 1 : 0;
     if (peaks.plane_rows >= kRowsToFold) note(state, strain.in_plane, peaks.in_plane);
 }

@@ -15,8 +15,8 @@ namespace arris {
 struct StrainPeak {
     double strain = 0.0;           ///< stretch - 1
     double time = 0.0;             ///< s
-    Vec3 world = Vec3::Zero();     ///< m, middle of the face
-    Vec2 material = Vec2::Zero();  ///< m, middle of the face
+    Vec3 world = Vec3::Zero();     ///< m, of the vertex
+    Vec2 material = Vec2::Zero();  ///< m, of the vertex
 };
 
 /// The peaks of a run. A resumed run continues with those of its checkpoint.
@@ -24,10 +24,12 @@ struct StrainPeaks {
     StrainPeak stretch, compression;
     StrainPeak in_plane;          ///< compression where the cloth stays plane
     std::int64_t plane_rows = 0;  ///< rows up to now in which plane cloth was compressed by more than 5 %
+    double last_stretch = 0.0, last_compression = 0.0;  ///< strains of the last row
 };
 
-/// Takes over the strains of `state` that exceed the peaks so far. Plane cloth counts only after some rows:
-/// it takes cloth some steps to fold.
+/// Takes over the strains of a row that exceed the peaks so far. A stretch or compression counts as far as
+/// the row before has it, too: where mesh changes strain a patch for a step, that says nothing about the
+/// scene. Plane cloth counts only after some rows: it takes cloth some steps to fold.
 void note_strain(const State& state, const ClothStrain& strain, StrainPeaks& peaks);
 
 /// A line for each peak that cloth does not bear: stretch or compression above 20 %, and compression above 5

@@ -8,6 +8,25 @@
 
 namespace arris {
 
+namespace {
+
+/// Means of the principal stretches of the faces around a vertex, by area.
+Vec2 mean_stretches(const std::vector<Vec2>& stretches, const ClothMesh& mesh, const VertexFaces& stars,
+                    int vertex)
+{
+    Vec2 sum = Vec2::Zero();
+    double area = 0.0;
+    for (const int f : stars[vertex]) {
+        const auto& [a, b, c] = mesh.faces[f];
+        const double part = twice_area(mesh.material[a], mesh.material[b], mesh.material[c]);
+        sum += part * stretches[f];
+        area += part;
+    }
+    return sum / area;
+}
+
+}  // namespace
+
 ClothStrain measure_cloth_strain(const Material& material, const std::vector<Vec2>& stretches,
                                  const ClothMesh& mesh, const VertexFaces& stars)
 {
@@ -17,18 +36,15 @@ ClothStrain measure_cloth_strain(const Material& material, const std::vector<Vec
     ClothStrain found;
     PlaneStars plane(mesh.faces, stars, mesh.vertex_count(),
                      [&](int v) { return find_plane_normal(v, mesh.faces, stars, mesh.world, kPlane); });
-    for (int f = 0; f < mesh.face_count(); ++f) {
-        const double most = stretches[f].maxCoeff() - 1.0, least = stretches[f].minCoeff() - 1.0;
-        if (most > found.stretch.strain) found.stretch = {most, f};
-        if (least < found.compression.strain) found.compression = {least, f};
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+        const Vec2 around = mean_stretches(stretches, mesh, stars, v);
+        const double most = around.maxCoeff() - 1.0, least = around.minCoeff() - 1.0;
+        if (most > found.stretch.strain) found.stretch = {most, v};
+        if (least < found.compression.strain) found.compression = {least, v};
         if (!(least < found.in_plane.strain)) continue;
         // Cloth that is pulled contracts across the pull without compressive tension.
-        const Vec2 tensions =
-            principal_tensions(stretches[f], material.youngs_modulus, material.poisson_ratio);
-        if (!(tensions.minCoeff() < 0.0)) continue;
-        const Face& face = mesh.faces[f];
-        if (std::all_of(face.begin(), face.end(), [&](int v) { return plane.is_plane_around(v); }))
-            found.in_plane = {least, f};
+        const Vec2 tensions = principal_tensions(around, material.youngs_modulus, material.poisson_ratio);
+        if (tensions.minCoeff() < 0.0 && plane.is_plane_around(v)) found.in_plane = {least, v};
     }
     return found;
 }

@@ -10,18 +10,20 @@
 
 namespace arris {
 
-/// A principal strain, stretch - 1, of a face; of no face where there is none.
-struct FaceStrain {
+/// A principal strain, stretch - 1, around a vertex: the mean over the vertex's faces, weighted by their area
+/// of material. Around a vertex that flows towards an edge of its mesh a face becomes very thin for a step,
+/// and its own strain says nothing about the cloth. No vertex where there is no strain.
+struct VertexStrain {
     double strain = 0.0;
-    int face = -1;
+    int vertex = -1;
 };
 
 /// The extreme strains of a cloth at one moment.
 struct ClothStrain {
-    FaceStrain stretch;      ///< the greatest principal strain, > 0
-    FaceStrain compression;  ///< the least principal strain, < 0
-    FaceStrain in_plane;     ///< the greatest compression, < 0, of a face under compressive tension whose
-                             ///< surroundings lie in a plane: real cloth would fold there
+    VertexStrain stretch;      ///< the greatest principal strain, > 0
+    VertexStrain compression;  ///< the least principal strain, < 0
+    VertexStrain in_plane;     ///< the greatest compression, < 0, around a vertex under compressive tension
+                               ///< whose surroundings lie in a plane: real cloth would fold there
 
     /// Size of the greatest principal strain, stretch or compression.
     double greatest() const { return std::max(stretch.strain, -compression.strain); }

@@ -62,5 +62,25 @@ TEST(ClothStrain, IsThatOfEachDeformation)
     }
 }
 
+/// A square with a vertex just inside its border: the face between them is 1e-6 as high as long. The vertex
+/// is off its place by as much, so that this face is stretched to twice its height.
+TEST(ClothStrain, OfAVeryThinFaceCountsByItsArea)
+{
+    constexpr double kHeight = 1e-6;
+    ClothMesh mesh;
+    mesh.material = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1), Vec2(0.5, kHeight)};
+    mesh.faces = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+    for (const Vec2& X : mesh.material) mesh.world.push_back(Vec3(X.x(), X.y(), 0));
+    mesh.world[4].y() += kHeight;
+    const MeshTopology topology = make_topology(mesh.vertex_count(), mesh.faces);
+    const std::vector<Vec2> stretches =
+        compute_stretches(list_elements(mesh, topology, HingeUse::None), mesh.world);
+    EXPECT_NEAR(stretches[0].maxCoeff(), 2.0, 1e-9);
+    const Material material = {0.15, 500.0, 0.3, 1e-5, 0.0, 1e-3};
+    EXPECT_LT(measure_cloth_strain(material, stretches, mesh, VertexFaces(mesh.vertex_count(), mesh.faces))
+                  .greatest(),
+              5.0 * kHeight);
+}
+
 }  // namespace
 }  // namespace arris

@@ -39,6 +39,8 @@ Checkpoint make_checkpoint()
     checkpoint.strain.compression = {-0.5, 0.1, Vec3(4, 5, 6), Vec2(1, 2)};
     checkpoint.strain.in_plane = {-0.0625, 0.1, Vec3(7, 8, 9), Vec2(3, 4)};
     checkpoint.strain.plane_rows = 11;
+    checkpoint.strain.last_stretch = 0.125;
+    checkpoint.strain.last_compression = -0.375;
     checkpoint.friction = {0.375, 0.15, Vec3(-1, 1e-310, 2), 5};
     return checkpoint;
 }
@@ -84,6 +86,8 @@ TEST(Checkpoint, ReadsBackToTheSameBytes)
     EXPECT_EQ(read.strain.compression.strain, -0.5);
     EXPECT_EQ(read.strain.in_plane.world, Vec3(7, 8, 9));
     EXPECT_EQ(read.strain.plane_rows, 11);
+    EXPECT_EQ(read.strain.last_stretch, 0.125);
+    EXPECT_EQ(read.strain.last_compression, -0.375);
     EXPECT_EQ(read.friction.residual, 0.375);
     EXPECT_EQ(read.friction.time, 0.15);
     EXPECT_EQ(read.friction.world, Vec3(-1, 1e-310, 2));
@@ -170,6 +174,7 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("strain", [&](Checkpoint& c) { c.strain.stretch.strain = kNan; });
     refused("place of a strain", [&](Checkpoint& c) { c.strain.in_plane.world.z() = INFINITY; });
     refused("rows of plane cloth", [](Checkpoint& c) { c.strain.plane_rows = -1; });
+    refused("strain of the last row", [&](Checkpoint& c) { c.strain.last_compression = kNan; });
     refused("friction", [&](Checkpoint& c) { c.friction.residual = kNan; });
     refused("place of friction", [&](Checkpoint& c) { c.friction.world.x() = INFINITY; });
     refused("rows of friction", [](Checkpoint& c) { c.friction.rows = -1; });
