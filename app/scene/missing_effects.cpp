@@ -106,6 +106,13 @@ void find_meetings_over(const RunConfig& config, const std::vector<UnderCloth>& 
                 narrow, kMayPass));
 }
 
+bool is_missing(const std::vector<MissingEffect>& missing, const char* effect)
+{
+    return std::any_of(missing.begin(), missing.end(),
+                       [&](const MissingEffect& one) { return one.name == effect; });
+}
+
+/// Cloth that no pin holds over what it starts above.
 void find_slides(const RunConfig& config, const std::vector<UnderCloth>& obstacles,
                  std::vector<MissingEffect>& missing)
 {
@@ -122,6 +129,9 @@ void find_slides(const RunConfig& config, const std::vector<UnderCloth>& obstacl
             fmt::format("the cloth reaches beyond {} and no pin holds it to the end: it slides off unless it "
                         "is balanced",
                         overhung));
+    if (!overhung.empty() && !is_missing(missing, "self_contact"))
+        add(missing, "self_contact",
+            fmt::format("the cloth drapes over {} or falls off, and its folds {}", overhung, kMayPass));
     const std::string sloping = names_of(obstacles, [](const UnderCloth& under) {
         return !under.is_overhung && in_degrees(under.steepest) > kLevel;
     });
