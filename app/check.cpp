@@ -258,9 +258,11 @@ void describe_run(const RunConfig& config, Lines& lines)
                                 config.duration,
                                 config.settings.integrator == Integrator::Bdf2 ? "BDF2" : "implicit Euler",
                                 estimate.steps, config.settings.step, estimate.frames));
-    lines.push_back(fmt::format("expected: about {} of memory (this machine has {}), {} of disk",
-                                human_bytes(estimate.memory_bytes), human_bytes(machine_memory_bytes()),
-                                human_bytes(estimate.disk_bytes)));
+    lines.push_back(fmt::format(
+        "expected: about {} of memory{} (this machine has {}), {} of disk",
+        human_bytes(estimate.memory_bytes),
+        config.scene.friction ? ", some hundred MB more where friction acts in thousands of contacts" : "",
+        human_bytes(machine_memory_bytes()), human_bytes(estimate.disk_bytes)));
 }
 
 }  // namespace

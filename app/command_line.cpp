@@ -225,7 +225,8 @@ int export_formats(const ExportRequest& request)
     tell_warnings(warn_of_missing_files(request.directory));
     export_frames(request.directory, request.formats, options);
     for (const std::string& format : request.formats)
-        fmt::print("{:<7} {}\n", format, printable(exported_path(request.directory, format)));
+        fmt::print("{:<7} {}{}\n", format, printable(exported_path(request.directory, format)),
+                   format == "obj" ? ", and those of each obstacle" : "");
     return 0;
 }
 

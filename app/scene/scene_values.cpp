@@ -60,7 +60,9 @@ struct Check {
 
     const std::vector<SceneValue>& items(const SceneValue& value, int count) const
     {
-        if (static_cast<int>(items(value).size()) != count) fail("has the wrong number of entries");
+        if (value.kind != Kind::Array)
+            fail(fmt::format("is not an array, such as {}", count == 2 ? "[1, 2]" : "[1, 2, 3]"));
+        if (static_cast<int>(value.items.size()) != count) fail("has the wrong number of entries");
         return value.items;
     }
 

@@ -40,6 +40,12 @@ test("a folder without a viewer is refused in one line that says how to make one
   assert.equal(status, 1);
 });
 
+test("a folder that is not there is said to be missing", () => {
+  const { status, line } = render(join(directory, "nowhere"), join(directory, "p_"));
+  assert.match(line, /^scripts\/render: .*nowhere is not there: it is to be the folder of a run\n$/);
+  assert.equal(status, 1);
+});
+
 test("every name that the viewer's address takes is one of a view", () => {
   const readme = readFileSync(new URL("../../viewer/README.md", import.meta.url), "utf8");
   const table = readme.slice(readme.indexOf("| name | value |"), readme.indexOf("## Pictures"));

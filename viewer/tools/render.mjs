@@ -141,6 +141,7 @@ async function makeFilm(browser, options) {
 }
 
 async function render(options) {
+  if (!existsSync(options.run)) throw new Error(`${options.run} is not there: it is to be the folder of a run`);
   const file = resolve(options.run, "viewer.html");
   if (!existsSync(file)) throw new Error(`${file} is not there. Make it with: arris export ${options.run} --formats viewer`);
   const browser = new Browser();

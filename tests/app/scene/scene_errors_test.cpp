@@ -222,7 +222,8 @@ const std::vector<WrongScene> kWrongScenes = {
     {"NumberForArray",
      kBase + "translate = 1\n",
      {},
-     "s.toml:5: cloth.translate = 1: is not an array; allowed: 3 numbers from -1000000 to 1000000 (m)"},
+     "s.toml:5: cloth.translate = 1: is not an array, such as [1, 2, 3]; allowed: 3 numbers from -1000000 to "
+     "1000000 (m)"},
     {"TooFewNumbers",
      kBase + "translate = [1, 2]\n",
      {},
