@@ -91,8 +91,8 @@ def list_candidates(failing):
 def shrink(failing, kind_of):
     """The smallest scene found whose fault is of the same kind. `kind_of` runs a scene and returns the kind of its first
     fault, or None."""
-    end = time.monotonic() + MOST_SECONDS
     kind, runs = kind_of(failing), 0
+    end = time.monotonic() + MOST_SECONDS
     is_smaller = kind is not None
     while is_smaller:
         is_smaller, at = False, 0

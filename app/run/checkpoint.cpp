@@ -26,7 +26,8 @@ void write_vectors(BinaryWriter& out, const std::vector<Vec2>& vectors)
 template <class Peaks>
 auto peaks_of(Peaks& peaks)
 {
-    return std::array{&peaks.stretch, &peaks.compression, &peaks.in_plane};
+    return std::array{&peaks.stretch, &peaks.compression, &peaks.in_plane, &peaks.last_stretch,
+                      &peaks.last_compression};
 }
 
 void write_peak(BinaryWriter& out, const StrainPeak& peak)
@@ -251,8 +252,6 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
     body.number(checkpoint.rows);
     for (const StrainPeak* peak : peaks_of(checkpoint.strain)) write_peak(body, *peak);
     body.number(checkpoint.strain.plane_rows);
-    body.number(checkpoint.strain.last_stretch);
-    body.number(checkpoint.strain.last_compression);
     write_peak(body, checkpoint.friction);
 
     write_sealed(path, kKind, body.bytes());
@@ -274,8 +273,6 @@ Checkpoint read_checkpoint(const std::string& path)
     checkpoint.rows = in.number<std::int64_t>();
     for (StrainPeak* peak : peaks_of(checkpoint.strain)) *peak = read_peak(in);
     checkpoint.strain.plane_rows = in.number<std::int64_t>();
-    checkpoint.strain.last_stretch = in.number<double>();
-    checkpoint.strain.last_compression = in.number<double>();
     checkpoint.friction = read_friction_peak(in);
     if (!in.is_at_end()) in.fail("is damaged: it is longer than its counts say");
     if (const std::string defect = find_defect(checkpoint); !defect.empty()) in.fail("is damaged: " + defect);

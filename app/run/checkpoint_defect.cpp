@@ -142,10 +142,9 @@ std::string find_defect(const Checkpoint& checkpoint)
     if (!std::isfinite(friction.residual) || !std::isfinite(friction.time) || !friction.world.allFinite() ||
         friction.rows < 0)
         return "the friction's peak is not valid";
-    if (!std::isfinite(checkpoint.strain.last_stretch) || !std::isfinite(checkpoint.strain.last_compression))
-        return "a strain is not finite";
     for (const StrainPeak* peak :
-         {&checkpoint.strain.stretch, &checkpoint.strain.compression, &checkpoint.strain.in_plane})
+         {&checkpoint.strain.stretch, &checkpoint.strain.compression, &checkpoint.strain.in_plane,
+          &checkpoint.strain.last_stretch, &checkpoint.strain.last_compression})
         if (!std::isfinite(peak->strain) || !std::isfinite(peak->time) || !peak->world.allFinite() ||
             !peak->material.allFinite())
             return "a strain is not finite";

@@ -22,17 +22,28 @@ constexpr double kGreatestInPlane = 0.05;
 // preset "cotton" folds within 10.
 constexpr std::int64_t kRowsToFold = 20;
 
-void note(const State& state, const VertexStrain& found, StrainPeak& peak)
+StrainPeak find_peak(const State& state, const VertexStrain& found)
 {
-    if (found.vertex < 0 || !(std::abs(found.strain) > std::abs(peak.strain))) return;
+    if (found.vertex < 0) return {};
     const std::size_t v = static_cast<std::size_t>(found.vertex);
-    peak = {found.strain, state.time, state.mesh.world[v], state.mesh.material[v]};
+    return {found.strain, state.time, state.mesh.world[v], state.mesh.material[v]};
 }
 
-/// Whether two peaks are at one vertex at one moment.
-bool is_same(const StrainPeak& a, const StrainPeak& b)
+bool is_greater(const StrainPeak& a, const StrainPeak& b)
 {
-    return a.time <= b.time && a.time >= b.time && a.material == b.material;
+    return std::abs(a.strain) > std::abs(b.strain);
+}
+
+void note(const StrainPeak& found, StrainPeak& peak)
+{
+    if (is_greater(found, peak)) peak = found;
+}
+
+/// Notes a row's peak as far as the row before has it, too.
+void note_lasting(const StrainPeak& found, StrainPeak& last, StrainPeak& peak)
+{
+    note(is_greater(found, last) ? last : found, peak);
+    last = found;
 }
 
 std::string describe(const StrainPeak& peak)
@@ -71,13 +82,10 @@ std::vector<std::string> join_by_cause(const std::vector<Finding>& found)
 
 void note_strain(const State& state, const ClothStrain& strain, StrainPeaks& peaks)
 {
-    note(state, {std::min(strain.stretch.strain, peaks.last_stretch), strain.stretch.vertex}, peaks.stretch);
-    note(state, {std::max(strain.compression.strain, peaks.last_compression), strain.compression.vertex},
-         peaks.compression);
-    peaks.last_stretch = strain.stretch.strain;
-    peaks.last_compression = strain.compression.strain;
+    note_lasting(find_peak(state, strain.stretch), peaks.last_stretch, peaks.stretch);
+    note_lasting(find_peak(state, strain.compression), peaks.last_compression, peaks.compression);
     peaks.plane_rows = strain.in_plane.strain < -kGreatestInPlane ? peaks.plane_rows + 1 : 0;
-    if (peaks.plane_rows >= kRowsToFold) note(state, strain.in_plane, peaks.in_plane);
+    if (peaks.plane_rows >= kRowsToFold) note(find_peak(state, strain.in_plane), peaks.in_plane);
 }
 
 std::vector<std::string> warn_of_strain(const StrainPeaks& peaks, const RunConfig& config)
@@ -89,7 +97,7 @@ std::vector<std::string> warn_of_strain(const StrainPeaks& peaks, const RunConfi
                          fmt::format("woven cloth tears before {:g} %", 100.0 * kGreatestStrain),
                          explain_stretch(config, peaks.stretch)});
     if (-peaks.compression.strain > kGreatestStrain &&
-        !(stays_plane && is_same(peaks.compression, peaks.in_plane)))
+        (!stays_plane || is_greater(peaks.compression, peaks.in_plane)))
         found.push_back({"compressed " + describe(peaks.compression),
                          fmt::format("real cloth folds before {:g} %", 100.0 * kGreatestStrain),
                          explain_compression(config, peaks.compression)});

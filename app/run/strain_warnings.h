@@ -24,7 +24,7 @@ struct StrainPeaks {
     StrainPeak stretch, compression;
     StrainPeak in_plane;          ///< compression where the cloth stays plane
     std::int64_t plane_rows = 0;  ///< rows up to now in which plane cloth was compressed by more than 5 %
-    double last_stretch = 0.0, last_compression = 0.0;  ///< strains of the last row
+    StrainPeak last_stretch, last_compression;  ///< of the last row
 };
 
 /// Takes over the strains of a row that exceed the peaks so far. A stretch or compression counts as far as

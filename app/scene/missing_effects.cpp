@@ -129,9 +129,12 @@ void find_slides(const RunConfig& config, const std::vector<UnderCloth>& obstacl
             fmt::format("the cloth reaches beyond {} and no pin holds it to the end: it slides off unless it "
                         "is balanced",
                         overhung));
-    if (!overhung.empty() && !is_missing(missing, "self_contact"))
+    const std::string cornered =
+        names_of(obstacles, [](const UnderCloth& under) { return under.is_around_corner; });
+    if (!cornered.empty() && !is_missing(missing, "self_contact"))
         add(missing, "self_contact",
-            fmt::format("the cloth drapes over {} or falls off, and its folds {}", overhung, kMayPass));
+            fmt::format("the cloth drapes around corners of {} or falls off, and its folds {}", cornered,
+                        kMayPass));
     const std::string sloping = names_of(obstacles, [](const UnderCloth& under) {
         return !under.is_overhung && in_degrees(under.steepest) > kLevel;
     });

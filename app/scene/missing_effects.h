@@ -18,7 +18,7 @@ struct MissingEffect {
 /// find obvious cases only: an empty list is no promise.
 /// self_contact: pieces of cloth; cloth that starts folded back on itself, falls edge-on onto an obstacle,
 /// hangs from one place, hangs down on both sides of something narrow, is drawn together by pins, or reaches
-/// beyond obstacles without a pin that holds it to the end.
+/// around a corner of an obstacle without a pin that holds it to the end.
 /// friction: cloth that no pin holds to the end over an edge or a slope; an obstacle that moves along under
 /// the cloth.
 /// gravity, bending, eol: absent by the scene's choice, where that is often an oversight.

@@ -76,15 +76,18 @@ std::vector<UnderCloth> find_under_cloth(const RunConfig& config)
         under.up = view.row(2);
         under.width = std::numeric_limits<double>::infinity();
         bool is_under = box.max().z() <= cloth.max().z();
+        int beyond = 0;  // directions
         for (int d = 0; d < 2; ++d) {
             const bool is_beyond_low = cloth.min()[d] < box.min()[d];
             const bool is_beyond_high = cloth.max()[d] > box.max()[d];
             is_under = is_under && cloth.min()[d] <= box.max()[d] && cloth.max()[d] >= box.min()[d];
-            under.is_overhung = under.is_overhung || is_beyond_low || is_beyond_high;
+            beyond += is_beyond_low || is_beyond_high;
             if (!(is_beyond_low && is_beyond_high)) continue;
             under.is_straddled = true;
             under.width = std::min(under.width, box.sizes()[d] / cloth.sizes()[d]);
         }
+        under.is_overhung = beyond > 0;
+        under.is_around_corner = beyond == 2;
         if (!is_under) continue;
         under.steepest = find_steepest(obstacle.mesh(), placement.rotation, under.up);
         under.is_moving_along = moves_along(obstacle.motion(), under.up, config.duration);

@@ -15,7 +15,7 @@ struct TransferReport {
     /// energy plus its weight over one cell.
     double strain = 0.0;
     /// Strain of the whole cloth: the sum of the patches' rises, relative to the cloth's kinetic energy plus
-    /// its weight over its shortest cell.
+    /// its weight over its mean cell, or plus its elastic energy where that is greater.
     double cloth_strain = 0.0;
     /// Old vertices, ascending, of each tested patch whose strain stays above kPatchStrain.
     std::vector<std::vector<VertexId>> strained;

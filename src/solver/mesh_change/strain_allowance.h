@@ -29,9 +29,10 @@ inline constexpr double kTraceStrain = 0.06;
 inline constexpr double kMostStrain = 0.5;
 
 /// Limit, likewise, for the strain of the whole cloth: what all patches gain, relative to the cloth's kinetic
-/// energy plus its weight over one cell. On coarse meshes a patch is most of the cloth, and a few changes at
-/// kMostStrain would be seen as a rise of its energy. With 2 %, cloth of 3 x 2 cells on a ring of wire gains
-/// 8 % of its kinetic energy; with 1 %, 3 %; with less, hard cases would keep more of their meshes.
+/// energy plus its weight over its mean cell, or plus its elastic energy where that is greater. On coarse
+/// meshes a patch is most of the cloth, and a few changes at kMostStrain would be seen as a rise of its
+/// energy. With 2 %, cloth of 3 x 2 cells on a ring of wire gains 8 % of its kinetic energy; with 1 %, 3 %;
+/// with less, hard cases would keep more of their meshes.
 inline constexpr double kMostClothStrain = 0.01;
 
 /// Elastic energy, J, that is invisible on cloth of `area` (material, m^2): that of a strain of 1e-6.

@@ -39,8 +39,8 @@ Checkpoint make_checkpoint()
     checkpoint.strain.compression = {-0.5, 0.1, Vec3(4, 5, 6), Vec2(1, 2)};
     checkpoint.strain.in_plane = {-0.0625, 0.1, Vec3(7, 8, 9), Vec2(3, 4)};
     checkpoint.strain.plane_rows = 11;
-    checkpoint.strain.last_stretch = 0.125;
-    checkpoint.strain.last_compression = -0.375;
+    checkpoint.strain.last_stretch = {0.125, 0.1, Vec3(1, 0, 2), Vec2(6, 5)};
+    checkpoint.strain.last_compression = {-0.375, 0.1, Vec3(0, 1, 2), Vec2(8, 7)};
     checkpoint.friction = {0.375, 0.15, Vec3(-1, 1e-310, 2), 5};
     return checkpoint;
 }
@@ -86,8 +86,8 @@ TEST(Checkpoint, ReadsBackToTheSameBytes)
     EXPECT_EQ(read.strain.compression.strain, -0.5);
     EXPECT_EQ(read.strain.in_plane.world, Vec3(7, 8, 9));
     EXPECT_EQ(read.strain.plane_rows, 11);
-    EXPECT_EQ(read.strain.last_stretch, 0.125);
-    EXPECT_EQ(read.strain.last_compression, -0.375);
+    EXPECT_EQ(read.strain.last_stretch.material, Vec2(6, 5));
+    EXPECT_EQ(read.strain.last_compression.strain, -0.375);
     EXPECT_EQ(read.friction.residual, 0.375);
     EXPECT_EQ(read.friction.time, 0.15);
     EXPECT_EQ(read.friction.world, Vec3(-1, 1e-310, 2));
@@ -174,7 +174,7 @@ TEST(Checkpoint, AStateThatCannotBeIsRefused)
     refused("strain", [&](Checkpoint& c) { c.strain.stretch.strain = kNan; });
     refused("place of a strain", [&](Checkpoint& c) { c.strain.in_plane.world.z() = INFINITY; });
     refused("rows of plane cloth", [](Checkpoint& c) { c.strain.plane_rows = -1; });
-    refused("strain of the last row", [&](Checkpoint& c) { c.strain.last_compression = kNan; });
+    refused("strain of the last row", [&](Checkpoint& c) { c.strain.last_compression.strain = kNan; });
     refused("friction", [&](Checkpoint& c) { c.friction.residual = kNan; });
     refused("place of friction", [&](Checkpoint& c) { c.friction.world.x() = INFINITY; });
     refused("rows of friction", [](Checkpoint& c) { c.friction.rows = -1; });

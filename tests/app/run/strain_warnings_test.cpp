@@ -41,6 +41,15 @@ struct PeakCase {
 
 constexpr VertexStrain kNone = {};
 
+/// Plane cloth that is compressed more and more, and then less: two rows later the peak is over.
+std::vector<ClothStrain> rise_and_fall()
+{
+    std::vector<ClothStrain> rows(20, {kNone, {-0.3, 0}, {-0.3, 0}});
+    rows.push_back({kNone, {-0.4, 0}, {-0.4, 0}});
+    rows.push_back({kNone, {-0.35, 0}, {-0.35, 0}});
+    return rows;
+}
+
 const std::vector<PeakCase>& peak_cases()
 {
     static const std::vector<PeakCase> kCases = {
@@ -51,6 +60,9 @@ const std::vector<PeakCase>& peak_cases()
         {"as far as two rows have it",
          {{{0.25, 0}, kNone, kNone}, {{0.5, 0}, kNone, kNone}, {{0.3, 0}, kNone, kNone}},
          {"stretched by 30 % at t = 2 s, at [0, 0, 1] (m, material [0, 0])"}},
+        {"the place is where the lasting strain was",
+         {{{0.25, 0}, kNone, kNone}, {{4.0, 1}, kNone, kNone}, {{0.25, 0}, kNone, kNone}},
+         {"stretched by 25 % at t = 0 s, at [0, 0, 1] (m, material [0, 0])"}},
         {"compression",
          std::vector<ClothStrain>(2, {kNone, {-0.3, 0}, kNone}),
          {"compressed by 30 % at t = 1 s"}},
@@ -59,6 +71,7 @@ const std::vector<PeakCase>& peak_cases()
         {"stays plane",
          std::vector<ClothStrain>(20, {kNone, {-0.1, 0}, {-0.1, 0}}),
          {"compressed by 10 % at t = 19 s, at [0, 0, 1] (m, material [0, 0]) and stayed plane"}},
+        {"as much in the plane, a row earlier", rise_and_fall(), {"compressed by 40 % at t = 20 s"}},
         {"below 5 % in the plane", std::vector<ClothStrain>(40, {kNone, {-0.04, 0}, {-0.04, 0}}), {}},
     };
     return kCases;
