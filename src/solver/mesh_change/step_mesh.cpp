@@ -79,6 +79,7 @@ struct TriedMesh {
     double most_strain = 0.0;  ///< limit of that transfer
 
     double strain() const { return transferred.strain; }
+    bool is_remeshed() const { return outcome.mesh && outcome.mesh->report.remeshed > 0; }
     bool is_carried_over() const { return state && strain() <= most_strain; }
 };
 
@@ -104,19 +105,19 @@ class MeshTries {
     /// Edges to split or merge that this step may try.
     const std::vector<std::array<VertexId, 2>>& misfits() const { return misfits_; }
 
-    /// The best candidate. No mesh where the best one strains a patch by more than kMostStrain, or the whole
-    /// cloth by more than kMostClothStrain: the step then keeps the mesh it has. This no longer holds once
-    /// attempts at the step have given vertices up.
+    /// The best candidate. No mesh where the best one strains a patch by more than kMostStrain, or, unless it
+    /// has mended edges, the whole cloth by more than kMostClothStrain: the step then keeps the mesh it has.
+    /// This no longer holds once attempts at the step have given vertices up.
     TriedMesh find_best()
     {
         TriedMesh best = choose();
-        if (best.outcome.mesh && best.outcome.mesh->report.remeshed > 0 && crosses_itself(best)) {
+        if (best.is_remeshed() && crosses_itself(best)) {
             changes_.misfits.clear();
             best = choose();
         }
         const bool is_crossing = crosses_itself(best);
-        const bool is_strained =
-            best.strain() > kMostStrain || best.transferred.cloth_strain > kMostClothStrain;
+        const bool is_strained = best.strain() > kMostStrain ||
+                                 (!best.is_remeshed() && best.transferred.cloth_strain > kMostClothStrain);
         if (!is_crossing && (!is_strained || !failed_.given_up.empty() || !failed_.made_at.empty()))
             return best;
         TriedMesh none;

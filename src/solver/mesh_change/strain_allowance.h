@@ -32,7 +32,8 @@ inline constexpr double kMostStrain = 0.5;
 /// energy plus its weight over its mean cell, or plus its elastic energy where that is greater. On coarse
 /// meshes a patch is most of the cloth, and a few changes at kMostStrain would be seen as a rise of its
 /// energy. With 2 %, cloth of 3 x 2 cells on a ring of wire gains 8 % of its kinetic energy; with 1 %, 3 %;
-/// with less, hard cases would keep more of their meshes.
+/// with less, hard cases would keep more of their meshes. Remeshing changes many patches at once, seldom
+/// again, and has limits for each patch: this one would stop it.
 inline constexpr double kMostClothStrain = 0.01;
 
 /// Elastic energy, J, that is invisible on cloth of `area` (material, m^2): that of a strain of 1e-6.
