@@ -37,7 +37,7 @@ class PatchFitter {
         TransferReport report;
         std::vector<VelocityField> fields;
         for (const ChangedPatch& patch : patches)
-            fields.push_back(old_field(patch, before_.velocity, before_.material_velocity));
+            fields.push_back(old_field(patch.faces_before, before_.velocity, before_.material_velocity));
         double gained = 0.0;
         for (const StrainedPatch& strained : find_strained(patches, fields)) {
             const ChangedPatch& patch = patches[strained.index];
@@ -84,12 +84,6 @@ class PatchFitter {
         return strained;
     }
 
-    VelocityField old_field(const ChangedPatch& patch, const std::vector<Vec3>& velocity,
-                            const std::vector<Vec2>& flow) const
-    {
-        return old_field(patch.faces_before, velocity, flow);
-    }
-
     VelocityField old_field(const std::vector<int>& faces, const std::vector<Vec3>& velocity,
                             const std::vector<Vec2>& flow) const
     {
@@ -130,13 +124,11 @@ class PatchFitter {
         return relax(scene_, creases_, relaxed_, after_) - before;
     }
 
-    double area_of(const ChangedPatch& patch) const { return area_of(patch.faces); }
-
-    double area_of(const std::vector<int>& faces) const
+    double area_of(const ChangedPatch& patch) const
     {
         const std::vector<Vec2>& X = after_.mesh.material;
         double area = 0.0;
-        for (const int f : faces) {
+        for (const int f : patch.faces) {
             const auto& [a, b, c] = after_.mesh.faces[f];
             area += 0.5 * twice_area(X[a], X[b], X[c]);
         }
@@ -160,7 +152,7 @@ class PatchFitter {
         std::vector<int> faces(before_.mesh.faces.size());
         std::iota(faces.begin(), faces.end(), 0);
         const VelocityField field = old_field(faces, before_.velocity, before_.material_velocity);
-        const double elastic = find_patch_energy(scene_, creases_before_, before_.mesh, faces);
+        const double elastic = find_energies(scene_, creases_before_, before_.mesh).elastic();
         double area = 0.0, length = 0.0;  // length: weighted by area
         for (const Face& face : before_.mesh.faces) {
             const Vec2& X = before_.mesh.material[face[0]];
@@ -244,7 +236,7 @@ class PatchFitter {
             patch.drift[i] =
                 patch.is_free[i] ? Vec3(Vec3::Zero()) : after_.previous_velocity[changed.vertices[i]];
         const VelocityField old =
-            old_field(changed, before_.previous_velocity, before_.previous_material_velocity);
+            old_field(changed.faces_before, before_.previous_velocity, before_.previous_material_velocity);
         const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch);
         if (!fit) return;
         for (std::size_t i = 0; i < changed.vertices.size(); ++i)

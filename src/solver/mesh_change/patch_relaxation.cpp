@@ -359,11 +359,16 @@ bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop)
     return relaxation.run(wanted);
 }
 
-double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& mesh)
+Energies find_energies(const Scene& scene, const Creases& creases, const ClothMesh& mesh)
 {
     ClothElements elements = list_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
     mark_creases(creases, mesh, elements);
-    return compute_energies(elements, make_energy_terms(scene), mesh.world).sum();
+    return compute_energies(elements, make_energy_terms(scene), mesh.world);
+}
+
+double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& mesh)
+{
+    return find_energies(scene, creases, mesh).sum();
 }
 
 double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& cloth,

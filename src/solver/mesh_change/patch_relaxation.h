@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "physics/energies.h"
 #include "solver/eol/creases.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
@@ -29,8 +30,9 @@ bool is_stuck(const State& state, std::uint32_t vertex_id);
 /// pop filter of Narain, Pfaff and O'Brien 2013: otherwise a mesh change that strains the cloth would push it
 /// visibly. The vertices take a few implicit steps from rest. These are so short that falling cannot visibly
 /// pay for the strain of unsupported cloth. No vertex comes nearer to an obstacle than the stand-off or its
-/// current distance. The path is checked: faces that meet an obstacle on it stay where they are, and all of it
-/// is halved where it meets the cloth itself; after a few such retreats nothing moves. History moves along, so that no velocity results. `creases` belong to the state.
+/// current distance. The path is checked: faces that meet an obstacle on it stay where they are, and all of
+/// it is halved where it meets the cloth itself; after a few such retreats nothing moves. History moves
+/// along, so that no velocity results. `creases` belong to the state.
 double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state);
 
 /// A patch as a mesh of its own; one entry a vertex.
@@ -44,8 +46,9 @@ struct LoosePatch {
 /// Whether a patch would relax by `drop` (J); obstacles are ignored.
 bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop);
 
-/// Stretch, bending and gravity energy, J, as in the step's equations: of a whole mesh, or of some faces of a
-/// cloth and the hinges between them. `creases` belong to the mesh given.
+/// Stretch, bending and gravity energy, J, as in the step's equations: of a whole mesh, each kind or their
+/// sum, or of some faces of a cloth and the hinges between them. `creases` belong to the mesh given.
+Energies find_energies(const Scene& scene, const Creases& creases, const ClothMesh& mesh);
 double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& mesh);
 double find_patch_energy(const Scene& scene, const Creases& creases, const ClothMesh& cloth,
                          const std::vector<int>& faces);
