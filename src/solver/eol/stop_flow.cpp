@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/eol/stop_flow.h"
 
+#include <vector>
+
 #include "physics/deformation_gradient.h"
+#include "solver/eol/eol_coordinates.h"
 #include "solver/model/pin_targets.h"
 
 namespace arris {
 
 void stop_flow(const ClothStars& stars, int vertex, State& state)
 {
-    if (state.material_velocity[vertex].isZero()) return;
+    if (state.material_velocity[vertex].isZero(0.0)) return;
     const std::vector<Vec2>& X = state.mesh.material;
     const std::vector<Vec3>& x = state.mesh.world;
     Vec3 carried = Vec3::Zero();
@@ -31,6 +34,50 @@ void begin_history(int vertex, State& state)
         state.mesh.material[vertex] - state.previous_dt * state.material_velocity[vertex];
     state.previous_velocity[vertex] = state.velocity[vertex];
     state.previous_material_velocity[vertex] = state.material_velocity[vertex];
+}
+
+namespace {
+
+bool is_flowing(const State& state, int v)
+{
+    return !state.material_velocity[v].isZero(0.0) || !state.previous_material_velocity[v].isZero(0.0);
+}
+
+/// Which vertices have coordinates in which material flows.
+std::vector<char> find_placed(const Scene& scene, const State& state, const ClothStars& stars)
+{
+    std::vector<char> is_placed(state.ids.size(), 0);
+    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry)
+        if (const EolPlacing placing = placer.place(entry); placing.coordinates)
+            is_placed[placing.coordinates->vertex] = 1;
+    return is_placed;
+}
+
+}  // namespace
+
+bool has_lost_flow(const Scene& scene, const State& state, const ClothStars& stars)
+{
+    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry)
+        if (is_flowing(state, state.index_of(state.eol[entry].vertex_id)) && !placer.place(entry).coordinates)
+            return true;
+    return false;
+}
+
+void settle_flow(const Scene& scene, const State& before, const ClothStars& stars, State& state)
+{
+    const std::vector<char> is_placed = find_placed(scene, state, stars);
+    for (std::size_t v = 0; v < is_placed.size(); ++v)
+        if (!is_placed[v]) stop_flow(stars, static_cast<int>(v), state);
+    for (const EolVertex& eol : state.eol) {
+        const int v = state.index_of(eol.vertex_id);
+        if (before.eol_entry(eol.vertex_id) < 0 && is_placed[v]) begin_history(v, state);
+    }
+    for (const EolVertex& eol : before.eol) {
+        const int v = state.index_of(eol.vertex_id);
+        if (v >= 0 && !is_placed[v]) begin_history(v, state);
+    }
 }
 
 void release_pinned(const Scene& scene, const ClothStars& stars, State& state)

@@ -15,6 +15,14 @@ void stop_flow(const ClothStars& stars, int vertex, State& state);
 /// Gives a vertex the history of constant motion at its current velocity.
 void begin_history(int vertex, State& state);
 
+/// Whether material flows, or flowed in the last step, through an EOL vertex that cannot have coordinates
+/// now.
+bool has_lost_flow(const Scene& scene, const State& state, const ClothStars& stars);
+
+/// Stops the flow through vertices that cannot have coordinates: they are Lagrangian in this step. Vertices
+/// that have become or ceased to be EOL since `before` get a new history.
+void settle_flow(const Scene& scene, const State& before, const ClothStars& stars, State& state);
+
 /// Makes the EOL vertices that pins hold at the state's time ordinary ones: a pinned vertex is never EOL.
 void release_pinned(const Scene& scene, const ClothStars& stars, State& state);
 

@@ -7,7 +7,6 @@
 
 #include "geometry/cloth/mesh_topology.h"
 #include "physics/deformation_gradient.h"
-#include "solver/eol/eol_coordinates.h"
 #include "solver/eol/stop_flow.h"
 #include "solver/mesh_change/changed_patches.h"
 
@@ -193,41 +192,6 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     return after;
 }
 
-/// Whether material flows through each vertex: EOL vertices that can have coordinates. Surgery beside a
-/// vertex can take its coordinates away; it is then Lagrangian in this step.
-std::vector<char> find_flowing(const Scene& scene, const State& state, const ClothStars& stars)
-{
-    std::vector<char> is_flowing(state.ids.size(), 0);
-    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
-    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry)
-        if (const EolPlacing placing = placer.place(entry); placing.coordinates)
-            is_flowing[placing.coordinates->vertex] = 1;
-    return is_flowing;
-}
-
-/// Stops the flow through vertices without coordinates. The fit has changed the flow, on which it depends
-/// whether a vertex can have coordinates. Returns the vertices that flow.
-std::vector<char> stop_flow(const Scene& scene, const ClothStars& stars, State& state)
-{
-    std::vector<char> is_flowing = find_flowing(scene, state, stars);
-    for (std::size_t v = 0; v < is_flowing.size(); ++v)
-        if (!is_flowing[v]) stop_flow(stars, static_cast<int>(v), state);
-    return is_flowing;
-}
-
-/// Gives vertices that have become or ceased to be EOL a new history.
-void begin_history(const State& before, const std::vector<char>& is_flowing, State& after)
-{
-    for (const EolVertex& eol : after.eol) {
-        const int v = after.index_of(eol.vertex_id);
-        if (before.eol_entry(eol.vertex_id) < 0 && is_flowing[v]) begin_history(v, after);
-    }
-    for (const EolVertex& eol : before.eol) {
-        const int v = after.index_of(eol.vertex_id);
-        if (v >= 0 && !is_flowing[v]) begin_history(v, after);
-    }
-}
-
 }  // namespace
 
 State transfer(const Scene& scene, const State& before, const ClothStars& stars,
@@ -245,7 +209,7 @@ State transfer(const Scene& scene, const State& before, const ClothStars& stars,
         find_changed_patches({before, after, conformed.events, stars.faces, stars_after.faces});
     report = fit_patches(scene, before, stars, patches, stars_after, most_strain, after);
     if (report.strain > most_strain) return after;  // the caller discards it
-    begin_history(before, stop_flow(scene, stars_after, after), after);
+    settle_flow(scene, before, stars_after, after);
     return after;
 }
 

@@ -11,6 +11,7 @@
 #include "geometry/sort_unique.h"
 #include "physics/membrane.h"
 #include "solver/eol/creases.h"
+#include "solver/eol/stop_flow.h"
 #include "solver/mesh_change/conform.h"
 #include "solver/mesh_change/mesh_transfer.h"
 #include "solver/mesh_change/patch_relaxation.h"
@@ -297,8 +298,8 @@ StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& fail
         best = tries.find_best();
     }
     cache.refused = std::move(best.outcome.refused);
-    const bool is_new = best.outcome.mesh.has_value();
-    if (is_new) {
+    State* start = &state;
+    if (best.outcome.mesh) {
         report.inserted = best.outcome.mesh->report.inserted;
         report.released = best.outcome.mesh->report.released;
         report.remeshed = best.outcome.mesh->report.remeshed;
@@ -308,11 +309,15 @@ StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& fail
                                    find_potential_energy(scene, state, cache.stars);
         cache.stars = std::move(best.stars);
         cache.faces_of_stars = cache.conformed.mesh.faces;
+        start = &cache.conformed;
+    } else if (has_lost_flow(scene, state, cache.stars)) {
+        cache.conformed = state;
+        settle_flow(scene, state, cache.stars, cache.conformed);
+        start = &cache.conformed;
     }
-    State& start = is_new ? cache.conformed : state;
-    const bool is_changed = update_mesh_cache(scene, start, cache);
+    const bool is_changed = update_mesh_cache(scene, *start, cache);
     report.seconds.move += watch.lap();
-    return {start, is_changed};
+    return {*start, is_changed};
 }
 
 const std::vector<Vec2>& find_stretches(const State& state, MeshCache& cache)

@@ -17,8 +17,9 @@ struct StepMesh {
 };
 
 /// Chooses the mesh of the step to `end` (s): `state` as it is, or `cache.conformed`, the state's cloth on a
-/// mesh with EOL vertices where features press. `failed` holds the failures of earlier attempts at the step.
-/// On return, `cache` belongs to the mesh chosen.
+/// mesh with EOL vertices where features press. Where the mesh stays and a vertex can no longer have material
+/// coordinates, `cache.conformed` is the state with that flow stopped. `failed` holds the failures of earlier
+/// attempts at the step. On return, `cache` belongs to the mesh chosen.
 StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& failed, State& state,
                           MeshCache& cache, StepReport& report);
 

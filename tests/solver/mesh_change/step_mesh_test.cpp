@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "solver/mesh_change/mesh_transfer.h"
 #include "solver/mesh_change/strain_allowance.h"
@@ -183,6 +184,75 @@ TEST(StepMesh, AMeshThatStaysStrainedIsCarriedOverWhole)
     ASSERT_NE(start.mesh.faces, faces) << "the mesh of the test before";
     const Vec3 change = testing::momentum_of(cloth.scene, start) - before;
     EXPECT_LT(change.norm(), 1e-12 * before.norm());
+}
+
+TEST(StepMesh, StrainDoesNotDependOnHowHighTheSceneIs)
+{
+    const auto report_at = [](double height) {
+        EolCloth cloth = heading_for_two_pleats(100.0, -0.5, {0.2, 0.3}, true);
+        ObstacleMesh ridge = cloth.scene.obstacles[0].mesh();
+        for (Vec3& p : ridge.points) p.z() += height;
+        cloth.scene.obstacles[0] = Obstacle("ridge", std::move(ridge), {}, {}, 30.0);
+        for (Vec3& x : cloth.state.mesh.world) x.z() += height;
+        const ConformOutcome giving = testing::conform_cloth(cloth);
+        TransferReport report;
+        transfer(cloth.scene, cloth.state, cloth.stars(), *giving.mesh,
+                 testing::stars_of(giving.mesh->surgery.mesh), report);
+        return report;
+    };
+    const TransferReport low = report_at(0.0);
+    EXPECT_GT(low.cloth_strain, 1e-3);
+    for (const double height : {-50.0, 50.0}) {
+        const TransferReport high = report_at(height);
+        EXPECT_NEAR(high.strain, low.strain, 1e-6 * low.strain);
+        EXPECT_NEAR(high.cloth_strain, low.cloth_strain, 1e-6 * low.cloth_strain);
+    }
+}
+
+TEST(StepMesh, StopsTheFlowThroughAVertexThatLosesItsCoordinatesOnAMeshThatStays)
+{
+    EolCloth cloth = lying(0.0);
+    press_edges(cloth);
+    testing::take(cloth);
+    State& state = cloth.state;
+    const Vec2 flow(0.1, 0.0);  // m/s
+    for (const EolVertex& e : state.eol) {
+        const int v = state.index_of(e.vertex_id);
+        state.material_velocity[v] = state.previous_material_velocity[v] = flow;
+        state.previous_material[v] = state.mesh.material[v] - kStep * flow;
+    }
+    state.previous_dt = kStep;
+    cloth.scene.eol.reset();  // the mesh stays
+    MeshCache cache;
+    StepReport report;
+    const auto choose = [&]() -> const State& {
+        return choose_step_mesh(cloth.scene, state.time + kStep, FailedFlow(), state, cache, report).start;
+    };
+    EXPECT_EQ(&choose(), &state) << "every vertex has coordinates";
+
+    // Cloth in a plane across the ridge: motion out of the ridge is flow, too.
+    const int lost = cloth.vertex_at(0.2, 0.2);
+    ASSERT_GE(state.eol_entry(state.ids[lost]), 0);
+    const Vec3 place = state.mesh.world[lost];
+    for (const int f : cloth.stars().faces[lost])
+        for (const int v : state.mesh.faces[f]) {
+            const Vec2 way = state.mesh.material[v] - state.mesh.material[lost];
+            state.mesh.world[v] = place + Vec3(0.0, way.y(), way.x());
+        }
+    ASSERT_FALSE(cloth.place(lost).coordinates);
+    const State before = state;
+    const State& start = choose();
+    EXPECT_EQ(start.mesh.faces, before.mesh.faces);
+    for (const EolVertex& e : start.eol) {
+        const int v = start.index_of(e.vertex_id);
+        const bool flows = v != lost;
+        EXPECT_EQ(start.material_velocity[v], flows ? flow : Vec2(0.0, 0.0));
+        EXPECT_EQ(start.previous_material_velocity[v], flows ? flow : Vec2(0.0, 0.0));
+        EXPECT_EQ(start.previous_material[v] == start.mesh.material[v], !flows);
+    }
+    EXPECT_NEAR((start.velocity[lost] - before.velocity[lost] + Vec3(0.0, 0.0, flow.x())).norm(), 0.0, 1e-12)
+        << "it moves with the material";
+    EXPECT_EQ(state.material_velocity[lost], flow) << "a step that fails leaves the state as it was";
 }
 
 }  // namespace
