@@ -22,8 +22,7 @@ std::vector<std::string> warn_of_friction(const FrictionPeak& peak)
     return {fmt::format(
         "friction differed from its law by more than 10 % of the largest friction in {}, most by {:.3g} % "
         "in the step to t = {:.6g} s, near [{:.4g}, {:.4g}, {:.4g}] m: contacts took turns to press or to "
-        "slide; "
-        "lower 'time.step', or add 'cloth.material.damping'",
+        "slide; lower 'time.step', or set 'cloth.material.damping' to 0.001 s or more",
         counted(peak.rows, "step", "steps"), 100.0 * peak.residual, peak.time, peak.world.x(), peak.world.y(),
         peak.world.z())};
 }
