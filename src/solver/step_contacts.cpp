@@ -34,20 +34,6 @@ bool flatten_self_history(const Scene& scene, const State& state, Workspace& wor
     return true;
 }
 
-/// Rows give way by what their multipliers exceed the expected ones, so each further solve of the step comes
-/// nearer to the bounds (method of multipliers: Hestenes, Powell 1969). The sides of a sharp fold over a nail
-/// press on it several hundred times as hard as the cloth pulls, and would give way until the nail passes.
-void expect_multipliers(Workspace& work)
-{
-    const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
-    const auto expect = [&](auto& contact, double now) {
-        contact.expected = now;
-        if (contact.row >= 0) work.problem.rows[contact.row].expected = now;
-    };
-    for (std::size_t c = 0; c < work.contacts.size(); ++c) expect(work.contacts[c], multiplier[c]);
-    for (SelfRow& row : work.self_rows) expect(row, work.solution.row_multipliers[row.row]);
-}
-
 }  // namespace
 
 bool collect_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
@@ -109,7 +95,6 @@ void make_room_for_self_rows(const Scene& scene, Workspace& work)
 bool add_violations(const Scene& scene, const State& state, const Violations& violations, Workspace& work)
 {
     if (violations.contacts.empty() && violations.self_rows.empty()) return false;
-    expect_multipliers(work);
     const std::size_t first = work.contacts.size(), first_self = work.self_rows.size();
     work.self_rows.insert(work.self_rows.end(), violations.self_rows.begin(), violations.self_rows.end());
     work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());

@@ -113,7 +113,7 @@ void add_row(const Prediction& prediction, const Linearization& at, Contact& con
     constexpr double kRoundOff = 1e-15;  // of a unit normal: a smaller part along a coordinate is none
     ConstraintRow row;
     row.lower = -contact.gap / prediction.gamma;
-    row.expected = contact.expected;
+    row.expected = contact.last_multiplier;
     const ObstacleContact& local = contact.in_frame;
     for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
         const int v = local.vertices[i];

@@ -219,7 +219,7 @@ void recall(const State& state, const ObstacleStep& step, Contact& contact)
         if (active->kind == contact.in_frame.kind &&
             (contact.is_vertex() ? active->normal.dot(contact.in_frame.normal) > kSameNormal
                                  : active->element == contact.in_frame.element)) {
-            contact.last_multiplier = contact.expected = active->multiplier;
+            contact.last_multiplier = active->multiplier;
             contact.last_friction = active->friction;
             if (contact.eol < 0) contact.last_friction = rotate(step.end.rotation, contact.last_friction);
             contact.friction = contact.last_friction;

@@ -40,12 +40,11 @@ struct Contact {
         {};                         ///< of the last step, in the world; at EOL vertices see ContactFriction
     ContactFriction friction = {};  ///< likewise, of the last solve; before one, of the last step
     bool is_pressing = false;       ///< in the last solve of this step, at an earlier linearization
-    double expected = 0.0;  ///< N s, multiplier of the last solve before rows were added, or of the last step
-    bool may_grow = true;   ///< whether its gap may grow to the stand-off; false where it has yielded
-    double mitre = 1.0;     ///< stand-off over thickness
-    int eol = -1;           ///< index of the EOL coordinates whose first one it bounds; else -1
-    int bound = -1;         ///< coordinate of the velocity solve, 3 a vertex; -1 where it is a row
-    int row = -1;           ///< row of the velocity solve, or -1
+    bool may_grow = true;           ///< whether its gap may grow to the stand-off; false where it has yielded
+    double mitre = 1.0;             ///< stand-off over thickness
+    int eol = -1;                   ///< index of the EOL coordinates whose first one it bounds; else -1
+    int bound = -1;                 ///< coordinate of the velocity solve, 3 a vertex; -1 where it is a row
+    int row = -1;                   ///< row of the velocity solve, or -1
 
     bool is_vertex() const { return in_frame.kind == ContactKind::Vertex; }
     bool was_active() const { return last_multiplier > 0.0; }

@@ -69,7 +69,7 @@ SelfRow make_self_row(const State& state, const SelfContact& contact)
 {
     SelfRow row{contact};
     if (const ActiveSelfContact* last = find_last(state, contact)) {
-        row.last_multiplier = row.expected = last->multiplier;
+        row.last_multiplier = last->multiplier;
         row.last_friction = row.friction = last->friction;
     }
     return row;
@@ -129,7 +129,7 @@ void append_self_rows(const State& state, const Prediction& prediction, const Li
         ConstraintRow row;
         const double gap = gap_of(contact, prediction.position);
         row.lower = (contact.least_gap - gap) / prediction.gamma;
-        row.expected = self.expected;
+        row.expected = self.last_multiplier;
         row.group = vertex_count + contact.vertices[0];
         for (int i = 0; i < 4; ++i) {
             const int v = contact.vertices[i];

@@ -24,10 +24,9 @@ struct SelfRow {
     ContactFriction last_friction = {};  ///< of the last step
     ContactFriction friction = {};       ///< of the last solve; before one, of the last step
     bool is_pressing = false;            ///< in the last solve of this step, at an earlier linearization
-    double expected = 0.0;  ///< N s, multiplier of the last solve before rows were added, or of the last step
-    bool is_closing = false;  ///< would be violated at the last velocity
-    bool may_grow = true;     ///< whether its gap may grow to the thickness
-    int row = -1;             ///< of the velocity solve
+    bool is_closing = false;             ///< would be violated at the last velocity
+    bool may_grow = true;                ///< whether its gap may grow to the thickness
+    int row = -1;                        ///< of the velocity solve
 
     bool was_active() const { return last_multiplier > 0.0; }
 };

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/velocity_solve/base_in_use.h"
 
-#include <algorithm>
-
 namespace arris {
 
 std::vector<int> BaseInUse::move_springs()
 {
     const ConstraintRows& constraints = *base.constraints;
     std::vector<int> stalled;
-    const bool has_rows =
-        std::find(base.is_pressing.begin(), base.is_pressing.end(), 1) != base.is_pressing.end();
-    if (base.slips.empty() && !has_rows) return stalled;
+    if (base.slips.empty()) return stalled;
     for (int p = 0; p < constraints.pair_count(); ++p) {
         if (set.contains_row(2 * p)) continue;
         if (is_stalled[p]) stalled.insert(stalled.end(), {2 * p, 2 * p + 1});

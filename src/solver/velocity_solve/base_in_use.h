@@ -27,9 +27,8 @@ struct BaseInUse {
     {
     }
 
-    /// Moves the base's friction springs to the impulses at the present velocity, and its springs of rows to
-    /// what they are expected to bear now, with the factor as it is. Returns slip rows that have to join the
-    /// working set: of pairs whose lag does not fall.
+    /// Moves the base's friction springs to the impulses at the present velocity, with the factor as it is.
+    /// Returns slip rows that have to join the working set: of pairs whose lag does not fall.
     std::vector<int> move_springs();
 
     /// Measures how far the base's friction springs are from their law, and whether that is less than the

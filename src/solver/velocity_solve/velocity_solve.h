@@ -92,9 +92,9 @@ class VelocitySolver {
     VelocitySolution solve(const VelocityProblem& problem, const Settings& settings);
 
     /// `solve` for a problem to which rows were appended since this solver's last call; otherwise only
-    /// row_guess, most_factorisations, expected multipliers and the friction pairs' budgets may have changed.
-    /// Goes on from the last base and working set, which costs some solves and no factorisation. Factorises
-    /// only where so many bounds change sides that `solve` would factorise again.
+    /// row_guess, most_factorisations and the friction pairs' budgets may have changed. Goes on from the last
+    /// base and working set, which costs some solves and no factorisation. Factorises only where so many
+    /// bounds change sides that `solve` would factorise again.
     VelocitySolution resume(const VelocityProblem& problem, const Settings& settings);
 
   private:

@@ -584,60 +584,6 @@ TEST(ConstraintRows, AppendedInGreatNumberAreResumed)
     }
 }
 
-TEST(ConstraintRows, WithOtherExpectedMultipliersAreResumed)
-{
-    std::mt19937 random(13);
-    for (const int count : {20, 300, 1000}) {  // few start in U, many are springs of the base
-        ClothWithRows cloth(20);
-        VelocityProblem& problem = cloth.owned.problem;
-        cloth.add(testing::RowPattern::Spread, count, 1);
-        problem.row_guess = random_subset(count, 0.8, random);
-        VelocitySolver solver;
-        const VelocitySolution first = solver.solve(problem, Settings());
-        for (int k = 0; k < count; ++k) problem.rows[k].expected = first.row_multipliers[k];
-        cloth.add(testing::RowPattern::Clusters, count / 10, 2);
-        const VelocitySolution resumed = solver.resume(problem, Settings());
-        ASSERT_EQ(resumed.status, SolveStatus::Certified) << resumed.kkt_residual;
-        EXPECT_EQ(resumed.factorisations, 0);
-        const VelocitySolution scratch = solve(problem);
-        expect_same_velocity(resumed, scratch);
-        EXPECT_LT((resumed.row_multipliers - scratch.row_multipliers).norm(),
-                  1e-8 * scratch.row_multipliers.norm());
-        for (ConstraintRow& row : problem.rows) row.expected = 0.0;
-        EXPECT_GT((resumed.velocity - solve(problem).velocity).norm(), 1e-7 * resumed.velocity.norm())
-            << "they matter";
-    }
-}
-
-TEST(ConstraintRows, OfASharpFoldGiveWayLessWithEachSolveThatKnowsTheLastMultipliers)
-{
-    // The sides of a fold that is pulled over a point: each presses on the point 1 / (2 * kHalfAngle) times
-    // as hard as the pull.
-    constexpr double kHalfAngle = 0.02, kPull = 1.0;
-    OwnedProblem owned(testing::lower_blocks(Eigen::MatrixXd::Identity(3, 3)),
-                       Eigen::Vector3d(-kPull, 0.0, 0.0));
-    for (const double side : {-1.0, 1.0})
-        owned.problem.rows.push_back(make_row({{0, kHalfAngle}, {2, side}}, 0.0));
-    VelocitySolver solver;
-    double given = 0.0;
-    for (int round = 0; round < 3; ++round) {
-        const VelocitySolution solution =
-            round == 0 ? solver.solve(owned.problem, Settings()) : solver.resume(owned.problem, Settings());
-        ASSERT_EQ(solution.status, SolveStatus::Certified);
-        const double way = std::abs(solution.velocity[0]);  // of the fold past the point
-        if (round > 0) {
-            EXPECT_LT(way, 0.2 * given);
-        } else {
-            EXPECT_GT(way, 0.05 * kPull);
-        }
-        given = way;
-        for (int k = 0; k < 2; ++k) {
-            EXPECT_NEAR(solution.row_multipliers[k], 0.5 * kPull / kHalfAngle, 0.25 * kPull / kHalfAngle);
-            owned.problem.rows[k].expected = solution.row_multipliers[k];
-        }
-    }
-}
-
 TEST(ConstraintRows, AreResumedFromNothingAsSolved)
 {
     ClothWithRows cloth(6);
