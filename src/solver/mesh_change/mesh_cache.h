@@ -29,7 +29,7 @@ struct MeshCache {
     // choose_step_mesh
     std::vector<RefusedContact> refused;  ///< contacts that pressed on a feature and are rows in this step
     std::vector<std::array<std::uint32_t, 2>> misfits;  ///< edges that were to be split or merged
-    State conformed;  ///< the state on the step's mesh, where that mesh is new
+    State conformed;  ///< the state at the step's begin, where its mesh or the flow through it has changed
 };
 
 }  // namespace arris
