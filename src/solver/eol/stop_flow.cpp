@@ -38,20 +38,10 @@ void begin_history(int vertex, State& state)
 
 namespace {
 
+/// Whether material flows through the vertex, or did in the last step.
 bool is_flowing(const State& state, int v)
 {
     return !state.material_velocity[v].isZero(0.0) || !state.previous_material_velocity[v].isZero(0.0);
-}
-
-/// Which vertices have coordinates in which material flows.
-std::vector<char> find_placed(const Scene& scene, const State& state, const ClothStars& stars)
-{
-    std::vector<char> is_placed(state.ids.size(), 0);
-    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
-    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry)
-        if (const EolPlacing placing = placer.place(entry); placing.coordinates)
-            is_placed[placing.coordinates->vertex] = 1;
-    return is_placed;
 }
 
 }  // namespace
@@ -67,7 +57,11 @@ bool has_lost_flow(const Scene& scene, const State& state, const ClothStars& sta
 
 void settle_flow(const Scene& scene, const State& before, const ClothStars& stars, State& state)
 {
-    const std::vector<char> is_placed = find_placed(scene, state, stars);
+    std::vector<char> is_placed(state.ids.size(), 0);
+    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
+    for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry)
+        if (const EolPlacing placing = placer.place(entry); placing.coordinates)
+            is_placed[placing.coordinates->vertex] = 1;
     for (std::size_t v = 0; v < is_placed.size(); ++v)
         if (!is_placed[v]) stop_flow(stars, static_cast<int>(v), state);
     for (const EolVertex& eol : state.eol) {

@@ -209,6 +209,7 @@ State transfer(const Scene& scene, const State& before, const ClothStars& stars,
         find_changed_patches({before, after, conformed.events, stars.faces, stars_after.faces});
     report = fit_patches(scene, before, stars, patches, stars_after, most_strain, after);
     if (report.strain > most_strain) return after;  // the caller discards it
+    // Whether a vertex can have coordinates depends on its flow, which the fit has changed.
     settle_flow(scene, before, stars_after, after);
     return after;
 }
