@@ -83,7 +83,7 @@ const EndingCase kEndings[] = {
              "{time = 0.9, translate = [-0.3, 0, -0.2]}]"),
      "the cloth itself in the step .*: pin.0 and pin.1 press two layers into each other.*"},
     {"an obstacle presses a free layer against a pinned one",
-     "[self_contact]\n[friction]\n" + pin("[[0.25, 0], [0.5, 0.5]]") +
+     "[self_contact]\n[friction]\ncoefficient = 1.0\n" + pin("[[0.25, 0], [0.5, 0.5]]") +
          box("ram", "[0.1, 0.7, 0.04]",
              "keyframes = [{time = 0.2, translate = [-0.2, 0, -0.05]}, "
              "{time = 0.6, translate = [0.1, 0, -0.05]}, {time = 1, translate = [0.1, 0, 0.2]}]"),

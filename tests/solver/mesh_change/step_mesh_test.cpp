@@ -234,7 +234,8 @@ TEST(StepMesh, StopsTheFlowThroughAVertexThatLosesItsCoordinatesOnAMeshThatStays
     const int lost = cloth.vertex_at(0.2, 0.2);
     ASSERT_GE(state.eol_entry(state.ids[lost]), 0);
     const Vec3 place = state.mesh.world[lost];
-    for (const int f : cloth.stars().faces[lost])
+    const ClothStars stars = cloth.stars();
+    for (const int f : stars.faces[lost])
         for (const int v : state.mesh.faces[f]) {
             const Vec2 way = state.mesh.material[v] - state.mesh.material[lost];
             state.mesh.world[v] = place + Vec3(0.0, way.y(), way.x());
