@@ -172,6 +172,8 @@ nlohmann::ordered_json to_json(const RunReport& report)
         {"scene", report.scene},
         {"version", report.version},
         {"threads", report.threads},
+        {"blas_kernel", report.kernel},
+        {"processor", report.processor},
     };
     if (totals.features) json["feature_contacts"] = to_json(*totals.features);
     return json;
@@ -193,6 +195,16 @@ std::string read_status(const std::string& path)
     if (!report.is_object() || !report.contains("status") || !report["status"].is_string())
         throw InputError(printable(path) + ": is not the report of a run: it has no status");
     return report["status"];
+}
+
+std::string processor_name()
+{
+    std::ifstream in("/proc/cpuinfo");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("model name"))
+            if (const std::size_t colon = line.find(": "); colon != std::string::npos)
+                return line.substr(colon + 2);
+    return {};
 }
 
 std::int64_t peak_memory_bytes()

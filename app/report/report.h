@@ -67,6 +67,8 @@ struct RunReport {
     nlohmann::ordered_json scene = nlohmann::ordered_json::object();  ///< with every default filled in
     std::string version;
     int threads = 1;
+    std::string kernel;     ///< BLAS kernel of the last step
+    std::string processor;  ///< empty where it is not known
 };
 
 nlohmann::ordered_json to_json(const RunReport& report);
@@ -80,5 +82,8 @@ std::string read_status(const std::string& path);
 /// Peak resident memory of this process, and CPU time of all its threads, so far.
 std::int64_t peak_memory_bytes();
 double process_cpu_seconds();
+
+/// The processor's model, such as "AMD EPYC 9R14"; empty where Linux does not tell.
+std::string processor_name();
 
 }  // namespace arris

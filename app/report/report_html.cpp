@@ -133,6 +133,8 @@ std::vector<Fact> work_facts(const RunReport& report)
         {"Wall time", format_seconds(totals.wall_seconds), a_step,
          "Elapsed time, writing of files included."},
         {"CPU time", format_seconds(totals.cpu_seconds), threads, "Sum over all threads."},
+        {"BLAS kernel", report.kernel, report.processor,
+         "Every processor gives the same result with the same kernel and the same build."},
         {"Peak memory", format_bytes(report.peak_memory_bytes), "", "Largest memory in use at one time."},
     };
 }

@@ -245,6 +245,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
     body.text(checkpoint.source.text);
     body.list(checkpoint.source.overrides, [&](const std::string& item) { body.text(item); });
     body.list(checkpoint.warnings, [&](const std::string& item) { body.text(item); });
+    body.text(checkpoint.kernel);
     write_state(body, checkpoint.state);
     body.number(checkpoint.position.begin);
     body.number(checkpoint.position.done);
@@ -266,6 +267,7 @@ Checkpoint read_checkpoint(const std::string& path)
     checkpoint.source.text = in.text();
     checkpoint.source.overrides = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
     checkpoint.warnings = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
+    checkpoint.kernel = in.text();
     checkpoint.state = read_state(in);
     checkpoint.position.begin = in.number<double>();
     checkpoint.position.done = in.number<std::int64_t>();

@@ -27,7 +27,8 @@ struct RunProgress {
 /// are identical.
 struct Checkpoint : RunProgress {
     SceneSource source;
-    std::vector<std::string> warnings;  ///< from loading the scene
+    std::vector<std::string> warnings;  ///< from loading the scene and from resuming
+    std::string kernel;                 ///< BLAS kernel of the last step
 };
 
 /// Replaces the file atomically. Throws std::system_error naming the path if writing fails.

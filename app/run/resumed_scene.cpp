@@ -14,6 +14,7 @@
 #include "app/run/timeline.h"
 #include "app/text/printable.h"
 #include "geometry/input_error.h"
+#include "solver/velocity_solve/blas_kernel.h"
 
 namespace arris {
 namespace {
@@ -73,6 +74,19 @@ ClothMesh read_first_cloth(const std::string& directory, const State& state)
     return cloth;
 }
 
+/// The result may then differ from that of a run without a stop.
+void note_kernel(Checkpoint& checkpoint)
+{
+    const std::string kernel = blas_kernel();
+    if (kernel == checkpoint.kernel) return;
+    checkpoint.warnings.push_back(
+        fmt::format("from t = {:.6g} s on computed with the BLAS kernel {}, before with {}: the result may "
+                    "differ from that of "
+                    "a run without a stop; OPENBLAS_CORETYPE={} in the environment keeps the kernel",
+                    checkpoint.state.time, kernel, checkpoint.kernel, checkpoint.kernel));
+    checkpoint.kernel = kernel;
+}
+
 }  // namespace
 
 RunConfig load_resumed(const std::string& directory, const std::optional<double>& until,
@@ -98,6 +112,7 @@ RunConfig load_resumed(const std::string& directory, const std::optional<double>
         if (Timeline(config).interval_end(begin) != planned_end)
             checkpoint.position = {checkpoint.state.time, 0};
     }
+    if (!Timeline(config).is_over(checkpoint.position)) note_kernel(checkpoint);
     config.warnings = checkpoint.warnings;
     return config;
 }

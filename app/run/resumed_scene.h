@@ -10,7 +10,8 @@
 namespace arris {
 
 /// Loads the scene of a checkpoint in `directory`, with the end `until` if given. If the new end changes the
-/// current interval of the timeline, the rest of the run is planned anew from the checkpoint's time.
+/// current interval of the timeline, the rest of the run is planned anew from the checkpoint's time. Where
+/// another BLAS kernel than this process has made the steps so far, a warning says so.
 RunConfig load_resumed(const std::string& directory, const std::optional<double>& until,
                        Checkpoint& checkpoint);
 

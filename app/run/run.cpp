@@ -37,6 +37,7 @@
 #include "solver/mesh_change/step_mesh.h"
 #include "solver/model/stopwatch.h"
 #include "solver/step.h"
+#include "solver/velocity_solve/blas_kernel.h"
 
 namespace arris {
 
@@ -208,6 +209,8 @@ RunReport make_report(const Run& run, const RunEnding& ending, const RunSummary&
     report.scene = run.config.as_run;
     report.version = kVersion;
     report.threads = threads;
+    report.kernel = run.at.kernel;
+    report.processor = processor_name();
     return report;
 }
 
@@ -310,6 +313,7 @@ RunStatus run(const RunRequest& request)
     RunDirectory files = RunDirectory::create({directory, request.is_overwriting, request.program}, config);
 
     start.warnings = config.warnings;
+    start.kernel = blas_kernel();
     start.state = make_state(config.scene, config.cloth, config.cloth_velocity);
     Run run(config, std::move(files), std::move(start));
     StepReport initial;

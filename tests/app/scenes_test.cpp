@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every scene of data/scenes, coarse.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 
 #include "app/files/csv_table.h"
 #include "tests/app/program.h"
+#include "tests/scatter.h"
 
 namespace arris {
 namespace {
@@ -67,28 +69,54 @@ double greatest_rise(const CsvTable& steps)
     return rise / (*std::max_element(kinetic.begin(), kinetic.end()) + most - least);
 }
 
+/// Runs the scene, coarse, into the directory `name` of `folder`, and returns its report.
+nlohmann::json run_coarse(const std::string& scene, const TemporaryDirectory& folder, const std::string& name,
+                          const std::vector<std::string>& more = {})
+{
+    const std::string dir = folder / name;
+    std::vector<std::string> arguments = {"run", scene, "-o", dir, "--set", "output.formats=[]"};
+    if (const std::string halved = halved_resolution(scene); !halved.empty())
+        arguments.insert(arguments.end(), {"--set", halved});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    Program program(folder, arguments);
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    return nlohmann::json::parse(read_bytes(dir + "/report.json"));
+}
+
+/// The share of contacts with features that EOL vertices take. 1 where nothing touches a feature.
+double eol_share(const nlohmann::json& report)
+{
+    if (!report.contains("feature_contacts") || report["feature_contacts"]["eol_share"].is_null()) return 1.0;
+    return report["feature_contacts"]["eol_share"].get<double>();
+}
+
+/// The share of eleven runs of a scene, whose gravity differs by round-off. `report`: of one of them.
+Scatter scatter_of_eol_share(const std::string& scene, const nlohmann::json& report,
+                             const TemporaryDirectory& folder)
+{
+    const std::vector<double> g = report["scene"]["gravity"]["acceleration"];
+    return measure_scatter(11, [&](double shift) {
+        const std::string gravity = fmt::format("gravity.acceleration=[{},{},{}]", g[0], g[1], g[2] - shift);
+        return eol_share(run_coarse(scene, folder, fmt::format("start_{}", shift), {"--set", gravity}));
+    });
+}
+
 class Scenes : public testing::TestWithParam<std::string> {};
 
 TEST_P(Scenes, FinishFreeOfTheirObstaclesAndKeepTheirMaterial)
 {
     const TemporaryDirectory folder;
     const std::string dir = folder / "run";
-    std::vector<std::string> arguments = {"run", GetParam(), "-o", dir, "--set", "output.formats=[]"};
-    if (const std::string halved = halved_resolution(GetParam()); !halved.empty())
-        arguments.insert(arguments.end(), {"--set", halved});
-    Program program(folder, arguments);
-    ASSERT_EQ(program.wait(), 0) << program.err();
-    const nlohmann::json report = nlohmann::json::parse(read_bytes(dir + "/report.json"));
+    const nlohmann::json report = run_coarse(GetParam(), folder, "run");
     EXPECT_EQ(report["status"], "finished");
     EXPECT_LE(report["max_kkt_residual"].get<double>(), 1e-9);
     EXPECT_EQ(report["max_penetration"], 0.0);
     EXPECT_EQ(report["crossings"], 0);
-    // The share of contacts with features that EOL vertices take: most scenes have .99 and more. Three
-    // needles have few contacts, and a tip that comes late counts much: .89 to .998, .95 in the mean, on
-    // meshes of 6 to 16 cells.
-    if (report.contains("feature_contacts") && !report["feature_contacts"]["eol_share"].is_null()) {
-        const double least = GetParam().find("/needles.toml") != std::string::npos ? 0.85 : 0.95;
-        EXPECT_GE(report["feature_contacts"]["eol_share"].get<double>(), least);
+    // Most scenes have a share of .99 and more. It scatters where few contacts decide, as where a tip or a
+    // corner comes late. One run tells only if it is far above the bound.
+    constexpr double kLeastShare = 0.9, kSurely = 0.05;
+    if (!(eol_share(report) > kLeastShare + kSurely)) {
+        EXPECT_TRUE(median_is_above(scatter_of_eol_share(GetParam(), report, folder), kLeastShare));
     }
 
     const CsvTable steps = read_csv(dir + "/steps.csv");

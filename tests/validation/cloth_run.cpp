@@ -69,7 +69,7 @@ void ClothRun::advance(double duration, double dt, const Look& look)
 {
     const double begin = state.time;
     const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
-    for (int k = 1; k <= steps && !testing::Test::HasFailure(); ++k)
+    for (int k = 1; k <= steps && !failures.any(); ++k)
         advance(begin + duration * k / steps - state.time, look);
 }
 
@@ -88,7 +88,7 @@ EnergySpan watch_energy(ClothRun& run, double duration, double dt,
     const double first = measure_energy(run).sum(), begin = run.state.time;
     EnergySpan span{first, first, first};
     const int steps = static_cast<int>(std::ceil(duration / dt - 1e-9));
-    for (int k = 1; k <= steps && !testing::Test::HasFailure(); ++k) {
+    for (int k = 1; k <= steps && !run.failures.any(); ++k) {
         const StepReport report = run.advance(begin + duration * k / steps - run.state.time);
         span.last = measure_energy(run).sum();
         span.greatest = std::max(span.greatest, span.last);
@@ -111,7 +111,7 @@ void settle(ClothRun& run)
         run.state.time = 0.0;
         std::fill(run.state.velocity.begin(), run.state.velocity.end(), Vec3::Zero());
         run.advance(dt);
-        if (testing::Test::HasFailure()) return;
+        if (run.failures.any()) return;
         moved = 0.0;
         for (std::size_t v = 0; v < before.size(); ++v)
             moved = std::max(moved, (run.state.mesh.world[v] - before[v]).norm());

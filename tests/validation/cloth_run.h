@@ -6,6 +6,7 @@
 
 #include "geometry/cloth_input/cloth_grid.h"
 #include "solver/step.h"
+#include "tests/failures_since.h"
 
 namespace arris {
 
@@ -29,6 +30,7 @@ struct ClothRun {
     Settings settings;
     State state;
     Workspace work;
+    FailuresSince failures;  ///< a run with failures makes no further steps
 
     ClothRun(Scene a_scene, ClothMesh mesh, const Vec3& velocity = Vec3::Zero());
 

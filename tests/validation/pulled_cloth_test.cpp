@@ -12,6 +12,8 @@
 #include "refinement.h"
 #include "solver/advance.h"
 #include "solver/contact/audit.h"
+#include "tests/failures_since.h"
+#include "tests/scatter.h"
 
 namespace arris {
 namespace {
@@ -19,11 +21,12 @@ namespace {
 // Times in s: the whole fold is on the edge; the fold is 0.1 m off the edge.
 constexpr double kBefore = 0.4, kAfter = 0.58;
 
-/// A strip of denim, 0.1 m of it over the edge, pulled at its overhanging border.
-ClothRun make_run(std::array<int, 2> cells)
+/// A strip of denim, 0.1 m of it over the edge, pulled at its overhanging border. It starts `shift` (m)
+/// nearer.
+ClothRun make_run(std::array<int, 2> cells, double shift)
 {
     ClothMesh mesh = make_sheet(Vec2(0.9, 0.1), cells, GridPattern::Cross);
-    lay(mesh, Vec3(-0.8, -0.05, 0.004));
+    lay(mesh, Vec3(-0.8 + shift, -0.05, 0.004));
     Scene scene = make_table_scene(mesh, {0.4, 2000.0, 0.3, 1e-4, 0.0, 1e-3}, Vec3(1.6, 0.9, 0.5),
                                    Vec3(-0.8, 0.0, -0.25));
     scene.pulls.push_back({{Vec2(0.9, 0.0), Vec2(0.9, 0.1)}, Vec3(0.08, 0.0, -0.04)});
@@ -35,9 +38,9 @@ struct Pulled {
     double drop = 0.0;                 ///< J, largest drop below the running maximum from kBefore to kAfter
 };
 
-Pulled pull_off(std::array<int, 2> cells, double step)
+Pulled pull_off(std::array<int, 2> cells, double step, double shift)
 {
-    ClothRun run = make_run(cells);
+    ClothRun run = make_run(cells, shift);
     Pulled found;
     double greatest = -std::numeric_limits<double>::infinity();
     const auto accept = [&](const StepReport& report, bool) {
@@ -52,7 +55,7 @@ Pulled pull_off(std::array<int, 2> cells, double step)
         found.after = energy;
         return true;
     };
-    for (int k = 1; k * step <= kAfter + 1e-9 && !testing::Test::HasFailure(); ++k) {
+    for (int k = 1; k * step <= kAfter + 1e-9 && !run.failures.any(); ++k) {
         EXPECT_FALSE(advance(run.scene, run.settings, k * step, run.state, run.work, accept));
         EXPECT_EQ(validate(run.state.mesh), "");
     }
@@ -66,15 +69,21 @@ TEST(PulledCloth, LosesLittleWhereItsFoldLeavesTheTable)
     // Some loss is inherent: material has two velocities on the two sides of a fold. A vertex that is
     // released, one cell off the edge, has only one.
     for (const auto& [cells, step] : {std::pair(18, 5e-3), {18, 2.5e-3}, {18, 1.25e-3}, {36, 1.25e-3}}) {
-        const Pulled found = pull_off({cells, cells / 9}, step);
-        const std::string name = fmt::format("{} cells, {} s", cells, step);
-        ASSERT_FALSE(HasFailure()) << name;
-        EXPECT_LT(found.drop, 2e-3) << name;
+        SCOPED_TRACE(fmt::format("{} cells, {} s", cells, step));
+        std::vector<double> energies_before, energies_after;
+        const Scatter drop = measure_scatter(9, [&, cells = cells, step = step](double shift) {
+            const Pulled found = pull_off({cells, cells / 9}, step, shift);
+            energies_before.push_back(found.before);
+            energies_after.push_back(found.after);
+            return found.drop;
+        });
+        const Scatter before(energies_before), after(energies_after);
+        EXPECT_TRUE(median_is_below(drop, 2e-3));
         // Without EOL vertices, 144 cells at 0.6 ms: from 0.0261 to 0.0540 J.
-        EXPECT_NEAR(found.after, 0.0545, 0.1 * 0.0545) << name;
+        EXPECT_TRUE(median_is_near(after, 0.0545, 0.1 * 0.0545));
         results.add({fmt::format("{}", cells), fmt::format("{:g} ms", 1e3 * step),
-                     fmt::format("{:.4f} J", found.before), fmt::format("{:.4f} J", found.after),
-                     fmt::format("{:.1e} J", found.drop)});
+                     fmt::format("{:.4f} J", before.median()), fmt::format("{:.4f} J", after.median()),
+                     fmt::format("{:.1e} J", drop.median())});
     }
 }
 
@@ -116,6 +125,7 @@ TEST(SheetOnASlope, KeepsItsEnergyWhereItsFoldFliesOff)
     double sum = 0.0;
     int losses = 0;
     for (const Slope& slope : slopes) {
+        const FailuresSince failures;
         ClothRun run = make_slope_run(slope);
         const std::string name =
             fmt::format("{} degrees, turned by {}, {}", slope.tilt, slope.turn, name_of(slope.pattern));
@@ -128,7 +138,10 @@ TEST(SheetOnASlope, KeepsItsEnergyWhereItsFoldFliesOff)
             loss = std::max(loss, last - energy);
             last = energy;
         });
-        ASSERT_FALSE(HasFailure()) << name;
+        if (failures.any()) {
+            ADD_FAILURE() << name;
+            continue;
+        }
         EXPECT_GT(last, 0.1) << name;
         EXPECT_LT(loss, 0.1) << name;
         losses += loss > 0.03;
@@ -177,7 +190,7 @@ TEST(PulledCloth, HasFacesOfTheirOwnSizeWhereItsRearBorderHasPassedTheEdge)
             most = std::max(most, static_cast<int>(run.state.eol.size()));
             return true;
         };
-        for (int k = 1; k <= 110 && !HasFailure(); ++k) {
+        for (int k = 1; k <= 110 && !run.failures.any(); ++k) {
             EXPECT_FALSE(advance(run.scene, run.settings, 0.005 * k, run.state, run.work, accept));
             EXPECT_EQ(validate(run.state.mesh), "");
         }

@@ -9,6 +9,7 @@
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "geometry/surgery/initial_target.h"
 #include "grid_patterns.h"
+#include "tests/failures_since.h"
 
 namespace arris {
 namespace {
@@ -40,6 +41,7 @@ const Rest kRests[] = {
 TEST(Rest, TakesOneSolveAStepAndStaysThere)
 {
     for (const Rest& rest : kRests) {
+        const FailuresSince failures;
         ClothMesh mesh = make_sheet(rest.size, {10, 8}, GridPattern::Cross);
         lay(mesh, Vec3(-0.5 * rest.size.x(), -0.5 * rest.size.y(), rest.height + kThickness));
         Scene scene;
@@ -56,7 +58,10 @@ TEST(Rest, TakesOneSolveAStepAndStaysThere)
         ClothRun run(std::move(scene), std::move(mesh));
         run.settings.integrator = rest.integrator;
         run.advance(4.0, 0.005);  // until what hangs over an edge has come to rest
-        ASSERT_FALSE(HasFailure()) << rest.name;
+        if (failures.any()) {
+            ADD_FAILURE() << rest.name;
+            continue;
+        }
         const std::vector<Vec3> at_rest = run.state.mesh.world;
         int solves = 0, steps = 0;
         run.advance(1.0, 0.005, [&](const StepReport& report) {

@@ -8,13 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "cloth_run.h"
 #include "geometry/surgery/initial_target.h"
 #include "grid_patterns.h"
 #include "refinement.h"
+#include "tests/scatter.h"
 
 namespace arris {
 namespace {
@@ -68,16 +68,6 @@ double slide_off(const RoundedEdge& edge, double step, double shift)
     return measure_energy(run).kinetic;
 }
 
-/// Median of strips whose starts differ by 10 micrometres. Their energies scatter by about 1 % at 0.6 and 2.5
-/// ms. At 5 ms, in which the strip passes three sides of 4 mm, some lose two thirds at the radius of 3 cm.
-double slide_off(const RoundedEdge& edge, double step, int starts)
-{
-    std::vector<double> energies;
-    for (int k = 0; k < starts; ++k) energies.push_back(slide_off(edge, step, 1e-5 * (k - starts / 2)));
-    std::nth_element(energies.begin(), energies.begin() + starts / 2, energies.end());
-    return energies[starts / 2];
-}
-
 TEST(RoundedEdge, KeepsTheEnergyOfWhatSlidesOverIt)
 {
     // 160 cells at 0.6 ms: 0.0290 J with 16 sides.
@@ -89,18 +79,21 @@ TEST(RoundedEdge, KeepsTheEnergyOfWhatSlidesOverIt)
                                     {"3 cm, 12 sides", 0.03, 12, 32},
                                     {"5 cm, 16 sides, crossed cells", 0.05, 16, 20, GridPattern::Cross},
                                     {"5 cm, 16 sides, soft", 0.05, 16, 20, GridPattern::Cross, 1000.0}}) {
-        const double fine = slide_off(edge, 0.000625, 3), middle = slide_off(edge, 0.0025, 3),
-                     coarse = slide_off(edge, 0.005, 9);
-        const std::string name = fmt::format("{}, {} cells", edge.name, edge.cells);
-        // Where equations are linear around the last velocity alone: 0.69 at 5 ms.
-        const double allowed = edge.radius < 0.05 ? 0.15 : 0.11;
-        EXPECT_NEAR(coarse / fine, 1.0, allowed) << name;
-        EXPECT_NEAR(middle / fine, 1.0, 0.6 * allowed) << name;
+        SCOPED_TRACE(fmt::format("{}, {} cells", edge.name, edge.cells));
+        const auto energies = [&](double step, int starts) {
+            return measure_scatter(starts, [&](double shift) { return slide_off(edge, step, shift); });
+        };
+        const Scatter fine = energies(0.000625, 1), middle = energies(0.0025, 3), coarse = energies(0.005, 9);
+        // Where equations are linear around the last velocity alone: 0.69 at 5 ms. In that time the strip
+        // passes three sides of the smallest radius, and its energy scatters by 3 %.
+        const double allowed = edge.radius < 0.05 ? 0.2 : 0.11;
+        EXPECT_TRUE(median_is_near(coarse, fine.median(), allowed * fine.median()));
+        EXPECT_TRUE(median_is_near(middle, fine.median(), 0.6 * allowed * fine.median()));
         const bool is_reference = edge.radius == 0.05 && edge.youngs_modulus > 1e4;
-        EXPECT_NEAR(fine, 0.028, is_reference ? 0.001 : 0.01) << name;
-        table.add({edge.name, fmt::format("{}", edge.cells), fmt::format("{:.4f} J", fine),
-                   fmt::format("{:+.1f} %", 100.0 * (middle / fine - 1.0)),
-                   fmt::format("{:+.1f} %", 100.0 * (coarse / fine - 1.0))});
+        EXPECT_TRUE(median_is_near(fine, 0.028, is_reference ? 0.001 : 0.01));
+        table.add({edge.name, fmt::format("{}", edge.cells), fmt::format("{:.4f} J", fine.median()),
+                   fmt::format("{:+.1f} %", 100.0 * (middle.median() / fine.median() - 1.0)),
+                   fmt::format("{:+.1f} %", 100.0 * (coarse.median() / fine.median() - 1.0))});
     }
 }
 

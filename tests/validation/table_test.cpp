@@ -11,6 +11,7 @@
 #include "refinement.h"
 #include "solver/advance.h"
 #include "solver/contact/audit.h"
+#include "tests/failures_since.h"
 
 namespace arris {
 namespace {
@@ -70,7 +71,7 @@ Slid slide_off(const Drop& drop)
     ClothRun run = make_run(drop);
     Slid found;
     double least = std::numeric_limits<double>::infinity();
-    for (int k = 1; k * kStep <= kDuration + 1e-9 && !testing::Test::HasFailure(); ++k) {
+    for (int k = 1; k * kStep <= kDuration + 1e-9 && !run.failures.any(); ++k) {
         const auto accept = [&](const StepReport& report, bool is_halved) {
             found.halved += is_halved ? 1 : 0;
             EXPECT_EQ(report.crossings, 0);
@@ -99,10 +100,14 @@ TEST(HalfTable, ClothSlidesOffOnAnyMeshSoftOrStiff)
     for (const double modulus : {50.0, 2000.0})
         for (const double angle : {0.0, 30.0})
             for (const int cells : {10, 16, 32}) {
+                const FailuresSince failures;
                 if (cells > 16 && !is_deep()) continue;
                 const Slid found = slide_off({cells, angle, modulus});
                 const std::string name = fmt::format("{} cells turned by {}, E {}", cells, angle, modulus);
-                ASSERT_FALSE(HasFailure()) << name;
+                if (failures.any()) {
+                    ADD_FAILURE() << name;
+                    continue;
+                }
                 // The bounce of stiff cloth off the table depends on the mesh, and the slide amplifies the
                 // difference.
                 EXPECT_NEAR(found.kinetic, 0.0915, (modulus < 100.0 ? 0.04 : 0.06) * 0.0915) << name;

@@ -35,7 +35,7 @@ void advance_alternating(ClothRun& run, double end, double first, double second)
 {
     const double start = run.state.time;
     const auto pairs = static_cast<int>(std::lround((end - start) / (first + second)));
-    for (int k = 0; k < pairs && !testing::Test::HasFailure(); ++k) {
+    for (int k = 0; k < pairs && !run.failures.any(); ++k) {
         const double begin = start + (end - start) * k / pairs;
         run.advance(begin + first * (end - start) / (pairs * (first + second)) - run.state.time);
         run.advance(start + (end - start) * (k + 1) / pairs - run.state.time);

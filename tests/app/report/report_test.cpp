@@ -151,6 +151,8 @@ TEST(Report, WritesEveryFieldOfTheContract)
     report.scene = {{"title", "T"}, {"time", {{"step", 0.1}}}};
     report.version = "0.1.0";
     report.threads = 2;
+    report.kernel = "Haswell";
+    report.processor = "a processor";
     write_report_json(dir / "report.json", report);
 
     const ordered_json json = ordered_json::parse(read_bytes(dir / "report.json"));
@@ -172,7 +174,9 @@ TEST(Report, WritesEveryFieldOfTheContract)
     EXPECT_EQ(json["scene"], report.scene);
     EXPECT_EQ(json["version"], "0.1.0");
     EXPECT_EQ(json["threads"], 2);
-    EXPECT_EQ(json.size(), 17U);
+    EXPECT_EQ(json["blas_kernel"], "Haswell");
+    EXPECT_EQ(json["processor"], "a processor");
+    EXPECT_EQ(json.size(), 19U);
 }
 
 TEST(Report, WritesEmptyListsAsLists)

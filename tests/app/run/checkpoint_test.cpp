@@ -18,6 +18,8 @@ Checkpoint make_checkpoint()
 {
     Checkpoint checkpoint;
     checkpoint.source = {"/somewhere/scene.toml", "title = \"é\"\n", {"time.step=0.001", "title=x"}};
+    checkpoint.warnings = {"a warning"};
+    checkpoint.kernel = "Haswell";
     ClothGrid grid;
     grid.resolution = {3, 2};
     checkpoint.state = make_state(Scene{}, make_cloth_grid(grid), Vec3(1, -0.0, 1e-310));

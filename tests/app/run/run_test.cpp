@@ -15,6 +15,8 @@
 
 #include "app/files/csv_table.h"
 #include "app/files/frame.h"
+#include "app/run/checkpoint.h"
+#include "solver/velocity_solve/blas_kernel.h"
 #include "tests/app/program.h"
 
 namespace arris {
@@ -224,6 +226,28 @@ TEST_F(Run, CtrlCLeavesACheckpointToGoOnFrom)
     Program resumed(folder, {"resume", dir});
     EXPECT_EQ(resumed.wait(), 0) << resumed.err();
     expect_same_run(through, dir);
+}
+
+TEST_F(Run, ResumedWithAnotherBlasKernelItSaysSoOnce)
+{
+    const std::string dir = run_through("through");
+    EXPECT_EQ(nlohmann::json::parse(read_bytes(dir + "/report.json"))["blas_kernel"], blas_kernel());
+    Checkpoint checkpoint = read_checkpoint(dir + "/checkpoint");
+    EXPECT_EQ(checkpoint.kernel, blas_kernel());
+    checkpoint.kernel = "Another";
+    write_checkpoint(dir + "/checkpoint", checkpoint);
+    const std::string line =
+        "from t = 0.5 s on computed with the BLAS kernel " + blas_kernel() +
+        ", before with Another: the result may differ from that of a run without a stop; "
+        "OPENBLAS_CORETYPE=Another in the environment keeps the kernel";
+    for (const char* until : {"0.51", "0.52"}) {
+        Program resumed(folder, {"resume", dir, "--until", until});
+        ASSERT_EQ(resumed.wait(), 0) << resumed.err();
+        EXPECT_NE(resumed.err().find("warning: " + line + "\n"), std::string::npos) << resumed.err();
+        const nlohmann::json report = nlohmann::json::parse(read_bytes(dir + "/report.json"));
+        EXPECT_EQ(report["blas_kernel"], blas_kernel());
+        EXPECT_EQ(std::count(report["warnings"].begin(), report["warnings"].end(), line), 1);
+    }
 }
 
 TEST_F(Run, RemeshedItIsTheSameRunResumedAndOnAnyNumberOfThreads)
