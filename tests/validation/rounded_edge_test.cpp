@@ -85,10 +85,11 @@ TEST(RoundedEdge, KeepsTheEnergyOfWhatSlidesOverIt)
         };
         const Scatter fine = energies(0.000625, 1), middle = energies(0.0025, 3), coarse = energies(0.005, 9);
         // Where equations are linear around the last velocity alone: 0.69 at 5 ms. In that time the strip
-        // passes three sides of the smallest radius, and its energy scatters by 3 %.
-        const double allowed = edge.radius < 0.05 ? 0.2 : 0.11;
-        EXPECT_TRUE(median_is_near(coarse, fine.median(), allowed * fine.median()));
-        EXPECT_TRUE(median_is_near(middle, fine.median(), 0.6 * allowed * fine.median()));
+        // passes three sides of the smallest radius, and up to a third of the starts lose a third of the
+        // energy there.
+        const bool is_small = edge.radius < 0.05;
+        EXPECT_TRUE(median_is_near(coarse, fine.median(), (is_small ? 0.5 : 0.11) * fine.median()));
+        EXPECT_TRUE(median_is_near(middle, fine.median(), (is_small ? 0.12 : 0.066) * fine.median()));
         const bool is_reference = edge.radius == 0.05 && edge.youngs_modulus > 1e4;
         EXPECT_TRUE(median_is_near(fine, 0.028, is_reference ? 0.001 : 0.01));
         table.add({edge.name, fmt::format("{}", edge.cells), fmt::format("{:.4f} J", fine.median()),

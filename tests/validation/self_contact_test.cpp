@@ -128,8 +128,9 @@ TEST(SelfContactFriction, BetweenLayersObeysCoulombsLaw)
 TEST(SelfContactFriction, OfAStackThatLandsTakesFewFactorisations)
 {
     constexpr int kSheets = 5, kCells = 8;
-    constexpr int kMostInAStep = 100,
-                  kMostInTheMean = 15;  // with tangents as springs 300 and 22
+    constexpr int kMostInAStep = 150,
+                  kMostInTheMean =
+                      15;  // with tangents as springs 300 and 22; the most scatters from 60 to 110
     Scene scene;
     scene.material = make_material();
     scene.gravity = Gravity{{0.0, 0.0, -kG}};
