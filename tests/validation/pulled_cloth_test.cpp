@@ -78,9 +78,10 @@ TEST(PulledCloth, LosesLittleWhereItsFoldLeavesTheTable)
             return found.drop;
         });
         const Scatter before(energies_before), after(energies_after);
-        EXPECT_TRUE(median_is_below(drop, 3e-3));  // scatters by 1e-3 J on 18 cells
+        // On 18 cells the drop scatters by 1e-3 J, and the energy by 0.004 J.
+        EXPECT_TRUE(median_is_below(drop, 3e-3));
         // Without EOL vertices, 144 cells at 0.6 ms: from 0.0261 to 0.0540 J.
-        EXPECT_TRUE(median_is_near(after, 0.0545, 0.1 * 0.0545));
+        EXPECT_TRUE(median_is_near(after, 0.0545, (cells > 18 ? 0.1 : 0.2) * 0.0545));
         results.add({fmt::format("{}", cells), fmt::format("{:g} ms", 1e3 * step),
                      fmt::format("{:.4f} J", before.median()), fmt::format("{:.4f} J", after.median()),
                      fmt::format("{:.1e} J", drop.median())});
