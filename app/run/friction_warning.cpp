@@ -11,7 +11,7 @@ namespace arris {
 void note_friction(const StepReport& report, double time, FrictionPeak& peak)
 {
     // With a limit of 1e-2, single steps of a towel that folds would warn, whose motion they do not change.
-    if (report.friction_residual > kOffLaw) ++peak.rows;
+    if (report.friction_residual > kFarFromLaw) ++peak.rows;
     if (report.friction_residual > peak.residual)
         peak = {report.friction_residual, time, report.friction_place, peak.rows};
 }

@@ -67,7 +67,6 @@ struct StepReport {
     int rewound = 0;            ///< vertices put back on their path so that they pass nothing
     double kkt_residual = 0.0;
     int factorisations = 0;
-    double solve_work = 0.0;  ///< of the velocity solves, in factorisations' worth
     int nlopt_evaluations = 0;
     int friction_sweeps = 0;             ///< velocity solves until budgets and impulses of friction agree
     double friction_residual = 0.0;      ///< by how much they do not, relative to the largest budget
@@ -84,7 +83,6 @@ struct StepReport {
     {
         solves += other.solves;
         factorisations += other.factorisations;
-        solve_work += other.solve_work;
         friction_sweeps += other.friction_sweeps;
         nlopt_evaluations += other.nlopt_evaluations;
         seconds += other.seconds;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/velocity_solve/condensed_discs.h"
 #include "solver/velocity_solve/nlopt_outcome.h"
 
 namespace arris {
@@ -192,6 +193,7 @@ std::optional<CondensedAnswer> solve_by_pivoting(const CondensedQp& qp, std::vec
 std::optional<CondensedAnswer> solve_condensed_qp(const CondensedQp& qp, const Eigen::VectorXd& start,
                                                   DenseBudget& budget)
 {
+    if (!qp.discs.empty()) return solve_with_discs(qp, start, budget);
     const std::optional<ScaledQp> scaled = to_unit_diagonal(qp);
     if (!scaled) return std::nullopt;
     CondensedAnswer answer = start_from(std::vector<char>(static_cast<std::size_t>(qp.linear.size()), false));
