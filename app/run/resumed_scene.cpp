@@ -74,16 +74,16 @@ ClothMesh read_first_cloth(const std::string& directory, const State& state)
     return cloth;
 }
 
-/// The result may then differ from that of a run without a stop.
+/// Warns where another kernel has made the steps so far: the result may differ from that of a run without a
+/// stop.
 void note_kernel(Checkpoint& checkpoint)
 {
     const std::string kernel = blas_kernel();
     if (kernel == checkpoint.kernel) return;
-    checkpoint.warnings.push_back(
-        fmt::format("from t = {:.6g} s on computed with the BLAS kernel {}, before with {}: the result may "
-                    "differ from that of "
-                    "a run without a stop; OPENBLAS_CORETYPE={} in the environment keeps the kernel",
-                    checkpoint.state.time, kernel, checkpoint.kernel, checkpoint.kernel));
+    checkpoint.warnings.push_back(fmt::format(
+        "from t = {:.6g} s on computed with the BLAS kernel {}, before with {}: the result may differ from "
+        "that of a run without a stop; OPENBLAS_CORETYPE={} in the environment keeps the kernel",
+        checkpoint.state.time, kernel, checkpoint.kernel, checkpoint.kernel));
     checkpoint.kernel = kernel;
 }
 
