@@ -18,7 +18,9 @@ TEST(BlasKernel, IsHaswellsWhereTheProcessorHasItAndNoOtherIsAskedFor)
         EXPECT_STRCASEEQ(blas_kernel().c_str(), std::getenv("OPENBLAS_CORETYPE"));
         return;
     }
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) EXPECT_EQ(blas_kernel(), "Haswell");
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+        EXPECT_EQ(blas_kernel(), "Haswell");
+    }
 #endif
     EXPECT_FALSE(blas_kernel().empty());
 }
@@ -28,8 +30,9 @@ TEST(BlasKernel, ItsChoiceIsNotPassedOnToOtherPrograms)
     EXPECT_EQ(std::getenv("ARRIS_CHOSE_BLAS_KERNEL"), nullptr);
     std::ifstream in("/proc/self/environ");  // as this program was started
     const std::string started((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    if (started.find("ARRIS_CHOSE_BLAS_KERNEL=") != std::string::npos)
+    if (started.find("ARRIS_CHOSE_BLAS_KERNEL=") != std::string::npos) {
         EXPECT_EQ(std::getenv("OPENBLAS_CORETYPE"), nullptr);
+    }
 }
 
 }  // namespace
