@@ -116,8 +116,9 @@ TEST_P(Scenes, FinishFreeOfTheirObstaclesAndKeepTheirMaterial)
     // corner comes late: by .02 on three needles (median .90) and by .03 on a parasol (.93). One run tells
     // only if it is far above the bound.
     constexpr double kLeastShare = 0.85, kSurely = 0.05;
-    if (!(eol_share(report) > kLeastShare + kSurely))
+    if (!(eol_share(report) > kLeastShare + kSurely)) {
         EXPECT_TRUE(median_is_above(scatter_of_eol_share(GetParam(), report, folder), kLeastShare));
+    }
 
     const CsvTable steps = read_csv(dir + "/steps.csv");
     const auto cloth = report["scene"]["cloth"];  // a file's cloth has no size of its own
