@@ -37,7 +37,7 @@ struct StepRow {
     std::optional<std::int64_t> yielded;  ///< contacts that could not keep their stand-off
     std::optional<double> energy_rise;    ///< J, energy rise of a step that no retry could remove; else 0
     std::optional<std::int64_t> eol_pressing;
-    std::optional<std::int64_t> friction_sweeps;  ///< velocity solves until friction agrees with its budgets
+    std::optional<std::int64_t> friction_sweeps;  ///< moves of its budgets
     std::optional<double> friction_residual;      ///< by how much it does not, relative to the largest budget
     std::optional<double> friction_work;          ///< J, lost to friction in this step
     std::optional<std::int64_t> sticking, sliding;  ///< contacts with friction

@@ -10,8 +10,7 @@ namespace arris {
 
 void note_friction(const StepReport& report, double time, FrictionPeak& peak)
 {
-    // With a limit of 1e-2, single steps of a towel that folds would warn, whose motion they do not change.
-    if (report.friction_residual > kFarFromLaw) ++peak.rows;
+    if (report.friction_residual > kOffLaw) ++peak.rows;
     if (report.friction_residual > peak.residual)
         peak = {report.friction_residual, time, report.friction_place, peak.rows};
 }
@@ -20,11 +19,12 @@ std::vector<std::string> warn_of_friction(const FrictionPeak& peak)
 {
     if (peak.rows == 0) return {};
     return {fmt::format(
-        "friction differed from its law by more than 10 % of the largest friction in {}, most by {:.3g} % "
+        "friction differed from its law by more than {:.2g} % of the largest friction in {}, most by {:.3g} "
+        "% "
         "in the step to t = {:.6g} s, near [{:.4g}, {:.4g}, {:.4g}] m: contacts took turns to press or to "
         "slide; lower 'time.step', or set 'cloth.material.damping' to 0.001 s or more",
-        counted(peak.rows, "step", "steps"), 100.0 * peak.residual, peak.time, peak.world.x(), peak.world.y(),
-        peak.world.z())};
+        100.0 * kOffLaw, counted(peak.rows, "step", "steps"), 100.0 * peak.residual, peak.time,
+        peak.world.x(), peak.world.y(), peak.world.z())};
 }
 
 }  // namespace arris

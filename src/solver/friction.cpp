@@ -15,8 +15,9 @@ void store(Workspace& work)
         const Rub& rub = work.rubs[r];
         ContactFriction& friction =
             rub.self_row >= 0 ? work.self_rows[rub.self_row].friction : work.contacts[rub.contact].friction;
-        friction = {Vec3::Zero(), Vec3::Zero(), work.problem.friction[r].budget / gamma};
-        const bool is_sliding = work.solution.unlimited[r].norm() > work.problem.friction[r].budget;
+        const double budget = work.solution.budgets[r];
+        friction = {Vec3::Zero(), Vec3::Zero(), budget / gamma};
+        const bool is_sliding = work.solution.unlimited[r].norm() > budget;
         for (int d = 0; d < 2; ++d) {
             friction.force += work.solution.friction[r][d] / gamma * rub.directions[d];
             if (is_sliding) friction.slip += work.solution.slip[r][d] * rub.directions[d];
@@ -29,7 +30,7 @@ void count(const Workspace& work, StepReport& report)
     report.sticking = report.sliding = 0;
     report.friction_work = 0.0;
     for (std::size_t r = 0; r < work.rubs.size(); ++r) {
-        const double budget = work.problem.friction[r].budget;
+        const double budget = work.solution.budgets[r];
         if (!(budget > 0.0)) continue;
         ++(work.solution.unlimited[r].norm() <= budget ? report.sticking : report.sliding);
         report.friction_work -=
@@ -52,19 +53,20 @@ RubbingCloth rubbing_cloth(const Scene& scene, const State& state, const Workspa
             work.obstacles, work.eol, work.contacts,   work.self_rows,     work.linearization};
 }
 
-void solve_with_friction(const Scene& scene, const State& state, Attempt attempt,
-                         const std::function<const VelocitySolution&()>& solve, Workspace& work,
-                         StepReport& report)
+void set_friction_law(const Scene& scene, const State& state, Workspace& work)
 {
-    const auto budgets = [&](const VelocitySolution& solution) {
+    work.problem.law = [&scene, &state, &work](const VelocitySolution& solution) {
         return compute_budgets(rubbing_cloth(scene, state, work), work.mesh.terms, work.rubs, solution);
     };
-    FrictionSweeps sweeps = sweep_friction(solve, budgets, work.problem);
-    if (sweeps.certified && (sweeps.residual <= kFarFromLaw || attempt == Attempt::Last))
-        work.solution = *std::move(sweeps.certified);
-    report.friction_sweeps += sweeps.count;
-    report.friction_residual = sweeps.residual;
-    if (sweeps.worst >= 0) report.friction_place = state.mesh.world[vertex_of(work.rubs[sweeps.worst], work)];
+}
+
+void note_friction(const State& state, Workspace& work, StepReport& report)
+{
+    const VelocitySolution& solution = work.solution;
+    report.friction_sweeps += solution.budget_moves;
+    report.friction_residual = solution.law_residual;
+    if (solution.law_worst >= 0)
+        report.friction_place = state.mesh.world[vertex_of(work.rubs[solution.law_worst], work)];
     store(work);
     count(work, report);
 }

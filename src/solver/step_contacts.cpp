@@ -2,7 +2,6 @@
 #include "solver/step_contacts.h"
 
 #include <optional>
-#include <set>
 
 #include "geometry/sort_unique.h"
 #include "solver/contact/constraints.h"
@@ -63,32 +62,29 @@ bool collect_contacts(const Scene& scene, const State& state, Workspace& work, S
     return false;
 }
 
-void make_room_for_self_rows(const Scene& scene, Workspace& work)
+void make_room_for_self_rows(Workspace& work)
 {
-    constexpr std::size_t kFewPairs =
-        60;  // of vertices, for which a new analysis does not pay without friction
+    constexpr std::size_t kSpare = 60;  // pairs of vertices that are kept whether they are needed or not
     LinearSystem& system = work.mesh.system;
     std::vector<std::array<int, 2>> pairs;
-    std::size_t missing = 0;
-    std::set<int> closing;  // groups of rows: about as many press
+    bool is_any_missing = false;
     for (const SelfRow& row : work.self_rows)
-        if (row.is_closing || row.was_active()) closing.insert(work.problem.rows[row.row].group);
-    constexpr std::size_t kFewRub = 10;  // pairs, whose springs the working set finds as well
-    const bool do_many_rub = scene.friction && closing.size() > kFewRub;
-    const bool is_wanted = do_many_rub || wants_rows_in_matrix(work.problem, closing.size());
-    for (const SelfRow& row : work.self_rows)
-        for (int i = 0; is_wanted && i < 4; ++i)
+        for (int i = 0; i < 4; ++i)
             for (int j = 0; j < i; ++j) {
                 if (row.contact.weights[i] == 0.0 || row.contact.weights[j] == 0.0) continue;
                 const int v = row.contact.vertices[i], w = row.contact.vertices[j];
                 pairs.push_back({std::min(v, w), std::max(v, w)});
-                missing += !system.has_pair(v, w);
+                is_any_missing = is_any_missing || !system.has_pair(v, w);
             }
-    const bool is_stale = system.coupled().size() > 4 * pairs.size() + kFewPairs;
-    // Newton's method for friction has no way to an impulse whose spring the matrix has no room for.
-    const std::size_t most_missing = do_many_rub ? 0 : kFewPairs;
-    if (missing <= most_missing && !is_stale) return;
     sort_unique(pairs);
+    const auto is_far_above = [&](std::size_t times) {
+        return system.coupled().size() > times * pairs.size() + kSpare;
+    };
+    if (!is_any_missing && !is_far_above(4)) return;
+    if (!is_far_above(2)) {  // contacts that have gone may come back
+        pairs.insert(pairs.end(), system.coupled().begin(), system.coupled().end());
+        sort_unique(pairs);
+    }
     system.make_pattern(work.mesh.elements, std::move(pairs));
 }
 

@@ -12,9 +12,9 @@ namespace arris {
 /// them. False where a vertex has no room between two obstacles, and where a number is not finite.
 bool collect_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report);
 
-/// Before A is assembled: where so many rows of the cloth with itself are expected to press that the velocity
-/// solve wants them in its matrix, or so many rub, gives the pattern the pairs of vertices that they couple.
-void make_room_for_self_rows(const Scene& scene, Workspace& work);
+/// Before A is assembled: gives the pattern the pairs of vertices that contacts of the cloth with itself
+/// couple.
+void make_room_for_self_rows(Workspace& work);
 
 /// Adds violations as rows: to the existing system, or to a new one where they change history or the room
 /// that contacts share. False where the check names no contact.

@@ -67,8 +67,9 @@ struct StepReport {
     int rewound = 0;            ///< vertices put back on their path so that they pass nothing
     double kkt_residual = 0.0;
     int factorisations = 0;
+    double solve_work = 0.0;  ///< of the velocity solves, in factorisations' worth
     int nlopt_evaluations = 0;
-    int friction_sweeps = 0;             ///< velocity solves until budgets and impulses of friction agree
+    int friction_sweeps = 0;             ///< moves of friction's budgets until they agree with the forces
     double friction_residual = 0.0;      ///< by how much they do not, relative to the largest budget
     Vec3 friction_place = Vec3::Zero();  ///< m, a vertex of the contact that differs most
     double friction_work = 0.0;          ///< J, lost to friction
@@ -83,6 +84,7 @@ struct StepReport {
     {
         solves += other.solves;
         factorisations += other.factorisations;
+        solve_work += other.solve_work;
         friction_sweeps += other.friction_sweeps;
         nlopt_evaluations += other.nlopt_evaluations;
         seconds += other.seconds;

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/velocity_solve/condensed_discs.h"
 #include "solver/velocity_solve/nlopt_outcome.h"
 
 namespace arris {
@@ -99,9 +98,9 @@ std::vector<int> positive(const CondensedAnswer& answer)
     return result;
 }
 
-/// S_AA z_A = -q_A on the positive unknowns A, z = 0 elsewhere. False where S_AA is not positive definite
-/// even with the shift.
-bool solve_on_set(const CondensedQp& qp, CondensedAnswer& answer)
+/// S_AA z_A = -q_A on the positive unknowns A, z = 0 elsewhere. `round_off` of z is what its last refinement
+/// changed. False where S_AA is not positive definite even with the shift.
+bool solve_on_set(const CondensedQp& qp, CondensedAnswer& answer, double& round_off)
 {
     const std::vector<int> set = positive(answer);
     answer.z.setZero();
@@ -112,7 +111,12 @@ bool solve_on_set(const CondensedQp& qp, CondensedAnswer& answer)
     if (cholesky.info() != Eigen::Success) return false;
     const Eigen::VectorXd rhs = -qp.linear(set);
     Eigen::VectorXd z = cholesky.solve(rhs);
-    for (int refinement = 0; refinement < kRefinements; ++refinement) z += cholesky.solve(rhs - part * z);
+    round_off = 0.0;
+    for (int refinement = 0; refinement < kRefinements; ++refinement) {
+        const Eigen::VectorXd change = cholesky.solve(rhs - part * z);
+        round_off = change.lpNorm<Eigen::Infinity>();
+        z += change;
+    }
     for (std::size_t k = 0; k < set.size(); ++k) answer.z[set[k]] = z[static_cast<Eigen::Index>(k)];
     multiply(qp.hessian, answer.z.data(), answer.w.data());
     answer.w += qp.linear;
@@ -129,11 +133,13 @@ double cost_of_set(const CondensedAnswer& answer)
     return set * set * set / 3.0 + 10.0 * size * size;
 }
 
-/// Unknowns with the wrong sign of z or w, ascending.
-std::vector<int> find_wrong(const CondensedAnswer& answer)
+/// Unknowns with the wrong sign of z or w, ascending. |S_ij| <= 1, so w = S z + q has the round-off of |z|_1.
+std::vector<int> find_wrong(const CondensedAnswer& answer, double round_off_of_z)
 {
-    const double least_z = -kSignTolerance * answer.z.lpNorm<Eigen::Infinity>();
-    const double least_w = -kSignTolerance * answer.w.lpNorm<Eigen::Infinity>();
+    constexpr double kEpsilon = 4.0 * std::numeric_limits<double>::epsilon();
+    const double least_z = -std::max(kSignTolerance * answer.z.lpNorm<Eigen::Infinity>(), round_off_of_z);
+    const double least_w =
+        -std::max(kSignTolerance * answer.w.lpNorm<Eigen::Infinity>(), kEpsilon * answer.z.lpNorm<1>());
     std::vector<int> wrong;
     for (int i = 0; i < answer.z.size(); ++i)
         if (answer.is_positive[i] ? answer.z[i] < least_z : answer.w[i] < least_w) wrong.push_back(i);
@@ -148,8 +154,9 @@ bool pivot(const CondensedQp& qp, DenseBudget& budget, CondensedAnswer& answer)
     std::size_t least = static_cast<std::size_t>(size) + 1;
     int patience = kPatience;
     for (int step = 0; step < 20 * size + 50; ++step) {
-        if (!budget.spend(cost_of_set(answer)) || !solve_on_set(qp, answer)) return false;
-        const std::vector<int> wrong = find_wrong(answer);
+        double round_off = 0.0;
+        if (!budget.spend(cost_of_set(answer)) || !solve_on_set(qp, answer, round_off)) return false;
+        const std::vector<int> wrong = find_wrong(answer, round_off);
         if (wrong.empty()) return true;
         const bool is_better = wrong.size() < least;
         if (is_better) {
@@ -193,7 +200,6 @@ std::optional<CondensedAnswer> solve_by_pivoting(const CondensedQp& qp, std::vec
 std::optional<CondensedAnswer> solve_condensed_qp(const CondensedQp& qp, const Eigen::VectorXd& start,
                                                   DenseBudget& budget)
 {
-    if (!qp.discs.empty()) return solve_with_discs(qp, start, budget);
     const std::optional<ScaledQp> scaled = to_unit_diagonal(qp);
     if (!scaled) return std::nullopt;
     CondensedAnswer answer = start_from(std::vector<char>(static_cast<std::size_t>(qp.linear.size()), false));

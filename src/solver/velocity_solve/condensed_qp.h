@@ -9,24 +9,16 @@
 
 namespace arris {
 
-/// Two unknowns whose vector is not longer than `radius`.
-struct CondensedDisc {
-    int first, second;
-    double radius;
-};
-
-/// min 1/2 z^T S z + q^T z subject to z >= 0, or to discs, with S dense, symmetric and positive definite.
+/// min 1/2 z^T S z + q^T z subject to z >= 0, with S dense, symmetric and positive definite.
 struct CondensedQp {
-    Eigen::MatrixXd hessian;                ///< S
-    Eigen::VectorXd linear;                 ///< q
-    std::vector<CondensedDisc> discs = {};  ///< all other unknowns are at least 0
+    Eigen::MatrixXd hessian;  ///< S
+    Eigen::VectorXd linear;   ///< q
 };
 
-/// A solution: either z >= 0 and w = S z + q is 0, or z is 0 and w >= 0. In a disc, either w is 0, or z is on
-/// the rim and w points inwards.
+/// A solution: either z >= 0 and w = S z + q is 0, or z is 0 and w >= 0.
 struct CondensedAnswer {
     Eigen::VectorXd z, w;
-    std::vector<char> is_positive;  ///< whether w is 0; else z is 0; 1 in discs
+    std::vector<char> is_positive;  ///< whether w is 0; else z is 0
     int nlopt_evaluations = 0;
 };
 
@@ -46,11 +38,10 @@ struct DenseBudget {
     }
 };
 
-/// NLopt's LD_LBFGS finds which z are positive, from `start` (with discs: condensed_discs.h); pivoting then
-/// makes the answer exact to round-off. NLopt's result only starts the pivoting, which ends from any start.
-/// Nothing where S or q is not finite, a diagonal entry is not positive, or the pivoting exceeds its limit of
-/// steps: S is not positive definite to working precision. Nothing either where it takes more than the
-/// budget.
+/// NLopt's LD_LBFGS finds which z are positive, from `start`; pivoting then makes the answer exact to
+/// round-off. NLopt's result only starts the pivoting, which ends from any start. Nothing where S or q is not
+/// finite, a diagonal entry is not positive, or the pivoting exceeds its limit of steps: S is not positive
+/// definite to working precision. Nothing either where it takes more than the budget.
 std::optional<CondensedAnswer> solve_condensed_qp(const CondensedQp& qp, const Eigen::VectorXd& start,
                                                   DenseBudget& budget);
 

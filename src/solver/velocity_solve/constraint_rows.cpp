@@ -19,10 +19,6 @@ constexpr double kStiffness = 1e4;
 /// stay below 0.1 free speed / (g^T D^-1 g), so these give way by less than 1e-5 of the speed.
 constexpr double kUnmet = 1e-2;
 
-/// Softened rows may give way by as many times the speed that their multipliers alone would give: the lowest
-/// rows of a stack of layers carry those above. With 1, five layers that land lose their thickness.
-constexpr double kLeastUnmet = 10.0;
-
 /// Largest speed that a row may ask of what can move, over the free speed. A row of which only a tiny part
 /// can move may ask for any speed; its spring would throw that part.
 constexpr double kMostSpeed = 10.0;
@@ -65,23 +61,24 @@ Eigen::VectorXd positive_diagonal(const Eigen::SparseMatrix<double>& matrix)
 }
 
 /// One entry per coordinate that can move, ascending, without entries below round-off.
-SparseVector movable_entries(const VelocityProblem& problem, const ConstraintRow& row)
+RowEntries movable_entries(const VelocityProblem& problem, const ConstraintRow& row)
 {
-    SparseVector entries;
+    RowEntries entries;
     for (int k = 0; k < row.count; ++k) {
         assert(row.coordinate[k] >= 0 && row.coordinate[k] < problem.rhs->size());
         if (!problem.is_fixed[row.coordinate[k]]) entries.emplace_back(row.coordinate[k], row.coefficient[k]);
     }
     std::stable_sort(entries.begin(), entries.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
-    SparseVector merged;
+    RowEntries merged;
     for (const auto& [coordinate, value] : entries)
         if (!merged.empty() && merged.back().first == coordinate)
             merged.back().second += value;
         else
             merged.emplace_back(coordinate, value);
     const double negligible = kRoundOff * largest_coefficient(row);
-    std::erase_if(merged, [&](const auto& entry) { return !(std::abs(entry.second) > negligible); });
+    const auto is_negligible = [&](const auto& entry) { return !(std::abs(entry.second) > negligible); };
+    merged.erase(std::remove_if(merged.begin(), merged.end(), is_negligible), merged.end());
     return merged;
 }
 
@@ -143,7 +140,7 @@ void add_pair(const VelocityProblem& problem, const Eigen::VectorXd& diagonal, c
 
 }  // namespace
 
-ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed, double softening)
+ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
 {
     ConstraintRows result;
     if (problem.rows.empty() && problem.friction.empty()) return result;
@@ -166,7 +163,7 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed, dou
         if (can_move) speed = std::max(speed, row.lower / largest_coefficient(row));
     }
     result.least_speed = kLeastSpeed * speed;
-    result.unmet_speed = std::max(kUnmet, kLeastUnmet * softening / kStiffness) * speed;
+    result.unmet_speed = kUnmet * speed;
     for (std::size_t k = 0; k < problem.rows.size(); ++k) {
         ScaledRow& row = result.rows[first + k];
         if (row.entries.empty()) continue;
@@ -174,7 +171,6 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed, dou
             row.lower = kMostSpeed * speed;
             result.impossible.push_back(static_cast<int>(k));
         }
-        row.give *= softening;
         row.lower += std::min(row.give * problem.rows[k].expected * row.scale, result.unmet_speed);
         result.is_finite = result.is_finite && std::isfinite(1.0 / row.give) && std::isfinite(row.lower);
     }
@@ -215,13 +211,6 @@ double estimate_free_speed(const VelocityProblem& problem)
         product = next;
     }
     return unit * largest;
-}
-
-double ConstraintRows::largest_budget() const
-{
-    double largest = 0.0;
-    for (const double budget : budgets) largest = std::max(largest, budget);
-    return largest;
 }
 
 double gap(const ScaledRow& row, const Eigen::VectorXd& velocity, double multiplier)

@@ -2,17 +2,21 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <boost/container/static_vector.hpp>
+#include <utility>
 #include <vector>
 
-#include "solver/velocity_solve/forward_columns.h"
 #include "solver/velocity_solve/velocity_solve.h"
 
 namespace arris {
 
+/// (coordinate, coefficient); no memory of its own, as there are many.
+using RowEntries = boost::container::static_vector<std::pair<int, double>, ConstraintRow::kMostEntries>;
+
 /// A row g^T u >= lower over the coordinates that can move, scaled to a largest |g| of 1. Its gap is in m/s
 /// and its multiplier an impulse in N s, whatever the scale of the given row.
 struct ScaledRow {
-    SparseVector entries;     ///< g, by ascending coordinate; empty where the row constrains nothing
+    RowEntries entries;       ///< g, by ascending coordinate; empty where the row constrains nothing
     double lower = 0.0;       ///< m/s: the given one, and the way that the expected multiplier presses
     double scale = 1.0;       ///< given row = scale * g; given multiplier = multiplier / scale
     double compliance = 1.0;  ///< g^T D^-1 g, D = diag A, 1/kg: gap opened by a unit impulse without coupling
@@ -36,13 +40,11 @@ struct ConstraintRows {
 
     int pair_count() const { return static_cast<int>(budgets.size()); }
     int slip_count() const { return 2 * pair_count(); }  ///< index of the problem's first row
-    double largest_budget() const;                       ///< N s, 0 without pairs
 };
 
 /// `free_speed` is `estimate_free_speed` of this problem; unused without rows. Coefficients below round-off
 /// of the row's largest one, fixed coordinates included, count as 0.
-/// `softening`: factor of all gives, at least 1.
-ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed, double softening = 1.0);
+ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed);
 
 /// Largest speed, m/s, without bounds and rows, within an order of magnitude. What cannot be
 /// met is relative to this speed, as the constrained speed may vanish. Depends only on A, b and the fixed

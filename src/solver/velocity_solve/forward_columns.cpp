@@ -70,6 +70,7 @@ void ForwardColumns::solve(Panel& panel)
         panel.values.insert(panel.values.end(), x, x + entries);
 
         const int below = block.row_count - block.columns;
+        flops_ += static_cast<double>(width) * block.columns * (block.columns + 2.0 * below);
         if (below > 0) {
             update_.resize(std::max(update_.size(), static_cast<std::size_t>(below) * width));
             cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, width, below, block.columns, 1.0, x, width,
@@ -97,6 +98,7 @@ void ForwardColumns::extend_gram(const Panel& panel)
                 ++j;
             } else {
                 const int columns = factorization_->supernode(panel.path[i]).columns;
+                flops_ += 2.0 * panel.width * other.width * columns;
                 cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, panel.width, other.width, columns, 1.0,
                             panel.values.data() + panel.offset[i++], panel.width,
                             other.values.data() + other.offset[j++], other.width, 1.0, product.data(),

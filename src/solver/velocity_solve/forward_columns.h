@@ -26,6 +26,7 @@ class ForwardColumns {
 
     int size() const { return size_; }
     const Eigen::MatrixXd& gram() const { return gram_; }
+    double flops() const { return flops_; }  ///< spent on the columns and their Gram matrix so far
     Eigen::VectorXd dot(const Eigen::VectorXd& forward) const;                             ///< G^T f
     void accumulate(const Eigen::VectorXd& coefficients, Eigen::VectorXd& forward) const;  ///< f += G c
 
@@ -44,6 +45,7 @@ class ForwardColumns {
 
     const Factorization* factorization_;
     int size_ = 0;
+    double flops_ = 0.0;
     std::vector<Panel> panels_;
     Eigen::MatrixXd gram_;
     std::vector<double> rows_;      ///< unknowns x width, row-major: the panel in work; zero between panels

@@ -16,7 +16,7 @@ namespace arris {
 /// max|u| is at least their least speed, and diag(A) times that speed is added to the scale of stationarity.
 /// 0/0 counts as 0. NaN where anything is NaN; infinite where a coordinate without a bound has a multiplier.
 /// `row_multipliers` belong to the scaled rows. Impulses of friction are taken as given forces;
-/// `friction_residual` (solver/friction) tells how far they are from the law.
+/// `VelocitySolution::law_residual` tells how far they are from the law.
 double kkt_residual(const VelocityProblem& problem, const ConstraintRows& constraints,
                     const Eigen::VectorXd& velocity, const Eigen::VectorXd& multipliers,
                     const Eigen::VectorXd& row_multipliers);

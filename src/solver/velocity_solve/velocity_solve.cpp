@@ -3,26 +3,14 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "solver/model/stopwatch.h"
-#include "solver/velocity_solve/active_set_search.h"
+#include "solver/velocity_solve/contact_newton.h"
 
 namespace arris {
 namespace {
-
-/// One search for the constraints that press.
-struct SearchAttempt {
-    double softening;    ///< factor of the rows' gives
-    bool has_row_guess;  ///< starts with the rows expected to press
-};
-
-/// Tried in this order. Where very many rows depend on each other, a wrong guess may be worse than none, and
-/// the search for stiff springs may not end within its budget. Softer ones still give way by less than 0.1 to
-/// 1 % of the free speed, and the check of the whole path decides whether that is near enough.
-constexpr SearchAttempt kAttempts[] = {{1.0, true}, {1.0, false}, {100.0, true}, {1000.0, true}};
 
 bool is_finite(const VelocityProblem& problem)
 {
@@ -52,23 +40,34 @@ VelocitySolution make_zero_solution(const VelocityProblem& problem)
     solution.row_multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.rows.size()));
     solution.friction.assign(problem.friction.size(), Eigen::Vector2d::Zero());
     solution.slip = solution.unlimited = solution.friction;
+    solution.budgets.assign(problem.friction.size(), 0.0);
     return solution;
 }
 
 struct VelocitySolver::Cache {
     Factorization factorization;
     ConstraintRows constraints;
-    double softening = 1.0;            ///< of the last solve
-    std::optional<double> free_speed;  ///< m/s, from the last solve's A, b
-    std::optional<BaseInUse> in_use;   ///< of the last solve, for `resume`
+    std::optional<double> free_speed;     ///< m/s, from the last solve's A, b
+    std::optional<ContactNewton> newton;  ///< of the last solve, for `resume`
+    std::optional<ContactAnswer> answer;  ///< of the last solve
 
     /// False where rows are not finite.
     bool scale(const VelocityProblem& problem)
     {
         if ((!problem.rows.empty() || !problem.friction.empty()) && !free_speed)
             free_speed = estimate_free_speed(problem);
-        constraints = scale_rows(problem, free_speed.value_or(0.0), softening);
+        constraints = scale_rows(problem, free_speed.value_or(0.0));
         return constraints.is_finite;
+    }
+
+    VelocitySolution keep(VelocitySolution solution)
+    {
+        answer.reset();
+        if (solution.status == SolveStatus::Certified || solution.status == SolveStatus::Infeasible)
+            answer = newton->answer();
+        else
+            newton.reset();
+        return solution;
     }
 };
 
@@ -79,17 +78,11 @@ VelocitySolver& VelocitySolver::operator=(VelocitySolver&&) noexcept = default;
 
 VelocitySolution VelocitySolver::solve(const VelocityProblem& problem, const Settings& settings)
 {
-    return solve_within(problem.most_factorisations, problem, settings);
-}
-
-VelocitySolution VelocitySolver::solve_within(int most_factorisations, const VelocityProblem& problem,
-                                              const Settings& settings)
-{
     Stopwatch watch;
     assert_shapes(problem);
-    cache_->in_use.reset();
+    cache_->newton.reset();
     cache_->free_speed.reset();
-    cache_->softening = 1.0;
+    const std::optional<ContactAnswer> last = std::exchange(cache_->answer, std::nullopt);
     VelocitySolution solution = make_zero_solution(problem);
     if (!is_finite(problem) || !cache_->scale(problem)) {
         solution.status = SolveStatus::NotFinite;
@@ -99,21 +92,9 @@ VelocitySolution VelocitySolver::solve_within(int most_factorisations, const Vel
         solution.status = solution.infeasible_rows.empty() ? SolveStatus::Certified : SolveStatus::Infeasible;
     } else {
         cache_->factorization.analyse(*problem.matrix);
-        for (const SearchAttempt& attempt : kAttempts) {
-            const bool is_first = &attempt == kAttempts;
-            if (!is_first && (solution.status != SolveStatus::NotConverged || problem.rows.empty())) break;
-            const int left = most_factorisations - solution.factorisations;
-            if (!is_first && left <= 0) break;
-            if (attempt.softening > cache_->softening) {
-                cache_->softening = attempt.softening;
-                cache_->scale(problem);
-            }
-            VelocitySolution found =
-                ActiveSetSearch(problem, cache_->factorization, cache_->constraints, cache_->in_use, settings)
-                    .run(attempt.has_row_guess, left);
-            found.add_cost(solution);
-            solution = std::move(found);
-        }
+        cache_->newton.emplace(problem, cache_->constraints, cache_->factorization, settings);
+        const bool is_repeat = problem.is_repeat && last;
+        solution = cache_->keep(is_repeat ? cache_->newton->run_from(*last) : cache_->newton->run());
     }
     solution.solve_seconds = watch.lap() - solution.factorise_seconds;
     return solution;
@@ -121,26 +102,20 @@ VelocitySolution VelocitySolver::solve_within(int most_factorisations, const Vel
 
 VelocitySolution VelocitySolver::resume(const VelocityProblem& problem, const Settings& settings)
 {
-    if (!cache_->in_use) return solve(problem, settings);
+    if (!cache_->newton) return solve(problem, settings);
     Stopwatch watch;
     assert_shapes(problem);
     assert(2 * problem.friction.size() + problem.rows.size() >= cache_->constraints.rows.size() &&
            "rows are only appended");
+    const std::vector<double> budgets = cache_->constraints.budgets;
     VelocitySolution solution = make_zero_solution(problem);
     if (!cache_->scale(problem)) {
-        cache_->in_use.reset();
+        cache_->newton.reset();
         solution.status = SolveStatus::NotFinite;
         solution.kkt_residual = std::numeric_limits<double>::quiet_NaN();
     } else {
-        solution =
-            ActiveSetSearch(problem, cache_->factorization, cache_->constraints, cache_->in_use, settings)
-                .resume(problem.most_factorisations);
-        const int left = problem.most_factorisations - solution.factorisations;
-        if (solution.status == SolveStatus::NotConverged && left > 0) {  // from the beginning
-            VelocitySolution again = solve_within(left, problem, settings);
-            again.add_cost(solution);
-            solution = std::move(again);
-        }
+        cache_->constraints.budgets = budgets;
+        solution = cache_->keep(cache_->newton->resume(settings));
     }
     solution.solve_seconds = watch.lap() - solution.factorise_seconds;
     return solution;

@@ -3,6 +3,7 @@
 
 #include <Eigen/SparseCore>
 #include <array>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -34,8 +35,11 @@ struct FrictionPair {
     std::array<double, 2> last = {};    ///< m/s, the slip to start the search from
 };
 
+struct VelocitySolution;
+
 /// min 1/2 u^T A u - b^T u + sum_pairs (the friction springs' energy) subject to u >= lower, u = 0 where
-/// fixed, and rows. Strictly convex for given budgets (Tresca's friction). Three unknowns a vertex.
+/// fixed, and rows. Strictly convex for given budgets (Tresca's friction), which the solve moves until they
+/// agree with `law`. Three unknowns a vertex.
 struct VelocityProblem {
     const Eigen::SparseMatrix<double>* matrix =
         nullptr;                           ///< A, SPD: lower triangle, and whole 3x3 diagonal blocks
@@ -46,7 +50,12 @@ struct VelocityProblem {
     std::vector<ConstraintRow> rows;
     std::vector<int> row_guess;  ///< rows expected active, ascending
     std::vector<FrictionPair> friction;
-    int most_factorisations = std::numeric_limits<int>::max();  ///< of a call; then it is NotConverged
+    /// Budgets, N s, one a friction pair, that the forces of a solution give: Coulomb's law. Without it the
+    /// given budgets hold.
+    std::function<std::vector<double>(const VelocitySolution&)> law;
+    double most_work = 60.0;  ///< of a call, in factorisations' worth; then it is NotConverged
+    bool is_repeat =
+        false;  ///< may have the contacts of the problem solved last: then it starts from that answer
 };
 
 enum class SolveStatus { Certified, NotConverged, NotFinite, Infeasible };
@@ -54,13 +63,18 @@ enum class SolveStatus { Certified, NotConverged, NotFinite, Infeasible };
 /// The answer and how it was reached. `kkt_residual` is recomputed from A, b and the bounds alone.
 struct VelocitySolution {
     SolveStatus status = SolveStatus::NotConverged;
-    Eigen::VectorXd velocity;                ///< u
-    Eigen::VectorXd multipliers;             ///< lambda >= 0, one a coordinate, 0 where no bound is active
-    Eigen::VectorXd row_multipliers;         ///< >= 0, one a row
+    Eigen::VectorXd velocity;         ///< u
+    Eigen::VectorXd multipliers;      ///< lambda, one a coordinate: >= 0 but for round-off, 0 without a bound
+    Eigen::VectorXd row_multipliers;  ///< >= 0, one a row
     std::vector<Eigen::Vector2d> friction;   ///< impulses, N s, one a friction pair
     std::vector<Eigen::Vector2d> slip;       ///< m/s, one a friction pair
     std::vector<Eigen::Vector2d> unlimited;  ///< N s, `friction` if the budgets were infinite
-    std::vector<int> infeasible_rows;        ///< not met; all hold as well as possible
+    std::vector<double> budgets;             ///< N s, with which these were found
+    double law_residual = 0.0;  ///< greatest |friction - the law's for the forces| / largest budget
+    int law_worst = -1;         ///< friction pair with that difference
+    int budget_moves = 0;
+    double work = 0.0;                 ///< in factorisations' worth
+    std::vector<int> infeasible_rows;  ///< not met; all hold as well as possible
     double kkt_residual = 0.0;
     int factorisations = 0;
     int nlopt_evaluations = 0;
@@ -75,13 +89,12 @@ struct VelocitySolution {
     }
 };
 
-/// Whether the springs of so many pressing rows become part of the solve's matrix, as far as it has entries
-/// for all pairs of a row's coordinates.
-bool wants_rows_in_matrix(const VelocityProblem& problem, std::size_t pressing);
+/// No motion and no multipliers.
+VelocitySolution make_zero_solution(const VelocityProblem& problem);
 
-/// Solves the constrained velocity step by the working-set method. One sparse factorisation pins the guessed
-/// coordinates. NLopt solves the dense problem condensed on the violators. A KKT certificate accepts the
-/// answer. Keeps the symbolic analysis between solves while the pattern stays.
+/// Solves the constrained velocity step by Newton's method on the energy of contacts as springs
+/// (contact_newton.h). A KKT certificate accepts the answer. Keeps the symbolic analysis between solves while
+/// the pattern stays.
 class VelocitySolver {
   public:
     VelocitySolver();
@@ -92,15 +105,10 @@ class VelocitySolver {
     VelocitySolution solve(const VelocityProblem& problem, const Settings& settings);
 
     /// `solve` for a problem to which rows were appended since this solver's last call; otherwise only
-    /// row_guess, most_factorisations and the friction pairs' budgets may have changed. Goes on from the last
-    /// base and working set, which costs some solves and no factorisation. Factorises only where so many
-    /// bounds change sides that `solve` would factorise again.
+    /// most_work may have changed. Goes on from the last factor and answer.
     VelocitySolution resume(const VelocityProblem& problem, const Settings& settings);
 
   private:
-    VelocitySolution solve_within(int most_factorisations, const VelocityProblem& problem,
-                                  const Settings& settings);
-
     struct Cache;
     std::unique_ptr<Cache> cache_;
 };

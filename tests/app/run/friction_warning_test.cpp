@@ -30,7 +30,7 @@ TEST(FrictionWarning, NamesTheWorstStepItsTimeAndPlace)
 TEST(FrictionWarning, IsNoneWhereFrictionIsNearItsLaw)
 {
     FrictionPeak peak;
-    note_friction(report_of(0.05, Vec3(1, 2, 3)), 0.1, peak);
+    note_friction(report_of(5e-4, Vec3(1, 2, 3)), 0.1, peak);
     EXPECT_TRUE(warn_of_friction(peak).empty());
 }
 

@@ -194,7 +194,7 @@ void expect_same_velocity(const VelocitySolution& a, const VelocitySolution& b)
               1e-9 * b.velocity.lpNorm<Eigen::Infinity>());
 }
 
-TEST(ConstraintRows, TakeOneFactorisationFromAnyGuess)
+TEST(ConstraintRows, TakeFewFactorisationsFromAnyGuess)
 {
     std::mt19937 random(3);
     for (const testing::RowPattern pattern :
@@ -213,7 +213,7 @@ TEST(ConstraintRows, TakeOneFactorisationFromAnyGuess)
                 cloth.owned.problem, testing::active_coordinates(cold), 0.1 * share, random);
             const VelocitySolution warm = solve(cloth.owned.problem);
             ASSERT_EQ(warm.status, SolveStatus::Certified) << warm.kkt_residual;
-            EXPECT_EQ(warm.factorisations, 1);
+            EXPECT_LE(warm.factorisations, 3);
             expect_same_velocity(warm, cold);
         }
     }
@@ -221,12 +221,14 @@ TEST(ConstraintRows, TakeOneFactorisationFromAnyGuess)
 
 TEST(ConstraintRows, OfWhichManyPressTakeFewFactorisationsFromAnyGuess)
 {
-    // Each guess is more than the working set starts with, so the rows are springs in the matrix.
+    // Each guess is more than there may be members, so the rows are springs in the matrix.
     std::mt19937 random(4);
     for (const testing::RowPattern pattern :
          {testing::RowPattern::Spread, testing::RowPattern::Clusters, testing::RowPattern::NearlyEqual}) {
         ClothWithRows cloth(20);
         cloth.add(pattern, 700, 1);
+        cloth.owned.problem.most_work =
+            kInfinity;  // a guess that is wrong for hundreds of rows takes more than a step may
         const VelocitySolution cold = solve(cloth.owned.problem);
         ASSERT_EQ(cold.status, SolveStatus::Certified) << cold.kkt_residual;
         for (const double share : {0.3, 1.0}) {
@@ -238,6 +240,7 @@ TEST(ConstraintRows, OfWhichManyPressTakeFewFactorisationsFromAnyGuess)
             expect_same_velocity(warm, cold);
             EXPECT_EQ(pressing(warm), pressing(cold));
         }
+        cloth.owned.problem.guess = testing::active_coordinates(cold);
         cloth.owned.problem.row_guess = pressing(cold);
         EXPECT_LE(solve(cloth.owned.problem).factorisations, 2);
     }
@@ -306,15 +309,15 @@ TEST(ConstraintRows, RepeatedAreWorthOne)
             cloth.owned.problem.row_guess = random_subset(500, guessed, random);
             const VelocitySolution often = solve(cloth.owned.problem);
             ASSERT_EQ(often.status, SolveStatus::Certified) << often.kkt_residual;
-            EXPECT_LE(often.factorisations, 8);
+            EXPECT_LE(often.factorisations, 12);
             EXPECT_LE((often.velocity - once.velocity).lpNorm<Eigen::Infinity>(),
                       kGive * once.velocity.lpNorm<Eigen::Infinity>());
         }
 }
 
-// Rows that press are springs of the base where many are expected, and members of the working set where none
-// is: two ways to one answer, though most rows are copies of others.
-TEST(ConstraintRows, InTheBaseAndInTheWorkingSetGiveOneAnswer)
+// Rows that press are springs of the base where they are expected, and members where they are not: two ways
+// to one answer, though most rows are copies of others.
+TEST(ConstraintRows, InTheBaseAndAsMembersGiveOneAnswer)
 {
     int most_pressing = 0;
     for (unsigned trial = 0; trial < 200; ++trial) {
@@ -325,19 +328,20 @@ TEST(ConstraintRows, InTheBaseAndInTheWorkingSetGiveOneAnswer)
         cloth.add(patterns[trial % 3], 100, trial);
         std::vector<ConstraintRow>& rows = cloth.owned.problem.rows;
         for (int copy = 0; copy < 380; ++copy) rows.push_back(rows[random() % 100]);
-        const VelocitySolution in_set = solve(cloth.owned.problem);
-        cloth.owned.problem.row_guess = pressing(in_set);
+        cloth.owned.problem.most_work = kInfinity;
+        const VelocitySolution as_members = solve(cloth.owned.problem);
+        cloth.owned.problem.row_guess = pressing(as_members);
         const VelocitySolution in_base = solve(cloth.owned.problem);
-        ASSERT_EQ(in_set.status, SolveStatus::Certified) << trial;
+        ASSERT_EQ(as_members.status, SolveStatus::Certified) << trial;
         ASSERT_EQ(in_base.status, SolveStatus::Certified) << trial;
         most_pressing = std::max(most_pressing, static_cast<int>(pressing(in_base).size()));
-        const double speed = in_set.velocity.lpNorm<Eigen::Infinity>();
-        EXPECT_LE((in_base.velocity - in_set.velocity).lpNorm<Eigen::Infinity>(), 1e-10 * speed) << trial;
-        EXPECT_LE((in_base.row_multipliers - in_set.row_multipliers).lpNorm<Eigen::Infinity>(),
-                  1e-7 * in_set.row_multipliers.lpNorm<Eigen::Infinity>())
+        const double speed = as_members.velocity.lpNorm<Eigen::Infinity>();
+        EXPECT_LE((in_base.velocity - as_members.velocity).lpNorm<Eigen::Infinity>(), 1e-10 * speed) << trial;
+        EXPECT_LE((in_base.row_multipliers - as_members.row_multipliers).lpNorm<Eigen::Infinity>(),
+                  1e-7 * as_members.row_multipliers.lpNorm<Eigen::Infinity>())
             << trial;
     }
-    EXPECT_GT(most_pressing, 150);  // more than a working set starts with
+    EXPECT_GT(most_pressing, 150);
 }
 
 TEST(ConstraintRows, ThatAreNearlyTheSameAreCertifiedInBoundedWork)
@@ -481,7 +485,7 @@ TEST(ConstraintRows, CarryAWholeClothOnOnePoint)
     EXPECT_NEAR(held.velocity[3 * 210 + 2], 0.0, 1e-4 * give);
 }
 
-TEST(ConstraintRows, ThatCarryAStackAreMetThoughSoftened)
+TEST(ConstraintRows, ThatCarryAStackAreMet)
 {
     // Six masses upon each other fall onto a floor: the k-th row from above carries k of them.
     constexpr int kMasses = 6;
@@ -491,10 +495,7 @@ TEST(ConstraintRows, ThatCarryAStackAreMetThoughSoftened)
     for (int k = 1; k < kMasses; ++k) owned.problem.rows.push_back(make_row({{k, 1.0}, {k - 1, -1.0}}, 0.0));
     Eigen::VectorXd carried(kMasses);
     for (int k = 0; k < kMasses; ++k) carried[k] = kMasses - k;
-    for (const double softening : {1.0, 100.0, 1000.0}) {
-        const ConstraintRows rows = scale_rows(owned.problem, 1.0, softening);
-        EXPECT_TRUE(find_infeasible_rows(rows, carried).empty()) << softening;
-    }
+    EXPECT_TRUE(find_infeasible_rows(scale_rows(owned.problem, 1.0), carried).empty());
 }
 
 TEST(ConstraintRows, OfFixedCoordinatesAreMetOrImpossible)
@@ -568,13 +569,14 @@ TEST(ConstraintRows, AppendedAreResumedWithoutAFactorisation)
 
 TEST(ConstraintRows, AppendedInGreatNumberAreResumed)
 {
-    // More rows than U may start with, most of them guessed, and as many again are appended.
+    // More rows than there may be members, most of them guessed, and as many again are appended.
     std::mt19937 random(12);
     for (const int count : {300, 700, 1500}) {
         ClothWithRows cloth(20);
         VelocityProblem& problem = cloth.owned.problem;
         cloth.add(testing::RowPattern::Spread, count, 1);
         problem.row_guess = random_subset(count, 0.8, random);
+        problem.most_work = kInfinity;  // so many new rows take more than a step may
         VelocitySolver solver;
         ASSERT_EQ(solver.solve(problem, Settings()).status, SolveStatus::Certified);
         cloth.add(testing::RowPattern::Clusters, count, 2);

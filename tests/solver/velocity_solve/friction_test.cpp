@@ -7,7 +7,6 @@
 #include <limits>
 #include <random>
 
-#include "solver/velocity_solve/condensed_discs.h"
 #include "solver/velocity_solve/constraint_rows.h"
 #include "solver/velocity_solve/velocity_solve.h"
 #include "tests/solver/cloth_system.h"
@@ -153,53 +152,96 @@ TEST(Friction, EqualsDescentOnTheDual)
         ASSERT_EQ(solution.status, SolveStatus::Certified) << trial;
         const Reference reference = solve_by_descent(owned.problem);
         for (std::size_t p = 0; p < owned.problem.friction.size(); ++p) {
-            // Springs in the base lag behind the law until the next call.
             const double budget = owned.problem.friction[p].budget;
             (solution.unlimited[p].norm() < budget ? sticking : sliding) += budget > 0.0;
         }
-        VelocitySolver solver;
-        VelocitySolution exact = solver.solve(owned.problem, Settings());
-        for (int sweep = 0; sweep < 30; ++sweep) exact = solver.resume(owned.problem, Settings());
-        ASSERT_EQ(exact.status, SolveStatus::Certified) << trial;
         const double scale = reference.velocity.lpNorm<Eigen::Infinity>();
-        EXPECT_LE((exact.velocity - reference.velocity).lpNorm<Eigen::Infinity>(), kCloseness * scale)
+        EXPECT_LE((solution.velocity - reference.velocity).lpNorm<Eigen::Infinity>(), kCloseness * scale)
             << trial;
         for (std::size_t p = 0; p < reference.friction.size(); ++p)
-            EXPECT_LE((exact.friction[p] - reference.friction[p]).norm(), 1e-5) << trial << " " << p;
+            EXPECT_LE((solution.friction[p] - reference.friction[p]).norm(), 1e-5) << trial << " " << p;
     }
     EXPECT_GT(sticking, 100);
     EXPECT_GT(sliding, 100);
 }
 
-// Sweeps change budgets while the working set stays: many pairs may join it, and leave no room for rows.
-TEST(Friction, MayFillTheWorkingSetWithPairs)
+TEST(Friction, BudgetsFollowTheLaw)
 {
+    // Budgets that fall with the pair's own friction, and depend on its neighbour's: a fixed point.
     std::mt19937 random(11);
-    OwnedProblem owned = make_rubbing_problem(400, random);
-    std::vector<FrictionPair>& pairs = owned.problem.friction;
-    VelocitySolver solver;
-    EXPECT_EQ(solver.solve(owned.problem, Settings()).status, SolveStatus::Certified);
-    constexpr int kSweeps = 16, kChanged = 30;  // pairs a sweep
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
-        for (int k = 0; k < kChanged; ++k) {
-            FrictionPair& pair = pairs[static_cast<std::size_t>(kChanged * sweep + k) % pairs.size()];
-            pair.budget *= k % 2 == 0 ? 1.0 / 3.0 : 3.0;
+    OwnedProblem owned = make_rubbing_problem(100, random);
+    const std::vector<FrictionPair> pairs = owned.problem.friction;
+    owned.problem.law = [&](const VelocitySolution& solution) {
+        std::vector<double> budgets;
+        for (std::size_t p = 0; p < pairs.size(); ++p) {
+            const double other = solution.friction[(p + 1) % pairs.size()].norm();
+            budgets.push_back(pairs[p].budget / (1.0 + other));
         }
-        EXPECT_EQ(solver.resume(owned.problem, Settings()).status, SolveStatus::Certified) << sweep;
+        return budgets;
+    };
+    const VelocitySolution solution = VelocitySolver().solve(owned.problem, Settings());
+    ASSERT_EQ(solution.status, SolveStatus::Certified);
+    EXPECT_GT(solution.budget_moves, 1);
+    EXPECT_LE(solution.law_residual, 2e-4);
+    const std::vector<double> budgets = owned.problem.law(solution);
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const double length = solution.unlimited[p].norm();
+        const Eigen::Vector2d law = std::min(1.0, budgets[p] / length) * solution.unlimited[p];
+        EXPECT_LE((solution.friction[p] - law).norm(), 1e-3) << p;
     }
 }
 
-TEST(Friction, TakesNoMoreFactorisationsThanAllowed)
+TEST(Friction, NamesThePairThatIsFarthestOffItsLaw)
+{
+    // The budgets asked for alternate for ever at one pair.
+    std::mt19937 random(11);
+    OwnedProblem owned = make_rubbing_problem(40, random);
+    const std::vector<FrictionPair> pairs = owned.problem.friction;
+    const VelocitySolution tresca = VelocitySolver().solve(owned.problem, Settings());
+    int sliding = 0;
+    while (tresca.friction[sliding].norm() < 0.999 * pairs[sliding].budget) ++sliding;
+    int calls = 0;
+    owned.problem.law = [&](const VelocitySolution&) {
+        std::vector<double> budgets;
+        for (const FrictionPair& pair : pairs) budgets.push_back(pair.budget);
+        budgets[sliding] *= ++calls % 2 == 0 ? 1.0 : 0.5;
+        return budgets;
+    };
+    const VelocitySolution solution = VelocitySolver().solve(owned.problem, Settings());
+    EXPECT_GT(solution.law_residual, 1e-3);
+    EXPECT_EQ(solution.law_worst, sliding);
+}
+
+TEST(Friction, RestsWhereNothingPushes)
+{
+    std::mt19937 random(11);
+    OwnedProblem owned = make_rubbing_problem(40, random);
+    owned.rhs.setZero();
+    owned.problem.lower.setConstant(-std::numeric_limits<double>::infinity());
+    for (FrictionPair& pair : owned.problem.friction) {
+        pair.last = {};
+        for (ConstraintRow& slip : pair.slip) slip.lower = slip.expected = 0.0;
+    }
+    owned.problem.rows.clear();
+    owned.problem.row_guess.clear();
+    const std::vector<FrictionPair> pairs = owned.problem.friction;
+    owned.problem.law = [&](const VelocitySolution&) { return std::vector<double>(pairs.size(), 0.0); };
+    const VelocitySolution solution = VelocitySolver().solve(owned.problem, Settings());
+    EXPECT_EQ(solution.status, SolveStatus::Certified);
+    EXPECT_EQ(solution.velocity.lpNorm<Eigen::Infinity>(), 0.0);
+}
+
+TEST(Friction, TakesNoMoreWorkThanAllowed)
 {
     std::mt19937 random(11);
     OwnedProblem owned = make_rubbing_problem(400, random);
-    VelocitySolver solver;
-    ASSERT_GT(solver.solve(owned.problem, Settings()).factorisations, 3);
-    for (int most = 1; most <= 3; ++most) {
-        owned.problem.most_factorisations = most;
-        EXPECT_LE(solver.solve(owned.problem, Settings()).factorisations, most);
-        for (FrictionPair& pair : owned.problem.friction) pair.budget *= most % 2 == 0 ? 3.0 : 1.0 / 3.0;
-        EXPECT_LE(solver.resume(owned.problem, Settings()).factorisations, most);
+    const double all = VelocitySolver().solve(owned.problem, Settings()).work;
+    ASSERT_GT(all, 2.0);
+    for (const double share : {0.3, 0.6, 0.9}) {
+        owned.problem.most_work = share * all;
+        const VelocitySolution solution = VelocitySolver().solve(owned.problem, Settings());
+        EXPECT_EQ(solution.status, SolveStatus::NotConverged);
+        EXPECT_LE(solution.work, share * all + 1.0);
     }
 }
 
@@ -245,64 +287,6 @@ TEST(Friction, WithoutBudgetChangesNothing)
     owned.problem.friction.clear();
     const VelocitySolution without = VelocitySolver().solve(owned.problem, Settings());
     EXPECT_LE((with.velocity - without.velocity).lpNorm<Eigen::Infinity>(), 1e-12);
-}
-
-/// Discs of contacts that depend on each other, as in a stack: S has a few large eigenvalues and many at the
-/// springs' give; budgets are spread over six orders.
-CondensedQp make_dependent_discs(int discs, int bounds, int rank, std::mt19937& random)
-{
-    std::normal_distribution<double> normal;
-    std::uniform_real_distribution<double> order(-6.0, 0.0);
-    const int size = 2 * discs + bounds;
-    const Eigen::MatrixXd g = Eigen::MatrixXd::NullaryExpr(size, rank, [&] { return normal(random); });
-    CondensedQp qp;
-    qp.hessian = g * g.transpose() / rank + 1e-4 * Eigen::MatrixXd::Identity(size, size);
-    qp.linear = g * Eigen::VectorXd::NullaryExpr(rank, [&] { return normal(random); });
-    for (int d = 0; d < discs; ++d) qp.discs.push_back({2 * d, 2 * d + 1, std::pow(10.0, order(random))});
-    return qp;
-}
-
-TEST(CondensedDiscs, AreExactWhereTheyDependOnEachOther)
-{
-    std::mt19937 random(1);
-    for (int trial = 0; trial < 60; ++trial) {
-        const int discs = 5 + trial, bounds = trial % 3 * 20;
-        const CondensedQp qp = make_dependent_discs(discs, bounds, 6 + trial / 2, random);
-        DenseBudget budget = {1e12};
-        const auto answer = solve_condensed_qp(qp, Eigen::VectorXd::Zero(qp.linear.size()), budget);
-        ASSERT_TRUE(answer) << trial;
-        const Eigen::VectorXd slack = qp.hessian * answer->z + qp.linear;
-        const double unit = qp.linear.lpNorm<Eigen::Infinity>() + answer->z.lpNorm<Eigen::Infinity>();
-        for (const CondensedDisc& disc : qp.discs) {
-            const Eigen::Vector2d z(answer->z[disc.first], answer->z[disc.second]);
-            const Eigen::Vector2d w(slack[disc.first], slack[disc.second]);
-            EXPECT_LE((project_on_disc(z - w, disc.radius) - z).norm(), 1e-10 * unit) << trial;
-        }
-        for (int i = 2 * discs; i < qp.linear.size(); ++i)
-            EXPECT_NEAR(std::max(answer->z[i] - slack[i], 0.0), answer->z[i], 1e-10 * unit) << trial;
-    }
-}
-
-TEST(MinimiseInDisc, EqualsAFineSearchOnTheRim)
-{
-    std::mt19937 random(1);
-    std::normal_distribution<double> normal;
-    for (int trial = 0; trial < 300; ++trial) {
-        const Eigen::Matrix2d g = Eigen::Matrix2d::NullaryExpr([&] { return normal(random); });
-        const Eigen::Matrix2d S = g * g.transpose() + 1e-3 * Eigen::Matrix2d::Identity();
-        const Eigen::Vector2d q(normal(random), normal(random));
-        const double radius = std::exp(2.0 * normal(random));
-        const Eigen::Vector2d found = minimise_in_disc(S, q, radius);
-        const auto value = [&](const Eigen::Vector2d& z) { return 0.5 * z.dot(S * z) + q.dot(z); };
-        EXPECT_LE(found.norm(), radius * (1.0 + 1e-14));
-        for (int k = 0; k < 360; ++k) {
-            const double angle = k * M_PI / 180.0;
-            for (const double share : {0.2, 0.7, 1.0}) {
-                const Eigen::Vector2d z = share * radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-                EXPECT_LE(value(found), value(z) + 1e-12 * std::abs(value(z)));
-            }
-        }
-    }
 }
 
 }  // namespace

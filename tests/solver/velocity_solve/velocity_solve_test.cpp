@@ -168,7 +168,7 @@ TEST(VelocitySolve, NeverCyclesWhereActiveSetsDo)
     EXPECT_LE(factorisations, 2 * trials);
 }
 
-/// From a cold start this problem overflows the working set, so predictions and further bases are used.
+/// From a cold start more bounds change than there may be members, so there are further bases.
 TEST(VelocitySolve, FindsTheSameAnswerColdWarmAndFromNonsense)
 {
     testing::ClothShape shape;
