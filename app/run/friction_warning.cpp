@@ -19,8 +19,8 @@ std::vector<std::string> warn_of_friction(const FrictionPeak& peak)
 {
     if (peak.rows == 0) return {};
     return {fmt::format(
-        "friction differed from its law by more than {:.2g} % of the largest friction in {}, most by {:.3g} "
-        "% "
+        "friction differed from its law by more than {:.2g} % of the largest friction in {}, most by "
+        "{:.3g} % "
         "in the step to t = {:.6g} s, near [{:.4g}, {:.4g}, {:.4g}] m: contacts took turns to press or to "
         "slide; lower 'time.step', or set 'cloth.material.damping' to 0.001 s or more",
         100.0 * kOffLaw, counted(peak.rows, "step", "steps"), 100.0 * peak.residual, peak.time,

@@ -54,7 +54,7 @@ constexpr double kMostWork = 60.0, kMostWorkOfLast = 600.0;
 constexpr int kPushes = 5;
 
 /// Stage 2: predicts the cloth from its history (q~, v~), and places pins and obstacles at `end`. Forces are
-/// first linearised at the velocity of the last step, or at q~ without history.
+/// first linearised at the velocity of the last step, or at q~ where BDF2 is without history.
 void move(const Scene& scene, const Settings& settings, double end, const State& state, Workspace& work)
 {
     work.prediction = predict(state, settings.integrator, end - state.time);

@@ -38,7 +38,7 @@ std::vector<char> active_by_guess(const VelocityProblem& problem)
 }  // namespace
 
 ContactLaws::ContactLaws(const VelocityProblem& problem, ConstraintRows& constraints)
-    : problem_(&problem), constraints_(&constraints), diagonal_(problem.matrix->diagonal())
+    : problem_(&problem), constraints_(&constraints)
 {
 }
 

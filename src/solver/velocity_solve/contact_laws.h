@@ -64,8 +64,7 @@ class ContactLaws {
 
     const VelocityProblem& problem() const { return *problem_; }
     const ConstraintRows& constraints() const { return *constraints_; }
-    Eigen::Map<Eigen::VectorXd> budgets() const;                   ///< N s, of the scaled pairs
-    const Eigen::VectorXd& diagonal() const { return diagonal_; }  ///< of A
+    Eigen::Map<Eigen::VectorXd> budgets() const;  ///< N s, of the scaled pairs
     bool has_budget_law() const { return constraints_->pair_count() > 0 && problem_->law; }
 
     ContactPoint make_point(Eigen::VectorXd velocity) const;
@@ -100,7 +99,6 @@ class ContactLaws {
 
     const VelocityProblem* problem_;
     ConstraintRows* constraints_;
-    Eigen::VectorXd diagonal_;
 };
 
 }  // namespace arris

@@ -173,6 +173,7 @@ bool ContactNewton::certify()
             unbalanced = std::max(unbalanced, std::abs(at_.residual[i]));
     if (!(unbalanced <= kNearlyBalanced * scale)) return false;
     const double residual = kkt_residual(problem_, constraints_, at_.point.velocity, bounds, at_.multipliers);
+    const LawfulBudgets lawful = laws_.has_budget_law() ? laws_.find_budgets(at_) : LawfulBudgets();
     const ModelChanges changes = find_changes(constraints_, base_, *members_, at_.wanted);
     now_.without_better =
         residual < kBetter * best_residual_ || changes.fresh() > 0 ? 0 : now_.without_better + 1;
@@ -182,16 +183,13 @@ bool ContactNewton::certify()
         best_.add_cost(cost);
         best_.kkt_residual = residual;
         best_.infeasible_rows = find_infeasible_rows(constraints_, at_.multipliers);
-        if (laws_.has_budget_law()) {
-            const LawfulBudgets lawful = laws_.find_budgets(at_);
-            best_.law_residual = lawful.error;
-            best_.law_worst = lawful.worst;
-        }
+        best_.law_residual = lawful.error;
+        best_.law_worst = lawful.worst;
     }
     const bool is_accurate = residual <= accurate_ && changes.bounds.empty();
     if (!is_accurate && now_.without_better < kPatience) return false;
     if (!laws_.has_budget_law() || moves_.count() >= kMostMoves) return true;
-    now_.is_agreed = laws_.find_budgets(at_).error <= kOff * kAgreement;
+    now_.is_agreed = lawful.error <= kOff * kAgreement;
     if (!now_.is_agreed) {
         best_residual_ = std::numeric_limits<double>::infinity();
         now_.without_better = 0;

@@ -115,10 +115,10 @@ double find_share(const ContactLaws& laws, const ContactPoint& from, const Conta
         const ScaledRow& row = constraints.rows[k];
         if (!row.entries.empty()) enter(from.row_values[k] - row.lower, step.row_values[k], 1.0 / row.give);
     }
+    const VectorXd diagonal = problem.matrix->diagonal();
     for (int i = 0; i < step.velocity.size(); ++i)
         if (!problem.is_fixed[i] && std::isfinite(problem.lower[i]))
-            enter(from.velocity[i] - problem.lower[i], step.velocity[i],
-                  kBoundStiffness * laws.diagonal()[i]);
+            enter(from.velocity[i] - problem.lower[i], step.velocity[i], kBoundStiffness * diagonal[i]);
     return search_share([&](double share) {
         double slope = at_start + share * growth;
         for (const Spring& spring : springs)
