@@ -177,7 +177,7 @@ double measure_lag(Integrator integrator, double modulus, double h)
 TEST(StiffPlate, IsHeldBackByItsLinearisationAndByBdf2FarLess)
 {
     // With one linearisation a step, a turning face's apparent stretch (h thetadot)^2 / 2 acts as tension:
-    // see docs/validation.md.
+    // see docs/measured/validation.md.
     Table table("stiff_plate", {"E", "step", "implicit Euler", "BDF2"});
     for (const double modulus : {1e4, 1e6})
         for (const double h : {8e-3, 4e-3, 1e-3}) {

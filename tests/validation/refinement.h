@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Orders of convergence and the tables of docs/validation.md, shared by the validation tests.
+// Orders of convergence and the tables of docs/measured/validation.md, shared by the validation tests.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ double order_of(const std::vector<double>& sizes, const std::vector<double>& err
 bool is_deep();
 
 /// A measured table. Its destructor writes <name>.md in the folder that ARRIS_VALIDATION_TABLES names, or
-/// nothing if that variable is not set. scripts/validation puts the tables into docs/validation.md.
+/// nothing if that variable is not set. scripts/validation puts the tables into docs/measured/validation.md.
 class Table {
   public:
     Table(std::string name, std::vector<std::string> columns);
