@@ -16,6 +16,7 @@
 #include "app/run/run_export_options.h"
 #include "app/scene/mesh_forecast.h"
 #include "app/scene/scene_docs.h"
+#include "app/step_docs.h"
 #include "app/study/study.h"
 #include "app/text/printable.h"
 #include "app/text/version.h"
@@ -49,7 +50,7 @@ int tell_parse_error(const CLI::App& app, const CLI::ParseError& error)
         line = words.empty() ? "a command is missing" : words.front() + ": is not a command";
         line += "; allowed: " + list_commands(app);
     }
-    if (is_missing && app.got_subcommand("docs")) line += "; allowed: scene, schema, man, bash";
+    if (is_missing && app.got_subcommand("docs")) line += "; allowed: scene, schema, step, man, bash";
     for (char& c : line)
         if (c == '\n') c = ' ';
     fmt::print(stderr, "arris: {} (see arris --help)\n", printable(line));
@@ -185,11 +186,12 @@ void add_docs(CLI::App& app, std::string& topic)
     CLI::App* command = add_command(app, "docs", "Print a reference or a completion script",
                                     "arris docs bash > ~/.local/share/bash-completion/completions/arris");
     command
-        ->add_option(
-            "topic", topic,
-            "scene (keys, Markdown), schema (JSON schema for editors), man (manual page), bash (completion)")
+        ->add_option("topic", topic,
+                     "scene (keys, Markdown), schema (JSON schema for editors), step (what follows what, "
+                     "Markdown), man "
+                     "(manual page), bash (completion)")
         ->required()
-        ->check(CLI::IsMember({"scene", "schema", "man", "bash"}));
+        ->check(CLI::IsMember({"scene", "schema", "step", "man", "bash"}));
 }
 
 void tell_warnings(const std::vector<std::string>& warnings)
@@ -234,6 +236,7 @@ int print_docs(const CLI::App& app, const std::string& topic)
 {
     fmt::print("{}", topic == "scene"    ? scene_markdown()
                      : topic == "schema" ? scene_schema()
+                     : topic == "step"   ? step_markdown()
                      : topic == "man"    ? man_page(app, kVersion)
                                          : bash_completion(app));
     return 0;

@@ -133,13 +133,6 @@ void write_state(BinaryWriter& out, const State& state)
         out.number(contact.multiplier);
         write_friction(out, contact.friction);
     });
-    out.list(state.self, [&](const ActiveSelfContact& contact) {
-        out.number(static_cast<std::int32_t>(contact.kind));
-        for (const std::uint32_t id : contact.vertex_ids) out.number(id);
-        out.vector(contact.normal);
-        out.number(contact.multiplier);
-        write_friction(out, contact.friction);
-    });
     out.list(state.coupled, [&](const std::array<int, 2>& pair) {
         for (const int v : pair) out.number(static_cast<std::int32_t>(v));
     });
@@ -195,24 +188,13 @@ State read_state(BinaryReader& in)
         return anchor;
     });
     constexpr std::size_t kContactBytes =
-        3 * sizeof(std::uint32_t) + 3 * sizeof(std::int32_t) + 11 * sizeof(double);
+        4 * sizeof(std::uint32_t) + 3 * sizeof(std::int32_t) + 11 * sizeof(double);
     state.active = in.list<ActiveContact>(kContactBytes, [&] {
         ActiveContact contact;
         for (std::uint32_t& id : contact.vertex_ids) id = in.number<std::uint32_t>();
         contact.kind = static_cast<ContactKind>(in.number<std::int32_t>());
         contact.obstacle = in.number<std::int32_t>();
         contact.element = in.number<std::int32_t>();
-        contact.normal = in.vector();
-        contact.multiplier = in.number<double>();
-        contact.friction = read_friction(in);
-        return contact;
-    });
-    constexpr std::size_t kSelfContactBytes =
-        sizeof(std::int32_t) + 4 * sizeof(std::uint32_t) + 11 * sizeof(double);
-    state.self = in.list<ActiveSelfContact>(kSelfContactBytes, [&] {
-        ActiveSelfContact contact;
-        contact.kind = static_cast<SelfContactKind>(in.number<std::int32_t>());
-        for (std::uint32_t& id : contact.vertex_ids) id = in.number<std::uint32_t>();
         contact.normal = in.vector();
         contact.multiplier = in.number<double>();
         contact.friction = read_friction(in);

@@ -14,30 +14,11 @@ namespace arris {
 
 namespace {
 
-template <typename Contact>
-bool is_finite(const Contact& contact)
+bool is_finite(const ActiveContact& contact)
 {
     const ContactFriction& friction = contact.friction;
     return contact.normal.allFinite() && std::isfinite(contact.multiplier) && friction.force.allFinite() &&
            friction.slip.allFinite() && friction.budget >= 0.0 && std::isfinite(friction.budget);
-}
-
-/// Describes the first invalid contact of the cloth with itself; empty if there is none.
-std::string find_defect(const std::vector<ActiveSelfContact>& contacts, const std::vector<std::uint32_t>& ids)
-{
-    for (std::size_t k = 0; k < contacts.size(); ++k) {
-        const ActiveSelfContact& contact = contacts[k];
-        if (k > 0 && std::tie(contact.kind, contact.vertex_ids) <=
-                         std::tie(contacts[k - 1].kind, contacts[k - 1].vertex_ids))
-            return "contacts of the cloth with itself are not in ascending order";
-        if (!is_finite(contact)) return fmt::format("contact {} of the cloth with itself is not finite", k);
-        if (contact.kind != SelfContactKind::VertexFace && contact.kind != SelfContactKind::EdgeEdge)
-            return fmt::format("contact {} of the cloth with itself has an unknown kind", k);
-        for (const std::uint32_t id : contact.vertex_ids)
-            if (!std::binary_search(ids.begin(), ids.end(), id))
-                return fmt::format("contact {} of the cloth with itself refers to an unknown vertex", k);
-    }
-    return {};
 }
 
 /// Describes the first invalid contact on vertices `ids`; empty if there is none.
@@ -52,9 +33,15 @@ std::string find_defect(const std::vector<ActiveContact>& contacts, const std::v
         if (!is_finite(contact)) return fmt::format("contact {} is not finite", k);
         if (contact.kind < ContactKind::Vertex || contact.kind > ContactKind::Triangle)
             return fmt::format("contact {} has an unknown kind", k);
-        for (const std::uint32_t id : contact.vertex_ids)
-            if (id != ActiveContact::kNoVertex && !std::binary_search(ids.begin(), ids.end(), id))
+        const auto is_known = [&](std::uint32_t id) {
+            return std::binary_search(ids.begin(), ids.end(), id);
+        };
+        for (std::size_t i = 0; i < contact.vertex_ids.size(); ++i) {
+            const bool may_be_missing = i > 0 && contact.obstacle != kClothItself;
+            const bool is_missing = contact.vertex_ids[i] == ActiveContact::kNoVertex;
+            if (is_missing ? !may_be_missing : !is_known(contact.vertex_ids[i]))
                 return fmt::format("contact {} refers to an unknown vertex", k);
+        }
     }
     return {};
 }
@@ -111,7 +98,6 @@ std::string find_defect(const Checkpoint& checkpoint)
             !state.previous_material[v].allFinite() || !state.previous_material_velocity[v].allFinite())
             return fmt::format("vertex {} is not finite", v);
     if (const std::string defect = find_defect(state.active, state.ids); !defect.empty()) return defect;
-    if (const std::string defect = find_defect(state.self, state.ids); !defect.empty()) return defect;
     for (std::size_t k = 0; k < state.coupled.size(); ++k) {
         const auto& [v, w] = state.coupled[k];
         if (v < 0 || v >= w || w >= static_cast<int>(n) ||

@@ -29,6 +29,7 @@ void check_references(const std::string& directory, const State& state, const Sc
         std::all_of(state.anchors.begin(), state.anchors.end(),
                     [&](const PinAnchor& anchor) { return is_sound(anchor.pin, scene.pins.size()); });
     const auto is_there = [&](const ActiveContact& contact) {
+        if (contact.obstacle == kClothItself) return true;
         if (!is_sound(contact.obstacle, scene.obstacles.size())) return false;
         const Obstacle& obstacle = scene.obstacles[static_cast<std::size_t>(contact.obstacle)];
         switch (contact.kind) {

@@ -44,13 +44,8 @@ Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, con
     if (!state.eol.empty()) frame.eol_edges = find_eol_edges(obstacles, state);
     frame.contact.assign(state.ids.size(), 0);
     for (const ActiveContact& contact : state.active)
-        for (const std::uint32_t id : contact.vertex_ids) {
-            if (id == ActiveContact::kNoVertex || is_fold(contact))
-                continue;  // a fold plane is not an obstacle's surface
-            frame.contact[state.index_of(id)] = 1;
-        }
-    for (const ActiveSelfContact& contact : state.self)
-        for (const std::uint32_t id : contact.vertex_ids) frame.contact[state.index_of(id)] = 1;
+        for (const std::uint32_t id : contact.vertex_ids)  // a fold plane is not an obstacle's surface
+            if (id != ActiveContact::kNoVertex && !is_fold(contact)) frame.contact[state.index_of(id)] = 1;
     frame.faces = state.mesh.faces;
     FaceReadings readings = compute_face_readings(elements, terms, state.mesh.world);
     frame.strain = std::move(readings.strain);

@@ -89,8 +89,8 @@ class UnloadedNormals {
     {
         pressing_.emplace();
         for (const Contact& contact : contacts_) {
-            if (!contact.was_active()) continue;
-            for (const int v : contact.in_frame.vertices)
+            if (!contact.was_active() || contact.is_with_itself()) continue;
+            for (const int v : contact.vertices)
                 if (v >= 0) pressing_->emplace(v, contact.normal);
         }
     }

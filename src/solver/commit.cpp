@@ -41,14 +41,16 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     report.feature_rows = census.rows;
     report.rows_by_cause = census.by_cause;
     report.eol_pressing = census.eol;
-    state.active = active_contacts(state, work.obstacles, work.contacts, multiplier);
-    state.self = active_self_contacts(state, work.self_rows, work.solution);
+    state.active = active_contacts(state, work.carriers, work.contacts, multiplier);
     state.coupled = work.mesh.system.coupled();
     count_idle(work.contacts, work.eol, multiplier, state.eol);
     state.crossings += report.crossings;
-    report.contacts = static_cast<int>(state.active.size() -
-                                       std::count_if(state.active.begin(), state.active.end(), is_fold));
-    report.self_contacts = static_cast<int>(state.self.size());
+    const auto count = [&](const auto& is_one) {
+        return static_cast<int>(std::count_if(state.active.begin(), state.active.end(), is_one));
+    };
+    report.self_contacts =
+        count([](const ActiveContact& contact) { return contact.obstacle == kClothItself; });
+    report.contacts = static_cast<int>(state.active.size()) - report.self_contacts - count(is_fold);
     state.previous_world.swap(state.mesh.world);
     state.previous_velocity.swap(state.velocity);
     state.mesh.world.swap(work.proposal.world);

@@ -51,15 +51,14 @@ double work_of_pins(const State& state, const Workspace& work)
     return sum / work.prediction.gamma;
 }
 
-/// Work of contacts, J, without the bounds of EOL vertices. A contact pushes along its normal, and its
-/// obstacle's motion is taken at the cloth's point: a fold plane is far from its wire there.
+/// Work of contacts, J, without the bounds of EOL vertices. A contact pushes along its normal.
 double work_of_rows(const std::vector<double>& multiplier, const Workspace& work)
 {
     double sum = 0.0;
     for (std::size_t c = 0; c < work.contacts.size(); ++c) {
         const Contact& contact = work.contacts[c];
         if (contact.eol >= 0) continue;
-        sum += multiplier[c] * way_along(work.obstacles[contact.obstacle], contact);
+        sum += multiplier[c] * way_along(work.carriers, contact);
     }
     return sum / work.prediction.gamma;
 }
@@ -75,19 +74,14 @@ double work_of_features(const State& state, const std::vector<double>& multiplie
     for (std::size_t c = 0; c < work.contacts.size(); ++c) {
         const Contact& contact = work.contacts[c];
         if (contact.eol >= 0) continue;
-        const ObstacleContact& local = contact.in_frame;
-        for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i)
-            impulse[local.vertices[i]] -= multiplier[c] * local.weights[i] * contact.normal;
+        for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i)
+            impulse[contact.vertices[i]] -= multiplier[c] * contact.weights[i] * contact.normal;
     }
-    for (const SelfRow& row : work.self_rows)
-        for (int i = 0; i < 4; ++i)
-            impulse[row.contact.vertices[i]] -=
-                work.solution.row_multipliers[row.row] * row.contact.weights[i] * row.contact.normal;
     double sum = 0.0;
     for (const EolCoordinates& vertex : work.eol) {
         const int v = vertex.vertex;
-        const ObstacleStep& step = work.obstacles[state.eol[vertex.entry].on.obstacle];
-        sum += impulse[v].dot(step.end(step.motion.begin[v]) - state.mesh.world[v]);
+        const Carrier& carrier = work.carriers[state.eol[vertex.entry].on.obstacle];
+        sum += impulse[v].dot(carrier.end(carrier.motion.begin[v]) - state.mesh.world[v]);
     }
     return sum / work.prediction.gamma;
 }
@@ -97,11 +91,11 @@ double work_of_friction(const Workspace& work)
 {
     double sum = 0.0;
     for (const Rub& rub : work.rubs) {
-        if (rub.contact < 0 || work.contacts[rub.contact].eol >= 0) continue;
         const Contact& contact = work.contacts[rub.contact];
-        const ObstacleStep& step = work.obstacles[contact.obstacle];
-        const Vec3 place = contact.in_frame.at(step.motion.begin);
-        sum += contact.friction.force.dot(step.end(place) - step.begin(place));
+        if (contact.eol >= 0) continue;
+        const Carrier& carrier = work.carriers[contact.obstacle];
+        const Vec3 place = contact.at(carrier.motion.begin);
+        sum += contact.friction.force.dot(carrier.end(place) - carrier.begin(place));
     }
     return sum;
 }

@@ -19,12 +19,12 @@ namespace {
 constexpr double kTouching = 1e-6;  // thicknesses: the contact's point lies on the obstacle
 constexpr double kAtEnd = 0.95;     // weight of an edge's end: no vertex is inserted nearer to it
 
-bool is_plane_of_face(const Obstacle& obstacle, const ObstacleContact& contact)
+bool is_plane_of_face(const Obstacle& obstacle, const Contact& contact)
 {
     constexpr double kSame = 1e-9;  // 1 - cosine: rounding
     const auto& normals = obstacle.topology().face_normals;
     return contact.element >= 0 && contact.element < static_cast<int>(normals.size()) &&
-           std::abs(normals[contact.element].dot(contact.normal)) > 1.0 - kSame;
+           std::abs(normals[contact.element].dot(contact.normal_in_frame)) > 1.0 - kSame;
 }
 
 class Census {
@@ -36,8 +36,7 @@ class Census {
 
     RowCause find_cause(const Contact& contact) const
     {
-        const int entry =
-            contact.is_vertex() ? state_.eol_entry(state_.ids[contact.in_frame.vertices[0]]) : -1;
+        const int entry = contact.is_vertex() ? state_.eol_entry(state_.ids[contact.vertices[0]]) : -1;
         if (entry >= 0) return of_eol_vertex(entry, contact);
         if (!contact.was_active()) return RowCause::New;
         const Beside beside = find_beside(contact);
@@ -87,13 +86,12 @@ class Census {
     {
         if (eol.on.obstacle != contact.obstacle) return false;
         const ObstacleFeatures& features = scene_.obstacles[contact.obstacle].features();
-        const ObstacleContact& local = contact.in_frame;
-        if (local.kind == ContactKind::Triangle)
-            return fixed_point(scene_.obstacles[contact.obstacle], eol) == local.element;
-        if (local.kind != ContactKind::Edge) return false;
+        if (contact.kind == ContactKind::Triangle)
+            return fixed_point(scene_.obstacles[contact.obstacle], eol) == contact.element;
+        if (contact.kind != ContactKind::Edge) return false;
         const int v = state_.index_of(eol.vertex_id);
-        const int feature = feature_of_edge(features, local.element);
-        if (feature < 0 || (local.vertices[0] != v && local.vertices[1] != v)) return false;
+        const int feature = feature_of_edge(features, contact.element);
+        if (feature < 0 || (contact.vertices[0] != v && contact.vertices[1] != v)) return false;
         return is_along(eol, feature);
     }
 
@@ -112,25 +110,26 @@ class Census {
     /// edge. On a rim that bends, a chord of the cloth passes by such vertices.
     bool is_on_trace(const Contact& contact) const
     {
-        const ObstacleContact& local = contact.in_frame;
         const auto has_eol = [&](int v, int feature) {
             const int entry = state_.eol_entry(state_.ids[v]);
             return entry >= 0 && state_.eol[entry].on.obstacle == contact.obstacle &&
                    is_along(state_.eol[entry], feature) && !find_refusal(entry);
         };
         const auto is_trace = [&](int feature, int a, int b) {
-            return feature >= 0 && has_eol(local.vertices[a], feature) && has_eol(local.vertices[b], feature);
+            return feature >= 0 && has_eol(contact.vertices[a], feature) &&
+                   has_eol(contact.vertices[b], feature);
         };
         const Obstacle& obstacle = scene_.obstacles[contact.obstacle];
         const ObstacleFeatures& features = obstacle.features();
-        if (local.kind == ContactKind::Edge) return is_trace(feature_of_edge(features, local.element), 0, 1);
-        if (local.kind != ContactKind::Triangle || is_corner(features, local.element)) return false;
+        if (contact.kind == ContactKind::Edge)
+            return is_trace(feature_of_edge(features, contact.element), 0, 1);
+        if (contact.kind != ContactKind::Triangle || is_corner(features, contact.element)) return false;
         const ObstacleTopology& topology = obstacle.topology();
-        for (int k = 0; k < topology.edge_count_at(local.element); ++k) {
-            const int feature = feature_of_edge(features, topology.edge_at(local.element, k));
+        for (int k = 0; k < topology.edge_count_at(contact.element); ++k) {
+            const int feature = feature_of_edge(features, topology.edge_at(contact.element, k));
             if (feature < 0 || features.edges[feature].kind != FeatureKind::Convex) continue;
             for (int i = 0; i < 3; ++i)
-                if ((local.weights[i] < 1.0 - kAtEnd || is_near(contact, (i + 1) % 3, (i + 2) % 3)) &&
+                if ((contact.weights[i] < 1.0 - kAtEnd || is_near(contact, (i + 1) % 3, (i + 2) % 3)) &&
                     is_trace(feature, (i + 1) % 3, (i + 2) % 3))
                     return true;
         }
@@ -141,22 +140,21 @@ class Census {
     /// face.
     bool is_near(const Contact& contact, int i, int j) const
     {
-        const ObstacleContact& local = contact.in_frame;
-        const std::vector<Vec3>& begin = work_.obstacles[contact.obstacle].motion.begin;
-        const Vec3 &a = begin[local.vertices[i]], &b = begin[local.vertices[j]];
-        const double s = closest_on_segment(local.point, a, b);
-        return (local.point - a - s * (b - a)).norm() <= kOnFeature * scene_.material.thickness;
+        const std::vector<Vec3>& begin = work_.carriers[contact.obstacle].motion.begin;
+        const Vec3 &a = begin[contact.vertices[i]], &b = begin[contact.vertices[j]];
+        const double s = closest_on_segment(contact.point_in_frame, a, b);
+        return (contact.point_in_frame - a - s * (b - a)).norm() <= kOnFeature * scene_.material.thickness;
     }
 
     /// Whether a contact lies at that vertex of the cloth, by the rule in row_cause.h.
     bool is_at(const Contact& contact, int vertex) const
     {
-        const ObstacleContact& local = contact.in_frame;
         Vec2 material = Vec2::Zero();
-        for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
-            if (local.kind == ContactKind::Edge && local.vertices[i] == vertex && local.weights[i] > kAtEnd)
+        for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
+            if (contact.kind == ContactKind::Edge && contact.vertices[i] == vertex &&
+                contact.weights[i] > kAtEnd)
                 return true;
-            material += local.weights[i] * state_.mesh.material[local.vertices[i]];
+            material += contact.weights[i] * state_.mesh.material[contact.vertices[i]];
         }
         return (material - state_.mesh.material[vertex]).norm() <= kOnFeature * scene_.material.thickness;
     }
@@ -164,7 +162,7 @@ class Census {
     std::optional<RowCause> find_refusal(int entry) const
     {
         const EolVertex& eol = state_.eol[entry];
-        const ObstacleStep& way = work_.obstacles[eol.on.obstacle];
+        const Carrier& way = work_.carriers[eol.on.obstacle];
         const EolPlacing placing =
             place_eol_vertex(scene_.obstacles[eol.on.obstacle], scene_.material.thickness, state_, entry,
                              work_.mesh.stars, way.motion.begin, way.end);
@@ -173,12 +171,11 @@ class Census {
 
     bool is_same(const RefusedContact& refused, const Contact& contact) const
     {
-        const ObstacleContact& local = contact.in_frame;
-        if (refused.kind != local.kind || refused.obstacle != contact.obstacle) return false;
-        if (local.kind != ContactKind::Vertex && refused.element != local.element) return false;
-        for (int i = 0; i < 3; ++i) {
+        if (refused.kind != contact.kind || refused.obstacle != contact.obstacle) return false;
+        if (contact.kind != ContactKind::Vertex && refused.element != contact.element) return false;
+        for (int i = 0; i < 4; ++i) {
             const std::uint32_t id =
-                local.vertices[i] < 0 ? ActiveContact::kNoVertex : state_.ids[local.vertices[i]];
+                contact.vertices[i] < 0 ? ActiveContact::kNoVertex : state_.ids[contact.vertices[i]];
             if (id != refused.vertex_ids[i]) return false;
         }
         return true;
@@ -191,21 +188,21 @@ class Census {
 
 }  // namespace
 
-bool touches_feature(const Obstacle& obstacle, const ObstacleContact& contact, double thickness)
+bool touches_feature(const Obstacle& obstacle, const Contact& contact, double thickness)
 {
     if (contact.kind == ContactKind::Vertex && is_plane_of_face(obstacle, contact)) return false;
     if (contact.kind == ContactKind::Edge && feature_of_edge(obstacle.features(), contact.element) >= 0)
         return true;
     const double reach = kTouching * thickness;
-    const Box3 box(contact.point.array() - reach, contact.point.array() + reach);
+    const Box3 box(contact.point_in_frame.array() - reach, contact.point_in_frame.array() + reach);
     std::vector<int> found;
     obstacle.find_corners(box, found);
     if (!found.empty()) return true;
     obstacle.find_feature_edges(box, found);
     return std::any_of(found.begin(), found.end(), [&](int feature) {
         const auto [a, b] = feature_segment(obstacle, feature);
-        const double s = closest_on_segment(contact.point, a, b);
-        return (contact.point - a - s * (b - a)).norm() <= reach;
+        const double s = closest_on_segment(contact.point_in_frame, a, b);
+        return (contact.point_in_frame - a - s * (b - a)).norm() <= reach;
     });
 }
 
@@ -221,8 +218,8 @@ FeatureCensus take_census(const Scene& scene, const State& state, const Workspac
             ++census.eol;
             continue;
         }
-        if (contact.is_fold() ||
-            !touches_feature(scene.obstacles[contact.obstacle], contact.in_frame, scene.material.thickness))
+        if (contact.is_with_itself() || contact.is_fold() ||
+            !touches_feature(scene.obstacles[contact.obstacle], contact, scene.material.thickness))
             continue;
         ++census.rows;
         if (scene.eol) ++census.by_cause[static_cast<std::size_t>(causes.find_cause(contact))];

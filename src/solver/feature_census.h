@@ -24,6 +24,6 @@ FeatureCensus take_census(const Scene& scene, const State& state, const Workspac
 
 /// Whether a contact touches a sharp feature. Its point must lie on one, as cloth edges and faces also touch
 /// edges and vertices of a smooth obstacle. The plane of a vertex's contact must not be that of a face.
-bool touches_feature(const Obstacle& obstacle, const ObstacleContact& contact, double thickness);
+bool touches_feature(const Obstacle& obstacle, const Contact& contact, double thickness);
 
 }  // namespace arris

@@ -13,8 +13,7 @@ void store(Workspace& work)
     const double gamma = work.prediction.gamma;
     for (std::size_t r = 0; r < work.rubs.size(); ++r) {
         const Rub& rub = work.rubs[r];
-        ContactFriction& friction =
-            rub.self_row >= 0 ? work.self_rows[rub.self_row].friction : work.contacts[rub.contact].friction;
+        ContactFriction& friction = work.contacts[rub.contact].friction;
         const double budget = work.solution.budgets[r];
         friction = {Vec3::Zero(), Vec3::Zero(), budget / gamma};
         const bool is_sliding = work.solution.unlimited[r].norm() > budget;
@@ -38,19 +37,12 @@ void count(const Workspace& work, StepReport& report)
     }
 }
 
-/// A vertex of the contact.
-int vertex_of(const Rub& rub, const Workspace& work)
-{
-    return rub.self_row >= 0 ? work.self_rows[rub.self_row].contact.vertices[0]
-                             : work.contacts[rub.contact].in_frame.vertices[0];
-}
-
 }  // namespace
 
 RubbingCloth rubbing_cloth(const Scene& scene, const State& state, const Workspace& work)
 {
-    return {scene,          state,    work.mesh.stars, work.mesh.elements, work.prediction,
-            work.obstacles, work.eol, work.contacts,   work.self_rows,     work.linearization};
+    return {scene,         state,    work.mesh.stars, work.mesh.elements, work.prediction,
+            work.carriers, work.eol, work.contacts,   work.linearization};
 }
 
 void set_friction_law(const Scene& scene, const State& state, Workspace& work)
@@ -66,7 +58,8 @@ void note_friction(const State& state, Workspace& work, StepReport& report)
     report.friction_sweeps += solution.budget_moves;
     report.friction_residual = solution.law_residual;
     if (solution.law_worst >= 0)
-        report.friction_place = state.mesh.world[vertex_of(work.rubs[solution.law_worst], work)];
+        report.friction_place =
+            state.mesh.world[work.contacts[work.rubs[solution.law_worst].contact].vertices[0]];
     store(work);
     count(work, report);
 }

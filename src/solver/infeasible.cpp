@@ -11,11 +11,10 @@ namespace {
 
 bool has_vertex(const Contact& contact, int vertex)
 {
-    const std::array<int, 3>& vertices = contact.in_frame.vertices;
-    return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
+    return std::find(contact.vertices.begin(), contact.vertices.end(), vertex) != contact.vertices.end();
 }
 
-/// Contacts that the step cannot meet, in the order of their rows.
+/// Contacts with obstacles that the step cannot meet, in the order of their rows.
 std::vector<const Contact*> list_unmet(const Workspace& work, const std::optional<int>& overconstrained)
 {
     std::vector<const Contact*> unmet;
@@ -27,7 +26,7 @@ std::vector<const Contact*> list_unmet(const Workspace& work, const std::optiona
     }
     for (const int row : work.solution.infeasible_rows)
         for (const Contact& contact : work.contacts)
-            if (contact.row == row) unmet.push_back(&contact);
+            if (contact.row == row && !contact.is_with_itself()) unmet.push_back(&contact);
     return unmet;
 }
 
@@ -44,7 +43,7 @@ int find_vertex(const Workspace& work, const std::vector<const Contact*>& unmet)
 {
     int named = -1;
     for (const Contact* contact : unmet)
-        for (const int v : contact->in_frame.vertices) {
+        for (const int v : contact->vertices) {
             if (v < 0) continue;
             if (find_pin(work, v) >= 0) return v;
             if (named < 0) named = v;
@@ -60,7 +59,9 @@ int find_opponent(const Workspace& work, int vertex, const Contact& unmet)
     double least = 0.0;
     for (const Contact& contact : work.contacts) {
         const double cosine = contact.normal.dot(unmet.normal);
-        if (contact.obstacle == unmet.obstacle || !has_vertex(contact, vertex) || !(cosine < least)) continue;
+        if (contact.is_with_itself() || contact.obstacle == unmet.obstacle || !has_vertex(contact, vertex) ||
+            !(cosine < least))
+            continue;
         opponent = contact.obstacle;
         least = cosine;
     }
@@ -68,13 +69,14 @@ int find_opponent(const Workspace& work, int vertex, const Contact& unmet)
 }
 
 /// Obstacle that presses one element of the row most directly towards the other; -1 without one.
-int find_presser(const Workspace& work, const SelfContact& pair)
+int find_presser(const Workspace& work, const Contact& pair)
 {
     int presser = -1;
     double least = 0.0;
     for (const Contact& contact : work.contacts)
         for (int i = 0; i < 4; ++i) {
-            if (pair.weights[i] == 0.0 || !has_vertex(contact, pair.vertices[i])) continue;
+            if (contact.is_with_itself() || pair.weights[i] == 0.0 || !has_vertex(contact, pair.vertices[i]))
+                continue;
             const double cosine = std::copysign(1.0, pair.weights[i]) * contact.normal.dot(pair.normal);
             if (!(cosine < least)) continue;
             presser = contact.obstacle;
@@ -88,13 +90,13 @@ int find_presser(const Workspace& work, const SelfContact& pair)
 Infeasible name_self_contact(const State& state, const Workspace& work)
 {
     Infeasible named;
-    for (const SelfRow& row : work.self_rows) {
-        if (!is_unmet(work, row.row)) continue;
+    for (const Contact& contact : work.contacts) {
+        if (!contact.is_with_itself() || !is_unmet(work, contact.row)) continue;
         Infeasible found;
         found.is_with_itself = true;
         for (int i = 0; i < 4; ++i) {
-            if (row.contact.weights[i] == 0.0) continue;
-            const int vertex = row.contact.vertices[i], pin = find_pin(work, vertex);
+            if (contact.weights[i] == 0.0) continue;
+            const int vertex = contact.vertices[i], pin = find_pin(work, vertex);
             const bool is_first = found.vertex < 0 || (found.pin < 0 && pin >= 0);
             if (is_first) {
                 found.vertex = state.ids[vertex];
@@ -103,7 +105,7 @@ Infeasible name_self_contact(const State& state, const Workspace& work)
                 found.layer_pin = pin;
             }
         }
-        if (found.layer_pin < 0) found.obstacles[0] = find_presser(work, row.contact);
+        if (found.layer_pin < 0) found.obstacles[0] = find_presser(work, contact);
         const auto pins = [](const Infeasible& of) { return (of.pin >= 0) + (of.layer_pin >= 0); };
         if (!named.is_with_itself || pins(found) > pins(named)) named = found;
     }

@@ -54,8 +54,8 @@ NotFinite find_in_move(const State& state, const Workspace& work)
         for (int d = 0; d < 3; ++d)
             if (held.held[d] && !std::isfinite(held.target[d]))
                 return {"pin's target", id_of(state, held.vertex), -1, held.pin};
-    for (std::size_t k = 0; k < work.obstacles.size(); ++k) {
-        const Placement& end = work.obstacles[k].end;
+    for (std::size_t k = 0; k < work.carriers.obstacles.size(); ++k) {
+        const Placement& end = work.carriers.obstacles[k].end;
         if (!end.rotation.allFinite() || !end.translation.allFinite())
             return {"placement", -1, static_cast<int>(k), -1};
     }
@@ -66,7 +66,7 @@ NotFinite find_in_contacts(const State& state, const Workspace& work)
 {
     for (const Contact& contact : work.contacts)
         if (!contact.normal.allFinite() || !std::isfinite(contact.gap))
-            return {"contact", id_of(state, contact.in_frame.vertices[0]), contact.obstacle, -1};
+            return {"contact", id_of(state, contact.vertices[0]), contact.obstacle, -1};
     return {};
 }
 

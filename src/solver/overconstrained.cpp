@@ -24,14 +24,13 @@ Press sum_contacts(int vertex, const std::vector<double>& multiplier, const Work
     Press sum;
     for (std::size_t c = 0; c < work.contacts.size(); ++c) {
         const Contact& contact = work.contacts[c];
-        const ObstacleContact& local = contact.in_frame;
-        for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
-            if (local.vertices[i] != vertex) continue;
-            const double impulse = local.weights[i] * multiplier[c];
+        if (contact.is_with_itself()) continue;
+        for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
+            if (contact.vertices[i] != vertex) continue;
+            const double impulse = contact.weights[i] * multiplier[c];
             sum.impulse += impulse;
             sum.net += impulse * contact.normal;
-            sum.work +=
-                impulse * way_along(work.obstacles[contact.obstacle], contact) / work.prediction.gamma;
+            sum.work += impulse * way_along(work.carriers, contact) / work.prediction.gamma;
         }
     }
     return sum;
@@ -43,8 +42,8 @@ std::vector<int> find_unmet_vertices(const State& state, const Workspace& work)
     std::vector<int> unmet;
     for (const int row : work.solution.infeasible_rows)
         for (const Contact& contact : work.contacts) {
-            if (contact.row != row) continue;
-            for (const int v : contact.in_frame.vertices)
+            if (contact.row != row || contact.is_with_itself()) continue;
+            for (const int v : contact.vertices)
                 if (v >= 0 && state.eol_entry(state.ids[v]) >= 0) unmet.push_back(v);
         }
     return unmet;
@@ -78,12 +77,12 @@ std::vector<int> find_overconstraining_folds(const Workspace& work)
     for (std::size_t f = 0; f < work.contacts.size(); ++f) {
         const Contact& fold = work.contacts[f];
         if (!fold.is_fold() || !is_pressing(f)) continue;
-        const int vertex = fold.in_frame.vertices[0];
+        const int vertex = fold.vertices[0];
         for (std::size_t c = 0; c < work.contacts.size(); ++c) {
             const Contact& other = work.contacts[c];
-            const std::array<int, 3>& vertices = other.in_frame.vertices;
-            if (other.is_fold() || other.obstacle == fold.obstacle || !is_pressing(c) ||
-                !(other.normal.dot(fold.normal) < kAgainst) ||
+            const std::array<int, 4>& vertices = other.vertices;
+            if (other.is_fold() || other.is_with_itself() || other.obstacle == fold.obstacle ||
+                !is_pressing(c) || !(other.normal.dot(fold.normal) < kAgainst) ||
                 std::find(vertices.begin(), vertices.end(), vertex) == vertices.end())
                 continue;
             overconstraining.push_back(static_cast<int>(f));

@@ -20,9 +20,7 @@ void expand_at(ClothVelocity next, Workspace& work, StepReport& report)
 {
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
     for (std::size_t c = 0; c < work.contacts.size(); ++c) work.contacts[c].is_pressing = multiplier[c] > 0.0;
-    for (SelfRow& row : work.self_rows) row.is_pressing = work.solution.row_multipliers[row.row] > 0.0;
     work.expansion = std::move(next);
-    work.has_system = false;
     ++report.relinearisations;
 }
 
@@ -46,41 +44,40 @@ void take_least(Workspace& work)
 {
     assert(work.least.at.world.size() == work.expansion.world.size());
     work.expansion = work.least.at;
-    work.has_system = false;
     work.least.is_taken = true;
 }
 
 }  // namespace
 
-bool enforce_energy_balance(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
+Next enforce_energy_balance(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
                             Workspace& work, StepReport& report)
 {
     const double rise = find_energy_rise(scene, state, work);
     report.energy_rise = rise;
+    const auto fail = [&] {
+        report.status = StepStatus::EnergyRise;
+        return Next::Fail;
+    };
     const bool is_first = work.least.at.world.empty();
     if (is_first || rise < work.least.rise) {
         work.least.rise = rise;
         work.least.at = work.expansion;
     }
     if (work.least.is_taken) {  // rows added since may have raised the energy
-        if (rise > 0.0 && attempt == Attempt::Ordinary) report.status = StepStatus::EnergyRise;
-        return false;
+        return rise > 0.0 && attempt == Attempt::Ordinary ? fail() : Next::Accept;
     }
     const bool may_again = report.relinearisations < kMostRelinearisations && may_solve_again;
     if (may_again && (rise > 0.0 || find_unforeseen_energy(scene, state, work) > 0.0)) {
         relinearise(scene, !is_first, work,
                     report);  // the first v^ ignores contacts, so its objective is no measure
-        return true;
+        return Next::Assemble;
     }
-    if (!(rise > 0.0)) return false;
+    if (!(rise > 0.0)) return Next::Accept;
     // Fail where another attempt may do better: there is history to drop, or every linearization raised the
     // energy. Else take the linearization with the least rise.
-    if (attempt == Attempt::Ordinary && (work.prediction.has_history || work.least.rise > 0.0)) {
-        report.status = StepStatus::EnergyRise;
-        return false;
-    }
+    if (attempt == Attempt::Ordinary && (work.prediction.has_history || work.least.rise > 0.0)) return fail();
     take_least(work);
-    return true;
+    return Next::Assemble;
 }
 
 bool restore_least_rise(Workspace& work, StepReport& report)

@@ -4,6 +4,7 @@
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
 #include "solver/model/step_report.h"
+#include "solver/next.h"
 #include "solver/retry_policy.h"
 #include "solver/workspace.h"
 
@@ -11,10 +12,10 @@ namespace arris {
 
 /// Checks two energies of the proposal: the rise beyond the work that drives the cloth, and the elastic
 /// energy that the linear equations miss. If either is too large, relinearises at the velocity found (sets
-/// `work.expansion`) and returns true: solve again. Where no relinearisation is left, `report.status` becomes
-/// EnergyRise, or the linearization with the least rise is taken. The last attempt always takes that
-/// linearization. Call measure_proposal_energy first.
-bool enforce_energy_balance(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
+/// `work.expansion`). Where no relinearisation is left, the attempt fails with `report.status` EnergyRise, or
+/// the linearization with the least rise is taken. The last attempt always takes that linearization. Call
+/// measure_proposal_energy first.
+Next enforce_energy_balance(const Scene& scene, const State& state, Attempt attempt, bool may_solve_again,
                             Workspace& work, StepReport& report);
 
 /// Returns a failed step to a linearization that raised no energy, if the step had one. True where the

@@ -15,6 +15,7 @@ constexpr int kShortens = 2, kDemotes = 3;
 struct Rung {
     NextAttempt next;
     bool (*applies)(const RetryPolicy& policy, const FailedStep& failed);
+    AttemptRule in_words;
 };
 
 /// The first rung that applies is chosen. Each is bounded: all EOL vertices are given up once, going round
@@ -25,21 +26,29 @@ constexpr Rung kRungs[] = {
     {NextAttempt::WholeWithoutEol,
      [](const RetryPolicy& policy, const FailedStep& failed) {
          return failed.is_shortest && policy.has_new_mesh() && policy.has_given_up_all();
-     }},
+     },
+     {"the shortest part failed with EOL vertices", "the whole step without any", "once"}},
     {NextAttempt::WithoutRemeshing,
-     [](const RetryPolicy& policy, const FailedStep&) { return policy.has_stopped_remeshing(); }},
+     [](const RetryPolicy& policy, const FailedStep&) { return policy.has_stopped_remeshing(); },
+     {"the mesh was remeshed for the attempt", "on a mesh whose cells keep their size", "once"}},
     // Going round a wire is not part of the equations of motion, so it may have raised the energy.
     {NextAttempt::WithoutTurning,
-     [](const RetryPolicy& policy, const FailedStep&) { return policy.has_stopped_turning(); }},
+     [](const RetryPolicy& policy, const FailedStep&) { return policy.has_stopped_turning(); },
+     {"energy rose, and a vertex went round a wire or tip", "without going round", "once"}},
     // Implicit Euler's objective bounds the energy; BDF2's history may raise it.
     {NextAttempt::WithoutHistory,
      [](const RetryPolicy&, const FailedStep& failed) {
          return failed.status == StepStatus::EnergyRise && failed.has_history;
-     }},
+     },
+     {"energy rose with BDF2", "by implicit Euler", "once"}},
     // The new mesh has room ahead of vertices that overran, and no overconstrained EOL vertices.
     {NextAttempt::OnNewMesh,
-     [](const RetryPolicy& policy, const FailedStep&) { return policy.has_new_mesh(); }},
-    {NextAttempt::Shorter, [](const RetryPolicy&, const FailedStep& failed) { return !failed.is_shortest; }},
+     [](const RetryPolicy& policy, const FailedStep&) { return policy.has_new_mesh(); },
+     {"material overran, or EOL vertices were overconstrained", "on a mesh with room, and without those",
+      "6 overruns and 3 demotions; then without any EOL vertices"}},
+    {NextAttempt::Shorter,
+     [](const RetryPolicy&, const FailedStep& failed) { return !failed.is_shortest; },
+     {"anything else", "the rest of the step in twice as many parts", "64 parts; then the run ends"}},
 };
 
 }  // namespace
@@ -49,6 +58,13 @@ NextAttempt RetryPolicy::choose_next(const FailedStep& failed) const
     for (const Rung& rung : kRungs)
         if (rung.applies(*this, failed)) return rung.next;
     return NextAttempt::None;
+}
+
+std::vector<AttemptRule> list_attempt_rules()
+{
+    std::vector<AttemptRule> rules;
+    for (const Rung& rung : kRungs) rules.push_back(rung.in_words);
+    return rules;
 }
 
 void RetryPolicy::note(const StepReport& report, Attempt attempt, const State& state, const State& start,

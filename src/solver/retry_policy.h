@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "solver/model/failed_flow.h"
@@ -38,6 +39,12 @@ enum class NextAttempt {
     Shorter,           ///< the rest of the step in twice as many parts
     None               ///< no attempt is left: the step has failed
 };
+
+/// A row of the table of attempts, in words: the first one whose condition holds is taken.
+struct AttemptRule {
+    std::string_view condition, next, bound;
+};
+std::vector<AttemptRule> list_attempt_rules();
 
 /// A failed attempt, as input of `RetryPolicy::choose_next`.
 struct FailedStep {

@@ -5,31 +5,24 @@
 
 #include "geometry/sort_unique.h"
 #include "solver/contact/constraints.h"
+#include "solver/contact/contact_history.h"
 #include "solver/contact/eol_contacts.h"
-#include "solver/contact/impact_friction.h"
 #include "solver/infeasible.h"
 #include "solver/not_finite.h"
+#include "solver/overconstrained.h"
 
 namespace arris {
 
 namespace {
 
-/// Flattens the history of cloth that presses on obstacles. True where anything was flattened.
-bool flatten_history(const Scene& scene, const State& state, Workspace& work, std::size_t first)
+/// Flattens the history of cloth at the contacts from `first` on. True where anything was flattened.
+bool flatten_contacts(const Scene& scene, const State& state, std::size_t first, Workspace& work)
 {
-    flatten_friction(scene, state, work.obstacles, first, work.contacts, work.prediction);
-    return flatten_history(scene, state, work.obstacles, work.eol, first, work.contacts, work.prediction);
-}
-
-/// Flattens the history of parts of the cloth that press on each other. True where anything was flattened.
-bool flatten_self_history(const Scene& scene, const State& state, Workspace& work, std::size_t first)
-{
-    if (first == work.self_rows.size()) return false;
-    flatten_self_friction(scene, state, work.mobility, first, work.self_rows, work.prediction);
-    const std::vector<Vec3> free_end = find_free_end(state, work.prediction, work.pin_targets);
-    if (!flatten_self_history(state, free_end, work.mobility, first, work.self_rows, work.prediction))
+    flatten_friction(scene, state, work.carriers, work.mobility, first, work.contacts, work.prediction);
+    if (!flatten_history(state, work.carriers, work.eol, work.mobility, first, work.contacts,
+                         work.prediction))
         return false;
-    update_gaps(work.obstacles, work.prediction, work.contacts);
+    update_gaps(work.carriers, work.prediction, work.contacts);
     return true;
 }
 
@@ -38,22 +31,25 @@ bool flatten_self_history(const Scene& scene, const State& state, Workspace& wor
 bool collect_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
 {
     if (note_not_finite(CheckedStage::Move, state, work, report)) return false;
-    work.contacts = find_contacts(scene, state, work.prediction, work.obstacles);
+    work.contacts = find_contacts(scene, state, work.prediction, work.carriers);
     // An EOL vertex has one bound of its own instead of contacts with its feature.
     work.eol.clear();
     if (!state.eol.empty()) {
         const double turning = work.retry.may_turn() ? work.prediction.gamma : 0.0;
-        work.eol = add_eol_contacts(scene, state, work.mesh.stars, work.prediction, turning, work.obstacles,
+        work.eol = add_eol_contacts(scene, state, work.mesh.stars, work.prediction, turning, work.carriers,
                                     work.contacts);
     }
     const std::optional<int> overconstrained =
-        share_room(work.obstacles, work.prediction, work.contacts).overconstrained;
-    flatten_history(scene, state, work, 0);
-    work.self_rows = find_self_rows(scene, state, work.prediction, work.pin_targets, work.mesh.self_surface);
-    if (scene.self_contact)
-        work.mobility = find_mobility(scene.material.density, work.mesh.elements, work.eol, work.pin_targets);
-    flatten_self_history(scene, state, work, 0);
-    work.has_system = false;
+        share_room(work.carriers, work.prediction, work.contacts).overconstrained;
+    if (!scene.obstacles.empty() || scene.self_contact)
+        work.mobility = find_mobility(scene.material.density, work.mesh.elements, work.pin_targets);
+    flatten_contacts(scene, state, 0, work);
+    // Layers are searched along their way as the obstacles have left it.
+    const std::size_t with_obstacles = work.contacts.size();
+    const std::vector<Contact> layers = find_contacts_with_itself(
+        scene, state, work.prediction, work.pin_targets, work.mesh.self_surface, work.carriers);
+    work.contacts.insert(work.contacts.end(), layers.begin(), layers.end());
+    flatten_contacts(scene, state, with_obstacles, work);
     work.yielded = 0;
     if (note_not_finite(CheckedStage::Contacts, state, work, report)) return false;
     if (!overconstrained) return true;
@@ -62,20 +58,22 @@ bool collect_contacts(const Scene& scene, const State& state, Workspace& work, S
     return false;
 }
 
-void make_room_for_self_rows(Workspace& work)
+void make_room_for_layers(Workspace& work)
 {
     constexpr std::size_t kSpare = 60;  // pairs of vertices that are kept whether they are needed or not
     LinearSystem& system = work.mesh.system;
     std::vector<std::array<int, 2>> pairs;
     bool is_any_missing = false;
-    for (const SelfRow& row : work.self_rows)
+    for (const Contact& contact : work.contacts) {
+        if (!contact.is_with_itself()) continue;
         for (int i = 0; i < 4; ++i)
             for (int j = 0; j < i; ++j) {
-                if (row.contact.weights[i] == 0.0 || row.contact.weights[j] == 0.0) continue;
-                const int v = row.contact.vertices[i], w = row.contact.vertices[j];
+                if (contact.weights[i] == 0.0 || contact.weights[j] == 0.0) continue;
+                const int v = contact.vertices[i], w = contact.vertices[j];
                 pairs.push_back({std::min(v, w), std::max(v, w)});
                 is_any_missing = is_any_missing || !system.has_pair(v, w);
             }
+    }
     sort_unique(pairs);
     const auto is_far_above = [&](std::size_t times) {
         return system.coupled().size() > times * pairs.size() + kSpare;
@@ -88,21 +86,37 @@ void make_room_for_self_rows(Workspace& work)
     system.make_pattern(work.mesh.elements, std::move(pairs));
 }
 
-bool add_violations(const Scene& scene, const State& state, const Violations& violations, Workspace& work)
+bool yield_infeasible(Workspace& work)
 {
-    if (violations.contacts.empty() && violations.self_rows.empty()) return false;
-    const std::size_t first = work.contacts.size(), first_self = work.self_rows.size();
-    work.self_rows.insert(work.self_rows.end(), violations.self_rows.begin(), violations.self_rows.end());
-    work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());
-    const bool is_shared = share_room(work.obstacles, work.prediction, work.contacts).is_changed;
-    const bool is_flattened = flatten_history(scene, state, work, first);
-    if (flatten_self_history(scene, state, work, first_self) || is_flattened || is_shared) {
-        work.has_system = false;
-        return true;
+    bool is_changed = false;
+    for (Contact& contact : work.contacts) {
+        if (!is_unmet(work, contact.row)) continue;
+        if (!yield_stand_off(work.carriers, work.prediction, contact)) continue;
+        ++work.yielded;
+        is_changed = true;
     }
+    return is_changed;
+}
+
+bool yield_folds(Workspace& work)
+{
+    bool is_changed = false;
+    for (const int fold : find_overconstraining_folds(work))
+        is_changed |= yield_stand_off(work.carriers, work.prediction, work.contacts[fold]);
+    return is_changed;
+}
+
+std::optional<Next> add_violations(const Scene& scene, const State& state, const Violations& violations,
+                                   Workspace& work)
+{
+    if (violations.contacts.empty()) return std::nullopt;
+    const std::size_t first = work.contacts.size();
+    work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());
+    for (std::size_t c = first; c < work.contacts.size(); ++c) recall(state, work.carriers, work.contacts[c]);
+    const bool is_shared = share_room(work.carriers, work.prediction, work.contacts).is_changed;
+    if (flatten_contacts(scene, state, first, work) || is_shared) return Next::Assemble;
     append_rows(work.prediction, work.linearization, first, work.contacts, work.problem);
-    append_self_rows(state, work.prediction, work.linearization, first_self, work.self_rows, work.problem);
-    return true;
+    return Next::Resume;
 }
 
 }  // namespace arris

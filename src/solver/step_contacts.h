@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
 #include "solver/model/step_report.h"
+#include "solver/next.h"
 #include "solver/workspace.h"
 
 namespace arris {
@@ -14,10 +17,20 @@ bool collect_contacts(const Scene& scene, const State& state, Workspace& work, S
 
 /// Before A is assembled: gives the pattern the pairs of vertices that contacts of the cloth with itself
 /// couple.
-void make_room_for_self_rows(Workspace& work);
+void make_room_for_layers(Workspace& work);
+
+/// Lets contacts that cannot be met together keep less than their stand-off, in a new system. False where
+/// none can yield. The velocity found is then discarded: impulses of rows that cannot be met are no contact
+/// forces.
+bool yield_infeasible(Workspace& work);
+
+/// Lets fold planes at wires yield where they press cloth against another obstacle, in a new system. False
+/// where none does so.
+bool yield_folds(Workspace& work);
 
 /// Adds violations as rows: to the existing system, or to a new one where they change history or the room
-/// that contacts share. False where the check names no contact.
-bool add_violations(const Scene& scene, const State& state, const Violations& violations, Workspace& work);
+/// that contacts share. Nothing where the check names no contact.
+std::optional<Next> add_violations(const Scene& scene, const State& state, const Violations& violations,
+                                   Workspace& work);
 
 }  // namespace arris

@@ -6,7 +6,6 @@
 #include "physics/energies.h"
 #include "solver/contact/contacts.h"
 #include "solver/contact/proposal.h"
-#include "solver/contact/self_contacts.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/friction/friction_pairs.h"
 #include "solver/mesh_change/mesh_cache.h"
@@ -51,19 +50,17 @@ struct Workspace {
     // move
     Prediction prediction;
     std::vector<PinTarget> pin_targets;
-    std::vector<ObstacleStep> obstacles;
+    Carriers carriers;
 
     // find_contacts, build_constraints, add_violations
     std::vector<Contact> contacts;
-    std::vector<SelfRow> self_rows;
-    std::vector<double> mobility;  ///< with self-contact: see find_mobility
+    std::vector<double> mobility;  ///< see find_mobility
     std::vector<EolCoordinates> eol;
     Linearization linearization;
     ClothVelocity expansion;  ///< v^: q^ = q~ + gamma v^ is where forces are linearised
     VelocityProblem problem;
     std::vector<Rub> rubs;  ///< contacts with friction, one per friction pair of `problem`
     int yielded = 0;
-    bool has_system = false;  ///< `problem` belongs to this step's prediction; rows may have been added since
 
     // solve_velocity, propose
     VelocitySolver solver;

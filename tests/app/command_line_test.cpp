@@ -60,10 +60,12 @@ TEST(CommandLine, WhatIsNoCommandIsToldWithWhatWouldBeOne)
         program.wait();
         return program.err();
     };
-    const std::string kAllowed = "; allowed: run, resume, check, study, export, view, docs (see arris --help)\n";
+    const std::string kAllowed =
+        "; allowed: run, resume, check, study, export, view, docs (see arris --help)\n";
     EXPECT_EQ(line_of({}), "arris: a command is missing" + kAllowed);
     EXPECT_EQ(line_of({"fly", "high"}), "arris: fly: is not a command" + kAllowed);
-    EXPECT_EQ(line_of({"docs"}), "arris: topic is required; allowed: scene, schema, man, bash (see arris --help)\n");
+    EXPECT_EQ(line_of({"docs"}),
+              "arris: topic is required; allowed: scene, schema, step, man, bash (see arris --help)\n");
 }
 
 TEST(CommandLine, WhatIsNoRunIsToldWithWhatWouldBeOne)

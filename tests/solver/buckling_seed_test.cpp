@@ -74,9 +74,14 @@ struct Sheet {
     void press(const Vec3& along)
     {
         for (int v = 0; v < state.mesh.vertex_count(); ++v) {
-            const ObstacleContact in_frame = {
-                {{v, -1, -1}, {1.0, 0.0, 0.0}}, ContactKind::Vertex, -1, along, Vec3::Zero(), 1e-3};
-            contacts.push_back({in_frame, 0, along, 0.0, 1e-6});
+            Contact contact;
+            contact.vertices[0] = v;
+            contact.weights[0] = 1.0;
+            contact.kind = ContactKind::Vertex;
+            contact.obstacle = 0;
+            contact.normal = along;
+            contact.last_multiplier = 1e-6;
+            contacts.push_back(contact);
         }
     }
 

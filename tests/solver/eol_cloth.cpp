@@ -146,7 +146,7 @@ void press_edges(EolCloth& cloth)
         if (!(a.x() * b.x() < 0.0)) continue;
         const double s = a.x() / (a.x() - b.x());
         if (std::abs((1.0 - s) * a.y() + s * b.y()) > end) continue;
-        std::array<std::uint32_t, 3> ids = {state.ids[edge.a], state.ids[edge.b], ActiveContact::kNoVertex};
+        ContactVertexIds ids = {state.ids[edge.a], state.ids[edge.b]};
         std::sort(ids.begin(), ids.end());
         cloth.state.active.push_back({ids, ContactKind::Edge, 0, tip.edge, Vec3::UnitZ(), 1e-6});
     }
@@ -170,7 +170,7 @@ void press_faces_on(int point, State& state)
 {
     state.active.clear();
     for (const Face& face : state.mesh.faces) {
-        std::array<std::uint32_t, 3> ids;
+        ContactVertexIds ids;
         for (int k = 0; k < 3; ++k) ids[k] = state.ids[face[k]];
         std::sort(ids.begin(), ids.end());
         state.active.push_back({ids, ContactKind::Triangle, 0, point, Vec3::UnitZ(), 1e-6});

@@ -25,8 +25,8 @@ struct Solved {
     Solved()
     {
         prepare(cloth.scene, cloth.state, work);
-        work.obstacles.resize(1);
-        work.obstacles[0].motion.begin = cloth.state.mesh.world;
+        work.carriers.obstacles.resize(1);
+        work.carriers.obstacles[0].motion.begin = cloth.state.mesh.world;
     }
 
     int tip() const
@@ -39,11 +39,11 @@ struct Solved {
                  double pressing = 1.0)
     {
         Contact contact{};
-        contact.in_frame.kind = kind;
-        contact.in_frame.vertices = vertices;
-        contact.in_frame.element = element;
-        contact.in_frame.normal = Vec3::UnitZ();
-        contact.in_frame.point = Vec3(0, 0.1, 0);
+        contact.kind = kind;
+        std::copy(vertices.begin(), vertices.end(), contact.vertices.begin());
+        contact.element = element;
+        contact.normal_in_frame = Vec3::UnitZ();
+        contact.point_in_frame = Vec3(0, 0.1, 0);
         contact.obstacle = 0;
         contact.normal = Vec3::UnitZ();
         contact.last_multiplier = was_active ? 1.0 : 0.0;
@@ -80,12 +80,11 @@ TEST(FeatureCensus, ARowIsNewUntilItHasPressedTwice)
 TEST(FeatureCensus, ARowHasTheCauseForWhichItWasRefused)
 {
     Solved solved;
-    constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
-    solved.work.mesh.refused = {{{3, 4, kNone}, ContactKind::Edge, 0, solved.tip(), RowCause::Guard},
-                                {{4, 5, kNone}, ContactKind::Edge, 0, solved.tip() + 1, RowCause::Guard},
-                                {{5, 6, kNone}, ContactKind::Edge, 1, solved.tip(), RowCause::Guard},
+    solved.work.mesh.refused = {{{3, 4}, ContactKind::Edge, 0, solved.tip(), RowCause::Guard},
+                                {{4, 5}, ContactKind::Edge, 0, solved.tip() + 1, RowCause::Guard},
+                                {{5, 6}, ContactKind::Edge, 1, solved.tip(), RowCause::Guard},
                                 {{6, 7, 8}, ContactKind::Triangle, 0, 2, RowCause::Quality},
-                                {{9, kNone, kNone}, ContactKind::Vertex, 0, -1, RowCause::Released}};
+                                {{9}, ContactKind::Vertex, 0, -1, RowCause::Released}};
     solved.add(ContactKind::Edge, {3, 4, -1}, solved.tip(), true);
     solved.add(ContactKind::Edge, {4, 5, -1}, solved.tip(), true);  // refused at another edge of the obstacle
     solved.add(ContactKind::Edge, {5, 6, -1}, solved.tip(), true);  // refused at another obstacle
@@ -107,7 +106,7 @@ TEST(FeatureCensus, EolVerticesThatPressAreCountedAndWhatElseTheyTouch)
     const int tip = testing::tip_of(cloth.scene.obstacles[0]);
     // Moves a row of vertices onto the ridge.
     for (Vec3& x : cloth.state.mesh.world) x.x() -= 0.5 * testing::kLyingCell;
-    solved.work.obstacles[0].motion.begin = cloth.state.mesh.world;
+    solved.work.carriers.obstacles[0].motion.begin = cloth.state.mesh.world;
     const auto near_ridge = [&](double y) {
         const auto& world = cloth.state.mesh.world;
         return static_cast<int>(std::min_element(world.begin(), world.end(),
@@ -131,7 +130,7 @@ TEST(FeatureCensus, EolVerticesThatPressAreCountedAndWhatElseTheyTouch)
 
     // An EOL vertex of upright cloth has no coordinates; its contact is a row with the cause EdgeOn.
     for (Vec3& x : cloth.state.mesh.world) x = Vec3(0.0, x.y(), kThickness + x.x());
-    solved.work.obstacles[0].motion.begin = cloth.state.mesh.world;
+    solved.work.carriers.obstacles[0].motion.begin = cloth.state.mesh.world;
     EXPECT_EQ(solved.count(RowCause::EdgeOn), 1);
 }
 
@@ -147,7 +146,7 @@ TEST(FeatureCensus, ARowAtTheEolVertexOfItsFeatureIsTheSameContact)
         solved.cloth.add_eol(v, false, tip);
         if (is_other_eol) solved.cloth.add_eol(w, false, tip);
         Contact& contact = solved.add(ContactKind::Edge, {v, w, -1}, ridge.features().edges[tip].edge, true);
-        contact.in_frame.weights = {weight, 1.0 - weight, 0.0};
+        contact.weights = {weight, 1.0 - weight, 0.0};
         for (const RowCause cause : {RowCause::AtEol, RowCause::BesideEol})
             if (solved.count(cause) == 1) return cause;
         return RowCause::New;
@@ -196,10 +195,10 @@ TEST(FeatureCensus, AFaceOnAPointInTheMiddleOfAnEdgeTouchesTheTraceThere)
         solved.cloth.add_eol(v, false, tip);
         if (has_trace) solved.cloth.add_eol(w, false, tip);
         Contact& contact = solved.add(ContactKind::Triangle, {v, w, beside}, point, true);
-        contact.in_frame.weights = {0.6 - off, 0.4, off};
-        contact.in_frame.point = ridge.mesh().points[point];
-        const Vec3 near = contact.in_frame.point + Vec3(aside, 0.0, 1e-3);
-        std::vector<Vec3>& begin = solved.work.obstacles[0].motion.begin;
+        contact.weights = {0.6 - off, 0.4, off};
+        contact.point_in_frame = ridge.mesh().points[point];
+        const Vec3 near = contact.point_in_frame + Vec3(aside, 0.0, 1e-3);
+        std::vector<Vec3>& begin = solved.work.carriers.obstacles[0].motion.begin;
         begin[v] = near - 0.4 * testing::kLyingCell * Vec3::UnitY();
         begin[w] = near + 0.6 * testing::kLyingCell * Vec3::UnitY();
         EXPECT_EQ(solved.take().rows, 1);
@@ -225,7 +224,7 @@ TEST(FeatureCensus, ARowAtAnEolVertexWithoutCoordinatesSaysWhyThatHasNone)
         ASSERT_EQ(corner, 0);
         solved.cloth.add_eol(corner, false, tip);
         Contact& contact = solved.add(ContactKind::Edge, {0, 1, -1}, ridge.features().edges[tip].edge, true);
-        contact.in_frame.weights = {weight, 1.0 - weight, 0.0};
+        contact.weights = {weight, 1.0 - weight, 0.0};
         EXPECT_EQ(solved.count(RowCause::ClothCorner), weight > 0.95 ? 1 : 0);
         EXPECT_EQ(solved.count(RowCause::AtEol), 0);
     };
@@ -242,7 +241,7 @@ TEST(FeatureCensus, AFaceThatTouchesACornerBesideItsEolVertexIsAContactOfItsOwn)
         solved.cloth.add_eol(v, true, corner);
         Contact& contact = solved.add(ContactKind::Triangle, {v, v + 1, v + 2},
                                       ridge.features().corners[corner].point, true);
-        contact.in_frame.weights = {weight, 0.0, 1.0 - weight};
+        contact.weights = {weight, 0.0, 1.0 - weight};
         return solved.count(RowCause::AtEol) == 1 ? RowCause::AtEol : RowCause::BesideEol;
     };
     EXPECT_EQ(cause_at(0.99), RowCause::AtEol);
@@ -269,12 +268,11 @@ TEST(FeatureCensus, AVertexTouchesAFeatureWhereItsPlaneIsNoFaces)
 {
     const Obstacle box("box", make_box({1, 1, 1}), {}, {}, 30.0);
     const auto touches = [](const Obstacle& obstacle, const Vec3& point, const Vec3& normal, int element) {
-        ObstacleContact contact{};
-        contact.kind = ContactKind::Vertex;
-        contact.vertices = {0, -1, -1};
+        Contact contact;
+        contact.vertices[0] = 0;
         contact.element = element;
-        contact.point = point;
-        contact.normal = normal.normalized();
+        contact.point_in_frame = point;
+        contact.normal_in_frame = normal.normalized();
         return touches_feature(obstacle, contact, kThickness);
     };
     const auto face_to = [&](const Vec3& normal) {
@@ -306,12 +304,12 @@ TEST(FeatureCensus, AnEdgeOrFaceOfTheClothTouchesAFeatureWhereItsPointIsOnOne)
     const Obstacle box("box", make_box({1, 1, 1}), {}, {}, 30.0);
     const Obstacle smooth("smooth", make_box({1, 1, 1}), {}, {}, 179.0);
     const auto touches = [](const Obstacle& obstacle, ContactKind kind, int element, const Vec3& point) {
-        ObstacleContact contact{};
+        Contact contact;
         contact.kind = kind;
-        contact.vertices = {0, 1, kind == ContactKind::Edge ? -1 : 2};
+        contact.vertices = {0, 1, kind == ContactKind::Edge ? -1 : 2, -1};
         contact.element = element;
-        contact.point = point;
-        contact.normal = Vec3(1, 0, 1).normalized();
+        contact.point_in_frame = point;
+        contact.normal_in_frame = Vec3(1, 0, 1).normalized();
         return touches_feature(obstacle, contact, kThickness);
     };
     const auto& edges = box.topology().edges;

@@ -113,7 +113,7 @@ TEST_F(NotFiniteStep, NamesTheVertexAndObstacleOfAContact)
     EXPECT_EQ(find_not_finite(CheckedStage::Contacts, state, work).what, nullptr);
     work.contacts.back().gap = kNan;
     const NotFinite found = find_not_finite(CheckedStage::Contacts, state, work);
-    expect(found, "contact", work.contacts.back().in_frame.vertices[0]);
+    expect(found, "contact", work.contacts.back().vertices[0]);
     EXPECT_EQ(found.obstacle, 0);
 }
 

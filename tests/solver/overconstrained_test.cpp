@@ -23,15 +23,15 @@ Workspace make_vise(double angle, bool is_together)
     const std::array<Vec3, 2> normals = {Vec3(std::cos(half), std::sin(half), 0.0),
                                          Vec3(std::cos(half), -std::sin(half), 0.0)};
     for (int o = 0; o < 2; ++o) {
-        ObstacleStep step;
-        step.motion.begin.assign(8, Vec3::Zero());
-        if (o == 0 || is_together) step.end.translation = 1e-3 * normals[0];
-        work.obstacles.push_back(step);
-        const ObstacleContact in_frame = make_contact(ContactKind::Vertex, {{7, -1, -1}, {1.0, 0.0, 0.0}}, -1,
-                                                      normals[o], Vec3::Zero(), 0.0);
-        Contact contact{in_frame, o, normals[o], 0.0, false};
-        contact.row = o;
-        work.contacts.push_back(contact);
+        Carrier carrier;
+        carrier.motion.begin.assign(8, Vec3::Zero());
+        if (o == 0 || is_together) carrier.end.translation = 1e-3 * normals[0];
+        work.carriers.obstacles.push_back(carrier);
+        const ObstacleContact found = make_contact(ContactKind::Vertex, {{7, -1, -1}, {1.0, 0.0, 0.0}}, -1,
+                                                   normals[o], Vec3::Zero(), 0.0);
+        work.prediction.position.resize(8, Vec3::Zero());
+        work.contacts.push_back(place_contact(found, o, 1e-3, work.carriers, work.prediction));
+        work.contacts.back().row = o;
     }
     work.solution.row_multipliers = Eigen::VectorXd::Ones(2);
     const FeatureFrame frame{Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), 1.0};
@@ -70,7 +70,7 @@ TEST(OverconstrainingFolds, ArePlanesThatPressClothAgainstAnotherObstacle)
 {
     const auto make_fold = [](double angle) {
         Workspace work = make_vise(angle, false);
-        work.contacts[0].in_frame.element = kFoldElement;
+        work.contacts[0].element = kFoldElement;
         return work;
     };
     EXPECT_EQ(find_overconstraining_folds(make_fold(170.0)), std::vector{0});
@@ -81,10 +81,10 @@ TEST(OverconstrainingFolds, ArePlanesThatPressClothAgainstAnotherObstacle)
     own.contacts[1].obstacle = 0;
     EXPECT_TRUE(find_overconstraining_folds(own).empty()) << "the wire that it is folded over";
     Workspace elsewhere = make_fold(170.0);
-    elsewhere.contacts[1].in_frame.vertices = {6, -1, -1};
+    elsewhere.contacts[1].vertices = {6, -1, -1, -1};
     EXPECT_TRUE(find_overconstraining_folds(elsewhere).empty()) << "another vertex";
     Workspace edge = make_fold(170.0);
-    edge.contacts[1].in_frame.vertices = {6, 7, -1};
+    edge.contacts[1].vertices = {6, 7, -1, -1};
     EXPECT_EQ(find_overconstraining_folds(edge), std::vector{0}) << "an edge of the cloth that ends there";
     for (const int c : {0, 1}) {
         Workspace open = make_fold(170.0);
@@ -92,7 +92,7 @@ TEST(OverconstrainingFolds, ArePlanesThatPressClothAgainstAnotherObstacle)
         EXPECT_TRUE(find_overconstraining_folds(open).empty()) << "one does not press: " << c;
     }
     Workspace both = make_fold(170.0);
-    both.contacts[1].in_frame.element = kFoldElement;
+    both.contacts[1].element = kFoldElement;
     EXPECT_TRUE(find_overconstraining_folds(both).empty()) << "two planes";
 }
 

@@ -38,7 +38,7 @@ struct Proposed {
         measure_proposal_energy(scene, kStep, work);
     }
 
-    bool keep(Attempt attempt, bool may_solve_again)
+    Next keep(Attempt attempt, bool may_solve_again)
     {
         return enforce_energy_balance(scene, state, attempt, may_solve_again, work, report);
     }
@@ -49,18 +49,18 @@ const Vec3 kDriven(0.3, 0.0, 0.4);  // m/s, without a driving force
 TEST(KeepEnergy, SolvesAgainAtWhatWasFoundThenFailsOrTakesTheLeast)
 {
     Proposed proposed(kDriven);
-    EXPECT_TRUE(proposed.keep(Attempt::Ordinary, true));
+    EXPECT_EQ(proposed.keep(Attempt::Ordinary, true), Next::Assemble);
     EXPECT_EQ(proposed.report.relinearisations, 1);
     EXPECT_EQ(proposed.work.expansion.world, proposed.work.proposal.velocity);
 
     Proposed last(kDriven);
-    EXPECT_FALSE(last.keep(Attempt::Ordinary, false));
+    EXPECT_EQ(last.keep(Attempt::Ordinary, false), Next::Fail);
     EXPECT_EQ(last.report.status, StepStatus::EnergyRise);
 
     Proposed resort(kDriven);
-    EXPECT_TRUE(resort.keep(Attempt::Last, false));
+    EXPECT_EQ(resort.keep(Attempt::Last, false), Next::Assemble);
     EXPECT_TRUE(resort.work.least.is_taken);
-    EXPECT_FALSE(resort.keep(Attempt::Last, false)) << "whatever it is";
+    EXPECT_EQ(resort.keep(Attempt::Last, false), Next::Accept) << "whatever it is";
     EXPECT_EQ(resort.report.status, StepStatus::Done);
     EXPECT_GT(resort.report.energy_rise, 0.0);
 }
@@ -72,7 +72,7 @@ TEST(KeepEnergy, TheLeastIsOfThisStepAlsoWhereItIsNotTheFirstLinearisation)
     proposed.report.relinearisations = 1;
     proposed.work.least.rise = 0.0;  // left by an earlier step
     const ClothVelocity expansion = proposed.work.expansion;
-    EXPECT_TRUE(proposed.keep(Attempt::Last, false));
+    EXPECT_EQ(proposed.keep(Attempt::Last, false), Next::Assemble);
     EXPECT_EQ(proposed.work.expansion.world, expansion.world);
     EXPECT_GT(proposed.work.least.rise, 0.0);
 }
@@ -81,7 +81,7 @@ TEST(KeepEnergy, WhatWasTakenAndRisesAfterAllFailsAnOrdinaryAttempt)
 {
     Proposed proposed(kDriven);
     proposed.work.least.is_taken = true;
-    EXPECT_FALSE(proposed.keep(Attempt::Ordinary, true));
+    EXPECT_EQ(proposed.keep(Attempt::Ordinary, true), Next::Fail);
     EXPECT_EQ(proposed.report.status, StepStatus::EnergyRise);
 }
 
@@ -91,7 +91,7 @@ TEST(FallBack, IsToAVelocityThatRaisedNoEnergyAndOnce)
     proposed.report.status = StepStatus::NotConverged;
     EXPECT_FALSE(restore_least_rise(proposed.work, proposed.report)) << "there was none";
     proposed.report.status = StepStatus::Done;
-    EXPECT_FALSE(proposed.keep(Attempt::Ordinary, true));
+    EXPECT_EQ(proposed.keep(Attempt::Ordinary, true), Next::Accept);
     const ClothVelocity good = proposed.work.expansion;
     proposed.work.expansion.world.front() = kDriven;
     proposed.report.status = StepStatus::EnergyRise;  // a status with other retries

@@ -15,8 +15,8 @@ namespace arris {
 namespace {
 
 /// A step of zero length with the cloth at rest at time 0.
-std::vector<ObstacleStep> stand_still(const Scene& scene, const ClothMesh& mesh,
-                                      const std::vector<MeshEdge>& edges)
+std::vector<Carrier> stand_still(const Scene& scene, const ClothMesh& mesh,
+                                 const std::vector<MeshEdge>& edges)
 {
     State state;
     state.mesh = mesh;
@@ -25,22 +25,22 @@ std::vector<ObstacleStep> stand_still(const Scene& scene, const ClothMesh& mesh,
     prediction.gamma = 1.0;
     prediction.position = mesh.world;
     prediction.velocity = state.velocity;
-    std::vector<ObstacleStep> steps = move_obstacles(scene, state, edges, prediction, {}, 0.0);
-    for (ObstacleStep& step : steps) {
-        step.motion.faces = &mesh.faces;
-        step.reference = step.motion.begin;
+    std::vector<Carrier> carriers = move_obstacles(scene, state, edges, prediction, {}, 0.0).obstacles;
+    for (Carrier& carrier : carriers) {
+        carrier.motion.faces = &mesh.faces;
+        carrier.reference = carrier.motion.begin;
     }
-    return steps;
+    return carriers;
 }
 
 /// Moves the contact's point out to `thickness`, with the least change of its vertices; true where this moved
 /// it.
-bool push_out(const ObstacleContact& contact, const ObstacleStep& step, double thickness,
+bool push_out(const ObstacleContact& contact, const Carrier& carrier, double thickness,
               std::vector<Vec3>& world)
 {
     constexpr double kRoundOff = 1e-9;  // of the thickness
-    const Vec3 normal = step.end.rotation * contact.normal;
-    const double gap = normal.dot(contact.at(world) - step.end(contact.point));
+    const Vec3 normal = carrier.end.rotation * contact.normal;
+    const double gap = normal.dot(contact.at(world) - carrier.end(contact.point));
     if (gap >= (1.0 - kRoundOff) * thickness) return false;
     contact.shift((thickness - gap) * normal, world);
     return true;
@@ -95,13 +95,14 @@ bool push_out_all(const Scene& scene, const std::vector<MeshEdge>& edges, const 
 {
     bool is_changed = false;
     const double thickness = scene.material.thickness;
-    const std::vector<ObstacleStep> steps = stand_still(scene, mesh, edges);
-    for (std::size_t o = 0; o < steps.size(); ++o) {
+    const std::vector<Carrier> carriers = stand_still(scene, mesh, edges);
+    for (std::size_t o = 0; o < carriers.size(); ++o) {
         const Obstacle& obstacle = scene.obstacles[o];
         for (const auto& find : {find_vertex_contacts, find_edge_contacts, find_face_contacts})
-            for (const ObstacleContact& c : find(obstacle, steps[o].motion, steps[o].reference, thickness))
-                if (!folds.includes(c, obstacle, steps[o].motion.begin))
-                    is_changed = push_out(c, steps[o], thickness, mesh.world) || is_changed;
+            for (const ObstacleContact& c :
+                 find(obstacle, carriers[o].motion, carriers[o].reference, thickness))
+                if (!folds.includes(c, obstacle, carriers[o].motion.begin))
+                    is_changed = push_out(c, carriers[o], thickness, mesh.world) || is_changed;
     }
     return is_changed;
 }
@@ -109,10 +110,10 @@ bool push_out_all(const Scene& scene, const std::vector<MeshEdge>& edges, const 
 bool is_free_way(const Scene& scene, const std::vector<MeshEdge>& edges, const ClothMesh& from,
                  const ClothMesh& to)
 {
-    std::vector<ObstacleStep> steps = stand_still(scene, from, edges);
-    for (std::size_t o = 0; o < steps.size(); ++o) {
-        steps[o].motion.end = to_frame(steps[o].end, to.world);
-        if (!check_sweep(scene.obstacles[o], steps[o].motion, scene.material.thickness).is_clean())
+    std::vector<Carrier> carriers = stand_still(scene, from, edges);
+    for (std::size_t o = 0; o < carriers.size(); ++o) {
+        carriers[o].motion.end = to_frame(carriers[o].end, to.world);
+        if (!check_sweep(scene.obstacles[o], carriers[o].motion, scene.material.thickness).is_clean())
             return false;
     }
     return true;

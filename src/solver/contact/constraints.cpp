@@ -92,8 +92,10 @@ std::vector<std::size_t> order_of(const std::vector<Contact>& contacts)
 /// Expected active: contacts that pressed in the last step, or would be violated at the last velocity.
 bool is_expected(const Contact& contact, const Prediction& prediction, const State& state)
 {
-    const double closing = contact.normal.dot(contact.in_frame.at(state.velocity));
-    return contact.was_active() || contact.is_pressing || contact.gap + prediction.gamma * closing < 0.0;
+    const double closing = contact.normal.dot(contact.at(state.velocity));
+    // Most layers that close repeat each other: the solve finds those that press.
+    const bool closes = !contact.is_with_itself() && contact.gap + prediction.gamma * closing < 0.0;
+    return contact.was_active() || contact.is_pressing || closes;
 }
 
 /// Whether no coordinate moves the contact, as where its normal is across the only direction in which an EOL
@@ -104,29 +106,32 @@ bool is_kept_at_rest(const ConstraintRow& row, const Prediction& prediction, con
     constexpr double kRoundOff = 1e-9;  // of the gap to be kept
     const auto last = row.coefficient.begin() + row.count;
     const bool can_move = std::any_of(row.coefficient.begin(), last, [](double g) { return g != 0.0; });
-    return !can_move && row.lower * prediction.gamma <= kRoundOff * contact.in_frame.least_gap;
+    return !can_move && row.lower * prediction.gamma <= kRoundOff * contact.least_gap;
 }
 
-void add_row(const Prediction& prediction, const Linearization& at, Contact& contact,
+/// Appends a contact's row; to the guess, too, where it is `expected` to press.
+void add_row(const Prediction& prediction, const Linearization& at, bool is_expected, Contact& contact,
              VelocityProblem& problem)
 {
     constexpr double kRoundOff = 1e-15;  // of a unit normal: a smaller part along a coordinate is none
     ConstraintRow row;
     row.lower = -contact.gap / prediction.gamma;
     row.expected = contact.last_multiplier;
-    const ObstacleContact& local = contact.in_frame;
-    for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
-        const int v = local.vertices[i];
-        const Vec3 gradient = local.weights[i] * (at.basis[v].transpose() * contact.normal);
-        row.lower -= local.weights[i] * contact.normal.dot(at.drift[v]);
+    for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
+        if (contact.weights[i] == 0.0) continue;
+        const int v = contact.vertices[i];
+        const Vec3 gradient = contact.weights[i] * (at.basis[v].transpose() * contact.normal);
+        row.lower -= contact.weights[i] * contact.normal.dot(at.drift[v]);
         for (int d = 0; d < 3; ++d) {
             row.coordinate[row.count] = 3 * v + d;
             row.coefficient[row.count++] = std::abs(gradient[d]) < kRoundOff ? 0.0 : gradient[d];
         }
     }
     if (is_kept_at_rest(row, prediction, contact)) row.lower = -std::numeric_limits<double>::infinity();
-    row.group = local.vertices[0];
+    row.group = contact.vertices[0];
+    if (contact.is_with_itself()) row.group += static_cast<int>(at.basis.size());
     contact.row = static_cast<int>(problem.rows.size());
+    if (is_expected) problem.row_guess.push_back(contact.row);
     problem.rows.push_back(row);
 }
 
@@ -135,9 +140,8 @@ void add_row(const Prediction& prediction, const Linearization& at, Contact& con
 void append_rows(const Prediction& prediction, const Linearization& at, std::size_t first,
                  std::vector<Contact>& contacts, VelocityProblem& problem)
 {
-    for (std::size_t c = first; c < contacts.size(); ++c) {
-        add_row(prediction, at, contacts[c], problem);
-    }
+    for (std::size_t c = first; c < contacts.size(); ++c)
+        add_row(prediction, at, contacts[c].was_active(), contacts[c], problem);
 }
 
 void build_constraints(const std::vector<PinTarget>& held, const std::vector<EolCoordinates>& eol,
@@ -160,7 +164,7 @@ void build_constraints(const std::vector<PinTarget>& held, const std::vector<Eol
     let_flow(eol, prediction, at);
     for (const std::size_t c : order_of(contacts)) {
         Contact& contact = contacts[c];
-        const int v = contact.in_frame.vertices[0];
+        const int v = contact.vertices[0];
         contact.bound = contact.row = -1;
         if (contact.eol >= 0) {
             contact.bound = 3 * v;
@@ -182,8 +186,7 @@ void build_constraints(const std::vector<PinTarget>& held, const std::vector<Eol
     // Rows: all other contacts.
     for (Contact& contact : contacts) {
         if (contact.bound >= 0) continue;
-        add_row(prediction, at, contact, problem);
-        if (is_expected(contact, prediction, state)) problem.row_guess.push_back(contact.row);
+        add_row(prediction, at, is_expected(contact, prediction, state), contact, problem);
     }
 }
 

@@ -2,21 +2,18 @@
 #include "solver/contact/contacts.h"
 
 #include <algorithm>
-#include <map>
 #include <tuple>
 
-#include "geometry/contact/contact_plane.h"
+#include "geometry/self_contact/self_contact_search.h"
 
 namespace arris {
 
 namespace {
 
-using VertexIds = std::array<std::uint32_t, 3>;
-
-VertexIds ids_of(const State& state, const std::array<int, 3>& vertices)
+ContactVertexIds ids_of(const State& state, const ClothPoints& points)
 {
-    VertexIds ids;
-    for (int i = 0; i < 3; ++i) ids[i] = vertices[i] < 0 ? ActiveContact::kNoVertex : state.ids[vertices[i]];
+    ContactVertexIds ids;
+    for (int i = 0; i < 4 && points.vertices[i] >= 0; ++i) ids[i] = state.ids[points.vertices[i]];
     return ids;
 }
 
@@ -29,8 +26,8 @@ auto key_of(const ActiveContact& contact)
 /// The check after the solve had found them.
 class RememberedPairs {
   public:
-    RememberedPairs(const Scene& scene, const State& state, const std::vector<ObstacleStep>& steps)
-        : scene_(scene), state_(state), steps_(steps)
+    RememberedPairs(const Scene& scene, const State& state, const Carriers& carriers)
+        : scene_(scene), state_(state), carriers_(carriers)
     {
     }
 
@@ -59,13 +56,13 @@ class RememberedPairs {
     std::optional<ObstacleContact> make(const std::array<int, 3>& vertices, const ActiveContact& active)
     {
         const Obstacle& obstacle = scene_.obstacles[active.obstacle];
-        const ObstacleStep& step = steps_[active.obstacle];
+        const Carrier& carrier = carriers_[active.obstacle];
         if (active.kind == ContactKind::Edge)
-            return make_edge_contact(obstacle, step.motion, step.reference, {vertices[0], vertices[1]},
+            return make_edge_contact(obstacle, carrier.motion, carrier.reference, {vertices[0], vertices[1]},
                                      active.element, scene_.material.thickness);
         const int face = find_face(vertices);
         if (face < 0) return std::nullopt;
-        return make_face_contact(obstacle, step.motion, step.reference, face, active.element,
+        return make_face_contact(obstacle, carrier.motion, carrier.reference, face, active.element,
                                  scene_.material.thickness);
     }
 
@@ -85,57 +82,14 @@ class RememberedPairs {
 
     const Scene& scene_;
     const State& state_;
-    const std::vector<ObstacleStep>& steps_;
+    const Carriers& carriers_;
     VertexFaces faces_at_;  ///< of each vertex; filled on first use
 };
 
-void update_gap(const ObstacleStep& step, const Prediction& prediction, Contact& contact)
+void update_gap(const Carrier& carrier, const Prediction& prediction, Contact& contact)
 {
-    const ObstacleContact& local = contact.in_frame;
-    contact.gap = contact.normal.dot(local.at(prediction.position) - step.end(local.point)) - local.least_gap;
-}
-
-/// Components of q~ and v~ along the contact's normal if its point had ridden on the obstacle for two steps.
-struct RiddenHistory {
-    double position, velocity;
-};
-
-RiddenHistory find_ridden(const Obstacle& obstacle, const ObstacleStep& step, const State& state,
-                          double forward, const Contact& contact)
-{
-    const double previous_time = state.time - state.previous_dt;
-    Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
-    for (int i = 0; i < 3 && contact.in_frame.vertices[i] >= 0; ++i) {
-        const int v = contact.in_frame.vertices[i];
-        const Vec3& now = state.mesh.world[v];
-        const Vec3 before = step.before(step.motion.begin[v]);
-        const Vec3 gained =
-            obstacle.velocity_after(state.time, now) - obstacle.velocity_after(previous_time, before);
-        position += contact.in_frame.weights[i] * ridden_position(step, state, forward, v);
-        velocity += contact.in_frame.weights[i] * (state.velocity[v] + forward * gained);
-    }
-    return {contact.normal.dot(position), contact.normal.dot(velocity)};
-}
-
-/// Whether the extrapolated history runs into the contact, or the contact pressed.
-bool runs_into(const ObstacleStep& step, const Contact& contact, double shift)
-{
-    const ObstacleContact& local = contact.in_frame;
-    if (contact.was_active()) return true;
-    const double now = local.normal.dot(local.at(step.motion.begin) - local.point);
-    const double end = local.normal.dot(local.at(step.motion.end) - local.point);
-    return now + shift < local.least_gap && end < local.least_gap;
-}
-
-/// Changes a field and its material counterpart by `amount` along the contact's normal, with the least
-/// change.
-void shift_along(const std::vector<EolCoordinates>& eol, const Contact& contact, double amount,
-                 std::vector<Vec3>& world, std::vector<Vec2>& material)
-{
-    if (contact.eol < 0) return contact.in_frame.shift(amount * contact.normal, world);
-    const EolCoordinates& at = eol[contact.eol];
-    world[at.vertex] += amount * (at.basis * at.opening);
-    material[at.vertex] += amount * (at.material_basis * at.opening);
+    contact.gap = contact.normal.dot(contact.at(prediction.position) - carrier.end(contact.point_in_frame)) -
+                  contact.least_gap;
 }
 
 ContactFriction rotate(const Mat3& rotation, const ContactFriction& friction)
@@ -144,212 +98,260 @@ ContactFriction rotate(const Mat3& rotation, const ContactFriction& friction)
 }
 
 /// Shares the room between two contacts of one vertex whose normals are opposite.
-SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction, Contact& a,
-                      Contact& b)
+SharedRoom share_room(const Carriers& carriers, const Prediction& prediction, Contact& a, Contact& b)
 {
     constexpr double kOpposite = -0.9;       // cosine between the normals
     constexpr double kFacing = -1.0 + 1e-9;  // cosine below which they face each other exactly
     constexpr double kShared = 0.99;         // of the room, so that the two contacts do not conflict
     constexpr double kNoRoom = 1e-6;         // of the stand-offs: a smaller room is round-off
     const double cosine = a.normal.dot(b.normal);
-    const double wanted = a.in_frame.least_gap + b.in_frame.least_gap;
+    const double wanted = a.least_gap + b.least_gap;
     if (!(cosine < kOpposite) || !(wanted > 0.0)) return {};
     // Measured at the vertex: planes that do not face each other exactly have no single distance.
-    const Vec3 place = steps[a.obstacle].end(steps[a.obstacle].reference[a.in_frame.vertices[0]]);
-    const double room = a.normal.dot(place - steps[a.obstacle].end(a.in_frame.point)) +
-                        b.normal.dot(place - steps[b.obstacle].end(b.in_frame.point));
+    const Vec3 place = carriers[a.obstacle].end(carriers[a.obstacle].reference[a.vertices[0]]);
+    const double room = a.normal.dot(place - carriers[a.obstacle].end(a.point_in_frame)) +
+                        b.normal.dot(place - carriers[b.obstacle].end(b.point_in_frame));
     if (kShared * room >= wanted) return {};
     for (Contact* contact : {&a, &b}) {
-        contact->in_frame.least_gap *= std::max(kShared * room / wanted, 0.0);
+        contact->least_gap *= std::max(kShared * room / wanted, 0.0);
         contact->may_grow = false;
-        update_gap(steps[contact->obstacle], prediction, *contact);
+        update_gap(carriers[contact->obstacle], prediction, *contact);
     }
     const bool is_overconstrained = !(room > kNoRoom * wanted) && cosine < kFacing;
-    return {true, is_overconstrained ? std::optional(a.in_frame.vertices[0]) : std::nullopt};
+    return {true, is_overconstrained ? std::optional(a.vertices[0]) : std::nullopt};
+}
+
+std::vector<Vec3> find_free_end(const State& state, const Prediction& prediction,
+                                const std::vector<PinTarget>& held)
+{
+    std::vector<Vec3> end(prediction.position.size());
+    for (std::size_t v = 0; v < end.size(); ++v)
+        end[v] = prediction.position[v] + prediction.gamma * state.velocity[v];
+    hold_in_place(held, end);
+    return end;
 }
 
 }  // namespace
 
-std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
-                                         const std::vector<MeshEdge>& edges, const Prediction& prediction,
-                                         const std::vector<PinTarget>& held, double end)
+Vec3 Carrier::velocity_gained(const Vec3& at_start, const Vec3& one_step_ago) const
 {
-    std::vector<ObstacleStep> steps;
-    if (scene.obstacles.empty()) return steps;
-    const std::size_t n = state.mesh.world.size();
-    std::vector<Vec3> free_end(n);
-    for (std::size_t v = 0; v < n; ++v)
-        free_end[v] = prediction.position[v] + prediction.gamma * state.velocity[v];
-    hold_in_place(held, free_end);
+    if (!obstacle) return Vec3::Zero();
+    return obstacle->velocity_after(time, at_start) - obstacle->velocity_after(previous_time, one_step_ago);
+}
 
+void ClothPoints::shift(const Vec3& change, const std::vector<double>& mobility,
+                        std::vector<Vec3>& field) const
+{
+    double squares = 0.0;
+    for (int i = 0; i < 4 && vertices[i] >= 0; ++i)
+        squares += weights[i] * weights[i] * mobility[vertices[i]];
+    if (!(squares > 0.0)) return;
+    for (int i = 0; i < 4 && vertices[i] >= 0; ++i)
+        field[vertices[i]] += (weights[i] * mobility[vertices[i]] / squares) * change;
+}
+
+Carriers move_obstacles(const Scene& scene, const State& state, const std::vector<MeshEdge>& edges,
+                        const Prediction& prediction, const std::vector<PinTarget>& held, double end)
+{
+    Carriers carriers;
+    if (scene.obstacles.empty() && !scene.self_contact) return carriers;
+    const std::vector<Vec3> free_end = find_free_end(state, prediction, held);
+    carriers.cloth.motion = {&state.mesh.faces, &edges, state.mesh.world, free_end};
     for (const Obstacle& obstacle : scene.obstacles) {
-        ObstacleStep step;
-        step.before = obstacle.at(state.time - state.previous_dt);
-        step.begin = obstacle.at(state.time);
-        step.end = obstacle.at(end);
-        step.motion = {&state.mesh.faces, &edges, to_frame(step.begin, state.mesh.world),
-                       to_frame(step.end, free_end)};
-        steps.push_back(std::move(step));
+        Carrier carrier;
+        carrier.obstacle = &obstacle;
+        carrier.previous_time = state.time - state.previous_dt;
+        carrier.time = state.time;
+        carrier.before = obstacle.at(carrier.previous_time);
+        carrier.begin = obstacle.at(carrier.time);
+        carrier.end = obstacle.at(end);
+        carrier.motion = {&state.mesh.faces, &edges, to_frame(carrier.begin, state.mesh.world),
+                          to_frame(carrier.end, free_end)};
+        carriers.obstacles.push_back(std::move(carrier));
     }
-    return steps;
+    return carriers;
 }
 
-void update_gaps(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
-                 std::vector<Contact>& contacts)
+void update_gaps(const Carriers& carriers, const Prediction& prediction, std::vector<Contact>& contacts)
 {
-    for (Contact& contact : contacts) update_gap(steps[contact.obstacle], prediction, contact);
+    for (Contact& contact : contacts) update_gap(carriers[contact.obstacle], prediction, contact);
 }
 
-Vec3 ridden_position(const ObstacleStep& step, const State& state, double forward, int vertex)
+Vec3 ridden_position(const Carrier& carrier, const State& state, double forward, int vertex)
 {
     const Vec3& now = state.mesh.world[vertex];
-    return now + forward * (now - step.before(step.motion.begin[vertex]));
+    return now + forward * (now - carrier.before(carrier.motion.begin[vertex]));
 }
 
-void recall(const State& state, const ObstacleStep& step, Contact& contact)
+void recall(const State& state, const Carriers& carriers, Contact& contact)
 {
     constexpr double kSameNormal = 0.7;
-    const VertexIds ids = ids_of(state, contact.in_frame.vertices);
-    const std::pair<VertexIds, std::int32_t> key(ids, contact.obstacle);
-    auto active = std::lower_bound(state.active.begin(), state.active.end(), key,
-                                   [](const ActiveContact& a, const auto& wanted) {
-                                       return std::pair(a.vertex_ids, a.obstacle) < wanted;
-                                   });
-    for (; active != state.active.end() && std::pair(active->vertex_ids, active->obstacle) == key; ++active)
-        if (active->kind == contact.in_frame.kind &&
-            (contact.is_vertex() ? active->normal.dot(contact.in_frame.normal) > kSameNormal
-                                 : active->element == contact.in_frame.element)) {
-            contact.last_multiplier = active->multiplier;
-            contact.last_friction = active->friction;
-            if (contact.eol < 0) contact.last_friction = rotate(step.end.rotation, contact.last_friction);
-            contact.friction = contact.last_friction;
-            return;
-        }
+    const ContactVertexIds ids = ids_of(state, contact);
+    const bool is_vertex = contact.kind == ContactKind::Vertex;
+    const ActiveContact* last = nullptr;
+    double best_cosine = kSameNormal;
+    auto active =
+        std::lower_bound(state.active.begin(), state.active.end(), ids[0],
+                         [](const ActiveContact& a, std::uint32_t first) { return a.vertex_ids[0] < first; });
+    for (; active != state.active.end() && active->vertex_ids[0] == ids[0]; ++active) {
+        if (active->obstacle != contact.obstacle || active->kind != contact.kind) continue;
+        const bool is_same = active->vertex_ids == ids && active->element == contact.element;
+        const double cosine = is_vertex ? active->normal.dot(contact.normal_in_frame) : is_same ? 1.0 : 0.0;
+        if (!(cosine > best_cosine)) continue;
+        last = &*active;
+        best_cosine = cosine;
+    }
+    if (!last) return;
+    contact.last_multiplier = last->multiplier;
+    contact.last_friction = last->friction;
+    if (contact.eol < 0)
+        contact.last_friction = rotate(carriers[contact.obstacle].end.rotation, contact.last_friction);
+    contact.friction = contact.last_friction;
 }
 
-double way_along(const ObstacleStep& step, const Contact& contact)
+double way_along(const Carriers& carriers, const Contact& contact)
 {
-    const Vec3 place = contact.in_frame.at(step.motion.begin);
-    return contact.normal.dot(step.end(place) - step.begin(place));
+    const Carrier& carrier = carriers[contact.obstacle];
+    const Vec3 place = contact.at(carrier.motion.begin);
+    return contact.normal.dot(carrier.end(place) - carrier.begin(place));
 }
 
-Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
+Contact place_contact(const ObstacleContact& found, int obstacle, double thickness, const Carriers& carriers,
                       const Prediction& prediction)
 {
-    Contact placed = {
-        .in_frame = contact, .obstacle = obstacle, .normal = step.end.rotation * contact.normal, .gap = 0.0};
-    update_gap(step, prediction, placed);
-    return placed;
+    Contact contact;
+    std::copy(found.vertices.begin(), found.vertices.end(), contact.vertices.begin());
+    std::copy(found.weights.begin(), found.weights.end(), contact.weights.begin());
+    contact.kind = found.kind;
+    contact.obstacle = obstacle;
+    contact.element = found.element;
+    contact.normal = carriers[obstacle].end.rotation * found.normal;
+    contact.normal_in_frame = found.normal;
+    contact.point_in_frame = found.point;
+    contact.least_gap = found.least_gap;
+    contact.stand_off = thickness;
+    update_gap(carriers[obstacle], prediction, contact);
+    return contact;
+}
+
+Contact place_contact(const SelfContact& found, double thickness, const Carriers& carriers,
+                      const Prediction& prediction)
+{
+    Contact contact;
+    contact.vertices = found.vertices;
+    contact.weights = found.weights;
+    contact.kind = found.kind == SelfContactKind::VertexFace ? ContactKind::Vertex : ContactKind::Edge;
+    contact.obstacle = kClothItself;
+    contact.normal = contact.normal_in_frame = found.normal;
+    contact.point_in_frame = Vec3::Zero();
+    contact.least_gap = found.least_gap;
+    contact.stand_off = thickness;
+    update_gap(carriers.cloth, prediction, contact);
+    return contact;
 }
 
 std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
-                                   std::vector<ObstacleStep>& steps)
+                                   Carriers& carriers)
 {
     std::vector<Contact> contacts;
     const double thickness = scene.material.thickness;
-    for (std::size_t o = 0; o < steps.size(); ++o) {
-        const Obstacle& obstacle = scene.obstacles[o];
-        steps[o].reference = slide(obstacle, steps[o].motion, thickness);
-    }
-    RememberedPairs remembered(scene, state, steps);
-    for (std::size_t o = 0; o < steps.size(); ++o) {
-        const Obstacle& obstacle = scene.obstacles[o];
-        const ClothMotion& motion = steps[o].motion;
-        const std::vector<Vec3>& reference = steps[o].reference;
+    for (Carrier& carrier : carriers.obstacles)
+        carrier.reference = slide(*carrier.obstacle, carrier.motion, thickness);
+    RememberedPairs remembered(scene, state, carriers);
+    for (int o = 0; o < static_cast<int>(carriers.obstacles.size()); ++o) {
+        const auto& [obstacle, motion, reference] =
+            std::tie(*carriers[o].obstacle, carriers[o].motion, carriers[o].reference);
         std::vector<ObstacleContact> found = find_edge_contacts(obstacle, motion, reference, thickness);
         const std::vector<ObstacleContact> of_faces =
             find_face_contacts(obstacle, motion, reference, thickness);
         found.insert(found.end(), of_faces.begin(), of_faces.end());
-        remembered.append(found, static_cast<int>(o));
+        remembered.append(found, o);
         const std::vector<ObstacleContact> of_vertices =
             find_vertex_contacts(obstacle, motion, reference, thickness);
         found.insert(found.begin(), of_vertices.begin(), of_vertices.end());
-        for (const ObstacleContact& contact : found) {
-            contacts.push_back(place_contact(contact, static_cast<int>(o), steps[o], prediction));
-            recall(state, steps[o], contacts.back());
-        }
+        for (const ObstacleContact& contact : found)
+            contacts.push_back(place_contact(contact, o, thickness, carriers, prediction));
     }
+    for (Contact& contact : contacts) recall(state, carriers, contact);
     return contacts;
 }
 
-SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
-                      std::vector<Contact>& contacts)
+std::vector<Contact> find_contacts_with_itself(const Scene& scene, const State& state,
+                                               const Prediction& prediction,
+                                               const std::vector<PinTarget>& held, const SelfSurface& surface,
+                                               Carriers& carriers)
+{
+    std::vector<Contact> contacts;
+    if (!scene.self_contact) return contacts;
+    const double thickness = scene.self_contact->thickness;
+    carriers.cloth.motion.end = find_free_end(state, prediction, held);
+    for (const SelfContact& found :
+         find_self_contacts(surface, {state.mesh.world, carriers.cloth.motion.end}, thickness))
+        contacts.push_back(place_contact(found, thickness, carriers, prediction));
+    for (Contact& contact : contacts) recall(state, carriers, contact);
+    return contacts;
+}
+
+SharedRoom share_room(const Carriers& carriers, const Prediction& prediction, std::vector<Contact>& contacts)
 {
     std::vector<Contact*> of_vertices;
     for (Contact& contact : contacts)
         if (contact.is_vertex() && !contact.is_fold()) of_vertices.push_back(&contact);
-    const auto vertex_of = [](const Contact* contact) { return contact->in_frame.vertices[0]; };
+    const auto vertex_of = [](const Contact* contact) { return contact->vertices[0]; };
     std::stable_sort(of_vertices.begin(), of_vertices.end(),
                      [&](const Contact* a, const Contact* b) { return vertex_of(a) < vertex_of(b); });
     SharedRoom shared;
     for (std::size_t i = 0; i < of_vertices.size(); ++i)
         for (std::size_t j = i + 1;
              j < of_vertices.size() && vertex_of(of_vertices[j]) == vertex_of(of_vertices[i]); ++j) {
-            const SharedRoom pair = share_room(steps, prediction, *of_vertices[i], *of_vertices[j]);
+            const SharedRoom pair = share_room(carriers, prediction, *of_vertices[i], *of_vertices[j]);
             shared.is_changed = shared.is_changed || pair.is_changed;
             if (!shared.overconstrained) shared.overconstrained = pair.overconstrained;
         }
     return shared;
 }
 
-bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& prediction, double thickness,
-                     Contact& contact)
+bool yield_stand_off(const Carriers& carriers, const Prediction& prediction, Contact& contact)
 {
-    constexpr double kNothingLeft = 1e-3;  // of the thickness
+    constexpr double kNothingLeft = 1e-3;  // of the stand-off
     constexpr double kFree = 1e3;          // m: farther than any step moves
-    const ObstacleStep& step = steps[contact.obstacle];
-    ObstacleContact& local = contact.in_frame;
-    const double now = local.normal.dot(local.at(step.motion.begin) - local.point);
+    const Carrier& carrier = carriers[contact.obstacle];
     if (contact.is_fold()) {  // only a help: the check finds cloth that passes without it
-        if (local.least_gap <= -kFree) return false;
-        local.least_gap = -kFree;
+        if (contact.least_gap <= -kFree) return false;
+        contact.least_gap = -kFree;
     } else {
-        if (!(local.least_gap > kNothingLeft * thickness)) return false;
-        local.least_gap = now < local.least_gap ? now : 0.5 * local.least_gap;
+        if (!(contact.least_gap > kNothingLeft * contact.stand_off)) return false;
+        const double now =
+            contact.normal_in_frame.dot(contact.at(carrier.motion.begin) - contact.point_in_frame);
+        contact.least_gap = now < contact.least_gap ? now : 0.5 * contact.least_gap;
     }
     contact.may_grow = false;
-    update_gap(step, prediction, contact);
+    update_gap(carrier, prediction, contact);
     return true;
 }
 
-bool flatten_history(const Scene& scene, const State& state, const std::vector<ObstacleStep>& steps,
-                     const std::vector<EolCoordinates>& eol, std::size_t first,
-                     std::vector<Contact>& contacts, Prediction& prediction)
+std::vector<double> find_mobility(double density, const ClothElements& elements,
+                                  const std::vector<PinTarget>& held)
 {
-    constexpr int kPasses = 3;  // contacts of a vertex with oblique normals affect each other
-    bool is_changed = false;
-    for (int pass = 0; prediction.has_history && pass < kPasses; ++pass)
-        for (std::size_t c = first; c < contacts.size(); ++c) {
-            const Contact& contact = contacts[c];
-            const ObstacleStep& step = steps[contact.obstacle];
-            const RiddenHistory ridden =
-                find_ridden(scene.obstacles[contact.obstacle], step, state, prediction.forward, contact);
-            const double shift =
-                contact.normal.dot(contact.in_frame.at(prediction.position)) - ridden.position;
-            if (!runs_into(step, contact, shift)) continue;
-            const double gained =
-                ridden.velocity - contact.normal.dot(contact.in_frame.at(prediction.velocity));
-            shift_along(eol, contact, -shift, prediction.position, prediction.material);
-            shift_along(eol, contact, gained, prediction.velocity, prediction.material_velocity);
-            is_changed = true;
-        }
-    if (is_changed) update_gaps(steps, prediction, contacts);
-    return is_changed;
+    std::vector<double> mobility = lump_masses(density, elements);
+    for (double& value : mobility) value = 1.0 / value;
+    for (const PinTarget& vertex : held)
+        if (vertex.held[0] && vertex.held[1] && vertex.held[2]) mobility[vertex.vertex] = 0.0;
+    return mobility;
 }
 
-std::vector<ActiveContact> active_contacts(const State& state, const std::vector<ObstacleStep>& steps,
+std::vector<ActiveContact> active_contacts(const State& state, const Carriers& carriers,
                                            const std::vector<Contact>& contacts,
                                            const std::vector<double>& multiplier)
 {
     std::vector<ActiveContact> active;
     for (std::size_t c = 0; c < contacts.size(); ++c) {
         const Contact& contact = contacts[c];
-        const ObstacleContact& local = contact.in_frame;
         if (!(multiplier[c] > 0.0)) continue;
         const Mat3 to_frame = contact.eol >= 0 ? Mat3(Mat3::Identity())
-                                               : Mat3(steps[contact.obstacle].end.rotation.transpose());
-        active.push_back({ids_of(state, local.vertices), local.kind, contact.obstacle, local.element,
-                          local.normal, multiplier[c], rotate(to_frame, contact.friction)});
+                                               : Mat3(carriers[contact.obstacle].end.rotation.transpose());
+        active.push_back({ids_of(state, contact), contact.kind, contact.obstacle, contact.element,
+                          contact.normal_in_frame, multiplier[c], rotate(to_frame, contact.friction)});
     }
     std::sort(active.begin(), active.end(), [](const ActiveContact& a, const ActiveContact& b) {
         return key_of(a) < key_of(b) || (key_of(a) == key_of(b) && a.multiplier > b.multiplier);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "geometry/contact/obstacle_contact.h"
+#include "geometry/self_contact/self_contact.h"
+#include "geometry/self_contact/self_surface.h"
+#include "physics/cloth_elements.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/model/pin_targets.h"
 #include "solver/model/scene.h"
@@ -12,13 +16,6 @@
 #include "solver/model/time_integration.h"
 
 namespace arris {
-
-/// One obstacle during one step, and the motion of the cloth in its frame.
-struct ObstacleStep {
-    Placement before, begin, end;  ///< placement of its frame: one step ago, at the step's start and end
-    ClothMotion motion;            ///< ends where the cloth would be without obstacles
-    std::vector<Vec3> reference;   ///< where the cloth would be if it slid along obstacles in its way
-};
 
 /// `element` of a fold contact, which is not with the obstacle: it keeps one side of cloth folded over a wire
 /// from passing to the other side (fold_contacts.h).
@@ -29,56 +26,109 @@ inline bool is_fold(const ActiveContact& contact)
     return contact.kind == ContactKind::Vertex && contact.element == kFoldElement;
 }
 
-/// A contact in the world, and its constraint in the velocity solve.
-struct Contact {
-    ObstacleContact in_frame;
-    int obstacle;  ///< index in the scene
-    Vec3 normal;   ///< at the step's end
-    double gap;    ///< distance of q~ beyond the gap to be kept at the step's end, m; negative inside
+/// What contacts are with during one step, an obstacle or the cloth itself, and the motion of the cloth in
+/// its frame. The cloth's own frame is the world, at rest.
+struct Carrier {
+    Placement before, begin, end;  ///< placement of its frame: one step ago, at the step's start and end
+    ClothMotion motion;            ///< ends where the cloth would be without contacts
+    std::vector<Vec3> reference;   ///< where the cloth would be if it slid along an obstacle in its way
+    const Obstacle* obstacle = nullptr;
+    double previous_time = 0.0, time = 0.0;  ///< s, one step ago and at the step's start
+
+    /// Velocity, m/s, that its material has gained in the last step: it is at `now`, and was at `before`.
+    Vec3 velocity_gained(const Vec3& at_start, const Vec3& one_step_ago) const;
+};
+
+/// The carriers of a step.
+struct Carriers {
+    std::vector<Carrier> obstacles;  ///< as in the scene
+    Carrier cloth;
+
+    const Carrier& operator[](int obstacle) const  ///< index of an obstacle, or kClothItself
+    {
+        return obstacle == kClothItself ? cloth : obstacles[static_cast<std::size_t>(obstacle)];
+    }
+};
+
+/// A point of the cloth, or the difference of two: weights on up to four vertices.
+struct ClothPoints {
+    std::array<int, 4> vertices = {-1, -1, -1, -1};  ///< -1 where there are fewer
+    std::array<double, 4> weights =
+        {};  ///< sum 1; of a difference, 1 on the first point and -1 on the second
+
+    Vec3 at(const std::vector<Vec3>& field) const
+    {
+        Vec3 sum = Vec3::Zero();
+        for (int i = 0; i < 4 && vertices[i] >= 0; ++i) sum += weights[i] * field[vertices[i]];
+        return sum;
+    }
+
+    /// Changes the value by `change` with the least momentum. `mobility`: 1 / mass of each vertex, 0 where it
+    /// stays. Nothing changes where all stay.
+    void shift(const Vec3& change, const std::vector<double>& mobility, std::vector<Vec3>& field) const;
+};
+
+/// A contact in the world, and its constraint in the velocity solve: at the step's end
+/// normal . at(x') - normal . point >= least_gap. The point is zero where the cloth meets itself.
+struct Contact : ClothPoints {
+    ContactKind kind = ContactKind::Vertex;  ///< element of the cloth; of two parts of it the first one
+    int obstacle = kClothItself;             ///< index in the scene, or kClothItself
+    int element = 0;                         ///< as ObstacleContact's
+    Vec3 normal = Vec3::Zero();              ///< unit, at the step's end
+    Vec3 normal_in_frame = Vec3::Zero(), point_in_frame = Vec3::Zero();  ///< of the carrier
+    double least_gap = 0.0;                                              ///< m
+    double stand_off = 0.0;                                              ///< m: up to which the gap may grow
+    double gap = 0.0;  ///< distance of q~ beyond the gap to be kept at the step's end, m; negative inside
     double last_multiplier = 0.0;  ///< N s, of the last step; 0 where it did not press
     ContactFriction last_friction =
         {};                         ///< of the last step, in the world; at EOL vertices see ContactFriction
     ContactFriction friction = {};  ///< likewise, of the last solve; before one, of the last step
     bool is_pressing = false;       ///< in the last solve of this step, at an earlier linearization
     bool may_grow = true;           ///< whether its gap may grow to the stand-off; false where it has yielded
-    double mitre = 1.0;             ///< stand-off over thickness
     int eol = -1;                   ///< index of the EOL coordinates whose first one it bounds; else -1
     int bound = -1;                 ///< coordinate of the velocity solve, 3 a vertex; -1 where it is a row
     int row = -1;                   ///< row of the velocity solve, or -1
 
-    bool is_vertex() const { return in_frame.kind == ContactKind::Vertex; }
+    bool is_with_itself() const { return obstacle == kClothItself; }
+    bool is_fold() const { return is_vertex() && element == kFoldElement; }
+    bool is_vertex() const { return vertices[1] < 0; }  ///< a single vertex, at an obstacle
     bool was_active() const { return last_multiplier > 0.0; }
-    bool is_fold() const { return is_vertex() && in_frame.element == kFoldElement; }
 };
 
 /// Motion of the obstacles during the step that ends at `end` (s), and of the cloth past them: at its current
 /// velocity, with pinned vertices moving to their targets.
-std::vector<ObstacleStep> move_obstacles(const Scene& scene, const State& state,
-                                         const std::vector<MeshEdge>& edges, const Prediction& prediction,
-                                         const std::vector<PinTarget>& held, double end);
+Carriers move_obstacles(const Scene& scene, const State& state, const std::vector<MeshEdge>& edges,
+                        const Prediction& prediction, const std::vector<PinTarget>& held, double end);
 
-/// Contacts possible in the step: vertices, edges and faces against each obstacle, and the pairs that pressed
-/// at the end of the last step.
+/// Contacts with obstacles possible in the step: of vertices, edges and faces, and the pairs that pressed at
+/// the end of the last step.
 std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
-                                   std::vector<ObstacleStep>& steps);
+                                   Carriers& carriers);
 
-/// q~ of a vertex that has ridden on the obstacle during the last step.
-Vec3 ridden_position(const ObstacleStep& step, const State& state, double forward, int vertex);
+/// Contacts of the cloth with itself possible in the step, as predicted. None without self-contact in the
+/// scene.
+std::vector<Contact> find_contacts_with_itself(const Scene& scene, const State& state,
+                                               const Prediction& prediction,
+                                               const std::vector<PinTarget>& held, const SelfSurface& surface,
+                                               Carriers& carriers);
+
+/// q~ of a vertex that has ridden on the carrier during the last step.
+Vec3 ridden_position(const Carrier& carrier, const State& state, double forward, int vertex);
 
 /// Sets each contact's gap from the prediction.
-void update_gaps(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
-                 std::vector<Contact>& contacts);
+void update_gaps(const Carriers& carriers, const Prediction& prediction, std::vector<Contact>& contacts);
 
-/// Sets the contact's last multiplier and friction from `state.active`, if it pressed. For an edge or face,
-/// the obstacle's element must match. For a vertex, which slides from face to face, the normals must be
-/// close.
-void recall(const State& state, const ObstacleStep& step, Contact& contact);
+/// Sets the contact's last multiplier and friction from `state.active`, if it pressed. For an edge or face
+/// both elements must match. A vertex slides from face to face: the normals must be close.
+void recall(const State& state, const Carriers& carriers, Contact& contact);
 
-/// Distance, m, by which the obstacle at the contact moves along the contact's normal in the step.
-double way_along(const ObstacleStep& step, const Contact& contact);
+/// Distance, m, by which the carrier moves along the contact's normal in the step, at the contact.
+double way_along(const Carriers& carriers, const Contact& contact);
 
-/// The contact in the world, with its gap at the prediction.
-Contact place_contact(const ObstacleContact& contact, int obstacle, const ObstacleStep& step,
+/// A contact that search or check has found, in the world, with its gap at the prediction.
+Contact place_contact(const ObstacleContact& found, int obstacle, double thickness, const Carriers& carriers,
+                      const Prediction& prediction);
+Contact place_contact(const SelfContact& found, double thickness, const Carriers& carriers,
                       const Prediction& prediction);
 
 /// Result of `share_room`: whether a contact keeps less now, and a vertex (index) without any room.
@@ -90,26 +140,20 @@ struct SharedRoom {
 /// Lets a vertex's contacts share the room at the step's end, where two obstacles, or two faces of one, leave
 /// less than both stand-offs. Only two planes that face each other exactly can leave no room: between others
 /// the vertex could slip out sideways.
-SharedRoom share_room(const std::vector<ObstacleStep>& steps, const Prediction& prediction,
-                      std::vector<Contact>& contacts);
+SharedRoom share_room(const Carriers& carriers, const Prediction& prediction, std::vector<Contact>& contacts);
 
 /// Lets a contact yield whose row could not be met together with the others. It keeps its current gap, which
 /// riding on the obstacle preserves; if that is not less than it keeps now, half of what it keeps. A fold
 /// contact keeps nothing any more. False where nothing is left to yield.
-bool yield_stand_off(const std::vector<ObstacleStep>& steps, const Prediction& prediction, double thickness,
-                     Contact& contact);
+bool yield_stand_off(const Carriers& carriers, const Prediction& prediction, Contact& contact);
 
-/// Flattens the history in `prediction` along the normals of the contacts from `first` on, relative to the
-/// obstacle, and updates all gaps. Applies to contacts that were active. Applies also where the extrapolated
-/// position would violate the kept gap and the cloth's velocity does not restore the gap. Otherwise the
-/// velocity of a vertex before an impact would be extrapolated through the obstacle, and the vertex would
-/// rebound. True where anything was flattened.
-bool flatten_history(const Scene& scene, const State& state, const std::vector<ObstacleStep>& steps,
-                     const std::vector<EolCoordinates>& eol, std::size_t first,
-                     std::vector<Contact>& contacts, Prediction& prediction);
+/// 1 / mass of each vertex, 1/kg, with which contacts shift positions and history; 0 at vertices pinned in
+/// all directions, which stay.
+std::vector<double> find_mobility(double density, const ClothElements& elements,
+                                  const std::vector<PinTarget>& held);
 
 /// Pressing contacts, for `State::active`; `multiplier` has one entry a contact (N s).
-std::vector<ActiveContact> active_contacts(const State& state, const std::vector<ObstacleStep>& steps,
+std::vector<ActiveContact> active_contacts(const State& state, const Carriers& carriers,
                                            const std::vector<Contact>& contacts,
                                            const std::vector<double>& multiplier);
 

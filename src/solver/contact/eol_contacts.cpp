@@ -25,13 +25,13 @@ bool is_on_wire(const Obstacle& obstacle, const EolVertex& eol)
 
 /// Whether a contact between the wire and cloth joined to an EOL vertex on it is close beside that vertex.
 bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, const Vec3& place,
-               double thickness, const ObstacleContact& contact)
+               double thickness, const Contact& contact)
 {
     constexpr double kReach = 10.0;  // heights: cloth leaving at 6 degrees is a stand-off away
     const ObstacleFeatures& features = obstacle.features();
     const Vec3 from = place - at.frame.point, along = at.frame.tangent.dot(from) * at.frame.tangent;
     const double height = std::max((from - along).norm(), thickness);
-    if ((contact.point - at.frame.point).norm() > kReach * height) return false;
+    if ((contact.point_in_frame - at.frame.point).norm() > kReach * height) return false;
     const int corner = fixed_point(obstacle, eol);
     const auto is_of_wire = [&](int edge) {
         const auto& ends = obstacle.topology().edges[edge].points;
@@ -61,7 +61,7 @@ bool is_near_feature(const Obstacle& obstacle, const EolVertex& eol, const EolCo
 
 /// Whether the bound of an EOL vertex covers a contact that the search found with its feature.
 bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordinates& at, const Vec3& place,
-                double thickness, const ObstacleContact& contact)
+                double thickness, const Contact& contact)
 {
     const ObstacleFeatures& features = obstacle.features();
     const int corner = fixed_point(obstacle, eol);
@@ -69,8 +69,8 @@ bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordin
         return is_beside(obstacle, eol, at, place, thickness, contact);
     if (contact.kind == ContactKind::Triangle) return contact.element == corner;
     if (contact.kind == ContactKind::Vertex)
-        return contact.normal.dot(at.frame.outward) > 0.0 &&
-               is_near_feature(obstacle, eol, at, thickness, contact.point);
+        return contact.normal_in_frame.dot(at.frame.outward) > 0.0 &&
+               is_near_feature(obstacle, eol, at, thickness, contact.point_in_frame);
     const ObstacleEdge& edge = obstacle.topology().edges[contact.element];
     if (!eol.on.is_corner()) return contact.element == features.edges[eol.on.index].edge;
     return edge.points[0] == corner || edge.points[1] == corner;
@@ -78,19 +78,16 @@ bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordin
 
 /// Keeps the sides of cloth folded over a wire apart.
 void append_folds(const Scene& scene, const State& state, const ClothStars& stars,
-                  const Prediction& prediction, const std::vector<ObstacleStep>& steps,
+                  const Prediction& prediction, const Carriers& carriers,
                   const std::vector<EolCoordinates>& eol, std::vector<Contact>& contacts)
 {
-    const double thickness = scene.material.thickness;
     std::vector<const std::vector<Vec3>*> positions;
-    for (const ObstacleStep& step : steps) positions.push_back(&step.motion.begin);
+    for (const Carrier& carrier : carriers.obstacles) positions.push_back(&carrier.motion.begin);
     for (const FoldContact& fold : find_fold_contacts(scene.obstacles, state, stars, eol, positions)) {
-        const ObstacleStep& step = steps[fold.obstacle];
         const ObstacleContact contact =
             make_contact(ContactKind::Vertex, {{fold.vertex, -1, -1}, {1.0, 0.0, 0.0}}, kFoldElement,
                          fold.bound.normal, fold.point, fold.bound.least_gap);
-        contacts.push_back(place_contact(contact, fold.obstacle, step, prediction));
-        contacts.back().mitre = fold.bound.wanted / thickness;
+        contacts.push_back(place_contact(contact, fold.obstacle, fold.bound.wanted, carriers, prediction));
     }
 }
 
@@ -120,24 +117,24 @@ bool is_unsupported(const Scene& scene, const State& state, const ClothStars& st
     return has_nearer;
 }
 
-Contact make_eol_contact(const ObstacleStep& step, const Prediction& prediction, double thickness,
+Contact make_eol_contact(const Carriers& carriers, const Prediction& prediction, double thickness,
                          int obstacle, const EolCoordinates& at)
 {
     const ClothPoint point = {{at.vertex, -1, -1}, {1.0, 0.0, 0.0}};
     // Never more than the current gap. With a larger one a vertex on its way out would be held to its speed,
     // and, with its history flattened, pushed out faster in each step.
-    const double now = at.frame.outward.dot(step.motion.begin[at.vertex] - at.frame.point);
+    const double now = at.frame.outward.dot(carriers[obstacle].motion.begin[at.vertex] - at.frame.point);
+    const double stand_off = at.frame.mitre * thickness;
     const ObstacleContact contact = make_contact(ContactKind::Vertex, point, -1, at.frame.outward,
-                                                 at.frame.point, std::min(at.frame.mitre * thickness, now));
-    return place_contact(contact, obstacle, step, prediction);
+                                                 at.frame.point, std::min(stand_off, now));
+    return place_contact(contact, obstacle, stand_off, carriers, prediction);
 }
 
 }  // namespace
 
 std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& state, const ClothStars& stars,
                                              const Prediction& prediction, double turning,
-                                             const std::vector<ObstacleStep>& steps,
-                                             std::vector<Contact>& contacts)
+                                             const Carriers& carriers, std::vector<Contact>& contacts)
 {
     const double thickness = scene.material.thickness;
     std::vector<EolCoordinates> eol;
@@ -145,7 +142,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
         const int o = state.eol[entry].on.obstacle;
         const EolPlacing placing = place_eol_vertex(scene.obstacles[o], thickness, state, entry, stars,
-                                                    steps[o].motion.begin, steps[o].end, turning);
+                                                    carriers[o].motion.begin, carriers[o].end, turning);
         if (!placing.coordinates) continue;
         slot[placing.coordinates->vertex] = static_cast<int>(eol.size());
         eol.push_back(*placing.coordinates);
@@ -153,24 +150,24 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     // A cloth edge between two EOL vertices on one wire is the trace itself: a row there would be almost
     // singular.
     const auto is_trace = [&](const Contact& contact) {
-        const auto& [a, b, c] = contact.in_frame.vertices;
-        if (contact.in_frame.kind != ContactKind::Edge || slot[a] < 0 || slot[b] < 0) return false;
+        const int a = contact.vertices[0], b = contact.vertices[1];
+        if (contact.kind != ContactKind::Edge || slot[a] < 0 || slot[b] < 0) return false;
         const int o = contact.obstacle;
         const EolVertex &p = state.eol[eol[slot[a]].entry], &q = state.eol[eol[slot[b]].entry];
         return p.on.obstacle == o && !p.on.is_corner() && !q.on.is_corner() &&
                is_on_wire(scene.obstacles[o], p) &&
-               feature_of_edge(scene.obstacles[o].features(), contact.in_frame.element) >= 0 &&
-               is_trace_edge(scene.obstacles[o], {p, steps[o].motion.begin[a]},
-                             {q, steps[o].motion.begin[b]});
+               feature_of_edge(scene.obstacles[o].features(), contact.element) >= 0 &&
+               is_trace_edge(scene.obstacles[o], {p, carriers[o].motion.begin[a]},
+                             {q, carriers[o].motion.begin[b]});
     };
     std::erase_if(contacts, [&](const Contact& contact) {
         if (is_trace(contact)) return true;
         const int o = contact.obstacle;
-        for (const int v : contact.in_frame.vertices) {
+        for (const int v : contact.vertices) {
             if (v < 0 || slot[v] < 0) continue;
             const EolVertex& vertex = state.eol[eol[slot[v]].entry];
             if (vertex.on.obstacle == o && is_covered(scene.obstacles[o], vertex, eol[slot[v]],
-                                                      steps[o].motion.begin[v], thickness, contact.in_frame))
+                                                      carriers[o].motion.begin[v], thickness, contact))
                 return true;
         }
         return false;
@@ -178,17 +175,14 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     const std::size_t found = contacts.size();
     for (std::size_t e = 0; e < eol.size(); ++e) {
         const int o = state.eol[eol[e].entry].on.obstacle;
-        if (is_unsupported(scene, state, stars, eol[e], steps[o].motion.begin)) continue;
-        contacts.push_back(make_eol_contact(steps[o], prediction, thickness, o, eol[e]));
+        if (is_unsupported(scene, state, stars, eol[e], carriers[o].motion.begin)) continue;
+        contacts.push_back(make_eol_contact(carriers, prediction, thickness, o, eol[e]));
         contacts.back().eol = static_cast<int>(e);
-        contacts.back().mitre = eol[e].frame.mitre;
         contacts.back().may_grow = false;  // a push-out would stretch the cloth on both sides
     }
     // With self-contact the sides of a fold stop each other.
-    if (!scene.self_contact)
-        append_folds(scene, state, stars, prediction, steps, eol, contacts);
-    for (std::size_t c = found; c < contacts.size(); ++c)
-        recall(state, steps[contacts[c].obstacle], contacts[c]);
+    if (!scene.self_contact) append_folds(scene, state, stars, prediction, carriers, eol, contacts);
+    for (std::size_t c = found; c < contacts.size(); ++c) recall(state, carriers, contacts[c]);
     return eol;
 }
 

@@ -17,7 +17,6 @@ namespace arris {
 /// the time for which vertices may go round wires and tips with the cloth.
 std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& state, const ClothStars& stars,
                                              const Prediction& prediction, double turning,
-                                             const std::vector<ObstacleStep>& steps,
-                                             std::vector<Contact>& contacts);
+                                             const Carriers& carriers, std::vector<Contact>& contacts);
 
 }  // namespace arris

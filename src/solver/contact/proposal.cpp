@@ -67,19 +67,25 @@ class Shares {
 
 }  // namespace
 
-void restore_stand_off(const std::vector<Contact>& contacts, const std::vector<ObstacleStep>& steps,
-                       double thickness, double growth, Proposal& proposal)
+void restore_stand_off(const std::vector<Contact>& contacts, const Carriers& carriers,
+                       const std::vector<double>& mobility, double growth, std::vector<Vec3>& world)
 {
     constexpr double kFoldShare = 0.1;  // of the push-out: moving aside stretches straight cloth
-    for (const Contact& contact : contacts) {
-        const ObstacleContact& local = contact.in_frame;
-        const double gap =
-            contact.normal.dot(local.at(proposal.world) - steps[contact.obstacle].end(local.point));
+    constexpr int kPushes = 5;          // a layer that is pushed away from another may have to come back
+    const auto push_out = [&](const Contact& contact) {
+        const Vec3 point = carriers[contact.obstacle].end(contact.point_in_frame);
+        const double gap = contact.normal.dot(contact.at(world) - point);
         const double share = contact.is_fold() ? kFoldShare : 1.0;
-        const double wanted = local.least_gap + (contact.may_grow ? share * growth : 0.0);
-        const double missing = std::min(contact.mitre * thickness, wanted) - gap;
-        if (missing > 0.0) local.shift(missing * contact.normal, proposal.world);
-    }
+        const double wanted = contact.least_gap + (contact.may_grow ? share * growth : 0.0);
+        const double missing = std::min(contact.stand_off, wanted) - gap;
+        if (missing > 0.0) contact.shift(missing * contact.normal, mobility, world);
+    };
+    const bool has_layers = std::any_of(contacts.begin(), contacts.end(),
+                                        [](const Contact& contact) { return contact.is_with_itself(); });
+    for (int pass = 0; pass < (has_layers ? kPushes : 1); ++pass)
+        for (const bool is_with_itself : {true, false})
+            for (const Contact& contact : contacts)
+                if (contact.is_with_itself() == is_with_itself) push_out(contact);
 }
 
 bool Violations::is_clean() const
@@ -89,24 +95,26 @@ bool Violations::is_clean() const
 }
 
 Violations check_proposal(const Scene& scene, const State& state, const SelfSurface& surface,
-                          const Proposal& proposal, const Prediction& prediction,
-                          std::vector<ObstacleStep>& steps)
+                          const Proposal& proposal, const Prediction& prediction, Carriers& carriers)
 {
+    const double thickness = scene.material.thickness;
     Violations violations;
-    for (std::size_t o = 0; o < steps.size(); ++o) {
-        ObstacleStep& step = steps[o];
-        step.motion.end = to_frame(step.end, proposal.world);
-        SweepReport report = check_sweep(scene.obstacles[o], step.motion, scene.material.thickness);
-        for (const ObstacleContact& contact : report.violations)
-            violations.contacts.push_back(place_contact(contact, static_cast<int>(o), step, prediction));
+    for (int o = 0; o < static_cast<int>(carriers.obstacles.size()); ++o) {
+        Carrier& carrier = carriers.obstacles[o];
+        carrier.motion.end = to_frame(carrier.end, proposal.world);
+        SweepReport report = check_sweep(*carrier.obstacle, carrier.motion, thickness);
+        for (const ObstacleContact& found : report.violations)
+            violations.contacts.push_back(place_contact(found, o, thickness, carriers, prediction));
         violations.crossings += report.crossings;
         violations.faces.push_back(std::move(report.faces));
     }
     if (!scene.self_contact) return violations;
+    carriers.cloth.motion.end = proposal.world;
     SelfSweepReport report =
         check_self_sweep(surface, {state.mesh.world, proposal.world}, scene.self_contact->thickness);
-    for (const SelfContact& contact : report.violations)
-        violations.self_rows.push_back(make_self_row(state, contact));
+    for (const SelfContact& found : report.violations)
+        violations.contacts.push_back(
+            place_contact(found, scene.self_contact->thickness, carriers, prediction));
     violations.crossings += report.crossings;
     violations.self_faces = std::move(report.faces);
     return violations;
@@ -114,29 +122,29 @@ Violations check_proposal(const Scene& scene, const State& state, const SelfSurf
 
 std::optional<int> rewind(const Scene& scene, const State& state, const SelfSurface& surface,
                           const std::vector<PinTarget>& held, const Prediction& prediction, double dt,
-                          std::vector<ObstacleStep>& steps, Proposal& proposal)
+                          Carriers& carriers, Proposal& proposal)
 {
     constexpr int kMostRounds = 200;
     const std::vector<Vec3> wanted = proposal.world;
     const std::size_t n = wanted.size();
-    const std::size_t carriers = steps.size() + 1;  // the obstacles, then the world
-    std::vector<Shares> shares(carriers, Shares(state.mesh.faces, held, n));
+    const int count = static_cast<int>(carriers.obstacles.size());
+    std::vector<Shares> shares(static_cast<std::size_t>(count) + 1,  // the last of the cloth itself
+                               Shares(state.mesh.faces, held, n));
     std::vector<char> is_rewound(n, 0);
     for (int round = 0; round < kMostRounds; ++round) {
-        const Violations violations = check_proposal(scene, state, surface, proposal, prediction, steps);
+        const Violations violations = check_proposal(scene, state, surface, proposal, prediction, carriers);
         if (violations.is_clean())
             return static_cast<int>(std::count(is_rewound.begin(), is_rewound.end(), 1));
-        for (std::size_t o = 0; o < carriers; ++o) {
-            const bool is_world = o == steps.size();
-            const std::vector<int>& unclean = is_world ? violations.self_faces : violations.faces[o];
+        for (int o = 0; o <= count; ++o) {
+            const Carrier& carrier = carriers[o < count ? o : kClothItself];
+            const std::vector<int>& unclean = o < count ? violations.faces[o] : violations.self_faces;
             if (unclean.empty()) continue;
             if (!shares[o].shrink(unclean)) return std::nullopt;
-            const Placement end = is_world ? Placement{} : steps[o].end;
             for (std::size_t v = 0; v < n; ++v) {
                 if (shares[o][v] >= 1.0) continue;
-                const Vec3& begin = is_world ? state.mesh.world[v] : steps[o].motion.begin[v];
-                const Vec3 way = end.inverse(wanted[v]) - begin;
-                proposal.world[v] = end(begin + shares[o][v] * way);
+                const Vec3& begin = carrier.motion.begin[v];
+                const Vec3 way = carrier.end.inverse(wanted[v]) - begin;
+                proposal.world[v] = carrier.end(begin + shares[o][v] * way);
                 proposal.velocity[v] = (proposal.world[v] - state.mesh.world[v]) / dt;
                 is_rewound[v] = 1;
             }

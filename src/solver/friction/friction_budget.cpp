@@ -32,7 +32,7 @@ bool lies_on_face(const RubbingCloth& cloth, const EolVertex& eol, const Vec3& n
 {
     const Obstacle& obstacle = cloth.scene.obstacles[eol.on.obstacle];
     if (!is_on_convex_edge(obstacle, eol)) return false;
-    const Mat3& rotation = cloth.obstacles[eol.on.obstacle].end.rotation;
+    const Mat3& rotation = cloth.carriers[eol.on.obstacle].end.rotation;
     const auto& normals = obstacle.features().edges[eol.on.index].normals;
     return std::any_of(normals.begin(), normals.end(),
                        [&](const Vec3& of_face) { return (rotation * of_face).dot(normal) > kCosOnFace; });
@@ -101,7 +101,7 @@ std::vector<TraceVertex> find_trace_vertices(const RubbingCloth& cloth, const st
     std::vector<TraceVertex> vertices;
     slot.assign(rubs.size(), -1);
     for (std::size_t r = 0; r < rubs.size(); ++r) {
-        if (rubs[r].contact < 0 || cloth.contacts[rubs[r].contact].eol < 0) continue;
+        if (cloth.contacts[rubs[r].contact].eol < 0) continue;
         const EolCoordinates& at = cloth.eol[cloth.contacts[rubs[r].contact].eol];
         if (cloth.state.eol[at.entry].on.is_fixed()) continue;
         slot[r] = static_cast<int>(vertices.size());
@@ -123,10 +123,6 @@ std::vector<double> compute_budgets(const RubbingCloth& cloth, const Terms& term
         sides = compute_trace_sides(vertices, cloth.elements, terms, cloth.at, solution.velocity);
     std::vector<double> budgets;
     for (std::size_t r = 0; r < rubs.size(); ++r) {
-        if (const int self = rubs[r].self_row; self >= 0) {
-            budgets.push_back(rubs[r].coefficient * solution.row_multipliers[cloth.self_rows[self].row]);
-            continue;
-        }
         const Contact& contact = cloth.contacts[rubs[r].contact];
         const double normal = multiplier[rubs[r].contact], mu = rubs[r].coefficient;
         double budget = mu * normal;

@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <span>
 
 namespace arris {
 
@@ -12,10 +11,11 @@ namespace {
 
 /// Velocity v' with which the vertex rides on the obstacle: its path from the last step's start to this
 /// step's end is then rigid, whatever its history.
-Vec3 riding_velocity(const RubbingCloth& cloth, const ObstacleStep& step, int v)
+Vec3 riding_velocity(const RubbingCloth& cloth, const Carrier& carrier, int v)
 {
     const Prediction& prediction = cloth.prediction;
-    return (step.end(step.motion.begin[v]) - ridden_position(step, cloth.state, prediction.forward, v)) /
+    return (carrier.end(carrier.motion.begin[v]) -
+            ridden_position(carrier, cloth.state, prediction.forward, v)) /
            prediction.gamma;
 }
 
@@ -29,12 +29,12 @@ void add_entry(int coordinate, double coefficient, ConstraintRow& row)
 ConstraintRow slip_along(const RubbingCloth& cloth, const Contact& contact, const Vec3& direction)
 {
     ConstraintRow row;
-    const ObstacleContact& local = contact.in_frame;
-    const ObstacleStep& step = cloth.obstacles[contact.obstacle];
-    for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
-        const int v = local.vertices[i];
-        const Vec3 weighed = local.weights[i] * direction;
-        row.lower -= weighed.dot(cloth.at.drift[v] - riding_velocity(cloth, step, v));
+    const Carrier& carrier = cloth.carriers[contact.obstacle];
+    for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
+        if (contact.weights[i] == 0.0) continue;
+        const int v = contact.vertices[i];
+        const Vec3 weighed = contact.weights[i] * direction;
+        row.lower -= weighed.dot(cloth.at.drift[v] - riding_velocity(cloth, carrier, v));
         const Vec3 gradient = cloth.at.basis[v].transpose() * weighed;
         for (int d = 0; d < 3; ++d) add_entry(3 * v + d, gradient[d], row);
     }
@@ -84,8 +84,8 @@ std::array<ConstraintRow, 2> slip_over_feature(const RubbingCloth& cloth, const 
     }
     const Vec3 tangent = eol.basis.col(1);
     const Vec2 way = find_way(star, eol.trace, tangent, eol.material_basis.col(2));
-    const ObstacleStep& step = cloth.obstacles[contact.obstacle];
-    rows[0].lower = -tangent.dot(cloth.at.drift[v] - riding_velocity(cloth, step, v));
+    const Carrier& carrier = cloth.carriers[contact.obstacle];
+    rows[0].lower = -tangent.dot(cloth.at.drift[v] - riding_velocity(cloth, carrier, v));
     add_entry(3 * v + 1, 1.0, rows[0]);
     add_entry(3 * v + 2, -way[0], rows[0]);
     add_entry(3 * v + 2, -way[1], rows[1]);
@@ -104,20 +104,19 @@ std::array<double, 2> predict_slip(const RubbingCloth& cloth, const Contact& con
     if (contact.eol >= 0 || contact.is_pressing || !cloth.prediction.has_history)
         return components(last.slip);
     Vec3 slip = Vec3::Zero();
-    const ObstacleContact& local = contact.in_frame;
-    const ObstacleStep& step = cloth.obstacles[contact.obstacle];
-    for (int i = 0; i < 3 && local.vertices[i] >= 0; ++i) {
-        const int v = local.vertices[i];
+    const Carrier& carrier = cloth.carriers[contact.obstacle];
+    for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
+        const int v = contact.vertices[i];
         const Vec3& now = cloth.state.velocity[v];
         const Vec3 end = now + cloth.prediction.ratio * (now - cloth.state.previous_velocity[v]);
-        slip += local.weights[i] * (end - riding_velocity(cloth, step, v));
+        slip += contact.weights[i] * (end - riding_velocity(cloth, carrier, v));
     }
     slip -= contact.normal.dot(slip) * contact.normal;
     return slip.dot(last.slip) > 0.0 ? components(slip) : std::array<double, 2>{0.0, 0.0};
 }
 
 /// Whether material flows through any of the vertices; unused ones are -1.
-bool is_any_eulerian(const RubbingCloth& cloth, std::span<const int> vertices)
+bool is_any_eulerian(const RubbingCloth& cloth, const std::array<int, 4>& vertices)
 {
     return std::any_of(vertices.begin(), vertices.end(),
                        [&](int v) { return v >= 0 && cloth.at.flow && cloth.at.flow->is_eulerian[v]; });
@@ -126,7 +125,7 @@ bool is_any_eulerian(const RubbingCloth& cloth, std::span<const int> vertices)
 bool can_rub(const RubbingCloth& cloth, const Contact& contact)
 {
     if (contact.is_fold()) return false;
-    return contact.eol >= 0 || !is_any_eulerian(cloth, contact.in_frame.vertices);
+    return contact.eol >= 0 || !is_any_eulerian(cloth, contact.vertices);
 }
 
 /// Two unit directions across a unit normal.
@@ -137,12 +136,11 @@ std::array<Vec3, 2> directions_across(const Vec3& normal)
 }
 
 /// 1 / sum w_i^2 / m_i, kg.
-double slipping_mass(std::span<const int> vertices, std::span<const double> weights,
-                     const std::vector<double>& mass)
+double slipping_mass(const ClothPoints& points, const std::vector<double>& mass)
 {
     double compliance = 0.0;
-    for (std::size_t i = 0; i < vertices.size() && vertices[i] >= 0; ++i)
-        compliance += weights[i] * weights[i] / mass[vertices[i]];
+    for (int i = 0; i < 4 && points.vertices[i] >= 0; ++i)
+        compliance += points.weights[i] * points.weights[i] / mass[points.vertices[i]];
     return 1.0 / compliance;
 }
 
@@ -155,56 +153,19 @@ void set_forces(const RubbingCloth& cloth, const Rub& rub, const ContactFriction
     for (int d = 0; d < 2; ++d) pair.slip[d].expected = gamma * rub.directions[d].dot(last.force);
 }
 
-/// Slip of two parts of the cloth along a world direction: their difference in velocity.
-ConstraintRow slip_between(const RubbingCloth& cloth, const SelfContact& contact, const Vec3& direction)
-{
-    ConstraintRow row;
-    for (int i = 0; i < 4; ++i) {
-        if (contact.weights[i] == 0.0) continue;
-        const int v = contact.vertices[i];
-        const Vec3 weighed = contact.weights[i] * direction;
-        row.lower -= weighed.dot(cloth.at.drift[v]);
-        const Vec3 gradient = cloth.at.basis[v].transpose() * weighed;
-        for (int d = 0; d < 3; ++d) add_entry(3 * v + d, gradient[d], row);
-    }
-    return row;
-}
-
-void add_self_pairs(const RubbingCloth& cloth, const std::vector<double>& mass, std::vector<Rub>& rubs,
-                    VelocityProblem& problem)
-{
-    const double coefficient = cloth.scene.friction->between_layers;
-    if (!(coefficient > 0.0)) return;
-    for (std::size_t k = 0; k < cloth.self_rows.size(); ++k) {
-        const SelfRow& self = cloth.self_rows[k];
-        const SelfContact& contact = self.contact;
-        if (is_any_eulerian(cloth, contact.vertices)) continue;
-        const Rub rub{-1, static_cast<int>(k), coefficient, directions_across(contact.normal)};
-        FrictionPair pair;
-        for (int d = 0; d < 2; ++d) {
-            pair.slip[d] = slip_between(cloth, contact, rub.directions[d]);
-            pair.last[d] = rub.directions[d].dot(self.friction.slip);
-        }
-        pair.mass = slipping_mass(contact.vertices, contact.weights, mass);
-        set_forces(cloth, rub, self.last_friction, self.friction, pair);
-        rubs.push_back(rub);
-        problem.friction.push_back(pair);
-    }
-}
-
 }  // namespace
 
 std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& problem)
 {
     std::vector<Rub> rubs;
     problem.friction.clear();
-    if (!cloth.scene.friction || (cloth.contacts.empty() && cloth.self_rows.empty())) return rubs;
+    if (!cloth.scene.friction || cloth.contacts.empty()) return rubs;
     const std::vector<double> mass = lump_masses(cloth.scene.material.density, cloth.elements);
     for (std::size_t c = 0; c < cloth.contacts.size(); ++c) {
         const Contact& contact = cloth.contacts[c];
-        const double coefficient = cloth.scene.friction->coefficients[contact.obstacle];
+        const double coefficient = cloth.scene.friction->coefficient(contact.obstacle);
         if (!(coefficient > 0.0) || !can_rub(cloth, contact)) continue;
-        Rub rub{static_cast<int>(c), -1, coefficient, {Vec3::UnitX(), Vec3::UnitY()}};
+        Rub rub{static_cast<int>(c), coefficient, {Vec3::UnitX(), Vec3::UnitY()}};
         FrictionPair pair;
         if (contact.eol >= 0) {
             pair.slip = slip_over_feature(cloth, contact);
@@ -212,13 +173,12 @@ std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& 
             rub.directions = directions_across(contact.normal);
             for (int d = 0; d < 2; ++d) pair.slip[d] = slip_along(cloth, contact, rub.directions[d]);
         }
-        pair.mass = slipping_mass(contact.in_frame.vertices, contact.in_frame.weights, mass);
+        pair.mass = slipping_mass(contact, mass);
         set_forces(cloth, rub, contact.last_friction, contact.friction, pair);
         pair.last = predict_slip(cloth, contact, rub);
         rubs.push_back(rub);
         problem.friction.push_back(pair);
     }
-    add_self_pairs(cloth, mass, rubs, problem);
     return rubs;
 }
 

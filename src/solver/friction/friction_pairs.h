@@ -7,7 +7,6 @@
 #include "physics/cloth_elements.h"
 #include "physics/linearization.h"
 #include "solver/contact/contacts.h"
-#include "solver/contact/self_contacts.h"
 #include "solver/eol/cloth_stars.h"
 #include "solver/velocity_solve/velocity_solve.h"
 
@@ -15,8 +14,7 @@ namespace arris {
 
 /// A contact with friction; the problem's friction pair of the same index belongs to it.
 struct Rub {
-    int contact;   ///< index; -1 where the cloth rubs on itself
-    int self_row;  ///< index; -1 where it rubs on an obstacle
+    int contact;  ///< index
     double coefficient;
     /// World directions of the pair's two components; at EOL vertices unit vectors X and Y (ContactFriction).
     std::array<Vec3, 2> directions;
@@ -29,10 +27,9 @@ struct RubbingCloth {
     const ClothStars& stars;
     const ClothElements& elements;
     const Prediction& prediction;
-    const std::vector<ObstacleStep>& obstacles;
+    const Carriers& carriers;
     const std::vector<EolCoordinates>& eol;
     const std::vector<Contact>& contacts;
-    const std::vector<SelfRow>& self_rows;
     const Linearization& at;
 };
 

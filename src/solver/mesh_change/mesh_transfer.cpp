@@ -127,7 +127,11 @@ void interpolate(const SurgeryEvent& event, const VertexChange& change, double d
 void drop_contacts_without_element(const ClothStars& stars, State& state)
 {
     const auto has_element = [&](const ActiveContact& contact) {
-        if (contact.kind == ContactKind::Vertex) return state.index_of(contact.vertex_ids[0]) >= 0;
+        const auto is_there = [&](std::uint32_t id) {
+            return id == ActiveContact::kNoVertex || state.index_of(id) >= 0;
+        };
+        if (contact.obstacle == kClothItself || contact.kind == ContactKind::Vertex)
+            return std::all_of(contact.vertex_ids.begin(), contact.vertex_ids.end(), is_there);
         const auto has_corner = [&](const Face& face, std::uint32_t id) {
             return std::any_of(face.begin(), face.end(), [&](int v) { return state.ids[v] == id; });
         };
@@ -155,7 +159,6 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     after.eol = conformed.eol;
     after.anchors = before.anchors;
     after.active = before.active;
-    after.self = before.self;
     if (after.mesh.faces == before.mesh.faces) after.coupled = before.coupled;
     after.cell_lengths = before.cell_lengths;
     after.refused_edges = before.refused_edges;
@@ -184,10 +187,6 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     }
     for (const auto& [id, carried] : all.changed())  // any order: each vertex has its own entry
         if (const int v = after.index_of(id); v >= 0) write(static_cast<std::size_t>(v), carried);
-    std::erase_if(after.self, [&](const ActiveSelfContact& contact) {
-        return std::any_of(contact.vertex_ids.begin(), contact.vertex_ids.end(),
-                           [&](std::uint32_t id) { return after.index_of(id) < 0; });
-    });
     std::erase_if(after.anchors, [&](const PinAnchor& a) { return after.index_of(a.vertex_id) < 0; });
     return after;
 }

@@ -282,7 +282,8 @@ bool is_way_free_of_cloth(const Scene& scene, const State& state, const std::vec
 
 namespace {
 
-/// Calls visit(contact) for the vertex's own contacts that pressed at the end of the last step.
+/// Calls visit(contact) for the vertex's own contacts with obstacles that pressed at the end of the last
+/// step.
 template <typename Visit>
 void visit_contacts(const State& state, std::uint32_t vertex_id, const Visit& visit)
 {
@@ -290,7 +291,7 @@ void visit_contacts(const State& state, std::uint32_t vertex_id, const Visit& vi
         state.active.begin(), state.active.end(), vertex_id,
         [](const ActiveContact& active, std::uint32_t id) { return active.vertex_ids[0] < id; });
     for (; contact != state.active.end() && contact->vertex_ids[0] == vertex_id; ++contact)
-        if (contact->kind == ContactKind::Vertex) visit(*contact);
+        if (contact->kind == ContactKind::Vertex && contact->obstacle != kClothItself) visit(*contact);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ bool counts_in_share(RowCause cause);
 
 /// A contact that pressed at the step's start, and why it did not become an EOL vertex.
 struct RefusedContact {
-    std::array<std::uint32_t, 3> vertex_ids;  ///< this and the next three members as in ActiveContact
+    ContactVertexIds vertex_ids;  ///< this and the next three members as in ActiveContact
     ContactKind kind;
     std::int32_t obstacle;
     std::int32_t element;  ///< not compared for a vertex's contact, which slides from face to face

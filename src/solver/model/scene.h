@@ -30,10 +30,18 @@ struct Pin {
     bool holds(double begin, double end) const { return start <= begin && begin < release && end <= release; }
 };
 
+/// Stands for an obstacle's index where the cloth meets itself.
+inline constexpr int kClothItself = -1;
+
 /// Coulomb friction between cloth and obstacles, and between layers of cloth.
 struct Friction {
     std::vector<double> coefficients;  ///< one per obstacle, >= 0
     double between_layers = 0.0;       ///< with self-contact
+
+    double coefficient(int obstacle) const  ///< index of an obstacle, or kClothItself
+    {
+        return obstacle == kClothItself ? between_layers : coefficients[static_cast<std::size_t>(obstacle)];
+    }
 };
 
 /// Contact of the cloth with itself.

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <vector>
 
 #include "geometry/cloth/cloth_mesh.h"
 #include "geometry/contact/obstacle_contact.h"
-#include "geometry/self_contact/self_contact.h"
 #include "solver/model/feature_id.h"
 
 namespace arris {
@@ -22,25 +22,27 @@ struct ContactFriction {
     double budget = 0.0;        ///< N, greatest force
 };
 
+/// Ids of a contact's vertices, at most four; the last ones are kNoVertex where there are fewer.
+struct ContactVertexIds : std::array<std::uint32_t, 4> {
+    static constexpr std::uint32_t kNoVertex = 0xffffffffu;
+
+    ContactVertexIds(std::initializer_list<std::uint32_t> ids = {})
+    {
+        fill(kNoVertex);
+        std::copy(ids.begin(), ids.end(), begin());
+    }
+};
+
 /// A contact that pressed at the end of a step, with its multiplier. The next solve starts from it, and the
 /// next search tests it again.
 struct ActiveContact {
-    static constexpr std::uint32_t kNoVertex = 0xffffffffu;
-    std::array<std::uint32_t, 3> vertex_ids;  ///< of vertex, edge or face, ascending; else kNoVertex
+    static constexpr std::uint32_t kNoVertex = ContactVertexIds::kNoVertex;
+    ContactVertexIds vertex_ids;  ///< as Contact's vertices
     ContactKind kind;
-    std::int32_t obstacle;  ///< index in the scene
+    std::int32_t obstacle;  ///< index in the scene, or kClothItself
     std::int32_t element;   ///< as ObstacleContact's
     Vec3 normal;            ///< in the obstacle's frame
     double multiplier;      ///< N s
-    ContactFriction friction = {};
-};
-
-/// A contact of the cloth with itself that pressed at the end of a step.
-struct ActiveSelfContact {
-    SelfContactKind kind;
-    std::array<std::uint32_t, 4> vertex_ids;  ///< as ClothPointPair's vertices
-    Vec3 normal;
-    double multiplier;  ///< N s
     ContactFriction friction = {};
 };
 
@@ -86,10 +88,9 @@ struct State {
     std::vector<Vec2> previous_material;
     std::vector<Vec2> previous_material_velocity;
 
-    std::vector<EolVertex> eol;           ///< ascending by vertex_id
-    std::vector<PinAnchor> anchors;       ///< ascending by (pin, vertex_id), of pins that hold
-    std::vector<ActiveContact> active;    ///< ascending by (vertex_ids, obstacle, kind, element)
-    std::vector<ActiveSelfContact> self;  ///< ascending by (kind, vertex_ids)
+    std::vector<EolVertex> eol;         ///< ascending by vertex_id
+    std::vector<PinAnchor> anchors;     ///< ascending by (pin, vertex_id), of pins that hold
+    std::vector<ActiveContact> active;  ///< ascending by (vertex_ids, obstacle, kind, element)
     /// Pairs of vertices that contacts of the cloth with itself couple in the matrix, ascending: they decide
     /// the order of elimination, and so the last bits of a step.
     std::vector<std::array<int, 2>> coupled;

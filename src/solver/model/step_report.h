@@ -54,7 +54,7 @@ struct StepReport {
     StepPart part = StepPart::Ordinary;
     Infeasible infeasible;      ///< of an infeasible step
     NotFinite not_finite;       ///< of a step that met such a number
-    int contacts = 0;           ///< pressing, without fold planes at wires
+    int contacts = 0;           ///< pressing, with obstacles
     int self_contacts = 0;      ///< of the cloth with itself, pressing
     int feature_rows = 0;       ///< pressing, at a sharp edge, corner, wire or point, without EOL vertices
     RowCounts rows_by_cause{};  ///< `feature_rows` by cause, in a scene with EOL vertices

@@ -38,7 +38,7 @@ double force_on(const State& state, int v)
         [](const ActiveContact& contact, std::uint32_t wanted) { return contact.vertex_ids[0] < wanted; });
     double sum = 0.0;
     for (; at != state.active.end() && at->vertex_ids[0] == id; ++at)
-        if (at->kind == ContactKind::Vertex) sum += at->multiplier;
+        if (at->kind == ContactKind::Vertex && at->obstacle != kClothItself) sum += at->multiplier;
     return sum / state.previous_dt;
 }
 

@@ -169,8 +169,7 @@ void write_run_files(const RunConfig& config, const std::string& folder)
     Checkpoint checkpoint;
     checkpoint.source = {folder + "/scene.toml", kScene, {"time.step=0.02"}};
     checkpoint.state = make_state(config.scene, config.cloth, config.cloth_velocity);
-    constexpr std::uint32_t kNo = ActiveContact::kNoVertex;
-    checkpoint.state.active = {{{2, 5, kNo}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1}};
+    checkpoint.state.active = {{{2, 5}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1}};
     checkpoint.state.eol = {{1, FeatureId::bend(0, 4, 1), Vec3::UnitZ(), 0, 0}};
     checkpoint.rows = 1;
     write_checkpoint(folder + "/checkpoint", checkpoint);

@@ -26,9 +26,8 @@ Checkpoint make_checkpoint()
     checkpoint.state.time = 0.1;
     checkpoint.state.step = 17;
     checkpoint.state.previous_dt = 0.005;
-    constexpr std::uint32_t kNo = ActiveContact::kNoVertex;
-    checkpoint.state.active = {{{2, 5, kNo}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1},
-                               {{2, kNo, kNo}, ContactKind::Vertex, 1, 7, Vec3::UnitZ(), 1e-7}};
+    checkpoint.state.active = {{{2, 5}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1},
+                               {{2}, ContactKind::Vertex, 1, 7, Vec3::UnitZ(), 1e-7}};
     checkpoint.state.eol = {{1, FeatureId::bend(0, 4, 1), Vec3::UnitZ(), 0, 0},
                             {5, FeatureId::corner(1, 2), Vec3::UnitX(), 2, -1}};
     checkpoint.state.material_velocity[1] = Vec2(0.25, -1e-310);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "geometry/cloth_input/cloth_grid.h"
-#include "solver/contact/fold_contacts.h"
 #include "solver/step.h"
 
 namespace arris {
@@ -38,11 +37,10 @@ TEST(Frames, MarkWhatAnObstacleOrALayerPressesAndNoPlaneBehindAWire)
     ClothGrid grid;
     grid.resolution = {4, 4};
     State state = make_state(Scene{}, make_cloth_grid(grid), Vec3::Zero());
-    constexpr std::uint32_t kNo = ActiveContact::kNoVertex;
-    state.active = {{{2, kNo, kNo}, ContactKind::Vertex, 0, -1, Vec3::UnitZ(), 1.0},
-                    {{3, 8, kNo}, ContactKind::Edge, 0, 0, Vec3::UnitZ(), 1.0},
-                    {{5, kNo, kNo}, ContactKind::Vertex, 0, kFoldElement, Vec3::UnitX(), 1.0}};
-    state.self = {{SelfContactKind::VertexFace, {10, 11, 12, 13}, Vec3::UnitZ(), 1.0}};
+    state.active = {{{2}, ContactKind::Vertex, 0, -1, Vec3::UnitZ(), 1.0},
+                    {{3, 8}, ContactKind::Edge, 0, 0, Vec3::UnitZ(), 1.0},
+                    {{5}, ContactKind::Vertex, 0, kFoldElement, Vec3::UnitX(), 1.0},
+                    {{10, 11, 12, 13}, ContactKind::Vertex, kClothItself, 0, Vec3::UnitZ(), 1.0}};
     const ClothElements elements =
         make_elements(state.mesh, make_topology(state.mesh.vertex_count(), state.mesh.faces));
     const Frame frame = make_frame({}, state, elements, {});

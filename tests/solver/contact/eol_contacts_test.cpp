@@ -32,8 +32,7 @@ TEST(EolContacts, WhatIsOnItsWayOutIsNotHeldToItsSpeed)
                       testing::tip_of(cloth.scene.obstacles[0]));
         const std::vector<MeshEdge> edges = testing::edges_of(cloth.state);
         const Prediction prediction = predict(cloth.state, Integrator::Bdf2, 0.005);
-        std::vector<ObstacleStep> steps =
-            move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
+        Carriers steps = move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
         std::vector<Contact> contacts = find_contacts(cloth.scene, cloth.state, prediction, steps);
         ASSERT_EQ(add_eol_contacts(cloth.scene, cloth.state, cloth.stars(), prediction, prediction.gamma,
                                    steps, contacts)
@@ -42,7 +41,7 @@ TEST(EolContacts, WhatIsOnItsWayOutIsNotHeldToItsSpeed)
         const auto bound = std::find_if(contacts.begin(), contacts.end(),
                                         [](const Contact& contact) { return contact.eol == 0; });
         ASSERT_NE(bound, contacts.end());
-        EXPECT_NEAR(bound->in_frame.least_gap, testing::kThickness, kRoundOff) << outward;
+        EXPECT_NEAR(bound->least_gap, testing::kThickness, kRoundOff) << outward;
         EXPECT_NEAR(bound->gap, 0.0, kRoundOff) << "it may stay where it is";
     }
 }
@@ -68,15 +67,14 @@ TEST(EolContacts, GoAlongWithAVertexThatSlidesAlongItsFeature)
         ASSERT_GT(cloth.state.eol.size(), 2u);
         const std::vector<MeshEdge> edges = testing::edges_of(cloth.state);
         const Prediction prediction = predict(cloth.state, Integrator::Bdf2, 0.005);
-        std::vector<ObstacleStep> steps =
-            move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
+        Carriers steps = move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
         std::vector<Contact> contacts = find_contacts(cloth.scene, cloth.state, prediction, steps);
         add_eol_contacts(cloth.scene, cloth.state, cloth.stars(), prediction, prediction.gamma, steps,
                          contacts);
         for (const Contact& contact : contacts)
             EXPECT_TRUE(contact.eol >= 0 || !contact.is_vertex() ||
-                        cloth.state.eol_entry(cloth.state.ids[contact.in_frame.vertices[0]]) < 0)
-                << (is_wire ? "wire" : "ridge") << ", at " << contact.in_frame.point.y();
+                        cloth.state.eol_entry(cloth.state.ids[contact.vertices[0]]) < 0)
+                << (is_wire ? "wire" : "ridge") << ", at " << contact.point_in_frame.y();
     }
 }
 
@@ -94,14 +92,14 @@ TEST(EolContacts, OnAWiresEndCoverItsShaftOnlyNearby)
         cloth.add_eol(v, true, 0);
         const Prediction prediction = predict(state, Integrator::Bdf2, 0.005);
         const std::vector<MeshEdge> edges = testing::edges_of(state);
-        std::vector<ObstacleStep> steps = move_obstacles(cloth.scene, state, edges, prediction, {}, 0.005);
+        Carriers steps = move_obstacles(cloth.scene, state, edges, prediction, {}, 0.005);
         const int w = state.mesh.faces[cloth.stars().faces[v].front()][0] == v
                           ? state.mesh.faces[cloth.stars().faces[v].front()][1]
                           : state.mesh.faces[cloth.stars().faces[v].front()][0];
         const ObstacleContact at_shaft =
             make_contact(ContactKind::Edge, {{std::min(v, w), std::max(v, w), -1}, {0.5, 0.5, 0.0}}, 0,
                          Vec3::UnitX(), Vec3(0.0, 0.0, -below), testing::kThickness);
-        std::vector<Contact> contacts = {place_contact(at_shaft, 0, steps[0], prediction)};
+        std::vector<Contact> contacts = {place_contact(at_shaft, 0, testing::kThickness, steps, prediction)};
         ASSERT_EQ(
             add_eol_contacts(cloth.scene, state, cloth.stars(), prediction, 0.0, steps, contacts).size(), 1u);
         const auto is_row = [](const Contact& contact) { return !contact.is_vertex(); };

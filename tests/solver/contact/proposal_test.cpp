@@ -25,7 +25,7 @@ struct Above {
     std::vector<MeshEdge> edges;
     Prediction prediction;
     std::vector<PinTarget> held;
-    std::vector<ObstacleStep> steps;
+    Carriers steps;
     Proposal proposal;
 
     explicit Above(const RigidMotion& motion = {}, const Placement& place = {})
@@ -154,15 +154,15 @@ TEST(CheckProposal, NamesWhatWouldHavePreventedIt)
     ASSERT_FALSE(violations.contacts.empty());
     for (const Contact& contact : violations.contacts) {
         EXPECT_EQ(contact.obstacle, 0);
-        const double end = contact.normal.dot(contact.in_frame.at(above.proposal.world) -
-                                              above.steps[0].end(contact.in_frame.point));
-        EXPECT_LT(end, contact.in_frame.least_gap) << "the end violates it";
+        const double end =
+            contact.normal.dot(contact.at(above.proposal.world) - above.steps[0].end(contact.point_in_frame));
+        EXPECT_LT(end, contact.least_gap) << "the end violates it";
     }
 }
 
 /// One vertex `gap` above the plane z = 0, and its contact.
 struct OverPlane {
-    std::vector<ObstacleStep> steps{1};
+    Carriers steps{{Carrier()}, {}};
     std::vector<Contact> contacts;
     Proposal proposal;
 
@@ -179,12 +179,12 @@ struct OverPlane {
         contact.normal = Vec3::UnitZ();
         contact.point = Vec3::Zero();
         contact.least_gap = least_gap;
-        contacts = {place_contact(contact, 0, steps[0], prediction)};
+        contacts = {place_contact(contact, 0, kThickness, steps, prediction)};
     }
 
     double restore(double growth, const std::vector<PinTarget>& held = {})
     {
-        restore_stand_off(contacts, steps, kThickness, growth, proposal);
+        restore_stand_off(contacts, steps, {1.0}, growth, proposal.world);
         hold_in_place(held, proposal.world);
         EXPECT_EQ(proposal.velocity[0], Vec3(0, 0, -1)) << "never through the velocity";
         return proposal.world[0].z();

@@ -45,8 +45,7 @@ void press_point(EolCloth& cloth, int point)
         if (twice_area(p, flat(1), flat(2)) < 0.0 || twice_area(flat(0), p, flat(2)) < 0.0 ||
             twice_area(flat(0), flat(1), p) < 0.0)
             continue;
-        std::array<std::uint32_t, 3> ids = {cloth.state.ids[f[0]], cloth.state.ids[f[1]],
-                                            cloth.state.ids[f[2]]};
+        ContactVertexIds ids = {cloth.state.ids[f[0]], cloth.state.ids[f[1]], cloth.state.ids[f[2]]};
         std::sort(ids.begin(), ids.end());
         cloth.state.active.push_back({ids, ContactKind::Triangle, 0, point, Vec3::UnitZ(), 1e-6});
         return;
@@ -143,8 +142,7 @@ EolCloth lying_on(const Obstacle& wires, double turn)
             if (!(twice_area(a, b, p) * twice_area(a, b, q) < 0.0 &&
                   twice_area(p, q, a) * twice_area(p, q, b) < 0.0))
                 continue;
-            std::array<std::uint32_t, 3> ids = {state.ids[edge.a], state.ids[edge.b],
-                                                ActiveContact::kNoVertex};
+            ContactVertexIds ids = {state.ids[edge.a], state.ids[edge.b]};
             std::sort(ids.begin(), ids.end());
             cloth.state.active.push_back({ids, ContactKind::Edge, 0, feature.edge, Vec3::UnitZ(), 1e-6});
         }
@@ -316,7 +314,7 @@ TEST(Conform, WhatIsNotOnTheSideToWhichAWirePressesIsNoVertexOfIt)
         for (const MeshEdge& e : edges_of(state)) {
             const int w = e.a == v ? e.b : e.a;
             if ((e.a != v && e.b != v) || state.mesh.world[w].z() > state.mesh.world[v].z() - 1e-9) continue;
-            state.active.push_back({{state.ids[e.a], state.ids[e.b], ActiveContact::kNoVertex},
+            state.active.push_back({{state.ids[e.a], state.ids[e.b]},
                                     ContactKind::Edge,
                                     0,
                                     cloth.scene.obstacles[0].features().edges[0].edge,
@@ -358,12 +356,8 @@ TEST(Conform, WhereNothingHasChangedTheSecondTimeChangesNothing)
         take(cloth);
         cloth.state.active.clear();
         for (const EolVertex& e : cloth.state.eol)
-            cloth.state.active.push_back({{e.vertex_id, ActiveContact::kNoVertex, ActiveContact::kNoVertex},
-                                          ContactKind::Vertex,
-                                          0,
-                                          e.on.index,
-                                          Vec3::UnitZ(),
-                                          1e-6});
+            cloth.state.active.push_back(
+                {{e.vertex_id}, ContactKind::Vertex, 0, e.on.index, Vec3::UnitZ(), 1e-6});
         EXPECT_FALSE(conform(cloth)) << "nothing flows";
         // Rows beside the trace press again where EOL vertices already are.
         press_edges(cloth);

@@ -449,16 +449,14 @@ TEST(MeshTransfer, ContactsAndAnchorsOfVerticesThatAreGoneAreDropped)
     const VertexId gone = cloth.state.ids[cloth.vertex_at(0.2, 0.2)];
     ClothSurgery surgery = operate(cloth.state);
     const VertexId kept = surgery.ring(gone).vertices[0], third = surgery.ring(gone).vertices[1];
-    constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
-    const auto contact = [](std::array<std::uint32_t, 3> ids, ContactKind kind, double multiplier) {
+    const auto contact = [](ContactVertexIds ids, ContactKind kind, double multiplier) {
         std::sort(ids.begin(), ids.end());
         return ActiveContact{ids, kind, 0, 0, Vec3::UnitZ(), multiplier};
     };
-    cloth.state.active = {contact({gone, kNone, kNone}, ContactKind::Vertex, 1.0),
-                          contact({kept, kNone, kNone}, ContactKind::Vertex, 2.0),
-                          contact({gone, kept, kNone}, ContactKind::Edge, 3.0),
-                          contact({kept, third, kNone}, ContactKind::Edge, 4.0),
-                          contact({gone, kept, third}, ContactKind::Triangle, 5.0)};
+    cloth.state.active = {
+        contact({gone}, ContactKind::Vertex, 1.0), contact({kept}, ContactKind::Vertex, 2.0),
+        contact({gone, kept}, ContactKind::Edge, 3.0), contact({kept, third}, ContactKind::Edge, 4.0),
+        contact({gone, kept, third}, ContactKind::Triangle, 5.0)};
     cloth.state.anchors = {{0, std::min(gone, kept), Vec3::Zero()}, {0, std::max(gone, kept), Vec3::Zero()}};
     ASSERT_EQ(surgery.commit(surgery.propose_collapse(gone, kept)), Verdict::Done);
     const State after = carry(cloth, conformed(surgery, {}));
@@ -475,14 +473,13 @@ TEST(MeshTransfer, ContactsOfAnEdgeThatWasSplitAndOfItsFacesAreDropped)
     ClothSurgery surgery = operate(cloth.state);
     const VertexId a = cloth.state.ids[cloth.vertex_at(0.2, 0.2)], b = surgery.ring(a).vertices[0];
     const VertexId c = surgery.apex(a, b);
-    constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
-    const auto contact = [](std::array<std::uint32_t, 3> ids, ContactKind kind, double multiplier) {
+    const auto contact = [](ContactVertexIds ids, ContactKind kind, double multiplier) {
         std::sort(ids.begin(), ids.end());
         return ActiveContact{ids, kind, 0, 0, Vec3::UnitZ(), multiplier};
     };
-    cloth.state.active = {
-        contact({a, kNone, kNone}, ContactKind::Vertex, 1.0), contact({a, b, kNone}, ContactKind::Edge, 2.0),
-        contact({b, c, kNone}, ContactKind::Edge, 3.0), contact({a, b, c}, ContactKind::Triangle, 4.0)};
+    cloth.state.active = {contact({a}, ContactKind::Vertex, 1.0), contact({a, b}, ContactKind::Edge, 2.0),
+                          contact({b, c}, ContactKind::Edge, 3.0),
+                          contact({a, b, c}, ContactKind::Triangle, 4.0)};
     ASSERT_EQ(surgery.commit(surgery.propose_edge_split(a, b, 0.5)), Verdict::Done);
     const State after = carry(cloth, conformed(surgery, {}));
     ASSERT_EQ(after.active.size(), 2u);
@@ -529,7 +526,7 @@ TEST(MeshTransfer, WhatFrictionHoldsDoesNotGiveWay)
     const VertexId beside = cloth.state.ids[cloth.vertex_at(0.2, 0.25)];
     const auto way_beside = [&](const Vec3& slip, double budget) {
         ActiveContact contact{};
-        contact.vertex_ids = {beside, ActiveContact::kNoVertex, ActiveContact::kNoVertex};
+        contact.vertex_ids = {beside};
         contact.kind = ContactKind::Vertex;
         contact.normal = Vec3::UnitZ();
         contact.friction.slip = slip;

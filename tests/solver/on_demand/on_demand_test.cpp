@@ -18,7 +18,6 @@
 #include "solver/buckling_seed.h"
 #include "solver/contact/audit.h"
 #include "solver/contact/proposal.h"
-#include "solver/contact/self_contacts.h"
 #include "solver/mesh_change/step_mesh.h"
 #include "solver/remesh/cell_lengths.h"
 #include "solver/step.h"
@@ -109,7 +108,7 @@ std::map<std::string, double> count(const SheetRun& run)
         {"damping", run.work.linearization.damping},
         {"targets of pins", run.work.pin_targets.size()},
         {"anchors of pins", run.state.anchors.size()},
-        {"moved obstacles", run.work.obstacles.size()},
+        {"moved obstacles", run.work.carriers.obstacles.size()},
         {"contacts", run.work.contacts.size()},
         {"seconds of contacts", run.seconds.contacts},
         {"rubbing contacts", run.work.rubs.size()},
@@ -138,7 +137,8 @@ struct Effect {
     std::set<std::string> traces;
 };
 
-const std::set<std::string> kObstacle = {"moved obstacles", "contacts", "seconds of contacts"};
+const std::set<std::string> kObstacle = {"moved obstacles", "contacts", "mobility of vertices",
+                                         "seconds of contacts"};
 
 std::set<std::string> with_obstacle(std::set<std::string> traces)
 {
@@ -259,17 +259,18 @@ const Stage kStages[] = {
                         r.state.time + kStep);
      }},
     {"find_contacts", "obstacle",
-     [](SheetRun& r) { find_contacts(r.scene, r.state, r.work.prediction, r.work.obstacles); }},
+     [](SheetRun& r) { find_contacts(r.scene, r.state, r.work.prediction, r.work.carriers); }},
     {"check_proposal", "obstacle",
      [](SheetRun& r) {
          check_proposal(r.scene, r.state, r.work.mesh.self_surface, r.work.proposal, r.work.prediction,
-                        r.work.obstacles);
+                        r.work.carriers);
      }},
     {"follow_wanted_lengths", "remesh",
      [](SheetRun& r) { follow_wanted_lengths(r.scene, r.work.mesh.stars, kStep, r.state); }},
-    {"find_self_rows", "self_contact",
+    {"find_contacts_with_itself", "self_contact",
      [](SheetRun& r) {
-         find_self_rows(r.scene, r.state, r.work.prediction, r.work.pin_targets, r.work.mesh.self_surface);
+         find_contacts_with_itself(r.scene, r.state, r.work.prediction, r.work.pin_targets,
+                                   r.work.mesh.self_surface, r.work.carriers);
      }},
     {"audit", "obstacle", [](SheetRun& r) { audit(r.scene, r.state); }},
     {"compute_load_work", "pull",

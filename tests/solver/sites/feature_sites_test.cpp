@@ -49,13 +49,12 @@ struct RidgeCloth {
     void press(std::size_t k)
     {
         const MeshEdge& edge = crossing[k].second;
-        cloth.state.active.push_back(
-            {{cloth.state.ids[edge.a], cloth.state.ids[edge.b], ActiveContact::kNoVertex},
-             ContactKind::Edge,
-             0,
-             cloth.scene.obstacles[0].features().edges[tip()].edge,
-             Vec3::UnitZ(),
-             1e-6});
+        cloth.state.active.push_back({{cloth.state.ids[edge.a], cloth.state.ids[edge.b]},
+                                      ContactKind::Edge,
+                                      0,
+                                      cloth.scene.obstacles[0].features().edges[tip()].edge,
+                                      Vec3::UnitZ(),
+                                      1e-6});
     }
 
     std::size_t most_across() const
@@ -186,13 +185,13 @@ TEST(FeatureSites, AreAtAVertexThatIsAllButInThePlaneWhereTheClothEndsThere)
         EolCloth cloth = testing::lying(0.0, 0.2 + off * kThickness);
         const int inside = cloth.vertex_at(testing::kLyingCell, 0.2), border = cloth.vertex_at(0.0, 0.2);
         const int tip = testing::tip_of(cloth.scene.obstacles[0]);
-        cloth.state.active.push_back({{cloth.state.ids[std::min(inside, border)],
-                                       cloth.state.ids[std::max(inside, border)], ActiveContact::kNoVertex},
-                                      ContactKind::Edge,
-                                      0,
-                                      cloth.scene.obstacles[0].features().edges[tip].edge,
-                                      Vec3::UnitZ(),
-                                      1e-6});
+        cloth.state.active.push_back(
+            {{cloth.state.ids[std::min(inside, border)], cloth.state.ids[std::max(inside, border)]},
+             ContactKind::Edge,
+             0,
+             cloth.scene.obstacles[0].features().edges[tip].edge,
+             Vec3::UnitZ(),
+             1e-6});
         const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, cloth.state, cloth.stars());
         const auto pressing = std::count_if(sites.begin(), sites.end(),
                                             [](const FeatureSite& site) { return site.contact >= 0; });
@@ -229,7 +228,7 @@ TEST(FeatureSites, OnATipIsAVertexThatIsOnItAlreadyWhateverFaceOfItPresses)
             const int v = cloth.vertex_at(0.2, 0.2);
             const ClothStars stars = cloth.stars();
             for (const int f : stars.faces[v]) {
-                std::array<std::uint32_t, 3> ids;
+                ContactVertexIds ids;
                 for (int k = 0; k < 3; ++k) ids[k] = cloth.state.ids[cloth.state.mesh.faces[f][k]];
                 std::sort(ids.begin(), ids.end());
                 cloth.state.active = {{ids, ContactKind::Triangle, 0, 0, Vec3::UnitZ(), 1e-6}};
@@ -259,13 +258,12 @@ TEST(FeatureSites, AreOnTheNextEdgeWhereOneEndsBetweenItsNearestPointAndThePlane
         }
         const int from = cloth.vertex_at(0.2, 0.2), to = cloth.vertex_at(0.25, 0.2);
         const int tip = testing::tip_of(cloth.scene.obstacles[0]);
-        state.active.push_back(
-            {{state.ids[std::min(from, to)], state.ids[std::max(from, to)], ActiveContact::kNoVertex},
-             ContactKind::Edge,
-             0,
-             cloth.scene.obstacles[0].features().edges[tip].edge,
-             normal,
-             1e-6});
+        state.active.push_back({{state.ids[std::min(from, to)], state.ids[std::max(from, to)]},
+                                ContactKind::Edge,
+                                0,
+                                cloth.scene.obstacles[0].features().edges[tip].edge,
+                                normal,
+                                1e-6});
         const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, state, cloth.stars());
         const auto site =
             std::find_if(sites.begin(), sites.end(), [](const auto& s) { return s.contact == 0; });

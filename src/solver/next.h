@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+namespace arris {
+
+/// What follows a round of the step's stages 4 to 6, or one of their rules.
+enum class Next {
+    Assemble,  ///< another round, with a new system
+    Resume,    ///< another round: rows were added to the system
+    Accept,    ///< the proposal becomes the state
+    Fail       ///< the attempt has failed
+};
+
+}  // namespace arris
