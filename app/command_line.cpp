@@ -187,9 +187,8 @@ void add_docs(CLI::App& app, std::string& topic)
                                     "arris docs bash > ~/.local/share/bash-completion/completions/arris");
     command
         ->add_option("topic", topic,
-                     "scene (keys, Markdown), schema (JSON schema for editors), step (what follows what, "
-                     "Markdown), man "
-                     "(manual page), bash (completion)")
+                     "scene (keys, Markdown), schema (JSON schema for editors), step (rules of a step, "
+                     "Markdown), man (manual page), bash (completion)")
         ->required()
         ->check(CLI::IsMember({"scene", "schema", "step", "man", "bash"}));
 }

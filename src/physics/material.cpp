@@ -44,7 +44,7 @@ const std::array<MaterialPreset, 6> kMaterialPresets = {{
 
 double plate_rigidity(const Material& material)
 {
-    constexpr double kHinge = 4.0 / 3.0;  // docs/validation.md, "The bending stiffness depends on the mesh"
+    constexpr double kHinge = 4.0 / 3.0;  // docs/measured/validation.md, "Bending"
     return (material.bending_model == BendingModel::Plate ? 1.0 : kHinge) * material.bending_stiffness;
 }
 

@@ -3,7 +3,7 @@
 
 namespace arris {
 
-/// What follows a round of the step's stages 4 to 6, or one of their rules.
+/// The answer to the end of a round of the step's stages 4 to 6 (rounds.h).
 enum class Next {
     Assemble,  ///< another round, with a new system
     Resume,    ///< another round: rows were added to the system

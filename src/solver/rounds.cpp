@@ -228,7 +228,7 @@ Next add_rows_or_give_up(Rounds& round)
     return next ? *next : give_up(round);
 }
 
-Next solve_without(Rounds&)
+Next solve_again(Rounds&)
 {
     return Next::Assemble;
 }
@@ -254,6 +254,7 @@ struct Rule {
     RoundRule in_words;
 };
 
+static_assert(kMostSolves == 12 && kMostWork == 60.0 && kMostWorkOfLast == 600.0, "the words below say so");
 constexpr Rule kRules[] = {
     {RoundEnd::Starved,
      fail<StepStatus::Overrun>,
@@ -268,26 +269,24 @@ constexpr Rule kRules[] = {
     {RoundEnd::Unmet,
      yield_or_give_up,
      {"contacts cannot be met together",
-      "they yield, and a new system is solved; where none can, the attempt "
-      "fails (infeasible), or the last one moves cloth back on its path",
+      "they yield, and a new system is solved; where none can, the attempt fails (infeasible), or the last "
+      "one moves cloth back on its path",
       "12 solves"}},
     {RoundEnd::FoldYields,
-     solve_without,
+     solve_again,
      {"a plane behind a wire presses cloth on another obstacle", "the plane keeps nothing in this step",
       "12 solves"}},
     {RoundEnd::Overrun,
      linearise_nearer_or_fail,
      {"the flow would take too much material",
-      "forces are linearised nearer to the last expansion; where less "
-      "than a tenth of the way is left, the attempt fails (overrun)",
+      "forces are linearised nearer to the last expansion; where less than a tenth of the way is left, the "
+      "attempt fails (overrun)",
       "12 solves, 4 linearisations"}},
     {RoundEnd::Violated,
      add_rows_or_give_up,
      {"the check of the path finds contacts",
-      "they become rows of the same system, or of a new one where "
-      "history or room changes; without any the attempt fails (penetration), or the last one moves cloth "
-      "back "
-      "on its path",
+      "they become rows of the same system, or of a new one where history or room changes; without any the "
+      "attempt fails (penetration), or the last one moves cloth back on its path",
       "12 solves"}},
     {RoundEnd::Overconstrained,
      fail<StepStatus::Infeasible>,
@@ -296,8 +295,8 @@ constexpr Rule kRules[] = {
     {RoundEnd::Clean,
      balance_energy,
      {"the path is free",
-      "the step is accepted if the energy agrees with the work done; else forces are "
-      "linearised again at the velocity found, and at last at the one with the least rise",
+      "the step is accepted if the energy agrees with the work done; else forces are linearised again at the "
+      "velocity found, and at last at the one with the least rise",
       "12 solves, 4 linearisations; then the attempt fails (energy rise), but not the last one"}},
 };
 

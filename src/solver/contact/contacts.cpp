@@ -154,9 +154,9 @@ Carriers move_obstacles(const Scene& scene, const State& state, const std::vecto
                         const Prediction& prediction, const std::vector<PinTarget>& held, double end)
 {
     Carriers carriers;
-    if (scene.obstacles.empty() && !scene.self_contact) return carriers;
+    if (scene.self_contact) carriers.cloth.motion = {&state.mesh.faces, &edges, state.mesh.world, {}};
+    if (scene.obstacles.empty()) return carriers;
     const std::vector<Vec3> free_end = find_free_end(state, prediction, held);
-    carriers.cloth.motion = {&state.mesh.faces, &edges, state.mesh.world, free_end};
     for (const Obstacle& obstacle : scene.obstacles) {
         Carrier carrier;
         carrier.obstacle = &obstacle;

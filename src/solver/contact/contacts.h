@@ -26,8 +26,8 @@ inline bool is_fold(const ActiveContact& contact)
     return contact.kind == ContactKind::Vertex && contact.element == kFoldElement;
 }
 
-/// What contacts are with during one step, an obstacle or the cloth itself, and the motion of the cloth in
-/// its frame. The cloth's own frame is the world, at rest.
+/// An obstacle during one step, or the cloth itself where it meets itself, and the motion of the cloth in its
+/// frame. The frame of the cloth itself is the world, at rest.
 struct Carrier {
     Placement before, begin, end;  ///< placement of its frame: one step ago, at the step's start and end
     ClothMotion motion;            ///< ends where the cloth would be without contacts
@@ -35,7 +35,7 @@ struct Carrier {
     const Obstacle* obstacle = nullptr;
     double previous_time = 0.0, time = 0.0;  ///< s, one step ago and at the step's start
 
-    /// Velocity, m/s, that its material has gained in the last step: it is at `now`, and was at `before`.
+    /// Velocity, m/s, that its material at these places has gained in the last step.
     Vec3 velocity_gained(const Vec3& at_start, const Vec3& one_step_ago) const;
 };
 
