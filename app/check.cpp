@@ -120,11 +120,11 @@ std::string elements_in_words(const Obstacle& obstacle)
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-Box3 bounds_at(const Obstacle& obstacle, double time)
+Box3 bounds_at(const MovingObstacle& obstacle, double time)
 {
-    const Placement placement = obstacle.at(time);
+    const ObstaclePose pose = obstacle.at(time);
     Box3 box;
-    for (const Vec3& point : obstacle.mesh().points) box.extend(placement(point));
+    for (const Vec3& point : pose->mesh().points) box.extend(pose.placement(point));
     return box;
 }
 
@@ -182,23 +182,24 @@ std::string motion_in_words(const RigidMotion& motion)
 bool has_eol_wires(const Scene& scene)
 {
     return scene.eol &&
-           std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
-                       [](const Obstacle& obstacle) { return !obstacle.mesh().segments.empty(); });
+           std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const MovingObstacle& obstacle) {
+               return !obstacle.shape().mesh().segments.empty();
+           });
 }
 
 void describe_obstacles(const RunConfig& config, const EdgeLengths& edges, Lines& lines)
 {
     for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
-        const Obstacle& obstacle = config.scene.obstacles[i];
+        const MovingObstacle& obstacle = config.scene.obstacles[i];
         const Box3 bounds = bounds_at(obstacle, 0.0);
         const Vec3 sizes = bounds.sizes();
         lines.push_back(fmt::format("obstacle {}: {}, {}", obstacle.name(),
                                     shape_in_words(config.as_run["obstacle"][i]),
-                                    elements_in_words(obstacle)));
+                                    elements_in_words(obstacle.shape())));
         lines.push_back(fmt::format("  extent at time 0: {:.6g} x {:.6g} x {:.6g} m, from {} to {}",
                                     sizes.x(), sizes.y(), sizes.z(), in_words(Vec3(bounds.min())),
                                     in_words(Vec3(bounds.max()))));
-        lines.push_back("  " + features_in_words(obstacle, edges.mean));
+        lines.push_back("  " + features_in_words(obstacle.shape(), edges.mean));
         lines.push_back("  " + motion_in_words(obstacle.motion()));
     }
     if (has_eol_wires(config.scene))

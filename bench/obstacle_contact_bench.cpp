@@ -36,7 +36,7 @@ Obstacle make_obstacle(Shape shape)
                 return Vec3(x, y, bump(x, y));
             });
     }
-    return Obstacle("obstacle", std::move(mesh), Placement{}, RigidMotion{}, 30.0);
+    return Obstacle(std::move(mesh), 30.0);
 }
 
 struct Cloth {

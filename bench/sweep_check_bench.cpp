@@ -27,7 +27,7 @@ double bump(double x, double y)
 
 Obstacle make_obstacle(ObstacleMesh mesh)
 {
-    return Obstacle("obstacle", std::move(mesh), Placement{}, RigidMotion{}, 30.0);
+    return Obstacle(std::move(mesh), 30.0);
 }
 
 Obstacle make_bumpy()

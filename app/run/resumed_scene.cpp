@@ -31,7 +31,7 @@ void check_references(const std::string& directory, const State& state, const Sc
     const auto is_there = [&](const ActiveContact& contact) {
         if (contact.obstacle == kClothItself) return true;
         if (!is_sound(contact.obstacle, scene.obstacles.size())) return false;
-        const Obstacle& obstacle = scene.obstacles[static_cast<std::size_t>(contact.obstacle)];
+        const Obstacle& obstacle = scene.obstacles[static_cast<std::size_t>(contact.obstacle)].shape();
         switch (contact.kind) {
             case ContactKind::Vertex:
                 return true;  // the element of a vertex contact is only compared, not used as an index
@@ -45,7 +45,7 @@ void check_references(const std::string& directory, const State& state, const Sc
     const auto is_on_feature = [&](const EolVertex& vertex) {
         if (!is_sound(vertex.on.obstacle, scene.obstacles.size())) return false;
         const ObstacleFeatures& features =
-            scene.obstacles[static_cast<std::size_t>(vertex.on.obstacle)].features();
+            scene.obstacles[static_cast<std::size_t>(vertex.on.obstacle)].shape().features();
         return is_sound(vertex.on.index,
                         vertex.on.is_corner() ? features.corners.size() : features.edges.size());
     };

@@ -236,7 +236,7 @@ RunDirectory RunDirectory::reopen(const std::string& path, const Checkpoint& che
     truncate_csv(probes_file(path), checkpoint.rows);
     sum_steps(steps_file(path));  // reports a damaged row now, not after the rest has been simulated
     std::set<std::string> obstacles;
-    for (const Obstacle& obstacle : config.scene.obstacles) obstacles.insert(obstacle.name());
+    for (const MovingObstacle& obstacle : config.scene.obstacles) obstacles.insert(obstacle.name());
     remove_frames(path, checkpoint.frames, obstacles);
     make_folders(path);
     return {path, std::move(lock), CsvWriter::append_to(steps_file(path), step_header()),

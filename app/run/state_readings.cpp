@@ -14,7 +14,8 @@ namespace arris {
 namespace {
 
 /// The cloth's edges that lie on features, ascending.
-std::vector<std::array<int, 2>> find_eol_edges(const std::vector<Obstacle>& obstacles, const State& state)
+std::vector<std::array<int, 2>> find_eol_edges(const std::vector<MovingObstacle>& obstacles,
+                                               const State& state)
 {
     std::vector<std::array<int, 2>> edges;
     if (state.eol.empty()) return edges;
@@ -26,8 +27,8 @@ std::vector<std::array<int, 2>> find_eol_edges(const std::vector<Obstacle>& obst
 
 }  // namespace
 
-Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, const ClothElements& elements,
-                 const Terms& terms)
+Frame make_frame(const std::vector<MovingObstacle>& obstacles, const State& state,
+                 const ClothElements& elements, const Terms& terms)
 {
     Frame frame;
     frame.world = state.mesh.world;

@@ -12,8 +12,8 @@
 namespace arris {
 
 /// Converts a state to a frame. `elements` belong to the state's mesh.
-Frame make_frame(const std::vector<Obstacle>& obstacles, const State& state, const ClothElements& elements,
-                 const Terms& terms);
+Frame make_frame(const std::vector<MovingObstacle>& obstacles, const State& state,
+                 const ClothElements& elements, const Terms& terms);
 
 /// World positions and velocities of the probes' material points, in the order of `probes`.
 std::vector<ProbeSample> sample_probes(const std::vector<Probe>& probes, const State& state);

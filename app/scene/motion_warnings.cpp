@@ -45,7 +45,7 @@ void check_pin_motion(const RunConfig& config, const Pin& pin, const std::string
 
 bool is_moving(const Scene& scene, const Pin& pin)
 {
-    if (pin.follows) return scene.obstacles[static_cast<std::size_t>(*pin.follows)].motion().is_moving();
+    if (pin.follows) return scene.obstacles[static_cast<std::size_t>(*pin.follows)].is_moving();
     return pin.motion.is_moving();
 }
 

@@ -25,18 +25,18 @@ Box3 box_around(const std::vector<Vec3>& points)
     return box;
 }
 
-Box3 box_at_start(const Obstacle& obstacle)
+Box3 box_at_start(const MovingObstacle& obstacle)
 {
-    const Placement placement = obstacle.at(0.0);
+    const ObstaclePose pose = obstacle.at(0.0);
     Box3 box;
-    for (const Vec3& point : obstacle.mesh().points) box.extend(placement(point));
+    for (const Vec3& point : pose->mesh().points) box.extend(pose.placement(point));
     return box;
 }
 
 void check_units(const RunConfig& config, std::size_t i, double cloth, Warnings& warnings)
 {
     if (!config.as_run["obstacle"][i].contains("file")) return;
-    const double size = config.scene.obstacles[i].bounds().diagonal().norm();
+    const double size = config.scene.obstacles[i].shape().bounds().diagonal().norm();
     if (size < kSurprisingSize * cloth && cloth < kSurprisingSize * size) return;
     const std::string units = fmt::format("obstacle.{}.units", i);
     const bool has_units = warnings.is_written(units);
@@ -65,7 +65,7 @@ bool only_falls(const RunConfig& config)
     return scene.gravity && scene.pins.empty() && scene.pulls.empty() && !scene.wind &&
            !(config.cloth_velocity.norm() > 0.0) &&
            std::none_of(scene.obstacles.begin(), scene.obstacles.end(),
-                        [](const Obstacle& obstacle) { return obstacle.motion().is_moving(); });
+                        [](const MovingObstacle& obstacle) { return obstacle.is_moving(); });
 }
 
 /// Whether a point that moves from `from` by `way` enters `box`.
@@ -97,7 +97,7 @@ void check_reach(const RunConfig& config, Warnings& warnings)
     const Vec3 reach = 0.5 * cloth.sizes() + Vec3::Constant(spread);
     const Vec3 way = 0.5 * config.duration * config.duration * config.scene.gravity->acceleration;
     std::vector<std::string> names;
-    for (const Obstacle& obstacle : config.scene.obstacles) {
+    for (const MovingObstacle& obstacle : config.scene.obstacles) {
         Box3 box = box_at_start(obstacle);
         box = Box3(box.min() - reach, box.max() + reach);
         if (enters(box, cloth.center(), way)) return;

@@ -15,7 +15,7 @@ namespace {
 SceneEffect obstacle_effect(const RunConfig& config)
 {
     constexpr std::size_t kMostNames = 5;
-    const std::vector<Obstacle>& obstacles = config.scene.obstacles;
+    const std::vector<MovingObstacle>& obstacles = config.scene.obstacles;
     if (obstacles.empty()) return {"obstacle", false, "no [[obstacle]]"};
     std::string names;
     for (std::size_t i = 0; i < std::min(obstacles.size(), kMostNames); ++i)

@@ -97,14 +97,14 @@ double count_steps(double duration, double step, double frames_per_second, const
     return steps;
 }
 
-void add_obstacles(const std::vector<Obstacle>& obstacles, SceneEstimate& estimate)
+void add_obstacles(const std::vector<MovingObstacle>& obstacles, SceneEstimate& estimate)
 {
-    for (const Obstacle& obstacle : obstacles) {
-        const ObstacleMesh& mesh = obstacle.mesh();
+    for (const MovingObstacle& obstacle : obstacles) {
+        const ObstacleMesh& mesh = obstacle.shape().mesh();
         const auto elements =
             static_cast<double>(mesh.faces.size() + mesh.segments.size() + mesh.lone_points.size());
         estimate.obstacle_elements += elements;
-        if (obstacle.motion().is_moving()) estimate.moving_elements += elements;
+        if (obstacle.is_moving()) estimate.moving_elements += elements;
     }
 }
 

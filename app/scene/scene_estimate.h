@@ -8,7 +8,7 @@
 #include "app/scene/scene_document.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/cloth_input/cloth_grid.h"
-#include "geometry/obstacle/obstacle.h"
+#include "geometry/obstacle/moving_obstacle.h"
 
 namespace arris {
 
@@ -53,7 +53,7 @@ double count_frames(double duration, double frames_per_second);
 double count_steps(double duration, double step, double frames_per_second, const std::vector<double>& jumps);
 
 /// Adds the elements of the obstacles to the estimate.
-void add_obstacles(const std::vector<Obstacle>& obstacles, SceneEstimate& estimate);
+void add_obstacles(const std::vector<MovingObstacle>& obstacles, SceneEstimate& estimate);
 
 /// Fills `memory_bytes` and `disk_bytes` from the counts, for the given output formats.
 void estimate_bytes(const std::vector<std::string>& formats, SceneEstimate& estimate);

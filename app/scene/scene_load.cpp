@@ -248,9 +248,9 @@ std::vector<ObstacleRecord> record_obstacles(const RunConfig& config)
 {
     std::vector<ObstacleRecord> records;
     for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
-        const Obstacle& obstacle = config.scene.obstacles[i];
+        const MovingObstacle& obstacle = config.scene.obstacles[i];
         records.push_back(
-            {obstacle.name(), obstacle.mesh(), config.obstacle_placements[i], obstacle.motion()});
+            {obstacle.name(), obstacle.shape().mesh(), config.obstacle_placements[i], obstacle.motion()});
     }
     return records;
 }

@@ -111,7 +111,7 @@ void check_inside(const RunConfig& config, std::size_t i, Warnings& warnings)
 {
     const auto& json = config.as_run["obstacle"][i];
     if (!json.contains("file")) return;
-    const Obstacle& obstacle = config.scene.obstacles[i];
+    const Obstacle& obstacle = config.scene.obstacles[i].shape();
     int count = 0, border_edges = 0;
     for (const SheetOpening& opening : find_sheet_openings(obstacle.mesh(), obstacle.topology())) {
         if (!opening.looks_solid()) continue;
@@ -130,7 +130,7 @@ void check_inside(const RunConfig& config, std::size_t i, Warnings& warnings)
 void check_obstacles(const RunConfig& config, Warnings& warnings)
 {
     for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
-        const Obstacle& obstacle = config.scene.obstacles[i];
+        const MovingObstacle& obstacle = config.scene.obstacles[i];
         const std::string path = fmt::format("obstacle.{}", i);
         const auto& json = config.as_run["obstacle"][i];
         if (!json.contains("file")) {
@@ -138,7 +138,8 @@ void check_obstacles(const RunConfig& config, Warnings& warnings)
             warnings.add(path + ".up", "the obstacle is not from a file");
         }
         if (!json.contains("wire")) warnings.add(path + ".closed", "the obstacle is not a wire");
-        if (obstacle.mesh().faces.empty()) warnings.add(path + ".feature_angle", "the obstacle has no faces");
+        if (obstacle.shape().mesh().faces.empty())
+            warnings.add(path + ".feature_angle", "the obstacle has no faces");
         check_inside(config, i, warnings);
         check_obstacle_motion(config, obstacle.motion(), path, warnings);
     }

@@ -40,10 +40,11 @@ bool has_load(const RunConfig& config)
 bool has_moving_bodies(const RunConfig& config)
 {
     const std::vector<Pin>& pins = config.scene.pins;
-    const std::vector<Obstacle>& obstacles = config.scene.obstacles;
-    return std::any_of(
-               obstacles.begin(), obstacles.end(),
-               [&](const Obstacle& body) { return acts_between(0.0, config.duration, body.motion()); }) ||
+    const std::vector<MovingObstacle>& obstacles = config.scene.obstacles;
+    return std::any_of(obstacles.begin(), obstacles.end(),
+                       [&](const MovingObstacle& body) {
+                           return acts_between(0.0, config.duration, body.motion());
+                       }) ||
            std::any_of(pins.begin(), pins.end(), [&](const Pin& pin) {
                return acts_between(pin.start, std::min(config.duration, pin.release), pin.motion);
            });

@@ -66,10 +66,10 @@ std::vector<UnderCloth> find_under_cloth(const RunConfig& config)
     const Mat3 view = view_along(config.scene.gravity->acceleration);
     const Box3 cloth = box_of(config.cloth.world, view);
     std::vector<UnderCloth> found;
-    for (const Obstacle& obstacle : config.scene.obstacles) {
-        const Placement placement = obstacle.at(0.0);
+    for (const MovingObstacle& obstacle : config.scene.obstacles) {
+        const ObstaclePose pose = obstacle.at(0.0);
         std::vector<Vec3> points;
-        for (const Vec3& p : obstacle.mesh().points) points.push_back(placement(p));
+        for (const Vec3& p : pose->mesh().points) points.push_back(pose.placement(p));
         const Box3 box = box_of(points, view);
         UnderCloth under;
         under.name = obstacle.name();
@@ -89,7 +89,7 @@ std::vector<UnderCloth> find_under_cloth(const RunConfig& config)
         under.is_overhung = beyond > 0;
         under.is_around_corner = beyond == 2;
         if (!is_under) continue;
-        under.steepest = find_steepest(obstacle.mesh(), placement.rotation, under.up);
+        under.steepest = find_steepest(pose->mesh(), pose.placement.rotation, under.up);
         under.is_moving_along = moves_along(obstacle.motion(), under.up, config.duration);
         found.push_back(std::move(under));
     }

@@ -85,9 +85,9 @@ class Census {
     bool is_of(const Contact& contact, const EolVertex& eol) const
     {
         if (eol.on.obstacle != contact.obstacle) return false;
-        const ObstacleFeatures& features = scene_.obstacles[contact.obstacle].features();
-        if (contact.kind == ContactKind::Triangle)
-            return fixed_point(scene_.obstacles[contact.obstacle], eol) == contact.element;
+        const Obstacle& obstacle = scene_.obstacles[contact.obstacle].shape();
+        const ObstacleFeatures& features = obstacle.features();
+        if (contact.kind == ContactKind::Triangle) return fixed_point(obstacle, eol) == contact.element;
         if (contact.kind != ContactKind::Edge) return false;
         const int v = state_.index_of(eol.vertex_id);
         const int feature = feature_of_edge(features, contact.element);
@@ -98,8 +98,8 @@ class Census {
     /// Whether an EOL vertex is on the polyline of a feature edge of its obstacle, or at an end of it.
     bool is_along(const EolVertex& eol, int feature) const
     {
-        const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
-        const auto& edges = obstacle.features().edges;
+        const ObstaclePose obstacle = scene_.obstacles[eol.on.obstacle].at(state_.time);
+        const auto& edges = obstacle->features().edges;
         if (!eol.on.is_corner()) return edges[eol.on.index].polyline == edges[feature].polyline;
         constexpr double kAnywhere = std::numeric_limits<double>::infinity();
         return distance_to_corner(obstacle, {feature, 0.5}, eol.on.index, kAnywhere).has_value();
@@ -119,12 +119,12 @@ class Census {
             return feature >= 0 && has_eol(contact.vertices[a], feature) &&
                    has_eol(contact.vertices[b], feature);
         };
-        const Obstacle& obstacle = scene_.obstacles[contact.obstacle];
-        const ObstacleFeatures& features = obstacle.features();
+        const ObstaclePose obstacle = scene_.obstacles[contact.obstacle].at(state_.time);
+        const ObstacleFeatures& features = obstacle->features();
         if (contact.kind == ContactKind::Edge)
             return is_trace(feature_of_edge(features, contact.element), 0, 1);
         if (contact.kind != ContactKind::Triangle || is_corner(features, contact.element)) return false;
-        const ObstacleTopology& topology = obstacle.topology();
+        const ObstacleTopology& topology = obstacle->topology();
         for (int k = 0; k < topology.edge_count_at(contact.element); ++k) {
             const int feature = feature_of_edge(features, topology.edge_at(contact.element, k));
             if (feature < 0 || features.edges[feature].kind != FeatureKind::Convex) continue;
@@ -163,9 +163,8 @@ class Census {
     {
         const EolVertex& eol = state_.eol[entry];
         const Carrier& way = work_.carriers[eol.on.obstacle];
-        const EolPlacing placing =
-            place_eol_vertex(scene_.obstacles[eol.on.obstacle], scene_.material.thickness, state_, entry,
-                             work_.mesh.stars, way.motion.begin, way.end);
+        const EolPlacing placing = place_eol_vertex(*way.obstacle, scene_.material.thickness, state_, entry,
+                                                    work_.mesh.stars, way.motion.begin, way.end);
         return placing.coordinates ? std::nullopt : std::optional(placing.refusal);
     }
 
@@ -219,7 +218,7 @@ FeatureCensus take_census(const Scene& scene, const State& state, const Workspac
             continue;
         }
         if (contact.is_with_itself() || contact.is_fold() ||
-            !touches_feature(scene.obstacles[contact.obstacle], contact, scene.material.thickness))
+            !touches_feature(*work.carriers[contact.obstacle].obstacle, contact, scene.material.thickness))
             continue;
         ++census.rows;
         if (scene.eol) ++census.by_cause[static_cast<std::size_t>(causes.find_cause(contact))];

@@ -82,7 +82,7 @@ std::vector<Vec3> shifted(std::vector<Vec3> points, const Vec3& by)
 
 Obstacle make_obstacle(ObstacleMesh mesh, double feature_angle)
 {
-    return Obstacle("sample", std::move(mesh), Placement{}, RigidMotion{}, feature_angle);
+    return Obstacle(std::move(mesh), feature_angle);
 }
 
 Vec3 nearest_point(const ObstacleMesh& mesh, const Vec3& place)

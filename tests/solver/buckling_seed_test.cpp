@@ -292,8 +292,8 @@ Scene push_with_box()
     scene.pins = {pin_at({0, kSide}, {kSide, kSide})};
     RigidMotion motion;
     motion.velocity = Vec3(0, 0, 0.3);
-    scene.obstacles.push_back(Obstacle("box", make_box({1.0, 0.4, 0.1}),
-                                       {Mat3::Identity(), Vec3(kSide / 2, 0, -0.06)}, motion, 30.0));
+    scene.obstacles.push_back(MovingObstacle("box", make_box({1.0, 0.4, 0.1}),
+                                             {Mat3::Identity(), Vec3(kSide / 2, 0, -0.06)}, motion, 30.0));
     return scene;
 }
 

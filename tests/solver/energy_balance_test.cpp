@@ -95,8 +95,8 @@ TEST(DrivenWork, OfPinsIsTheirImpulseTimesTheirWay)
 TEST(DrivenWork, OfAnObstacleIsItsPressureTimesItsWay)
 {
     Scene scene;
-    ObstacleMesh slab = make_floor().mesh();
-    scene.obstacles.push_back(Obstacle("lift", slab, {}, start_off(Vec3(0.7, 0, 0.5)), 30.0));
+    ObstacleMesh slab = make_floor().shape().mesh();
+    scene.obstacles.push_back(MovingObstacle("lift", slab, {}, start_off(Vec3(0.7, 0, 0.5)), 30.0));
     const OneStep one(scene, kEverywhere, 1.0);
     EXPECT_NEAR(one.driven() / (one.mass() * 0.25), 1.0, kRoundOff);
 }
@@ -106,7 +106,7 @@ TEST(DrivenWork, OfATurningObstacleIsThatWhereTheClothIsWhereverItsPlaneIsNamed)
     Scene scene;
     RigidMotion motion = start_off(Vec3(0, 0, 0.5));
     motion.angular_velocity = Vec3(0, 0.5, 0);
-    scene.obstacles.push_back(Obstacle("lift", make_floor().mesh(), {}, motion, 30.0));
+    scene.obstacles.push_back(MovingObstacle("lift", make_floor().shape().mesh(), {}, motion, 30.0));
     OneStep one(scene, kEverywhere, 1.0);
     const double driven = one.driven();
     ASSERT_GT(driven, 0.0);
@@ -161,8 +161,8 @@ TEST(DrivenWork, OfAFeatureIsThatOfAllThatHoldsTheClothThere)
     for (const double stretch : {1.0, 1.03}) {
         for (const Vec3& direction : {Vec3(0, 0, 1), Vec3(0.8, 0, 0.6), Vec3(-0.8, 0, 0.6)}) {
             testing::EolCloth cloth(testing::make_ridge(5.0), testing::make_draped({8, 0.0, 80.0}));
-            Obstacle& knife = cloth.scene.obstacles[0];
-            knife = Obstacle("knife", knife.mesh(), {}, start_off(1e-3 * direction), 30.0);
+            MovingObstacle& knife = cloth.scene.obstacles[0];
+            knife = MovingObstacle("knife", knife.shape().mesh(), {}, start_off(1e-3 * direction), 30.0);
             State& state = cloth.state;
             const double half = 40.0 * M_PI / 180.0;
             for (int v = 0; v < state.mesh.vertex_count(); ++v) {
@@ -170,7 +170,7 @@ TEST(DrivenWork, OfAFeatureIsThatOfAllThatHoldsTheClothThere)
                 const double across = (X.x() > 0.1 ? stretch : 1.0) * (X.x() - 0.1);
                 state.mesh.world[v] << across * std::sin(half), X.y() - 0.2,
                     testing::kThickness - std::abs(across) * std::cos(half);
-                if (std::abs(across) < 1e-9) cloth.add_eol(v, false, testing::tip_of(knife));
+                if (std::abs(across) < 1e-9) cloth.add_eol(v, false, testing::tip_of(knife.shape()));
             }
             state.time = 1.0;
             state.step = 1;  // so that no contact counts as pressing in an earlier step

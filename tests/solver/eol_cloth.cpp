@@ -39,13 +39,13 @@ CornerVelocities corners_of(const State& state, const ClothElements& elements)
 
 }  // namespace
 
-Obstacle make_ridge(double tip_degrees, double half_length)
+MovingObstacle make_ridge(double tip_degrees, double half_length)
 {
     constexpr double kHeight = 0.3;
     const double base = 2.0 * kHeight * std::tan(half_angle(tip_degrees));
     ObstacleMesh mesh = make_teeth({1, std::max(1.0, 1.1 * base), kHeight, 2.0 * half_length, tip_degrees});
     for (Vec3& p : mesh.points) p.z() -= kHeight;
-    return Obstacle("ridge", std::move(mesh), {}, {}, 30.0);
+    return MovingObstacle("ridge", std::move(mesh), {}, {}, 30.0);
 }
 
 int tip_of(const Obstacle& ridge)
@@ -85,7 +85,7 @@ ClothMesh make_draped(const Drape& shape)
     return mesh;
 }
 
-EolCloth::EolCloth(Obstacle obstacle, ClothMesh mesh)
+EolCloth::EolCloth(MovingObstacle obstacle, ClothMesh mesh)
 {
     scene.material = {0.2, 50.0, 0.3, 1e-5, 0.0, 1e-3};
     scene.obstacles.push_back(std::move(obstacle));
@@ -123,7 +123,7 @@ ClothStars EolCloth::stars() const
 
 EolPlacing EolCloth::place(int vertex, const Placement& end) const
 {
-    return place_eol_vertex(scene.obstacles[0], scene.material.thickness, state,
+    return place_eol_vertex(scene.obstacles[0].shape(), scene.material.thickness, state,
                             state.eol_entry(state.ids[vertex]), stars(), state.mesh.world, end);
 }
 
@@ -137,7 +137,7 @@ EolCloth lying(double turn, double shift, double half_length)
 
 void press_edges(EolCloth& cloth)
 {
-    const Obstacle& ridge = cloth.scene.obstacles[0];
+    const Obstacle& ridge = cloth.scene.obstacles[0].shape();
     const FeatureEdge& tip = ridge.features().edges[tip_of(ridge)];
     const double end = std::abs(ridge.mesh().points[ridge.topology().edges[tip.edge].points[0]].y());
     const State& state = cloth.state;
@@ -160,7 +160,7 @@ std::vector<MeshEdge> edges_of(const State& state)
 EolCloth make_disk_cloth(double height)
 {
     const auto shrink = [](const Vec3& p) { return Vec3(0.1 * p - 0.1 * Vec3::UnitZ()); };
-    EolCloth cloth(Obstacle("disk", samples::moved(samples::cylinder(16), shrink), {}, {}, 30.0),
+    EolCloth cloth(MovingObstacle("disk", samples::moved(samples::cylinder(16), shrink), {}, {}, 30.0),
                    make_draped({7, 17.0, 180.0}));
     for (Vec3& x : cloth.state.mesh.world) x.z() = height * kThickness;
     return cloth;

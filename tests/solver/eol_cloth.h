@@ -12,7 +12,7 @@ ClothStars stars_of(const ClothMesh& mesh);
 
 /// A ridge along y whose tip is the segment x = z = 0, `half_length` to either side of y = 0, with
 /// `tip_degrees` between its flanks.
-Obstacle make_ridge(double tip_degrees, double half_length = 0.5);
+MovingObstacle make_ridge(double tip_degrees, double half_length = 0.5);
 
 /// The feature that is the ridge's tip, and the corner at which it ends at y > 0.
 int tip_of(const Obstacle& ridge);
@@ -34,7 +34,7 @@ struct EolCloth {
     Scene scene;
     State state;
 
-    EolCloth(Obstacle obstacle, ClothMesh mesh);
+    EolCloth(MovingObstacle obstacle, ClothMesh mesh);
     int vertex_at(double u, double v) const;  ///< nearest to the material point (u, v)
     /// Makes a vertex EOL and returns the index of its entry.
     int add_eol(int vertex, bool is_corner, int feature);

@@ -31,8 +31,8 @@ struct Solved {
 
     int tip() const
     {
-        const ObstacleFeatures& features = cloth.scene.obstacles[0].features();
-        return features.edges[testing::tip_of(cloth.scene.obstacles[0])].edge;
+        const ObstacleFeatures& features = cloth.scene.obstacles[0].shape().features();
+        return features.edges[testing::tip_of(cloth.scene.obstacles[0].shape())].edge;
     }
 
     Contact& add(ContactKind kind, std::array<int, 3> vertices, int element, bool was_active,
@@ -53,8 +53,12 @@ struct Solved {
         return work.contacts.back();
     }
 
-    FeatureCensus take() const { return take_census(cloth.scene, cloth.state, work, multiplier); }
-    int count(RowCause cause) const { return take().by_cause[static_cast<std::size_t>(cause)]; }
+    FeatureCensus take()
+    {
+        work.carriers.obstacles[0].obstacle = cloth.scene.obstacles[0].at(cloth.state.time).shape;
+        return take_census(cloth.scene, cloth.state, work, multiplier);
+    }
+    int count(RowCause cause) { return take().by_cause[static_cast<std::size_t>(cause)]; }
 };
 
 TEST(FeatureCensus, OfNothingThereIsNothing)
@@ -103,7 +107,7 @@ TEST(FeatureCensus, EolVerticesThatPressAreCountedAndWhatElseTheyTouch)
 {
     Solved solved;
     EolCloth& cloth = solved.cloth;
-    const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+    const int tip = testing::tip_of(cloth.scene.obstacles[0].shape());
     // Moves a row of vertices onto the ridge.
     for (Vec3& x : cloth.state.mesh.world) x.x() -= 0.5 * testing::kLyingCell;
     solved.work.carriers.obstacles[0].motion.begin = cloth.state.mesh.world;
@@ -138,7 +142,7 @@ TEST(FeatureCensus, ARowAtTheEolVertexOfItsFeatureIsTheSameContact)
 {
     const auto cause_at = [](double weight, bool is_other_eol) {
         Solved solved;
-        const Obstacle& ridge = solved.cloth.scene.obstacles[0];
+        const Obstacle& ridge = solved.cloth.scene.obstacles[0].shape();
         const int tip = testing::tip_of(ridge);
         const int v = solved.cloth.vertex_at(0.2, 0.2);
         const Vec2 middle = solved.cloth.state.mesh.material[v];
@@ -159,9 +163,9 @@ TEST(FeatureCensus, ARowAtTheEolVertexOfItsFeatureIsTheSameContact)
 }
 
 /// The ridge with an additional mesh point in the middle of its tip, which is the last point.
-Obstacle make_split_ridge()
+MovingObstacle make_split_ridge()
 {
-    ObstacleMesh mesh = testing::make_ridge(60.0).mesh();
+    ObstacleMesh mesh = testing::make_ridge(60.0).shape().mesh();
     const int middle = static_cast<int>(mesh.points.size());
     const auto is_of_tip = [&](int p) { return p == middle || mesh.points[p].z() > -1e-9; };
     Vec3 sum = Vec3::Zero();
@@ -177,16 +181,17 @@ Obstacle make_split_ridge()
             mesh.faces.push_back(half);
             break;
         }
-    return Obstacle("ridge", std::move(mesh), {}, {}, 30.0);
+    return MovingObstacle("ridge", std::move(mesh), {}, {}, 30.0);
 }
 
 TEST(FeatureCensus, AFaceOnAPointInTheMiddleOfAnEdgeTouchesTheTraceThere)
 {
     // `off`: offset of the face's third corner; `aside`: distance of the point from the trace, m.
-    const auto cause_at = [](const Obstacle& ridge, int point, double off, bool has_trace,
-                             double aside = 0.0) {
+    const MovingObstacle split = make_split_ridge();
+    const Obstacle& ridge = split.shape();
+    const auto cause_at = [&](int point, double off, bool has_trace, double aside = 0.0) {
         Solved solved;
-        solved.cloth.scene.obstacles[0] = ridge;
+        solved.cloth.scene.obstacles[0] = split;
         const int tip = testing::tip_of(ridge);
         const int v = solved.cloth.vertex_at(0.2, 0.2);
         const Vec2 middle = solved.cloth.state.mesh.material[v];
@@ -204,22 +209,21 @@ TEST(FeatureCensus, AFaceOnAPointInTheMiddleOfAnEdgeTouchesTheTraceThere)
         EXPECT_EQ(solved.take().rows, 1);
         return solved.count(RowCause::AtEol) == 1;
     };
-    const Obstacle ridge = make_split_ridge();
     const int middle = static_cast<int>(ridge.mesh().points.size()) - 1;
-    ASSERT_EQ(ridge.features().corners.size(), testing::make_ridge(60.0).features().corners.size());
-    EXPECT_TRUE(cause_at(ridge, middle, 0.04, true));
-    EXPECT_TRUE(cause_at(ridge, middle, 0.06, true, 1e-3)) << "a chord passes by it no farther than cloth is";
-    EXPECT_FALSE(cause_at(ridge, middle, 0.06, true, 4e-3)) << "6 % of the face away, and farther";
-    EXPECT_FALSE(cause_at(ridge, middle, 0.04, false)) << "no trace";
+    ASSERT_EQ(ridge.features().corners.size(), testing::make_ridge(60.0).shape().features().corners.size());
+    EXPECT_TRUE(cause_at(middle, 0.04, true));
+    EXPECT_TRUE(cause_at(middle, 0.06, true, 1e-3)) << "a chord passes by it no farther than cloth is";
+    EXPECT_FALSE(cause_at(middle, 0.06, true, 4e-3)) << "6 % of the face away, and farther";
+    EXPECT_FALSE(cause_at(middle, 0.04, false)) << "no trace";
     const int end = ridge.features().corners[testing::end_of(ridge)].point;
-    EXPECT_FALSE(cause_at(ridge, end, 0.04, true)) << "a corner has a vertex of its own";
+    EXPECT_FALSE(cause_at(end, 0.04, true)) << "a corner has a vertex of its own";
 }
 
 TEST(FeatureCensus, ARowAtAnEolVertexWithoutCoordinatesSaysWhyThatHasNone)
 {
     const auto count_at = [](double weight) {
         Solved solved;
-        const Obstacle& ridge = solved.cloth.scene.obstacles[0];
+        const Obstacle& ridge = solved.cloth.scene.obstacles[0].shape();
         const int tip = testing::tip_of(ridge), corner = solved.cloth.vertex_at(0.0, 0.0);
         ASSERT_EQ(corner, 0);
         solved.cloth.add_eol(corner, false, tip);
@@ -236,7 +240,7 @@ TEST(FeatureCensus, AFaceThatTouchesACornerBesideItsEolVertexIsAContactOfItsOwn)
 {
     const auto cause_at = [](double weight) {
         Solved solved;
-        const Obstacle& ridge = solved.cloth.scene.obstacles[0];
+        const Obstacle& ridge = solved.cloth.scene.obstacles[0].shape();
         const int corner = testing::end_of(ridge), v = solved.cloth.vertex_at(0.2, 0.2);
         solved.cloth.add_eol(v, true, corner);
         Contact& contact = solved.add(ContactKind::Triangle, {v, v + 1, v + 2},
@@ -252,7 +256,7 @@ TEST(FeatureCensus, AnEdgeThatEndsAtAnEolVertexOfItsFeatureIsBesideIt)
 {
     const auto count_at = [](const std::array<int, 3>& vertices, bool is_tip) {
         Solved solved;
-        const Obstacle& ridge = solved.cloth.scene.obstacles[0];
+        const Obstacle& ridge = solved.cloth.scene.obstacles[0].shape();
         const int tip = testing::tip_of(ridge);
         solved.cloth.add_eol(4, false, tip);
         const int feature = is_tip ? tip : tip == 0 ? 1 : 0;
@@ -266,7 +270,7 @@ TEST(FeatureCensus, AnEdgeThatEndsAtAnEolVertexOfItsFeatureIsBesideIt)
 
 TEST(FeatureCensus, AVertexTouchesAFeatureWhereItsPlaneIsNoFaces)
 {
-    const Obstacle box("box", make_box({1, 1, 1}), {}, {}, 30.0);
+    const Obstacle box(make_box({1, 1, 1}), 30.0);
     const auto touches = [](const Obstacle& obstacle, const Vec3& point, const Vec3& normal, int element) {
         Contact contact;
         contact.vertices[0] = 0;
@@ -287,22 +291,22 @@ TEST(FeatureCensus, AVertexTouchesAFeatureWhereItsPlaneIsNoFaces)
     EXPECT_TRUE(touches(box, {0.5, 0.2, 0.5}, {1, 0, 1}, top));
     EXPECT_TRUE(touches(box, {0.5, 0.2, 0.5}, {1e-3, 0, 1}, top));
     EXPECT_TRUE(touches(box, {0.5, 0.5, 0.5}, {1, 1, 1}, top)) << "a corner";
-    const Obstacle wire("wire", make_wire({{-1, 0, 0}, {1, 0, 0}}, false), {}, {}, 30.0);
+    const Obstacle wire(make_wire({{-1, 0, 0}, {1, 0, 0}}, false), 30.0);
     EXPECT_TRUE(touches(wire, {0, 0, 0}, {0, 0, 1}, 0));
-    const Obstacle nail("nail", make_points({{0.3, 0, 0}}), {}, {}, 30.0);
+    const Obstacle nail(make_points({{0.3, 0, 0}}), 30.0);
     EXPECT_TRUE(touches(nail, {0.3, 0, 0}, {0, 0, 1}, 0));
     EXPECT_TRUE(touches(nail, {0.3, 0, 0}, {0, 1, 1}, 7));
 
     // The edges of a smooth surface are no features; at this angle the box has no sharp edge.
-    const Obstacle smooth("smooth", make_box({1, 1, 1}), {}, {}, 179.0);
+    const Obstacle smooth(make_box({1, 1, 1}), 179.0);
     ASSERT_TRUE(smooth.features().edges.empty());
     EXPECT_FALSE(touches(smooth, {0.5, 0.2, 0.5}, {1, 0, 1}, top));
 }
 
 TEST(FeatureCensus, AnEdgeOrFaceOfTheClothTouchesAFeatureWhereItsPointIsOnOne)
 {
-    const Obstacle box("box", make_box({1, 1, 1}), {}, {}, 30.0);
-    const Obstacle smooth("smooth", make_box({1, 1, 1}), {}, {}, 179.0);
+    const Obstacle box(make_box({1, 1, 1}), 30.0);
+    const Obstacle smooth(make_box({1, 1, 1}), 179.0);
     const auto touches = [](const Obstacle& obstacle, ContactKind kind, int element, const Vec3& point) {
         Contact contact;
         contact.kind = kind;

@@ -6,7 +6,7 @@
 namespace arris {
 
 /// A slab 40 m wide. Its upper side is the plane normal . x = offset (m), with unit `normal`.
-inline Obstacle make_floor(const Vec3& normal = Vec3::UnitZ(), double offset = 0.0)
+inline MovingObstacle make_floor(const Vec3& normal = Vec3::UnitZ(), double offset = 0.0)
 {
     ObstacleMesh slab;
     for (int corner = 0; corner < 8; ++corner)
@@ -15,7 +15,7 @@ inline Obstacle make_floor(const Vec3& normal = Vec3::UnitZ(), double offset = 0
     slab.faces = {{4, 5, 7}, {4, 7, 6}, {0, 3, 1}, {0, 2, 3}, {0, 1, 5}, {0, 5, 4},
                   {2, 7, 3}, {2, 6, 7}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
     const Mat3 lean = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
-    return Obstacle("floor", std::move(slab), {lean, offset * normal}, {}, 30.0);
+    return MovingObstacle("floor", std::move(slab), {lean, offset * normal}, {}, 30.0);
 }
 
 }  // namespace arris

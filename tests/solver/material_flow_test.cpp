@@ -22,7 +22,7 @@ constexpr double kStep = 0.005;  // s
 EolCloth flowing(double share)
 {
     EolCloth cloth = lying(0.0);
-    const int tip = tip_of(cloth.scene.obstacles[0]);
+    const int tip = tip_of(cloth.scene.obstacles[0].shape());
     const int still = cloth.vertex_at(0.2, 0.1), moving = cloth.vertex_at(0.2, 0.3);
     cloth.add_eol(still, false, tip);
     cloth.add_eol(moving, false, tip);
@@ -75,7 +75,7 @@ struct FlowingCloth {
 
     FlowingCloth()
     {
-        cloth.add_eol(v, false, tip_of(cloth.scene.obstacles[0]));
+        cloth.add_eol(v, false, tip_of(cloth.scene.obstacles[0].shape()));
         prepare(cloth.scene, cloth.state, work);
         work.eol = {*cloth.place(v).coordinates};
         work.linearization.begin = 0.0;

@@ -33,9 +33,9 @@ ClothMesh make_sheet(double size, int cells, const Placement& place)
     return mesh;
 }
 
-Obstacle place(ObstacleMesh mesh, const Vec3& at = Vec3::Zero(), RigidMotion motion = {})
+MovingObstacle place(ObstacleMesh mesh, const Vec3& at = Vec3::Zero(), RigidMotion motion = {})
 {
-    return Obstacle("it", std::move(mesh), {Mat3::Identity(), at}, std::move(motion), 30.0);
+    return MovingObstacle("it", std::move(mesh), {Mat3::Identity(), at}, std::move(motion), 30.0);
 }
 
 /// A sphere with `rings` of faces from pole to pole, `around` faces in each.
@@ -70,12 +70,12 @@ struct ObstacleRun {
     State state;
     Workspace work;
     int rewound = 0, yielded = 0, most_solves = 0;
-    int solves = 0;  ///< of all steps
+    int solves = 0;             ///< of all steps
     double worst_gained = 0.0;  ///< J, greatest energy rise reported by an accepted part
     double driven = 0.0;        ///< J, work of moving obstacles and pins so far
     double worst_rise = -1.0;   ///< greatest energy rise of a part beyond that work, over the allowed rise
 
-    ObstacleRun(std::vector<Obstacle> obstacles, ClothMesh mesh, const Vec3& velocity = Vec3::Zero(),
+    ObstacleRun(std::vector<MovingObstacle> obstacles, ClothMesh mesh, const Vec3& velocity = Vec3::Zero(),
                 bool has_gravity = true)
     {
         scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
@@ -93,7 +93,7 @@ struct ObstacleRun {
             most_solves = std::max(most_solves, report.solves);
             solves += report.solves;
             worst_gained = std::max(worst_gained, report.energy_rise);
-            for (const Obstacle& obstacle : scene.obstacles) expect_free(obstacle);
+            for (const MovingObstacle& obstacle : scene.obstacles) expect_free(obstacle);
             return true;
         };
         prepare(scene, state, work);
@@ -109,11 +109,12 @@ struct ObstacleRun {
             ASSERT_EQ(advance(), StepStatus::Done) << "t = " << state.time;
     }
 
-    void expect_free(const Obstacle& obstacle) const
+    void expect_free(const MovingObstacle& obstacle) const
     {
         std::vector<Vec3> positions;
-        for (const Vec3& x : state.mesh.world) positions.push_back(obstacle.at(state.time).inverse(x));
-        const Penetration found = find_penetration(obstacle, positions, state.mesh.faces);
+        for (const Vec3& x : state.mesh.world)
+            positions.push_back(obstacle.at(state.time).placement.inverse(x));
+        const Penetration found = find_penetration(obstacle.shape(), positions, state.mesh.faces);
         EXPECT_FALSE(found.is_any()) << obstacle.name() << " in face " << found.face
                                      << " at t = " << state.time;
     }
@@ -246,7 +247,8 @@ TEST(Hollow, ClothInAClosedBoxStaysInIt)
                     make_sheet(0.48, 8, {rotation_about(Vec3(1, 1, 0), 8), Vec3(0, 0, 0)}));
     run.advance_all(200);
     for (const Vec3& x : run.state.mesh.world)
-        EXPECT_LT((run.scene.obstacles[0].at(run.state.time).inverse(x)).cwiseAbs().maxCoeff(), 0.25);
+        EXPECT_LT((run.scene.obstacles[0].at(run.state.time).placement.inverse(x)).cwiseAbs().maxCoeff(),
+                  0.25);
 }
 
 TEST(Fin, ClothHangsOnBothSidesOfIt)
@@ -321,7 +323,7 @@ TEST(MovingObstacle, CarriesClothWithoutPushingEnergyIn)
                         {0.9, {0, 0, 0.1}, Eigen::Quaterniond::Identity()}};
     ObstacleMesh box = make_box({1, 1, 0.2});
     for (Vec3& p : box.points) p.z() -= 0.1;
-    ObstacleRun run({Obstacle("lift", box, {}, motion, 30.0)},
+    ObstacleRun run({MovingObstacle("lift", box, {}, motion, 30.0)},
                     make_sheet(0.4, 8, {Mat3::Identity(), Vec3(0, 0, 1e-3)}));
     for (int k = 0; k < 200; ++k) {
         const double t = run.state.time;
@@ -352,7 +354,7 @@ TEST(MovingObstacle, PulledAwayFromUnderAFoldPushesNoEnergyIn)
     grid.pattern = GridPattern::Diagonal;
     ClothMesh sheet = make_cloth_grid(grid);
     for (Vec3& x : sheet.world) x += Vec3(-0.3, -0.15, 0.004);
-    ObstacleRun run({Obstacle("table", table, {}, motion, 30.0)}, std::move(sheet));
+    ObstacleRun run({MovingObstacle("table", table, {}, motion, 30.0)}, std::move(sheet));
     run.scene.material = {0.1, 2e4, 0.3, 1e-6, 0.002, 1e-3};
     run.scene.eol = make_initial_target(run.state.mesh);
     int most_eol = 0;
@@ -375,7 +377,7 @@ struct Shock {
 
 class StiffImpact : public testing::TestWithParam<Shock> {
   protected:
-    void expect_no_gain(std::vector<Obstacle> obstacles, const Vec3& start, int resolution)
+    void expect_no_gain(std::vector<MovingObstacle> obstacles, const Vec3& start, int resolution)
     {
         const auto [integrator, stiffness, speed, dt] = GetParam();
         ObstacleRun run(std::move(obstacles),
@@ -497,7 +499,8 @@ TEST(Pin, FollowsAnObstacle)
     for (int k = 1; k <= 60; ++k)
         ASSERT_FALSE(
             advance(scene, Settings(), kStep * k, state, work, [](const StepReport&, bool) { return true; }));
-    const Placement moved = scene.obstacles[0].at(state.time) * scene.obstacles[0].at(0.0).inverse();
+    const Placement moved =
+        scene.obstacles[0].at(state.time).placement * scene.obstacles[0].at(0.0).placement.inverse();
     for (const int v : vertices_in_box(first, pin.material))
         EXPECT_NEAR((state.mesh.world[v] - moved(first.world[v])).norm(), 0.0, 1e-13);
     EXPECT_EQ(input_jumps(scene), std::vector<double>()) << "it never starts or stops after time 0";

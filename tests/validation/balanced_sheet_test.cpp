@@ -49,7 +49,7 @@ ClothRun make_run(const BalancedSheet& sheet)
     Placement place;
     place.translation = Vec3(0.0, 0.0, -0.5);
     const Vec3 size(2.0 * (half - kThickness), 3.0, 1.0);
-    scene.obstacles.push_back(Obstacle("table", make_box(size), place, {}, 30.0));
+    scene.obstacles.push_back(MovingObstacle("table", make_box(size), place, {}, 30.0));
     scene.eol = make_initial_target(mesh);
     return ClothRun(std::move(scene), std::move(mesh));
 }

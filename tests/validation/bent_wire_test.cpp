@@ -28,7 +28,7 @@ double slide_off(const std::vector<Vec3>& wire, std::array<int, 2> cells)
     scene.material = *find_material_preset("silk");
     scene.material.damping = 0.003;
     scene.gravity = Gravity{};
-    scene.obstacles.push_back(Obstacle("wire", make_wire(wire, false), {}, {}, 30.0));
+    scene.obstacles.push_back(MovingObstacle("wire", make_wire(wire, false), {}, {}, 30.0));
     scene.eol = make_initial_target(mesh);
     const double weight = scene.material.density * size.x() * size.y() * scene.gravity->acceleration.norm();
     ClothRun run(std::move(scene), std::move(mesh));

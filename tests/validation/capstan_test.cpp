@@ -125,7 +125,7 @@ ClothRun make_drum_run(const DrumCase& drum)
     RigidMotion turning;
     turning.angular_velocity = Vec3(0.0, drum.turning, 0.0);
     scene.obstacles.push_back(
-        Obstacle("drum", make_drum(drum.sides), {}, turning, drum.has_eol ? 10.0 : 60.0));
+        MovingObstacle("drum", make_drum(drum.sides), {}, turning, drum.has_eol ? 10.0 : 60.0));
     scene.friction = Friction{{drum.friction}};
     if (drum.has_eol) scene.eol = make_initial_target(mesh);
     Pin pin;

@@ -38,7 +38,7 @@ Scene make_table_scene(const ClothMesh& mesh, const Material& material, const Ve
     scene.gravity = Gravity{};
     Placement place;
     place.translation = middle;
-    scene.obstacles.push_back(Obstacle("table", make_box(size), place, {}, 30.0));
+    scene.obstacles.push_back(MovingObstacle("table", make_box(size), place, {}, 30.0));
     scene.eol = make_initial_target(mesh);
     return scene;
 }

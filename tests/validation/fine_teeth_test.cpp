@@ -49,7 +49,7 @@ ClothRun make_run(const Landing& landing)
     const int count = static_cast<int>(0.36 / landing.pitch);
     const double highest = 0.499 * landing.pitch / std::tan(0.5 * landing.tip_degrees * M_PI / 180.0);
     const double height = std::min(landing.pitch, highest);
-    scene.obstacles.push_back(Obstacle(
+    scene.obstacles.push_back(MovingObstacle(
         "teeth", make_teeth({count, landing.pitch, height, 0.5, landing.tip_degrees}), {}, {}, 30.0));
     if (landing.has_eol) scene.eol = make_initial_target(mesh);
     return ClothRun(std::move(scene), std::move(mesh));

@@ -37,7 +37,7 @@ enum class Ground { Slab, ImportedTable };
 
 /// The ground's upper side is the plane. The imported table has triangles and legs, and its top is 0.6 m
 /// wide.
-Obstacle make_ground(Ground ground, const Vec3& normal)
+MovingObstacle make_ground(Ground ground, const Vec3& normal)
 {
     if (ground == Ground::Slab) return make_floor(normal, kOffset);
     const Mat3 lean = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
@@ -45,7 +45,7 @@ Obstacle make_ground(Ground ground, const Vec3& normal)
     double top = 0.0;  // 0.73 m, rounded to the file's single precision
     for (const Vec3& p : table.mesh.points) top = std::max(top, p.z());
     const Placement placement{lean, lean * Vec3(0.25, 0.25, kOffset - top)};
-    return Obstacle("table", std::move(table.mesh), placement, {}, 30.0);
+    return MovingObstacle("table", std::move(table.mesh), placement, {}, 30.0);
 }
 
 Scene make_scene(double angle, bool has_gravity, Ground ground = Ground::Slab)
@@ -206,7 +206,7 @@ Shock throw_at_teeth(Integrator integrator, double stiffness, double speed, doub
     const double h = 0.005;
     Scene scene;
     scene.material = {0.2, stiffness, 0.3, 1e-4, 0.0, kThickness};
-    scene.obstacles.push_back(Obstacle("teeth", make_teeth({5, 0.1, 0.06, 0.6, 60.0}), {}, {}, 30.0));
+    scene.obstacles.push_back(MovingObstacle("teeth", make_teeth({5, 0.1, 0.06, 0.6, 60.0}), {}, {}, 30.0));
     ClothMesh mesh = make_sheet(Vec2(0.6, 0.4), {18, 12}, GridPattern::Cross);
     for (Vec3& x : mesh.world) x += Vec3(-0.3, -0.2, 0.06 + kThickness + (3.0 + phase) * h * speed);
     ClothRun run(scene, mesh, Vec3(0.0, 0.0, -speed));

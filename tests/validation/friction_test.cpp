@@ -34,8 +34,8 @@ ClothRun make_floor_run(double friction, double slope, GridPattern pattern, cons
     Scene scene;
     scene.material = {0.15, 2000.0, 0.3, 1e-5, 0.0, kThickness};
     scene.gravity = Gravity{kG * Vec3(std::sin(slope), 0.0, -std::cos(slope))};
-    const Obstacle floor = make_floor();
-    scene.obstacles.push_back(Obstacle("floor", floor.mesh(), {}, motion, 30.0));
+    const MovingObstacle floor = make_floor();
+    scene.obstacles.push_back(MovingObstacle("floor", floor.shape().mesh(), {}, motion, 30.0));
     scene.friction = Friction{{friction}};
     ClothMesh mesh = make_sheet({0.4, 0.4}, {4, 4}, pattern);
     lay(mesh, Vec3(corner, -0.2, kThickness));
@@ -240,7 +240,7 @@ ClothRun make_nail_run(double friction, double slope, double direction)
     scene.material = {0.15, 1e4, 0.3, 10.0, 0.002, kThickness};
     const Vec3 level(std::cos(direction), std::sin(direction), 0.0);
     scene.gravity = Gravity{kG * (std::sin(slope) * level - std::cos(slope) * Vec3::UnitZ())};
-    scene.obstacles.push_back(Obstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0));
+    scene.obstacles.push_back(MovingObstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0));
     scene.friction = Friction{{friction}};
     ClothMesh mesh = make_sheet({0.2, 0.2}, {6, 6}, GridPattern::Cross);
     lay(mesh, Vec3(-0.1, -0.1, kThickness));
@@ -335,7 +335,7 @@ ClothRun make_turning_box_run(double friction, double rate, double start)
     motion.angular_velocity = Vec3(0.0, 0.0, rate);
     motion.start = start;
     scene.obstacles.clear();
-    scene.obstacles.push_back(Obstacle("box", make_box(Vec3(0.4, 0.4, 0.2)), place, motion, 30.0));
+    scene.obstacles.push_back(MovingObstacle("box", make_box(Vec3(0.4, 0.4, 0.2)), place, motion, 30.0));
     scene.friction = Friction{{friction}};
     return ClothRun(std::move(scene), std::move(mesh));
 }

@@ -23,7 +23,7 @@ ClothRun make_run(int cells)
     scene.material = *find_material_preset("silk");
     scene.material.damping = 0.002;
     scene.gravity = Gravity{};
-    scene.obstacles.push_back(Obstacle(
+    scene.obstacles.push_back(MovingObstacle(
         "nails", make_points({{-0.15, -0.1, 0.0}, {0.16, -0.09, 0.0}, {0.01, 0.15, 0.0}}), {}, {}, 30.0));
     scene.eol = make_initial_target(mesh);
     return ClothRun(std::move(scene), std::move(mesh));

@@ -30,9 +30,9 @@ double pass_box(int cells, double duration)
     passing.angular_velocity = Vec3::UnitZ();
     passing.start = 0.1;
     scene.obstacles.push_back(
-        Obstacle("wire", make_wire({{-0.8, 0.1, 0.0}, {0.8, 0.1, 0.0}}, false), {}, passing, 30.0));
-    scene.obstacles.push_back(
-        Obstacle("box", make_box({0.4, 0.4, 0.2}), {Mat3::Identity(), Vec3(0.0, -0.3, -0.115)}, {}, 30.0));
+        MovingObstacle("wire", make_wire({{-0.8, 0.1, 0.0}, {0.8, 0.1, 0.0}}, false), {}, passing, 30.0));
+    scene.obstacles.push_back(MovingObstacle("box", make_box({0.4, 0.4, 0.2}),
+                                             {Mat3::Identity(), Vec3(0.0, -0.3, -0.115)}, {}, 30.0));
     scene.eol = make_initial_target(mesh);
     ClothRun run(std::move(scene), std::move(mesh));
     double before = std::numeric_limits<double>::infinity(), most = 0.0;

@@ -104,7 +104,7 @@ ClothRun make_slope_run(const Slope& slope)
     Scene scene = make_table_scene(mesh, {0.4, 2000.0, 0.3, 1e-4, 0.0, 1e-3}, Vec3::Ones(), Vec3::Zero());
     Placement place;
     place.rotation = Eigen::AngleAxisd(slope.tilt * M_PI / 180.0, Vec3::UnitY()).toRotationMatrix();
-    scene.obstacles[0] = Obstacle("box", make_box(Vec3(0.7, 1.2, 0.3)), place, {}, 30.0);
+    scene.obstacles[0] = MovingObstacle("box", make_box(Vec3(0.7, 1.2, 0.3)), place, {}, 30.0);
     return ClothRun(std::move(scene), std::move(mesh));
 }
 

@@ -31,11 +31,11 @@ Scene make_scene(const ClothMesh& mesh, double shortest, double longest)
     return scene;
 }
 
-Obstacle make_block(const Vec3& size, const Vec3& middle)
+MovingObstacle make_block(const Vec3& size, const Vec3& middle)
 {
     Placement place;
     place.translation = middle;
-    return Obstacle("block", make_box(size), place, {}, 30.0);
+    return MovingObstacle("block", make_box(size), place, {}, 30.0);
 }
 
 /// Operations of the next `duration` (s).

@@ -49,7 +49,7 @@ TEST(Rest, TakesOneSolveAStepAndStaysThere)
         scene.gravity = Gravity{};
         Placement place;
         place.translation = Vec3(0.0, 0.0, rest.height - 0.5 * rest.box.z());
-        scene.obstacles.push_back(Obstacle("box", make_box(rest.box), place, {}, 30.0));
+        scene.obstacles.push_back(MovingObstacle("box", make_box(rest.box), place, {}, 30.0));
         if (rest.has_eol) scene.eol = make_initial_target(mesh);
         // Held in the middle, as nothing else keeps it from sliding off.
         Pin pin;

@@ -151,7 +151,7 @@ ClothRun make_rope_run(const RopeCase& rope)
     Scene scene;
     scene.material = {kDensity, rope.stiffness, 0.0, rope.bending, rope.damping, kThickness};
     scene.gravity = Gravity{kG * Vec3(0.0, std::sin(rope.lean), -std::cos(rope.lean))};
-    scene.obstacles.push_back(Obstacle("wire", make_wire_of(rope), {}, {}, 10.0));
+    scene.obstacles.push_back(MovingObstacle("wire", make_wire_of(rope), {}, {}, 10.0));
     scene.eol = make_initial_target(mesh);
     if (rope.friction > 0.0) scene.friction = Friction{{rope.friction}};
     if (!rope.is_given) clear_stand_off(scene, mesh);

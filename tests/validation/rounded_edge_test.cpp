@@ -61,7 +61,7 @@ double slide_off(const RoundedEdge& edge, double step, double shift)
     Scene scene;
     scene.material = {0.1, edge.youngs_modulus, 0.0, 1e-7, 0.0, 1e-3};
     scene.gravity = Gravity{};
-    scene.obstacles.push_back(Obstacle("table", make_rounded_table(edge), {}, {}, 30.0));
+    scene.obstacles.push_back(MovingObstacle("table", make_rounded_table(edge), {}, {}, 30.0));
     scene.eol = make_initial_target(mesh);
     ClothRun run(std::move(scene), std::move(mesh));
     run.advance(0.6, step);

@@ -129,7 +129,7 @@ ClothRun make_strip_run(const StripCase& strip)
     RigidMotion motion;
     motion.velocity = strip.carried;
     scene.obstacles.push_back(
-        Obstacle("prism", make_prism(strip.slopes), strip.place, motion, kFeatureAngle));
+        MovingObstacle("prism", make_prism(strip.slopes), strip.place, motion, kFeatureAngle));
     if (strip.has_eol) scene.eol = make_initial_target(mesh);
     if (strip.friction > 0.0) scene.friction = Friction{{strip.friction}};
     ClothRun run(std::move(scene), std::move(mesh), strip.carried);

@@ -86,12 +86,8 @@ struct Obstacle::Trees {
     }
 };
 
-Obstacle::Obstacle(std::string name, ObstacleMesh mesh, const Placement& placement, RigidMotion motion,
-                   double feature_angle)
-    : name_(std::move(name)),
-      mesh_(std::move(mesh)),
-      placement_(placement),
-      motion_(std::move(motion)),
+Obstacle::Obstacle(ObstacleMesh mesh, double feature_angle)
+    : mesh_(std::move(mesh)),
       topology_(make_topology(mesh_)),
       features_(find_features(mesh_, topology_, feature_angle)),
       bounds_(box_of(mesh_)),
@@ -100,31 +96,9 @@ Obstacle::Obstacle(std::string name, ObstacleMesh mesh, const Placement& placeme
     assert(validate(mesh_).empty());
 }
 
-Obstacle::Obstacle(const Obstacle& other)
-    : name_(other.name_),
-      mesh_(other.mesh_),
-      placement_(other.placement_),
-      motion_(other.motion_),
-      topology_(other.topology_),
-      features_(other.features_),
-      bounds_(other.bounds_),
-      trees_(std::make_unique<Trees>(mesh_, topology_, features_))
-{
-}
-
-Obstacle& Obstacle::operator=(const Obstacle& other)
-{
-    return *this = Obstacle(other);
-}
-
 Obstacle::~Obstacle() = default;
 Obstacle::Obstacle(Obstacle&&) noexcept = default;
 Obstacle& Obstacle::operator=(Obstacle&&) noexcept = default;
-
-Placement Obstacle::at(double time) const
-{
-    return motion_.at(time) * placement_;
-}
 
 void Obstacle::find_faces(const Box3& box, std::vector<int>& found) const
 {

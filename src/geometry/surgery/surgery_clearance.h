@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geometry/obstacle/obstacle.h"
+#include "geometry/rigid_motion.h"
 #include "geometry/surgery/cloth_surgery.h"
 
 namespace arris {

@@ -34,11 +34,11 @@ std::vector<Audit> find_penetrations(const Scene& scene, const State& state)
 {
     std::vector<Audit> penetrations;
     for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
-        const Placement frame = scene.obstacles[o].at(state.time);
+        const ObstaclePose pose = scene.obstacles[o].at(state.time);
         Penetration found =
-            find_penetration(scene.obstacles[o], to_frame(frame, state.mesh.world), state.mesh.faces);
+            find_penetration(pose, to_frame(pose.placement, state.mesh.world), state.mesh.faces);
         if (!found.is_any()) continue;
-        found.place = frame(found.place);
+        found.place = pose.placement(found.place);
         penetrations.push_back({static_cast<int>(o), found});
     }
     return penetrations;

@@ -97,7 +97,7 @@ bool push_out_all(const Scene& scene, const std::vector<MeshEdge>& edges, const 
     const double thickness = scene.material.thickness;
     const std::vector<Carrier> carriers = stand_still(scene, mesh, edges);
     for (std::size_t o = 0; o < carriers.size(); ++o) {
-        const Obstacle& obstacle = scene.obstacles[o];
+        const Obstacle& obstacle = *carriers[o].obstacle;
         for (const auto& find : {find_vertex_contacts, find_edge_contacts, find_face_contacts})
             for (const ObstacleContact& c :
                  find(obstacle, carriers[o].motion, carriers[o].reference, thickness))
@@ -113,7 +113,7 @@ bool is_free_way(const Scene& scene, const std::vector<MeshEdge>& edges, const C
     std::vector<Carrier> carriers = stand_still(scene, from, edges);
     for (std::size_t o = 0; o < carriers.size(); ++o) {
         carriers[o].motion.end = to_frame(carriers[o].end, to.world);
-        if (!check_sweep(scene.obstacles[o], carriers[o].motion, scene.material.thickness).is_clean())
+        if (!check_sweep(*carriers[o].obstacle, carriers[o].motion, scene.material.thickness).is_clean())
             return false;
     }
     return true;

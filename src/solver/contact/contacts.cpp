@@ -55,8 +55,8 @@ class RememberedPairs {
   private:
     std::optional<ObstacleContact> make(const std::array<int, 3>& vertices, const ActiveContact& active)
     {
-        const Obstacle& obstacle = scene_.obstacles[active.obstacle];
         const Carrier& carrier = carriers_[active.obstacle];
+        const Obstacle& obstacle = *carrier.obstacle;
         if (active.kind == ContactKind::Edge)
             return make_edge_contact(obstacle, carrier.motion, carrier.reference, {vertices[0], vertices[1]},
                                      active.element, scene_.material.thickness);
@@ -135,8 +135,8 @@ std::vector<Vec3> find_free_end(const State& state, const Prediction& prediction
 
 Vec3 Carrier::velocity_gained(const Vec3& at_start, const Vec3& one_step_ago) const
 {
-    if (!obstacle) return Vec3::Zero();
-    return obstacle->velocity_after(time, at_start) - obstacle->velocity_after(previous_time, one_step_ago);
+    if (!moving) return Vec3::Zero();
+    return moving->velocity_after(time, at_start) - moving->velocity_after(previous_time, one_step_ago);
 }
 
 void ClothPoints::shift(const Vec3& change, const std::vector<double>& mobility,
@@ -157,14 +157,16 @@ Carriers move_obstacles(const Scene& scene, const State& state, const std::vecto
     if (scene.self_contact) carriers.cloth.motion = {&state.mesh.faces, &edges, state.mesh.world, {}};
     if (scene.obstacles.empty()) return carriers;
     const std::vector<Vec3> free_end = find_free_end(state, prediction, held);
-    for (const Obstacle& obstacle : scene.obstacles) {
+    for (const MovingObstacle& obstacle : scene.obstacles) {
         Carrier carrier;
-        carrier.obstacle = &obstacle;
+        carrier.moving = &obstacle;
         carrier.previous_time = state.time - state.previous_dt;
         carrier.time = state.time;
-        carrier.before = obstacle.at(carrier.previous_time);
-        carrier.begin = obstacle.at(carrier.time);
-        carrier.end = obstacle.at(end);
+        carrier.before = obstacle.at(carrier.previous_time).placement;
+        carrier.begin = obstacle.at(carrier.time).placement;
+        const ObstaclePose pose = obstacle.at(end);
+        carrier.obstacle = pose.shape;
+        carrier.end = pose.placement;
         carrier.motion = {&state.mesh.faces, &edges, to_frame(carrier.begin, state.mesh.world),
                           to_frame(carrier.end, free_end)};
         carriers.obstacles.push_back(std::move(carrier));

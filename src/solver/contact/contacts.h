@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -32,8 +33,9 @@ struct Carrier {
     Placement before, begin, end;  ///< placement of its frame: one step ago, at the step's start and end
     ClothMotion motion;            ///< ends where the cloth would be without contacts
     std::vector<Vec3> reference;   ///< where the cloth would be if it slid along an obstacle in its way
-    const Obstacle* obstacle = nullptr;
-    double previous_time = 0.0, time = 0.0;  ///< s, one step ago and at the step's start
+    std::shared_ptr<const Obstacle> obstacle;  ///< its shape at the step's end; null: the cloth itself
+    const MovingObstacle* moving = nullptr;    ///< likewise
+    double previous_time = 0.0, time = 0.0;    ///< s, one step ago and at the step's start
 
     /// Velocity, m/s, that its material at these places has gained in the last step.
     Vec3 velocity_gained(const Vec3& at_start, const Vec3& one_step_ago) const;

@@ -93,11 +93,12 @@ void append_folds(const Scene& scene, const State& state, const ClothStars& star
 
 /// Whether an EOL vertex is past the end of its wire, with another one between them. The end supports the
 /// cloth at the first vertex past it; farther out nothing does.
-bool is_unsupported(const Scene& scene, const State& state, const ClothStars& stars, const EolCoordinates& at,
-                    const std::vector<Vec3>& positions)
+bool is_unsupported(const Carriers& carriers, const State& state, const ClothStars& stars,
+                    const EolCoordinates& at)
 {
     const EolVertex& eol = state.eol[at.entry];
-    const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
+    const Obstacle& obstacle = *carriers[eol.on.obstacle].obstacle;
+    const std::vector<Vec3>& positions = carriers[eol.on.obstacle].motion.begin;
     const auto length_of = [&](const EolVertex& e, int v) {
         return e.on.is_corner() ? 0.0 : length_past_end(obstacle, e.on.index, positions[v]);
     };
@@ -141,7 +142,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     std::vector<int> slot(state.mesh.world.size(), -1);
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
         const int o = state.eol[entry].on.obstacle;
-        const EolPlacing placing = place_eol_vertex(scene.obstacles[o], thickness, state, entry, stars,
+        const EolPlacing placing = place_eol_vertex(*carriers[o].obstacle, thickness, state, entry, stars,
                                                     carriers[o].motion.begin, carriers[o].end, turning);
         if (!placing.coordinates) continue;
         slot[placing.coordinates->vertex] = static_cast<int>(eol.size());
@@ -155,9 +156,9 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         const int o = contact.obstacle;
         const EolVertex &p = state.eol[eol[slot[a]].entry], &q = state.eol[eol[slot[b]].entry];
         return p.on.obstacle == o && !p.on.is_corner() && !q.on.is_corner() &&
-               is_on_wire(scene.obstacles[o], p) &&
-               feature_of_edge(scene.obstacles[o].features(), contact.element) >= 0 &&
-               is_trace_edge(scene.obstacles[o], {p, carriers[o].motion.begin[a]},
+               is_on_wire(*carriers[o].obstacle, p) &&
+               feature_of_edge(carriers[o].obstacle->features(), contact.element) >= 0 &&
+               is_trace_edge(*carriers[o].obstacle, {p, carriers[o].motion.begin[a]},
                              {q, carriers[o].motion.begin[b]});
     };
     std::erase_if(contacts, [&](const Contact& contact) {
@@ -166,7 +167,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         for (const int v : contact.vertices) {
             if (v < 0 || slot[v] < 0) continue;
             const EolVertex& vertex = state.eol[eol[slot[v]].entry];
-            if (vertex.on.obstacle == o && is_covered(scene.obstacles[o], vertex, eol[slot[v]],
+            if (vertex.on.obstacle == o && is_covered(*carriers[o].obstacle, vertex, eol[slot[v]],
                                                       carriers[o].motion.begin[v], thickness, contact))
                 return true;
         }
@@ -175,7 +176,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
     const std::size_t found = contacts.size();
     for (std::size_t e = 0; e < eol.size(); ++e) {
         const int o = state.eol[eol[e].entry].on.obstacle;
-        if (is_unsupported(scene, state, stars, eol[e], carriers[o].motion.begin)) continue;
+        if (is_unsupported(carriers, state, stars, eol[e])) continue;
         contacts.push_back(make_eol_contact(carriers, prediction, thickness, o, eol[e]));
         contacts.back().eol = static_cast<int>(e);
         contacts.back().may_grow = false;  // a push-out would stretch the cloth on both sides

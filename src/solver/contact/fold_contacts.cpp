@@ -25,7 +25,7 @@ constexpr double kCells = 4.0, kTime = 1.0, kTimeOfMoving = 0.2;  // s
 
 class FoldSearch {
   public:
-    FoldSearch(const std::vector<Obstacle>& obstacles, const State& state, const ClothStars& stars,
+    FoldSearch(const std::vector<MovingObstacle>& obstacles, const State& state, const ClothStars& stars,
                const std::vector<EolCoordinates>& eol, const std::vector<const std::vector<Vec3>*>& positions)
         : obstacles_(obstacles),
           state_(state),
@@ -74,12 +74,13 @@ class FoldSearch {
     bool is_on_wire(const EolVertex& vertex) const
     {
         return !vertex.on.is_corner() &&
-               obstacles_[vertex.on.obstacle].features().edges[vertex.on.index].kind == FeatureKind::Wire;
+               obstacles_[vertex.on.obstacle].shape().features().edges[vertex.on.index].kind ==
+                   FeatureKind::Wire;
     }
 
     int polyline_of(const EolVertex& vertex) const
     {
-        return obstacles_[vertex.on.obstacle].features().edges[vertex.on.index].polyline;
+        return obstacles_[vertex.on.obstacle].shape().features().edges[vertex.on.index].polyline;
     }
 
     const Vec3& place_of(int vertex, const Wire& wire) const { return (*positions_[wire[0]])[vertex]; }
@@ -110,7 +111,7 @@ class FoldSearch {
             ++count;
         });
         const double cell = count > 0 ? sum / count : 0.0;
-        const double time = obstacles_[wire[0]].motion().is_moving() ? kTimeOfMoving : kTime;
+        const double time = obstacles_[wire[0]].is_moving() ? kTimeOfMoving : kTime;
         return kCells * cell + time * state_.material_velocity[vertex].norm();
     }
 
@@ -118,7 +119,7 @@ class FoldSearch {
     /// itself and on neither side.
     bool is_past_end(const EolCoordinates& at, int w, const Wire& wire) const
     {
-        const Obstacle& obstacle = obstacles_[wire[0]];
+        const ObstaclePose obstacle = obstacles_[wire[0]].at(state_.time);
         const Vec3& place = place_of(w, wire);
         const int edge = follow_polyline(obstacle, state_.eol[at.entry].on.index, place).feature;
         return arris::is_past_end(obstacle, edge, place);
@@ -162,7 +163,7 @@ class FoldSearch {
         return found;
     }
 
-    const std::vector<Obstacle>& obstacles_;
+    const std::vector<MovingObstacle>& obstacles_;
     const State& state_;
     const ClothStars& stars_;
     const std::vector<EolCoordinates>& eol_;
@@ -175,7 +176,7 @@ class FoldSearch {
 
 }  // namespace
 
-std::vector<FoldContact> find_fold_contacts(const std::vector<Obstacle>& obstacles, const State& state,
+std::vector<FoldContact> find_fold_contacts(const std::vector<MovingObstacle>& obstacles, const State& state,
                                             const ClothStars& stars, const std::vector<EolCoordinates>& eol,
                                             const std::vector<const std::vector<Vec3>*>& positions)
 {

@@ -21,7 +21,7 @@ struct FoldContact {
 /// there. Each vertex is kept off its nearest plane. Vertices past the wire's end are included only as direct
 /// neighbours. `positions`: the cloth in the frame of each obstacle at the step's start. Sorted by (vertex,
 /// obstacle, polyline), without duplicates.
-std::vector<FoldContact> find_fold_contacts(const std::vector<Obstacle>& obstacles, const State& state,
+std::vector<FoldContact> find_fold_contacts(const std::vector<MovingObstacle>& obstacles, const State& state,
                                             const ClothStars& stars, const std::vector<EolCoordinates>& eol,
                                             const std::vector<const std::vector<Vec3>*>& positions);
 

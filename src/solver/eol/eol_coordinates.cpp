@@ -267,12 +267,12 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
 EolPlacing EolPlacer::place(int entry)
 {
     const EolVertex& eol = state_.eol[entry];
-    const Obstacle& obstacle = obstacles_[eol.on.obstacle];
-    if (std::exchange(of_, eol.on.obstacle) != eol.on.obstacle) now_ = obstacle.at(state_.time);
+    if (std::exchange(of_, eol.on.obstacle) != eol.on.obstacle)
+        now_ = obstacles_[eol.on.obstacle].at(state_.time);
     positions_.resize(state_.mesh.world.size(), Vec3::Zero());
     for (const int f : stars_.faces[state_.index_of(eol.vertex_id)])
-        for (const int v : state_.mesh.faces[f]) positions_[v] = now_.inverse(state_.mesh.world[v]);
-    return place_eol_vertex(obstacle, thickness_, state_, entry, stars_, positions_, now_);
+        for (const int v : state_.mesh.faces[f]) positions_[v] = now_.placement.inverse(state_.mesh.world[v]);
+    return place_eol_vertex(now_, thickness_, state_, entry, stars_, positions_, now_.placement);
 }
 
 }  // namespace arris

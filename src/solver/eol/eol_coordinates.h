@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/obstacle/feature_frame.h"
+#include "geometry/obstacle/moving_obstacle.h"
 #include "geometry/rigid_motion.h"
 #include "solver/eol/cloth_stars.h"
 #include "solver/model/row_cause.h"
@@ -45,7 +46,7 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
 /// references: between calls the state's time and faces, and the stars, must not change.
 class EolPlacer {
   public:
-    EolPlacer(const std::vector<Obstacle>& obstacles, double thickness, const State& state,
+    EolPlacer(const std::vector<MovingObstacle>& obstacles, double thickness, const State& state,
               const ClothStars& stars)
         : obstacles_(obstacles), thickness_(thickness), state_(state), stars_(stars)
     {
@@ -54,12 +55,12 @@ class EolPlacer {
     EolPlacing place(int entry);
 
   private:
-    const std::vector<Obstacle>& obstacles_;
+    const std::vector<MovingObstacle>& obstacles_;
     double thickness_;  ///< m
     const State& state_;
     const ClothStars& stars_;
-    int of_ = -1;                  ///< index of the obstacle in `now_`
-    Placement now_;                ///< placement of that obstacle
+    int of_ = -1;                  ///< index of the obstacle that `now_` is of
+    ObstaclePose now_;             ///< that obstacle at the state's time
     std::vector<Vec3> positions_;  ///< in its frame; current only in the star of the last vertex placed
 };
 

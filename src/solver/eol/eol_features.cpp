@@ -89,14 +89,15 @@ bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol
     return trace_length(obstacle, a, b, most).has_value();
 }
 
-std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& obstacles, const State& state,
-                                                 const ClothStars& stars)
+std::vector<std::array<int, 2>> find_trace_edges(const std::vector<MovingObstacle>& obstacles,
+                                                 const State& state, const ClothStars& stars)
 {
     std::vector<std::array<int, 2>> found;
     std::vector<int> later;  // neighbours
     const auto add_from = [&](int a) {
         const int v = state.index_of(state.eol[a].vertex_id);
-        const Obstacle& obstacle = obstacles[static_cast<std::size_t>(state.eol[a].on.obstacle)];
+        const ObstaclePose obstacle =
+            obstacles[static_cast<std::size_t>(state.eol[a].on.obstacle)].at(state.time);
         later.clear();
         for (const int f : stars.faces[v])
             for (const int w : state.mesh.faces[f])
@@ -106,7 +107,7 @@ std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& ob
         for (const int w : later) {
             const int b = state.eol_entry(state.ids[w]);
             if (b < 0) continue;
-            if (!now) now = obstacle.at(state.time);
+            if (!now) now = obstacle.placement;
             if (is_trace_edge(obstacle, {state.eol[a], now->inverse(state.mesh.world[v])},
                               {state.eol[b], now->inverse(state.mesh.world[w])}))
                 found.push_back({a, b});
@@ -116,14 +117,13 @@ std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& ob
     return found;
 }
 
-void follow_features(const std::vector<Obstacle>& obstacles, State& state)
+void follow_features(const std::vector<MovingObstacle>& obstacles, State& state)
 {
     for (EolVertex& eol : state.eol) {
         if (eol.on.is_fixed()) continue;
-        const Obstacle& obstacle = obstacles[eol.on.obstacle];
+        const ObstaclePose obstacle = obstacles[eol.on.obstacle].at(state.time);
         const Vec3& world = state.mesh.world[state.index_of(eol.vertex_id)];
-        eol.on.index =
-            follow_polyline(obstacle, eol.on.index, obstacle.at(state.time).inverse(world)).feature;
+        eol.on.index = follow_polyline(obstacle, eol.on.index, obstacle.placement.inverse(world)).feature;
     }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/obstacle/feature_path.h"
+#include "geometry/obstacle/moving_obstacle.h"
 #include "solver/eol/cloth_stars.h"
 #include "solver/model/eol_limits.h"
 #include "solver/model/state.h"
@@ -43,11 +44,11 @@ bool is_of_one_strand(const Obstacle& obstacle, const PlacedEol& a, const Placed
 
 /// The cloth's edges that lie along features at the state's time, as the entries of their ends in State::eol,
 /// ascending.
-std::vector<std::array<int, 2>> find_trace_edges(const std::vector<Obstacle>& obstacles, const State& state,
-                                                 const ClothStars& stars);
+std::vector<std::array<int, 2>> find_trace_edges(const std::vector<MovingObstacle>& obstacles,
+                                                 const State& state, const ClothStars& stars);
 
 /// Reassigns EOL vertices that have moved past an end of their edge to the next edge of the polyline, at the
 /// state's time.
-void follow_features(const std::vector<Obstacle>& obstacles, State& state);
+void follow_features(const std::vector<MovingObstacle>& obstacles, State& state);
 
 }  // namespace arris

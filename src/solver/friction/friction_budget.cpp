@@ -30,7 +30,7 @@ struct Side {
 
 bool lies_on_face(const RubbingCloth& cloth, const EolVertex& eol, const Vec3& normal)
 {
-    const Obstacle& obstacle = cloth.scene.obstacles[eol.on.obstacle];
+    const Obstacle& obstacle = *cloth.carriers[eol.on.obstacle].obstacle;
     if (!is_on_convex_edge(obstacle, eol)) return false;
     const Mat3& rotation = cloth.carriers[eol.on.obstacle].end.rotation;
     const auto& normals = obstacle.features().edges[eol.on.index].normals;

@@ -158,14 +158,15 @@ class Conforming {
     void join()
     {
         const std::vector<PlacedEol> placed = trace_.placed();
-        for (const auto& [a, b] : find_trace_neighbours(scene_.obstacles, placed)) join(*a, *b);
+        for (const auto& [a, b] : find_trace_neighbours(scene_.obstacles, trace_.time(), placed))
+            join(*a, *b);
     }
 
     void join(const EolVertex& p, const EolVertex& q)
     {
         const VertexId a = p.vertex_id, b = q.vertex_id;
         if (!trace_.is_on_trace(a) || !trace_.is_on_trace(b)) return;
-        if (!is_trace_edge(scene_.obstacles[p.on.obstacle], trace_.placed(p), trace_.placed(q))) return;
+        if (!is_trace_edge(trace_.pose_of(p), trace_.placed(p), trace_.placed(q))) return;
         if (surgery_.edge_tag(a, b) != kNoTag) return;
         const int tag = trace_.tags().tag(p.on.is_corner() ? q : p);
         if (surgery_.has_edge(a, b))

@@ -43,8 +43,9 @@ bool EolGuard::allows(const SurgeryEvent& event)
 {
     const double thickness = scene_.material.thickness;
     if (strains(event)) return false;
-    return std::all_of(scene_.obstacles.begin(), scene_.obstacles.end(), [&](const Obstacle& obstacle) {
-        return is_free(event, obstacle, obstacle.at(state_.time), thickness);
+    return std::all_of(scene_.obstacles.begin(), scene_.obstacles.end(), [&](const MovingObstacle& obstacle) {
+        const ObstaclePose pose = obstacle.at(state_.time);
+        return is_free(event, pose, pose.placement, thickness);
     });
 }
 

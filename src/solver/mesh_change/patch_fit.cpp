@@ -257,7 +257,7 @@ class PatchFitter {
             material_drift = after_.material_velocity[v];
         } else if (const int entry = after_.eol_entry(after_.ids[v]); entry >= 0) {
             if (const EolPlacing placing = placer_.place(entry); placing.coordinates) {
-                const Obstacle& obstacle = scene_.obstacles[after_.eol[entry].on.obstacle];
+                const MovingObstacle& obstacle = scene_.obstacles[after_.eol[entry].on.obstacle];
                 basis = placing.coordinates->basis;
                 material_basis = placing.coordinates->material_basis;
                 drift = obstacle.velocity_after(after_.time, after_.mesh.world[v]);

@@ -136,11 +136,11 @@ class Relaxation {
     std::vector<int> find_met_faces(const std::vector<Vec3>& begin, double time) const
     {
         std::vector<int> met;
-        for (const Obstacle& obstacle : scene_.obstacles) {
-            const Placement now = obstacle.at(time);
-            const ClothMotion motion = {&patch_.mesh.faces, &edges_, to_frame(now, begin),
-                                        to_frame(now, patch_.mesh.world)};
-            const SweepReport swept = check_sweep(obstacle, motion, scene_.material.thickness);
+        for (const MovingObstacle& obstacle : scene_.obstacles) {
+            const ObstaclePose pose = obstacle.at(time);
+            const ClothMotion motion = {&patch_.mesh.faces, &edges_, to_frame(pose.placement, begin),
+                                        to_frame(pose.placement, patch_.mesh.world)};
+            const SweepReport swept = check_sweep(pose, motion, scene_.material.thickness);
             met.insert(met.end(), swept.faces.begin(), swept.faces.end());
         }
         return met;
@@ -150,10 +150,10 @@ class Relaxation {
     /// until they are as far from the obstacles as before. Cloth that sinks in would be pushed out again.
     void keep_off(const std::vector<Vec3>& begin, double time)
     {
-        for (const Obstacle& obstacle : scene_.obstacles) {
-            const Placement now = obstacle.at(time);
+        for (const MovingObstacle& obstacle : scene_.obstacles) {
+            const ObstaclePose pose = obstacle.at(time);
             const auto gap_at = [&](const Vec3& place) {
-                return distance_to(obstacle, now.inverse(place), scene_.material.thickness);
+                return distance_to(pose, pose.placement.inverse(place), scene_.material.thickness);
             };
             for (const int v : free_) keep_off(gap_at, begin[v], patch_.mesh.world[v]);
         }
@@ -300,7 +300,7 @@ Vec3 find_kept_normal(const Scene& scene, const State& state, std::uint32_t vert
 {
     Vec3 normal = Vec3::Zero();
     visit_contacts(state, vertex_id, [&](const ActiveContact& contact) {
-        normal = scene.obstacles[contact.obstacle].at(state.time).rotation * contact.normal;
+        normal = scene.obstacles[contact.obstacle].at(state.time).placement.rotation * contact.normal;
     });
     return normal;
 }

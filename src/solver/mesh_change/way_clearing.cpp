@@ -21,7 +21,7 @@ void WayClearing::expect_flow(VertexId v, const Vec2& failed)
 /// Steps of a vertex's flow that must be clear ahead; with less room the vertex is released.
 double WayClearing::least_steps(const EolVertex& eol) const
 {
-    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
+    const ObstaclePose obstacle = trace_.pose_of(eol);
     if (eol.on.is_corner()) return is_tip(obstacle, eol.on.index) ? kTipSteps : kClearSteps;
     return is_on_convex_edge(obstacle, eol) ? kClearSteps : kWireSteps;
 }

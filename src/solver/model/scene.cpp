@@ -10,16 +10,17 @@ namespace arris {
 
 bool has_features(const Scene& scene)
 {
-    return std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const Obstacle& obstacle) {
-        return !obstacle.features().edges.empty() || !obstacle.features().corners.empty();
+    return std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const MovingObstacle& obstacle) {
+        const ObstacleFeatures& features = obstacle.shape().features();
+        return !features.edges.empty() || !features.corners.empty();
     });
 }
 
 Placement pin_placement(const Scene& scene, const Pin& pin, double time)
 {
     if (!pin.follows) return pin.motion.at(time);
-    const Obstacle& obstacle = scene.obstacles[*pin.follows];
-    return obstacle.at(time) * obstacle.at(0.0).inverse();
+    const MovingObstacle& obstacle = scene.obstacles[*pin.follows];
+    return obstacle.at(time).placement * obstacle.at(0.0).placement.inverse();
 }
 
 Vec3 pin_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place)
@@ -38,7 +39,7 @@ std::vector<double> input_jumps(const Scene& scene)
         if (!pin.follows) add(pin.motion.jumps());
         times.insert(times.end(), {pin.start, pin.release});
     }
-    for (const Obstacle& obstacle : scene.obstacles) add(obstacle.motion().jumps());
+    for (const MovingObstacle& obstacle : scene.obstacles) add(obstacle.jumps());
     for (const Pull& pull : scene.pulls) times.insert(times.end(), {pull.start, pull.stop});
 
     std::erase_if(times, [](double t) { return !(t > 0.0) || !std::isfinite(t); });

@@ -8,7 +8,7 @@
 
 #include "geometry/cloth/material_box.h"
 #include "geometry/cloth/mesh_target.h"
-#include "geometry/obstacle/obstacle.h"
+#include "geometry/obstacle/moving_obstacle.h"
 #include "geometry/rigid_motion.h"
 #include "physics/effects.h"
 #include "physics/material.h"
@@ -56,7 +56,7 @@ struct Scene {
     std::optional<Wind> wind;
     std::vector<Pull> pulls;
     std::vector<Pin> pins;
-    std::vector<Obstacle> obstacles;
+    std::vector<MovingObstacle> obstacles;
     std::optional<Friction> friction;
     std::optional<ClothContact> self_contact;
     std::optional<MeshTarget> eol;  ///< target of the mesh near features; no EOL vertices without it

@@ -41,7 +41,7 @@ class BendFinder {
           state_(state),
           stars_(stars),
           o_(o),
-          obstacle_(scene.obstacles[static_cast<std::size_t>(o)]),
+          obstacle_(scene.obstacles[static_cast<std::size_t>(o)].at(state.time)),
           positions_(positions)
     {
     }
@@ -132,7 +132,7 @@ class BendFinder {
                 if (!(along > p.along && along < q.along) || bend.point == p.bend || bend.point == q.bend ||
                     !locks_at_bend(scene_, state_, obstacle_, bend.bend, p.material))
                     continue;
-                const Vec3& at = obstacle_.mesh().points[static_cast<std::size_t>(bend.point)];
+                const Vec3& at = obstacle_->mesh().points[static_cast<std::size_t>(bend.point)];
                 const double s = closest_on_segment(at, p.point, q.point);
                 const double missed = (at - (p.point + s * (q.point - p.point))).norm();
                 if (missed > most) worst = &bend;
@@ -144,7 +144,7 @@ class BendFinder {
     /// Site where the cloth around two vertices is nearest to a bend.
     std::optional<FeatureSite> nearest_to(const WireBend& bend, const std::array<int, 2>& around) const
     {
-        const Vec3& point = obstacle_.mesh().points[static_cast<std::size_t>(bend.point)];
+        const Vec3& point = obstacle_->mesh().points[static_cast<std::size_t>(bend.point)];
         double least = kOnFeature * scene_.material.thickness;
         std::optional<FeatureSite> site;
         for (const int f : faces_around(around)) {
@@ -176,7 +176,7 @@ class BendFinder {
     const State& state_;
     const ClothStars& stars_;
     std::int32_t o_;
-    const Obstacle& obstacle_;
+    ObstaclePose obstacle_;  ///< at the state's time
     const std::vector<Vec3>& positions_;
 };
 
@@ -211,7 +211,8 @@ std::vector<FeatureSite> find_bend_sites(const Scene& scene, const State& state,
                                          std::int32_t o, const std::vector<Vec3>& positions,
                                          const std::vector<FeatureSite>& sites)
 {
-    const std::vector<FeatureEdge>& edges = scene.obstacles[static_cast<std::size_t>(o)].features().edges;
+    const std::vector<FeatureEdge>& edges =
+        scene.obstacles[static_cast<std::size_t>(o)].shape().features().edges;
     std::set<int> polylines;
     const auto add = [&](int feature) {
         if (edges[feature].kind == FeatureKind::Wire) polylines.insert(edges[feature].polyline);

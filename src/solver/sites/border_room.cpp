@@ -16,8 +16,8 @@ namespace {
 /// Tangent of the feature in the world, at the state's time.
 Vec3 tangent_of(const Scene& scene, const State& state, const EolVertex& eol)
 {
-    const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
-    return obstacle.at(state.time).rotation * feature_tangent(obstacle, eol);
+    const ObstaclePose obstacle = scene.obstacles[eol.on.obstacle].at(state.time);
+    return obstacle.placement.rotation * feature_tangent(obstacle, eol);
 }
 
 bool is_cloth_corner(const State& state, const ClothStars& stars, int v)

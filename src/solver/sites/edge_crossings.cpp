@@ -29,11 +29,12 @@ EdgeCrossings::EdgeCrossings(const Scene& scene, const State& state, const Cloth
                              std::int32_t obstacle)
     : state_(state),
       stars_(stars),
-      obstacle_(scene.obstacles[obstacle]),
+      moving_(scene.obstacles[obstacle]),
+      obstacle_(scene.obstacles[obstacle].at(state.time)),
       o_(obstacle),
       thickness_(scene.material.thickness),
       target_(surgery_target(scene, state)),
-      positions_(to_frame(obstacle_.at(state.time), state.mesh.world))
+      positions_(to_frame(obstacle_.placement, state.mesh.world))
 {
 }
 
@@ -137,12 +138,12 @@ std::optional<double> EdgeCrossings::find_share(int a, int b, int feature, const
 {
     const std::array<Vec3, 2> segment = segment_at(a, feature);
     const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
-    const FeatureEdge& edge = obstacle_.features().edges[feature];
+    const FeatureEdge& edge = obstacle_->features().edges[feature];
     if (edge.kind != FeatureKind::Convex) {
         const bool is_near = (nearest.first - nearest.second).norm() <= kOnFeature * thickness_;
-        const auto& ends = obstacle_.topology().edges[edge.edge].points;
-        const bool is_at_corner = (nearest.t <= 0.0 && is_corner(obstacle_.features(), ends[0])) ||
-                                  (nearest.t >= 1.0 && is_corner(obstacle_.features(), ends[1]));
+        const auto& ends = obstacle_->topology().edges[edge.edge].points;
+        const bool is_at_corner = (nearest.t <= 0.0 && is_corner(obstacle_->features(), ends[0])) ||
+                                  (nearest.t >= 1.0 && is_corner(obstacle_->features(), ends[1]));
         if (!is_near || is_at_corner) return std::nullopt;
         return nearest.s;
     }
@@ -166,7 +167,7 @@ std::optional<double> EdgeCrossings::find_share(int a, int b, int feature, const
 /// vertex on the wire would crowd the fold.
 std::optional<EdgeCrossings::FoldEnd> EdgeCrossings::find_fold_around(int a, int b, int feature) const
 {
-    if (obstacle_.features().edges[feature].kind == FeatureKind::Convex) return std::nullopt;
+    if (obstacle_->features().edges[feature].kind == FeatureKind::Convex) return std::nullopt;
     const std::array<Vec3, 2> segment = segment_at(a, feature);
     for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)}) {
         const double along = closest_on_segment(positions_[end], segment[0], segment[1]);
@@ -186,7 +187,7 @@ std::optional<EdgeCrossings::FoldEnd> EdgeCrossings::find_fold_around(int a, int
 /// on the wire would take the fold's place, though the fold does not hang on the wire.
 bool EdgeCrossings::is_beside_fold(int a, int b, int feature, const Vec2& X) const
 {
-    if (obstacle_.features().edges[feature].kind == FeatureKind::Convex) return false;
+    if (obstacle_->features().edges[feature].kind == FeatureKind::Convex) return false;
     const std::array<Vec3, 2> segment = segment_at(a, feature);
     const std::array<int, 2> ends = {a, b};
     return std::any_of(ends.begin(), ends.end(), [&](int end) {
@@ -204,9 +205,9 @@ double EdgeCrossings::find_rise(int a, int b, int feature, const Vec3& normal) c
 {
     const auto [from, to] = feature_segment(obstacle_, feature);
     const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, {from, to});
-    const Placement now = obstacle_.at(state_.time);
+    const Placement& now = obstacle_.placement;
     const Vec3 velocity = (1.0 - nearest.s) * state_.velocity[a] + nearest.s * state_.velocity[b] -
-                          obstacle_.velocity_after(state_.time, now(nearest.second));
+                          moving_.velocity_after(state_.time, now(nearest.second));
     const Vec3 along = (to - from).normalized();
     const Vec3 sliding = now.rotation.transpose() * velocity;
     const double slide = state_.previous_dt * (sliding - along.dot(sliding) * along).norm();
@@ -218,7 +219,7 @@ double EdgeCrossings::find_rise(int a, int b, int feature, const Vec3& normal) c
 /// there.
 std::optional<FeatureSite> EdgeCrossings::find_beyond_end(int a, int b, int feature, const Vec3& normal) const
 {
-    if (obstacle_.features().edges[feature].kind != FeatureKind::Convex) return std::nullopt;
+    if (obstacle_->features().edges[feature].kind != FeatureKind::Convex) return std::nullopt;
     const std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
     const SegmentPair nearest = closest_between_segments({positions_[a], positions_[b]}, segment);
     const int end = nearest.s < 0.5 ? a : b;

@@ -66,7 +66,8 @@ class EdgeCrossings {
 
     const State& state_;
     const ClothStars& stars_;
-    const Obstacle& obstacle_;
+    const MovingObstacle& moving_;
+    ObstaclePose obstacle_;  ///< at the state's time
     std::int32_t o_;
     double thickness_;
     MeshTarget target_;

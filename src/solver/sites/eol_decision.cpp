@@ -50,9 +50,9 @@ bool is_folded(const State& state, std::span<const int> faces)
 /// vertex, whose place is now in that face.
 bool is_corner_under_face(const Scene& scene, const State& state, const EolVertex& eol)
 {
-    const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
+    const ObstaclePose obstacle = scene.obstacles[eol.on.obstacle].at(state.time);
     if (!eol.on.is_corner()) return false;
-    const int point = obstacle.features().corners[eol.on.index].point;
+    const int point = obstacle->features().corners[eol.on.index].point;
     return std::any_of(state.active.begin(), state.active.end(), [&](const ActiveContact& contact) {
         return contact.obstacle == eol.on.obstacle && contact.kind == ContactKind::Triangle &&
                contact.element == point;
@@ -77,9 +77,9 @@ bool is_led_astray(const Scene& scene, const State& state, const EolVertex& eol,
         !has_left_feature(place - way_off(at.frame, place), place, scene.material.thickness) ||
         !(state.material_velocity[at.vertex].norm() > 0.5 * kFreeFlow))
         return false;
-    const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
+    const ObstaclePose obstacle = scene.obstacles[eol.on.obstacle].at(state.time);
     if (!is_on_convex_edge(obstacle, eol)) return true;
-    const std::array<Vec3, 2>& normals = obstacle.features().edges[eol.on.index].normals;
+    const std::array<Vec3, 2>& normals = obstacle->features().edges[eol.on.index].normals;
     return std::none_of(normals.begin(), normals.end(), [&](const Vec3& normal) {
         return std::abs(normal.dot(at.frame.outward)) < kAlongFace;
     });
@@ -89,7 +89,7 @@ bool is_led_astray(const Scene& scene, const State& state, const EolVertex& eol,
 /// with it.
 bool is_on_feature(const Scene& scene, const State& state, const EolVertex& eol, const Vec3& place)
 {
-    const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
+    const ObstaclePose obstacle = scene.obstacles[eol.on.obstacle].at(state.time);
     const int end = eol.on.is_corner() ? -1 : end_passed(obstacle, eol.on.index, place);
     const Vec2& X = state.mesh.material[state.index_of(eol.vertex_id)];
     return end < 0 || length_past_end(obstacle, eol.on.index, place) <
@@ -153,9 +153,9 @@ std::optional<RowCause> EolAdmission::find_border_cause(const FeatureSite& site,
 bool EolAdmission::gathers(const FeatureSite& site, int v) const
 {
     if (site.on.is_fixed()) return false;
-    const Obstacle& obstacle = scene_.obstacles[site.on.obstacle];
+    const ObstaclePose obstacle = scene_.obstacles[site.on.obstacle].at(state_.time);
     const auto [from, to] = feature_segment(obstacle, site.on.index);
-    const Vec3 tangent = obstacle.at(state_.time).rotation * (to - from).normalized();
+    const Vec3 tangent = obstacle.placement.rotation * (to - from).normalized();
     return is_near_gathering(scene_, state_, stars_, v, tangent);
 }
 
@@ -164,8 +164,8 @@ bool EolAdmission::gathers(const FeatureSite& site, int v) const
 bool EolAdmission::is_beside_other(const FeatureSite& site) const
 {
     if (site.on.is_corner()) return false;
-    const Obstacle& obstacle = scene_.obstacles[site.on.obstacle];
-    const std::vector<FeatureEdge>& edges = obstacle.features().edges;
+    const ObstaclePose obstacle = scene_.obstacles[site.on.obstacle].at(state_.time);
+    const std::vector<FeatureEdge>& edges = obstacle->features().edges;
     const double h = cell_length(scene_, state_, site.material);
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
         if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
@@ -181,7 +181,7 @@ bool EolAdmission::is_beside_other(const FeatureSite& site) const
 /// Whether an EOL vertex belongs to a free fold: one that has left its convex edge.
 bool EolAdmission::has_left(const EolVertex& eol) const
 {
-    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
+    const ObstaclePose obstacle = scene_.obstacles[eol.on.obstacle].at(state_.time);
     if (!is_on_convex_edge(obstacle, eol)) return false;
     const Vec3 place = trace_.placed(eol).place;
     return has_left_feature(place_on_feature(obstacle, eol.on.index, place).point, place,
@@ -209,18 +209,19 @@ std::optional<RowCause> EolAdmission::find_fold_cause(const FeatureSite& site) c
     const std::optional<double> way = find_free_fold(site);
     if (!way) return std::nullopt;
     const bool is_between = site.contact < 0;  // fills a gap, and does not press itself
-    if (is_between || is_along_face(scene_.obstacles[site.on.obstacle], site)) return RowCause::FlatBehind;
+    if (is_between || is_along_face(scene_.obstacles[site.on.obstacle].shape(), site))
+        return RowCause::FlatBehind;
     return *way < kRoom * cell_length(scene_, state_, site.material) ? std::optional(RowCause::BesideEol)
-                                                            : std::nullopt;
+                                                                     : std::nullopt;
 }
 
 /// Distance, m, from the edge to the free fold that a site follows: the least, if there are several. Nothing
 /// if the site follows none.
 std::optional<double> EolAdmission::find_free_fold(const FeatureSite& site) const
 {
-    const Obstacle& obstacle = scene_.obstacles[site.on.obstacle];
-    const std::vector<FeatureEdge>& edges = obstacle.features().edges;
-    const Vec3 here = obstacle.at(state_.time).inverse(world_at(site));
+    const ObstaclePose obstacle = scene_.obstacles[site.on.obstacle].at(state_.time);
+    const std::vector<FeatureEdge>& edges = obstacle->features().edges;
+    const Vec3 here = obstacle.placement.inverse(world_at(site));
     const auto [from, to] = feature_segment(obstacle, site.on.index);
     const double h = cell_length(scene_, state_, site.material);
     std::optional<double> least;
@@ -250,10 +251,10 @@ std::optional<RowCause> EolAdmission::refuse_inserted(const EolVertex& eol, cons
 
 bool EolAdmission::is_in_plane(const EolVertex& eol) const
 {
-    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
+    const ObstaclePose obstacle = scene_.obstacles[eol.on.obstacle].at(state_.time);
     const Vec3 place = trace_.placed(eol).place;
     if (eol.on.is_corner()) return true;
-    const FeatureEdge& edge = obstacle.features().edges[eol.on.index];
+    const FeatureEdge& edge = obstacle->features().edges[eol.on.index];
     const Vec3 off = way_across(obstacle, eol.on.index, place);
     if (edge.kind != FeatureKind::Convex) return off.norm() <= kOnFeature * scene_.material.thickness;
     if (has_left(eol))  // a free fold may be anywhere beyond both faces
@@ -269,8 +270,8 @@ bool EolAdmission::is_in_plane(const EolVertex& eol) const
 bool EolAdmission::is_on_side(const EolVertex& eol) const
 {
     constexpr double kAlong = 0.5;  // cosine
-    const Obstacle& obstacle = scene_.obstacles[eol.on.obstacle];
-    if (eol.on.is_corner() || obstacle.features().edges[eol.on.index].kind == FeatureKind::Convex)
+    const ObstaclePose obstacle = scene_.obstacles[eol.on.obstacle].at(state_.time);
+    if (eol.on.is_corner() || obstacle->features().edges[eol.on.index].kind == FeatureKind::Convex)
         return true;
     const Vec3 place = trace_.placed(eol).place;
     const Vec3 from = way_across(obstacle, eol.on.index, place);
@@ -294,7 +295,8 @@ EolRetention decide_retention(const Scene& scene, const State& state, const Clot
     if (eol.idle < kIdleSteps) return EolRetention::Firm;
     const double gap = way_off(at.frame, place).norm();
     const double cells = is_led_astray(scene, state, eol, at, place) ? kAstrayCells : kFlyingCells;
-    if (gap > cells * shortest_cell(scene) && gap > cells * cell_length(scene, state, state.mesh.material[at.vertex]))
+    if (gap > cells * shortest_cell(scene) &&
+        gap > cells * cell_length(scene, state, state.mesh.material[at.vertex]))
         return EolRetention::None;
     const bool has_left = gap > kOnFeature * scene.material.thickness;
     if (has_left && is_corner_under_face(scene, state, eol)) return EolRetention::None;
@@ -336,8 +338,8 @@ std::vector<EolRelease> find_releases(const Scene& scene, const State& state, co
     std::vector<RowCause> causes(state.eol.size(), RowCause::Released);
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
         const EolVertex& eol = state.eol[entry];
-        const Obstacle& obstacle = scene.obstacles[eol.on.obstacle];
-        const Vec3 place = obstacle.at(state.time).inverse(state.mesh.world[state.index_of(eol.vertex_id)]);
+        const ObstaclePose obstacle = scene.obstacles[eol.on.obstacle].at(state.time);
+        const Vec3 place = obstacle.placement.inverse(state.mesh.world[state.index_of(eol.vertex_id)]);
         const EolPlacing placing = placer.place(entry);
         if (!placing.coordinates)
             causes[entry] = placing.refusal;

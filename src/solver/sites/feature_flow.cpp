@@ -59,9 +59,9 @@ Vec2 find_feature_flow(const Scene& scene, const State& state, const ClothStars&
     const Mat2 inverse = star.squared_F.inverse();
     const Vec2 flow = inverse * find_lag(scene, state, stars, v, site.on.obstacle);
     if (site.on.is_fixed()) return finite_or_zero(flow);
-    const Obstacle& obstacle = scene.obstacles[site.on.obstacle];
+    const ObstaclePose obstacle = scene.obstacles[site.on.obstacle].at(state.time);
     const auto [from, to] = feature_segment(obstacle, site.on.index);
-    const Vec3 tangent = obstacle.at(state.time).rotation * (to - from);
+    const Vec3 tangent = obstacle.placement.rotation * (to - from);
     const Vec2 trace = (inverse * (star.F_transposed * tangent)).normalized();  // F maps it near `tangent`
     const Vec2 across(trace.y(), -trace.x());
     const Vec2 way = site.is_on_border ? border_through(state, stars, site) : across;

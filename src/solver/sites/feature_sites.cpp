@@ -28,7 +28,7 @@ class SiteFinder {
         : scene_(scene),
           state_(state),
           stars_(stars),
-          obstacle_(scene.obstacles[o]),
+          obstacle_(scene.obstacles[o].at(state.time)),
           o_(o),
           thickness_(scene.material.thickness),
           crossings_(scene, state, stars, o)
@@ -58,7 +58,7 @@ class SiteFinder {
   private:
     std::optional<FeatureSite> on_edge(int a, int b, const ActiveContact& contact) const
     {
-        const int feature = feature_of_edge(obstacle_.features(), contact.element);
+        const int feature = feature_of_edge(obstacle_->features(), contact.element);
         if (feature < 0) return std::nullopt;
         if (const std::optional<FeatureSite> bend = on_bend(a, b, feature, contact.normal)) return bend;
         return crossings_.find_pressed(a, b, feature, contact.normal);
@@ -68,12 +68,12 @@ class SiteFinder {
     {
         if (const auto bend = find_locked_bend(contact.element, v[0]))
             return at_bend(*bend, v, contact.normal);
-        const int corner = corner_at(obstacle_.features(), contact.element);
+        const int corner = corner_at(obstacle_->features(), contact.element);
         if (v[2] < 0) return std::nullopt;
         if (corner < 0) return at_rim_bend(contact.element, v, contact.normal);
         const Vec3 &a = crossings_.positions()[v[0]], &b = crossings_.positions()[v[1]],
                    &c = crossings_.positions()[v[2]];
-        const PointOnTriangle closest = closest_on_triangle(obstacle_.mesh().points[contact.element],
+        const PointOnTriangle closest = closest_on_triangle(obstacle_->mesh().points[contact.element],
                                                             {a, b, c}, (b - a).cross(c - a).normalized());
         if (const std::optional<FeatureSite> at = at_corner_of(v, corner)) return at;
         Vec2 X = Vec2::Zero();
@@ -87,14 +87,14 @@ class SiteFinder {
     std::optional<FeatureSite> at_rim_bend(int point, const std::array<int, 3>& v, const Vec3& normal) const
     {
         constexpr double kInside = 1e-6;  // thicknesses
-        const Vec3& p = obstacle_.mesh().points[point];
+        const Vec3& p = obstacle_->mesh().points[point];
         const std::array<Vec3, 3> face = {crossings_.positions()[v[0]], crossings_.positions()[v[1]],
                                           crossings_.positions()[v[2]]};
         const Vec3 up = (face[1] - face[0]).cross(face[2] - face[0]).stableNormalized();
-        const ObstacleTopology& topology = obstacle_.topology();
+        const ObstacleTopology& topology = obstacle_->topology();
         for (int k = 0; k < topology.edge_count_at(point); ++k) {
-            const int feature = feature_of_edge(obstacle_.features(), topology.edge_at(point, k));
-            if (feature < 0 || obstacle_.features().edges[feature].kind != FeatureKind::Convex) continue;
+            const int feature = feature_of_edge(obstacle_->features(), topology.edge_at(point, k));
+            if (feature < 0 || obstacle_->features().edges[feature].kind != FeatureKind::Convex) continue;
             const auto frame =
                 find_edge_frame(obstacle_, feature, p, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
             const double height = up.dot(face[0] - p) / up.dot(frame->outward);
@@ -116,7 +116,7 @@ class SiteFinder {
     std::optional<FeatureSite> at_corner_of(const std::array<int, 3>& v, int corner) const
     {
         if (!is_tip(obstacle_, corner)) return std::nullopt;
-        const Vec3& point = obstacle_.mesh().points[obstacle_.features().corners[corner].point];
+        const Vec3& point = obstacle_->mesh().points[obstacle_->features().corners[corner].point];
         const auto distance = [&](int w) { return (crossings_.positions()[w] - point).norm(); };
         const int nearest =
             *std::min_element(v.begin(), v.end(), [&](int a, int b) { return distance(a) < distance(b); });
@@ -133,20 +133,20 @@ class SiteFinder {
         const double reach = kOnFeature * thickness_;
         const Box3 box(place.array() - reach, place.array() + reach);
         std::vector<int> found;
-        obstacle_.find_corners(box, found);
+        obstacle_->find_corners(box, found);
         const bool is_on_border =
             stars_.border_neighbours[v][0] >= 0;  // such a vertex has no room at a point
         for (const int c : is_on_border ? std::vector<int>() : found) {
-            const int point = obstacle_.features().corners[c].point;
-            const Vec3 from = place - obstacle_.mesh().points[point];
+            const int point = obstacle_->features().corners[c].point;
+            const Vec3 from = place - obstacle_->mesh().points[point];
             if (from.norm() <= reach && is_in_point_cone(obstacle_, point, from.normalized()))
                 return make_corner(c, state_.mesh.material[v], v, normal);
         }
-        obstacle_.find_feature_edges(box, found);
+        obstacle_->find_feature_edges(box, found);
         for (const int f : found)
-            for (const int point : obstacle_.topology().edges[obstacle_.features().edges[f].edge].points)
+            for (const int point : obstacle_->topology().edges[obstacle_->features().edges[f].edge].points)
                 if (const auto bend = find_locked_bend(point, v);
-                    bend && (place - obstacle_.mesh().points[point]).norm() <= reach)
+                    bend && (place - obstacle_->mesh().points[point]).norm() <= reach)
                     return make_bend(*bend, {v, -1, -1}, {1.0, 0.0, 0.0}, normal);
         for (const int f : found)
             for (const int w : crossings_.neighbours(v))
@@ -204,7 +204,7 @@ class SiteFinder {
     const Scene& scene_;
     const State& state_;
     const ClothStars& stars_;
-    const Obstacle& obstacle_;
+    ObstaclePose obstacle_;  ///< at the state's time
     std::int32_t o_;
     double thickness_;
     EdgeCrossings crossings_;

@@ -90,8 +90,8 @@ double find_compression_with_pleats(const Scene& scene, const State& state, cons
     const int v = state.index_of(vertex.vertex_id);
     const Vec2& X = state.mesh.material[v];
     const double reach = kReach * cell_length(scene, state, X);
-    const Obstacle& obstacle = scene.obstacles[vertex.on.obstacle];
-    const Placement now = obstacle.at(state.time);
+    const ObstaclePose obstacle = scene.obstacles[vertex.on.obstacle].at(state.time);
+    const Placement now = obstacle.placement;
     const Vec3 place = now.inverse(state.mesh.world[v]);
     double feature = 0.0, cloth = 0.0;  // lengths, m
     for (const EolVertex& other : state.eol) {

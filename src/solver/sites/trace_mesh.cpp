@@ -9,18 +9,18 @@
 
 namespace arris {
 
-FeatureTags::FeatureTags(const std::vector<Obstacle>& obstacles) : obstacles_(obstacles)
+FeatureTags::FeatureTags(const std::vector<MovingObstacle>& obstacles) : obstacles_(obstacles)
 {
-    for (const Obstacle& obstacle : obstacles) {
+    for (const MovingObstacle& obstacle : obstacles) {
         first_.push_back(count_);
-        const ObstacleFeatures& features = obstacle.features();
+        const ObstacleFeatures& features = obstacle.shape().features();
         count_ += features.polyline_count + static_cast<int>(features.corners.size());
     }
 }
 
 int FeatureTags::tag(const FeatureId& on) const
 {
-    const ObstacleFeatures& features = obstacles_[on.obstacle].features();
+    const ObstacleFeatures& features = obstacles_[on.obstacle].shape().features();
     return first_[on.obstacle] +
            (on.is_corner() ? features.polyline_count + on.index : features.edges[on.index].polyline);
 }
@@ -92,9 +92,14 @@ void TraceMesh::forget_released()
     std::erase_if(flow_, [this](const auto& of) { return !is_on_trace(of.first); });
 }
 
+ObstaclePose TraceMesh::pose_of(const EolVertex& eol) const
+{
+    return obstacles_[eol.on.obstacle].at(state_.time);
+}
+
 PlacedEol TraceMesh::placed(const EolVertex& eol) const
 {
-    return {eol, obstacles_[eol.on.obstacle].at(state_.time).inverse(surgery_.world(eol.vertex_id))};
+    return {eol, pose_of(eol).placement.inverse(surgery_.world(eol.vertex_id))};
 }
 
 std::vector<PlacedEol> TraceMesh::placed() const
@@ -115,7 +120,7 @@ std::optional<EolVertex> TraceMesh::like_neighbour(VertexId v, int tag) const
         made.idle = 0;
         const std::int32_t o = known->on.obstacle;
         made.on =
-            FeatureId::edge(o, follow_polyline(obstacles_[o], known->on.index, placed(made).place).feature);
+            FeatureId::edge(o, follow_polyline(pose_of(*known), known->on.index, placed(made).place).feature);
         return made;
     }
     return std::nullopt;

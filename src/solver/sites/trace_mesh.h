@@ -16,13 +16,13 @@ namespace arris {
 /// Tags of the surgery: one for each polyline and corner of each obstacle.
 class FeatureTags {
   public:
-    explicit FeatureTags(const std::vector<Obstacle>& obstacles);
+    explicit FeatureTags(const std::vector<MovingObstacle>& obstacles);
 
     int tag(const FeatureId& on) const;
     int tag(const EolVertex& vertex) const { return tag(vertex.on); }
 
   private:
-    const std::vector<Obstacle>& obstacles_;
+    const std::vector<MovingObstacle>& obstacles_;
     std::vector<int> first_;
     int count_ = 0;
 };
@@ -56,6 +56,8 @@ class TraceMesh {
     /// Reassigns a sliding vertex to edge `feature` of its polyline.
     void slide(VertexId v, int feature);
 
+    double time() const { return state_.time; }        ///< s
+    ObstaclePose pose_of(const EolVertex& eol) const;  ///< its obstacle at the state's time
     /// The vertex's current place in the obstacle's frame.
     PlacedEol placed(const EolVertex& eol) const;
     /// All vertices on the trace.
@@ -73,7 +75,7 @@ class TraceMesh {
     std::vector<EolVertex>::const_iterator place_of(VertexId v) const;
     EolVertex& entry_of(VertexId v);
 
-    const std::vector<Obstacle>& obstacles_;
+    const std::vector<MovingObstacle>& obstacles_;
     MeshTarget target_;
     const State& state_;
     FeatureTags tags_;

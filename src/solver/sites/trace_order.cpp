@@ -62,15 +62,16 @@ void add_along(const Obstacle& obstacle, int o, int index, const std::vector<Pla
 
 }  // namespace
 
-Neighbours find_trace_neighbours(const std::vector<Obstacle>& obstacles, const std::vector<PlacedEol>& placed)
+Neighbours find_trace_neighbours(const std::vector<MovingObstacle>& obstacles, double time,
+                                 const std::vector<PlacedEol>& placed)
 {
     std::set<std::pair<int, int>> polylines;  // by obstacle and index
     for (const PlacedEol& p : placed)
         if (!p.eol.on.is_corner())
             polylines.emplace(p.eol.on.obstacle,
-                              obstacles[p.eol.on.obstacle].features().edges[p.eol.on.index].polyline);
+                              obstacles[p.eol.on.obstacle].shape().features().edges[p.eol.on.index].polyline);
     Neighbours neighbours;
-    for (const auto& [o, index] : polylines) add_along(obstacles[o], o, index, placed, neighbours);
+    for (const auto& [o, index] : polylines) add_along(obstacles[o].at(time), o, index, placed, neighbours);
     return neighbours;
 }
 

@@ -115,7 +115,7 @@ TEST(RunEnding, NamesThePinAndTheObstaclesThatCannotBeMetTogether)
 TEST(RunEnding, OfAnInfeasibleStepWithoutAVertexOrWithOneObstacleIsAWholeSentence)
 {
     Scene scene;
-    scene.obstacles.push_back(Obstacle("vee", make_box({1, 1, 1}), {}, {}, 30.0));
+    scene.obstacles.push_back(MovingObstacle("vee", make_box({1, 1, 1}), {}, {}, 30.0));
     State state;
     state.time = 0.5;
     StepReport report;
@@ -132,7 +132,7 @@ TEST(RunEnding, OfAnInfeasibleStepWithoutAVertexOrWithOneObstacleIsAWholeSentenc
 TEST(RunEnding, NamesTheNumberThatIsNotFinite)
 {
     Scene scene;
-    scene.obstacles.push_back(Obstacle("vee", make_box({1, 1, 1}), {}, {}, 30.0));
+    scene.obstacles.push_back(MovingObstacle("vee", make_box({1, 1, 1}), {}, {}, 30.0));
     State state;
     StepReport report;
     report.status = StepStatus::NotFinite;

@@ -39,10 +39,10 @@ RunConfig load(const std::string& text, const LoadOptions& options = with_progra
 constexpr const char* kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
-Box3 world_bounds(const Obstacle& obstacle, double time)
+Box3 world_bounds(const MovingObstacle& obstacle, double time)
 {
     Box3 box;
-    for (const Vec3& point : obstacle.mesh().points) box.extend(obstacle.at(time)(point));
+    for (const Vec3& point : obstacle.shape().mesh().points) box.extend(obstacle.at(time).placement(point));
     return box;
 }
 
@@ -62,15 +62,15 @@ TEST(SceneObstacles, BuildsEveryShape)
              "[[obstacle]]\nwire = [[0, 0, 1], [1, 0, 1], [1, 1, 1]]\nclosed = true\n"
              "[[obstacle]]\nteeth = { count = 2, pitch = 0.5, height = 0.25, width = 2, tip_degrees = 60 }\n"
              "translate = [0, 0, -4]\n[gravity]\n");
-    const std::vector<Obstacle>& obstacles = config.scene.obstacles;
+    const std::vector<MovingObstacle>& obstacles = config.scene.obstacles;
     ASSERT_EQ(obstacles.size(), 5U);
     EXPECT_EQ(obstacles[0].name(), "obstacle0");
     EXPECT_EQ(obstacles[1].name(), "nails");
     EXPECT_EQ(obstacles[4].name(), "obstacle4");
     expect_box(world_bounds(obstacles[0], 0.0), {-0.5, -1.0, 3.5}, {0.5, 1.0, 6.5});
-    EXPECT_THAT(obstacles[1].mesh().lone_points, SizeIs(2));
-    EXPECT_THAT(obstacles[2].mesh().segments, SizeIs(2));
-    EXPECT_THAT(obstacles[3].mesh().segments, SizeIs(3));
+    EXPECT_THAT(obstacles[1].shape().mesh().lone_points, SizeIs(2));
+    EXPECT_THAT(obstacles[2].shape().mesh().segments, SizeIs(2));
+    EXPECT_THAT(obstacles[3].shape().mesh().segments, SizeIs(3));
     EXPECT_EQ(world_bounds(obstacles[4], 0.0).max().z(), -3.75);
     EXPECT_THAT(config.warnings, IsEmpty());
 }
@@ -130,7 +130,8 @@ TEST(SceneObstacles, SidesOfACylinderAreSharpByDefaultUpToTwentyFive)
         std::ofstream(path) << cylinder_obj(c.sides);
         const RunConfig config =
             load(kBase + "[[obstacle]]\nfile = \"" + path + "\"\n" + c.key + "translate = [0, 0, 5]\n");
-        EXPECT_THAT(config.scene.obstacles[0].features().edges, SizeIs((c.are_sharp ? 3 : 2) * c.sides))
+        EXPECT_THAT(config.scene.obstacles[0].shape().features().edges,
+                    SizeIs((c.are_sharp ? 3 : 2) * c.sides))
             << c.sides << " sides, " << c.key;
     }
 }
@@ -146,11 +147,11 @@ TEST(SceneObstacles, RidgesOfTeethAreSharpByDefaultAboveFourteenDegrees)
             kBase + fmt::format("[[obstacle]]\nteeth = {{ count = 3, pitch = 4, height = 0.1, width = 1, "
                                 "tip_degrees = {} }}\ntranslate = [0, 0, -4]\n",
                                 c.tip));
-        const ObstacleFeatures& features = config.scene.obstacles[0].features();
-        const ObstacleMesh& mesh = config.scene.obstacles[0].mesh();
+        const ObstacleFeatures& features = config.scene.obstacles[0].shape().features();
+        const ObstacleMesh& mesh = config.scene.obstacles[0].shape().mesh();
         int ridges = 0;
         for (const FeatureEdge& edge : features.edges) {
-            const auto& [a, b] = config.scene.obstacles[0].topology().edges[edge.edge].points;
+            const auto& [a, b] = config.scene.obstacles[0].shape().topology().edges[edge.edge].points;
             if (mesh.points[a].z() > 0.05 && mesh.points[b].z() > 0.05) ++ridges;
         }
         EXPECT_EQ(ridges, c.are_sharp ? 3 : 0) << c.tip << " degrees";
@@ -162,13 +163,13 @@ TEST(SceneObstacles, PlacesThemByScaleRotationAndTranslation)
     const RunConfig config = load(kBase +
                                   "[[obstacle]]\nwire = [[0, 0, 0], [1, 0, 0], [1, 2, 0]]\nscale = 2\n"
                                   "rotate = { axis = [0, 0, 1], degrees = 90 }\ntranslate = [0, 0, 5]\n");
-    const Obstacle& wire = config.scene.obstacles[0];
-    const Placement placement = wire.at(0.0);
+    const MovingObstacle& wire = config.scene.obstacles[0];
+    const Placement placement = wire.at(0.0).placement;
     // translate + R (2 p): x turns to y, y to -x.
     const Vec3 expected[] = {{0.0, 0.0, 5.0}, {0.0, 2.0, 5.0}, {-4.0, 2.0, 5.0}};
     for (int i = 0; i < 3; ++i)
-        EXPECT_NEAR((placement(wire.mesh().points[static_cast<std::size_t>(i)]) - expected[i]).norm(), 0.0,
-                    kRoundOff);
+        EXPECT_NEAR((placement(wire.shape().mesh().points[static_cast<std::size_t>(i)]) - expected[i]).norm(),
+                    0.0, kRoundOff);
 }
 
 TEST(SceneObstacles, MovesThemAsWritten)
@@ -180,9 +181,9 @@ TEST(SceneObstacles, MovesThemAsWritten)
         "stop = 0.75 }\n"
         "[[obstacle]]\npoints = [[0, 0, 5]]\nkeyframes = [ { time = 0, translate = [0, 0, 1] }, { time = "
         "1, translate = [0, 4, 1] } ]\n");
-    const Obstacle &turning = config.scene.obstacles[0], &keyed = config.scene.obstacles[1];
-    const auto place = [](const Obstacle& obstacle, double time) {
-        return obstacle.at(time)(obstacle.mesh().points[0]);
+    const MovingObstacle &turning = config.scene.obstacles[0], &keyed = config.scene.obstacles[1];
+    const auto place = [](const MovingObstacle& obstacle, double time) {
+        return obstacle.at(time).placement(obstacle.shape().mesh().points[0]);
     };
     EXPECT_EQ(place(turning, 0.25), Vec3(1.0, 0.0, 5.0));
     // p = pivot + v tau + R(2 tau)(p0 - pivot), tau = 0.5, p0 - pivot = (0, -1, 5)
@@ -233,7 +234,7 @@ TEST(SceneObstacles, ReadsFilesBesideTheSceneInTheirUnits)
     expect_box(world_bounds(config.scene.obstacles[0], 0.0), {0.0, 0.0, 5.0}, {1.0, 2.0, 8.0});
     // y up becomes z: (x, y, z) -> (x, -z, y), a tenth as large.
     expect_box(world_bounds(config.scene.obstacles[1], 0.0), {0.0, -0.3, 5.0}, {0.1, 0.0, 5.2});
-    EXPECT_EQ(config.scene.obstacles[0].topology().is_solid, std::vector<char>{1});
+    EXPECT_EQ(config.scene.obstacles[0].shape().topology().is_solid, std::vector<char>{1});
 }
 
 TEST(SceneObstacles, TellOfAFileThatIsMostlyInOtherUnits)
@@ -362,8 +363,8 @@ TEST(SceneObstacles, TakeTheStoredMeshesWhateverBecameOfTheFiles)
     options.cloth = &first.cloth;
     options.obstacles = &records;
     const RunConfig again = load_scene(dir / "s.toml", {}, options);
-    EXPECT_EQ(again.scene.obstacles[0].mesh().points, first.scene.obstacles[0].mesh().points);
-    EXPECT_EQ(again.scene.obstacles[0].at(0.0).translation, Vec3(0, 0, 5));
+    EXPECT_EQ(again.scene.obstacles[0].shape().mesh().points, first.scene.obstacles[0].shape().mesh().points);
+    EXPECT_EQ(again.scene.obstacles[0].at(0.0).placement.translation, Vec3(0, 0, 5));
 
     std::vector<ObstacleRecord> others = records;
     others[0].name = "other";

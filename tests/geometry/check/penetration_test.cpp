@@ -22,7 +22,7 @@ constexpr double kAccuracy = 0.01;
 
 Obstacle obstacle_of(const ObstacleMesh& mesh)
 {
-    return Obstacle("thing", mesh, {}, {}, 30.0);
+    return Obstacle(mesh, 30.0);
 }
 
 struct Cloth {

@@ -27,7 +27,7 @@ using Map = std::function<Vec3(const Vec3&)>;
 
 Obstacle make_obstacle(const ObstacleMesh& mesh)
 {
-    return Obstacle("obstacle", mesh, Placement{}, RigidMotion{}, 30.0);
+    return Obstacle(mesh, 30.0);
 }
 
 /// A cloth mesh and its motion.

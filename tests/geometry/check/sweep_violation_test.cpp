@@ -15,10 +15,9 @@ constexpr double kThickness = 1e-3;
 /// One cloth triangle over a large sheet in z = 0; its vertex 0 moves. The sheet's two faces have one plane,
 /// so either may be above the origin.
 struct Meeting {
-    Obstacle obstacle{"sheet",
-                      samples::moved(samples::sheet(1, 1, [](int, int) { return 0.0; }),
+    Obstacle obstacle{samples::moved(samples::sheet(1, 1, [](int, int) { return 0.0; }),
                                      [](const Vec3& p) { return Vec3(20.0 * p - Vec3(10, 10, 0)); }),
-                      Placement{}, RigidMotion{}, 30.0};
+                      30.0};
     std::vector<Face> faces{{0, 1, 2}};
     MeshTopology topology = make_topology(3, faces);
     ClothMotion motion{&faces, &topology.edges, {}, {}};

@@ -29,7 +29,7 @@ ObstacleMesh make_ground(int n, double size, const Vec3& centre)
 
 Obstacle make_obstacle(ObstacleMesh mesh)
 {
-    return Obstacle("it", std::move(mesh), {}, {}, 5.0);
+    return Obstacle(std::move(mesh), 5.0);
 }
 
 Box3 box_of(const ObstacleMesh& mesh, const Face& face)
@@ -100,32 +100,6 @@ TEST(Obstacle, TouchingIsExactForTrianglesSegmentsAndPoints)
     EXPECT_TRUE(found.empty());
     nail.find_corners(Box3(Vec3(-1, -1, -1), Vec3(0, 0, 0)), found);
     EXPECT_EQ(found, List({0}));
-}
-
-TEST(Obstacle, MovesFromItsPlacementAsItsMotionSays)
-{
-    RigidMotion motion;
-    motion.angular_velocity = Vec3(0, 0, std::numbers::pi / 2.0);
-    motion.pivot = Vec3(1, 0, 0);
-    const Placement placement{rotation_about(Vec3::UnitX(), 90.0), Vec3(2, 0, 0)};
-    const Obstacle obstacle("it", {{{0, 0, 0}}, {}, {}, {0}}, placement, motion, 30.0);
-    EXPECT_NEAR((obstacle.at(0.0)(Vec3(0, 1, 0)) - Vec3(2, 0, 1)).norm(), 0.0, 1e-15);
-    EXPECT_NEAR((obstacle.at(1.0)(Vec3(0, 1, 0)) - Vec3(1, 1, 1)).norm(), 0.0, 1e-15);
-    EXPECT_NEAR((obstacle.at(1.0).inverse()(Vec3(1, 1, 1)) - Vec3(0, 1, 0)).norm(), 0.0, 1e-15);
-    EXPECT_NEAR((obstacle.velocity_after(0.0, Vec3(2, 0, 0)) - Vec3(0, std::numbers::pi / 2.0, 0)).norm(),
-                0.0, 1e-15);
-}
-
-TEST(Obstacle, ACopyAnswersByItself)
-{
-    std::vector<int> found;
-    Obstacle kept = make_obstacle({{{9, 9, 9}}, {}, {}, {0}});
-    {
-        const Obstacle first = make_obstacle(make_ground(3, 1.0, Vec3::Zero()));
-        kept = first;
-    }
-    kept.find_faces(Box3(Vec3(0, 0, -1), Vec3(3, 3, 1)), found);
-    EXPECT_EQ(found.size(), 18u);
 }
 
 }  // namespace

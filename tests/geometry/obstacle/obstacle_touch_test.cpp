@@ -20,7 +20,7 @@ using Triangle = std::array<Vec3, 3>;
 
 Obstacle obstacle_of(const ObstacleMesh& mesh)
 {
-    return Obstacle("thing", mesh, {}, {}, 30.0);
+    return Obstacle(mesh, 30.0);
 }
 
 ObstacleTouch touches_of(const Obstacle& obstacle, const Triangle& triangle)

@@ -107,9 +107,9 @@ struct Setting {
     }
 };
 
-Obstacle place(ObstacleMesh mesh, const Placement& placement = {})
+Obstacle shape(ObstacleMesh mesh)
 {
-    return Obstacle("it", std::move(mesh), placement, {}, 30.0);
+    return Obstacle(std::move(mesh), 30.0);
 }
 
 /// Whether a segment passes through an old face.
@@ -162,7 +162,7 @@ TEST(SurgeryClearance, ANailIsInTheWayExactlyWhereItIsInWhatTheFacesSweep)
                 const double depth_of_nail = depth(swept, nail);
                 if (std::abs(depth_of_nail) < kClear) continue;
                 const bool is_in_way = depth_of_nail > 0.0;
-                EXPECT_EQ(is_free(event, place(make_points({nail})), {}, kThickness), !is_in_way)
+                EXPECT_EQ(is_free(event, shape(make_points({nail})), {}, kThickness), !is_in_way)
                     << "seed " << seed << " operation " << static_cast<int>(event.operation) << " depth "
                     << depth_of_nail;
                 (is_in_way ? in_way : beside) += 1;
@@ -194,7 +194,7 @@ TEST(SurgeryClearance, AWireIsInTheWayWhereAnyPointOfItIs)
                 const bool is_through = pierces(event, middle - half, middle + half);
                 if (!is_through && deepest < kClear && deepest > -kBetween) continue;
                 const bool is_in_way = is_through || deepest > 0.0;
-                const Obstacle wire = place(make_wire({middle - half, middle + half}, false));
+                const Obstacle wire = shape(make_wire({middle - half, middle + half}, false));
                 EXPECT_EQ(is_free(event, wire, {}, kThickness), !is_in_way)
                     << "seed " << seed << " operation " << static_cast<int>(event.operation) << " deepest "
                     << deepest;
@@ -218,10 +218,10 @@ TEST(SurgeryClearance, ABoxIsInTheWayWhereItsCornerIs)
             const double depth_of_corner = depth(swept, corner);
             const Mat3 turn = rotation_about(Vec3(1, 2, 3), 360.0 * seed);
             constexpr double kSide = 1e-5;  // m: so small that only the corner matters
-            const Obstacle box =
-                place(make_box({kSide, kSide, kSide}), {turn, corner - turn * Vec3::Constant(0.5 * kSide)});
+            const Obstacle box = shape(make_box({kSide, kSide, kSide}));
+            const Placement place{turn, corner - turn * Vec3::Constant(0.5 * kSide)};
             if (std::abs(depth_of_corner) < 1e-2) continue;
-            EXPECT_EQ(is_free(event, box, box.at(0.0), kThickness), depth_of_corner < 0.0);
+            EXPECT_EQ(is_free(event, box, place, kThickness), depth_of_corner < 0.0);
             (depth_of_corner > 0.0 ? in_way : beside) += 1;
         }
     }
@@ -233,9 +233,8 @@ TEST(SurgeryClearance, NothingAroundIsFree)
 {
     const Setting setting(1);
     for (const SurgeryEvent& event : setting.events) {
-        EXPECT_TRUE(is_free(event, place(make_box({1, 1, 1}), {Mat3::Identity(), {0, 0, 5}}),
-                            {Mat3::Identity(), {0, 0, 5}}, kThickness));
-        EXPECT_TRUE(is_free(event, place(make_wire({{9, 0, 0}, {9, 1, 0}}, false)), {}, kThickness));
+        EXPECT_TRUE(is_free(event, shape(make_box({1, 1, 1})), {Mat3::Identity(), {0, 0, 5}}, kThickness));
+        EXPECT_TRUE(is_free(event, shape(make_wire({{9, 0, 0}, {9, 1, 0}}, false)), {}, kThickness));
     }
 }
 
@@ -247,8 +246,8 @@ TEST(SurgeryClearance, OnlyWhatIsPassedCountsNotWhatIsNearerThanTheThickness)
     for (const SurgeryEvent& event : setting.events) {
         const Vec3 middle = (event.after[0].world[0] + event.after[0].world[1] + event.after[0].world[2]) / 3;
         for (const double height : {-1e-6, 1e-6})
-            EXPECT_TRUE(is_free(event, place(make_points({middle + Vec3(0, 0, height)})), {}, kThickness));
-        EXPECT_FALSE(is_free(event, place(make_points({middle})), {}, kThickness));
+            EXPECT_TRUE(is_free(event, shape(make_points({middle + Vec3(0, 0, height)})), {}, kThickness));
+        EXPECT_FALSE(is_free(event, shape(make_points({middle})), {}, kThickness));
     }
 }
 
@@ -273,7 +272,7 @@ TEST(SurgeryClearance, AnswersAlikeWhereverThePairIs)
             const Vec3 nail = some_point(swept, random);
             const double depth_of_nail = depth(swept, nail);
             if (std::abs(depth_of_nail) < 1e-6) continue;  // rounding at 1e3 m, for cells of 0.25 m
-            const Obstacle there = place(make_points({nail}), away);
+            const Obstacle there = shape(make_points({nail}));
             EXPECT_EQ(is_free(moved, there, away, kThickness), depth_of_nail < 0.0) << depth_of_nail;
             (depth_of_nail > 0.0 ? in_way : beside) += 1;
         }
@@ -291,7 +290,7 @@ TEST(SurgeryClearance, AMoveThroughTheMaterialAloneSweepsTheFacesOnly)
             setting.cloth.propose_moves({{v, setting.cloth.material(v) + Vec2(0.02, 0.01), true}});
         ASSERT_TRUE(flow.is_legal());
         const Vec3 above = setting.cloth.world(v) + Vec3(0, 0, 1e-4);
-        EXPECT_TRUE(is_free(flow.event, place(make_points({above})), {}, kThickness));
+        EXPECT_TRUE(is_free(flow.event, shape(make_points({above})), {}, kThickness));
     }
 }
 
@@ -306,10 +305,9 @@ TEST(SurgeryClearance, ASplitIsFreeWhateverIsThere)
     ASSERT_TRUE(face.is_legal());
     for (const SurgeryEvent* event : {&edge.event, &face.event}) {
         const Vec3 made = event->changes[0].new_world;
-        EXPECT_TRUE(is_free(*event, place(make_points({made})), {}, kThickness));
-        EXPECT_TRUE(is_free(*event, place(make_wire({made, made + Vec3(0, 0, 1)}, false)), {}, kThickness));
-        EXPECT_TRUE(is_free(*event, place(make_box({1, 1, 1}), {Mat3::Identity(), made}),
-                            {Mat3::Identity(), made}, kThickness));
+        EXPECT_TRUE(is_free(*event, shape(make_points({made})), {}, kThickness));
+        EXPECT_TRUE(is_free(*event, shape(make_wire({made, made + Vec3(0, 0, 1)}, false)), {}, kThickness));
+        EXPECT_TRUE(is_free(*event, shape(make_box({1, 1, 1})), {Mat3::Identity(), made}, kThickness));
     }
 }
 

@@ -185,7 +185,8 @@ struct Landed {
         RigidMotion motion;
         motion.velocity = Vec3(0, 0, rising);
         const Vec3 at(0, 0, -rising * kStep);  // the floor is at z = 0 at the state's time
-        scene.obstacles.push_back(Obstacle("floor", make_floor().mesh(), {Mat3::Identity(), at}, motion, 30));
+        scene.obstacles.push_back(
+            MovingObstacle("floor", make_floor().shape().mesh(), {Mat3::Identity(), at}, motion, 30));
         const Vec3 now(0.2, 0, kThickness);
         state.time = state.previous_dt = kStep;
         state.mesh.world = {now, now};
@@ -195,11 +196,12 @@ struct Landed {
         state.previous_velocity = {Vec3(kAlong, 0, -kDown), Vec3(kAlong, 0, -kDown)};
         prediction = predict(state, integrator, kStep);
         Carrier carrier;
-        carrier.obstacle = &scene.obstacles[0];
+        carrier.obstacle = scene.obstacles[0].at(2.0 * kStep).shape;
+        carrier.moving = &scene.obstacles[0];
         carrier.time = kStep;
-        carrier.before = scene.obstacles[0].at(0.0);
-        carrier.begin = scene.obstacles[0].at(kStep);
-        carrier.end = scene.obstacles[0].at(2.0 * kStep);
+        carrier.before = scene.obstacles[0].at(0.0).placement;
+        carrier.begin = scene.obstacles[0].at(kStep).placement;
+        carrier.end = scene.obstacles[0].at(2.0 * kStep).placement;
         carrier.motion.begin = to_frame(carrier.begin, state.mesh.world);
         carrier.motion.end = to_frame(carrier.end, prediction.position);
         steps.obstacles = {carrier};

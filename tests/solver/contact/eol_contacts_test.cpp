@@ -29,7 +29,7 @@ TEST(EolContacts, WhatIsOnItsWayOutIsNotHeldToItsSpeed)
         });
         ASSERT_NE(on_tip, world.end());
         cloth.add_eol(static_cast<int>(on_tip - world.begin()), false,
-                      testing::tip_of(cloth.scene.obstacles[0]));
+                      testing::tip_of(cloth.scene.obstacles[0].shape()));
         const std::vector<MeshEdge> edges = testing::edges_of(cloth.state);
         const Prediction prediction = predict(cloth.state, Integrator::Bdf2, 0.005);
         Carriers steps = move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
@@ -54,16 +54,16 @@ TEST(EolContacts, GoAlongWithAVertexThatSlidesAlongItsFeature)
         testing::EolCloth cloth = testing::lying(0.0, 0.5 * testing::kLyingCell);
         if (is_wire) {
             cloth.scene.obstacles.clear();
-            cloth.scene.obstacles.push_back(
-                Obstacle("wire", make_wire({{0, -0.5, 0}, {0, 0, 0}, {0, 0.5, 0}}, false), {}, {}, 30.0));
+            cloth.scene.obstacles.push_back(MovingObstacle(
+                "wire", make_wire({{0, -0.5, 0}, {0, 0, 0}, {0, 0.5, 0}}, false), {}, {}, 30.0));
         }
         for (Vec3& v : cloth.state.velocity) v = Vec3(0.0, 0.8, 0.0);
         const auto& world = cloth.state.mesh.world;
         for (std::size_t v = 0; v < world.size(); ++v)
             if (std::abs(world[v].x()) < 1e-9 && std::abs(world[v].y()) < 0.1)
-                cloth.add_eol(
-                    static_cast<int>(v), false,
-                    is_wire ? (world[v].y() > 0.0 ? 1 : 0) : testing::tip_of(cloth.scene.obstacles[0]));
+                cloth.add_eol(static_cast<int>(v), false,
+                              is_wire ? (world[v].y() > 0.0 ? 1 : 0)
+                                      : testing::tip_of(cloth.scene.obstacles[0].shape()));
         ASSERT_GT(cloth.state.eol.size(), 2u);
         const std::vector<MeshEdge> edges = testing::edges_of(cloth.state);
         const Prediction prediction = predict(cloth.state, Integrator::Bdf2, 0.005);
@@ -84,7 +84,7 @@ TEST(EolContacts, OnAWiresEndCoverItsShaftOnlyNearby)
     // its own.
     for (const double below : {0.005, 0.1}) {
         testing::EolCloth cloth(
-            Obstacle("needle", make_wire({Vec3::Zero(), {0.0, 0.0, -1.0}}, false), {}, {}, 30.0),
+            MovingObstacle("needle", make_wire({Vec3::Zero(), {0.0, 0.0, -1.0}}, false), {}, {}, 30.0),
             testing::make_draped({8, 0.0, 20.0}));
         State& state = cloth.state;
         const int v = cloth.vertex_at(0.2, 0.2);

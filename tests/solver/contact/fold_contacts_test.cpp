@@ -26,14 +26,15 @@ constexpr int kCells = 16;
 constexpr double kCell = 0.4 / kCells;  // m
 constexpr double kSame = 1e-9;          // m, of material coordinates
 
-Obstacle make_line(const std::vector<Vec3>& points = {{0, -1, 0}, {0, 1, 0}}, const RigidMotion& motion = {})
+MovingObstacle make_line(const std::vector<Vec3>& points = {{0, -1, 0}, {0, 1, 0}},
+                         const RigidMotion& motion = {})
 {
-    return Obstacle("wire", make_wire(points, false), {}, motion, 30.0);
+    return MovingObstacle("wire", make_wire(points, false), {}, motion, 30.0);
 }
 
 /// Cloth folded over a wire to the angle `fold` (degrees, 180 is flat), at its stand-off above the wire.
 /// Vertices on the wire are EOL if their material coordinate along the wire is less than `end`.
-EolCloth make_folded(double fold, double end = 1.0, Obstacle wire = make_line())
+EolCloth make_folded(double fold, double end = 1.0, MovingObstacle wire = make_line())
 {
     EolCloth cloth(std::move(wire), make_draped({kCells, 0.0, fold}));
     cloth.scene.eol = uniform_target(kCell, 10.0);
@@ -96,7 +97,7 @@ TEST(FoldContacts, AreNoneOfAVertexThatIsHeldElsewhere)
     const int beside = cloth.vertex_at(0.2 + kCell, 0.2), other = cloth.vertex_at(0.2 - kCell, 0.2);
     ASSERT_TRUE(is_of(beside));
     ASSERT_TRUE(is_of(other));
-    cloth.scene.obstacles.push_back(Obstacle(
+    cloth.scene.obstacles.push_back(MovingObstacle(
         "nail", make_points({cloth.state.mesh.world[beside] - Vec3(0.0, 0.0, kThickness)}), {}, {}, 30.0));
     cloth.state.eol[static_cast<std::size_t>(cloth.add_eol(beside, true, 0))].on.obstacle = 1;
     EXPECT_FALSE(is_of(beside));
@@ -134,7 +135,7 @@ TEST(FoldContacts, DoNotLearnTheirSideFromWhatIsHeldAtTheWiresEnd)
         EolCloth cloth = make_folded(20.0, 0.2 - 0.5 * kCell, make_line({{0, -1, 0}, {0, 0.3 * kCell, 0}}));
         const int held = cloth.vertex_at(0.2, 0.2);
         cloth.state.mesh.world[held].x() += aside;
-        const Obstacle& obstacle = cloth.scene.obstacles[0];
+        const Obstacle& obstacle = cloth.scene.obstacles[0].shape();
         for (std::size_t c = 0; c < obstacle.features().corners.size(); ++c)
             if (obstacle.mesh().points[obstacle.features().corners[c].point].y() > 0.0)
                 cloth.add_eol(held, true, static_cast<int>(c));
@@ -230,7 +231,7 @@ TEST(FoldContacts, AreToldFromWhatPressesOnTheObstacle)
 TEST(FoldContacts, ClothFallsOnWiresThatAreNearerThanAStandOffOrBend)
 {
     const auto fall_on = [](const ObstacleMesh& wires) {
-        EolCloth cloth(Obstacle("wires", wires, {}, {}, 30.0), make_draped({8, 0.0, 180.0}));
+        EolCloth cloth(MovingObstacle("wires", wires, {}, {}, 30.0), make_draped({8, 0.0, 180.0}));
         cloth.scene.gravity = Gravity{};
         for (std::size_t v = 0; v < cloth.state.mesh.world.size(); ++v) {
             cloth.state.mesh.world[v] += Vec3(0.007, 0.0, 0.004);

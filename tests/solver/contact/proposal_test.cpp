@@ -32,7 +32,7 @@ struct Above {
     {
         scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, kThickness};
         const Placement plate = place * Placement{Mat3::Identity(), Vec3(0, 0, -0.5e-3)};
-        scene.obstacles.push_back(Obstacle("plate", make_box({0.2, 0.2, 1e-3}), plate, motion, 30.0));
+        scene.obstacles.push_back(MovingObstacle("plate", make_box({0.2, 0.2, 1e-3}), plate, motion, 30.0));
         ClothGrid grid;
         grid.size = {0.4, 0.4};
         grid.resolution = {8, 8};
@@ -63,8 +63,8 @@ struct Above {
 
     void expect_free() const
     {
-        const std::vector<Vec3> end = to_frame(scene.obstacles[0].at(kStep), proposal.world);
-        EXPECT_FALSE(find_penetration(scene.obstacles[0], end, state.mesh.faces).is_any());
+        const std::vector<Vec3> end = to_frame(scene.obstacles[0].at(kStep).placement, proposal.world);
+        EXPECT_FALSE(find_penetration(scene.obstacles[0].shape(), end, state.mesh.faces).is_any());
     }
 };
 

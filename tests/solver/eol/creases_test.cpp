@@ -21,7 +21,7 @@ EolCloth draped_with(int count)
     EolCloth cloth(make_ridge(90.0), make_draped(drape));
     cloth.scene.gravity = Gravity{};
     cloth.scene.material.bending_stiffness = 1e-6;  // this cloth bends within millimetres
-    const int tip = tip_of(cloth.scene.obstacles[0]);
+    const int tip = tip_of(cloth.scene.obstacles[0].shape());
     for (int k = 0; k < count; ++k)
         cloth.add_eol(cloth.vertex_at(0.2, 0.1 + k * 0.4 / drape.cells), false, tip);
     return cloth;

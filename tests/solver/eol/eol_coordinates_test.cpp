@@ -36,7 +36,7 @@ EolCloth on_ridge(const Drape& shape, double tip = 60.0)
 
 EolCloth on_wire(const Drape& shape)
 {
-    return EolCloth(Obstacle("wire", make_wire({{0, -1, 0}, {0, 1, 0}}, false), {}, {}, 30.0),
+    return EolCloth(MovingObstacle("wire", make_wire({{0, -1, 0}, {0, 1, 0}}, false), {}, {}, 30.0),
                     make_draped(shape));
 }
 
@@ -44,7 +44,7 @@ EolCloth on_wire(const Drape& shape)
 EolPlacing place_middle(EolCloth cloth, bool is_wire = false)
 {
     const int v = cloth.vertex_at(0.2, 0.2);
-    cloth.add_eol(v, false, is_wire ? 0 : testing::tip_of(cloth.scene.obstacles[0]));
+    cloth.add_eol(v, false, is_wire ? 0 : testing::tip_of(cloth.scene.obstacles[0].shape()));
     return cloth.place(v);
 }
 
@@ -138,8 +138,8 @@ TEST(EolCoordinates, OnAWireTheVertexFollowsIntoTheOutwardPlane)
     cloth.add_eol(v, false, 0);
     cloth.state.mesh.world[v] += Vec3(1e-4, 0.0, 1e-3);
     const auto place_in = [&](double dt) {
-        return place_eol_vertex(cloth.scene.obstacles[0], cloth.scene.material.thickness, cloth.state, 0,
-                                cloth.stars(), cloth.state.mesh.world, {}, dt);
+        return place_eol_vertex(cloth.scene.obstacles[0].shape(), cloth.scene.material.thickness, cloth.state,
+                                0, cloth.stars(), cloth.state.mesh.world, {}, dt);
     };
     const EolPlacing placing = place_in(1.0);
     ASSERT_TRUE(placing.coordinates);
@@ -158,8 +158,8 @@ TEST(EolCoordinates, WhatHasLeftAWireIsNotCarriedRoundIt)
         const int v = cloth.vertex_at(0.2, 0.2);
         cloth.add_eol(v, false, 0);
         cloth.state.mesh.world[v] += thicknesses * kThickness * Vec3(0.1, 0.0, 1.0);
-        const EolPlacing placing = place_eol_vertex(cloth.scene.obstacles[0], kThickness, cloth.state, 0,
-                                                    cloth.stars(), cloth.state.mesh.world, {}, 1.0);
+        const EolPlacing placing = place_eol_vertex(cloth.scene.obstacles[0].shape(), kThickness, cloth.state,
+                                                    0, cloth.stars(), cloth.state.mesh.world, {}, 1.0);
         ASSERT_TRUE(placing.coordinates);
         const double carried = (placing.coordinates->carried - cloth.state.mesh.world[v]).norm();
         if (thicknesses > kOnFeature) {
@@ -176,10 +176,10 @@ TEST(EolCoordinates, WhereAWireTurnsAreOutwardAndFlowBothWays)
     // folded as over a straight wire.
     for (const double fold : {180.0, 90.0, 20.0}) {
         EolCloth cloth(
-            Obstacle("wire", make_wire({{0.1, -1, 0}, {0, 0, 0}, {0.1, 1, 0}}, false), {}, {}, 30.0),
+            MovingObstacle("wire", make_wire({{0.1, -1, 0}, {0, 0, 0}, {0.1, 1, 0}}, false), {}, {}, 30.0),
             make_draped({8, 0.0, fold}));
         const int v = cloth.vertex_at(0.2, 0.2);
-        const std::optional<FeatureBend> turn = find_bend(cloth.scene.obstacles[0], 1);
+        const std::optional<FeatureBend> turn = find_bend(cloth.scene.obstacles[0].shape(), 1);
         ASSERT_TRUE(turn);
         EolVertex& eol = cloth.state.eol[cloth.add_eol(v, false, turn->feature)];
         eol.outward = Vec3::UnitZ();
@@ -203,7 +203,7 @@ TEST(EolCoordinates, OnACornerAreOutwardAndAnyFlow)
 {
     EolCloth cloth(make_ridge(60.0, 0.0001 + 0.2), make_draped({8, 0.0, 60.0}));
     const int v = cloth.vertex_at(0.2, 0.35);
-    cloth.add_eol(v, true, testing::end_of(cloth.scene.obstacles[0]));
+    cloth.add_eol(v, true, testing::end_of(cloth.scene.obstacles[0].shape()));
     const EolPlacing placing = cloth.place(v);
     ASSERT_TRUE(placing.coordinates);
     const EolCoordinates& at = *placing.coordinates;
@@ -221,7 +221,8 @@ TEST(EolCoordinates, OnACornerAreOutwardAndAnyFlow)
 /// are steep.
 EolCloth on_nail(const Vec3& top)
 {
-    EolCloth cloth(Obstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0), make_draped({8, 0.0, 180.0}));
+    EolCloth cloth(MovingObstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0),
+                   make_draped({8, 0.0, 180.0}));
     for (Vec3& x : cloth.state.mesh.world)
         x.z() = -1.5 * std::hypot(x.x(), x.y()) + 0.5 * std::max(x.x(), 0.0);
     const int v = cloth.vertex_at(0.2, 0.2);
@@ -255,8 +256,9 @@ TEST(EolCoordinates, OnANailTheVertexGoesRoundItToWhereItsClothHasRoomForIt)
         const double room = room_at(cloth, v, before);
         Vec3 place = before;
         for (int step = 0; step < 10; ++step) {
-            const EolPlacing placing = place_eol_vertex(cloth.scene.obstacles[0], kThickness, cloth.state, 0,
-                                                        cloth.stars(), cloth.state.mesh.world, {}, kStep);
+            const EolPlacing placing =
+                place_eol_vertex(cloth.scene.obstacles[0].shape(), kThickness, cloth.state, 0, cloth.stars(),
+                                 cloth.state.mesh.world, {}, kStep);
             ASSERT_TRUE(placing.coordinates);
             const EolCoordinates& at = *placing.coordinates;
             EXPECT_NEAR(at.carried.norm(), kThickness, kRoundOff) << "as far from the tip as it was";
@@ -274,14 +276,15 @@ TEST(EolCoordinates, OnANailTheVertexGoesRoundItToWhereItsClothHasRoomForIt)
 
 TEST(EolCoordinates, OnANailTheVertexStaysWhereItsClothHasMostRoomAndInNoTime)
 {
-    EolCloth cloth(Obstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0), make_draped({8, 0.0, 180.0}));
+    EolCloth cloth(MovingObstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0),
+                   make_draped({8, 0.0, 180.0}));
     for (Vec3& x : cloth.state.mesh.world)
         x.z() = kThickness - 0.8 * std::max(std::abs(x.x()), std::abs(x.y()));
     const int v = cloth.vertex_at(0.2, 0.2);
     cloth.add_eol(v, true, 0);
     for (const double step : {5e-3, 5e-5}) {
-        const EolPlacing placing = place_eol_vertex(cloth.scene.obstacles[0], kThickness, cloth.state, 0,
-                                                    cloth.stars(), cloth.state.mesh.world, {}, step);
+        const EolPlacing placing = place_eol_vertex(cloth.scene.obstacles[0].shape(), kThickness, cloth.state,
+                                                    0, cloth.stars(), cloth.state.mesh.world, {}, step);
         ASSERT_TRUE(placing.coordinates);
         EXPECT_LT((placing.coordinates->carried - cloth.state.mesh.world[v]).norm(), kRoundOff);
     }
@@ -296,7 +299,7 @@ TEST(EolCoordinates, OnTheClothsBorderFlowAlongTheBorder)
     for (const double turn : {0.0, 30.0, -40.0, 60.0}) {
         EolCloth cloth = on_ridge({8, turn, 180.0});
         const int v = cloth.vertex_at(0.2, 0.0);
-        cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+        cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0].shape()));
         const EolPlacing placing = cloth.place(v);
         ASSERT_TRUE(placing.coordinates) << turn;
         EXPECT_EQ(std::abs(placing.coordinates->material_basis(0, 2)), 1.0) << "not off the border";
@@ -330,7 +333,7 @@ TEST(EolCoordinates, TraceFollowsTheEdgesToNeighboursOnTheFeature)
     // The mesh's edges along the ridge differ by 10 degrees from the direction given by F.
     for (const int neighbours : {1, 2}) {
         EolCloth cloth = on_ridge({8, 10.0, 180.0});
-        const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+        const int tip = testing::tip_of(cloth.scene.obstacles[0].shape());
         const int v = cloth.vertex_at(0.2, 0.2);
         cloth.add_eol(v, false, tip);
         cloth.add_eol(cloth.vertex_at(0.2, 0.25), false, tip);
@@ -342,7 +345,7 @@ TEST(EolCoordinates, TraceFollowsTheEdgesToNeighboursOnTheFeature)
     // A bent trace: the mean of both directions, each taken in the same sense. One edge goes up, the other
     // down a diagonal.
     EolCloth cloth = on_ridge({8, 20.0, 180.0});
-    const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+    const int tip = testing::tip_of(cloth.scene.obstacles[0].shape());
     const int v = cloth.vertex_at(0.2, 0.2);
     cloth.add_eol(v, false, tip);
     Vec2 way = Vec2(0.0, 0.05);
@@ -367,7 +370,7 @@ TEST(EolCoordinates, TraceFollowsTheEdgesToNeighboursOnTheFeature)
 TEST(EolCoordinates, NeighboursOnAnotherFeatureTellNothing)
 {
     EolCloth cloth = on_ridge({8, 10.0, 180.0});
-    const Obstacle& ridge = cloth.scene.obstacles[0];
+    const Obstacle& ridge = cloth.scene.obstacles[0].shape();
     const int tip = testing::tip_of(ridge);
     const int v = cloth.vertex_at(0.2, 0.2);
     cloth.add_eol(v, false, tip);
@@ -387,7 +390,7 @@ TEST(EolCoordinates, OpeningHasTheLeastKineticEnergy)
         EolCloth cloth = on_ridge({8, 5.0 * k, fold, 1.0 + 0.03 * k}, 15.0);
         for (Vec3& x : cloth.state.mesh.world) x += Vec3(shift(random), shift(random), shift(random));
         const int v = cloth.vertex_at(0.2, 0.2);
-        const Obstacle& ridge = cloth.scene.obstacles[0];
+        const Obstacle& ridge = cloth.scene.obstacles[0].shape();
         const bool is_corner = k % 4 == 3;
         cloth.add_eol(v, is_corner, is_corner ? testing::end_of(ridge) : testing::tip_of(ridge));
         const EolPlacing placing = cloth.place(v);
@@ -413,7 +416,7 @@ TEST(EolCoordinates, AreTurnedToWhereTheObstacleWillBe)
 {
     EolCloth cloth = on_ridge({8, 0.0, 60.0});
     const int v = cloth.vertex_at(0.2, 0.2);
-    cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+    cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0].shape()));
     const Placement end = {rotation_about(Vec3(1, 2, 3), 40.0), Vec3(5, -6, 7)};
     const EolPlacing here = cloth.place(v), there = cloth.place(v, end);
     ASSERT_TRUE(here.coordinates && there.coordinates);
@@ -429,7 +432,7 @@ TEST(EolPlacing, AtTheClothsOwnCorners)
     for (const Vec2& corner : {Vec2(0, 0), Vec2(0.4, 0), Vec2(0, 0.4), Vec2(0.4, 0.4)}) {
         EolCloth cloth = on_ridge({8, 45.0, 180.0});
         const int v = cloth.vertex_at(corner.x(), corner.y());
-        cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+        cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0].shape()));
         const EolPlacing placing = cloth.place(v);
         ASSERT_FALSE(placing.coordinates);
         EXPECT_EQ(placing.refusal, RowCause::ClothCorner);
@@ -441,7 +444,7 @@ TEST(EolPlacing, WhereTheTraceMeetsTheBorderAtLessThan20Degrees)
     for (const double turn : {-19.0, 0.0, 19.0, 21.0, -21.0}) {
         EolCloth cloth = on_ridge({8, turn, 180.0});
         const int v = cloth.vertex_at(0.0, 0.2);  // the ridge meets this border at `turn` degrees
-        cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+        cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0].shape()));
         const EolPlacing placing = cloth.place(v);
         ASSERT_EQ(placing.coordinates.has_value(), std::abs(turn) > 20.0) << turn;
         if (!placing.coordinates) {
@@ -459,7 +462,7 @@ TEST(EolPlacing, WhereTheBorderHasTurnedAlongTheFeature)
         EolCloth cloth = on_ridge({8, 90.0, 180.0});
         const int v = cloth.vertex_at(0.0, 0.2), beside = cloth.vertex_at(0.05, 0.2);
         for (const int on_tip : {v, beside})
-            cloth.add_eol(on_tip, false, testing::tip_of(cloth.scene.obstacles[0]));
+            cloth.add_eol(on_tip, false, testing::tip_of(cloth.scene.obstacles[0].shape()));
         const Vec3 about = cloth.state.mesh.world[v];
         const Mat3 rotation = Eigen::AngleAxisd(radians(turned), Vec3::UnitZ()).toRotationMatrix();
         for (Vec3& x : cloth.state.mesh.world) x = about + rotation * (x - about);
@@ -488,7 +491,7 @@ TEST(EolPlacing, OfACornerOnTheBorder)
 {
     EolCloth cloth = on_ridge({8, 0.0, 60.0});
     const int v = cloth.vertex_at(0.2, 0.4);
-    cloth.add_eol(v, true, testing::end_of(cloth.scene.obstacles[0]));
+    cloth.add_eol(v, true, testing::end_of(cloth.scene.obstacles[0].shape()));
     const EolPlacing placing = cloth.place(v);
     ASSERT_FALSE(placing.coordinates);
     EXPECT_EQ(placing.refusal, RowCause::AlongBorder);
@@ -545,7 +548,8 @@ bool is_joined(const Obstacle& obstacle, const EolVertex& a, const EolVertex& b)
 
 TEST(TraceEdge, JoinsVerticesOfOneStretchAndItsEnds)
 {
-    const Obstacle ridge = make_ridge(60.0);
+    const MovingObstacle whole = make_ridge(60.0);
+    const Obstacle& ridge = whole.shape();
     const int tip = testing::tip_of(ridge), end = testing::end_of(ridge);
     const EolVertex on_tip{0, FeatureId::edge(0, tip), Vec3::UnitZ(), 0},
         at_end{1, FeatureId::corner(0, end), Vec3::UnitZ(), 0};
@@ -574,12 +578,12 @@ TEST(TraceEdge, JoinsVerticesOfOneStretchAndItsEnds)
 }
 
 /// A closed loop around the origin in z = 0, of radius 1.
-Obstacle make_loop(int count)
+MovingObstacle make_loop(int count)
 {
     std::vector<Vec3> points;
     for (int k = 0; k < count; ++k)
         points.emplace_back(std::cos(2.0 * M_PI * k / count), std::sin(2.0 * M_PI * k / count), 0.0);
-    return Obstacle("loop", make_wire(points, true), {}, {}, 30.0);
+    return MovingObstacle("loop", make_wire(points, true), {}, {}, 30.0);
 }
 
 /// A vertex on the loop's wire at this angle.
@@ -604,7 +608,8 @@ int edge_at(const Obstacle& loop, double degrees)
 
 TEST(TraceEdge, FollowsAPolylineOfManySegmentsButNotAcrossIt)
 {
-    const Obstacle loop = make_loop(40);
+    const MovingObstacle whole = make_loop(40);
+    const Obstacle& loop = whole.shape();
     for (const auto& [from, to, is_along] : {std::tuple(5.0, 50.0, true),
                                              {350.0, 20.0, true},
                                              {20.0, 350.0, true},
@@ -621,7 +626,7 @@ TEST(TraceEdge, FollowsAPolylineOfManySegmentsButNotAcrossIt)
 TEST(FollowFeatures, VerticesPassOnFromSegmentToSegment)
 {
     EolCloth cloth(make_loop(40), make_draped({8, 0.0, 180.0}));
-    const Obstacle& loop = cloth.scene.obstacles[0];
+    const Obstacle& loop = cloth.scene.obstacles[0].shape();
     const int v = cloth.vertex_at(0.2, 0.2);
     cloth.add_eol(v, false, edge_at(loop, 4.5));
     for (double degrees = 5.3; degrees < 400.0; degrees += 7.0) {
@@ -630,7 +635,7 @@ TEST(FollowFeatures, VerticesPassOnFromSegmentToSegment)
         EXPECT_EQ(cloth.state.eol[0].on.index, edge_at(loop, degrees)) << degrees;
     }
     // At the wire's end the vertex stays on the last segment.
-    EolCloth open(Obstacle("wire", make_wire({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}}, false), {}, {}, 30.0),
+    EolCloth open(MovingObstacle("wire", make_wire({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}}, false), {}, {}, 30.0),
                   make_draped({8, 0.0, 180.0}));
     open.add_eol(v, false, 0);
     for (const auto& [x, feature] : {std::pair(-0.5, 0), {0.5, 0}, {1.5, 1}, {3.0, 1}, {0.9, 0}}) {

@@ -172,7 +172,7 @@ TEST(ChangedPatches, WhatBecomesOrCeasesToBeEolIsAChangeToo)
 {
     EolCloth cloth(make_ridge(60.0), make_draped({20, 0.0, 180.0}));
     const State before = cloth.state;
-    cloth.add_eol(cloth.vertex_at(0.2, 0.2), false, testing::tip_of(cloth.scene.obstacles[0]));
+    cloth.add_eol(cloth.vertex_at(0.2, 0.2), false, testing::tip_of(cloth.scene.obstacles[0].shape()));
     const std::vector<ChangedPatch> made = find(before, cloth.state, {});
     ASSERT_EQ(made.size(), 1u);
     expect_same(made, search_all(before, cloth.state));

@@ -38,7 +38,7 @@ constexpr double kOnFeature = 1e-9;  // m: accuracy of crossings of straight lin
 /// Lets a point of the obstacle press on the face above it.
 void press_point(EolCloth& cloth, int point)
 {
-    const Vec3& at = cloth.scene.obstacles[0].mesh().points[point];
+    const Vec3& at = cloth.scene.obstacles[0].shape().mesh().points[point];
     for (const Face& f : cloth.state.mesh.faces) {
         const auto flat = [&](int i) -> Vec2 { return cloth.state.mesh.world[f[i]].head<2>(); };
         const Vec2 p = at.head<2>();
@@ -55,7 +55,7 @@ void press_point(EolCloth& cloth, int point)
 /// Lets the corner at the ridge's end press.
 void press_corner(EolCloth& cloth)
 {
-    const Obstacle& ridge = cloth.scene.obstacles[0];
+    const Obstacle& ridge = cloth.scene.obstacles[0].shape();
     press_point(cloth, ridge.features().corners[testing::end_of(ridge)].point);
 }
 
@@ -114,7 +114,7 @@ TEST(Conform, RowsOnAnEdgeBecomeVerticesOnItWithEdgesAlongIt)
             EXPECT_TRUE(has_edge(state, row[k - 1], row[k])) << turn << " after " << k;
         EXPECT_EQ(made.surgery.tagged_edges.size(), row.size() - 1) << "all of the trace is known as such";
         for (const EolVertex& e : state.eol) {
-            EXPECT_EQ(e.on.index, testing::tip_of(cloth.scene.obstacles[0]));
+            EXPECT_EQ(e.on.index, testing::tip_of(cloth.scene.obstacles[0].shape()));
             EXPECT_FALSE(e.on.is_corner());
             EXPECT_EQ(e.idle, 0);
         }
@@ -126,13 +126,13 @@ TEST(Conform, RowsOnAnEdgeBecomeVerticesOnItWithEdgesAlongIt)
 }
 
 /// Flat cloth one thickness above wires, with rows where its edges cross them.
-EolCloth lying_on(const Obstacle& wires, double turn)
+EolCloth lying_on(const MovingObstacle& wires, double turn)
 {
     EolCloth cloth(wires, make_draped({7, turn, 180.0}));
     cloth.scene.eol = uniform_target(kLyingCell, 10.0);
     for (Vec3& x : cloth.state.mesh.world) x += Vec3(0.003, 0.004, kThickness);
     const State& state = cloth.state;
-    const Obstacle& obstacle = cloth.scene.obstacles[0];
+    const Obstacle& obstacle = cloth.scene.obstacles[0].shape();
     for (const MeshEdge& edge : edges_of(state))
         for (const FeatureEdge& feature : obstacle.features().edges) {
             const auto& ends = obstacle.topology().edges[feature.edge].points;
@@ -154,7 +154,7 @@ TEST(Conform, AWireOfManySegmentsBecomesOneTrace)
     std::vector<Vec3> points;
     for (int k = 0; k <= 60; ++k) points.emplace_back(0.0, -0.3 + 0.01 * k, 0.0);
     for (const double turn : {0.0, 20.0}) {
-        EolCloth cloth = lying_on(Obstacle("wire", make_wire(points, false), {}, {}, 30.0), turn);
+        EolCloth cloth = lying_on(MovingObstacle("wire", make_wire(points, false), {}, {}, 30.0), turn);
         take(cloth);
         expect_sound(cloth.state, 0.16);
         EXPECT_GE(cloth.state.eol.size(), 8u);
@@ -163,7 +163,7 @@ TEST(Conform, AWireOfManySegmentsBecomesOneTrace)
             EXPECT_TRUE(has_edge(cloth.state, row[k - 1], row[k])) << k;
         for (const EolVertex& eol : cloth.state.eol) {
             const Vec3& x = cloth.state.mesh.world[cloth.state.index_of(eol.vertex_id)];
-            const Vec3 nearest = place_on_feature(cloth.scene.obstacles[0], eol.on.index, x).point;
+            const Vec3 nearest = place_on_feature(cloth.scene.obstacles[0].shape(), eol.on.index, x).point;
             EXPECT_NEAR((x - nearest).norm(), kThickness, kOnFeature) << "each is on the segment below it";
         }
     }
@@ -177,13 +177,13 @@ TEST(Conform, AWireThatBendsWithinACellHasATrace)
             const double angle = 0.005 * k / radius;
             points.emplace_back(radius * (1.0 - std::cos(angle)), radius * std::sin(angle), 0.0);
         }
-        EolCloth cloth = lying_on(Obstacle("arc", make_wire(points, false), {}, {}, 30.0), 10.0);
+        EolCloth cloth = lying_on(MovingObstacle("arc", make_wire(points, false), {}, {}, 30.0), 10.0);
         take(cloth);
         expect_sound(cloth.state, 0.16);
         EXPECT_GT(cloth.state.eol.size(), 5u) << radius;
         for (const EolVertex& eol : cloth.state.eol) {
             const Vec3& x = cloth.state.mesh.world[cloth.state.index_of(eol.vertex_id)];
-            const Vec3 nearest = place_on_feature(cloth.scene.obstacles[0], eol.on.index, x).point;
+            const Vec3 nearest = place_on_feature(cloth.scene.obstacles[0].shape(), eol.on.index, x).point;
             EXPECT_NEAR((x - nearest).norm(), kThickness, kOnFeature);
         }
     }
@@ -200,11 +200,11 @@ double held_off(const State& state, const Vec3& place)
 }
 
 /// A wire under the cloth's middle with a bend of `degrees` at (0, `y`, 0).
-Obstacle make_turning(double y, double degrees)
+MovingObstacle make_turning(double y, double degrees)
 {
     const double aside = -0.3 * std::tan(degrees * M_PI / 360.0);
-    return Obstacle("wire", make_wire({{aside, y - 0.3, 0}, {0, y, 0}, {aside, y + 0.3, 0}}, false), {}, {},
-                    30.0);
+    return MovingObstacle("wire", make_wire({{aside, y - 0.3, 0}, {0, y, 0}, {aside, y + 0.3, 0}}, false), {},
+                          {}, 30.0);
 }
 
 TEST(Conform, WhereAWireTurnsItsTraceHasAVertexThatIsHeldThere)
@@ -243,7 +243,7 @@ TEST(Conform, OnAWireOfShortEdgesItsTraceSlides)
     Vec3 at(-0.06, -0.18, 0);
     for (int k = -9; k <= 9; ++k, at += 0.02 * Vec3(-std::sin(0.1 * k), std::cos(0.1 * k), 0))
         points.push_back(at);
-    EolCloth cloth = lying_on(Obstacle("wire", make_wire(points, false), {}, {}, 30.0), 10.0);
+    EolCloth cloth = lying_on(MovingObstacle("wire", make_wire(points, false), {}, {}, 30.0), 10.0);
     take(cloth);
     EXPECT_GT(cloth.state.eol.size(), 3u);
     EXPECT_EQ(held_off(cloth.state, Vec3::Zero()), 1.0);
@@ -291,7 +291,7 @@ TEST(Conform, ANewVertexOnAWireIsOnTheSideOfTheTraceBesideIt)
 TEST(Conform, WhereAWireEndsInTheMiddleOfTheClothTheTraceDoes)
 {
     EolCloth cloth =
-        lying_on(Obstacle("wire", make_wire({{0, -0.3, 0}, {0, 0.021, 0}}, false), {}, {}, 30.0), 0.0);
+        lying_on(MovingObstacle("wire", make_wire({{0, -0.3, 0}, {0, 0.021, 0}}, false), {}, {}, 30.0), 0.0);
     take(cloth);
     expect_sound(cloth.state, 0.16);
     ASSERT_FALSE(cloth.state.eol.empty());
@@ -304,7 +304,7 @@ TEST(Conform, WhatIsNotOnTheSideToWhichAWirePressesIsNoVertexOfIt)
     // Cloth hangs beside a wire, which presses it aside just above one of its vertices. That vertex is near
     // enough, but below the wire. As an EOL vertex it would be pressed down, against the contact above.
     for (const double below : {0.0, 0.5, 2.0}) {
-        EolCloth cloth(Obstacle("wire", make_wire({{0, -0.5, 0}, {0, 0.5, 0}}, false), {}, {}, 30.0),
+        EolCloth cloth(MovingObstacle("wire", make_wire({{0, -0.5, 0}, {0, 0.5, 0}}, false), {}, {}, 30.0),
                        make_draped({7, 0.0, 180.0}));
         cloth.scene.eol = uniform_target(kLyingCell, 10.0);
         State& state = cloth.state;
@@ -317,7 +317,7 @@ TEST(Conform, WhatIsNotOnTheSideToWhichAWirePressesIsNoVertexOfIt)
             state.active.push_back({{state.ids[e.a], state.ids[e.b]},
                                     ContactKind::Edge,
                                     0,
-                                    cloth.scene.obstacles[0].features().edges[0].edge,
+                                    cloth.scene.obstacles[0].shape().features().edges[0].edge,
                                     Vec3::UnitX(),
                                     1e-6});
         }
@@ -498,8 +498,8 @@ EolCloth flown_off(double cells, const Vec3& normal)
 TEST(Conform, BehindAFoldThatHasFlownOffWhatLiesFlatOnAFaceGetsNoTrace)
 {
     for (const double cells : {0.2, 0.8, 1.5}) {
-        const Obstacle ridge = make_ridge(60.0);
-        const Vec3 along = ridge.features().edges[testing::tip_of(ridge)].normals[0];
+        const MovingObstacle ridge = make_ridge(60.0);
+        const Vec3 along = ridge.shape().features().edges[testing::tip_of(ridge.shape())].normals[0];
         const EolCloth cloth = flown_off(cells, along);
         ASSERT_GT(cloth.state.active.size(), 5u) << cells;
         const ConformOutcome outcome = conform_cloth(cloth);
@@ -544,7 +544,7 @@ TEST(Conform, ACornerBecomesANodeAtWhichTheTraceEnds)
     ASSERT_EQ(cloth.state.active.back().kind, ContactKind::Triangle);
     take(cloth);
     expect_sound(cloth.state, 0.16);
-    const Obstacle& ridge = cloth.scene.obstacles[0];
+    const Obstacle& ridge = cloth.scene.obstacles[0].shape();
     const std::vector<int> row = along_ridge(cloth.state);
     ASSERT_GT(row.size(), 2u);
     const EolVertex& last = cloth.state.eol[cloth.state.eol_entry(cloth.state.ids[row.back()])];
@@ -704,7 +704,7 @@ std::optional<ConformedMesh> flow_at_held(EolCloth cloth, double share)
 TEST(Conform, WhatCannotBeClearedIsLetGoFourStepsAheadOnAnEdgeAndWhereTheNextIsNotClearOnAWire)
 {
     const auto wire =
-        lying_on(Obstacle("wire", make_wire({{0, -0.3, 0}, {0, 0.3, 0}}, false), {}, {}, 30.0), 0.0);
+        lying_on(MovingObstacle("wire", make_wire({{0, -0.3, 0}, {0, 0.3, 0}}, false), {}, {}, 30.0), 0.0);
     EolCloth ridge = lying(0.0, 0.003);
     press_edges(ridge);
     const auto released = [](const std::optional<ConformedMesh>& made) {
@@ -764,7 +764,7 @@ TEST(Conform, NothingOfAnObstacleGetsThroughTheCloth)
     ASSERT_TRUE(unhindered);
     EXPECT_GT(count_passed(unhindered->surgery.mesh), 3);
 
-    cloth.scene.obstacles.push_back(Obstacle("nails", make_points(nails), {}, {}, 30.0));
+    cloth.scene.obstacles.push_back(MovingObstacle("nails", make_points(nails), {}, {}, 30.0));
     const std::optional<ConformedMesh> made = conform(cloth);
     ASSERT_TRUE(made);
     EXPECT_GT(made->report.inserted, 0) << "splits pass nothing";
@@ -812,7 +812,7 @@ TEST(Conform, OnARimWhatSlidesBesideABendThatPressesGoesThere)
     int tried = 0;
     for (int point = 0; point < 32; ++point) {
         EolCloth cloth = testing::make_disk_cloth(1.0);
-        const Obstacle& disk = cloth.scene.obstacles[0];
+        const Obstacle& disk = cloth.scene.obstacles[0].shape();
         if (disk.mesh().points[point].z() < -0.05) continue;
         testing::press_faces_on(point, cloth.state);
         take(cloth);

@@ -178,7 +178,7 @@ EolCloth sliding_cloth(double speed)
     for (int v = 0; v < state.mesh.vertex_count(); ++v) {
         const double across = state.mesh.material[v].x() - 0.2;
         if (std::abs(across) < 1e-9) {
-            cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+            cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0].shape()));
             state.material_velocity[v] = Vec2(-speed, 0);
             state.mesh.world[v] = Vec3(0, state.mesh.world[v].y(), 0);
         } else {
@@ -267,7 +267,7 @@ TEST(MeshTransfer, FlatClothInUniformMotionKeepsItWhereAVertexBecomesEol)
     for (const double turn : {0.0, 33.0}) {
         RigidMotion motion;
         motion.velocity = Vec3(0.3, -0.2, 0.1);
-        Obstacle ridge("ridge", make_ridge(60.0).mesh(), {}, motion, 30.0);
+        MovingObstacle ridge("ridge", make_ridge(60.0).shape().mesh(), {}, motion, 30.0);
         EolCloth cloth(std::move(ridge), make_draped({8, turn, 180.0}));
         const Vec3 uniform(normal(random), normal(random), normal(random));
         for (Vec3& v : cloth.state.velocity) v = uniform;
@@ -277,8 +277,9 @@ TEST(MeshTransfer, FlatClothInUniformMotionKeepsItWhereAVertexBecomesEol)
         const VertexId id = cloth.state.ids[v];
         surgery.set_role(id, TraceRole::OnTrace, 0);
         const State after = carry(
-            cloth, conformed(surgery, {{id, FeatureId::edge(0, testing::tip_of(cloth.scene.obstacles[0])),
-                                        Vec3::UnitZ(), 0}}));
+            cloth,
+            conformed(surgery, {{id, FeatureId::edge(0, testing::tip_of(cloth.scene.obstacles[0].shape())),
+                                 Vec3::UnitZ(), 0}}));
         EXPECT_LT(field_difference(cloth.state, after), kRoundOff);
         EXPECT_LT(std::abs(energy_gain(cloth, after)), kRoundOff);
         EXPECT_NEAR(after.velocity[v].x(), motion.velocity.x(), kRoundOff) << "it stays over the ridge";
@@ -300,7 +301,7 @@ EolCloth flat_cloth_through(double u, double v)
     EolCloth flat(make_ridge(60.0), make_draped({8, 0.0, 180.0}));
     for (Vec3& velocity : flat.state.velocity) velocity = Vec3(kUniform.data());
     const int on_ridge = flat.vertex_at(u, v);
-    flat.add_eol(on_ridge, false, testing::tip_of(flat.scene.obstacles[0]));
+    flat.add_eol(on_ridge, false, testing::tip_of(flat.scene.obstacles[0].shape()));
     flat.state.velocity[on_ridge] = Vec3(0.0, kUniform[1], kUniform[2]);
     flat.state.material_velocity[on_ridge] = Vec2(-kUniform[0], 0.0);
     set_history(flat.state);
@@ -347,7 +348,7 @@ TEST(MeshTransfer, WhatCanHaveNoCoordinatesAnyMoreIsOfTheMaterialThoughItsEntryI
     ASSERT_TRUE(flat.place(at_border).coordinates);
     std::vector<EolVertex> eol = flat.state.eol;
     // A vertex on the cloth's border cannot be EOL on a corner.
-    eol[0].on = FeatureId::corner(0, testing::end_of(flat.scene.obstacles[0]));
+    eol[0].on = FeatureId::corner(0, testing::end_of(flat.scene.obstacles[0].shape()));
     const State after = carry(flat, conformed(operate(flat.state), eol));
     ASSERT_EQ(after.eol.size(), 1u);
     EXPECT_EQ(after.material_velocity[at_border], Vec2(0, 0));
@@ -505,7 +506,7 @@ TEST(MeshTransfer, WhatGivesWayIsNeverWhatIsOnAFeature)
     EolCloth cloth = bent_cloth();
     const int on_it = cloth.vertex_at(0.2, 0.25);
     const VertexId eol = cloth.state.ids[on_it], gone = cloth.state.ids[cloth.vertex_at(0.2, 0.2)];
-    cloth.add_eol(on_it, false, testing::tip_of(cloth.scene.obstacles[0]));
+    cloth.add_eol(on_it, false, testing::tip_of(cloth.scene.obstacles[0].shape()));
     ClothSurgery surgery = operate(cloth.state);
     ASSERT_EQ(surgery.commit(surgery.propose_collapse(gone, surgery.ring(gone).vertices[0])), Verdict::Done);
     const State after = carry(cloth, conformed(surgery, cloth.state.eol));

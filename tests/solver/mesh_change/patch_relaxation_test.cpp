@@ -30,7 +30,7 @@ struct Setting {
     RelaxedPatch patch;
 
     explicit Setting(double rough, ObstacleMesh obstacle = make_points({{9, 9, 9}}))
-        : cloth(Obstacle("it", std::move(obstacle), {}, {}, 30.0), make_draped({8, 0.0, 180.0}))
+        : cloth(MovingObstacle("it", std::move(obstacle), {}, {}, 30.0), make_draped({8, 0.0, 180.0}))
     {
         std::mt19937 random(2);
         std::normal_distribution<double> shift(0.0, rough);
@@ -373,7 +373,7 @@ TEST(PatchRelaxation, APatchHasTheEnergyThatTheStepFinds)
     EolCloth cloth(testing::make_ridge(90.0), make_draped({}));
     cloth.scene.gravity = Gravity{};
     cloth.scene.material.bending_stiffness = 1e-4;
-    const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+    const int tip = testing::tip_of(cloth.scene.obstacles[0].shape());
     for (int k = 0; k < 4; ++k) cloth.add_eol(cloth.vertex_at(0.2, 0.1 + 0.05 * k), false, tip);
     Workspace work;
     prepare(cloth.scene, cloth.state, work);

@@ -190,9 +190,9 @@ TEST(StepMesh, StrainDoesNotDependOnHowHighTheSceneIs)
 {
     const auto report_at = [](double height) {
         EolCloth cloth = heading_for_two_pleats(100.0, -0.5, {0.2, 0.3}, true);
-        ObstacleMesh ridge = cloth.scene.obstacles[0].mesh();
+        ObstacleMesh ridge = cloth.scene.obstacles[0].shape().mesh();
         for (Vec3& p : ridge.points) p.z() += height;
-        cloth.scene.obstacles[0] = Obstacle("ridge", std::move(ridge), {}, {}, 30.0);
+        cloth.scene.obstacles[0] = MovingObstacle("ridge", std::move(ridge), {}, {}, 30.0);
         for (Vec3& x : cloth.state.mesh.world) x.z() += height;
         const ConformOutcome giving = testing::conform_cloth(cloth);
         TransferReport report;

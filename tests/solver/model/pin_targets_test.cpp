@@ -137,7 +137,7 @@ TEST(PinStart, RidesOnAnObstacleFromThere)
     motion.velocity = Vec3(0, 1, 0);
     motion.angular_velocity = Vec3(1, 0, 0);
     run.scene.obstacles = {
-        Obstacle("far", make_box({1, 1, 1}), {Mat3::Identity(), Vec3(0, 0, 9)}, motion, 30)};
+        MovingObstacle("far", make_box({1, 1, 1}), {Mat3::Identity(), Vec3(0, 0, 9)}, motion, 30)};
     run.scene.pins = {pin};
     run.advance(kStart);
     const std::vector<Vec3> then = run.state.mesh.world;
@@ -200,7 +200,7 @@ struct Ridden {
     Ridden() : held(cloth.vertex_at(0.2, 0.2)), other(cloth.vertex_at(0.2, 0.3))
     {
         for (const int v : {held, other}) {
-            cloth.add_eol(v, false, tip_of(cloth.scene.obstacles[0]));
+            cloth.add_eol(v, false, tip_of(cloth.scene.obstacles[0].shape()));
             cloth.state.material_velocity[v] = Vec2(0.5, 0.0);
         }
         Pin pin;

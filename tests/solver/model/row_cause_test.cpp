@@ -179,15 +179,15 @@ TEST(RowCause, WhatHasNoCoordinatesSaysWhy)
     // Upright cloth over the ridge: its plane contains the outward direction.
     EolCloth upright = lying(0.0);
     for (Vec3& x : upright.state.mesh.world) x = Vec3(0.0, x.y(), x.x() + 0.3);
-    upright.add_eol(upright.vertex_at(0.2, 0.2), false, testing::tip_of(upright.scene.obstacles[0]));
+    upright.add_eol(upright.vertex_at(0.2, 0.2), false, testing::tip_of(upright.scene.obstacles[0].shape()));
     EXPECT_EQ(count(conform_cloth(upright), RowCause::EdgeOn), 1);
 
     // A border along the ridge, and a corner of the cloth.
     EolCloth along = lying(0.0, 0.2);
-    along.add_eol(along.vertex_at(0.0, 0.2), false, testing::tip_of(along.scene.obstacles[0]));
+    along.add_eol(along.vertex_at(0.0, 0.2), false, testing::tip_of(along.scene.obstacles[0].shape()));
     EXPECT_EQ(count(conform_cloth(along), RowCause::AlongBorder), 1);
     EolCloth corner = lying(0.0, 0.2);
-    corner.add_eol(corner.vertex_at(0.0, 0.0), false, testing::tip_of(corner.scene.obstacles[0]));
+    corner.add_eol(corner.vertex_at(0.0, 0.0), false, testing::tip_of(corner.scene.obstacles[0].shape()));
     EXPECT_EQ(count(conform_cloth(corner), RowCause::ClothCorner), 1);
 
     for (const RowCause cause :

@@ -55,8 +55,8 @@ ClothMesh make_sheet()
 
 void add_table(Scene& scene)
 {
-    scene.obstacles.push_back(
-        Obstacle("table", make_box({1.0, 2.0, 0.5}), {Mat3::Identity(), Vec3(-0.5, 0, -0.25)}, {}, 30.0));
+    scene.obstacles.push_back(MovingObstacle("table", make_box({1.0, 2.0, 0.5}),
+                                             {Mat3::Identity(), Vec3(-0.5, 0, -0.25)}, {}, 30.0));
 }
 
 struct SheetRun {

@@ -14,7 +14,7 @@ bool may_be_at(const Vec3& off)
     testing::EolCloth cloth = testing::lying(0.0, 0.5 * testing::kLyingCell);
     const int v = cloth.vertex_at(0.2, 0.2);
     cloth.state.mesh.world[v] = Vec3(0.0, cloth.state.mesh.world[v].y(), 0.0) + off;
-    const int entry = cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+    const int entry = cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0].shape()));
     const ClothStars stars = cloth.stars();
     const TraceMesh trace(cloth.scene, cloth.state, stars, {});
     return EolAdmission(cloth.scene, cloth.state, stars, trace, 0.02).is_in_plane(cloth.state.eol[entry]);

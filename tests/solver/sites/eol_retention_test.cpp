@@ -43,7 +43,7 @@ struct FlowingCloth {
             if (std::abs(s) > 1e-9) continue;
             state.velocity[v].setZero();
             state.material_velocity[v] = Vec2(-speed, 0.0);
-            cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0]));
+            cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0].shape()));
         }
         entry = state.eol_entry(state.ids[middle]);
         set_idle(kIdleSteps);
@@ -113,8 +113,9 @@ TEST(EolRetention, OfATentThatIsOffItsNailComesWhereTheNailPressesOnAnotherFace)
 {
     for (const double height : {2.0, 3.0})  // thicknesses
         for (const bool is_pressing : {false, true}) {
-            EolCloth cloth(Obstacle("nails", make_points({{1.0, 0.0, 0.0}, Vec3::Zero()}), {}, {}, 30.0),
-                           testing::make_draped({8, 0.0, 180.0}));
+            EolCloth cloth(
+                MovingObstacle("nails", make_points({{1.0, 0.0, 0.0}, Vec3::Zero()}), {}, {}, 30.0),
+                testing::make_draped({8, 0.0, 180.0}));
             for (Vec3& x : cloth.state.mesh.world)
                 x.z() = height * testing::kThickness - 0.5 * std::hypot(x.x(), x.y());
             const int v = cloth.vertex_at(0.2, 0.2);
@@ -140,7 +141,7 @@ TEST(EolRetention, OfATentThatIsOffACornerComesWhereThatPressesOnAnotherFace)
         EolCloth cloth(testing::make_ridge(60.0, 0.1), testing::make_draped({8, 0.0, 180.0}));
         for (Vec3& x : cloth.state.mesh.world)
             x.z() = 3.0 * testing::kThickness - 0.5 * std::hypot(x.x(), x.y() - 0.1);
-        const Obstacle& ridge = cloth.scene.obstacles[0];
+        const Obstacle& ridge = cloth.scene.obstacles[0].shape();
         const int v = cloth.vertex_at(0.2, 0.3), corner = testing::end_of(ridge);
         const int entry = cloth.add_eol(v, true, corner);
         cloth.state.eol[entry].idle = kIdleSteps;
@@ -206,12 +207,13 @@ TEST(EolRetention, AtABendOfAWireNeedsTheRoomOfACorner)
     constexpr double kCell = 0.05;
     const auto is_kept = [&](bool is_bend, double cells) {
         EolCloth cloth(
-            Obstacle("wire", make_wire({{-0.05, -1, 0}, {-0.15, 0, 0}, {-0.05, 1, 0}}, false), {}, {}, 30.0),
+            MovingObstacle("wire", make_wire({{-0.05, -1, 0}, {-0.15, 0, 0}, {-0.05, 1, 0}}, false), {}, {},
+                           30.0),
             testing::make_draped({8, 0.0, 180.0}));
         const int v = cloth.vertex_at(kCell, 0.2);
         cloth.state.mesh.world[v] = Vec3(-0.15, 0.0, 0.0);
         cloth.state.mesh.material[v].x() = cells * kCell;
-        const std::optional<FeatureBend> bend = find_bend(cloth.scene.obstacles[0], 1);
+        const std::optional<FeatureBend> bend = find_bend(cloth.scene.obstacles[0].shape(), 1);
         EXPECT_TRUE(bend.has_value());
         EolVertex& eol = cloth.state.eol[cloth.add_eol(v, false, bend->feature)];
         eol.outward = Vec3::UnitZ();

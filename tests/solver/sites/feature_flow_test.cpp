@@ -24,7 +24,7 @@ enum class On { Edge, EdgeAtBorder, Corner };
 Vec2 flow_at(const EolCloth& cloth, double u, double v, On on)
 {
     const int near = cloth.vertex_at(u, v);
-    const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+    const int tip = testing::tip_of(cloth.scene.obstacles[0].shape());
     const FeatureSite site{on == On::Corner ? FeatureId::corner(0, tip) : FeatureId::edge(0, tip),
                            cloth.state.mesh.material[near],
                            cloth.state.ids[near],
@@ -78,8 +78,8 @@ TEST(FeatureFlow, IsRelativeToTheObstacleAndCountsWhatFlowsAlready)
     EolCloth cloth(make_ridge(60.0), make_draped({8, 0.0, 180.0}));
     RigidMotion motion;
     motion.velocity = Vec3(0.3, 0.2, 0.1);
-    const Obstacle still = make_ridge(60.0);
-    cloth.scene.obstacles[0] = Obstacle("ridge", still.mesh(), {}, motion, 30.0);
+    const MovingObstacle still = make_ridge(60.0);
+    cloth.scene.obstacles[0] = MovingObstacle("ridge", still.shape().mesh(), {}, motion, 30.0);
     EXPECT_LT((flow_at_middle(cloth) - Vec2(0.3, 0.2)).norm(), kRoundOff);
     for (Vec3& v : cloth.state.velocity) v = motion.velocity;
     EXPECT_LT(flow_at_middle(cloth).norm(), kRoundOff);

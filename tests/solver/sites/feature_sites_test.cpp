@@ -52,7 +52,7 @@ struct RidgeCloth {
         cloth.state.active.push_back({{cloth.state.ids[edge.a], cloth.state.ids[edge.b]},
                                       ContactKind::Edge,
                                       0,
-                                      cloth.scene.obstacles[0].features().edges[tip()].edge,
+                                      cloth.scene.obstacles[0].shape().features().edges[tip()].edge,
                                       Vec3::UnitZ(),
                                       1e-6});
     }
@@ -69,7 +69,7 @@ struct RidgeCloth {
         return static_cast<std::size_t>(most - crossing.begin());
     }
 
-    int tip() const { return testing::tip_of(cloth.scene.obstacles[0]); }
+    int tip() const { return testing::tip_of(cloth.scene.obstacles[0].shape()); }
 
     std::vector<FeatureSite> sites() const
     {
@@ -184,12 +184,12 @@ TEST(FeatureSites, AreAtAVertexThatIsAllButInThePlaneWhereTheClothEndsThere)
          {0.0, 0.05, -0.05, 0.09, 0.11, 0.3}) {  // thicknesses from the border to the ridge's plane
         EolCloth cloth = testing::lying(0.0, 0.2 + off * kThickness);
         const int inside = cloth.vertex_at(testing::kLyingCell, 0.2), border = cloth.vertex_at(0.0, 0.2);
-        const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+        const int tip = testing::tip_of(cloth.scene.obstacles[0].shape());
         cloth.state.active.push_back(
             {{cloth.state.ids[std::min(inside, border)], cloth.state.ids[std::max(inside, border)]},
              ContactKind::Edge,
              0,
-             cloth.scene.obstacles[0].features().edges[tip].edge,
+             cloth.scene.obstacles[0].shape().features().edges[tip].edge,
              Vec3::UnitZ(),
              1e-6});
         const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, cloth.state, cloth.stars());
@@ -222,7 +222,7 @@ TEST(FeatureSites, OnATipIsAVertexThatIsOnItAlreadyWhateverFaceOfItPresses)
     // A vertex at several heights above the tip; each face around it presses in turn.
     for (const ObstacleMesh& mesh : make_tips())
         for (const double height : {0.2, 1.0, 2.4, 2.6}) {
-            EolCloth cloth(Obstacle("tip", mesh, {}, {}, 30.0), testing::make_draped({8, 0.0, 180.0}));
+            EolCloth cloth(MovingObstacle("tip", mesh, {}, {}, 30.0), testing::make_draped({8, 0.0, 180.0}));
             for (Vec3& x : cloth.state.mesh.world)
                 x.z() = height * kThickness - 0.5 * std::hypot(x.x(), x.y());
             const int v = cloth.vertex_at(0.2, 0.2);
@@ -257,11 +257,11 @@ TEST(FeatureSites, AreOnTheNextEdgeWhereOneEndsBetweenItsNearestPointAndThePlane
                 kThickness * normal + (X.x() + end * kThickness) * down + X.y() * Vec3::UnitY();
         }
         const int from = cloth.vertex_at(0.2, 0.2), to = cloth.vertex_at(0.25, 0.2);
-        const int tip = testing::tip_of(cloth.scene.obstacles[0]);
+        const int tip = testing::tip_of(cloth.scene.obstacles[0].shape());
         state.active.push_back({{state.ids[std::min(from, to)], state.ids[std::max(from, to)]},
                                 ContactKind::Edge,
                                 0,
-                                cloth.scene.obstacles[0].features().edges[tip].edge,
+                                cloth.scene.obstacles[0].shape().features().edges[tip].edge,
                                 normal,
                                 1e-6});
         const std::vector<FeatureSite> sites = find_feature_sites(cloth.scene, state, cloth.stars());
@@ -278,7 +278,7 @@ TEST(FeatureSites, AreStraightOutwardOfWhereARimBendsUnderAFace)
 {
     for (const double height : {0.2, 1.0, 1.7, 3.0}) {
         EolCloth cloth = testing::make_disk_cloth(height);
-        const Obstacle& disk = cloth.scene.obstacles[0];
+        const Obstacle& disk = cloth.scene.obstacles[0].shape();
         ASSERT_TRUE(disk.features().corners.empty()) << "it bends by 22.5 degrees";
         State& state = cloth.state;
         const ClothMesh& mesh = state.mesh;

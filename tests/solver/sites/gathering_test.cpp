@@ -29,7 +29,7 @@ EolCloth squeeze(double squeezed, const std::vector<double>& on_tip, bool is_cut
         });
     }
     EolCloth cloth(testing::make_ridge(90.0), std::move(mesh));
-    const int tip = testing::tip_of(cloth.scene.obstacles.front());
+    const int tip = testing::tip_of(cloth.scene.obstacles.front().shape());
     for (const double v : on_tip) cloth.add_eol(cloth.vertex_at(0.2, v), false, tip);
     return cloth;
 }
@@ -80,7 +80,7 @@ TEST(Gathering, ReachesThreeCellsAlongTheFeature)
 TEST(Gathering, IsNotMeasuredAtACorner)
 {
     EolCloth cloth = squeeze(0.4, {0.1, 0.2});
-    const int end = testing::end_of(cloth.scene.obstacles.front());
+    const int end = testing::end_of(cloth.scene.obstacles.front().shape());
     for (EolVertex& vertex : cloth.state.eol) vertex.on = {0, FeatureId::Kind::Corner, end};
     EXPECT_EQ(greatest_gathering(cloth), 0.0);
 }

@@ -15,7 +15,7 @@ namespace {
 using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
 struct Trace {
-    std::vector<Obstacle> obstacles;
+    std::vector<MovingObstacle> obstacles;
     std::vector<EolVertex> eol;
     std::vector<Vec3> places;
 
@@ -34,7 +34,7 @@ struct Trace {
         std::vector<PlacedEol> placed;
         for (std::size_t k = 0; k < eol.size(); ++k) placed.push_back({eol[k], places[k]});
         Pairs found;
-        for (const auto& [a, b] : find_trace_neighbours(obstacles, placed))
+        for (const auto& [a, b] : find_trace_neighbours(obstacles, 0.0, placed))
             EXPECT_TRUE(found.insert(std::minmax(a->vertex_id, b->vertex_id)).second);
         return found;
     }
@@ -49,9 +49,9 @@ int corner_at_x(const Obstacle& obstacle, double x)
     return -1;
 }
 
-Obstacle wire(const std::vector<Vec3>& points, bool is_closed)
+MovingObstacle wire(const std::vector<Vec3>& points, bool is_closed)
 {
-    return Obstacle("wire", make_wire(points, is_closed), {}, {}, 30.0);
+    return MovingObstacle("wire", make_wire(points, is_closed), {}, {}, 30.0);
 }
 
 TEST(TraceOrder, FollowsALineOfSegmentsFromCornerToCornerWhateverTheOrderTheyCameIn)
@@ -60,9 +60,9 @@ TEST(TraceOrder, FollowsALineOfSegmentsFromCornerToCornerWhateverTheOrderTheyCam
     trace.obstacles.push_back(wire({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}, {3, 0.1, 0}}, false));
     trace.add(7, false, 2, {2.5, 0.1, 0});
     trace.add(3, false, 0, {0.9, 0, 0});
-    trace.add(9, true, corner_at_x(trace.obstacles[0], 3.0), {3, 0.1, 0});
+    trace.add(9, true, corner_at_x(trace.obstacles[0].shape(), 3.0), {3, 0.1, 0});
     trace.add(4, false, 0, {0.2, 0, 0});
-    trace.add(1, true, corner_at_x(trace.obstacles[0], 0.0), {0, 0, 0});
+    trace.add(1, true, corner_at_x(trace.obstacles[0].shape(), 0.0), {0, 0, 0});
     trace.add(8, false, 1, {1.4, 0.04, 0});
     EXPECT_EQ(trace.neighbours(), (Pairs{{1, 4}, {3, 4}, {3, 8}, {7, 8}, {7, 9}}));
 }
@@ -74,9 +74,12 @@ TEST(TraceOrder, OfAClosedLineTheLastIsBesideTheFirst)
     Trace trace;
     trace.obstacles.push_back(wire(points, true));
     const auto add = [&](std::uint32_t id, int feature) {
-        const auto& ends =
-            trace.obstacles[0].topology().edges[trace.obstacles[0].features().edges[feature].edge].points;
-        const std::vector<Vec3>& at = trace.obstacles[0].mesh().points;
+        const auto& ends = trace.obstacles[0]
+                               .shape()
+                               .topology()
+                               .edges[trace.obstacles[0].shape().features().edges[feature].edge]
+                               .points;
+        const std::vector<Vec3>& at = trace.obstacles[0].shape().mesh().points;
         trace.add(id, false, feature, 0.5 * (at[ends[0]] + at[ends[1]]));
     };
     add(1, 3);
@@ -91,11 +94,11 @@ TEST(TraceOrder, AFoldThatHasFlownOffAnEdgeAndTheTraceBehindItAreNotMixed)
 {
     Trace trace;
     trace.obstacles.emplace_back("table", make_box(Vec3(2, 2, 2)), Placement{}, RigidMotion{}, 30.0);
-    const ObstacleFeatures& features = trace.obstacles[0].features();
+    const ObstacleFeatures& features = trace.obstacles[0].shape().features();
     int along_y = -1;  // at x = z = 1
     for (std::size_t f = 0; f < features.edges.size(); ++f) {
-        const auto& ends = trace.obstacles[0].topology().edges[features.edges[f].edge].points;
-        const std::vector<Vec3>& at = trace.obstacles[0].mesh().points;
+        const auto& ends = trace.obstacles[0].shape().topology().edges[features.edges[f].edge].points;
+        const std::vector<Vec3>& at = trace.obstacles[0].shape().mesh().points;
         if ((0.5 * (at[ends[0]] + at[ends[1]]) - Vec3(1, 0, 1)).norm() < 1e-9) along_y = static_cast<int>(f);
     }
     ASSERT_GE(along_y, 0);
