@@ -16,9 +16,6 @@ namespace {
 constexpr std::string_view kBlank = " \t\v\f\x1a";
 constexpr std::string_view kMark = "\xef\xbb\xbf";  // UTF-8 byte-order mark
 
-// Longest quotation from a file in a message: enough to locate the place.
-constexpr std::size_t kLongestQuote = 40;
-
 std::string_view trimmed(std::string_view line)
 {
     line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
@@ -101,6 +98,16 @@ std::string excerpt(std::string_view text)
 std::string counted(long long count, std::string_view one, std::string_view many)
 {
     return std::to_string(count).append(1, ' ').append(count == 1 ? one : many);
+}
+
+std::string one_line(std::string_view text)
+{
+    constexpr std::size_t kLongestLine = 500;
+    std::string line(text.substr(0, kLongestLine));
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    if (line.size() < text.size()) line += "...";
+    return line;
 }
 
 }  // namespace arris

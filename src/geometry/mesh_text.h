@@ -6,6 +6,9 @@
 
 namespace arris {
 
+/// Longest quotation from a file in a message, bytes: enough to locate the place.
+inline constexpr std::size_t kLongestQuote = 40;
+
 /// Removes the UTF-8 byte-order marks at the beginning of a text. Throws InputError, without the file's name,
 /// for a text in UTF-16 or UTF-32.
 std::string_view skip_byte_order_mark(std::string_view text);
@@ -35,5 +38,8 @@ std::string excerpt(std::string_view text);
 
 /// A number with its noun: "1 face", "2 faces", "2 vertices" (for the plural that is given).
 std::string counted(long long count, std::string_view one, std::string_view many);
+
+/// `text` on one line, control characters replaced by spaces, at most 500 bytes.
+std::string one_line(std::string_view text);
 
 }  // namespace arris

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/polygon.h"
 
-#include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Triangulation_face_base_with_info_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
 
-#include "geometry/cgal.h"
+#include "geometry/loop_triangulation.h"
 #include "geometry/polygon_touch.h"
+#include "geometry/tolerances.h"
 
 // The sides of the polygon are constraints of a triangulation of its corners. A triangle belongs to the
 // polygon if the polygon winds around it once, in either direction. Where a polygon touches itself without
@@ -23,32 +20,7 @@
 namespace arris {
 namespace {
 
-constexpr int kNotReached = std::numeric_limits<int>::min();
-
-// Files in single precision round the corners of a rectangle. Both cuts of a quadrilateral whose opposite
-// angles add up to 180 degrees within this (radians) are equally good.
-constexpr double kEqualCuts = 1e-3;
-
-// Area below which a polygon's own normal is rounding, relative to the largest triangle of three successive
-// corners: the two halves of a symmetric bow-tie cancel.
-constexpr double kNoNormal = 1e-6;
-
-// Components of a normal that differ by less than this share are equal: a plane may lie at 45 degrees.
-constexpr double kEqualAxes = 1e-3;
-
-struct Winding {
-    int number = kNotReached;
-};
-
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;  // index of the corner
-using FaceBase =
-    CGAL::Triangulation_face_base_with_info_2<Winding, Kernel,
-                                              CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-// This tag allows a corner on another side, and throws where two sides cross.
-using Triangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
-                                               CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
-                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
+using Triangulation = LoopTriangulation;
 using VertexHandle = Triangulation::Vertex_handle;
 using FaceHandle = Triangulation::Face_handle;
 
@@ -95,7 +67,8 @@ std::optional<std::vector<Face>> cut_convex_quad(const std::vector<Vec2>& corner
     const Vec2 ba = (corners[a] - corners[b]).normalized(), bc = (corners[c] - corners[b]).normalized();
     const Vec2 dc = (corners[c] - corners[d]).normalized(), da = (corners[a] - corners[d]).normalized();
     const double sine = cross(bc, ba) * dc.dot(da) + ba.dot(bc) * cross(da, dc);
-    if (sine < -kEqualCuts) return std::vector<Face>{{a, b, d}, {b, c, d}};
+    // Files round the corners of a rectangle.
+    if (sine < -kThreeDigits) return std::vector<Face>{{a, b, d}, {b, c, d}};
     return std::vector<Face>{{a, b, c}, {a, c, d}};
 }
 
@@ -159,13 +132,13 @@ class PolygonCutter {
     void wind()
     {
         std::vector<FaceHandle> reached = {triangulation_.infinite_face()};
-        reached.front()->info().number = 0;
+        reached.front()->info() = 0;
         for (std::size_t next = 0; next < reached.size(); ++next) {
             const FaceHandle face = reached[next];
             for (int k = 0; k < 3; ++k) {
                 const FaceHandle neighbour = face->neighbor(k);
-                if (neighbour->info().number != kNotReached) continue;
-                neighbour->info().number = face->info().number - runs_along(face, k);
+                if (neighbour->info()) continue;
+                neighbour->info() = *face->info() - runs_along(face, k);
                 reached.push_back(neighbour);
             }
         }
@@ -185,7 +158,7 @@ class PolygonCutter {
     {
         PolygonTriangles triangles;
         for (const FaceHandle face : triangulation_.finite_face_handles()) {
-            const int number = face->info().number;
+            const int number = *face->info();
             if (std::abs(number) > 1) return {{}, PolygonDefect::CrossesItself, {}};
             if (number == 0) continue;
             const int a = face->vertex(0)->info(), b = face->vertex(1)->info(), c = face->vertex(2)->info();
@@ -214,7 +187,8 @@ Vec3 normal_of(const std::vector<Vec3>& corners)
         const Vec3 at_corner = (b - a).cross(c - b);
         if (at_corner.norm() > largest.norm()) largest = at_corner;
     }
-    return sum.norm() > kNoNormal * largest.norm() ? sum : largest;
+    // The two halves of a symmetric bow-tie cancel, but for rounding.
+    return sum.norm() > kSinglePrecision * largest.norm() ? sum : largest;
 }
 
 // Twice the area that the triangles cover.
@@ -295,7 +269,8 @@ PolygonTriangles triangulate_polygon(const std::vector<Vec3>& corners, NearTouch
     // coordinates that are about equal in the normal, the last, so that rounding does not choose.
     const Vec3 sizes = normal.cwiseAbs();
     int axis = 2;
-    while (axis > 0 && sizes[axis] < (1.0 - kEqualAxes) * sizes.maxCoeff()) --axis;
+    // A plane may lie at 45 degrees, but for rounding.
+    while (axis > 0 && sizes[axis] < (1.0 - kThreeDigits) * sizes.maxCoeff()) --axis;
     std::vector<Vec2> flat;
     for (const Vec3& p : corners) flat.emplace_back(p[(axis + 1) % 3], p[(axis + 2) % 3]);
     PolygonTriangles triangles = triangulate_polygon(flat, touch);

@@ -8,13 +8,12 @@
 #include <utility>
 
 #include "geometry/box_tree.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
 
-constexpr double kRounding = 1e-6;         // relative to the polygon's size
-constexpr double kSinglePrecision = 2e-7;  // relative to the greatest coordinate
-constexpr double kMostRounding = 1e-3;     // relative to the polygon's size: what is larger is shape
+constexpr double kFarRounding = 2e-7;  // relative to the greatest coordinate
 constexpr std::size_t kMostCorners = 10'000;
 
 // A side that is bent to run through a corner may then touch another one.
@@ -138,7 +137,7 @@ double rounding_of(const std::vector<Vec2>& corners)
     const Eigen::AlignedBox2d bounds = bounds_of(corners);
     const double size = bounds.diagonal().norm();
     const double farthest = std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
-    return std::min(std::max(kRounding * size, kSinglePrecision * farthest), kMostRounding * size);
+    return std::min(std::max(kSinglePrecision * size, kFarRounding * farthest), kThreeDigits * size);
 }
 
 PolygonLoop join_touches(const std::vector<Vec2>& corners, const std::vector<int>& order, double tolerance)

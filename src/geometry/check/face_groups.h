@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
+#include "geometry/contact/contact_batches.h"
 #include "geometry/obstacle/obstacle.h"
 
 namespace arris {
@@ -11,5 +14,26 @@ namespace arris {
 /// query serves a run. Repeatedly halves the set at the median along its longest side. Returns indices, which
 /// depend on the boxes alone. O(n log n).
 std::vector<int> order_by_place(const std::vector<Box3>& boxes, int group_size);
+
+/// Collects what `search(faces, box, results)` appends for groups of neighbouring faces with these boxes,
+/// where `box` is the group's. In parallel; the order does not depend on the number of threads. `search` is
+/// copied for each batch.
+template <class Result, class Search>
+std::vector<Result> collect_in_groups(const std::vector<Box3>& boxes, const Search& search)
+{
+    // Smaller groups cost more queries, larger ones have larger boxes.
+    constexpr int kGroupSize = 16;
+    const std::vector<int> order = order_by_place(boxes, kGroupSize);
+    const auto search_batch = [&](int begin, int end, std::vector<Result>& results) {
+        Search mine = search;
+        for (int first = begin; first < end; first += kGroupSize) {
+            const std::span<const int> faces(&order[first], std::min(kGroupSize, end - first));
+            Box3 box;
+            for (const int f : faces) box.extend(boxes[f]);
+            mine(faces, box, results);
+        }
+    };
+    return collect_in_batches<Result>(static_cast<int>(order.size()), search_batch);
+}
 
 }  // namespace arris

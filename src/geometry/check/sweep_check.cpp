@@ -16,19 +16,14 @@
 #include "geometry/check/sweep_violation.h"
 #include "geometry/check/swept_face.h"
 #include "geometry/cloth/element_owners.h"
-#include "geometry/contact/contact_batches.h"
 #include "geometry/obstacle/obstacle_touch.h"
 #include "geometry/sort_unique.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
 
-// Two elements nearer than this share of the swept cloth face's box count as touching, unless they began
-// nearer. Far above the rounding of differences (1e-14), far below any stand-off.
-constexpr double kTouching = 1e-11;
 constexpr int kMostViolations = 9;  // per cloth face
-constexpr int kGroupSize = 16;      // cloth faces per query: smaller groups cost more queries, larger ones
-                                    // have larger boxes
 
 /// Findings for one cloth face.
 struct FaceFinding {
@@ -74,24 +69,22 @@ struct Near {
 /// Checks cloth faces that lie close together; reuses its lists.
 class GroupSearch {
   public:
-    GroupSearch(const Obstacle& obstacle, const ClothMotion& motion, double thickness)
-        : obstacle_(obstacle), motion_(motion), thickness_(thickness)
+    GroupSearch(const Obstacle& obstacle, const ClothMotion& motion, double thickness,
+                const std::vector<Box3>& boxes, const std::vector<OwnedElements>& owned)
+        : obstacle_(obstacle), motion_(motion), thickness_(thickness), boxes_(boxes), owned_(owned)
     {
     }
 
     /// Appends findings that are not clean.
-    void search(std::span<const int> faces, const std::vector<Box3>& boxes,
-                const std::vector<OwnedElements>& owned, std::vector<FaceFinding>& findings)
+    void operator()(std::span<const int> faces, const Box3& group, std::vector<FaceFinding>& findings)
     {
-        Box3 group;
-        for (const int f : faces) group.extend(boxes[f]);
         if (!group.intersects(obstacle_.bounds())) return;
         // The face boxes compared below are exact; the query's box need not be.
         const double margin = kTouching * group.diagonal().norm();
         collect_group(Box3(group.min().array() - margin, group.max().array() + margin));
         for (const int f : faces) {
             FaceFinding finding{f};
-            search_face(boxes[f], owned[f], finding);
+            search_face(boxes_[f], owned_[f], finding);
             if (!finding.is_clean()) findings.push_back(std::move(finding));
         }
     }
@@ -268,6 +261,8 @@ class GroupSearch {
     const Obstacle& obstacle_;
     const ClothMotion& motion_;
     double thickness_;
+    const std::vector<Box3>& boxes_;           ///< of the cloth faces on their ways
+    const std::vector<OwnedElements>& owned_;  ///< by the cloth faces
     double distance_ = 0.0;
     std::vector<Near> near_faces_, near_wires_, near_points_;  ///< near the group
     std::vector<int> faces_, edges_, points_;                  ///< of these, near the present face
@@ -332,16 +327,8 @@ SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, dou
 
     const std::vector<OwnedElements> owned =
         assign_owners(static_cast<int>(motion.begin.size()), *motion.faces, *motion.edges);
-    const std::vector<int> order = order_by_place(boxes, kGroupSize);
-    const int count = static_cast<int>(order.size());
-    const auto find = [&](int first, int last, std::vector<FaceFinding>& findings) {
-        GroupSearch search(obstacle, motion, thickness);
-        for (int begin = first; begin < last; begin += kGroupSize) {
-            const int size = std::min(kGroupSize, last - begin);
-            search.search(std::span(&order[begin], size), boxes, owned, findings);
-        }
-    };
-    return summarize(motion, collect_in_batches<FaceFinding>(count, find));
+    const GroupSearch search(obstacle, motion, thickness, boxes, owned);
+    return summarize(motion, collect_in_groups<FaceFinding>(boxes, search));
 }
 
 }  // namespace arris

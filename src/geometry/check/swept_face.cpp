@@ -4,13 +4,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
-#include <limits>
+
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
-
-// Rounding error of the scalar product of a unit vector and a difference, relative to the difference.
-constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 std::array<Vec3, 3> corners(const std::vector<Vec3>& positions, const Face& face)
 {
@@ -56,7 +54,7 @@ bool SweptFace::is_apart(std::span<const Vec3> points, const Vec3* normal) const
         offsets[k] = points[k] - begin_[0];
         size = std::max(size, offsets[k].lpNorm<1>());
     }
-    const double margin = 2.0 * kRounding * size;
+    const double margin = 2.0 * kProductRounding * size;
     const auto is_apart_across = [&](const Slab& slab) {
         bool is_above = true, is_below = true;
         for (std::size_t k = 0; k < points.size(); ++k) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "geometry/middle_direction.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 
@@ -47,11 +48,10 @@ double sine_to_sector(const FaceSector& sector, const Vec3& direction)
 Vec3 find_cone_axis(const std::vector<FaceSector>& sectors, const Vec3& inside)
 {
     constexpr int kMostTurns = 20;
-    constexpr double kTouching = 1e-6;  // sine: the direction lies in a face, so that it has no side
-    constexpr double kGain = 1e-3;      // relative gain of room below which the iteration stops
+    constexpr double kGain = 1e-3;  // relative gain of room below which the iteration stops
     Vec3 axis = inside;
     double room = least_sine(sectors, axis);
-    for (int turn = 0; turn < kMostTurns && room > kTouching; ++turn) {
+    for (int turn = 0; turn < kMostTurns && room > kLevel; ++turn) {
         std::vector<Vec3> away;
         for (const FaceSector& sector : sectors) away.push_back(away_from(sector, axis).normalized());
         const std::optional<Vec3> next = find_middle(away);

@@ -189,7 +189,7 @@ void spread_by_length(const ClothMesh& mesh, const MaterialBox& box, int axis, S
 // Puts the whole load on the candidate nearest to `point` (lowest index on ties). The load is listed under
 // face `preferred` if the vertex is one of its corners, else under its first face.
 void spread_to_nearest_vertex(const ClothMesh& mesh, const std::vector<int>& candidates, const Vec2& point,
-                              int preferred, ShareSum& sum)
+                              std::optional<int> preferred, ShareSum& sum)
 {
     int nearest = -1;
     double least = std::numeric_limits<double>::infinity();
@@ -208,7 +208,7 @@ void spread_to_nearest_vertex(const ClothMesh& mesh, const std::vector<int>& can
         sum.add(f, Vec3::Unit(corner - face.begin()));
         return true;
     };
-    if (preferred >= 0 && add_to(preferred)) return;
+    if (preferred && add_to(*preferred)) return;
     for (int f = 0; f < mesh.face_count(); ++f)
         if (add_to(f)) return;
 }
@@ -234,8 +234,7 @@ void spread_over_sides(const ClothMesh& mesh, const MaterialBox& box, ShareSum& 
         }
     }
     if (!sum.is_empty()) return;
-    constexpr int kNoFace = -1;
-    spread_to_nearest_vertex(mesh, vertices_in_box(mesh, box), 0.5 * (box.min + box.max), kNoFace, sum);
+    spread_to_nearest_vertex(mesh, vertices_in_box(mesh, box), 0.5 * (box.min + box.max), std::nullopt, sum);
 }
 
 // The part of the box within the cloth's bounding box. A side no longer than the tolerance gets length zero.

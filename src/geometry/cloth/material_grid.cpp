@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/cloth/material_box.h"
+
 namespace arris {
 
 MaterialGrid make_material_grid(const std::vector<Vec2>& points, double spacing, int most_nodes)
@@ -20,9 +22,8 @@ MaterialGrid make_material_grid(const std::vector<Vec2>& points, double spacing,
     MaterialGrid grid;
     grid.low = low;
     grid.spacing = std::max(spacing, least);
-    constexpr double kRounding = 1e-9;  // of a spacing: no node is made for less
     for (int k = 0; k < 2; ++k)
-        grid.count[k] = 1 + static_cast<int>(std::ceil(size[k] / grid.spacing - kRounding));
+        grid.count[k] = 1 + static_cast<int>(std::ceil(size[k] / grid.spacing - kMaterialTolerance));
     return grid;
 }
 

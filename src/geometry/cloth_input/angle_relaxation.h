@@ -14,6 +14,9 @@ struct Freedom {
     Vec2 along = Vec2::Zero();  ///< unit length; a vertex on a line moves only along it
 };
 
+/// Rounds of relaxing and triangulating anew. Raising it costs time, and lets sides grow longer.
+inline constexpr int kRelaxRounds = 3;
+
 /// Moves the vertices of faces with an angle below 30 degrees so that the least angle around each vertex
 /// grows; no move reduces it. `length` is the scale of the moves. Deterministic, with a bounded number of
 /// sweeps. Faces that are counter-clockwise stay so.

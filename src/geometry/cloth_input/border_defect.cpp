@@ -3,9 +3,6 @@
 // A border is sound if its constrained Delaunay triangulation has every side as an edge, and if the regions
 // on both sides of each loop are nested as they should be. All of that is exact, and takes n log n for usual
 // borders.
-#include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Triangulation_face_base_with_info_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
@@ -14,8 +11,8 @@
 #include <numeric>
 #include <tuple>
 
-#include "geometry/cgal.h"
 #include "geometry/cloth_input/cloth_outline.h"
+#include "geometry/loop_triangulation.h"
 
 namespace arris {
 namespace {
@@ -25,16 +22,8 @@ namespace {
 constexpr double kFarthest = 1000.0;
 
 constexpr const char* kNoTouch = "sides that neither cross nor touch one another";
-constexpr int kUnknown = -1;
 
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
-using FaceBase =
-    CGAL::Triangulation_face_base_with_info_2<int, Kernel,
-                                              CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-using Triangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
-                                               CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
-                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
+using Triangulation = LoopTriangulation;
 using VertexHandle = Triangulation::Vertex_handle;
 using FaceHandle = Triangulation::Face_handle;
 
@@ -169,7 +158,7 @@ class BorderCheck {
     // Marks faces with the number of loops around them.
     void mark_depths()
     {
-        for (const FaceHandle face : triangulation_.all_face_handles()) face->info() = kUnknown;
+        for (const FaceHandle face : triangulation_.all_face_handles()) face->info().reset();
         std::deque<FaceHandle> front = {triangulation_.infinite_face()};
         front.front()->info() = 0;
         // Faces of one depth come before all deeper ones.
@@ -178,8 +167,8 @@ class BorderCheck {
             front.pop_front();
             for (int k = 0; k < 3; ++k) {
                 const FaceHandle neighbour = face->neighbor(k);
-                const int depth = face->info() + (face->is_constrained(k) ? 1 : 0);
-                if (neighbour->info() != kUnknown && neighbour->info() <= depth) continue;
+                const int depth = *face->info() + (face->is_constrained(k) ? 1 : 0);
+                if (neighbour->info() && *neighbour->info() <= depth) continue;
                 neighbour->info() = depth;
                 if (face->is_constrained(k))
                     front.push_back(neighbour);
@@ -198,7 +187,7 @@ class BorderCheck {
             FaceHandle face;
             int k = 0;
             triangulation_.is_edge(vertices_[side.begin], vertices_[side.end], face, k);
-            const int inside = std::max(face->info(), face->neighbor(k)->info());
+            const int inside = std::max(*face->info(), *face->neighbor(k)->info());
             if (inside == 2) continue;
             return BorderDefect{side.loop, inside < 2 ? "lies outside the outline" : "lies in another hole",
                                 "holes inside the outline, and not in one another"};

@@ -8,16 +8,10 @@
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/input_error.h"
 #include "geometry/rigid_motion.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
-
-// Relative to the cloth's size. Vertices cut into the mesh are off their line by rounding, a few units in the
-// last place.
-constexpr double kOnLine = 1e-12;
-
-// World positions also carry the rounding of every earlier fold.
-constexpr double kOnAxis = 1e-11;
 
 std::string describe(const Fold& fold)
 {
@@ -35,7 +29,7 @@ struct Sides {
 Sides sort_by_side(const Fold& fold, const ClothMesh& mesh)
 {
     const Vec2 along = (fold.line[1] - fold.line[0]).stableNormalized();
-    const double tolerance = kOnLine * material_size(mesh.material);
+    const double tolerance = kComputed * material_size(mesh.material);
     Sides sides;
     sides.side.reserve(mesh.material.size());
     for (int v = 0; v < mesh.vertex_count(); ++v) {
@@ -82,7 +76,7 @@ Axis axis_of(const ClothMesh& mesh, const Sides& sides)
 // Each face turns or stays as a whole, so the fold is isometric exactly if its line is still straight.
 void require_straight(const Fold& fold, const ClothMesh& mesh, const Sides& sides, const Axis& axis)
 {
-    const double tolerance = kOnAxis * material_size(mesh.material);
+    const double tolerance = kTouching * material_size(mesh.material);
     for (const int v : sides.on_line) {
         const double distance = (mesh.world[v] - axis.origin).cross(axis.direction).norm();
         if (!(distance <= tolerance))

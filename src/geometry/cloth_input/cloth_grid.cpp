@@ -8,6 +8,7 @@
 
 #include "geometry/cloth_input/cut_pattern.h"
 #include "geometry/cloth_input/fold_lines.h"
+#include "geometry/cloth_input/pattern_lattice.h"
 #include "geometry/cloth_input/unstructured.h"
 #include "geometry/input_error.h"
 #include "geometry/rigid_motion.h"
@@ -91,12 +92,8 @@ bool is_cut(const ClothGrid& grid)
 }
 
 // Constants measured over sizes of 10 to 1000 cells, side ratios of 1 to 30, and all angles.
-constexpr double kCleared = 0.45;  // width in cells of the strip beside a crease without pattern vertices
 // Unstructured: vertices per square of the mean side, and per mean side of half the border.
 constexpr double kInside = 1.12, kOnBorder = 0.8;
-// Unstructured, on a rectangle narrower than the mean side: vertices per square of the width. Sides come from
-// repeated halving: 0.77 to 1.31.
-constexpr double kAlongNarrow = 1.0;
 
 GridCount count_regular(const ClothGrid& grid)
 {
@@ -126,7 +123,7 @@ GridCount estimate_cut_pattern(const ClothGrid& grid)
     }
     const double density = grid.pattern == GridPattern::Cross ? 2.0 : 1.0;
     const double cells = double(grid.resolution[0]) * grid.resolution[1];
-    const double cleared = kCleared * density * (border + 2.0 * inside);
+    const double cleared = kCreaseClearance * density * (border + 2.0 * inside);
     const double vertices = std::max(density * cells - cleared, 0.0) + border + inside;
     return {vertices, count_faces(vertices, border)};
 }
@@ -142,7 +139,9 @@ GridCount estimate_unstructured(const ClothGrid& grid)
 {
     const double side = mean_side(grid);
     const double nu = grid.size.x() / side, nv = grid.size.y() / side;
-    const double narrow = kAlongNarrow * grid.size.maxCoeff() / grid.size.minCoeff();
+    // On a rectangle narrower than the mean side, one vertex per square of the width: sides come from
+    // repeated halving, and are 0.77 to 1.31 widths long.
+    const double narrow = grid.size.maxCoeff() / grid.size.minCoeff();
     const double vertices = std::max(kInside * nu * nv + kOnBorder * (nu + nv) + 1.0, narrow);
     return {vertices, count_faces(vertices, std::max(2.0 * (nu + nv), narrow))};
 }

@@ -15,8 +15,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "geometry/cgal.h"
+#include "geometry/cloth/material_box.h"
 #include "geometry/cloth_input/angle_relaxation.h"
 #include "geometry/cloth_input/delaunay.h"
 #include "geometry/cloth_input/fold_lines.h"
@@ -25,16 +27,9 @@
 namespace arris {
 namespace {
 
-// Lengths in cells, chosen by measurement over all patterns and angles (cloth_grid_test.cpp has the least
-// angles).
-constexpr double kSpacing = 1.0;     // between vertices on a crease
-constexpr double kClearance = 0.45;  // pattern vertices nearer to a crease are dropped; a cross's are at 0.5
-constexpr double kNodeClearance = 0.5;  // the clearance along a crease from its ends
-constexpr double kOnCrease = 1e-9;      // pattern vertices nearer to a crease lie on it
-constexpr int kRelaxRounds = 3;
-
-constexpr int kFree = -1;     // a pattern vertex that is not (yet) in the mesh
-constexpr int kDropped = -2;  // a pattern vertex that will not be in the mesh
+// Cells: the clearance along a crease from its ends. A cross's middles have it. Chosen by measurement over
+// all patterns and angles (cloth_grid_test.cpp has the least angles).
+constexpr double kNodeClearance = 0.5;
 
 // A vertex on a crease.
 struct CreaseVertex {
@@ -48,7 +43,8 @@ class CutPattern {
     explicit CutPattern(const ClothGrid& grid)
         : graph_(make_fold_lines(rectangle_border(grid.size), grid.folds)),
           lattice_(grid),
-          index_(lattice_.vertex_count(), kFree)
+          index_(lattice_.vertex_count()),
+          is_dropped_(lattice_.vertex_count(), 0)
     {
         for (const Vec2& node : graph_.nodes) add_node(node);
         for (int s = 0; s < static_cast<int>(graph_.segments.size()); ++s) divide(s);
@@ -72,7 +68,7 @@ class CutPattern {
 
     int lattice_at(const Vec2& place) const
     {
-        const Vec2 reach = Vec2::Constant(kOnCrease);
+        const Vec2 reach = Vec2::Constant(kMaterialTolerance);
         const std::vector<int> found = lattice_.vertices_in(place - reach, place + reach);
         return found.empty() ? -1 : found.front();
     }
@@ -95,7 +91,7 @@ class CutPattern {
     // Pattern vertices on the open segment from a to b and far enough from its ends, in order along it.
     std::vector<CreaseVertex> pattern_vertices_on(int segment, const Vec2& a, const Vec2& b) const
     {
-        const Vec2 reach = Vec2::Constant(kOnCrease);
+        const Vec2 reach = Vec2::Constant(kMaterialTolerance);
         const double length = (b - a).norm();
         std::vector<CreaseVertex> found;
         const int steps = std::max(1, static_cast<int>(std::ceil(length)));
@@ -108,7 +104,8 @@ class CutPattern {
                 const double along = from.dot(b - a) / length;
                 const double off = (from.x() * (b - a).y() - from.y() * (b - a).x()) / length;
                 const bool is_clear = along >= kNodeClearance && length - along >= kNodeClearance;
-                if (is_clear && std::abs(off) <= kOnCrease) found.push_back({segment, along / length, v});
+                if (is_clear && std::abs(off) <= kMaterialTolerance)
+                    found.push_back({segment, along / length, v});
             }
         }
         std::sort(found.begin(), found.end(),
@@ -118,7 +115,7 @@ class CutPattern {
         return found;
     }
 
-    // Puts vertices on a segment: the pattern's own, and further ones between them at even distances.
+    // Puts vertices on a segment: the pattern's own, and further ones between them, about a cell apart.
     void divide(int segment)
     {
         const auto [begin, end] = graph_.segments[segment];
@@ -130,7 +127,7 @@ class CutPattern {
         double from = 0.0;
         for (const CreaseVertex& stop : stops) {
             const double gap = (stop.parameter - from) * (b - a).norm();
-            const int pieces = std::max(1, static_cast<int>(std::lround(gap / kSpacing)));
+            const int pieces = std::max(1, static_cast<int>(std::lround(gap)));
             for (int k = 1; k <= pieces; ++k) {
                 const double s = k < pieces ? from + (stop.parameter - from) * k / pieces : stop.parameter;
                 const bool is_stop = k == pieces;
@@ -149,22 +146,22 @@ class CutPattern {
 
     void drop_near_creases()
     {
-        const Vec2 reach = Vec2::Constant(kClearance);
+        const Vec2 reach = Vec2::Constant(kCreaseClearance);
         for (const auto& [p, q] : crease_edges_) {
             const Vec2& a = places_[p];
             const Vec2& b = places_[q];
             for (const int v : lattice_.vertices_in(a.cwiseMin(b) - reach, a.cwiseMax(b) + reach)) {
-                if (index_[v] != kFree) continue;
+                if (index_[v]) continue;
                 const Vec2 d = b - a;
                 const double s = std::clamp((lattice_.place(v) - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-                if ((a + s * d - lattice_.place(v)).norm() < kClearance) index_[v] = kDropped;
+                if ((a + s * d - lattice_.place(v)).norm() < kCreaseClearance) is_dropped_[v] = 1;
             }
         }
     }
 
     bool is_whole(const Face& face) const
     {
-        return std::all_of(face.begin(), face.end(), [&](int v) { return v >= 0 && index_[v] != kDropped; });
+        return std::all_of(face.begin(), face.end(), [&](int v) { return v >= 0 && !is_dropped_[v]; });
     }
 
     int turn(const Vec2& a, const Vec2& b, const Vec2& c) const { return exact_orientation(a, b, c); }
@@ -206,16 +203,16 @@ class CutPattern {
             const Vec2 low = places_[p].cwiseMin(places_[q]);
             const Vec2 high = places_[p].cwiseMax(places_[q]);
             for (const int cell : lattice_.cells_in(low, high)) {
-                const std::array<Face, 4> faces = lattice_.faces_of(cell);
-                for (int k = 0; k < 4; ++k)
+                const std::vector<Face> faces = lattice_.faces_of(cell);
+                for (std::size_t k = 0; k < faces.size(); ++k)
                     if (is_whole(faces[k]) && is_cut(faces[k], p, q))
                         is_lost[cell] = static_cast<unsigned char>(is_lost[cell] | (1u << k));
             }
         }
         for (int cell = 0; cell < lattice_.vertex_count(); ++cell) {
             if (!is_corner(cell)) continue;
-            const std::array<Face, 4> faces = lattice_.faces_of(cell);
-            for (int k = 0; k < 4; ++k)
+            const std::vector<Face> faces = lattice_.faces_of(cell);
+            for (std::size_t k = 0; k < faces.size(); ++k)
                 if ((is_lost[cell] >> k & 1u) == 0 && is_whole(faces[k])) faces_.push_back(faces[k]);
         }
     }
@@ -226,12 +223,12 @@ class CutPattern {
     void add_pattern_vertices()
     {
         for (int v = 0; v < lattice_.vertex_count(); ++v) {
-            if (index_[v] != kFree) continue;
+            if (index_[v] || is_dropped_[v]) continue;
             index_[v] = static_cast<int>(places_.size());
             places_.push_back(lattice_.place(v));
         }
         for (Face& face : faces_)
-            for (int& v : face) v = index_[v];
+            for (int& v : face) v = *index_[v];
         kept_count_ = faces_.size();
         find_gap();
     }
@@ -327,7 +324,8 @@ class CutPattern {
 
     FoldLines graph_;
     PatternLattice lattice_;
-    std::vector<int> index_;    // mesh vertex of each pattern vertex, or kFree, kDropped
+    std::vector<std::optional<int>> index_;  // mesh vertex of each pattern vertex that is in the mesh
+    std::vector<char> is_dropped_;           // the pattern vertex will not be in the mesh
     std::vector<Vec2> places_;  // mesh vertices, in cells: nodes, other crease vertices, pattern vertices
     std::vector<CreaseVertex> on_crease_;  // of the first vertices in places_
     std::vector<std::array<int, 2>> crease_edges_;

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -25,14 +26,9 @@ namespace {
 // sin^2 of the least angle (20.7 degrees): the greatest bound for which the refinement is proven to end.
 constexpr double kAngleBound = 0.125;
 
-// A vertex's index in the graph, or kNew for one that the refinement added.
-constexpr int kNew = -1;
-struct Index {
-    int value = kNew;
-};
-
-using VertexBase =
-    CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel, CGAL::Delaunay_mesh_vertex_base_2<Kernel>>;
+// A vertex has its index in the graph, or none if the refinement added it.
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::optional<int>, Kernel,
+                                                               CGAL::Delaunay_mesh_vertex_base_2<Kernel>>;
 using FaceBase = CGAL::Delaunay_mesh_face_base_2<Kernel>;
 using Triangulation =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel,
@@ -61,7 +57,7 @@ Triangulation build(const PlanarGraph& graph)
     FaceHandle hint;
     for (const std::size_t v : insertion_order(points)) {
         vertices[v] = triangulation.insert(points[v], hint);
-        vertices[v]->info().value = static_cast<int>(v);
+        vertices[v]->info() = static_cast<int>(v);
         hint = vertices[v]->face();
     }
     for (const auto& [a, b] : graph.edges) triangulation.insert_constraint(vertices[a], vertices[b]);
@@ -85,7 +81,7 @@ std::vector<FaceHandle> region_of(FaceHandle start, std::set<FaceHandle>& visite
 
 Face indices_of(const FaceHandle& face)
 {
-    return {face->vertex(0)->info().value, face->vertex(1)->info().value, face->vertex(2)->info().value};
+    return {*face->vertex(0)->info(), *face->vertex(1)->info(), *face->vertex(2)->info()};
 }
 
 // Starts each face at its lowest vertex and sorts, so that the order does not depend on CGAL's storage.
@@ -101,12 +97,12 @@ void number_new_vertices(Triangulation& triangulation, std::vector<Vec2>& points
 {
     std::vector<VertexHandle> added;
     for (const VertexHandle v : triangulation.finite_vertex_handles())
-        if (v->info().value == kNew) added.push_back(v);
+        if (!v->info()) added.push_back(v);
     std::sort(added.begin(), added.end(), [](const VertexHandle& v, const VertexHandle& w) {
         return std::pair(v->point().y(), v->point().x()) < std::pair(w->point().y(), w->point().x());
     });
     for (const VertexHandle& v : added) {
-        v->info().value = static_cast<int>(points.size());
+        v->info() = static_cast<int>(points.size());
         points.push_back(to_eigen(v->point()));
     }
 }
@@ -167,8 +163,7 @@ RefinedTriangulation refine(const PlanarGraph& graph, double size, const Refinem
     using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Triangulation>;
     CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(kAngleBound, size));
     for (const FaceHandle& face : enclosed_faces(triangulation, graph.outside)) face->set_in_domain(true);
-    constexpr bool kDomainIsMarked = true;
-    mesher.init(kDomainIsMarked);
+    mesher.init(/*is_domain_specified=*/true);
 
     RefinedTriangulation refined;
     const auto is_within_limits = [&] {
@@ -193,8 +188,8 @@ RefinedTriangulation refine(const PlanarGraph& graph, double size, const Refinem
         if (face->is_in_domain()) refined.faces.push_back(indices_of(face));
     make_canonical(refined.faces);
     for (const auto& [face, k] : triangulation.constrained_edges()) {
-        const int a = face->vertex(Triangulation::cw(k))->info().value;
-        const int b = face->vertex(Triangulation::ccw(k))->info().value;
+        const int a = *face->vertex(Triangulation::cw(k))->info();
+        const int b = *face->vertex(Triangulation::ccw(k))->info();
         refined.edges.push_back({std::min(a, b), std::max(a, b)});
     }
     std::sort(refined.edges.begin(), refined.edges.end());

@@ -8,12 +8,12 @@
 #include <limits>
 
 #include "geometry/cloth/mesh_pieces.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
 
-constexpr double kFlat = 1e-6;  // relative to size; files are often written in single precision
-constexpr double kGap = 0.1;    // between charts, relative to the widest: small, and easy to reckon with
+constexpr double kGap = 0.1;  // between charts, relative to the widest: small, and easy to reckon with
 
 /// A part of the mesh: vertices and faces, both ascending.
 struct Part {
@@ -74,7 +74,7 @@ Plane find_plane(const std::vector<Vec3>& world, const std::vector<Face>& faces,
         plane.off = off;
         plane.farthest = v;
     }
-    plane.is_flat = plane.off <= kFlat * box.sizes().maxCoeff();
+    plane.is_flat = plane.off <= kSinglePrecision * box.sizes().maxCoeff();
     return plane;
 }
 

@@ -11,11 +11,10 @@
 
 #include "geometry/input_error.h"
 #include "geometry/sort_unique.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
-
-constexpr double kSamePoint = 1e-12;
 
 // A part of a fold line from border to border, with the nodes on it.
 struct Chain {
@@ -60,7 +59,7 @@ class GraphBuilder {
         on_side_.resize(sides_.size());
         Eigen::AlignedBox2d box;
         for (const Vec2& corner : graph_.nodes) box.extend(corner);
-        tolerance_ = kSamePoint * box.sizes().maxCoeff();
+        tolerance_ = kComputed * box.sizes().maxCoeff();
     }
 
     void add_fold(const Fold& fold)

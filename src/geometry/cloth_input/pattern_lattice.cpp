@@ -6,13 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/cloth/material_box.h"
 #include "geometry/rigid_motion.h"
 
 namespace arris {
 namespace {
-
-// Lattice vertices this near to the rectangle, in cells, count as inside it.
-constexpr double kOnBorder = 1e-9;
 
 struct Interval {
     double min = std::numeric_limits<double>::infinity();
@@ -60,8 +58,8 @@ PatternLattice::PatternLattice(const ClothGrid& grid)
                                          to_cells({0.0, size_.y()})};
     Interval height;
     for (const Vec2& corner : corners) height.add(corner.y());
-    first_half_row_ = static_cast<int>(std::ceil(2.0 * (height.min - kOnBorder)));
-    const int last = static_cast<int>(std::floor(2.0 * (height.max + kOnBorder)));
+    first_half_row_ = static_cast<int>(std::ceil(2.0 * (height.min - kMaterialTolerance)));
+    const int last = static_cast<int>(std::floor(2.0 * (height.max + kMaterialTolerance)));
     for (int half_row = first_half_row_; half_row <= last; ++half_row) append_row(half_row, corners);
 }
 
@@ -74,8 +72,8 @@ void PatternLattice::append_row(int half_row, const std::array<Vec2, 4>& corners
         const double y = 0.5 * half_row;
         const double shift = half_if_odd(half_row);
         const Interval cut = cut_at(corners, std::clamp(y, low, high));
-        row.first = static_cast<int>(std::ceil(cut.min - shift - kOnBorder));
-        const int last = static_cast<int>(std::floor(cut.max - shift + kOnBorder));
+        row.first = static_cast<int>(std::ceil(cut.min - shift - kMaterialTolerance));
+        const int last = static_cast<int>(std::floor(cut.max - shift + kMaterialTolerance));
         row.count = std::max(last - row.first + 1, 0);
         for (int i = row.first; i <= last; ++i) places_.emplace_back(i + shift, y);
     }
@@ -134,9 +132,8 @@ std::vector<int> PatternLattice::cells_in(const Vec2& min, const Vec2& max) cons
     return cells;
 }
 
-std::array<Face, 4> PatternLattice::faces_of(int cell) const
+std::vector<Face> PatternLattice::faces_of(int cell) const
 {
-    constexpr Face kNone = {-1, -1, -1};
     const int i = static_cast<int>(std::lround(places_[cell].x()));
     const int j = static_cast<int>(std::lround(places_[cell].y()));
     const int a = cell;
@@ -147,9 +144,8 @@ std::array<Face, 4> PatternLattice::faces_of(int cell) const
         const int m = find(2 * j + 1, i);
         return {Face{a, b, m}, Face{b, c, m}, Face{c, d, m}, Face{d, a, m}};
     }
-    if (pattern_ == GridPattern::Alternating && is_odd(i + j))
-        return {Face{a, b, d}, Face{b, c, d}, kNone, kNone};
-    return {Face{a, b, c}, Face{a, c, d}, kNone, kNone};
+    if (pattern_ == GridPattern::Alternating && is_odd(i + j)) return {Face{a, b, d}, Face{b, c, d}};
+    return {Face{a, b, c}, Face{a, c, d}};
 }
 
 }  // namespace arris

@@ -8,6 +8,10 @@
 
 namespace arris {
 
+/// Cells: pattern vertices nearer to a crease are dropped. Measured over all patterns and angles; raising it
+/// makes the faces beside a crease larger than the others.
+inline constexpr double kCreaseClearance = 0.45;
+
 /// The vertices of a grid's regular pattern, turned about the middle of the rectangle, that lie in the
 /// rectangle. They are given in *cell coordinates*: a cell is the unit square between whole numbers, and a
 /// "cross" cell has its middle at halves. Storage is proportional to the number of cells inside and the
@@ -30,9 +34,8 @@ class PatternLattice {
     /// lower left corner is outside the rectangle is left out, as it is incomplete.
     std::vector<int> cells_in(const Vec2& min, const Vec2& max) const;
 
-    /// The faces of a cell, counter-clockwise. A vertex outside the rectangle is -1; a face that the pattern
-    /// does not have is -1 throughout.
-    std::array<Face, 4> faces_of(int cell) const;
+    /// The faces of a cell, counter-clockwise. A vertex outside the rectangle is -1.
+    std::vector<Face> faces_of(int cell) const;
 
   private:
     // Vertices at y = half_row / 2, with x = first, first + 1, ... (plus 1/2 if half_row is odd).

@@ -17,7 +17,6 @@ namespace {
 // 10 % (cloth_grid_test.cpp).
 constexpr double kLargestSide = 1.5;
 constexpr double kLargestRelaxed = 1.45;  // the vertices' moves make some sides longer
-constexpr int kRelaxRounds = 3;
 
 // Shortest side of a relaxed mesh, relative to the length aimed at: parts of the border that come nearer to
 // one another are mistakes in the outline.

@@ -7,16 +7,16 @@
 
 #include "geometry/closest_point.h"
 #include "geometry/obstacle/obstacle_distance.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 
 double touch_distance(const Obstacle& obstacle, double thickness)
 {
     constexpr double kShare = 1e-6;
-    constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
     const Box3& bounds = obstacle.bounds();
     const double largest = std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
-    return std::max(kShare * thickness, kRounding * largest);
+    return std::max(kShare * thickness, kProductRounding * largest);
 }
 
 double longest_reach(const ClothMotion& motion, std::span<const int> vertices, double thickness)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "geometry/contact/obstacle_contact.h"
@@ -9,6 +10,13 @@
 namespace arris {
 
 // Shared by the contacts of vertices, edges and faces.
+
+/// Most planes that hold a vertex: three fix a point.
+inline constexpr std::size_t kMostPlanes = 3;
+
+/// Cosine of the angle (20 degrees) within which two planes of a vertex hold the same way: the nearer one is
+/// enough. Raising the angle lets a vertex pass one side of a blunt corner until the next round.
+inline const double kSameDirection = std::cos(20.0 * M_PI / 180.0);
 
 /// Distance, as a share of the thickness, below which the vector between the closest points gives no reliable
 /// direction.

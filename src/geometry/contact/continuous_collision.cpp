@@ -20,21 +20,15 @@
 #include <limits>
 
 #include "geometry/closest_point.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kNever = 2.0;        // a time after the step: no touch
-constexpr int kMaxAdvances = 256;     // 3 are usual; more only where planar elements pivot at a tiny gap
-constexpr double kRootWidth = 1e-12;  // width, as a fraction of the step, to which a root is enclosed
-// Rounding bound, relative to size, of an interpolated scalar product of a unit vector and a difference. The
-// product rounds 4 times, the difference once, the interpolation 3 times, each by half an epsilon. The factor
-// 2 covers the normal's own rounding.
-constexpr double kPlaneRounding = 16.0 * kEpsilon;
+constexpr int kMaxAdvances = 256;  // 3 are usual; more only where planar elements pivot at a tiny gap
 // Rounding bound, relative to size, of the Bernstein coefficients of a product of three differences, and of
 // their subdivision (repeated averaging).
-constexpr double kVolumeRounding = 128.0 * kEpsilon;
+constexpr double kVolumeRounding = 8.0 * kProductRounding;
 
 /// Differences between the elements' points at the step's begin and end, as the certificates need them.
 struct Pair {
@@ -87,7 +81,8 @@ Plane make_plane(const Pair& pair, const Vec3& normal, double time, double margi
         const double end = normal.dot(pair.gap_end[k]);
         plane.separation = std::min(plane.separation, begin + time * (end - begin));
         if (end <= margin && begin > end)
-            plane.until = std::min(plane.until, (begin - margin) / (begin - end) * (1.0 - 4.0 * kEpsilon));
+            plane.until =
+                std::min(plane.until, (begin - margin) / (begin - end) * (1.0 - 0.25 * kProductRounding));
     }
     if (!(plane.separation > margin)) plane.until = time;
     return plane;
@@ -214,22 +209,22 @@ std::optional<double> only_root(const std::array<double, 4>& c, double margin)
         x = std::clamp(x - value(c, x) / tangent, 0.0, 1.0);
         const double y = 1.0 - x;
         tangent = slope[0] * y * y + 2.0 * slope[1] * x * y + slope[2] * x * x;
-        if (std::abs(x - before) < kRootWidth) break;
+        if (std::abs(x - before) < kComputed) break;
     }
     // The cubic is monotonic: a value with the sign of the start has no root before it.
-    x -= kRootWidth + 2.0 * margin / std::abs(tangent);
+    x -= kComputed + 2.0 * margin / std::abs(tangent);
     const double here = value(c, x);
     if (!(x > 0.0) || !(rises ? here < -margin : here > margin)) return std::nullopt;
     return x;
 }
 
-/// A lower bound on the cubic's first root between `low` and `high`, within kRootWidth of where the cubic
+/// A lower bound on the cubic's first root between `low` and `high`, within kComputed of where the cubic
 /// comes within `margin` of zero; kNever where there is none.
 double first_root(const std::array<double, 4>& c, double margin, double low, double high)
 {
     const auto [least, greatest] = std::minmax_element(c.begin(), c.end());
     if (*least > margin || *greatest < -margin) return kNever;
-    if (high - low < kRootWidth || std::abs(c[0]) <= margin) return low;
+    if (high - low < kComputed || std::abs(c[0]) <= margin) return low;
     if (const std::optional<double> root = only_root(c, margin)) return low + *root * (high - low);
     const Halves halves = split(c, 0.5);
     const double middle = 0.5 * (low + high);
@@ -265,7 +260,7 @@ std::optional<Touch> first_touch(const Pair& pair, double distance)
     const Extent extent(pair);
     if (!extent.is_finite()) return Touch{0.0, Vec3::Zero()};
     if (extent.is_apart()) return std::nullopt;
-    const double margin = kPlaneRounding * extent.size();
+    const double margin = kProductRounding * extent.size();
 
     const Volume volume(pair);
     double time = next_coplanar(volume, 0.0);

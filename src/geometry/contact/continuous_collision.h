@@ -8,6 +8,9 @@
 
 namespace arris {
 
+/// A time after the step, later than every touch.
+inline constexpr double kNever = 2.0;
+
 /// The first touch of a moving element of the cloth and a resting element of an obstacle.
 struct SweepHit {
     double time;                    ///< fraction of the step in [0, 1]

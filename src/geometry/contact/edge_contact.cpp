@@ -20,19 +20,10 @@
 #include "geometry/contact/obstacle_contact.h"
 #include "geometry/obstacle/feature_nodes.h"
 #include "geometry/obstacle/normal_cone.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
-
-// Sine of the angle below which edges count as parallel (1 degree). Their cross product is then no reliable
-// direction; contacts of the vertices keep the edges apart.
-constexpr double kParallel = 0.0175;
-// Sine of the bend angle below which a polyline is straight at a node. A cloth edge parallel to it has no
-// contact there.
-constexpr double kStraight = 1e-4;
-constexpr double kAlongPlane = 1e-6;  // share of a way's length below which its height over a plane is
-                                      // rounding
-constexpr double kAtRest = 2.0;       // time of a contact without a touch: later than every touch
 
 using Segment = std::array<Vec3, 2>;
 
@@ -82,7 +73,7 @@ int side_of_begin(const Obstacle& obstacle, const EdgePair& pair, double s, cons
     const double least = touch_distance(obstacle, pair.thickness);
     for (const Vec3& from : {Vec3(at(pair.begin, s) - point), Vec3(closest.first - closest.second)}) {
         const double height = normal.dot(from);
-        if (from.norm() > least && std::abs(height) > kAlongPlane * from.norm()) return height > 0.0 ? 1 : -1;
+        if (from.norm() > least && std::abs(height) > kLevel * from.norm()) return height > 0.0 ? 1 : -1;
     }
     return 0;
 }
@@ -217,13 +208,13 @@ std::optional<TimedContact> find_pair_contact(const Obstacle& obstacle, const Cl
         contact = contact_of(obstacle, motion, pair, hit->weights[1], normal, hit->point);
     }
     if (!contact) return std::nullopt;
-    return TimedContact{*contact, hit ? hit->time : kAtRest};
+    return TimedContact{*contact, hit ? hit->time : kNever};
 }
 
 // Whether another segment of the polyline that shares a node with this one was touched earlier.
 bool follows_from_another(const Obstacle& obstacle, const std::vector<TimedContact>& found, std::size_t i)
 {
-    if (found[i].time >= kAtRest) return false;
+    if (found[i].time >= kNever) return false;
     const std::array<int, 2>& points = obstacle.topology().edges[found[i].contact.element].points;
     for (std::size_t k = 0; k < found.size(); ++k) {
         const bool is_earlier = found[k].time < found[i].time || (k < i && found[k].time <= found[i].time);

@@ -17,17 +17,11 @@
 #include "geometry/contact/obstacle_contact.h"
 #include "geometry/obstacle/feature_nodes.h"
 #include "geometry/obstacle/normal_cone.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
 
-constexpr double kAlongPlane = 1e-6;  // share of a way's length below which its height over a plane is
-                                      // rounding
-// Rounding tolerance for the test whether an edge is nearest: sine by which the direction to the point may
-// lean over a face beside that edge.
-constexpr double kClothCone = 1e-6;
-
-constexpr double kAtRest = 2.0;  // time of a contact without a touch: later than every touch
 // Sine by which a polyline must drop away on both sides of a node for a face to rest on that node: a bend of
 // 1 degree.
 constexpr double kStandsOut = 0.01;
@@ -94,13 +88,13 @@ Vec3 towards_begin(const CornerPair& pair, const ClothMotion& motion, const Clot
 {
     const Vec3 way = cloth_point.at(motion.begin) - pair.point;
     const double along = normal.dot(way);
-    if (way.norm() > pair.touch && std::abs(along) > kAlongPlane * way.norm())
+    if (way.norm() > pair.touch && std::abs(along) > kLevel * way.norm())
         return along > 0.0 ? normal : Vec3(-normal);
     const Triangle begin = triangle_of(motion.begin, pair.vertices);
     const Vec3 begin_normal = normal_of(begin);
     const Vec3 between = closest_on_triangle(pair.point, begin, begin_normal).point - pair.point;
     const double height = begin_normal.dot(between);
-    if (!(std::abs(height) > std::max(pair.touch, kAlongPlane * between.norm()))) return Vec3::Zero();
+    if (!(std::abs(height) > std::max(pair.touch, kLevel * between.norm()))) return Vec3::Zero();
     return height > 0.0 ? normal : Vec3(-normal);
 }
 
@@ -114,7 +108,7 @@ Vec3 normal_on_edge(const CornerPair& pair, const ClothMotion& motion, const std
     if (edge.face_right >= 0) {
         const int other = edge.face_left == pair.face ? edge.face_right : edge.face_left;
         const Vec3 sum = normal + normal_of(triangle_at(motion, reference, other, time));
-        const bool is_folded_flat = !(sum.norm() > kAlongPlane);
+        const bool is_folded_flat = !(sum.norm() > kLevel);
         return towards_begin(pair, motion, cloth_point, is_folded_flat ? normal : Vec3(sum.normalized()));
     }
     const int i = edge_of(pair.vertices, edge);
@@ -187,7 +181,7 @@ bool is_nearest(const CornerPair& pair, const ClothMotion& motion, const std::ve
         if (f < 0) continue;
         const Triangle triangle = triangle_of(reference, (*motion.faces)[f]);
         const Vec3 into = into_triangle(triangle, normal_of(triangle), edge_of((*motion.faces)[f], edge));
-        if (!(-to_cloth.dot(into) <= kClothCone * to_cloth.norm() + pair.touch)) return false;
+        if (!(-to_cloth.dot(into) <= kLevel * to_cloth.norm() + pair.touch)) return false;
     }
     return true;
 }
@@ -245,7 +239,7 @@ std::optional<TimedContact> find_pair_contact(const Obstacle& obstacle, const Cl
         hit ? contact_of_touch(obstacle, motion, reference, pair, hit->time, hit->weights)
             : contact_at_rest(obstacle, motion, reference, pair);
     if (!contact) return std::nullopt;
-    return TimedContact{*contact, hit ? hit->time : kAtRest};
+    return TimedContact{*contact, hit ? hit->time : kNever};
 }
 
 // Whether a face needs its contact with a node. It needs every corner. Of nodes inside polylines it needs
@@ -255,7 +249,7 @@ bool is_needed(const FeatureNode& node, const TimedContact& found, const std::ve
 {
     if (node.is_corner) return true;
     if (found.contact.vertices[2] < 0) return false;  // a contact of a cloth edge instead
-    if (found.time >= kAtRest)
+    if (found.time >= kNever)
         return std::max(node.away[0].dot(found.contact.normal), node.away[1].dot(found.contact.normal)) <
                -kStandsOut;
     return std::none_of(all.begin(), all.end(), [&](const TimedContact& other) {

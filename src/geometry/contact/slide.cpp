@@ -12,17 +12,15 @@
 
 #include "geometry/contact/contact_batches.h"
 #include "geometry/contact/obstacle_contact.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
 
 constexpr int kMostLegs = 4;
-constexpr int kMostCuts = 8;          // halvings of a leg that still touches because of rounding, before it
-                                      // is dropped
-constexpr double kSamePlane = 1e-12;  // share of a way's length below which its component into a plane is
-                                      // rounding
-constexpr double kSameTime = 1e-9;    // fraction of a leg within which two faces count as met together
-constexpr double kCrease = 1e-6;      // sine of the angle above which two planes have a crease
+constexpr int kMostCuts = 8;        // halvings of a leg that still touches because of rounding, before it
+                                    // is dropped
+constexpr double kSameTime = 1e-9;  // fraction of a leg within which two faces count as met together
 
 using Triangle = std::array<Vec3, 3>;
 
@@ -57,7 +55,7 @@ Obstruction meet(const Vec3& a, const Vec3& way, const Triangle& triangle, const
     met.normal = approach > 0.0 ? normal : Vec3(-normal);
     met.approach = std::abs(approach);
     met.height = std::max(approach > 0.0 ? height : -height, 0.0);
-    if (met.approach > kSamePlane * way.norm()) {
+    if (met.approach > kComputed * way.norm()) {
         met.time = std::min(met.height / met.approach, 1.0);
     } else {
         met.time = time_in_plane(a, way, triangle, normal);
@@ -77,7 +75,7 @@ class Slide {
         for (int leg = 0; leg < kMostLegs && touches(place, place + way); ++leg) {
             const Obstruction met = first_met(place, way);
             // A way in the face's own plane, head on against the rim of a sheet, has no plane to slide along.
-            if (!(met.approach > kSamePlane * way.norm()))
+            if (!(met.approach > kComputed * way.norm()))
                 return free_point(place, std::max(met.time - thickness_ / way.norm(), 0.0) * way);
             const double time = std::clamp((met.height - thickness_) / met.approach, 0.0, met.time);
             const Vec3 next = free_point(place, time * way);
@@ -124,12 +122,12 @@ class Slide {
     Vec3 along_planes(const Vec3& normal, const Vec3& way)
     {
         Vec3 left = way - normal.dot(way) * normal;
-        const double least = kSamePlane * way.norm();
+        const double least = kComputed * way.norm();
         for (int i = 0; i < normal_count_; ++i) {
             if (normals_[i].dot(left) >= -least) continue;
             const Vec3 crease = normal.cross(normals_[i]);
             const double squared = crease.squaredNorm();
-            if (!(squared > kCrease * kCrease)) continue;
+            if (!(squared > kLevel * kLevel)) continue;
             left = crease.dot(left) / squared * crease;
             for (int k = 0; k < normal_count_; ++k)
                 if (normals_[k].dot(left) < -least) left = Vec3::Zero();  // blocked in a corner

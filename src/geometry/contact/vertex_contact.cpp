@@ -22,9 +22,6 @@
 namespace arris {
 namespace {
 
-constexpr int kMostContacts = 3;
-const double kSameDirection = std::cos(20.0 * M_PI / 180.0);
-
 // How far behind a plane the begin may lie, relative to the distance moved: a surface that turns by about 30
 // degrees.
 constexpr double kTurnAway = 0.25;
@@ -215,7 +212,7 @@ void choose(const std::vector<Minimum>& minima, std::vector<Minimum>& chosen)
 {
     chosen.clear();
     for (const Minimum& m : minima) {
-        if (chosen.size() == kMostContacts) return;
+        if (chosen.size() == kMostPlanes) return;
         const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](const Minimum& c) {
             return c.normal.dot(m.normal) >= kSameDirection;
         });

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "geometry/tolerances.h"
+
 namespace arris {
 namespace {
-
-constexpr double kStraight = 1e-4;  // sine of the bend angle below which a polyline counts as straight
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 
 #include "geometry/closest_point.h"
 #include "geometry/obstacle/feature_nodes.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
@@ -134,7 +135,6 @@ bool is_past_end(const Obstacle& obstacle, int feature, const Vec3& place)
 
 std::optional<FeatureBend> find_bend(const Obstacle& obstacle, int point)
 {
-    constexpr double kLeast = 0.0175;  // sine of a degree
     const ObstacleTopology& topology = obstacle.topology();
     const ObstacleFeatures& features = obstacle.features();
     for (int k = 0; k < topology.edge_count_at(point); ++k) {
@@ -145,7 +145,7 @@ std::optional<FeatureBend> find_bend(const Obstacle& obstacle, int point)
         const std::optional<Step> next = across(obstacle, feature, end);
         if (!next) continue;
         const Vec3 sine = direction_of(obstacle, feature).cross(direction_of(obstacle, next->feature));
-        if (sine.norm() > kLeast) return FeatureBend{feature, end};
+        if (sine.norm() > kParallel) return FeatureBend{feature, end};
     }
     return std::nullopt;
 }

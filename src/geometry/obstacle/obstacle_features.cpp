@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "geometry/cgal.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
@@ -15,14 +16,9 @@ namespace {
 // Absorbs rounding of angles near a threshold, so that edges modelled at exactly that angle are all alike.
 // Mesh files have single precision or six digits, which turn a face of 5 mm by up to 8e-3 degrees.
 constexpr double kTurnSlack = 1e-2;  // degrees
+// Degrees. Where a feature turns by more, it has a corner. Wires and solid corners have one at twice that: up
+// to there a wire's two edges share one plane halfway between them, and a cone's tip is blunt.
 constexpr double kCornerTurn = 30.0;
-constexpr double kWireCornerTurn = 60.0;  // up to this bend a wire's two edges share one plane halfway
-                                          // between them
-constexpr double kCornerDefect = 60.0;
-
-// Tolerances for faces in one plane, as single-precision coordinates allow.
-constexpr double kPlanarAngle = 1e-6;     // rad
-constexpr double kPlanarDistance = 1e-6;  // relative to the bounding box's diagonal
 
 // Single-precision coordinates are rounded by up to 6e-8 of their size. The normal of a sliver lower than a
 // few such errors is noise.
@@ -196,7 +192,7 @@ bool is_node(const ObstacleMesh& mesh, const ObstacleTopology& topology,
     const Vec3& to = mesh.points[other_end(topology.edges[second.edge], point)];
     const double turn = angle_between((mesh.points[point] - from).stableNormalized(),
                                       (to - mesh.points[point]).stableNormalized());
-    const double most = first.kind == FeatureKind::Wire ? kWireCornerTurn : kCornerTurn;
+    const double most = first.kind == FeatureKind::Wire ? 2.0 * kCornerTurn : kCornerTurn;
     return degrees(turn) > most + kTurnSlack;
 }
 
@@ -260,7 +256,7 @@ void mark_apexes(const ObstacleMesh& mesh, const ObstacleTopology& topology, con
     for (int c = 0; c < static_cast<int>(fans.size()); ++c) {
         const Fan& fan = fans[c];
         if (fan_of[c] != c || fan.is_open) continue;
-        if (360.0 - degrees(fan.angle) <= kCornerDefect + kTurnSlack) continue;
+        if (360.0 - degrees(fan.angle) <= 2.0 * kCornerTurn + kTurnSlack) continue;
         const bool is_sheet = !topology.is_solid[topology.component[c / 3]];
         if (is_sheet || fan.turn > 0.0) is_corner[mesh.faces[c / 3][c % 3]] = 1;
     }
@@ -300,9 +296,9 @@ std::vector<int> find_patches(const ObstacleMesh& mesh, const ObstacleTopology& 
         const Vec3& normal = planes.normals[seed];
         const Vec3& origin = mesh.points[mesh.faces[seed][0]];
         const auto is_in_plane = [&](int f) {
-            return angle_between(normal, planes.normals[f]) <= kPlanarAngle &&
+            return angle_between(normal, planes.normals[f]) <= kSinglePrecision &&
                    std::all_of(mesh.faces[f].begin(), mesh.faces[f].end(), [&](int p) {
-                       return std::abs(normal.dot(mesh.points[p] - origin)) <= kPlanarDistance * diagonal;
+                       return std::abs(normal.dot(mesh.points[p] - origin)) <= kSinglePrecision * diagonal;
                    });
         };
         label_connected(topology, seed, count++, is_in_plane, patch);
@@ -326,7 +322,7 @@ std::vector<Vec3> normals_around(const ObstacleTopology& topology, const FacePla
         if (std::find(seen.begin(), seen.end(), patch[f]) != seen.end()) continue;
         seen.push_back(patch[f]);
         if (std::none_of(normals.begin(), normals.end(),
-                         [&](const Vec3& n) { return (n - normal).norm() <= kPlanarAngle; }))
+                         [&](const Vec3& n) { return (n - normal).norm() <= kSinglePrecision; }))
             normals.push_back(normal);
     }
     return normals;

@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "geometry/box_tree.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
 
-// Widest and narrowest seam, relative to the mesh's diagonal. Points within the narrowest are welded; where
-// they are not, the repair has split a vertex, and says so.
+// Widest seam, relative to the mesh's diagonal.
 constexpr double kWidest = 5e-4;
-constexpr double kNarrowest = 1e-6;
 
 // Widest seam relative to its edge: short edges are near each other where nothing is to be joined.
 constexpr double kWidestOfEdge = 0.05;
@@ -65,7 +64,8 @@ BorderSeams find_border_seams(const ObstacleMesh& mesh, const ObstacleTopology& 
             if (static_cast<int>(e) != f && !share_points(edges[e], edges[f]))
                 nearest = std::min(nearest, distance(edges[e], edges[f]));
         });
-        if (nearest > width || nearest <= kNarrowest * size) continue;
+        // Nearer points are welded; where they are not, the repair has split a vertex, and says so.
+        if (nearest > width || nearest <= kSinglePrecision * size) continue;
         if (seams.edges++ == 0) seams.place = middles[e].min();
         seams.widest = std::max(seams.widest, nearest);
     }

@@ -166,13 +166,12 @@ class Child {
     bool wait_until_end(ChildResult& result) const
     {
         // The child has closed its reply and will end soon: poll at short intervals.
-        constexpr std::chrono::milliseconds kNap{1};
         while (is_running()) {
             if (milliseconds_left() == 0) {
                 result.end = ChildEnd::TimedOut;
                 return false;
             }
-            std::this_thread::sleep_for(kNap);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
         return true;
     }

@@ -16,13 +16,10 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
 #include "geometry/obstacle_input/xml_elements.h"
 
 namespace arris {
 namespace {
-
-constexpr std::string_view kSpace = " \t\r\n";
 
 // Placements of a node, and how many numbers each has.
 constexpr std::array<std::pair<std::string_view, std::uint64_t>, 6> kPlacements = {
@@ -124,9 +121,9 @@ class DaeCheck {
         std::uint64_t found = 0;
         std::string_view rest = text_;
         for (;; ++found) {
-            rest.remove_prefix(std::min(rest.find_first_not_of(kSpace), rest.size()));
+            rest.remove_prefix(std::min(rest.find_first_not_of(kXmlSpace), rest.size()));
             if (rest.empty()) break;
-            const std::string_view word = rest.substr(0, rest.find_first_of(kSpace));
+            const std::string_view word = rest.substr(0, rest.find_first_of(kXmlSpace));
             rest.remove_prefix(word.size());
             const bool is_right = content_ == Content::Indices
                                       ? whole_number(word).has_value()

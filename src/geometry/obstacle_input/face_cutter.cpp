@@ -7,13 +7,10 @@
 
 #include "geometry/mesh_text.h"
 #include "geometry/polygon.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
-
-// Distance of a corner from its polygon's plane, relative to the polygon's size, beyond which the choice of
-// triangles changes the shape visibly. Rounding to three digits stays below.
-constexpr double kBent = 1e-3;
 
 std::string place(const Vec3& p)
 {
@@ -30,7 +27,8 @@ std::vector<Face> FaceCutter::cut(const std::vector<Vec3>& corners, int first_po
     if (triangles.defect == PolygonDefect::CrossesItself && crossing_++ == 0) crossing_point_ = first_point;
     if (triangles.defect != PolygonDefect::None) return fan_polygon(corners);
     const PolygonBend bend = find_bend(corners);
-    if (bend.distance > kBent * bend.size) {
+    // A polygon with a corner farther from its plane: the choice of triangles changes the shape visibly.
+    if (bend.distance > kThreeDigits * bend.size) {
         ++bent_;
         if (bend.distance > bent_share_ * bend.size) {
             bent_share_ = bend.distance / bend.size;

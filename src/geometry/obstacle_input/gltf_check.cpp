@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include "geometry/input_error.h"
+#include "geometry/mesh_text.h"
 #include "geometry/obstacle_input/gltf_document.h"
 #include "geometry/obstacle_input/gltf_nodes.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
 
 namespace arris {
 namespace {

@@ -8,13 +8,11 @@
 #include <cstring>
 
 #include "geometry/input_error.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
+#include "geometry/mesh_text.h"
 
 namespace arris {
 namespace {
 
-constexpr std::size_t kHeader = 12;
-constexpr std::size_t kChunkHeader = 8;
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a;
 constexpr std::uint32_t kBinaryChunk = 0x004e4942;
 
@@ -63,8 +61,8 @@ GltfDocument read_gltf(bool is_binary, std::string_view bytes)
     if (!is_binary) return {parse(bytes), {}};
     GltfDocument document;
     bytes = bytes.substr(0, number_at(bytes, 8));
-    for (std::size_t at = kHeader; at < bytes.size(); at += kChunkHeader + number_at(bytes, at)) {
-        const std::string_view content = bytes.substr(at + kChunkHeader, number_at(bytes, at));
+    for (std::size_t at = kGlbHeader; at < bytes.size(); at += kGlbChunkHeader + number_at(bytes, at)) {
+        const std::string_view content = bytes.substr(at + kGlbChunkHeader, number_at(bytes, at));
         const std::uint32_t type = number_at(bytes, at + 4);
         if (type == kJsonChunk && document.json.is_null()) document.json = parse(content);
         if (type == kBinaryChunk && document.chunk.empty()) document.chunk = content;
@@ -80,7 +78,7 @@ std::string write_glb(const GltfDocument& document)
     const std::size_t chunk = padded(document.chunk.size());
     std::string bytes = "glTF";
     append(bytes, 2);
-    append(bytes, static_cast<std::uint32_t>(kHeader + 2 * kChunkHeader + json.size() + chunk));
+    append(bytes, static_cast<std::uint32_t>(kGlbHeader + 2 * kGlbChunkHeader + json.size() + chunk));
     append(bytes, static_cast<std::uint32_t>(json.size()));
     append(bytes, kJsonChunk);
     bytes += json;

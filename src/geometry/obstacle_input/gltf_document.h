@@ -9,6 +9,10 @@
 // For .cpp files of this folder only: the JSON library is slow to compile.
 namespace arris {
 
+/// Bytes of a GLB file before its first chunk, and of a chunk before its content.
+inline constexpr std::size_t kGlbHeader = 12;
+inline constexpr std::size_t kGlbChunkHeader = 8;
+
 /// The JSON of a glTF 2 file, and its binary chunk (empty if the file has none).
 struct GltfDocument {
     nlohmann::json json;

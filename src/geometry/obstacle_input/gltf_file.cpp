@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "geometry/input_error.h"
+#include "geometry/mesh_text.h"
 #include "geometry/obstacle_input/gltf_check.h"
 #include "geometry/obstacle_input/gltf_document.h"
 #include "geometry/obstacle_input/gltf_positions.h"
 #include "geometry/obstacle_input/mesh_folder_io.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
 #include "geometry/obstacle_input/percent_code.h"
 
 namespace arris {

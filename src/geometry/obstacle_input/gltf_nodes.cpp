@@ -10,15 +10,12 @@
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
 #include "geometry/obstacle_input/gltf_document.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
 
 using nlohmann::json;
-
-// Files round numbers to three digits at worst.
-constexpr double kRounding = 1e-3;
 
 std::optional<std::size_t> index_of(const json& value, const json& elements)
 {
@@ -74,14 +71,14 @@ void check_gltf_placement(const json& node, const std::string& what)
         // Columns follow each other.
         const double wrong =
             std::abs(matrix[3]) + std::abs(matrix[7]) + std::abs(matrix[11]) + std::abs(matrix[15] - 1.0);
-        if (wrong > kRounding)
+        if (wrong > kThreeDigits)
             throw InputError(fmt::format("{}: the last row of its matrix is {} {} {} {}; allowed: 0 0 0 1",
                                          what, matrix[3], matrix[7], matrix[11], matrix[15]));
     }
     if (!rotation.empty()) {
         const double length =
             std::hypot(std::hypot(rotation[0], rotation[1]), std::hypot(rotation[2], rotation[3]));
-        if (!(std::abs(length - 1.0) <= kRounding))
+        if (!(std::abs(length - 1.0) <= kThreeDigits))
             throw InputError(fmt::format(
                 "{}: its rotation {} {} {} {} has length {:.3g}; allowed: a quaternion of length 1", what,
                 rotation[0], rotation[1], rotation[2], rotation[3], length));

@@ -15,8 +15,8 @@
 #include <string_view>
 
 #include "geometry/input_error.h"
+#include "geometry/mesh_text.h"
 #include "geometry/obstacle_input/gltf_document.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
 
 namespace arris {
 namespace {
@@ -24,7 +24,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFloat = 5126;
-constexpr std::size_t kFloatBytes = 4;
 
 std::string decode_base64(std::string_view text)
 {
@@ -138,12 +137,12 @@ class PositionWriter {
             throw InputError(
                 fmt::format("accessor {}: its positions reach beyond the end of their buffer", number));
         const bool is_normalized = gltf_member(accessor, "normalized") == true;
-        std::string floats(count * 3 * kFloatBytes, '\0');
+        std::string floats(count * 3 * sizeof(float), '\0');
         for (std::uint64_t i = 0; i < count; ++i)
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const char* at = buffer.data() + start + offset + i * stride + axis * component.size;
                 const float value = component.read(at, is_normalized);
-                std::memcpy(floats.data() + (3 * i + axis) * kFloatBytes, &value, kFloatBytes);
+                std::memcpy(floats.data() + (3 * i + axis) * sizeof(float), &value, sizeof(float));
             }
         return floats;
     }
@@ -175,7 +174,8 @@ class PositionWriter {
 
     void store(json& accessor, const std::string& floats)
     {
-        document_.chunk.resize((document_.chunk.size() + kFloatBytes - 1) / kFloatBytes * kFloatBytes, '\0');
+        document_.chunk.resize((document_.chunk.size() + sizeof(float) - 1) / sizeof(float) * sizeof(float),
+                               '\0');
         json& views = file_["bufferViews"];
         views.push_back(
             {{"buffer", 0}, {"byteOffset", document_.chunk.size()}, {"byteLength", floats.size()}});

@@ -9,12 +9,12 @@
 #include <initializer_list>
 
 #include "geometry/input_error.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
+#include "geometry/mesh_text.h"
+#include "geometry/obstacle_input/mesh_file_limits.h"
 
 namespace arris {
 namespace {
 
-constexpr std::size_t kMostLines = 10;
 constexpr unsigned kSeverity = Assimp::Logger::Err | Assimp::Logger::Warn;
 
 bool has_any(const std::string& line, std::initializer_list<const char*> words)
@@ -59,7 +59,7 @@ void ImportLog::write(const char* message)
     if (const std::size_t head = line.find(": "); line.find(", ") < head) line.erase(0, head + 2);
     if (damage_.empty() && is_damage(line)) damage_ = line;
     if (is_noise(line) || std::find(lines_.begin(), lines_.end(), line) != lines_.end()) return;
-    if (lines_.size() < kMostLines)
+    if (lines_.size() < kMostNotes)
         lines_.push_back(line);
     else
         ++left_out_;

@@ -9,6 +9,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
+#include "geometry/obstacle_input/gltf_document.h"
 
 namespace arris {
 namespace {
@@ -21,9 +22,6 @@ Number number_at(std::string_view bytes, std::size_t offset)
     std::memcpy(&number, bytes.data() + offset, sizeof number);
     return number;
 }
-
-constexpr std::size_t kGlbHeader = 12;
-constexpr std::size_t kGlbChunkHeader = 8;
 
 void check_glb(std::string_view bytes)
 {

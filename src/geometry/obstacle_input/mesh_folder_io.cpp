@@ -16,15 +16,12 @@
 #include <utility>
 
 #include "geometry/input_error.h"
+#include "geometry/obstacle_input/mesh_file_limits.h"
 
 namespace arris {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Size limit for materials, buffers and textures beside the mesh.
-constexpr std::uintmax_t kLargestSecondary = std::uintmax_t{1} << 30;
-constexpr std::size_t kMostRefusals = 10;
 
 std::string read_descriptor(int fd, std::uintmax_t limit)
 {
@@ -132,7 +129,7 @@ std::string MeshFolderIo::find_inside(const std::string& name) const
 void MeshFolderIo::refuse(const std::string& name, const std::string& why) const
 {
     const std::string sentence = fmt::format("'{}' {} and was not read", name, why);
-    if (refusals_.size() < kMostRefusals &&
+    if (refusals_.size() < kMostNotes &&
         std::find(refusals_.begin(), refusals_.end(), sentence) == refusals_.end())
         refusals_.push_back(sentence);
 }

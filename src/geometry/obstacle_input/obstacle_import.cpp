@@ -18,14 +18,15 @@
 
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
+#include "geometry/mesh_text.h"
 #include "geometry/obstacle_input/dae_check.h"
 #include "geometry/obstacle_input/face_cutter.h"
 #include "geometry/obstacle_input/format_reader.h"
 #include "geometry/obstacle_input/gltf_file.h"
 #include "geometry/obstacle_input/import_log.h"
 #include "geometry/obstacle_input/mesh_file_check.h"
+#include "geometry/obstacle_input/mesh_file_limits.h"
 #include "geometry/obstacle_input/mesh_folder_io.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
 #include "geometry/obstacle_input/plain_mesh.h"
 #include "geometry/obstacle_input/soup_repair.h"
 #include "geometry/obstacle_input/soup_weld.h"
@@ -38,10 +39,6 @@
 // readers of their own, whose values are double from the beginning.
 namespace arris {
 namespace {
-
-constexpr std::uintmax_t kLargestFile = std::uintmax_t{2} << 30;
-constexpr std::size_t kMostFaces = 10'000'000;
-constexpr std::size_t kMostNodes = 1'000'000;
 
 // Single precision moves points by 6e-8 of their distance from the origin. Beyond this ratio of distance to
 // mesh size, that is more than 6e-4 of the mesh's size.
@@ -226,7 +223,6 @@ class ObstacleImporter {
 
     void read_fbx_metadata(const aiScene& scene)
     {
-        constexpr double kCentimetre = 0.01;
         float factor = 1.0f;
         std::int32_t axis = 1;
         std::int32_t sign = 1;
@@ -239,7 +235,7 @@ class ObstacleImporter {
             throw InputError(fmt::format("its UnitScaleFactor is {}: state the units", factor));
         if (!up_ && (axis < 0 || axis > 2 || sign != 1))
             throw InputError(fmt::format("its UpAxis is {} with sign {}: state the up axis", axis, sign));
-        declared_unit_ = decimal(factor) * kCentimetre;
+        declared_unit_ = decimal(factor) * 0.01;  // centimetres
         if (axis >= 0 && axis <= 2) declared_up_ = "xyz"[axis];
     }
 

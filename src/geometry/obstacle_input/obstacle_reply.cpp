@@ -8,6 +8,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
+#include "geometry/mesh_text.h"
 #include "geometry/obstacle/obstacle_topology.h"
 
 namespace arris {
@@ -15,7 +16,6 @@ namespace {
 
 constexpr std::string_view kMeshMark = "arris-obstacle-1";
 constexpr std::string_view kRefusalMark = "arris-refusal--1";
-constexpr std::size_t kLongestLine = 500;
 constexpr std::size_t kMostLines = 1000;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && std::is_trivially_copyable_v<Face>);
@@ -140,15 +140,6 @@ ObstacleFile decode_reply(std::string_view bytes)
     for (const Vec3& p : file.mesh.points)
         if (!(p.cwiseAbs().maxCoeff() <= kLargestCoordinate)) ReplyReader::refuse();
     return file;
-}
-
-std::string one_line(std::string_view text)
-{
-    std::string line(text.substr(0, kLongestLine));
-    for (char& c : line)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    if (line.size() < text.size()) line += "...";
-    return line;
 }
 
 }  // namespace arris

@@ -20,7 +20,4 @@ std::string encode_refusal(const std::string& why);
 /// refusal's own text, or with what is wrong with the reply.
 ObstacleFile decode_reply(std::string_view bytes);
 
-/// `text` on one line, control characters replaced by spaces, at most 500 bytes.
-std::string one_line(std::string_view text);
-
 }  // namespace arris

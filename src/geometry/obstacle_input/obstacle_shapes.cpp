@@ -10,15 +10,12 @@
 
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
 
 constexpr int kMostTeeth = 10000;
-
-// A flat valley narrower than this share of the pitch is rounding of tan(): the valley was meant to have no
-// width.
-constexpr double kNoValley = 1e-12;
 
 void require_length(const char* what, double value)
 {
@@ -53,7 +50,8 @@ struct ProfilePoint {
 std::vector<ProfilePoint> teeth_profile(const TeethShape& shape, double half_base)
 {
     const double half_length = 0.5 * shape.count * shape.pitch;
-    const bool has_valleys = 0.5 * shape.pitch - half_base > kNoValley * shape.pitch;
+    // A narrower flat valley is rounding of tan(): the valley was meant to have no width.
+    const bool has_valleys = 0.5 * shape.pitch - half_base > kComputed * shape.pitch;
     std::vector<ProfilePoint> profile = {{-half_length, 0.0}};
     for (int k = 0; k < shape.count; ++k) {
         const double tip = (k + 0.5) * shape.pitch - half_length;
@@ -161,7 +159,7 @@ ObstacleMesh make_teeth(const TeethShape& shape)
         throw InputError(fmt::format("tip_degrees {} must be above 0 and below 180", shape.tip_degrees));
 
     const double half_base = shape.height * std::tan(0.5 * shape.tip_degrees * std::numbers::pi / 180.0);
-    if (0.5 * shape.pitch - half_base < -kNoValley * shape.pitch)
+    if (0.5 * shape.pitch - half_base < -kComputed * shape.pitch)
         throw InputError(fmt::format(
             "teeth {:.6g} m wide at their base (2 height tan(tip_degrees / 2)) overlap at pitch {} m: "
             "allowed "

@@ -10,11 +10,10 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "geometry/tolerances.h"
+
 namespace arris {
 namespace {
-
-// Files in single precision are exact to 6e-8 of their size; exporters lose another digit.
-constexpr double kWeldShare = 1e-6;
 
 // Cell width in tolerances. In cells this wide, a search seldom covers a second cell, and a cell holds few
 // points that are farther apart than the tolerance.
@@ -135,7 +134,7 @@ int join_near(ObstacleMesh& soup, double& tolerance)
     Eigen::AlignedBox3d bounds;
     for (const Vec3& p : soup.points) bounds.extend(p);
     if (bounds.isEmpty()) return 0;
-    tolerance = kWeldShare * bounds.diagonal().stableNorm();
+    tolerance = kSinglePrecision * bounds.diagonal().stableNorm();
     // All points coincide, or cell numbers would overflow: no points are near but unequal.
     if (!(tolerance > std::numeric_limits<double>::min())) return 0;
     WeldGrid grid(bounds.min(), tolerance);

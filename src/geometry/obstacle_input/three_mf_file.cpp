@@ -12,7 +12,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
+#include "geometry/obstacle_input/mesh_file_limits.h"
 #include "geometry/obstacle_input/percent_code.h"
 #include "geometry/obstacle_input/three_mf_part.h"
 #include "geometry/obstacle_input/xml_elements.h"
@@ -25,7 +25,6 @@ constexpr const char* kRelationships = "_rels/.rels";
 constexpr std::string_view kRootType = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 
 constexpr std::size_t kDeepest = 1000;
-constexpr std::size_t kMostPlaced = 1'000'000;
 
 // A part's name in the archive, which has no leading slash. References are percent-encoded; names of files in
 // archives are not.
@@ -117,8 +116,7 @@ class PackageReader {
             throw InputError(told + ": components refer to each other in a circle");
         if (open_.size() == kDeepest)
             throw InputError(fmt::format("{}: components nest deeper than {} levels", told, kDeepest));
-        if (++placed_ > kMostPlaced)
-            throw InputError(fmt::format("more than {} placed objects", kMostPlaced));
+        if (++placed_ > kMostNodes) throw InputError(fmt::format("more than {} placed objects", kMostNodes));
         const ThreeMfObject& object = found->second;
         if (object.type != "model" && object.type != "surface") {
             ++left_out_[object.type];

@@ -12,7 +12,6 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
 #include "geometry/obstacle_input/xml_elements.h"
 
 namespace arris {
@@ -20,10 +19,7 @@ namespace {
 
 constexpr std::string_view kFamily = "http://schemas.microsoft.com/3dmanufacturing/";
 constexpr std::string_view kCore = "http://schemas.microsoft.com/3dmanufacturing/core/";
-// Whitespace that XML lets stand around a number.
-constexpr std::string_view kSpace = " \t\r\n";
 constexpr std::string_view kProduction = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
-constexpr std::size_t kLongestQuote = 40;
 
 // Extensions, by the part of their namespace after kFamily, whose absence from a reader changes no shape:
 // colours, identifiers, groups of triangles.
@@ -41,8 +37,8 @@ bool is_shapeless(std::string_view space)
 
 std::string_view trimmed(std::string_view text)
 {
-    text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
-    return text.substr(0, text.find_last_not_of(kSpace) + 1);
+    text.remove_prefix(std::min(text.find_first_not_of(kXmlSpace), text.size()));
+    return text.substr(0, text.find_last_not_of(kXmlSpace) + 1);
 }
 
 std::string quote(std::string_view text)
@@ -53,10 +49,10 @@ std::string quote(std::string_view text)
 std::vector<std::string_view> split(std::string_view text)
 {
     std::vector<std::string_view> words;
-    for (std::size_t begin = text.find_first_not_of(kSpace); begin != std::string_view::npos;) {
-        const std::size_t end = std::min(text.find_first_of(kSpace, begin), text.size());
+    for (std::size_t begin = text.find_first_not_of(kXmlSpace); begin != std::string_view::npos;) {
+        const std::size_t end = std::min(text.find_first_of(kXmlSpace, begin), text.size());
         words.push_back(text.substr(begin, end - begin));
-        begin = text.find_first_not_of(kSpace, end);
+        begin = text.find_first_not_of(kXmlSpace, end);
     }
     return words;
 }

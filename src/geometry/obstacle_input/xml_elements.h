@@ -10,6 +10,9 @@
 
 namespace arris {
 
+/// White space that XML lets stand around a number.
+inline constexpr std::string_view kXmlSpace = " \t\r\n";
+
 /// A name and the URI of its namespace (empty: none).
 struct XmlName {
     std::string_view space;

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "geometry/input_error.h"
-#include "geometry/obstacle_input/obstacle_reply.h"
+#include "geometry/mesh_text.h"
 
 // A ZIP archive ends with a directory. Its end record comes last; before it, one entry per file names the
 // position of the file's local header and data.
@@ -58,17 +58,16 @@ std::size_t find_end_record(std::string_view bytes)
 {
     if (bytes.size() < kEndRecord) refuse_truncated();
     const std::size_t tail = bytes.size() - std::min(bytes.size(), kEndRecord + kLongestComment);
-    constexpr std::size_t kNone = std::string_view::npos;
-    std::size_t found = kNone;
-    for (std::size_t end = bytes.rfind("PK\x05\x06"); end != kNone && end >= tail;
-         end = end == 0 ? kNone : bytes.rfind("PK\x05\x06", end - 1)) {
+    std::size_t found = bytes.npos;
+    for (std::size_t end = bytes.rfind("PK\x05\x06"); end != bytes.npos && end >= tail;
+         end = end == 0 ? bytes.npos : bytes.rfind("PK\x05\x06", end - 1)) {
         if (bytes.size() - end < kEndRecord) continue;
         const std::size_t stop = end + kEndRecord + number_at<std::uint16_t>(bytes, end + 20);
         if (stop == bytes.size()) return end;
         const bool has_directory = number_at<std::uint32_t>(bytes, end + 16) < end;
-        if (found == kNone && stop < bytes.size() && has_directory) found = end;
+        if (found == bytes.npos && stop < bytes.size() && has_directory) found = end;
     }
-    if (found == kNone) refuse_truncated();
+    if (found == bytes.npos) refuse_truncated();
     return found;
 }
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "geometry/box_tree.h"
 #include "geometry/check/face_groups.h"
-#include "geometry/contact/contact_batches.h"
 #include "geometry/self_contact/self_surface.h"
 #include "geometry/vectors.h"
 
@@ -36,7 +36,6 @@ template <typename Result, typename Find>
 std::vector<Result> collect_near_pairs(const SelfSurface& surface, const SelfMotion& motion, double reach,
                                        const Find& find)
 {
-    constexpr int kGroupSize = 16;  // faces per query of the tree
     const auto grow = [&](const Box3& box) {
         return Box3(box.min().array() - 0.5 * reach, box.max().array() + 0.5 * reach);
     };
@@ -46,7 +45,6 @@ std::vector<Result> collect_near_pairs(const SelfSurface& surface, const SelfMot
         boxes[f] = grow(boxes[f]);
     }
     const BoxTree tree(boxes);
-    const std::vector<int> order = order_by_place(boxes, kGroupSize);
 
     const auto sweep_vertices = [&](Find& found, int f, int g, std::vector<Result>& results) {
         const Face& face = surface.faces[g];
@@ -70,26 +68,20 @@ std::vector<Result> collect_near_pairs(const SelfSurface& surface, const SelfMot
             }
         }
     };
-    const auto search = [&](int begin, int end, std::vector<Result>& results) {
-        Find found = find;
-        std::vector<int> near;
-        for (int first = begin; first < end; first += kGroupSize) {
-            const int last = std::min(first + kGroupSize, end);
-            Box3 group;
-            for (int i = first; i < last; ++i) group.extend(boxes[order[i]]);
-            tree.find(group, near);
-            for (int i = first; i < last; ++i) {
-                const int f = order[i];
-                for (const int g : near) {
-                    if (g <= f || !boxes[f].intersects(boxes[g])) continue;
-                    sweep_vertices(found, f, g, results);
-                    sweep_vertices(found, g, f, results);
-                    sweep_edges(found, f, g, results);
-                }
+    const auto search = [&, found = find, near = std::vector<int>()](std::span<const int> group,
+                                                                     const Box3& box,
+                                                                     std::vector<Result>& results) mutable {
+        tree.find(box, near);
+        for (const int f : group) {
+            for (const int g : near) {
+                if (g <= f || !boxes[f].intersects(boxes[g])) continue;
+                sweep_vertices(found, f, g, results);
+                sweep_vertices(found, g, f, results);
+                sweep_edges(found, f, g, results);
             }
         }
     };
-    return collect_in_batches<Result>(static_cast<int>(order.size()), search);
+    return collect_in_groups<Result>(boxes, search);
 }
 
 }  // namespace arris

@@ -7,26 +7,19 @@
 #include <tuple>
 
 #include "geometry/closest_point.h"
+#include "geometry/contact/contact_plane.h"
 #include "geometry/contact/continuous_collision.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 
 namespace {
 
 constexpr double kNear = 2.0;  // thicknesses: nearer pairs have a plane at their closest points
-const double kSameNormal = std::cos(20.0 * M_PI / 180.0);
 
 /// Cosine of 45 degrees. A vertex is above a border where its direction from the border leans by less from
 /// the normal of the border's face.
 const double kAbove = std::sqrt(0.5);
-
-/// Of the thickness: where a vertex leaves a layer over its border, it keeps the layer's plane from this
-/// height on. Lower vertices hang over the border, and a plane that leans lets them down.
-constexpr double kFull = 0.9;
-
-/// Directions along a surface that lead nearer by less than this cosine count as level. Level parts, as of
-/// two plane layers, have a plane wherever they face each other.
-constexpr double kLevel = 1e-6;
 
 /// Height of a ridge, of the thickness. Edges that cross have a plane where both are ridges. Of flatter
 /// layers the planes of vertices keep all parts apart, but for about this height.
@@ -115,6 +108,7 @@ class Search {
     /// Whether going from a surface's point along `way` leads no nearer to a point at `gap` from it.
     static bool leads_no_nearer(const Vec3& way, const Vec3& gap)
     {
+        // Level parts, as of two plane layers, have a plane wherever they face each other.
         return way.dot(gap) <= kLevel * way.norm() * gap.norm();
     }
 
@@ -210,7 +204,9 @@ class Search {
         }
         const Vec3 normal = normal_of(seen, time);
         const double side = normal.dot(gap) > 0.0 ? 1.0 : -1.0, height = side * normal.dot(gap);
-        if (height >= std::max(kFull * thickness_, kAbove * gap.norm())) return side * normal;
+        // Lower vertices hang over the border: the layer's plane would hold them, and one that leans lets
+        // them down.
+        if (height >= std::max((1.0 - kRidge) * thickness_, kAbove * gap.norm())) return side * normal;
         // Low beside the border, the vertex comes at it from the side.
         if (height < kAbove * std::min(gap.norm(), thickness_)) return std::nullopt;
         const Face& f = surface_.faces[face];
@@ -265,14 +261,13 @@ class Search {
 /// Keeps up to three planes of each vertex, the nearest first.
 void keep_nearest_planes(std::vector<SelfContact>& contacts)
 {
-    constexpr std::size_t kMostPlanes = 3;
     std::vector<SelfContact> kept;
     std::size_t first = 0;  // of the present vertex, in `kept`
     for (const SelfContact& contact : contacts) {
         if (contact.kind == SelfContactKind::VertexFace) {
             if (kept.empty() || kept.back().vertices[0] != contact.vertices[0]) first = kept.size();
             const auto is_like = [&](const SelfContact& other) {
-                return other.normal.dot(contact.normal) > kSameNormal;
+                return other.normal.dot(contact.normal) > kSameDirection;
             };
             if (kept.size() - first >= kMostPlanes ||
                 std::any_of(kept.begin() + static_cast<std::ptrdiff_t>(first), kept.end(), is_like))

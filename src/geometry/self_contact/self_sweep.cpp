@@ -3,17 +3,15 @@
 
 #include <tuple>
 
+#include "geometry/contact/contact_plane.h"
 #include "geometry/contact/continuous_collision.h"
 #include "geometry/self_contact/self_contact_search.h"
 #include "geometry/sort_unique.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 
 namespace {
-
-/// Elements nearer than this share of the cloth's size count as touching, unless they began nearer. As in
-/// sweep_check.cpp.
-constexpr double kTouching = 1e-11;
 
 /// A pair of elements that met. `first` and `second` are a vertex and a face, or two edges.
 struct Meeting {
@@ -47,12 +45,11 @@ struct Sweep {
 };
 
 /// The plane that a meeting violates. Where the pair began behind the plane, as cloth that slid past an edge
-/// did, it is to keep only a trace of the thickness.
+/// did, it is to keep only the least gap with a direction.
 SelfContact make_violation(const Meeting& meeting, const std::vector<Vec3>& begin, double thickness)
 {
-    constexpr double kTrace = 1e-3;
     SelfContact contact = make_self_contact(meeting.pair, meeting.hit.normal, begin, thickness);
-    if (!(contact.least_gap > 0.0)) contact.least_gap = kTrace * thickness;
+    if (!(contact.least_gap > 0.0)) contact.least_gap = kTinyDistance * thickness;
     return contact;
 }
 

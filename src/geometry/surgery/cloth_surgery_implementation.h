@@ -11,19 +11,17 @@
 #include "geometry/surgery/cloth_surgery.h"
 #include "geometry/surgery/material_location.h"
 #include "geometry/surgery/surgery_mesh.h"
+#include "geometry/tolerances.h"
 
 // ClothSurgery's data and the parts of its proposals. For its .cpp files only.
 namespace arris {
 
-// A computed point on the line between two others is off the line by rounding: a few units in the last place
-// of the greatest coordinate.
-inline constexpr double kOnLineUlps = 16.0;
-
+// A computed point on the line between two others is off the line by rounding.
 inline bool is_on_line(const Vec2& a, const Vec2& b, const Vec2& p)
 {
     const double scale =
         std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), p.cwiseAbs().maxCoeff()});
-    const double slack = kOnLineUlps * std::numeric_limits<double>::epsilon() * scale;
+    const double slack = kProductRounding * scale;
     return std::abs(twice_area(a, b, p)) <= slack * (b - a).norm();
 }
 

@@ -10,11 +10,10 @@
 
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/surgery/material_location.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
-
-constexpr double kRounding = 1e-12;  // relative; well above the rounding of a weighted mean of three
 
 class InitialMesh {
   public:
@@ -42,8 +41,8 @@ class InitialMesh {
 
     double mean_length() const { return mean_; }
     // Bounds on `length`, widened by its rounding.
-    double shortest() const { return (1.0 - kRounding) * *std::min_element(length_.begin(), length_.end()); }
-    double longest() const { return (1.0 + kRounding) * *std::max_element(length_.begin(), length_.end()); }
+    double shortest() const { return (1.0 - kComputed) * *std::min_element(length_.begin(), length_.end()); }
+    double longest() const { return (1.0 + kComputed) * *std::max_element(length_.begin(), length_.end()); }
 
     double angle(const Vec2& X) const
     {

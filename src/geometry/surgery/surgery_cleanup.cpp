@@ -38,7 +38,6 @@ namespace {
 
 constexpr double kFlipAngle = 30.0;  // degrees
 constexpr double kKeepAngle = 10.0;  // degrees: below this, a merge may not leave thinner faces than before
-constexpr double kSplitAngle = 0.5;  // of the least angle before: a split may not leave a smaller one
 constexpr int kSplitRounds = 8;      // enough for edges of 500 target lengths
 constexpr int kThinRounds = 3;
 constexpr int kFlipsPerEdge = 8;
@@ -329,7 +328,7 @@ class Cleanup {
     static bool is_opening(const SurgeryProposal& proposal)
     {
         return proposal.is_legal() &&
-               least_angle(proposal.event.after) >= kSplitAngle * least_angle(proposal.event.before);
+               least_angle(proposal.event.after) >= 0.5 * least_angle(proposal.event.before);
     }
 
     // A thin face that can be neither flipped nor merged gets a new vertex. Flips and merges of the next

@@ -113,8 +113,7 @@ VertexRing SurgeryMesh::ring(VertexId v) const
     // last.
     const Halfedge first = mesh_.halfedge(vertex(v));
     VertexRing ring;
-    constexpr std::size_t kUsual = 8;  // most vertices have no more neighbours
-    ring.vertices.reserve(kUsual);
+    ring.vertices.reserve(8);  // most vertices have no more neighbours
     std::size_t start = 0;
     for (Halfedge h = first;;) {
         if (mesh_.is_border(h)) {

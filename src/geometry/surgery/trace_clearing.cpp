@@ -21,6 +21,7 @@
 #include "geometry/from_least.h"
 #include "geometry/surgery/material_walk.h"
 #include "geometry/surgery/vertex_table.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
@@ -318,14 +319,13 @@ ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
         const bool is_cut = advance.least < 1.0 && leads_off(surgery, advance.vertex, advance.ahead);
         ahead[advance.vertex] = (is_cut ? advance.least : 1.0) * advance.ahead;
     }
-    constexpr double kResting = 1e-12;  // of the room to be cleared: a shorter way's direction is rounding
     double stages = 1.0;
     TraceWays room;
     for (auto at = ahead.begin(); at != ahead.end();) {
         const auto& [v, way] = *at;
         const double length = way.norm();
         const double least = kCrowded * target.length(surgery.material(v));
-        if (length > kResting * least) room[v] = find_room(surgery, v, way, least / length);
+        if (length > kComputed * least) room[v] = find_room(surgery, v, way, least / length);
         stages = std::max(stages, std::ceil(length / least));
         at = length > 0.0 ? std::next(at) : ahead.erase(at);
     }

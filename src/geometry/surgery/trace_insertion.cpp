@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "geometry/cgal.h"
+#include "geometry/cloth/material_box.h"
 #include "geometry/cloth/mesh_limits.h"
 #include "geometry/surgery/material_location.h"
 #include "geometry/surgery/material_walk.h"
@@ -27,7 +28,6 @@
 namespace arris {
 namespace {
 
-constexpr double kOnEdge = 1e-9;         // of the target length: a point nearer to an edge is on the edge
 constexpr double kLeastFraction = 0.05;  // of an edge: least distance of a split from an end that cannot move
 constexpr double kTraceFraction = 1e-3;  // least distance if the end is on another trace or is left behind
 constexpr double kLeastApart = 0.1;  // of the target length: a vertex nearer to a trace may not stay ahead
@@ -49,7 +49,8 @@ Verdict snap(ClothSurgery& surgery, VertexId v, const Vec2& place)
 bool is_at(const ClothSurgery& surgery, const MeshTarget& target, VertexId v, const Vec2& X)
 {
     const double distance = (surgery.material(v) - X).norm();
-    return surgery.is_border(v) ? distance <= kOnEdge * target.length(X) : surgery.material(v) == X;
+    return surgery.is_border(v) ? distance <= kMaterialTolerance * target.length(X)
+                                : surgery.material(v) == X;
 }
 
 // Whether v may be used as the new vertex. One that slides along the trace cannot be used as a node.
@@ -366,7 +367,7 @@ TraceInsertion insert_trace_point(ClothSurgery& surgery, const MeshTarget& targe
     const VertexId a = face[(least + 1) % 3];
     const VertexId b = face[(least + 2) % 3];
     const Line edge{surgery.material(a), surgery.material(b)};
-    if (edge.off(material) > kOnEdge * target.length(material))
+    if (edge.off(material) > kMaterialTolerance * target.length(material))
         return insert_face_point(surgery, target, face, weights, made);
     return insert_edge_crossing(surgery, target, a, b, std::clamp(edge.along(material), 0.0, 1.0), made);
 }
