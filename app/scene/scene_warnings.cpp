@@ -18,7 +18,7 @@
 #include "app/text/counted.h"
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/mesh_topology.h"
-#include "geometry/obstacle_input/sheet_opening.h"
+#include "geometry/obstacle_input/repair/sheet_opening.h"
 #include "solver/eol/creases.h"
 
 namespace arris {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/dae_check.h"
+#include "geometry/obstacle_input/formats/dae_check.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/plain_mesh.h"
+#include "geometry/obstacle_input/formats/plain_mesh.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "geometry/input_error.h"
-#include "geometry/obstacle_input/ply_file.h"
-#include "geometry/obstacle_input/stl_file.h"
+#include "geometry/obstacle_input/formats/ply_file.h"
+#include "geometry/obstacle_input/formats/stl_file.h"
 #include "tests/app/error_of.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/geometry/sample_obstacles.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/soup_repair.h"
+#include "geometry/obstacle_input/repair/soup_repair.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/obstacle/obstacle_topology.h"
-#include "geometry/obstacle_input/soup_weld.h"
+#include "geometry/obstacle_input/repair/soup_weld.h"
 #include "tests/app/error_of.h"
 #include "tests/geometry/sample_obstacles.h"
 

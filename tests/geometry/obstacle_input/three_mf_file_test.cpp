@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/three_mf_file.h"
+#include "geometry/obstacle_input/formats/three_mf_file.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

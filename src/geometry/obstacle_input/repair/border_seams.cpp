@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/border_seams.h"
+#include "geometry/obstacle_input/repair/border_seams.h"
 
 #include <Eigen/Geometry>
 

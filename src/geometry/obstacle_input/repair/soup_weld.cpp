@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/soup_weld.h"
+#include "geometry/obstacle_input/repair/soup_weld.h"
 
 #include <Eigen/Geometry>
 

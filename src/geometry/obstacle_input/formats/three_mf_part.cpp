@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/three_mf_part.h"
+#include "geometry/obstacle_input/formats/three_mf_part.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/xml_elements.h"
+#include "geometry/obstacle_input/formats/xml_elements.h"
 
 namespace arris {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/soup_repair.h"
+#include "geometry/obstacle_input/repair/soup_repair.h"
 
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
@@ -15,9 +15,9 @@
 #include "geometry/input_limits.h"
 #include "geometry/mesh_text.h"
 #include "geometry/obstacle/obstacle_topology.h"
-#include "geometry/obstacle_input/border_seams.h"
-#include "geometry/obstacle_input/shell_orientation.h"
-#include "geometry/obstacle_input/soup_weld.h"
+#include "geometry/obstacle_input/repair/border_seams.h"
+#include "geometry/obstacle_input/repair/shell_orientation.h"
+#include "geometry/obstacle_input/repair/soup_weld.h"
 
 namespace arris {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/sheet_opening.h"
+#include "geometry/obstacle_input/repair/sheet_opening.h"
 
 #include <Eigen/Geometry>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/mesh_file_check.h"
+#include "geometry/obstacle_input/formats/mesh_file_check.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/gltf_document.h"
+#include "geometry/obstacle_input/formats/gltf_document.h"
 
 namespace arris {
 namespace {

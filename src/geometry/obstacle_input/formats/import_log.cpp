@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/import_log.h"
+#include "geometry/obstacle_input/formats/import_log.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/mesh_file_limits.h"
+#include "geometry/obstacle_input/formats/mesh_file_limits.h"
 
 namespace arris {
 namespace {

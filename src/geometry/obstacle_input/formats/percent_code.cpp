@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/percent_code.h"
+#include "geometry/obstacle_input/formats/percent_code.h"
 
 #include <charconv>
 

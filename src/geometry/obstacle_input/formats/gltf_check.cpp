@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/gltf_check.h"
+#include "geometry/obstacle_input/formats/gltf_check.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,8 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/gltf_document.h"
-#include "geometry/obstacle_input/gltf_nodes.h"
+#include "geometry/obstacle_input/formats/gltf_document.h"
+#include "geometry/obstacle_input/formats/gltf_nodes.h"
 
 namespace arris {
 namespace {

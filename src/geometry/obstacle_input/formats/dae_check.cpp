@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/dae_check.h"
+#include "geometry/obstacle_input/formats/dae_check.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/xml_elements.h"
+#include "geometry/obstacle_input/formats/xml_elements.h"
 
 namespace arris {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/format_reader.h"
+#include "geometry/obstacle_input/formats/format_reader.h"
 
 #include <assimp/BaseImporter.h>
 #include <assimp/importerdesc.h>

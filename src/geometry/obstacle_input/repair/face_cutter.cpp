@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/face_cutter.h"
+#include "geometry/obstacle_input/repair/face_cutter.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/mesh_folder_io.h"
+#include "geometry/obstacle_input/formats/mesh_folder_io.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "geometry/input_error.h"
-#include "geometry/obstacle_input/mesh_file_limits.h"
+#include "geometry/obstacle_input/formats/mesh_file_limits.h"
 
 namespace arris {
 namespace {

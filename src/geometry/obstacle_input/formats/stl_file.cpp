@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/stl_file.h"
+#include "geometry/obstacle_input/formats/stl_file.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/xml_elements.h"
+#include "geometry/obstacle_input/formats/xml_elements.h"
 
 #include <expat.h>
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/ply_header.h"
+#include "geometry/obstacle_input/formats/ply_header.h"
 
 #include <fmt/format.h>
 

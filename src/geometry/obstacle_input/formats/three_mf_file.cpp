@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/three_mf_file.h"
+#include "geometry/obstacle_input/formats/three_mf_file.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -12,11 +12,11 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/mesh_file_limits.h"
-#include "geometry/obstacle_input/percent_code.h"
-#include "geometry/obstacle_input/three_mf_part.h"
-#include "geometry/obstacle_input/xml_elements.h"
-#include "geometry/obstacle_input/zip_archive.h"
+#include "geometry/obstacle_input/formats/mesh_file_limits.h"
+#include "geometry/obstacle_input/formats/percent_code.h"
+#include "geometry/obstacle_input/formats/three_mf_part.h"
+#include "geometry/obstacle_input/formats/xml_elements.h"
+#include "geometry/obstacle_input/formats/zip_archive.h"
 
 namespace arris {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/gltf_file.h"
+#include "geometry/obstacle_input/formats/gltf_file.h"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/gltf_check.h"
-#include "geometry/obstacle_input/gltf_document.h"
-#include "geometry/obstacle_input/gltf_positions.h"
-#include "geometry/obstacle_input/mesh_folder_io.h"
-#include "geometry/obstacle_input/percent_code.h"
+#include "geometry/obstacle_input/formats/gltf_check.h"
+#include "geometry/obstacle_input/formats/gltf_document.h"
+#include "geometry/obstacle_input/formats/gltf_positions.h"
+#include "geometry/obstacle_input/formats/mesh_folder_io.h"
+#include "geometry/obstacle_input/formats/percent_code.h"
 
 namespace arris {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "geometry/obstacle_input/plain_mesh.h"
+#include "geometry/obstacle_input/formats/plain_mesh.h"
 
 namespace arris {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/gltf_document.h"
+#include "geometry/obstacle_input/formats/gltf_document.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/ply_file.h"
+#include "geometry/obstacle_input/formats/ply_file.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/ply_header.h"
+#include "geometry/obstacle_input/formats/ply_header.h"
 
 namespace arris {
 namespace {

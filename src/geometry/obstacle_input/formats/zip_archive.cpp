@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/zip_archive.h"
+#include "geometry/obstacle_input/formats/zip_archive.h"
 
 #include <fmt/format.h>
 #include <zlib.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/gltf_positions.h"
+#include "geometry/obstacle_input/formats/gltf_positions.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/gltf_document.h"
+#include "geometry/obstacle_input/formats/gltf_document.h"
 
 namespace arris {
 namespace {

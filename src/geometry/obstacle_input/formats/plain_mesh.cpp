@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/plain_mesh.h"
+#include "geometry/obstacle_input/formats/plain_mesh.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 
 #include "geometry/input_error.h"
 #include "geometry/obj_file.h"
-#include "geometry/obstacle_input/ply_file.h"
-#include "geometry/obstacle_input/stl_file.h"
+#include "geometry/obstacle_input/formats/ply_file.h"
+#include "geometry/obstacle_input/formats/stl_file.h"
 
 namespace arris {
 namespace {
