@@ -10,6 +10,9 @@ namespace arris {
 
 /// Binary tree of boxes that finds the boxes touching a given one. A query among 100 000 boxes that finds a
 /// handful takes a few hundred nanoseconds. Built once; queries are const and may run in parallel.
+///
+/// Obstacles are searched with CGAL's AABB trees, by exact tests of their primitives. This tree is for what has
+/// no primitive and is new in every step: boxes around the ways of the cloth's elements, and of contacts.
 class BoxTree {
   public:
     using Box = Eigen::AlignedBox3d;
