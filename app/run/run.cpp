@@ -83,6 +83,7 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     run.crossed = is_audited ? find_self_crossings(run.config.scene, state.mesh) : SelfCrossings();
     run.at.state.crossings += run.crossed.count;
     StepRow row = make_step_row(run.config, state, run.work, run.audited, report);
+    row.step = run.at.rows;
     row.is_halved = is_halved;
     MeshCache& mesh = run.work.mesh;
     const ClothStrain strain = measure_cloth_strain(run.config.scene.material, find_stretches(state, mesh),
@@ -117,7 +118,6 @@ std::optional<RunEnding> advance(Run& run)
             return true;
         }
         Stopwatch watch;
-        if (run.opening) --run.at.state.step;
         write_outputs(run, run.opening ? join_parts(*run.opening, report) : report, watch, is_halved);
         run.opening.reset();
         return run.audited.obstacle < 0 && run.crossed.count == 0;

@@ -91,7 +91,7 @@ std::string name_not_finite(const NotFinite& found, const Scene& scene, const St
 
 RunEnding explain_ending(const StepReport& report, double tolerance, const Scene& scene, const State& state)
 {
-    const std::string place = fmt::format("in the step after t = {} s (step {})", state.time, state.step);
+    const std::string place = fmt::format("in the step after t = {} s", state.time);
     switch (report.status) {
         case StepStatus::NotFinite:
             return {RunStatus::NotFinite,

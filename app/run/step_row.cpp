@@ -17,7 +17,6 @@ StepRow make_step_row(const RunConfig& config, const State& state, const Workspa
     const CornerVelocities moving =
         compute_corner_velocities(elements, state.mesh.world, state.velocity, state.material_velocity);
     StepRow row;
-    row.step = state.step;
     row.time = state.time;
     row.dt = report.dt;
     row.vertices = state.mesh.vertex_count();

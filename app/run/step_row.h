@@ -11,8 +11,8 @@
 namespace arris {
 
 /// The row of steps.csv for the step that ended at `state`. `work` holds the elements of the state's mesh.
-/// `audited` is the audit of the state, or empty without an audit. CPU time, `is_halved` and
-/// `max_strain` are left unset.
+/// `audited` is the audit of the state, or empty without an audit. The row's number, CPU time, `is_halved`
+/// and `max_strain` are left unset.
 StepRow make_step_row(const RunConfig& config, const State& state, const Workspace& work,
                       const Audit& audited, const StepReport& report);
 

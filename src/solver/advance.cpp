@@ -14,11 +14,11 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
                                   Workspace& work, const AcceptPart& accept)
 {
     constexpr int kStartParts = 3;
-    const double planned = end - state.time;
-    int shrink = 1;                                      // factor by which parts have become shorter
-    int parts = find_flow_parts(scene, state, planned);  // parts left until `end`
+    const PlannedStep planned = {state.time, end};
+    int shrink = 1;                                               // factor by which parts have become shorter
+    int parts = find_flow_parts(scene, state, planned.length());  // parts left until `end`
     StepPart part = StepPart::Ordinary;
-    if (settings.integrator == Integrator::Bdf2 && !has_past(state, planned) && parts == 1) {
+    if (settings.integrator == Integrator::Bdf2 && !has_past(state, planned.length()) && parts == 1) {
         part = StepPart::Opening;
         parts = kStartParts;
     }
@@ -27,13 +27,13 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
     while (state.time < end) {
         const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
         const Attempt attempt = shrink == RetryPolicy::kMostParts ? Attempt::Last : Attempt::Ordinary;
-        StepReport report = step(scene, settings, part_end, state, work, attempt);
+        StepReport report = make_part(scene, settings, planned, part_end, state, work, attempt);
         if (report.status == StepStatus::Done) {
             report.add_cost(std::exchange(failed, {}));
             report.part = part;
             parts = part == StepPart::Opening ? 1 : std::max(parts - 1, 1);
             part = part == StepPart::Opening ? StepPart::Rest : StepPart::Ordinary;
-            if (!accept(report, report.part == StepPart::Ordinary && report.dt < planned))
+            if (!accept(report, report.part == StepPart::Ordinary && report.dt < planned.length()))
                 return std::nullopt;
             continue;
         }

@@ -21,7 +21,8 @@ using AcceptPart = std::function<bool(const StepReport& report, bool is_halved)>
 /// implicit Euler step it would cause half of BDF2's error in a second of sliding. RetryPolicy
 /// (retry_policy.h) decides what follows a failed attempt. The rest of the step may be made in twice as many
 /// equal parts, at most six times. The shortest parts may take last resorts (Attempt::Last). Returns the
-/// report of the attempt after which none was left; `state` is then at the last accepted part. Returns
+/// report of the attempt after which none was left; `state` is then at the last accepted part. `state.step`
+/// counts this planned step once, with its last part. Returns
 /// nothing where `end` was reached or `accept` stopped. Throws Interrupted; `state` is then at the last
 /// accepted part.
 std::optional<StepReport> advance(const Scene& scene, const Settings& settings, double end, State& state,

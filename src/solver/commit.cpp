@@ -33,7 +33,8 @@ void count_idle(const std::vector<Contact>& contacts, const std::vector<EolCoord
 
 }  // namespace
 
-void commit(const Scene& scene, double end, Workspace& work, State& state, StepReport& report)
+void commit(const Scene& scene, const PlannedStep& planned, double end, Workspace& work, State& state,
+            StepReport& report)
 {
     if (report.status != StepStatus::Done) return;
     const std::vector<double> multiplier = contact_multipliers(work.contacts, work.solution);
@@ -61,11 +62,13 @@ void commit(const Scene& scene, double end, Workspace& work, State& state, StepR
     state.material_velocity.swap(work.proposal.material_velocity);
     state.previous_dt = report.rewound > 0 ? 0.0 : end - state.time;  // a rewound path is no history
     const double begin = std::exchange(state.time, end);
-    ++state.step;
     follow_features(scene.obstacles, state);
     grow_gathering(scene, work.mesh.stars, report.dt, state);
     note_refused_edges(work.mesh.misfits, work.mesh.stars, state);
-    follow_wanted_lengths(scene, work.mesh.stars, report.dt, state);
+    if (planned.ends_at(end)) {
+        ++state.step;
+        follow_wanted_lengths(scene, work.mesh.stars, planned.length(), state);
+    }
     work.energies.known_at.world.clear();
     if (report.rewound == 0) {
         work.energies.known = work.energies.proposed;

@@ -60,10 +60,10 @@ bool has_turned(const Workspace& work, const State& state)
     });
 }
 
-/// One step in seven stages. `state.active`, the contacts that pressed at the end of the last step, tells
-/// which features press and is the first guess of the active set.
-StepReport make_step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
-                     Attempt attempt)
+/// One part of a step in seven stages. `state.active`, the contacts that pressed at the end of the last part,
+/// tells which features press and is the first guess of the active set.
+StepReport make_stages(const Scene& scene, const Settings& settings, const PlannedStep& planned, double end,
+                       State& state, Workspace& work, Attempt attempt)
 {
     StepReport report;
     report.dt = end - state.time;
@@ -74,7 +74,7 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
     }
 
     // 1. The mesh, with EOL vertices on the features that press; new elements where the mesh has changed.
-    const StepMesh mesh = choose_step_mesh(scene, end, work.retry.flow(), state, work.mesh, report);
+    const StepMesh mesh = choose_step_mesh(scene, planned, end, work.retry.flow(), state, work.mesh, report);
     if (mesh.is_changed) work.energies.known_at.world.clear();
     State& start = mesh.start;
     watch.lap();
@@ -106,7 +106,7 @@ StepReport make_step(const Scene& scene, const Settings& settings, double end, S
         {work.overrun, find_overconstrained_vertices(start, work, report), has_turned(work, start)});
 
     // 7. The proposal becomes the state. A failed step leaves the state as it was.
-    commit(scene, end, work, start, report);
+    commit(scene, planned, end, work, start, report);
     if (report.status == StepStatus::Done && &start != &state) std::swap(state, start);
     report.seconds.advance += watch.lap();
     return report;
@@ -143,17 +143,23 @@ void restart(State& state)
     state.previous_dt = 0.0;
 }
 
+StepReport make_part(const Scene& scene, const Settings& settings, const PlannedStep& planned, double end,
+                     State& state, Workspace& work, Attempt attempt)
+{
+    // At time 0 no earlier part has found which features press. A trial finds them; its state is discarded.
+    const bool is_first = state.step == 0 && planned.begins_at(state.time);
+    if (scene.eol && is_first && state.active.empty()) {
+        State trial = state;
+        make_stages(scene, settings, planned, end, trial, work, attempt);
+        state.active = std::move(trial.active);
+    }
+    return make_stages(scene, settings, planned, end, state, work, attempt);
+}
+
 StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
                 Attempt attempt)
 {
-    // At time 0 no earlier step has found which features press. A trial step finds them; its state is
-    // discarded.
-    if (scene.eol && state.step == 0 && state.active.empty()) {
-        State trial = state;
-        make_step(scene, settings, end, trial, work, attempt);
-        state.active = std::move(trial.active);
-    }
-    return make_step(scene, settings, end, state, work, attempt);
+    return make_part(scene, settings, {state.time, end}, end, state, work, attempt);
 }
 
 }  // namespace arris

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "physics/energies.h"
+#include "solver/model/planned_step.h"
 #include "solver/model/scene.h"
 #include "solver/model/settings.h"
 #include "solver/model/state.h"
@@ -14,9 +15,13 @@ namespace arris {
 /// their pins.
 State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity);
 
-/// Advances `state` to `end` (s, after its time). Leaves the state unchanged unless the report's status is
-/// Done. (At time 0, `state.active` may be set even so.) Call `restart` first where the input jumps at the
-/// step's start. Throws Interrupted.
+/// Makes the part of a planned step from the state's time to `end` (s, after that time). Leaves the state
+/// unchanged unless the report's status is Done. (At time 0, `state.active` may be set even so.) Call
+/// `restart` first where the input jumps at the part's start. Throws Interrupted.
+StepReport make_part(const Scene& scene, const Settings& settings, const PlannedStep& planned, double end,
+                     State& state, Workspace& work, Attempt attempt);
+
+/// Makes a planned step from the state's time to `end` (s) in one part.
 StepReport step(const Scene& scene, const Settings& settings, double end, State& state, Workspace& work,
                 Attempt attempt = Attempt::Ordinary);
 

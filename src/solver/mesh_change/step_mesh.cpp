@@ -88,8 +88,8 @@ struct TriedMesh {
 /// order and the measurements; strain_allowance.h has the limits.
 class MeshTries {
   public:
-    MeshTries(const Scene& scene, double dt, const State& state, const MeshCache& cache,
-              const FailedFlow& failed, Stopwatch& watch, PhaseSeconds& seconds)
+    MeshTries(const Scene& scene, const PlannedStep& planned, double dt, const State& state,
+              const MeshCache& cache, const FailedFlow& failed, Stopwatch& watch, PhaseSeconds& seconds)
         : scene_(scene),
           dt_(dt),
           state_(state),
@@ -99,6 +99,7 @@ class MeshTries {
           watch_(watch),
           seconds_(seconds)
     {
+        if (!planned.begins_at(state.time)) changes_.misfits.clear();
         misfits_ = changes_.misfits;
         if (!failed.remeshes) changes_.misfits.clear();
     }
@@ -284,8 +285,8 @@ class MeshTries {
 
 }  // namespace
 
-StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& failed, State& state,
-                          MeshCache& cache, StepReport& report)
+StepMesh choose_step_mesh(const Scene& scene, const PlannedStep& planned, double end,
+                          const FailedFlow& failed, State& state, MeshCache& cache, StepReport& report)
 {
     Stopwatch watch;
     prepare_stars(state, cache);
@@ -293,7 +294,7 @@ StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& fail
     TriedMesh best;
     cache.misfits.clear();
     if (changes_mesh(scene)) {
-        MeshTries tries(scene, end - state.time, state, cache, failed, watch, report.seconds);
+        MeshTries tries(scene, planned, end - state.time, state, cache, failed, watch, report.seconds);
         cache.misfits = tries.misfits();
         best = tries.find_best();
     }

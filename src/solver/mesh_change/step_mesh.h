@@ -4,6 +4,7 @@
 
 #include "solver/mesh_change/mesh_cache.h"
 #include "solver/model/failed_flow.h"
+#include "solver/model/planned_step.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
 #include "solver/model/step_report.h"
@@ -16,12 +17,13 @@ struct StepMesh {
     bool is_changed;
 };
 
-/// Chooses the mesh of the step to `end` (s): `state` as it is, or `cache.conformed`, the state's cloth on a
-/// mesh with EOL vertices where features press. Where the mesh stays and a vertex can no longer have material
-/// coordinates, `cache.conformed` is the state with that flow stopped. `failed` holds the failures of earlier
-/// attempts at the step. On return, `cache` belongs to the mesh chosen.
-StepMesh choose_step_mesh(const Scene& scene, double end, const FailedFlow& failed, State& state,
-                          MeshCache& cache, StepReport& report);
+/// Chooses the mesh of the part of a step to `end` (s): `state` as it is, or `cache.conformed`, the state's
+/// cloth on a mesh with EOL vertices where features press. Where the mesh stays and a vertex can no longer
+/// have material coordinates, `cache.conformed` is the state with that flow stopped. Only the first part of
+/// `planned` may remesh. `failed` holds the failures of earlier attempts at the step. On return, `cache`
+/// belongs to the mesh chosen.
+StepMesh choose_step_mesh(const Scene& scene, const PlannedStep& planned, double end,
+                          const FailedFlow& failed, State& state, MeshCache& cache, StepReport& report);
 
 /// Principal stretches of the state's faces. `cache` must belong to the state's mesh. Computed once for the
 /// state, by whoever asks first.

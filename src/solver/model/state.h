@@ -73,8 +73,8 @@ struct RefusedEdge {
 
 /// Exactly the data that a resumed run needs, and nothing that could be computed from them.
 struct State {
-    double time = 0.0;  ///< s
-    std::int64_t step = 0;
+    double time = 0.0;      ///< s
+    std::int64_t step = 0;  ///< planned steps made
     ClothMesh mesh;
     std::vector<std::uint32_t> ids;  ///< persistent, one a vertex, ascending
     std::uint32_t next_id = 0;

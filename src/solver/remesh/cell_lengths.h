@@ -7,7 +7,7 @@
 
 namespace arris {
 
-/// Steps from one measurement to the next, and from one new mesh to the next: each takes half a
+/// Planned steps from one measurement to the next, and from one new mesh to the next: each takes half a
 /// factorisation.
 inline constexpr int kRemeshPeriod = 4;
 
@@ -19,9 +19,9 @@ void measure_first_mesh(const ClothMesh& first, Remeshing& remesh);
 void start_cell_lengths(const Scene& scene, State& state);
 
 /// Lets the state's cell lengths follow those that its shape and motion ask for, after each kRemeshPeriod-th
-/// step. `dt`: of a step, s. Cells become finer at most
-/// twofold in kRefineTime, so that the cloth takes a new shape before it is measured on the finer mesh; and
-/// coarser more slowly, so that no cell is split and merged in turn.
+/// planned step. `dt`: of a planned step, s. Cells become finer at most twofold in kRefineTime, so that the
+/// cloth takes a new shape before it is measured on the finer mesh; and coarser more slowly, so that no cell
+/// is split and merged in turn.
 void follow_wanted_lengths(const Scene& scene, const ClothStars& stars, double dt, State& state);
 
 }  // namespace arris

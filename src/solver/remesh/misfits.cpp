@@ -85,7 +85,7 @@ void note_refused_edges(const std::vector<std::array<VertexId, 2>>& misfits, con
     const auto steps_after = [](int refusals) { return kRemeshPeriod << std::min(refusals, kMostDoublings); };
     // An edge is forgotten with the edge itself, or once it has not been tried for as long as it has waited.
     std::erase_if(state.refused_edges, [&](const RefusedEdge& edge) {
-        return state.step > edge.until + steps_after(edge.refusals) ||
+        return state.step >= edge.until + steps_after(edge.refusals) ||
                !has_edge(stars, state, edge.vertex_ids);
     });
     for (const std::array<VertexId, 2>& edge : misfits) {
@@ -94,7 +94,7 @@ void note_refused_edges(const std::vector<std::array<VertexId, 2>>& misfits, con
         if (at == state.refused_edges.end() || at->vertex_ids != edge)
             at = state.refused_edges.insert(at, RefusedEdge{edge});
         at->refusals = std::min(at->refusals + 1, kMostDoublings);
-        at->until = state.step - 1 + steps_after(at->refusals);
+        at->until = state.step + steps_after(at->refusals);
     }
 }
 

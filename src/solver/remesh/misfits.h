@@ -19,9 +19,10 @@ namespace arris {
 std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const State& state,
                                                   const MeshTopology& topology);
 
-/// Updates `State::refused_edges` at the end of a step that began with these misfits. An edge that
-/// is still there was refused. After its n-th refusal it is tried again 2^n times kRemeshPeriod steps later,
-/// n at most 5: a guard often refuses until the cloth has moved. `stars` belong to the state.
+/// Updates `State::refused_edges` at the end of a part that began with these misfits, before `state.step`
+/// counts it. An edge that is still there was refused. After its n-th refusal it is tried again 2^n times
+/// kRemeshPeriod steps later, n at most 5: a guard often refuses until the cloth has moved. `stars` belong to
+/// the state.
 void note_refused_edges(const std::vector<std::array<VertexId, 2>>& misfits, const ClothStars& stars,
                         State& state);
 

@@ -66,7 +66,8 @@ TEST(StepMesh, ClearsATracesWayByForceWhereThatStrainsLittle)
         const std::size_t eol = cloth.state.eol.size();
         ASSERT_GT(eol, 6u);
         const State& start =
-            choose_step_mesh(cloth.scene, cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
+            choose_step_mesh(cloth.scene, {cloth.state.time, cloth.state.time + kStep},
+                             cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
                 .start;
         const auto blocked =
             std::count_if(cache.refused.begin(), cache.refused.end(),
@@ -143,9 +144,9 @@ TEST(StepMesh, IsMadeWithCareOnlyWhereItStrainsTheCloth)
     MeshCache cache;
     update_mesh_cache(cloth.scene, cloth.state, cache);
     StepReport report;
-    const State& start =
-        choose_step_mesh(cloth.scene, cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
-            .start;
+    const State& start = choose_step_mesh(cloth.scene, {cloth.state.time, cloth.state.time + kStep},
+                                          cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
+                             .start;
     EXPECT_LT(start.eol.size(), eol) << "what strains the cloth is not done";
     EXPECT_EQ(count_low(start.eol, start.ids, start.mesh.material), low);
 }
@@ -178,9 +179,9 @@ TEST(StepMesh, AMeshThatStaysStrainedIsCarriedOverWhole)
     MeshCache cache;
     update_mesh_cache(cloth.scene, cloth.state, cache);
     StepReport report;
-    const State& start =
-        choose_step_mesh(cloth.scene, cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
-            .start;
+    const State& start = choose_step_mesh(cloth.scene, {cloth.state.time, cloth.state.time + kStep},
+                                          cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
+                             .start;
     ASSERT_NE(start.mesh.faces, faces) << "the mesh of the test before";
     const Vec3 change = testing::momentum_of(cloth.scene, start) - before;
     EXPECT_LT(change.norm(), 1e-12 * before.norm());
@@ -226,7 +227,9 @@ TEST(StepMesh, StopsTheFlowThroughAVertexThatLosesItsCoordinatesOnAMeshThatStays
     MeshCache cache;
     StepReport report;
     const auto choose = [&]() -> const State& {
-        return choose_step_mesh(cloth.scene, state.time + kStep, FailedFlow(), state, cache, report).start;
+        return choose_step_mesh(cloth.scene, {state.time, state.time + kStep}, state.time + kStep,
+                                FailedFlow(), state, cache, report)
+            .start;
     };
     EXPECT_EQ(&choose(), &state) << "every vertex has coordinates";
 

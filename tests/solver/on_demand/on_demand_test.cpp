@@ -247,7 +247,8 @@ const Stage kStages[] = {
     {"choose_step_mesh", "eol",
      [](SheetRun& r) {
          StepReport report;
-         choose_step_mesh(r.scene, r.state.time + kStep, {}, r.state, r.work.mesh, report);
+         choose_step_mesh(r.scene, {r.state.time, r.state.time + kStep}, r.state.time + kStep, {}, r.state,
+                          r.work.mesh, report);
      }},
     {"find_momentum_flux", "eol",
      [](SheetRun& r) { find_momentum_flux(0.15, r.work.mesh.elements, r.work.linearization); }},

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "geometry/cloth_input/cloth_grid.h"
+#include "solver/advance.h"
 #include "solver/model/settings.h"
 #include "solver/remesh/cell_lengths.h"
 #include "solver/step.h"
@@ -29,9 +30,8 @@ struct Sheet {
     /// Ends a step that began with `misfits` and changed nothing.
     void refuse(const std::vector<std::array<VertexId, 2>>& misfits)
     {
-        ++state.step;
         note_refused_edges(misfits, make_stars(state.mesh.vertex_count(), state.mesh.faces), state);
-        state.step += kRemeshPeriod - 1;
+        state.step += kRemeshPeriod;
     }
 };
 
@@ -124,6 +124,52 @@ int advance(Sheet& sheet, int steps, double dt)
         operations += report.remeshed;
     }
     return operations;
+}
+
+/// A flat sheet with far more edges to merge than one step tries.
+Sheet make_fine_sheet()
+{
+    return make_sheet(24, 0.3f, flat);
+}
+
+TEST(Remeshing, IsDoneByTheFirstPartOfAStepAlone)
+{
+    constexpr int kParts = 2 * kRemeshPeriod + 1;
+    constexpr double kStep = 0.005;
+    Sheet sheet = make_fine_sheet();
+    Workspace work;
+    const PlannedStep planned = {0.0, kStep};
+    for (int k = 1; k <= kParts; ++k) {
+        const double end = k < kParts ? kStep * k / kParts : kStep;
+        EXPECT_EQ(sheet.state.step, 0) << k;
+        const StepReport report =
+            make_part(sheet.scene, Settings{}, planned, end, sheet.state, work, Attempt::Ordinary);
+        ASSERT_EQ(report.status, StepStatus::Done);
+        EXPECT_EQ(report.remeshed > 0, k == 1) << k;
+        EXPECT_FALSE(sheet.misfits().empty()) << "more remain to be merged";
+    }
+    EXPECT_EQ(sheet.state.step, 1);
+}
+
+TEST(Remeshing, GoesByPlannedStepsHoweverManyPartsTheyAreMadeIn)
+{
+    constexpr double kStep = 0.005;
+    Sheet sheet = make_fine_sheet();
+    Workspace work;
+    for (int k = 0; k <= 2 * kRemeshPeriod; ++k) {
+        restart(sheet.state);  // each step is made in two parts
+        std::vector<int> remeshed;
+        const auto failed = arris::advance(sheet.scene, Settings{}, kStep * (k + 1), sheet.state, work,
+                                           [&](const StepReport& report, bool) {
+                                               remeshed.push_back(report.remeshed);
+                                               return true;
+                                           });
+        ASSERT_FALSE(failed);
+        ASSERT_EQ(remeshed.size(), 2u);
+        EXPECT_EQ(remeshed[0] > 0, k % kRemeshPeriod == 0) << k;
+        EXPECT_EQ(remeshed[1], 0) << k;
+        EXPECT_EQ(sheet.state.step, k + 1);
+    }
 }
 
 // A sheet folded in half, in two layers that rest on each other. Its lower half is held, so that none of the
