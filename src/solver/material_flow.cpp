@@ -11,43 +11,55 @@
 
 namespace arris {
 
-bool has_material_left(const std::vector<Vec2>& material, Workspace& work)
+std::vector<Overrun> find_overrun(const std::vector<Vec2>& material, const std::vector<EolCoordinates>& eol,
+                                  const MeshCache& mesh, double dt)
 {
     constexpr double kLeast = 1.0 - kMostFaceTaken;
-    work.overrun.clear();
-    for (const EolCoordinates& eol : work.eol)
-        for (const int f : work.mesh.stars.faces[eol.vertex]) {
-            const auto& [a, b, c] = work.mesh.faces_of_elements[f];
+    std::vector<Overrun> overrun;
+    for (const EolCoordinates& at : eol)
+        for (const int f : mesh.stars.faces[at.vertex]) {
+            const auto& [a, b, c] = mesh.faces_of_elements[f];
             const double left = 0.5 * twice_area(material[a], material[b], material[c]);
-            if (left >= kLeast * work.mesh.elements.faces[f].area) continue;
-            const Vec2 way = material[eol.vertex] - work.mesh.material_of_elements[eol.vertex];
-            work.overrun.push_back({eol.vertex, way / (work.linearization.time - work.linearization.begin)});
+            if (left >= kLeast * mesh.elements.faces[f].area) continue;
+            const Vec2 way = material[at.vertex] - mesh.material_of_elements[at.vertex];
+            overrun.push_back({at.vertex, way / dt});
         }
-    return work.overrun.empty();
+    return overrun;
 }
 
 namespace {
 
+std::vector<Overrun> find_overrun(const std::vector<Vec2>& material, const Workspace& work)
+{
+    return find_overrun(material, work.eol, work.mesh, work.linearization.time - work.linearization.begin);
+}
+
+/// Vertices that were taken back, and those of faces that even so have too little material.
+struct Shortened {
+    std::set<int> vertices = {};
+    std::vector<Overrun> overrun;
+};
+
 /// Takes vertices that would leave faces too little material back towards their start in the step: in the
-/// world, in the material and in velocity. Returns these vertices.
-std::set<int> shorten(const State& state, Workspace& work, MovingCloth& cloth)
+/// world, in the material and in velocity.
+Shortened shorten(const State& state, const Workspace& work, MovingCloth& cloth)
 {
     constexpr int kHalvings = 4;  // afterwards they stay at the start, where material is always left
     const auto go_back = [](double share, const auto& from, auto& to) { to = from + share * (to - from); };
-    std::set<int> shortened;
-    for (int round = 0; round <= kHalvings && !has_material_left(cloth.material, work); ++round) {
+    Shortened shortened = {.overrun = find_overrun(cloth.material, work)};
+    for (int round = 0; round <= kHalvings && !shortened.overrun.empty(); ++round) {
         const double share = round < kHalvings ? 0.5 : 0.0;
         std::set<int> vertices;  // each once: `overrun` has a vertex for every face
-        for (const Overrun& overrun : work.overrun) vertices.insert(overrun.vertex);
+        for (const Overrun& overrun : shortened.overrun) vertices.insert(overrun.vertex);
         for (const int v : vertices) {
             go_back(share, state.mesh.world[v], cloth.world[v]);
             go_back(share, state.mesh.material[v], cloth.material[v]);
             go_back(share, state.velocity[v], cloth.velocity.world[v]);
             go_back(share, state.material_velocity[v], cloth.velocity.material[v]);
         }
-        shortened.merge(vertices);
+        shortened.vertices.merge(vertices);
+        shortened.overrun = find_overrun(cloth.material, work);
     }
-    if (!shortened.empty()) has_material_left(cloth.material, work);
     return shortened;
 }
 
@@ -70,27 +82,28 @@ int find_flow_parts(const Scene& scene, const State& state, double dt)
     return parts;
 }
 
-bool linearise_flow(const State& state, Workspace& work)
+std::vector<Overrun> linearise_flow(const State& state, Workspace& work)
 {
     const Prediction& prediction = work.prediction;
     MovingCloth end = find_end(prediction, work.expansion);
-    for (const int v : shorten(state, work, end)) {
+    const Shortened shortened = shorten(state, work, end);
+    for (const int v : shortened.vertices) {
         work.expansion.world[v] = (end.world[v] - prediction.position[v]) / prediction.gamma;
         work.expansion.material[v] = (end.material[v] - prediction.material[v]) / prediction.gamma;
     }
-    if (!work.overrun.empty()) return false;
+    if (!shortened.overrun.empty()) return shortened.overrun;
     MovingCloth past = extrapolate(state, prediction);
-    shorten(state, work, past);
+    std::vector<Overrun> overrun = shorten(state, work, past).overrun;
     MaterialFlow& flow = *work.linearization.flow;
     flow.position = std::move(end.material);
     flow.v_predicted = prediction.material_velocity;
     flow.v_expansion = work.expansion.material;
     flow.v_last = state.material_velocity;
     flow.extrapolated = {past.world, past.velocity.world, past.material, past.velocity.material};
-    return work.overrun.empty();
+    return overrun;
 }
 
-bool propose_flow(Workspace& work)
+std::vector<Overrun> propose_flow(Workspace& work)
 {
     work.proposal.material = work.prediction.material;
     work.proposal.material_velocity.assign(work.prediction.material.size(), Vec2::Zero());
@@ -100,7 +113,7 @@ bool propose_flow(Workspace& work)
         flow = eol.material_basis * work.solution.velocity.segment<3>(3 * v);
         work.proposal.material[v] += work.prediction.gamma * flow;
     }
-    return has_material_left(work.proposal.material, work);
+    return find_overrun(work.proposal.material, work);
 }
 
 }  // namespace arris

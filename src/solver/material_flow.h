@@ -15,19 +15,21 @@ namespace arris {
 /// than cells usually have to give. Depends only on the state.
 int find_flow_parts(const Scene& scene, const State& state, double dt);
 
-/// Whether every face at an EOL vertex keeps its orientation, and enough of its material at the step's start
-/// for a meaningful strain. `work.overrun` lists the vertices of other faces. Whether one linearisation can
-/// follow the flow is judged by the energy balance instead.
-bool has_material_left(const std::vector<Vec2>& material, Workspace& work);
+/// EOL vertices of faces that would turn over in `dt` (s), or keep too little of their material at the step's
+/// start for a meaningful strain: one entry a face. `material`: of all vertices at the step's end, m. `mesh`
+/// belongs to the step's start. Whether one linearisation can follow the flow is judged by the energy balance
+/// instead.
+std::vector<Overrun> find_overrun(const std::vector<Vec2>& material, const std::vector<EolCoordinates>& eol,
+                                  const MeshCache& mesh, double dt);
 
 /// Fills the flow of `work.linearization`, which must exist, at q^ (from `work.expansion`) and at the
 /// extrapolated state. The step ends at neither. So vertices that would leave too little material there go
-/// back on their way, both in the world and in the material, also in `work.expansion`. False where even this
-/// leaves too little, as where a value is not finite.
-bool linearise_flow(const State& state, Workspace& work);
+/// back on their way, both in the world and in the material, also in `work.expansion`. Returns the
+/// vertices for which even this leaves too little, as where a value is not finite.
+std::vector<Overrun> linearise_flow(const State& state, Workspace& work);
 
-/// X' = X~ + gamma V' of the solved velocity. False where a face has too little material; `work.overrun`
-/// lists the vertices.
-bool propose_flow(Workspace& work);
+/// Proposes X' = X~ + gamma V' of the solved velocity. Returns the vertices of faces with too little
+/// material.
+std::vector<Overrun> propose_flow(Workspace& work);
 
 }  // namespace arris

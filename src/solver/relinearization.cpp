@@ -88,18 +88,17 @@ bool restore_least_rise(Workspace& work, StepReport& report)
     return true;
 }
 
-bool linearise_nearer(Workspace& work, StepReport& report)
+bool linearise_nearer(double dt, Workspace& work, StepReport& report)
 {
     constexpr double kShortest = 0.1;
     if (report.relinearisations >= kMostRelinearisations) return false;
     ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
-    const std::vector<Overrun> overrun = work.overrun;
-    for (double share = 1.0; !has_material_left(find_end(work.prediction, next).material, work);) {
+    const auto has_overrun = [&] {
+        return !find_overrun(find_end(work.prediction, next).material, work.eol, work.mesh, dt).empty();
+    };
+    for (double share = 1.0; has_overrun();) {
         share *= 0.5;
-        if (!(share > kShortest)) {
-            work.overrun = overrun;
-            return false;
-        }
+        if (!(share > kShortest)) return false;
         next = blend(work.expansion, next, 0.5);
     }
     expand_at(std::move(next), work, report);

@@ -25,7 +25,8 @@ bool restore_least_rise(Workspace& work, StepReport& report);
 /// For a solved velocity (in `work.proposal`) that would take more material than faces can give. Relinearises
 /// as far on the way to that velocity as material allows, and returns true: solve again. False where less
 /// than a tenth of the way is possible. Such a flow is often no real one. Where a feature stops cloth that q^
-/// took through it, the cloth at q^ is stretched over the feature and seems to pull material along.
-bool linearise_nearer(Workspace& work, StepReport& report);
+/// took through it, the cloth at q^ is stretched over the feature and seems to pull material along. `dt`: of
+/// the part of the step, s.
+bool linearise_nearer(double dt, Workspace& work, StepReport& report);
 
 }  // namespace arris

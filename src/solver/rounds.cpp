@@ -38,7 +38,8 @@ struct Rounds {
     Attempt attempt;
     Workspace& work;
     StepReport& report;
-    Violations violations = {};  ///< of the last proposal
+    Violations violations = {};         ///< of the last proposal
+    std::vector<Overrun> overrun = {};  ///< of the last linearisation or proposal
 
     double dt() const { return end - state.time; }
     bool may_solve_again() const { return report.solves < kMostSolves; }
@@ -47,7 +48,7 @@ struct Rounds {
 /// Stage 4: gives each vertex coordinates in which pins are known and contacts are bounds or rows. Assembles
 /// A and b in these coordinates. False where a step would take more material from a face than the mesh
 /// allows.
-bool assemble(const Rounds& round)
+bool assemble(Rounds& round)
 {
     const State& state = round.state;
     Workspace& work = round.work;
@@ -63,7 +64,8 @@ bool assemble(const Rounds& round)
     at.damping = round.scene.material.damping;
     at.v_predicted = prediction.velocity;
     at.v_last = state.velocity;
-    if (at.flow && !linearise_flow(state, work)) return false;
+    round.overrun = at.flow ? linearise_flow(state, work) : std::vector<Overrun>();
+    if (!round.overrun.empty()) return false;
     at.v_expansion = work.expansion.world;
     at.position = find_end(prediction, work.expansion).world;
     work.mesh.system.assemble(state.mesh, work.mesh.elements, work.mesh.terms, at);
@@ -173,7 +175,8 @@ RoundEnd run_round(Next from, Rounds& round)
     if (report.friction_residual > kOffLaw && round.attempt == Attempt::Ordinary) return RoundEnd::Unsolved;
     if (round.may_solve_again() && yield_folds(work)) return RoundEnd::FoldYields;
     watch.lap();
-    if (!propose_flow(work)) return RoundEnd::Overrun;
+    round.overrun = propose_flow(work);
+    if (!round.overrun.empty()) return RoundEnd::Overrun;
     const bool is_finite = propose_and_check(round);
     report.seconds.check += watch.lap();
     if (!is_finite) return RoundEnd::NotFinite;
@@ -216,7 +219,8 @@ Next give_up(Rounds& round)
 Next yield_or_give_up(Rounds& round)
 {
     if (round.may_solve_again() && yield_infeasible(round.work)) return Next::Assemble;
-    if (!propose_flow(round.work)) return fail<StepStatus::Overrun>(round);
+    round.overrun = propose_flow(round.work);
+    if (!round.overrun.empty()) return fail<StepStatus::Overrun>(round);
     return propose_and_check(round) ? give_up(round) : Next::Fail;
 }
 
@@ -238,7 +242,7 @@ Next linearise_nearer_or_fail(Rounds& round)
     round.report.status = StepStatus::Overrun;
     if (!round.may_solve_again()) return Next::Fail;
     propose(0.0, round.work);
-    return linearise_nearer(round.work, round.report) ? Next::Assemble : Next::Fail;
+    return linearise_nearer(round.dt(), round.work, round.report) ? Next::Assemble : Next::Fail;
 }
 
 Next balance_energy(Rounds& round)
@@ -302,8 +306,8 @@ constexpr Rule kRules[] = {
 
 }  // namespace
 
-void run_rounds(const Scene& scene, const Settings& settings, double end, const State& state, Attempt attempt,
-                Workspace& work, StepReport& report)
+std::vector<Overrun> run_rounds(const Scene& scene, const Settings& settings, double end, const State& state,
+                                Attempt attempt, Workspace& work, StepReport& report)
 {
     Rounds round = {scene, settings, end, state, attempt, work, report};
     for (Next next = Next::Assemble; next == Next::Assemble || next == Next::Resume;) {
@@ -317,6 +321,7 @@ void run_rounds(const Scene& scene, const Settings& settings, double end, const 
         if (next == Next::Fail && restore_least_rise(work, report)) next = Next::Assemble;
         if (next == Next::Accept) report.status = StepStatus::Done;
     }
+    return round.overrun;
 }
 
 std::vector<RoundRule> list_round_rules()

@@ -16,9 +16,10 @@
 namespace arris {
 
 /// Runs rounds from `state` to the time `end` (s) until one is accepted or the attempt has failed:
-/// `report.status`. The accepted proposal is in `work`.
-void run_rounds(const Scene& scene, const Settings& settings, double end, const State& state, Attempt attempt,
-                Workspace& work, StepReport& report);
+/// `report.status`. The accepted proposal is in `work`. Returns the EOL vertices for which the attempt has
+/// failed with status Overrun.
+std::vector<Overrun> run_rounds(const Scene& scene, const Settings& settings, double end, const State& state,
+                                Attempt attempt, Workspace& work, StepReport& report);
 
 /// A row of the table of rounds, in words.
 struct RoundRule {

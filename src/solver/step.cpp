@@ -97,13 +97,13 @@ StepReport make_stages(const Scene& scene, const Settings& settings, const Plann
 
     // 4 - 6. Solve, propose and check, in bounded rounds: violations become rows. A mesh with EOL vertices
     // takes no last resorts, as RetryPolicy first tries a mesh without any.
-    run_rounds(scene, settings, end, start, start.eol.empty() ? attempt : Attempt::Ordinary, work, report);
+    const std::vector<Overrun> overrun = run_rounds(
+        scene, settings, end, start, start.eol.empty() ? attempt : Attempt::Ordinary, work, report);
     watch.lap();
 
     // Record why the attempt failed, for the next one.
-    work.retry.note(
-        report, attempt, state, start,
-        {work.overrun, find_overconstrained_vertices(start, work, report), has_turned(work, start)});
+    work.retry.note(report, attempt, state, start,
+                    {overrun, find_overconstrained_vertices(start, work, report), has_turned(work, start)});
 
     // 7. The proposal becomes the state. A failed step leaves the state as it was.
     commit(scene, planned, end, work, start, report);

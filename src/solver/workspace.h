@@ -43,8 +43,6 @@ struct LeastRise {
 struct Workspace {
     MeshCache mesh;
 
-    // retries of the step
-    std::vector<Overrun> overrun;
     RetryPolicy retry;  ///< failed attempts at this step
 
     // move
