@@ -2,6 +2,7 @@
 #include "app/run/run_ending.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,12 @@
 namespace arris {
 namespace {
 
+std::string name_vertex(std::int64_t id, const Vec3& x, const Vec2& X)
+{
+    return fmt::format("vertex {}, at [{:.6g}, {:.6g}, {:.6g}] (m, material [{:.6g}, {:.6g}]),", id, x.x(),
+                       x.y(), x.z(), X.x(), X.y());
+}
+
 /// Describes a vertex by id and place. A vertex that the failed step inserted has only its id.
 std::string name_vertex(const State& state, std::int64_t id)
 {
@@ -18,10 +25,38 @@ std::string name_vertex(const State& state, std::int64_t id)
     const auto at = std::lower_bound(state.ids.begin(), state.ids.end(), id);
     if (at == state.ids.end() || *at != id) return fmt::format("vertex {}", id);
     const auto v = static_cast<std::size_t>(at - state.ids.begin());
-    const Vec3& x = state.mesh.world[v];
-    const Vec2& X = state.mesh.material[v];
-    return fmt::format("vertex {}, at [{:.6g}, {:.6g}, {:.6g}] (m, material [{:.6g}, {:.6g}]),", id, x.x(),
-                       x.y(), x.z(), X.x(), X.y());
+    return name_vertex(id, state.mesh.world[v], state.mesh.material[v]);
+}
+
+std::string name_obstacle(const Scene& scene, int obstacle)
+{
+    return scene.obstacles[static_cast<std::size_t>(obstacle)].name();
+}
+
+/// "slab", "slab and lid", "slab and itself"; `unknown` where nothing is named.
+std::string name_met(const FailurePlace& place, const Scene& scene, const char* unknown)
+{
+    std::vector<std::string> names;
+    for (const int obstacle : place.obstacles)
+        if (obstacle >= 0) names.push_back(name_obstacle(scene, obstacle));
+    if (place.is_with_itself) names.push_back("itself");
+    return names.empty() ? unknown : fmt::format("{}", fmt::join(names, " and "));
+}
+
+/// " at vertex 7, at [..] (m, material [..]),", or nothing where no vertex is known.
+std::string name_place(const FailurePlace& place)
+{
+    return place.vertex < 0 ? "" : " at " + name_vertex(place.vertex, place.world, place.material);
+}
+
+/// Where the velocity solve fails: the vertex that presses hardest.
+std::string name_press(const FailurePlace& place, const Scene& scene)
+{
+    if (place.vertex < 0) return "";
+    const std::string met = name_met(place, scene, "");
+    return fmt::format("; {} {}{}", met.empty() ? "the stiffest part is" : "the cloth presses hardest at",
+                       name_vertex(place.vertex, place.world, place.material),
+                       met.empty() ? "" : fmt::format(" on {}", met));
 }
 
 /// Says which pins and obstacle press two layers of the cloth into each other.
@@ -38,7 +73,7 @@ std::string explain_layers(const Infeasible& infeasible, const Scene& scene, con
         why = fmt::format(
             "{} presses another layer into it, and pin.{} holds it; change the motion of one of them, or "
             "release the pin earlier",
-            scene.obstacles[static_cast<std::size_t>(presser)].name(), infeasible.pin);
+            name_obstacle(scene, presser), infeasible.pin);
     else if (infeasible.pin >= 0)
         why = fmt::format("pin.{} presses it into another layer; change its motion, or release it earlier",
                           infeasible.pin);
@@ -51,9 +86,7 @@ std::string explain_infeasible(const Infeasible& infeasible, const Scene& scene,
                                const std::string& place)
 {
     if (infeasible.is_with_itself) return explain_layers(infeasible, scene, state, place);
-    const auto name = [&](int obstacle) {
-        return scene.obstacles[static_cast<std::size_t>(obstacle)].name();
-    };
+    const auto name = [&](int obstacle) { return name_obstacle(scene, obstacle); };
     const auto [first, second] = infeasible.obstacles;
     std::string where = "the obstacles",
                 why = "a pin drives the cloth into an obstacle, or two obstacles leave it no room";
@@ -82,8 +115,7 @@ std::string name_not_finite(const NotFinite& found, const Scene& scene, const St
     if (found.vertex >= 0) name += " of " + name_vertex(state, found.vertex);
     if (found.pin >= 0) name += fmt::format(" of pin.{}", found.pin);
     if (found.obstacle >= 0)
-        name += (found.vertex >= 0 ? " with " : " of ") +
-                scene.obstacles[static_cast<std::size_t>(found.obstacle)].name();
+        name += (found.vertex >= 0 ? " with " : " of ") + name_obstacle(scene, found.obstacle);
     return name;
 }
 
@@ -98,44 +130,45 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
                     fmt::format("{} is not finite {}, even with 64 times smaller steps",
                                 name_not_finite(report.not_finite, scene, state), place)};
         case StepStatus::Overrun:
-            return {RunStatus::NotConverged, fmt::format("material flows over a feature faster than the mesh "
-                                                         "can follow {}, even with 64 times smaller steps",
-                                                         place)};
+            return {RunStatus::NotConverged,
+                    fmt::format("material flows over {} faster than the mesh can follow{} {}, even with 64 "
+                                "times smaller steps",
+                                name_met(report.place, scene, "a feature"), name_place(report.place), place)};
         case StepStatus::Infeasible:
             return {RunStatus::Infeasible, explain_infeasible(report.infeasible, scene, state, place)};
         case StepStatus::Penetration:
-            return {RunStatus::Penetration,
-                    fmt::format("the cloth cannot be kept out of {} {}, even with 64 times smaller steps",
-                                scene.self_contact ? "an obstacle or itself" : "an obstacle", place)};
+            return {
+                RunStatus::Penetration,
+                fmt::format("the cloth cannot be kept out of {}{} {}, even with 64 times smaller steps",
+                            name_met(report.place, scene, "an obstacle"), name_place(report.place), place)};
         default:
             if (!std::isfinite(report.kkt_residual) && report.factorisations > 1)
                 return {RunStatus::NotConverged,
                         fmt::format(
                             "the velocity solve found no answer {}, within a bounded number of "
                             "factorisations, even with 64 times smaller steps: too many contacts depend on "
-                            "each other; use smaller cells or a simpler obstacle",
-                            place)};
+                            "each other; use smaller cells or a simpler obstacle{}",
+                            place, name_press(report.place, scene))};
             if (!std::isfinite(report.kkt_residual))
                 return {RunStatus::NotConverged,
                         fmt::format(
                             "the matrix of the velocity solve cannot be factorised {}, even with 64 times "
-                            "smaller steps: stiffness and mass differ by too many orders of magnitude",
-                            place)};
+                            "smaller steps: stiffness and mass differ by too many orders of magnitude{}",
+                            place, name_press(report.place, scene))};
             return {RunStatus::NotConverged,
                     fmt::format("the velocity solve reached a residual of {:.1e}, above the tolerance "
-                                "{:.1e}, {}, even with 64 times smaller steps",
-                                report.kkt_residual, tolerance, place)};
+                                "{:.1e}, {}, even with 64 times smaller steps{}",
+                                report.kkt_residual, tolerance, place, name_press(report.place, scene))};
     }
 }
 
 RunEnding explain_ending(const Audit& audited, const Scene& scene, const State& state)
 {
     const Vec3& place = audited.found.place;
-    return {
-        RunStatus::Penetration,
-        fmt::format("the cloth reaches {:.3g} m into {} at [{:.6g}, {:.6g}, {:.6g}], at t = {} s",
-                    audited.found.depth, scene.obstacles[static_cast<std::size_t>(audited.obstacle)].name(),
-                    place.x(), place.y(), place.z(), state.time)};
+    return {RunStatus::Penetration,
+            fmt::format("the cloth reaches {:.3g} m into {} at [{:.6g}, {:.6g}, {:.6g}], at t = {} s",
+                        audited.found.depth, name_obstacle(scene, audited.obstacle), place.x(), place.y(),
+                        place.z(), state.time)};
 }
 
 RunEnding explain_ending(const SelfCrossings& crossings, const State& state)

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "app/run/moving_causes.h"
 #include "app/scene/scene_estimate.h"
 #include "app/scene/start_strain.h"
 #include "geometry/cloth/material_box.h"
@@ -76,6 +77,11 @@ Cause greatest_load(const RunConfig& config)
 std::string describe_load(const Cause& load)
 {
     return fmt::format("{} alone strains it by {}: {}", load.what, percent(load.strain), load.remedy);
+}
+
+std::string describe_motion(const MovingCause& moving)
+{
+    return fmt::format("{}{}: {}", moving.what, moving.is_near ? " there" : "", moving.remedy);
 }
 
 // ---- the start
@@ -188,10 +194,16 @@ std::string explain_stretch(const RunConfig& config, const StrainPeak& peak)
         return fmt::format("{} are then {} farther apart than the material between them: move them less far",
                            pins.what, percent(pins.strain));
     const Cause load = greatest_load(config);
+    const double edge = mean_edge(config);
+    const Cause hung = weight_on_pins(config, peak, edge);
+    const MovingCause moving = find_moving_cause(config, peak, edge);
+    const bool is_moved = moving.strain > kCounts;
+    if (is_moved && moving.is_near && moving.strain > std::max(load.strain, hung.strain))
+        return describe_motion(moving);
     if (load.strain > kCounts) return describe_load(load);
-    const Cause hung = weight_on_pins(config, peak, mean_edge(config));
     if (hung.strain > kCounts)
         return fmt::format("{} by {} there: {}", hung.what, percent(hung.strain), hung.remedy);
+    if (is_moved) return describe_motion(moving);
     if (!(load.strain > 0.0)) return "no load or pin of the scene explains it";
     return fmt::format("no load or pin of the scene explains it, the greatest being {}: {}", load.what,
                        percent(load.strain));
@@ -213,8 +225,10 @@ std::string explain_compression(const RunConfig& config, const StrainPeak& peak)
             "{} are then {} farther apart than the material between them, and pulled cloth contracts across "
             "the pull: move them less far",
             pins.what, percent(pins.strain));
-    return fmt::format("a fold needs several edges of the mesh, whose mean edge is {:.2g} m",
-                       mean_edge(config));
+    const double edge = mean_edge(config);
+    const MovingCause moving = find_moving_cause(config, peak, edge);
+    if (moving.strain > kCounts && moving.is_near) return describe_motion(moving);
+    return fmt::format("a fold needs several edges of the mesh, whose mean edge is {:.2g} m", edge);
 }
 
 }  // namespace arris

@@ -14,9 +14,12 @@
 namespace arris {
 namespace {
 
-// A file in centimetres is 100 times too large or small, beside a cloth that may be 5 times smaller or
-// larger.
-constexpr double kSurprisingSize = 20.0;
+// A file in centimetres is 100 times too large, beside a cloth that may be 5 times smaller or larger.
+constexpr double kSurprisingRatio = 20.0;
+
+// Diagonals (m) of obstacles that no unit need explain: from a pin's head to a floor of 10 m x 10 m. A rod of
+// some millimetres beside cloth of some metres is as plausible as a table beside a napkin.
+constexpr double kSmallest = 1e-3, kLargest = 15.0;
 
 Box3 box_around(const std::vector<Vec3>& points)
 {
@@ -37,7 +40,8 @@ void check_units(const RunConfig& config, std::size_t i, double cloth, Warnings&
 {
     if (!config.as_run["obstacle"][i].contains("file")) return;
     const double size = config.scene.obstacles[i].shape().bounds().diagonal().norm();
-    if (size < kSurprisingSize * cloth && cloth < kSurprisingSize * size) return;
+    if (size >= kSmallest && size <= kLargest) return;
+    if (size < kSurprisingRatio * cloth && cloth < kSurprisingRatio * size) return;
     const std::string units = fmt::format("obstacle.{}.units", i);
     const bool has_units = warnings.is_written(units);
     warnings.note(has_units ? units : fmt::format("obstacle.{}.file", i),

@@ -7,6 +7,7 @@
 
 #include "solver/contact/constraints.h"
 #include "solver/energy_balance.h"
+#include "solver/failure_place.h"
 #include "solver/friction.h"
 #include "solver/infeasible.h"
 #include "solver/material_flow.h"
@@ -321,6 +322,7 @@ std::vector<Overrun> run_rounds(const Scene& scene, const Settings& settings, do
         if (next == Next::Fail && restore_least_rise(work, report)) next = Next::Assemble;
         if (next == Next::Accept) report.status = StepStatus::Done;
     }
+    name_failure(state, work, round.violations, round.overrun, report);
     return round.overrun;
 }
 

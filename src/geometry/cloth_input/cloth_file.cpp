@@ -16,6 +16,7 @@
 #include "geometry/cloth/sub_mesh.h"
 #include "geometry/cloth_input/chart_overlap.h"
 #include "geometry/cloth_input/cloth_obj.h"
+#include "geometry/cloth_input/face_faults.h"
 #include "geometry/cloth_input/flat_charts.h"
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
@@ -40,7 +41,8 @@ struct FileMesh {
     std::vector<FileVertex> vertices;
     std::vector<int> numbers;  // number, from 1, of each vertex's (first) `v` statement
     std::vector<Face> faces;
-    std::vector<int> lines;  // line of each face in the file
+    std::vector<Face> corners;  // number of each face's corners, likewise
+    std::vector<int> lines;     // line of each face in the file
     bool has_uv = false;
 };
 
@@ -61,9 +63,11 @@ class ClothReader {
         for (const ObjCorner& corner : statements_.corners) require_finite(corner);
         collect();
         warn_about_dropped();
-        require_single_uvs();
         place_in_world();
-        require_distinct_faces();
+        require_areas();
+        for (const std::string& wrong : {find_doubled_face(placed_), find_branching_edge(placed_)})
+            if (!wrong.empty()) refuse(wrong);
+        require_single_uvs();
         if (file_.has_uv) {
             take_uvs();
         } else {
@@ -107,8 +111,10 @@ class ClothReader {
             std::vector<int> vertices;
             for (int k = 0; k < count; ++k) vertices.push_back(weld(statements_.corners[first + k], index));
             const int line = statements_.corners[first].line;
+            const auto number = [&](int k) { return statements_.corners[first + k].vertex + 1; };
             for (const auto& [a, b, c] : cut(vertices, line)) {
                 file_.faces.push_back({vertices[a], vertices[b], vertices[c]});
+                file_.corners.push_back({number(a), number(b), number(c)});
                 file_.lines.push_back(line);
             }
             first += static_cast<std::size_t>(count);
@@ -254,30 +260,28 @@ class ClothReader {
         mesh_.faces = file_.faces;
         for (const FileVertex& vertex : file_.vertices)
             mesh_.world.push_back(to_z_up_ * (unit_ * vertex.position));
+        placed_ = {{}, {}, file_.faces, file_.corners, file_.lines};
+        std::map<decltype(FileVertex().place()), int> index;
+        std::vector<int> place;
+        for (std::size_t v = 0; v < file_.vertices.size(); ++v) {
+            const auto [found, is_new] =
+                index.emplace(file_.vertices[v].place(), static_cast<int>(placed_.places.size()));
+            place.push_back(found->second);
+            if (!is_new) continue;
+            placed_.places.push_back(mesh_.world[v]);
+            placed_.numbers.push_back(file_.numbers[v]);
+        }
+        for (Face& face : placed_.faces)
+            for (int& v : face) v = place[v];
     }
 
-    std::string describe(int face) const
+    void require_areas() const
     {
-        const Vec3& a = mesh_.world[mesh_.faces[face][0]];
-        return fmt::format("the face of line {} (at {:.6g}, {:.6g}, {:.6g} m)", file_.lines[face], a.x(),
-                           a.y(), a.z());
-    }
-
-    // Refuses faces without area in the world, and faces given twice, in either orientation.
-    void require_distinct_faces() const
-    {
-        std::map<Face, int> seen;
         for (int f = 0; f < mesh_.face_count(); ++f) {
-            const auto& [a, b, c] = mesh_.faces[f];
-            if (a == b || b == c || c == a ||
-                CGAL::collinear(to_cgal(mesh_.world[a]), to_cgal(mesh_.world[b]), to_cgal(mesh_.world[c])))
-                refuse(describe(f) + " has no area");
-            Face key = mesh_.faces[f];
-            std::sort(key.begin(), key.end());
-            const auto [first, is_new] = seen.emplace(key, f);
-            if (!is_new)
-                refuse(fmt::format("{} is there twice, first in line {}", describe(f),
-                                   file_.lines[first->second]));
+            const auto& [a, b, c] = placed_.faces[f];
+            const std::vector<Vec3>& x = placed_.places;
+            if (a == b || b == c || c == a || CGAL::collinear(to_cgal(x[a]), to_cgal(x[b]), to_cgal(x[c])))
+                refuse(placed_.describe(f) + " has no area");
         }
     }
 
@@ -328,18 +332,15 @@ class ClothReader {
     // Makes every face counter-clockwise in material space; mirrors the chart if all are clockwise.
     void orient()
     {
-        int clockwise = 0;
+        std::vector<int> turns;
         for (int f = 0; f < mesh_.face_count(); ++f) {
-            const int turn = orientation_of(f);
-            if (turn == 0) refuse(describe(f) + " has no area in material space (its UVs lie on a line)");
-            if (turn < 0) ++clockwise;
+            turns.push_back(orientation_of(f));
+            if (turns[f] == 0)
+                refuse(placed_.describe(f) + " has no area in material space (its UVs lie on a line)");
         }
+        const auto clockwise = std::count(turns.begin(), turns.end(), -1);
         if (clockwise == 0) return;
-        if (clockwise < mesh_.face_count())
-            refuse(fmt::format(
-                "{} of {} triangles are clockwise in material space: the chart is folded, or faces "
-                "run in different directions; a tube cannot be laid out with one UV at each place",
-                clockwise, mesh_.face_count()));
+        if (clockwise < mesh_.face_count()) refuse(explain_turns(placed_, turns));
         mirror();
     }
 
@@ -366,10 +367,11 @@ class ClothReader {
     void require_no_overlap() const
     {
         if (const auto pair = find_overlap(mesh_.material, mesh_.faces))
-            refuse(fmt::format("{} and {} overlap in material space; allowed: {}", describe((*pair)[0]),
-                               describe((*pair)[1]),
+            refuse(fmt::format("{} and {} overlap in material space; allowed: {}",
+                               placed_.describe((*pair)[0]), placed_.describe((*pair)[1]),
                                file_.has_uv ? "UVs at which no two faces overlap"
-                                            : "faces beside each other, or pieces in planes of their own"));
+                                            : "faces beside each other; layers that coincide must start "
+                                              "apart, by the cloth's thickness or more"));
     }
 
     std::string path_;
@@ -379,6 +381,7 @@ class ClothReader {
     FileMesh file_;
     std::map<int, int> joined_;  // a vertex, and the earlier one that stands for it
     ClothMesh mesh_;
+    PlacedFaces placed_;  // the mesh with one vertex at each place
     std::vector<std::string> warnings_;
 };
 

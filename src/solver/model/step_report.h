@@ -48,10 +48,20 @@ struct NotFinite {
     int pin = -1;                ///< index in the scene
 };
 
+/// Where an attempt at a step failed, and what the cloth meets there; -1 where there is none.
+struct FailurePlace {
+    std::int64_t vertex = -1;                 ///< id
+    Vec3 world = Vec3::Zero();                ///< m, of the vertex at the step's start
+    Vec2 material = Vec2::Zero();             ///< m, likewise
+    std::array<int, 2> obstacles = {-1, -1};  ///< indices in the scene
+    bool is_with_itself = false;              ///< cloth meets cloth
+};
+
 struct StepReport {
     StepStatus status = StepStatus::Done;
     double dt = 0.0;  ///< s
     StepPart part = StepPart::Ordinary;
+    FailurePlace place;         ///< of a failed step, but for a number that is not finite
     Infeasible infeasible;      ///< of an infeasible step
     NotFinite not_finite;       ///< of a step that met such a number
     int contacts = 0;           ///< pressing, with obstacles

@@ -129,6 +129,66 @@ TEST(RunEnding, OfAnInfeasibleStepWithoutAVertexOrWithOneObstacleIsAWholeSentenc
                       HasSubstr("two parts of this obstacle leave it no room")));
 }
 
+TEST(RunEnding, NamesPlaceAndObstaclesWhateverTheStatus)
+{
+    Scene scene;
+    for (const char* name : {"vee", "lid"})
+        scene.obstacles.push_back(Obstacle(name, make_box({1, 1, 1}), {}, {}, 30.0));
+    struct Case {
+        StepStatus status;
+        double residual;
+        int factorisations;
+        std::array<int, 2> obstacles;
+        bool is_with_itself;
+        std::string message;  ///< regular expression
+    };
+    const std::string at = "vertex 7, at \\[1, 2, 3\\] \\(m, material \\[4, 5\\]\\),";
+    const Case kCases[] = {
+        {StepStatus::Penetration,
+         0,
+         1,
+         {0, -1},
+         false,
+         "the cloth cannot be kept out of vee at " + at + " in the .*"},
+        {StepStatus::Penetration, 0, 1, {1, 0}, false, ".* kept out of lid and vee at " + at + " in the .*"},
+        {StepStatus::Penetration,
+         0,
+         1,
+         {1, -1},
+         true,
+         ".* kept out of lid and itself at " + at + " in the .*"},
+        {StepStatus::Penetration, 0, 1, {-1, -1}, true, ".* kept out of itself at " + at + " in the .*"},
+        {StepStatus::Overrun,
+         0,
+         1,
+         {1, -1},
+         false,
+         "material flows over lid faster .* follow at " + at + " in the .*"},
+        {StepStatus::NotConverged,
+         1e-3,
+         1,
+         {0, 1},
+         false,
+         ".*residual of .*; the cloth presses hardest at " + at + " on vee and lid"},
+        {StepStatus::NotConverged,
+         NAN,
+         9,
+         {0, -1},
+         false,
+         ".*found no answer .*; the cloth presses hardest at " + at + " on vee"},
+        {StepStatus::NotConverged, NAN, 1, {-1, -1}, false, ".*factorised .*; the stiffest part is " + at},
+    };
+    for (const Case& one : kCases) {
+        SCOPED_TRACE(one.message);
+        StepReport report;
+        report.status = one.status;
+        report.kkt_residual = one.residual;
+        report.factorisations = one.factorisations;
+        report.place = {7, {1, 2, 3}, {4, 5}, one.obstacles, one.is_with_itself};
+        EXPECT_THAT(explain_ending(report, 1e-9, scene, State()).message, MatchesRegex(one.message));
+    }
+}
+
 TEST(RunEnding, NamesTheNumberThatIsNotFinite)
 {
     Scene scene;

@@ -102,6 +102,96 @@ TEST(StrainCauses, AreMeasuredInTheScene)
     }
 }
 
+// The sheet lies at z = 0; 57.7 m/s is the speed of sound in it.
+struct MovingCase {
+    const char* name;
+    std::string scene;
+    double time;  ///< s, of the peak
+    Vec3 peak;    ///< m, material and world
+    std::string says;
+};
+
+TEST(StrainCauses, NameTheObstacleOrPinThatMoves)
+{
+    const std::string rim = kPins + "[gravity]\n";
+    const auto box = [](const std::string& name, const std::string& more) {
+        return "[[obstacle]]\nname = \"" + name + "\"\nbox = [0.1, 0.1, 0.1]\n" + more + "\n";
+    };
+    const std::string resting = box("post", "translate = [0.5, 0.25, -0.06]");
+    const Vec3 middle(0.5, 0.25, 0.0);
+    const MovingCase kMoving[] = {
+        {"a fast obstacle that has stopped",
+         rim + box("ram",
+                   "translate = [0.5, 0.25, 0.1]\nmotion = { velocity = [0, 0, -20], start = 0.1, stop "
+                   "= 0.11 }"),
+         0.12,
+         {0.5, 0.25, -0.15},
+         "ram moves 0.2 m, at up to 20 m/s there: move it more slowly or less far"},
+        {"a slow one that goes far",
+         rim + box("ram", "translate = [0.5, 0.25, 0.1]\nmotion = { velocity = [0, 0, -0.5] }"),
+         0.5,
+         {0.5, 0.25, -0.2},
+         "ram moves 0.25 m, at up to 0.5 m/s there: move it less far"},
+        {"keyframes",
+         rim + box("ram",
+                   "keyframes = [{time = 0, translate = [0.5, 0.25, 0.1]}, {time = 0.5, translate = "
+                   "[0.5, 0.25, -0.2]}]"),
+         0.5,
+         {0.5, 0.25, -0.15},
+         "ram moves 0.3 m, at up to 0.6 m/s there: move it less far"},
+        {"a rotor",
+         box("rotor",
+             "translate = [0.5, 0.25, 0.06]\nmotion = { angular_velocity = [0, 0, 25.13274], pivot = [0, "
+             "0.25, 0] }"),
+         0.5, middle, "rotor moves 1 m, at up to 12.6 m/s there: move it more slowly"},
+        {"one of two",
+         rim + resting + box("ram", "translate = [0.5, 0.25, 0.1]\nmotion = { velocity = [0, 0, -0.5] }"),
+         0.5,
+         {0.5, 0.25, -0.2},
+         "ram moves"},
+        {"the nearer of two",
+         rim + box("far", "translate = [0.5, 5, 0.1]\nmotion = { velocity = [0, 0, -50] }") +
+             box("ram", "translate = [0.5, 0.25, 0.1]\nmotion = { velocity = [0, 0, -0.5] }"),
+         0.5,
+         {0.5, 0.25, -0.2},
+         "ram moves"},
+        {"far from the peak, at a pin",
+         rim + box("ram", "translate = [0.5, 0.25, 0.1]\nmotion = { velocity = [0, 0, -0.5] }"),
+         0.5,
+         {0.0, 0.0, 0.0},
+         "ram moves 0.25 m, at up to 0.5 m/s: move it less far"},
+        {"a pin that pulls cloth over a post",
+         resting + "[[pin]]\nmaterial = [[0, 0], [0, 0.5]]\nvelocity = [-0.5, 0, 0]\n", 0.5, middle,
+         "pin.0 moves 0.25 m, at up to 0.5 m/s: move it less far"},
+        {"a pin that jerks",
+         resting + "[[pin]]\nmaterial = [[0, 0], [0, 0.5]]\nvelocity = [-30, 0, 0]\nrelease = 0.003\n",
+         0.01,
+         {0.05, 0.25, 0.0},
+         "pin.0 moves 0.09 m, at up to 30 m/s there: move it more slowly"},
+        {"cloth that is thrown", "[gravity]\n" + resting, 0.5, middle,
+         "the cloth (cloth.velocity) starts at 25 m/s: move it more slowly"},
+        {"an obstacle that starts later",
+         rim + box("ram", "translate = [0.5, 0.25, 0.1]\nmotion = { velocity = [0, 0, -20], start = 0.3 }"),
+         0.2, middle, "no load or pin"},
+        {"an obstacle at rest", rim + resting, 0.5, middle, "no load or pin"},
+        {"a small way",
+         rim + box("ram", "translate = [0.5, 0.25, 0.1]\nmotion = { velocity = [0, 0, -0.02] }"),
+         0.5,
+         {0.5, 0.25, 0.0},
+         "no load or pin"},
+    };
+    for (const MovingCase& one : kMoving) {
+        SCOPED_TRACE(one.name);
+        const bool is_thrown =
+            one.scene.find("velocity") == std::string::npos && one.says.starts_with("the cloth");
+        const RunConfig config = load_scene(SceneSource{
+            "s.toml", kBase + one.scene,
+            is_thrown ? std::vector<std::string>{"cloth.velocity=[0,0,-25]"} : std::vector<std::string>{}});
+        const StrainPeak peak = {0.3, one.time, one.peak, one.peak.head<2>()};
+        EXPECT_THAT(explain_stretch(config, peak), ::testing::StartsWith(one.says));
+    }
+}
+
 TEST(StrainCauses, OfACornerCountNearItAlone)
 {
     const RunConfig config =

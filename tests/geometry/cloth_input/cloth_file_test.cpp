@@ -405,7 +405,8 @@ std::vector<Defect> defects()
          "overlap in material space; allowed: UVs at which no two faces overlap"},
         {"overlapping pieces of one plane",
          kCorners + "v 0.5 0.2 0\nv 2 0.2 0\nv 2 0.8 0\nf 1 2 3\nf 5 6 7\n",
-         "overlap in material space; allowed: faces beside each other, or pieces in planes of their own"},
+         "overlap in material space; allowed: faces beside each other; layers that coincide must start "
+         "apart"},
         {"overlapping corners",
          kCorners + "v 5 0 0\nv 6 0 0\nv 6 1 0\n" + kUvs +
              "vt 0.9 0.1\nvt 2 0\nvt 2 1\nf 1/1 2/2 3/3\nf 5/5 6/6 7/7\n",
@@ -413,15 +414,19 @@ std::vector<Defect> defects()
         {"mirrored piece",
          kCorners + "v 5 0 0\nv 6 0 0\nv 6 1 0\n" + kUvs + "vt 9 0\nvt 8 0\nvt 8 1\n" +
              "f 1/1 2/2 3/3\nf 5/5 6/6 7/7\n",
-         "1 of 2 triangles are clockwise"},
+         "1 of 2 triangles are clockwise in material space, unlike those of other pieces: the face of line "
+         "16"},
         {"folded chart", kCorners + "vt 0 0\nvt 1 0\nvt 1 1\nvt 1 0.2\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
-         "clockwise"},
-        {"faces of both directions", kCorners + "f 1 2 3\nf 1 4 3\n", "clockwise"},
-        {"three faces on an edge", kCorners + "v 2 0.5 0\nf 1 2 3\nf 1 3 4\nf 1 3 5\n", ""},
+         "the chart is folded at edge (1, 3), between the faces of lines 9 and 10"},
+        {"faces of both directions", kCorners + "f 1 2 3\nf 1 4 3\n",
+         "1 of 2 triangles is turned over against its neighbours: the face of line 6"},
+        {"three faces on an edge", kCorners + "v 2 0.5 0\nf 1 2 3\nf 1 3 4\nf 1 3 5\n",
+         "edge (1, 3) has more than two faces (6, 7, 8), at 0.5, 0.5, 0 m; two layers coincide there"},
         {"three faces on a curved edge",
          "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nvt 0 -1\nvt 0 2\n"
          "f 1/1 2/2 3/3\nf 2/2 1/1 4/4\nf 1/1 2/2 5/5\n",
-         "edge (1, 2) has more than two faces (11, 13, 12) (vertices as the file numbers them"},
+         "edge (1, 2) has more than two faces (11, 12, 13), at 0.5, 0, 0 m; allowed: cloth that does not "
+         "branch (vertices as the file numbers them"},
         {"bow-tie", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 1 4 5\n",
          "vertex 1 joins parts of the cloth in a single point, where faces 6 and 7 meet; allowed"},
         {"duplicate face", kCorners + "f 1 2 3\nf 1 3 4\nf 3 1 2\n",
@@ -484,7 +489,6 @@ TEST_F(ClothFileTest, SaysOfTubesAndSeamsWhatIsMissingAndWhatIsAllowed)
         {"panels sewn along a line", panels + "f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8\n", kPieces},
         {"panels sewn at a corner", panels + "v 2 2 0\nv 1 2 0\nf 1/1 2/2 3/3 4/4\nf 3/5 6/6 7/7 8/8\n",
          kPieces},
-        {"layers in one place", panels + "f 1/1 2/2 3/3 4/4\nf 1/5 2/6 3/7 4/8\n", kPieces},
         {"pillow", panels + "v 0.5 0.5 1\nvt 8 1\nf 1/1 2/2 3/3 4/4\nf 2/5 1/6 9/7\n", ""},
     };
     for (const Defect& seam : kSeams) {

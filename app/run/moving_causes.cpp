@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run/moving_causes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "geometry/cloth/material_box.h"
+#include "geometry/obstacle/obstacle_distance.h"
+
+namespace arris {
+namespace {
+
+constexpr double kNear = 2.0;  // edges of the mesh
+
+/// How far and how fast points of a body have moved from time 0 up to a time.
+struct Way {
+    double length = 0.0;  ///< m, greatest distance from the start
+    double speed = 0.0;   ///< m/s, greatest
+};
+
+/// Times from 0 to `end` (s) with all jumps of the motion between.
+std::vector<double> sample_times(const RigidMotion& motion, double end)
+{
+    constexpr int kSamples = 64;
+    std::vector<double> times;
+    for (int k = 0; k <= kSamples; ++k) times.push_back(end * k / kSamples);
+    for (const double jump : motion.jumps())
+        if (jump < end) times.push_back(jump);
+    std::sort(times.begin(), times.end());
+    return times;
+}
+
+/// `place(point, time)` is where a point of the body is, and `velocity(time, place)` how it then moves.
+template <class Place, class Velocity>
+Way measure_way(const std::vector<double>& times, const std::vector<Vec3>& points, Place place,
+                Velocity velocity)
+{
+    Way way;
+    for (const Vec3& point : points) {
+        const Vec3 start = place(point, times.front());
+        for (const double time : times) {
+            const Vec3 at = place(point, time);
+            way.length = std::max(way.length, (at - start).norm());
+            if (time < times.back()) way.speed = std::max(way.speed, velocity(time, at).norm());
+        }
+    }
+    return way;
+}
+
+std::vector<Vec3> corners_of(const Box3& box)
+{
+    std::vector<Vec3> corners;
+    for (int k = 0; k < 8; ++k) corners.push_back(box.corner(static_cast<Box3::CornerType>(k)));
+    return corners;
+}
+
+/// Strain (size) of a long strip of cloth that is hit at `speed`.
+double strain_of_impact(const Material& material, double speed)
+{
+    const double ratio = speed / std::sqrt(material.youngs_modulus / material.density);
+    double least = 0.0, most = 1.0;
+    const auto ratio_of = [](double e) { return std::sqrt(2.0 * e * std::sqrt(e * (1.0 + e)) - e * e); };
+    if (ratio >= ratio_of(most)) return most;
+    for (int k = 0; k < 50; ++k) {
+        const double middle = 0.5 * (least + most);
+        (ratio_of(middle) < ratio ? least : most) = middle;
+    }
+    return least;
+}
+
+/// Strain of cloth that is held at `distance` and pushed aside by `way`.
+double strain_of_way(double way, double distance)
+{
+    return std::hypot(1.0, way / distance) - 1.0;
+}
+
+class Motions {
+  public:
+    Motions(const RunConfig& config, const StrainPeak& peak, double edge)
+        : config_(config), scene_(config.scene), peak_(peak), edge_(edge)
+    {
+        Eigen::AlignedBox2d box;
+        for (const Vec2& X : config.cloth.material) box.extend(X);
+        half_ = 0.5 * box.sizes().minCoeff();
+    }
+
+    MovingCause find()
+    {
+        for (std::size_t i = 0; i < scene_.obstacles.size(); ++i) add_obstacle(i);
+        for (std::size_t i = 0; i < scene_.pins.size(); ++i) add_pin(i);
+        const double speed = config_.cloth_velocity.norm();
+        if (speed > 0.0 && !(scene_.obstacles.empty() && scene_.pins.empty()))
+            add({0.0, speed}, half_, false, "the cloth (cloth.velocity)", false);
+        return greatest_;
+    }
+
+  private:
+    void add_obstacle(std::size_t i)
+    {
+        const MovingObstacle& obstacle = scene_.obstacles[i];
+        if (!obstacle.is_moving()) return;
+        const ObstaclePose pose = obstacle.at(peak_.time);
+        const Vec3 at_peak = pose.placement.inverse(peak_.world);
+        const double reach = scene_.material.thickness + kNear * edge_;
+        const bool is_near = distance_to(pose, at_peak, 2.0 * reach) <= reach;
+        const std::vector<Vec3> points = is_near ? std::vector<Vec3>{at_peak} : corners_of(pose->bounds());
+        const Way way = measure_way(
+            sample_times(obstacle.motion(), peak_.time), points,
+            [&](const Vec3& point, double time) { return obstacle.at(time).placement(point); },
+            [&](double time, const Vec3& place) { return obstacle.velocity_after(time, place); });
+        const bool is_held = !scene_.pins.empty() || scene_.obstacles.size() > 1;
+        add(way, is_near ? distance_to_pins() : half_, is_held, obstacle.name(), is_near);
+    }
+
+    void add_pin(std::size_t i)
+    {
+        const Pin& pin = scene_.pins[i];
+        const RigidMotion& motion =
+            pin.follows ? scene_.obstacles[static_cast<std::size_t>(*pin.follows)].motion() : pin.motion;
+        const double end = std::min(peak_.time, pin.release);
+        if (!motion.is_moving() || !(end > pin.start)) return;
+        std::vector<Vec3> points;
+        for (const int v : vertices_in_box(config_.cloth, pin.material))
+            points.push_back(config_.cloth.world[static_cast<std::size_t>(v)]);
+        const Way way = measure_way(
+            sample_times(motion, end), points,
+            [&](const Vec3& point, double time) {
+                return pin_placement(scene_, pin, std::max(time, pin.start))(point);
+            },
+            [&](double time, const Vec3& place) -> Vec3 {
+                return time < pin.start ? Vec3(Vec3::Zero()) : pin_velocity(scene_, pin, time, place);
+            });
+        const bool is_near = distance_to_box(pin) <= kNear * edge_;
+        // Where two pins hold the cloth, their distance tells more (strain_causes).
+        add(way, half_, !scene_.obstacles.empty(), fmt::format("pin.{}", i), is_near);
+    }
+
+    /// Distance (m) in the material from the peak to the pin's box.
+    double distance_to_box(const Pin& pin) const
+    {
+        return (peak_.material - peak_.material.cwiseMax(pin.material.min).cwiseMin(pin.material.max)).norm();
+    }
+
+    /// Distance (m) in the material from the peak to the nearest pin: at least an edge of the mesh, at most
+    /// half of the cloth's shorter side.
+    double distance_to_pins() const
+    {
+        double least = half_;
+        for (const Pin& pin : scene_.pins) least = std::min(least, distance_to_box(pin));
+        return std::max(least, edge_);
+    }
+
+    /// Keeps the motion if it strains the cloth more than the one so far. `is_held`: something else holds the
+    /// cloth, at `distance`.
+    void add(const Way& way, double distance, bool is_held, const std::string& name, bool is_near)
+    {
+        constexpr double kCounts = 0.05;  // strain for which a remedy is told
+        const double by_speed = strain_of_impact(scene_.material, way.speed);
+        const double by_way = is_held ? strain_of_way(way.length, distance) : 0.0;
+        const double strain = std::max(by_speed, by_way);
+        if (is_near < greatest_.is_near || (is_near == greatest_.is_near && !(strain > greatest_.strain)))
+            return;
+        greatest_ = {strain, is_near, name, "move it "};
+        greatest_.what += way.length > 0.0
+                              ? fmt::format(" moves {:.3g} m, at up to {:.3g} m/s", way.length, way.speed)
+                              : fmt::format(" starts at {:.3g} m/s", way.speed);
+        greatest_.remedy += by_speed > kCounts && by_way > kCounts ? "more slowly or less far"
+                            : by_speed > by_way                    ? "more slowly"
+                                                                   : "less far";
+    }
+
+    const RunConfig& config_;
+    const Scene& scene_;
+    const StrainPeak& peak_;
+    double edge_;        // m, mean
+    double half_ = 0.0;  // m, half of the cloth's shorter side
+    MovingCause greatest_;
+};
+
+}  // namespace
+
+MovingCause find_moving_cause(const RunConfig& config, const StrainPeak& peak, double edge)
+{
+    return Motions(config, peak, edge).find();
+}
+
+}  // namespace arris

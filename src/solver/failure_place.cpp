@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/failure_place.h"
+
+#include <algorithm>
+
+#include "solver/eol/eol_coordinates.h"
+
+namespace arris {
+
+namespace {
+
+void add_obstacle(int obstacle, FailurePlace& place)
+{
+    if (obstacle == kClothItself) {
+        place.is_with_itself = true;
+        return;
+    }
+    for (int& named : place.obstacles) {
+        if (named == obstacle) return;
+        if (named >= 0) continue;
+        named = obstacle;
+        return;
+    }
+}
+
+bool has_vertex(const Contact& contact, int vertex)
+{
+    for (int i = 0; i < 4; ++i)
+        if (contact.vertices[i] == vertex && contact.weights[i] != 0.0) return true;
+    return false;
+}
+
+/// Names the vertex (index), and what is in contact with it.
+void name_vertex(const State& state, const Workspace& work, int vertex, FailurePlace& place)
+{
+    place.vertex = state.ids[vertex];
+    place.world = state.mesh.world[vertex];
+    place.material = state.mesh.material[vertex];
+    for (const Contact& contact : work.contacts)
+        if (has_vertex(contact, vertex)) add_obstacle(contact.obstacle, place);
+}
+
+/// The first vertex of a face that meets something on its way; nothing where the proposal is clean.
+FailurePlace find_meeting(const State& state, const Workspace& work, const Violations& violations)
+{
+    FailurePlace place;
+    const std::vector<int>* faces = violations.self_faces.empty() ? nullptr : &violations.self_faces;
+    for (std::size_t o = violations.faces.size(); o-- > 0;)
+        if (!violations.faces[o].empty()) faces = &violations.faces[o];
+    if (faces == nullptr) return place;
+    for (int o = 0; o < static_cast<int>(violations.faces.size()); ++o)
+        if (!violations.faces[o].empty()) add_obstacle(o, place);
+    if (!violations.self_faces.empty()) place.is_with_itself = true;
+    // A contact of the check tells which of the face's vertices meets the obstacle.
+    const Face& face = state.mesh.faces[faces->front()];
+    int vertex = face[0];
+    for (const Contact& contact : violations.contacts)
+        if (const auto met =
+                std::find_if(face.begin(), face.end(), [&](int v) { return has_vertex(contact, v); });
+            met != face.end()) {
+            vertex = *met;
+            break;
+        }
+    name_vertex(state, work, vertex, place);
+    return place;
+}
+
+/// The EOL vertex that takes too much material from its faces.
+FailurePlace find_overrun(const State& state, const Workspace& work, const std::vector<Overrun>& overrun)
+{
+    FailurePlace place;
+    if (overrun.empty()) return place;
+    const auto fastest = std::max_element(
+        overrun.begin(), overrun.end(),
+        [](const Overrun& a, const Overrun& b) { return a.flow.squaredNorm() < b.flow.squaredNorm(); });
+    for (const EolCoordinates& eol : work.eol)
+        if (eol.vertex == fastest->vertex) add_obstacle(state.eol[eol.entry].on.obstacle, place);
+    name_vertex(state, work, fastest->vertex, place);
+    return place;
+}
+
+/// Multiplier of the last solve, N s; 0 where the contact was not part of it.
+double solved_multiplier(const Contact& contact, const VelocitySolution& solution)
+{
+    if (contact.bound >= 0 && contact.bound < solution.multipliers.size())
+        return solution.multipliers[contact.bound];
+    if (contact.row >= 0 && contact.row < solution.row_multipliers.size())
+        return solution.row_multipliers[contact.row];
+    return 0.0;
+}
+
+/// The vertex of the contact that presses hardest, in the last solve or before it. Without contacts, the
+/// vertex with the stiffest coordinate.
+FailurePlace find_hardest_press(const State& state, const Workspace& work)
+{
+    FailurePlace place;
+    double most = 0.0;
+    int vertex = -1;
+    for (const Contact& contact : work.contacts) {
+        const double press = std::max(solved_multiplier(contact, work.solution), contact.last_multiplier);
+        if (vertex >= 0 && !(press > most)) continue;
+        most = press;
+        vertex = contact.vertices[0];
+    }
+    if (vertex < 0 && work.problem.matrix != nullptr) {
+        Eigen::Index stiffest = 0;
+        const Eigen::VectorXd diagonal = work.problem.matrix->diagonal();
+        if (diagonal.size() > 0) diagonal.maxCoeff(&stiffest);
+        vertex = static_cast<int>(stiffest / 3);
+    }
+    if (vertex >= 0 && vertex < state.mesh.vertex_count()) name_vertex(state, work, vertex, place);
+    return place;
+}
+
+FailurePlace find_place(const State& state, const Workspace& work, const Violations& violations,
+                        const std::vector<Overrun>& overrun, StepStatus status)
+{
+    switch (status) {
+        case StepStatus::Penetration:
+            return find_meeting(state, work, violations);
+        case StepStatus::Overrun:
+            return find_overrun(state, work, overrun);
+        default:
+            return find_hardest_press(state, work);
+    }
+}
+
+}  // namespace
+
+void name_failure(const State& state, const Workspace& work, const Violations& violations,
+                  const std::vector<Overrun>& overrun, StepReport& report)
+{
+    if (report.status == StepStatus::Done || report.status == StepStatus::NotFinite) return;
+    report.place = find_place(state, work, violations, overrun, report.status);
+    if (report.status != StepStatus::Infeasible || report.infeasible.vertex >= 0) return;
+    report.infeasible.vertex = report.place.vertex;
+    report.infeasible.obstacles = report.place.obstacles;
+    report.infeasible.is_with_itself = report.place.is_with_itself && report.place.obstacles[0] < 0;
+}
+
+}  // namespace arris
