@@ -29,11 +29,6 @@ std::vector<Overrun> find_overrun(const std::vector<Vec2>& material, const std::
 
 namespace {
 
-std::vector<Overrun> find_overrun(const std::vector<Vec2>& material, const Workspace& work)
-{
-    return find_overrun(material, work.eol, work.mesh, work.linearization.time - work.linearization.begin);
-}
-
 /// Vertices that were taken back, and those of faces that even so have too little material.
 struct Shortened {
     std::set<int> vertices = {};
@@ -42,11 +37,12 @@ struct Shortened {
 
 /// Takes vertices that would leave faces too little material back towards their start in the step: in the
 /// world, in the material and in velocity.
-Shortened shorten(const State& state, const Workspace& work, MovingCloth& cloth)
+Shortened shorten(const State& state, const std::vector<EolCoordinates>& eol, const MeshCache& mesh,
+                  double dt, MovingCloth& cloth)
 {
     constexpr int kHalvings = 4;  // afterwards they stay at the start, where material is always left
     const auto go_back = [](double share, const auto& from, auto& to) { to = from + share * (to - from); };
-    Shortened shortened = {.overrun = find_overrun(cloth.material, work)};
+    Shortened shortened = {.overrun = find_overrun(cloth.material, eol, mesh, dt)};
     for (int round = 0; round <= kHalvings && !shortened.overrun.empty(); ++round) {
         const double share = round < kHalvings ? 0.5 : 0.0;
         std::set<int> vertices;  // each once: `overrun` has a vertex for every face
@@ -58,7 +54,7 @@ Shortened shorten(const State& state, const Workspace& work, MovingCloth& cloth)
             go_back(share, state.material_velocity[v], cloth.velocity.material[v]);
         }
         shortened.vertices.merge(vertices);
-        shortened.overrun = find_overrun(cloth.material, work);
+        shortened.overrun = find_overrun(cloth.material, eol, mesh, dt);
     }
     return shortened;
 }
@@ -82,38 +78,35 @@ int find_flow_parts(const Scene& scene, const State& state, double dt)
     return parts;
 }
 
-std::vector<Overrun> linearise_flow(const State& state, Workspace& work)
+LinearisedFlow linearise_flow(const State& state, const Prediction& prediction, ClothVelocity expansion,
+                              const std::vector<EolCoordinates>& eol, const MeshCache& mesh, double dt)
 {
-    const Prediction& prediction = work.prediction;
-    MovingCloth end = find_end(prediction, work.expansion);
-    const Shortened shortened = shorten(state, work, end);
+    MovingCloth end = find_end(prediction, expansion);
+    const Shortened shortened = shorten(state, eol, mesh, dt, end);
     for (const int v : shortened.vertices) {
-        work.expansion.world[v] = (end.world[v] - prediction.position[v]) / prediction.gamma;
-        work.expansion.material[v] = (end.material[v] - prediction.material[v]) / prediction.gamma;
+        expansion.world[v] = (end.world[v] - prediction.position[v]) / prediction.gamma;
+        expansion.material[v] = (end.material[v] - prediction.material[v]) / prediction.gamma;
     }
-    if (!shortened.overrun.empty()) return shortened.overrun;
+    LinearisedFlow found = {std::move(expansion), std::move(end.material), {}, shortened.overrun};
+    if (!found.overrun.empty()) return found;
     MovingCloth past = extrapolate(state, prediction);
-    std::vector<Overrun> overrun = shorten(state, work, past).overrun;
-    MaterialFlow& flow = *work.linearization.flow;
-    flow.position = std::move(end.material);
-    flow.v_predicted = prediction.material_velocity;
-    flow.v_expansion = work.expansion.material;
-    flow.v_last = state.material_velocity;
-    flow.extrapolated = {past.world, past.velocity.world, past.material, past.velocity.material};
-    return overrun;
+    found.overrun = shorten(state, eol, mesh, dt, past).overrun;
+    found.extrapolated = {std::move(past.world), std::move(past.velocity.world), std::move(past.material),
+                          std::move(past.velocity.material)};
+    return found;
 }
 
-std::vector<Overrun> propose_flow(Workspace& work)
+FlowedMaterial find_flowed_material(const Prediction& prediction, const std::vector<EolCoordinates>& eol,
+                                    const Eigen::VectorXd& velocity)
 {
-    work.proposal.material = work.prediction.material;
-    work.proposal.material_velocity.assign(work.prediction.material.size(), Vec2::Zero());
-    for (const EolCoordinates& eol : work.eol) {
-        const int v = eol.vertex;
-        Vec2& flow = work.proposal.material_velocity[v];
-        flow = eol.material_basis * work.solution.velocity.segment<3>(3 * v);
-        work.proposal.material[v] += work.prediction.gamma * flow;
+    FlowedMaterial flowed = {prediction.material,
+                             std::vector<Vec2>(prediction.material.size(), Vec2::Zero())};
+    for (const EolCoordinates& at : eol) {
+        Vec2& flow = flowed.velocity[at.vertex];
+        flow = at.material_basis * velocity.segment<3>(3 * at.vertex);
+        flowed.material[at.vertex] += prediction.gamma * flow;
     }
-    return find_overrun(work.proposal.material, work);
+    return flowed;
 }
 
 }  // namespace arris

@@ -5,9 +5,12 @@
 // edge, needs no shorter step.
 #pragma once
 
+#include "solver/eol/eol_coordinates.h"
+#include "solver/mesh_change/mesh_cache.h"
+#include "solver/model/scene.h"
 #include "solver/model/state.h"
 #include "solver/model/time_integration.h"
-#include "solver/workspace.h"
+#include "solver/retry_policy.h"
 
 namespace arris {
 
@@ -22,14 +25,27 @@ int find_flow_parts(const Scene& scene, const State& state, double dt);
 std::vector<Overrun> find_overrun(const std::vector<Vec2>& material, const std::vector<EolCoordinates>& eol,
                                   const MeshCache& mesh, double dt);
 
-/// Fills the flow of `work.linearization`, which must exist, at q^ (from `work.expansion`) and at the
-/// extrapolated state. The step ends at neither. So vertices that would leave too little material there go
-/// back on their way, both in the world and in the material, also in `work.expansion`. Returns the
-/// vertices for which even this leaves too little, as where a value is not finite.
-std::vector<Overrun> linearise_flow(const State& state, Workspace& work);
+/// Material around which forces are linearised, and the v^ that belongs to it.
+struct LinearisedFlow {
+    ClothVelocity expansion;
+    std::vector<Vec2> position;  ///< X^, m
+    ExtrapolatedState extrapolated;
+    std::vector<Overrun> overrun;  ///< vertices that leave too little material even so
+};
 
-/// Proposes X' = X~ + gamma V' of the solved velocity. Returns the vertices of faces with too little
-/// material.
-std::vector<Overrun> propose_flow(Workspace& work);
+/// The flow of a part of a step of `dt` (s), at q^ = q~ + gamma `expansion` and at the extrapolated state.
+/// The part ends at neither. So vertices that would leave too little material there go back on their way,
+/// both in the world and in the material. Even this leaves too little where a value is not finite.
+LinearisedFlow linearise_flow(const State& state, const Prediction& prediction, ClothVelocity expansion,
+                              const std::vector<EolCoordinates>& eol, const MeshCache& mesh, double dt);
+
+/// Material of all vertices, m, and its velocity, m/s.
+struct FlowedMaterial {
+    std::vector<Vec2> material, velocity;
+};
+
+/// X' = X~ + gamma V' of the solved `velocity` (coordinates of the solve, three a vertex).
+FlowedMaterial find_flowed_material(const Prediction& prediction, const std::vector<EolCoordinates>& eol,
+                                    const Eigen::VectorXd& velocity);
 
 }  // namespace arris

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "solver/contact/constraints.h"
 #include "solver/energy_balance.h"
@@ -65,8 +66,19 @@ bool assemble(Rounds& round)
     at.damping = round.scene.material.damping;
     at.v_predicted = prediction.velocity;
     at.v_last = state.velocity;
-    round.overrun = at.flow ? linearise_flow(state, work) : std::vector<Overrun>();
-    if (!round.overrun.empty()) return false;
+    round.overrun.clear();
+    if (at.flow) {
+        LinearisedFlow found =
+            linearise_flow(state, prediction, std::move(work.expansion), work.eol, work.mesh, round.dt());
+        work.expansion = std::move(found.expansion);
+        round.overrun = std::move(found.overrun);
+        if (!round.overrun.empty()) return false;
+        at.flow->position = std::move(found.position);
+        at.flow->extrapolated = std::move(found.extrapolated);
+        at.flow->v_predicted = prediction.material_velocity;
+        at.flow->v_expansion = work.expansion.material;
+        at.flow->v_last = state.material_velocity;
+    }
     at.v_expansion = work.expansion.world;
     at.position = find_end(prediction, work.expansion).world;
     work.mesh.system.assemble(state.mesh, work.mesh.elements, work.mesh.terms, at);
@@ -95,6 +107,17 @@ void solve_velocity(const Rounds& round, bool does_resume)
     if (!work.problem.friction.empty()) note_friction(round.state, work, report);
     ++report.solves;
     report.kkt_residual = work.solution.kkt_residual;  // of the last solve, whose velocity is used
+}
+
+/// Proposes the material at the end. False where a face would have too little of it.
+bool propose_flow(Rounds& round)
+{
+    Workspace& work = round.work;
+    FlowedMaterial flowed = find_flowed_material(work.prediction, work.eol, work.solution.velocity);
+    work.proposal.material = std::move(flowed.material);
+    work.proposal.material_velocity = std::move(flowed.velocity);
+    round.overrun = find_overrun(work.proposal.material, work.eol, work.mesh, round.dt());
+    return round.overrun.empty();
 }
 
 /// Stage 6, first half: q' = q~ + gamma v'. Cloth nearer to an obstacle than its stand-off moves out by up to
@@ -176,8 +199,7 @@ RoundEnd run_round(Next from, Rounds& round)
     if (report.friction_residual > kOffLaw && round.attempt == Attempt::Ordinary) return RoundEnd::Unsolved;
     if (round.may_solve_again() && yield_folds(work)) return RoundEnd::FoldYields;
     watch.lap();
-    round.overrun = propose_flow(work);
-    if (!round.overrun.empty()) return RoundEnd::Overrun;
+    if (!propose_flow(round)) return RoundEnd::Overrun;
     const bool is_finite = propose_and_check(round);
     report.seconds.check += watch.lap();
     if (!is_finite) return RoundEnd::NotFinite;
@@ -200,7 +222,8 @@ Next give_up(Rounds& round)
     StepReport& report = round.report;
     if (work.solution.status == SolveStatus::Infeasible) {
         report.status = StepStatus::Infeasible;
-        report.infeasible = name_infeasible(round.state, work);
+        report.infeasible =
+            name_infeasible(round.state, {work.contacts, work.pin_targets, work.solution.infeasible_rows});
     } else {
         report.status = StepStatus::Penetration;
     }
@@ -220,8 +243,7 @@ Next give_up(Rounds& round)
 Next yield_or_give_up(Rounds& round)
 {
     if (round.may_solve_again() && yield_infeasible(round.work)) return Next::Assemble;
-    round.overrun = propose_flow(round.work);
-    if (!round.overrun.empty()) return fail<StepStatus::Overrun>(round);
+    if (!propose_flow(round)) return fail<StepStatus::Overrun>(round);
     return propose_and_check(round) ? give_up(round) : Next::Fail;
 }
 

@@ -54,7 +54,8 @@ bool collect_contacts(const Scene& scene, const State& state, Workspace& work, S
     if (note_not_finite(CheckedStage::Contacts, state, work, report)) return false;
     if (!overconstrained) return true;
     report.status = StepStatus::Infeasible;
-    report.infeasible = name_infeasible(state, work, overconstrained);
+    report.infeasible = name_infeasible(
+        state, {work.contacts, work.pin_targets, work.solution.infeasible_rows}, overconstrained);
     return false;
 }
 
@@ -88,9 +89,10 @@ void make_room_for_layers(Workspace& work)
 
 bool yield_infeasible(Workspace& work)
 {
+    const UnmetStep step = {work.contacts, work.pin_targets, work.solution.infeasible_rows};
     bool is_changed = false;
     for (Contact& contact : work.contacts) {
-        if (!is_unmet(work, contact.row)) continue;
+        if (!step.is_unmet(contact.row)) continue;
         if (!yield_stand_off(work.carriers, work.prediction, contact)) continue;
         ++work.yielded;
         is_changed = true;

@@ -98,6 +98,16 @@ struct FlowingCloth {
         work.prediction = predict(state, Integrator::Bdf2, kStep);
         work.expansion = {state.velocity, state.material_velocity};
     }
+    /// Linearises the flow in `work`, as a step does. Returns the vertices with too little material.
+    std::vector<Overrun> linearise()
+    {
+        LinearisedFlow found =
+            linearise_flow(cloth.state, work.prediction, work.expansion, work.eol, work.mesh, kStep);
+        work.expansion = found.expansion;
+        work.linearization.flow->position = found.position;
+        work.linearization.flow->extrapolated = found.extrapolated;
+        return found.overrun;
+    }
     /// Least remaining area of a face at the vertex, over its present area.
     double least_left(const std::vector<Vec2>& material) const
     {
@@ -121,7 +131,8 @@ std::vector<Overrun> overrun_by(double way)
     work.prediction.gamma = kStep;
     work.solution.velocity = Eigen::VectorXd::Zero(3 * state.mesh.vertex_count());
     work.solution.velocity[3 * flowing.v + 2] = way / kStep;
-    return propose_flow(work);
+    const FlowedMaterial flowed = find_flowed_material(work.prediction, work.eol, work.solution.velocity);
+    return find_overrun(flowed.material, work.eol, work.mesh, kStep);
 }
 
 TEST(MaterialFlow, IsLinearisedWhereItWouldEndAsLongAsThereIsMaterial)
@@ -130,7 +141,7 @@ TEST(MaterialFlow, IsLinearisedWhereItWouldEndAsLongAsThereIsMaterial)
     flowing.flow(0.4, 0.4);
     const MovingCloth end = find_end(flowing.work.prediction, flowing.work.expansion);
     const std::vector<Vec3> expansion = flowing.work.expansion.world;
-    ASSERT_TRUE(linearise_flow(flowing.cloth.state, flowing.work).empty());
+    ASSERT_TRUE(flowing.linearise().empty());
     EXPECT_EQ(flowing.work.linearization.flow->position, end.material);
     EXPECT_EQ(flowing.work.expansion.world, expansion);
 }
@@ -144,7 +155,7 @@ TEST(MaterialFlow, IsLinearisedOnTheWayThereWhereThereIsNone)
         const State& state = flowing.cloth.state;
         const int v = flowing.v;
         const MovingCloth end = find_end(flowing.work.prediction, flowing.work.expansion);
-        ASSERT_TRUE(linearise_flow(state, flowing.work).empty());
+        ASSERT_TRUE(flowing.linearise().empty());
         const MovingCloth there = find_end(flowing.work.prediction, flowing.work.expansion);
         EXPECT_GE(flowing.least_left(there.material), 0.4);
         EXPECT_GE(flowing.least_left(flowing.work.linearization.flow->extrapolated.material), 0.4);
@@ -165,7 +176,7 @@ TEST(MaterialFlow, ThatTurnsBackIsNotExtrapolatedPastTheMaterial)
     flowing.flow(-0.4, 0.8);
     const std::vector<Vec2> past = extrapolate(flowing.cloth.state, flowing.work.prediction).material;
     ASSERT_LT(flowing.least_left(past), 0.4);
-    EXPECT_TRUE(linearise_flow(flowing.cloth.state, flowing.work).empty());
+    EXPECT_TRUE(flowing.linearise().empty());
     EXPECT_GE(flowing.least_left(flowing.work.linearization.flow->extrapolated.material), 0.4);
 }
 
@@ -175,7 +186,7 @@ TEST(MaterialFlow, ThatIsNotFiniteIsNotLinearised)
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         FlowingCloth flowing;
         flowing.flow(cells, 0.0);
-        const std::vector<Overrun> overrun = linearise_flow(flowing.cloth.state, flowing.work);
+        const std::vector<Overrun> overrun = flowing.linearise();
         ASSERT_FALSE(overrun.empty());
         EXPECT_EQ(overrun[0].vertex, flowing.v);
     }
