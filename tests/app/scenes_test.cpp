@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "app/files/csv_table.h"
+#include "solver/mesh_change/strain_allowance.h"
 #include "tests/app/program.h"
 #include "tests/scatter.h"
 
@@ -112,9 +113,10 @@ TEST_P(Scenes, FinishFreeOfTheirObstaclesAndKeepTheirMaterial)
     EXPECT_LE(report["max_kkt_residual"].get<double>(), 1e-9);
     EXPECT_EQ(report["max_penetration"], 0.0);
     EXPECT_EQ(report["crossings"], 0);
-    // Most scenes have a share of .99 and more. It scatters where few contacts decide, as where a tip or a
-    // corner comes late: by .02 on three needles (median .90) and by .03 on a parasol (.93). One run tells
-    // only if it is far above the bound.
+    // A regression bound, as no closed form gives the share: a coarse trace has about seven vertices, and
+    // snags where one of them is a row in its stead (6/7 = .86). Most scenes have .99 and more. The share
+    // scatters where few contacts decide, as where a tip or a corner comes late: by .02 on three needles
+    // (median .90) and by .03 on a parasol (.93). One run tells only if it is far above the bound.
     constexpr double kLeastShare = 0.85, kSurely = 0.05;
     if (!(eol_share(report) > kLeastShare + kSurely)) {
         EXPECT_TRUE(median_is_above(scatter_of_eol_share(GetParam(), report, folder), kLeastShare));
@@ -128,10 +130,10 @@ TEST_P(Scenes, FinishFreeOfTheirObstaclesAndKeepTheirMaterial)
     for (const double of_step : steps.column("material_area")) EXPECT_NEAR(of_step, area, 1e-12 * area);
     EXPECT_EQ(steps.column("time").back(), report["scene"]["duration"].get<double>());
 
-    // Mesh changes, too: where they may strain cloth as they like it is 8 to 77 % in 11 of these scenes.
-    constexpr double kMostRise = 0.01;
+    // In truth the energy never rises. A mesh change may add kMostClothStrain of the cloth's energy. Where
+    // mesh changes may strain cloth without limit, energy rises by 8 to 77 % in 11 of these scenes.
     if (!is_driven(load_scene(GetParam(), {}, with_program()).scene)) {
-        EXPECT_LE(greatest_rise(steps), kMostRise);
+        EXPECT_LE(greatest_rise(steps), kMostClothStrain);
     }
 }
 

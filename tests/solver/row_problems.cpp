@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "solver/velocity_solve/constraint_rows.h"
 
@@ -52,6 +53,32 @@ std::vector<int> faces_of(RowPattern pattern, int side, int count, std::mt19937&
     std::vector<int> faces;
     for (int k = 0; k < count; ++k) faces.push_back(order[k % std::min(distinct, order.size())]);
     return faces;
+}
+
+/// Multipliers that meet w = `w0` + s z >= 0, z >= 0, w z = 0 to round-off if those that are positive in `z`
+/// press and no others; nothing where they do not. Sweeps converge slowly where rows depend on others, long
+/// after they have found which ones press. `is_row`: 0 for rows of fixed
+/// coordinates alone.
+std::optional<Vector> finish_sweeps(const Matrix& s, const std::vector<char>& is_row, const Vector& w0,
+                                    const Vector& z)
+{
+    constexpr Real kRoundOff = 1e-16L;
+    std::vector<int> pressing;
+    for (Eigen::Index k = 0; k < z.size(); ++k)
+        if (z[k] > 0) pressing.push_back(static_cast<int>(k));
+    Vector found = Vector::Zero(z.size());
+    if (!pressing.empty()) {
+        const Eigen::LDLT<Matrix> factors(Matrix(s(pressing, pressing)));
+        for (int refined = 0; refined < 3; ++refined)
+            found(pressing) += factors.solve(Vector(-(w0 + s * found)(pressing)));
+    }
+    if (found.size() == 0 || !(found.minCoeff() >= 0)) return std::nullopt;
+    const Vector w = w0 + s * found, allowed = kRoundOff * (w0.cwiseAbs() + s.cwiseAbs() * found);
+    for (Eigen::Index k = 0; k < z.size(); ++k) {
+        const bool is_met = z[k] > 0 ? std::abs(w[k]) <= allowed[k] : w[k] >= -allowed[k];
+        if (is_row[k] && !is_met) return std::nullopt;
+    }
+    return found;
 }
 
 }  // namespace
@@ -140,17 +167,26 @@ HildrethAnswer solve_by_hildreth(const VelocityProblem& problem)
     const Vector start = cholesky.solve(Vector(problem.rhs->cast<Real>()(free)));
     Matrix s = g * moved;
     s.diagonal().tail(rows) += gives;
-    Vector z = Vector::Zero(bounds + rows), w = g * start - lower;
-    for (int sweep = 0; sweep < 4000000; ++sweep) {
+    const Vector w0 = g * start - lower;
+    Vector z = Vector::Zero(bounds + rows), w = w0;
+    std::vector<char> is_row;
+    for (Eigen::Index k = 0; k < z.size(); ++k) is_row.push_back(g.row(k).any());
+    constexpr int kSweepsToFinish = 20;
+    for (int sweep = 1; sweep <= 4000000; ++sweep) {
         Real change = 0;
         for (Eigen::Index k = 0; k < z.size(); ++k) {
-            if (!g.row(k).any()) continue;
+            if (!is_row[k]) continue;
             const Real next = std::max(z[k] - w[k] / s(k, k), Real(0)), step = next - z[k];
             z[k] = next;
             w += step * s.col(k);
             change = std::max(change, std::abs(step) * std::sqrt(s(k, k)));
         }
         if (change < 1e-17L * std::max(z.cwiseAbs().maxCoeff(), Real(1e-30L))) break;
+        if (sweep % kSweepsToFinish != 0) continue;
+        if (const std::optional<Vector> found = finish_sweeps(s, is_row, w0, z)) {
+            z = *found;
+            break;
+        }
     }
     HildrethAnswer answer = {Eigen::VectorXd::Zero(problem.rhs->size()),
                              Eigen::VectorXd::Zero(problem.rhs->size()), z.tail(rows).cast<double>()};

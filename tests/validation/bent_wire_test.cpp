@@ -43,15 +43,15 @@ class BentWire : public ::testing::TestWithParam<std::array<int, 2>> {};
 
 TEST_P(BentWire, LetsClothGoAsAStraightOneDoes)
 {
-    // Measured: 0.78 s (straight), 0.72 to 0.84 s (bent), depending on the cloth's initial place to 0.1 mm.
-    // If only a bend a whole thickness or more off the chord had a vertex, the time would be 1.2 to 1.3 s.
-    constexpr double kSoon = 1.0;  // s
+    // The straight wire is the reference. The cloth's initial place, to 0.1 mm, changes the time by 8 %.
+    // Where only a bend a whole thickness or more off the chord has a vertex, cloth takes 60 % longer.
+    constexpr double kLonger = 0.25;  // relative
     const double straight = slide_off({{0.024, -0.6, 0.0}, {0.024, 0.6, 0.0}}, GetParam());
     const double bent = slide_off({{0.0, -0.6, 0.0}, {0.03, 0.0, 0.01}, {0.0, 0.6, 0.0}}, GetParam());
     RecordProperty("straight", std::to_string(straight));
     RecordProperty("bent", std::to_string(bent));
-    EXPECT_LT(straight, kSoon);
-    EXPECT_LT(bent, kSoon);
+    EXPECT_LT(straight, kMost) << "it slides off";
+    EXPECT_LT(bent, (1.0 + kLonger) * straight);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, BentWire, ::testing::Values(std::array{24, 15}, std::array{32, 20}));
