@@ -133,7 +133,7 @@ TEST(RunEnding, NamesPlaceAndObstaclesWhateverTheStatus)
 {
     Scene scene;
     for (const char* name : {"vee", "lid"})
-        scene.obstacles.push_back(Obstacle(name, make_box({1, 1, 1}), {}, {}, 30.0));
+        scene.obstacles.push_back(MovingObstacle(name, make_box({1, 1, 1}), {}, {}, 30.0));
     struct Case {
         StepStatus status;
         double residual;
