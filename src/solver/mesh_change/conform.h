@@ -52,9 +52,8 @@ struct ConformLimits {
     /// Vertices, ascending. Operations that replace a face at one of these are judged as with
     /// StrainLimit::AsMade.
     std::vector<VertexId> careful_at = {};
-    // A mesh that exceeds one of these limits is left unfinished.
-    int lost = std::numeric_limits<int>::max();     ///< on ConformOutcome::lost
-    int blocked = std::numeric_limits<int>::max();  ///< on ConformOutcome::blocked
+    /// On ConformOutcome::lost: a mesh that exceeds it is left unfinished.
+    int lost = std::numeric_limits<int>::max();
 };
 
 /// Result of `conform_mesh`.
@@ -71,7 +70,7 @@ struct ConformOutcome {
 /// releases others by `decide_retention`, clears the way of sliding ones and cleans up behind them; splits
 /// and merges edges that miss their cells. `stars`
 /// and `changes` belong to the state, `relaxations` to the scene. Returns no mesh where nothing changes, or
-/// where clearing exceeds `limits.lost` or `limits.blocked`.
+/// where clearing exceeds `limits.lost`.
 ConformOutcome conform_mesh(const Scene& scene, double dt, const State& state, const ClothStars& stars,
                             const MeshChanges& changes, const FailedFlow& failed, const ConformLimits& limits,
                             RelaxationMemo& relaxations);

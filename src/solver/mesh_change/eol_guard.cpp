@@ -52,8 +52,8 @@ bool EolGuard::allows(const SurgeryEvent& event)
 double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) const
 {
     constexpr double kShare = 0.01;  // of the patch's elastic energy
-    // Otherwise the trace is released, and a row holds everything that slides.
-    const double clearing = limit_ == StrainLimit::Forced ? 1000.0 : 10.0;
+    // Of clearing: otherwise the trace is released, and a row holds everything that slides.
+    constexpr double kClearing = 10.0;
     double area = 0.0, squared_speed = 0.0;
     for (const PatchFace& face : event.before) {
         area += 0.5 * twice_area(face.material[0], face.material[1], face.material[2]);
@@ -63,7 +63,7 @@ double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) con
     }
     const double motion = 0.5 * scene_.material.density * area * squared_speed +
                           weight_over(scene_, area, cell_length(scene_, state_, event.before[0].material[0]));
-    return (is_clearing_ ? clearing : 1.0) *
+    return (is_clearing_ ? kClearing : 1.0) *
            (kShare * elastic_energy + kAllowedStrain * motion + unseen_energy(scene_, area));
 }
 

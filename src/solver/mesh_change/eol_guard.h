@@ -16,8 +16,7 @@ namespace arris {
 /// Limits on the strain of surgery.
 enum class StrainLimit {
     GivesWay,  ///< only strain that would remain after the cloth around gave way counts
-    AsMade,    ///< all strain counts
-    Forced     ///< as AsMade, with a larger limit for clearing ahead of a sliding trace
+    AsMade     ///< all strain counts
 };
 
 /// Guards mesh surgery: refuses operations that would pass through an obstacle or strain the cloth. The sum

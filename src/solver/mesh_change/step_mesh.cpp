@@ -156,15 +156,14 @@ class MeshTries {
     }
 
     /// First tries a mesh that relies on cloth that gives way; then one with care, where patches stay
-    /// strained. The last try is a mesh made by force, where vertices are blocked or care has lost some.
+    /// strained.
     TriedMesh choose()
     {
         TriedMesh giving = make_without_strain();
         carry_over(giving, kTraceStrain);
-        const int lost = giving.outcome.lost;
         TriedMesh careful = more_careful(std::move(giving));
-        const bool is_costly = careful.outcome.lost > lost;
-        return or_forced(std::move(careful), is_costly);
+        carry_over(careful, kAny);
+        return careful;
     }
 
     /// Makes a mesh in which no edge is mended where that strains the cloth: such edges wait.
@@ -227,25 +226,6 @@ class MeshTries {
                 careful_at.insert(careful_at.end(), patch.begin(), patch.end());
         sort_unique(careful_at);
         return careful_at.size() > known;
-    }
-
-    /// Returns a mesh made by force, or else `gentle`. A forced mesh with fewer blocked vertices is taken up
-    /// to a strain of kTraceStrain. Any other is taken only where care was costly, up to kPatchStrain. A
-    /// blocked vertex becomes a row, which stops the sliding cloth and all that hangs on it.
-    TriedMesh or_forced(TriedMesh gentle, bool is_costly)
-    {
-        if (is_costly || gentle.outcome.blocked > 0) {
-            const int most_blocked = is_costly ? kAnyNumber : gentle.outcome.blocked - 1;
-            TriedMesh forced = make({.strain = StrainLimit::Forced, .blocked = most_blocked});
-            const bool is_freer = forced.outcome.blocked < gentle.outcome.blocked;
-            const double most_strain = is_freer ? kTraceStrain : kPatchStrain;
-            if (forced.outcome.blocked <= most_blocked) {
-                carry_over(forced, most_strain);
-                if (forced.strain() <= most_strain) return forced;
-            }
-        }
-        carry_over(gentle, kAny);
-        return gentle;
     }
 
     TriedMesh make(const ConformLimits& limits)

@@ -132,20 +132,19 @@ TEST(EolGuard, DoesNotLetStiffClothBeBent)
 {
     // Flipping an edge of the fold makes the fold a zigzag. The cloth is so soft that the stretch has no
     // noticeable energy.
-    for (const auto& [stiffness, is_allowed] : {std::pair(1e-9, true), {1e-1, false}})
-        for (const StrainLimit limit : {StrainLimit::AsMade, StrainLimit::Forced}) {
-            Folded cloth(160.0);
-            cloth.cloth.scene.material.youngs_modulus = 1e-3;
-            cloth.cloth.scene.material.bending_stiffness = stiffness;
-            cloth.cloth.scene.gravity.reset();
-            for (Vec3& v : cloth.cloth.state.velocity) v = Vec3(0.3, 0.0, 0.0);
-            RelaxationMemo relaxations;
-            EolGuard guard(cloth.cloth.scene, cloth.cloth.state, limit, {}, relaxations);
-            guard.watch(cloth.surgery);
-            const SurgeryProposal flip = cloth.surgery.propose_flip(cloth.at(0.2, 0.3), cloth.at(0.2, 0.35));
-            ASSERT_TRUE(flip.is_legal());
-            EXPECT_EQ(guard.allows(flip.event), is_allowed) << stiffness;
-        }
+    for (const auto& [stiffness, is_allowed] : {std::pair(1e-9, true), {1e-1, false}}) {
+        Folded cloth(160.0);
+        cloth.cloth.scene.material.youngs_modulus = 1e-3;
+        cloth.cloth.scene.material.bending_stiffness = stiffness;
+        cloth.cloth.scene.gravity.reset();
+        for (Vec3& v : cloth.cloth.state.velocity) v = Vec3(0.3, 0.0, 0.0);
+        RelaxationMemo relaxations;
+        EolGuard guard(cloth.cloth.scene, cloth.cloth.state, StrainLimit::AsMade, {}, relaxations);
+        guard.watch(cloth.surgery);
+        const SurgeryProposal flip = cloth.surgery.propose_flip(cloth.at(0.2, 0.3), cloth.at(0.2, 0.35));
+        ASSERT_TRUE(flip.is_legal());
+        EXPECT_EQ(guard.allows(flip.event), is_allowed) << stiffness;
+    }
 }
 
 TEST(EolGuard, DoesNotLetClothBeLifted)

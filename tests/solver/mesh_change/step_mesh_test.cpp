@@ -52,14 +52,10 @@ EolCloth heading_for_pleat(double youngs_modulus)
     return cloth;
 }
 
-TEST(StepMesh, ClearsATracesWayByForceWhereThatStrainsLittle)
+TEST(StepMesh, AVertexWhoseWayCannotBeClearedBecomesARow)
 {
-    // The two cases strain the cloth by 4.7 % and 20 % of its energy scale; kTraceStrain is 6 %.
     for (const double youngs_modulus : {200.0, 800.0}) {
         EolCloth cloth = heading_for_pleat(youngs_modulus);
-        for (const StrainLimit limit : {StrainLimit::GivesWay, StrainLimit::AsMade})
-            EXPECT_GT(testing::conform_cloth(cloth, {}, {.strain = limit}).blocked, 0)
-                << "nothing gentler does";
         MeshCache cache;
         update_mesh_cache(cloth.scene, cloth.state, cache);
         StepReport report;
@@ -69,16 +65,11 @@ TEST(StepMesh, ClearsATracesWayByForceWhereThatStrainsLittle)
             choose_step_mesh(cloth.scene, {cloth.state.time, cloth.state.time + kStep},
                              cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
                 .start;
-        const auto blocked =
+        EXPECT_GT(
             std::count_if(cache.refused.begin(), cache.refused.end(),
-                          [](const RefusedContact& refused) { return refused.cause == RowCause::Blocked; });
-        if (youngs_modulus < 500.0) {
-            EXPECT_EQ(blocked, 0);
-            EXPECT_EQ(start.eol.size(), eol);
-        } else {
-            EXPECT_GT(blocked, 0);
-            EXPECT_LT(start.eol.size(), eol);
-        }
+                          [](const RefusedContact& refused) { return refused.cause == RowCause::Blocked; }),
+            0);
+        EXPECT_LT(start.eol.size(), eol);
     }
 }
 
