@@ -11,6 +11,7 @@
 #include "app/scene/missing_effects.h"
 #include "app/scene/scene_effects.h"
 #include "app/scene/scene_estimate.h"
+#include "app/scene/scene_obstacles.h"
 #include "app/text/counted.h"
 #include "app/text/printable.h"
 #include "geometry/cloth/material_locator.h"
@@ -118,14 +119,6 @@ std::string elements_in_words(const Obstacle& obstacle)
     if (!mesh.lone_points.empty())
         parts.push_back(counted(mesh.lone_points.size(), "lone point", "lone points"));
     return fmt::format("{}", fmt::join(parts, ", "));
-}
-
-Box3 bounds_at(const MovingObstacle& obstacle, double time)
-{
-    const ObstaclePose pose = obstacle.at(time);
-    Box3 box;
-    for (const Vec3& point : pose->mesh().points) box.extend(pose.placement(point));
-    return box;
 }
 
 /// Length of each polyline of sharp edges, m.

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/scene/scene_obstacles.h"
 #include "geometry/cloth/material_box.h"
 
 namespace arris {
@@ -25,14 +26,6 @@ Box3 box_around(const std::vector<Vec3>& points)
 {
     Box3 box;
     for (const Vec3& x : points) box.extend(x);
-    return box;
-}
-
-Box3 box_at_start(const MovingObstacle& obstacle)
-{
-    const ObstaclePose pose = obstacle.at(0.0);
-    Box3 box;
-    for (const Vec3& point : pose->mesh().points) box.extend(pose.placement(point));
     return box;
 }
 
@@ -102,7 +95,7 @@ void check_reach(const RunConfig& config, Warnings& warnings)
     const Vec3 way = 0.5 * config.duration * config.duration * config.scene.gravity->acceleration;
     std::vector<std::string> names;
     for (const MovingObstacle& obstacle : config.scene.obstacles) {
-        Box3 box = box_at_start(obstacle);
+        Box3 box = bounds_at(obstacle, 0.0);
         box = Box3(box.min() - reach, box.max() + reach);
         if (enters(box, cloth.center(), way)) return;
         names.push_back(obstacle.name());

@@ -216,6 +216,14 @@ void load_obstacles(const SceneDocument& document, const LoadOptions& options,
     if (!plans.empty()) check_sizes(document, config);
 }
 
+Box3 bounds_at(const MovingObstacle& obstacle, double time)
+{
+    const ObstaclePose pose = obstacle.at(time);
+    Box3 box;
+    for (const Vec3& point : pose->mesh().points) box.extend(pose.placement(point));
+    return box;
+}
+
 std::vector<std::string> find_intersections(const SceneDocument& document, const RunConfig& config)
 {
     std::vector<std::string> lines;

@@ -28,6 +28,9 @@ std::vector<ObstaclePlan> plan_obstacles(const nlohmann::ordered_json& scene);
 void load_obstacles(const SceneDocument& document, const LoadOptions& options,
                     std::vector<ObstaclePlan> plans, RunConfig& config);
 
+/// The box in the world, with sides along its axes, that an obstacle fills at `time` (s).
+Box3 bounds_at(const MovingObstacle& obstacle, double time);
+
 /// One line for each obstacle that the cloth intersects at time 0, with pins applied: its name, the depth and
 /// the place.
 std::vector<std::string> find_intersections(const SceneDocument& document, const RunConfig& config);

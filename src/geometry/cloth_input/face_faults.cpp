@@ -10,8 +10,8 @@
 #include <span>
 
 #include "geometry/cloth/euler_characteristic.h"
-#include "geometry/cloth/mesh_pieces.h"
 #include "geometry/sort_unique.h"
+#include "geometry/tolerances.h"
 
 namespace arris {
 namespace {
@@ -61,10 +61,9 @@ Vec3 inward(const PlacedFaces& mesh, const Side& side)
 /// Whether two of the faces lie on each other beside their edge.
 bool has_layers(const PlacedFaces& mesh, std::span<const Side> edge)
 {
-    constexpr double kFlat = 1e-6;  // sine of an angle; files are often written in single precision
     for (std::size_t i = 0; i < edge.size(); ++i)
         for (std::size_t j = i + 1; j < edge.size(); ++j)
-            if ((inward(mesh, edge[i]) - inward(mesh, edge[j])).norm() <= kFlat) return true;
+            if ((inward(mesh, edge[i]) - inward(mesh, edge[j])).norm() <= kSinglePrecision) return true;
     return false;
 }
 

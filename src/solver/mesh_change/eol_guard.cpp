@@ -52,7 +52,8 @@ bool EolGuard::allows(const SurgeryEvent& event)
 double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) const
 {
     constexpr double kShare = 0.01;  // of the patch's elastic energy
-    // Of clearing: otherwise the trace is released, and a row holds everything that slides.
+    // Clearing may raise the energy by this many times as much. Otherwise the trace would be released, and a
+    // row would hold everything that slides.
     constexpr double kClearing = 10.0;
     double area = 0.0, squared_speed = 0.0;
     for (const PatchFace& face : event.before) {

@@ -50,9 +50,8 @@ bool is_folded(const State& state, std::span<const int> faces)
 /// vertex, whose place is now in that face.
 bool is_corner_under_face(const Scene& scene, const State& state, const EolVertex& eol)
 {
-    const ObstaclePose obstacle = scene.obstacles[eol.on.obstacle].at(state.time);
     if (!eol.on.is_corner()) return false;
-    const int point = obstacle->features().corners[eol.on.index].point;
+    const int point = scene.obstacles[eol.on.obstacle].shape().features().corners[eol.on.index].point;
     return std::any_of(state.active.begin(), state.active.end(), [&](const ActiveContact& contact) {
         return contact.obstacle == eol.on.obstacle && contact.kind == ContactKind::Triangle &&
                contact.element == point;
