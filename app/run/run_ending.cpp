@@ -106,6 +106,23 @@ std::string explain_infeasible(const Infeasible& infeasible, const Scene& scene,
                        place, why);
 }
 
+/// Says that friction locks the cloth where two faces close on it at too small an angle: each face's force is
+/// at most atan(coefficient) off its normal, so that the two can hold any other force.
+std::string explain_lock(const FailurePlace& place, const Scene& scene)
+{
+    constexpr double kDegree = M_PI / 180.0;
+    constexpr double kParallel = kDegree;  // such faces drive cloth nowhere, with or without friction
+    if (!scene.friction || place.crease[0] < 0 || !(place.crease_angle > kParallel)) return "";
+    const double coefficient = std::min(scene.friction->coefficient(place.crease[0]),
+                                        scene.friction->coefficient(place.crease[1])),
+                 locked = 2.0 * std::atan(coefficient);
+    if (!(place.crease_angle < locked)) return "";
+    return fmt::format(
+        "; friction locks it there: with a coefficient of {:.3g} cloth does not slip out of a crease of less "
+        "than {:.0f} degrees, and this one has {:.0f}; lower the coefficient, or close the crease less",
+        coefficient, locked / kDegree, place.crease_angle / kDegree);
+}
+
 /// Says which number is not finite: "the pin's target of vertex 7, at [..], of pin.0", "the placement of
 /// box".
 std::string name_not_finite(const NotFinite& found, const Scene& scene, const State& state)
@@ -135,12 +152,14 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
                                 "times smaller steps",
                                 name_met(report.place, scene, "a feature"), name_place(report.place), place)};
         case StepStatus::Infeasible:
-            return {RunStatus::Infeasible, explain_infeasible(report.infeasible, scene, state, place)};
+            return {RunStatus::Infeasible, explain_infeasible(report.infeasible, scene, state, place) +
+                                               explain_lock(report.place, scene)};
         case StepStatus::Penetration:
             return {
                 RunStatus::Penetration,
                 fmt::format("the cloth cannot be kept out of {}{} {}, even with 64 times smaller steps",
-                            name_met(report.place, scene, "an obstacle"), name_place(report.place), place)};
+                            name_met(report.place, scene, "an obstacle"), name_place(report.place), place) +
+                    explain_lock(report.place, scene)};
         default:
             if (!std::isfinite(report.kkt_residual) && report.factorisations > 1)
                 return {RunStatus::NotConverged,

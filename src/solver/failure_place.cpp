@@ -2,6 +2,7 @@
 #include "solver/failure_place.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "solver/eol/eol_coordinates.h"
 
@@ -112,6 +113,28 @@ FailurePlace find_hardest_press(const State& state, const Workspace& work)
     return place;
 }
 
+/// Names the two obstacles that close most on the vertex (id) of a failed step, and the angle between them.
+void name_crease(const State& state, const std::vector<Contact>& contacts, std::int64_t id,
+                 FailurePlace& place)
+{
+    const auto at = std::lower_bound(state.ids.begin(), state.ids.end(), id);
+    if (at == state.ids.end() || *at != id) return;
+    const int vertex = static_cast<int>(at - state.ids.begin());
+    std::vector<const Contact*> met;
+    for (const Contact& contact : contacts)
+        if (!contact.is_with_itself() && !contact.is_fold() && has_vertex(contact, vertex))
+            met.push_back(&contact);
+    double least = 0.0;  // cosine between the normals
+    for (std::size_t i = 0; i < met.size(); ++i)
+        for (std::size_t j = i + 1; j < met.size(); ++j) {
+            const double cosine = met[i]->normal.dot(met[j]->normal);
+            if (!(cosine < least)) continue;
+            least = cosine;
+            place.crease = {met[i]->obstacle, met[j]->obstacle};
+            place.crease_angle = std::acos(std::clamp(-cosine, -1.0, 1.0));
+        }
+}
+
 FailurePlace find_place(const State& state, const Workspace& work, const Violations& violations,
                         const std::vector<Overrun>& overrun, StepStatus status)
 {
@@ -132,7 +155,10 @@ void name_failure(const State& state, const Workspace& work, const Violations& v
 {
     if (report.status == StepStatus::Done || report.status == StepStatus::NotFinite) return;
     report.place = find_place(state, work, violations, overrun, report.status);
-    if (report.status != StepStatus::Infeasible || report.infeasible.vertex >= 0) return;
+    const bool is_named = report.status == StepStatus::Infeasible && report.infeasible.vertex >= 0;
+    name_crease(state, work.contacts, is_named ? report.infeasible.vertex : report.place.vertex,
+                report.place);
+    if (report.status != StepStatus::Infeasible || is_named) return;
     report.infeasible.vertex = report.place.vertex;
     report.infeasible.obstacles = report.place.obstacles;
     report.infeasible.is_with_itself = report.place.is_with_itself && report.place.obstacles[0] < 0;

@@ -55,6 +55,8 @@ struct FailurePlace {
     Vec2 material = Vec2::Zero();             ///< m, likewise
     std::array<int, 2> obstacles = {-1, -1};  ///< indices in the scene
     bool is_with_itself = false;              ///< cloth meets cloth
+    std::array<int, 2> crease = {-1, -1};     ///< obstacles (indices) whose faces close on a vertex there
+    double crease_angle = 0.0;                ///< radians, between those faces
 };
 
 struct StepReport {
@@ -73,7 +75,7 @@ struct StepReport {
     int solves = 0;             ///< velocity solves: more than one if the check found violations
     int relinearisations = 0;   ///< solves with relinearised forces (relinearization.h)
     double energy_rise = 0.0;   ///< J, energy added by a step that no further attempt could mend
-    int yielded = 0;            ///< contacts that could not keep their stand-off
+    int yielded = 0;            ///< contacts at which the cloth is squeezed below its stand-off
     int rewound = 0;            ///< vertices put back on their path so that they pass nothing
     double kkt_residual = 0.0;
     int factorisations = 0;
