@@ -132,6 +132,7 @@ void write_state(BinaryWriter& out, const State& state)
         out.vector(contact.normal);
         out.number(contact.multiplier);
         write_friction(out, contact.friction);
+        out.number(static_cast<std::int32_t>(contact.is_squeezed));
     });
     out.list(state.coupled, [&](const std::array<int, 2>& pair) {
         for (const int v : pair) out.number(static_cast<std::int32_t>(v));
@@ -188,7 +189,7 @@ State read_state(BinaryReader& in)
         return anchor;
     });
     constexpr std::size_t kContactBytes =
-        4 * sizeof(std::uint32_t) + 3 * sizeof(std::int32_t) + 11 * sizeof(double);
+        4 * sizeof(std::uint32_t) + 4 * sizeof(std::int32_t) + 11 * sizeof(double);
     state.active = in.list<ActiveContact>(kContactBytes, [&] {
         ActiveContact contact;
         for (std::uint32_t& id : contact.vertex_ids) id = in.number<std::uint32_t>();
@@ -198,6 +199,7 @@ State read_state(BinaryReader& in)
         contact.normal = in.vector();
         contact.multiplier = in.number<double>();
         contact.friction = read_friction(in);
+        contact.is_squeezed = in.number<std::int32_t>() != 0;
         return contact;
     });
     state.coupled = in.list<std::array<int, 2>>(2 * sizeof(std::int32_t), [&] {

@@ -92,6 +92,10 @@ std::vector<SceneKey> make_scene_keys()
                "Damping proportional to the elastic stiffness; 0 switches damping off."),
         number("cloth.material.thickness", "m", {0.0, 1.0, true}, "0.001",
                "Distance that contacts keep between the cloth's surface and obstacles."),
+        number(
+            "cloth.material.compression_modulus", "Pa", {0.0, 1e12, true}, "1e4",
+            "Pressure with which cloth between obstacles resists, per share of the thickness by which it is "
+            "squeezed."),
 
         tables("pin", "Pins hold or move vertices. Without a pin nothing holds the cloth."),
         box("pin[].material",

@@ -90,7 +90,8 @@ Material to_material(const Json& json)
             to_double(json["bending_stiffness"]),
             to_double(json["damping"]),
             to_double(json["thickness"]),
-            json["bending_model"] == "plate" ? BendingModel::Plate : BendingModel::Hinge};
+            json["bending_model"] == "plate" ? BendingModel::Plate : BendingModel::Hinge,
+            to_double(json["compression_modulus"])};
 }
 
 /// Nothing where neither [friction] nor a coefficient of an obstacle or of the layers is given.

@@ -20,6 +20,7 @@ struct Material {
     double damping = 0.0;            ///< s, stiffness-proportional; 0 leaves damping out
     double thickness = 1e-3;         ///< m, the distance kept between the cloth's surface and obstacles
     BendingModel bending_model = BendingModel::Hinge;
+    double compression_modulus = 1e4;  ///< Pa: pressure on squeezed cloth, per share of the thickness missing
 };
 
 /// D, J: moment per width and curvature of smoothly bent cloth. K for BendingModel::Plate; 4/3 K for

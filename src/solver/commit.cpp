@@ -51,6 +51,7 @@ void commit(const Scene& scene, const PlannedStep& planned, double end, Workspac
     };
     report.self_contacts =
         count([](const ActiveContact& contact) { return contact.obstacle == kClothItself; });
+    report.yielded = count([](const ActiveContact& contact) { return contact.is_squeezed; });
     report.contacts = static_cast<int>(state.active.size()) - report.self_contacts - count(is_fold);
     state.previous_world.swap(state.mesh.world);
     state.previous_velocity.swap(state.velocity);

@@ -8,6 +8,7 @@
 #include "physics/feature_impulse.h"
 #include "physics/inertia.h"
 #include "solver/contact/constraints.h"
+#include "solver/contact/squeezed.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/velocity_solve/symmetric_product.h"
 
@@ -192,7 +193,9 @@ double energy_scale(const Workspace& work)
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work)
 {
     double allowed = kRise * energy_scale(work);
-    double rise = work.energies.solved.sum() - work.energies.start.sum();
+    double rise = work.energies.solved.sum() - work.energies.start.sum() +
+                  energy_stored(work.carriers, work.contacts,
+                                find_end(work.prediction, velocity_of(work.proposal)).world);
     if (!(rise > allowed)) return 0.0;
     allowed += round_off_energy(scene, state, work.mesh.elements);
     const double driven = compute_driven_work(state, work);

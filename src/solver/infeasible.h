@@ -24,7 +24,7 @@ struct UnmetStep {
 };
 
 /// Names what an infeasible step cannot meet together: a vertex, the pin that holds it, and the obstacles of
-/// its contacts. `overconstrained` is a vertex (index) without room between two contacts (`share_room`).
+/// its contacts. `overconstrained` is a vertex (index) without room between two contacts (`squeeze_contacts`).
 /// Without one, the vertex is that of a row that the velocity solve could not meet, a pinned one if there is
 /// any. Where this is a contact of the cloth with itself, the pin of the other layer is named, too, or else
 /// the obstacle that presses the two layers together.

@@ -151,6 +151,9 @@ bool propose_and_check(Rounds& round)
     const auto check = [&] {
         round.violations = check_proposal(round.scene, round.state, work.mesh.self_surface, work.proposal,
                                           work.prediction, work.carriers);
+        const std::vector<Contact> floors =
+            find_floors(work.carriers, work.prediction, work.contacts, work.proposal.world);
+        round.violations.contacts.insert(round.violations.contacts.end(), floors.begin(), floors.end());
     };
     propose_measured(growth);
     if (note_not_finite(CheckedStage::Proposal, round.state, work, round.report)) return false;
@@ -168,7 +171,7 @@ enum class RoundEnd {
     Unsolved,
     NotFinite,
     Unmet,
-    FoldYields,
+    FoldPresses,
     Overrun,
     Violated,
     Overconstrained,
@@ -197,7 +200,7 @@ RoundEnd run_round(Next from, Rounds& round)
             break;
     }
     if (report.friction_residual > kOffLaw && round.attempt == Attempt::Ordinary) return RoundEnd::Unsolved;
-    if (round.may_solve_again() && yield_folds(work)) return RoundEnd::FoldYields;
+    if (round.may_solve_again() && drop_overconstraining_folds(work)) return RoundEnd::FoldPresses;
     watch.lap();
     if (!propose_flow(round)) return RoundEnd::Overrun;
     const bool is_finite = propose_and_check(round);
@@ -220,29 +223,30 @@ Next give_up(Rounds& round)
 {
     Workspace& work = round.work;
     StepReport& report = round.report;
-    if (work.solution.status == SolveStatus::Infeasible) {
+    std::vector<int> unmet = list_too_thin(work.carriers, work.contacts, work.proposal.world);
+    unmet.insert(unmet.end(), work.solution.infeasible_rows.begin(), work.solution.infeasible_rows.end());
+    if (!unmet.empty()) {
         report.status = StepStatus::Infeasible;
-        report.infeasible =
-            name_infeasible(round.state, {work.contacts, work.pin_targets, work.solution.infeasible_rows});
+        report.infeasible = name_infeasible(round.state, {work.contacts, work.pin_targets, unmet});
     } else {
         report.status = StepStatus::Penetration;
     }
     report.crossings = round.violations.crossings;
-    report.yielded = work.yielded;
     if (round.attempt == Attempt::Ordinary || !(report.kkt_residual <= round.settings.tolerance))
         return Next::Fail;
     const std::optional<int> rewound =
         rewind(round.scene, round.state, work.mesh.self_surface, work.pin_targets, work.prediction,
                round.dt(), work.carriers, work.proposal);
-    if (!rewound) return Next::Fail;
+    if (!rewound || !list_too_thin(work.carriers, work.contacts, work.proposal.world).empty())
+        return Next::Fail;
     report.rewound = *rewound;
     report.crossings = 0;
     return Next::Accept;
 }
 
-Next yield_or_give_up(Rounds& round)
+Next squeeze_or_give_up(Rounds& round)
 {
-    if (round.may_solve_again() && yield_infeasible(round.work)) return Next::Assemble;
+    if (round.may_solve_again() && squeeze_unmet(round.work)) return Next::Assemble;
     if (!propose_flow(round)) return fail<StepStatus::Overrun>(round);
     return propose_and_check(round) ? give_up(round) : Next::Fail;
 }
@@ -270,7 +274,6 @@ Next linearise_nearer_or_fail(Rounds& round)
 
 Next balance_energy(Rounds& round)
 {
-    round.report.yielded = round.work.yielded;
     return enforce_energy_balance(round.scene, round.state, round.attempt, round.may_solve_again(),
                                   round.work, round.report);
 }
@@ -294,12 +297,12 @@ constexpr Rule kRules[] = {
      fail<StepStatus::NotFinite>,
      {"a number is not finite", "the attempt fails, and names it", ""}},
     {RoundEnd::Unmet,
-     yield_or_give_up,
+     squeeze_or_give_up,
      {"contacts cannot be met together",
-      "they yield, and a new system is solved; where none can, the attempt fails (infeasible), or the last "
-      "one moves cloth back on its path",
+      "the cloth is squeezed there, and a new system is solved; where it is already, the attempt fails "
+      "(infeasible), or the last one moves cloth back on its path",
       "12 solves"}},
-    {RoundEnd::FoldYields,
+    {RoundEnd::FoldPresses,
      solve_again,
      {"a plane behind a wire presses cloth on another obstacle", "the plane keeps nothing in this step",
       "12 solves"}},
@@ -311,8 +314,9 @@ constexpr Rule kRules[] = {
       "12 solves, 4 linearisations"}},
     {RoundEnd::Violated,
      add_rows_or_give_up,
-     {"the check of the path finds contacts",
-      "they become rows of the same system, or of a new one where history or room changes; without any the "
+     {"the check of the path finds contacts, or cloth squeezed below its least thickness",
+      "they become rows of the same system, or of a new one where history changes or the cloth is squeezed; "
+      "without any the "
       "attempt fails (penetration), or the last one moves cloth back on its path",
       "12 solves"}},
     {RoundEnd::Overconstrained,
@@ -342,7 +346,7 @@ std::vector<Overrun> run_rounds(const Scene& scene, const Settings& settings, do
         report.seconds.check += watch.lap();
         // A step that fails may return to an earlier linearisation that raised no energy.
         if (next == Next::Fail && restore_least_rise(work, report)) next = Next::Assemble;
-        if (next == Next::Accept) report.status = StepStatus::Done;
+        if (next == Next::Accept) report.status = StepStatus::Done, report.crossings = 0;
     }
     name_failure(state, work, round.violations, round.overrun, report);
     return round.overrun;

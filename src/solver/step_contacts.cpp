@@ -7,6 +7,7 @@
 #include "solver/contact/constraints.h"
 #include "solver/contact/contact_history.h"
 #include "solver/contact/eol_contacts.h"
+#include "solver/contact/squeezed.h"
 #include "solver/infeasible.h"
 #include "solver/not_finite.h"
 #include "solver/overconstrained.h"
@@ -26,6 +27,38 @@ bool flatten_contacts(const Scene& scene, const State& state, std::size_t first,
     return true;
 }
 
+void append(const std::vector<Contact>& added, std::vector<Contact>& contacts)
+{
+    contacts.insert(contacts.end(), added.begin(), added.end());
+}
+
+std::vector<int> find_unmet_folds(const Workspace& work)
+{
+    const UnmetStep step = {work.contacts, work.pin_targets, work.solution.infeasible_rows};
+    std::vector<int> folds;
+    for (std::size_t c = 0; c < work.contacts.size(); ++c)
+        if (work.contacts[c].is_fold() && step.is_unmet(work.contacts[c].row))
+            folds.push_back(static_cast<int>(c));
+    return folds;
+}
+
+/// Lets fold planes keep nothing in this step: they are only a help, as the check finds cloth that passes
+/// without them. True where one kept anything.
+bool drop_folds(const std::vector<int>& folds, Workspace& work)
+{
+    constexpr double kFree = 1e3;  // m: farther than any step moves
+    bool is_changed = false;
+    for (const int f : folds) {
+        Contact& fold = work.contacts[f];
+        if (fold.least_gap <= -kFree) continue;
+        fold.least_gap = -kFree;
+        fold.may_grow = false;
+        update_gap(work.carriers[fold.obstacle], work.prediction, fold);
+        is_changed = true;
+    }
+    return is_changed;
+}
+
 }  // namespace
 
 bool collect_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
@@ -39,18 +72,21 @@ bool collect_contacts(const Scene& scene, const State& state, Workspace& work, S
         work.eol = add_eol_contacts(scene, state, work.mesh.stars, work.prediction, turning, work.carriers,
                                     work.contacts);
     }
+    work.cushion = {scene.material.compression_modulus, lump_masses(1.0, work.mesh.elements)};
     const std::optional<int> overconstrained =
-        share_room(work.carriers, work.prediction, work.contacts).overconstrained;
+        squeeze_contacts(work.cushion, work.carriers, work.prediction, work.contacts).overconstrained;
+    append(expect_floors(work.carriers, work.prediction, work.contacts), work.contacts);
     if (!scene.obstacles.empty() || scene.self_contact)
         work.mobility = find_mobility(scene.material.density, work.mesh.elements, work.pin_targets);
     flatten_contacts(scene, state, 0, work);
     // Layers are searched along their way as the obstacles have left it.
     const std::size_t with_obstacles = work.contacts.size();
-    const std::vector<Contact> layers = find_contacts_with_itself(
-        scene, state, work.prediction, work.pin_targets, work.mesh.self_surface, work.carriers);
-    work.contacts.insert(work.contacts.end(), layers.begin(), layers.end());
+    std::vector<Contact> layers = find_contacts_with_itself(scene, state, work.prediction, work.pin_targets,
+                                                            work.mesh.self_surface, work.carriers);
+    squeeze_contacts(work.cushion, work.carriers, work.prediction, layers);
+    append(expect_floors(work.carriers, work.prediction, layers), layers);
+    append(layers, work.contacts);
     flatten_contacts(scene, state, with_obstacles, work);
-    work.yielded = 0;
     if (note_not_finite(CheckedStage::Contacts, state, work, report)) return false;
     if (!overconstrained) return true;
     report.status = StepStatus::Infeasible;
@@ -87,25 +123,21 @@ void make_room_for_layers(Workspace& work)
     system.make_pattern(work.mesh.elements, std::move(pairs));
 }
 
-bool yield_infeasible(Workspace& work)
+bool squeeze_unmet(Workspace& work)
 {
     const UnmetStep step = {work.contacts, work.pin_targets, work.solution.infeasible_rows};
     bool is_changed = false;
     for (Contact& contact : work.contacts) {
-        if (!step.is_unmet(contact.row)) continue;
-        if (!yield_stand_off(work.carriers, work.prediction, contact)) continue;
-        ++work.yielded;
+        if (!step.is_unmet(contact.row) || contact.is_fold()) continue;
+        if (!squeeze(work.cushion, work.carriers, work.prediction, contact)) continue;
         is_changed = true;
     }
-    return is_changed;
+    return is_changed | drop_folds(find_unmet_folds(work), work);
 }
 
-bool yield_folds(Workspace& work)
+bool drop_overconstraining_folds(Workspace& work)
 {
-    bool is_changed = false;
-    for (const int fold : find_overconstraining_folds(work))
-        is_changed |= yield_stand_off(work.carriers, work.prediction, work.contacts[fold]);
-    return is_changed;
+    return drop_folds(find_overconstraining_folds(work), work);
 }
 
 std::optional<Next> add_violations(const Scene& scene, const State& state, const Violations& violations,
@@ -113,10 +145,11 @@ std::optional<Next> add_violations(const Scene& scene, const State& state, const
 {
     if (violations.contacts.empty()) return std::nullopt;
     const std::size_t first = work.contacts.size();
-    work.contacts.insert(work.contacts.end(), violations.contacts.begin(), violations.contacts.end());
+    append(violations.contacts, work.contacts);
     for (std::size_t c = first; c < work.contacts.size(); ++c) recall(state, work.carriers, work.contacts[c]);
-    const bool is_shared = share_room(work.carriers, work.prediction, work.contacts).is_changed;
-    if (flatten_contacts(scene, state, first, work) || is_shared) return Next::Assemble;
+    const bool is_squeezed =
+        squeeze_contacts(work.cushion, work.carriers, work.prediction, work.contacts).is_changed;
+    if (flatten_contacts(scene, state, first, work) || is_squeezed) return Next::Assemble;
     append_rows(work.prediction, work.linearization, first, work.contacts, work.problem);
     return Next::Resume;
 }

@@ -19,17 +19,17 @@ bool collect_contacts(const Scene& scene, const State& state, Workspace& work, S
 /// couple.
 void make_room_for_layers(Workspace& work);
 
-/// Lets contacts that cannot be met together keep less than their stand-off, in a new system. False where
-/// none can yield. The velocity found is then discarded: impulses of rows that cannot be met are no contact
-/// forces.
-bool yield_infeasible(Workspace& work);
+/// Lets the cloth be squeezed at contacts that cannot be met together, in a new system; fold planes keep
+/// nothing. False where all these contacts are squeezed already. The velocity found is then discarded:
+/// impulses of rows that cannot be met are no contact forces.
+bool squeeze_unmet(Workspace& work);
 
-/// Lets fold planes at wires yield where they press cloth against another obstacle, in a new system. False
-/// where none does so.
-bool yield_folds(Workspace& work);
+/// Drops fold planes at wires where they press cloth against another obstacle, in a new system. False where
+/// none does so.
+bool drop_overconstraining_folds(Workspace& work);
 
-/// Adds violations as rows: to the existing system, or to a new one where they change history or the room
-/// that contacts share. Nothing where the check names no contact.
+/// Adds violations as rows: to the existing system, or to a new one where they change history, or squeeze
+/// the cloth. Nothing where the check names no contact.
 std::optional<Next> add_violations(const Scene& scene, const State& state, const Violations& violations,
                                    Workspace& work);
 

@@ -6,6 +6,7 @@
 #include "physics/energies.h"
 #include "solver/contact/contacts.h"
 #include "solver/contact/proposal.h"
+#include "solver/contact/squeezed.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/friction/friction_pairs.h"
 #include "solver/mesh_change/mesh_cache.h"
@@ -58,7 +59,7 @@ struct Workspace {
     ClothVelocity expansion;  ///< v^: q^ = q~ + gamma v^ is where forces are linearised
     VelocityProblem problem;
     std::vector<Rub> rubs;  ///< contacts with friction, one per friction pair of `problem`
-    int yielded = 0;
+    Cushion cushion;
 
     // solve_velocity, propose
     VelocitySolver solver;

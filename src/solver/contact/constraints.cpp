@@ -117,6 +117,7 @@ void add_row(const Prediction& prediction, const Linearization& at, bool is_expe
     ConstraintRow row;
     row.lower = -contact.gap / prediction.gamma;
     row.expected = contact.last_multiplier;
+    if (contact.is_squeezed()) row.give = 1.0 / (prediction.gamma * prediction.gamma * contact.stiffness);
     for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
         if (contact.weights[i] == 0.0) continue;
         const int v = contact.vertices[i];
@@ -166,6 +167,7 @@ void build_constraints(const std::vector<PinTarget>& held, const std::vector<Eol
         Contact& contact = contacts[c];
         const int v = contact.vertices[0];
         contact.bound = contact.row = -1;
+        if (contact.is_squeezed()) continue;
         if (contact.eol >= 0) {
             contact.bound = 3 * v;
         } else {

@@ -86,6 +86,7 @@ bool flatten_history(const State& state, const Carriers& carriers, const std::ve
     for (int pass = 0; prediction.has_history && pass < kPasses; ++pass)
         for (std::size_t c = first; c < contacts.size(); ++c) {
             const Contact& contact = contacts[c];
+            if (contact.is_squeezed() || contact.is_floor) continue;  // no impact
             const Carrier& carrier = carriers[contact.obstacle];
             const RiddenHistory ridden = find_ridden(carrier, state, prediction.forward, contact);
             const double shift = contact.normal.dot(contact.at(prediction.position)) - ridden.position;

@@ -86,39 +86,9 @@ class RememberedPairs {
     VertexFaces faces_at_;  ///< of each vertex; filled on first use
 };
 
-void update_gap(const Carrier& carrier, const Prediction& prediction, Contact& contact)
-{
-    contact.gap = contact.normal.dot(contact.at(prediction.position) - carrier.end(contact.point_in_frame)) -
-                  contact.least_gap;
-}
-
 ContactFriction rotate(const Mat3& rotation, const ContactFriction& friction)
 {
     return {rotation * friction.force, rotation * friction.slip, friction.budget};
-}
-
-/// Shares the room between two contacts of one vertex whose normals are opposite.
-SharedRoom share_room(const Carriers& carriers, const Prediction& prediction, Contact& a, Contact& b)
-{
-    constexpr double kOpposite = -0.9;       // cosine between the normals
-    constexpr double kFacing = -1.0 + 1e-9;  // cosine below which they face each other exactly
-    constexpr double kShared = 0.99;         // of the room, so that the two contacts do not conflict
-    constexpr double kNoRoom = 1e-6;         // of the stand-offs: a smaller room is round-off
-    const double cosine = a.normal.dot(b.normal);
-    const double wanted = a.least_gap + b.least_gap;
-    if (!(cosine < kOpposite) || !(wanted > 0.0)) return {};
-    // Measured at the vertex: planes that do not face each other exactly have no single distance.
-    const Vec3 place = carriers[a.obstacle].end(carriers[a.obstacle].reference[a.vertices[0]]);
-    const double room = a.normal.dot(place - carriers[a.obstacle].end(a.point_in_frame)) +
-                        b.normal.dot(place - carriers[b.obstacle].end(b.point_in_frame));
-    if (kShared * room >= wanted) return {};
-    for (Contact* contact : {&a, &b}) {
-        contact->least_gap *= std::max(kShared * room / wanted, 0.0);
-        contact->may_grow = false;
-        update_gap(carriers[contact->obstacle], prediction, *contact);
-    }
-    const bool is_overconstrained = !(room > kNoRoom * wanted) && cosine < kFacing;
-    return {true, is_overconstrained ? std::optional(a.vertices[0]) : std::nullopt};
 }
 
 std::vector<Vec3> find_free_end(const State& state, const Prediction& prediction,
@@ -205,6 +175,7 @@ void recall(const State& state, const Carriers& carriers, Contact& contact)
     }
     if (!last) return;
     contact.last_multiplier = last->multiplier;
+    contact.was_squeezed = last->is_squeezed;
     contact.last_friction = last->friction;
     if (contact.eol < 0)
         contact.last_friction = rotate(carriers[contact.obstacle].end.rotation, contact.last_friction);
@@ -216,6 +187,12 @@ double way_along(const Carriers& carriers, const Contact& contact)
     const Carrier& carrier = carriers[contact.obstacle];
     const Vec3 place = contact.at(carrier.motion.begin);
     return contact.normal.dot(carrier.end(place) - carrier.begin(place));
+}
+
+void update_gap(const Carrier& carrier, const Prediction& prediction, Contact& contact)
+{
+    contact.gap = contact.normal.dot(contact.at(prediction.position) - carrier.end(contact.point_in_frame)) -
+                  contact.least_gap;
 }
 
 Contact place_contact(const ObstacleContact& found, int obstacle, double thickness, const Carriers& carriers,
@@ -294,44 +271,6 @@ std::vector<Contact> find_contacts_with_itself(const Scene& scene, const State& 
     return contacts;
 }
 
-SharedRoom share_room(const Carriers& carriers, const Prediction& prediction, std::vector<Contact>& contacts)
-{
-    std::vector<Contact*> of_vertices;
-    for (Contact& contact : contacts)
-        if (contact.is_vertex() && !contact.is_fold()) of_vertices.push_back(&contact);
-    const auto vertex_of = [](const Contact* contact) { return contact->vertices[0]; };
-    std::stable_sort(of_vertices.begin(), of_vertices.end(),
-                     [&](const Contact* a, const Contact* b) { return vertex_of(a) < vertex_of(b); });
-    SharedRoom shared;
-    for (std::size_t i = 0; i < of_vertices.size(); ++i)
-        for (std::size_t j = i + 1;
-             j < of_vertices.size() && vertex_of(of_vertices[j]) == vertex_of(of_vertices[i]); ++j) {
-            const SharedRoom pair = share_room(carriers, prediction, *of_vertices[i], *of_vertices[j]);
-            shared.is_changed = shared.is_changed || pair.is_changed;
-            if (!shared.overconstrained) shared.overconstrained = pair.overconstrained;
-        }
-    return shared;
-}
-
-bool yield_stand_off(const Carriers& carriers, const Prediction& prediction, Contact& contact)
-{
-    constexpr double kNothingLeft = 1e-3;  // of the stand-off
-    constexpr double kFree = 1e3;          // m: farther than any step moves
-    const Carrier& carrier = carriers[contact.obstacle];
-    if (contact.is_fold()) {  // only a help: the check finds cloth that passes without it
-        if (contact.least_gap <= -kFree) return false;
-        contact.least_gap = -kFree;
-    } else {
-        if (!(contact.least_gap > kNothingLeft * contact.stand_off)) return false;
-        const double now =
-            contact.normal_in_frame.dot(contact.at(carrier.motion.begin) - contact.point_in_frame);
-        contact.least_gap = now < contact.least_gap ? now : 0.5 * contact.least_gap;
-    }
-    contact.may_grow = false;
-    update_gap(carrier, prediction, contact);
-    return true;
-}
-
 std::vector<double> find_mobility(double density, const ClothElements& elements,
                                   const std::vector<PinTarget>& held)
 {
@@ -353,7 +292,8 @@ std::vector<ActiveContact> active_contacts(const State& state, const Carriers& c
         const Mat3 to_frame = contact.eol >= 0 ? Mat3(Mat3::Identity())
                                                : Mat3(carriers[contact.obstacle].end.rotation.transpose());
         active.push_back({ids_of(state, contact), contact.kind, contact.obstacle, contact.element,
-                          contact.normal_in_frame, multiplier[c], rotate(to_frame, contact.friction)});
+                          contact.normal_in_frame, multiplier[c], rotate(to_frame, contact.friction),
+                          contact.is_squeezed() || contact.is_floor});
     }
     std::sort(active.begin(), active.end(), [](const ActiveContact& a, const ActiveContact& b) {
         return key_of(a) < key_of(b) || (key_of(a) == key_of(b) && a.multiplier > b.multiplier);

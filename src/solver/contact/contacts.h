@@ -87,11 +87,16 @@ struct Contact : ClothPoints {
     ContactFriction friction = {};  ///< likewise, of the last solve; before one, of the last step
     bool is_pressing = false;       ///< in the last solve of this step, at an earlier linearization
     bool may_grow = true;           ///< whether its gap may grow to the stand-off; false where it has yielded
+    double stiffness = 0.0;         ///< N/m, of squeezed cloth (squeezed.h); 0 where it keeps `least_gap`
+    bool was_squeezed = false;      ///< in the last step
+    bool is_beside_rim = false;     ///< of a squeezed vertex with the plane of a squeezed edge past a rim
+    bool is_floor = false;          ///< keeps squeezed cloth from going below the least thickness
     int eol = -1;                   ///< index of the EOL coordinates whose first one it bounds; else -1
     int bound = -1;                 ///< coordinate of the velocity solve, 3 a vertex; -1 where it is a row
     int row = -1;                   ///< row of the velocity solve, or -1
 
     bool is_with_itself() const { return obstacle == kClothItself; }
+    bool is_squeezed() const { return stiffness > 0.0; }
     bool is_fold() const { return is_vertex() && element == kFoldElement; }
     bool is_vertex() const { return vertices[1] < 0; }  ///< a single vertex, at an obstacle
     bool was_active() const { return last_multiplier > 0.0; }
@@ -117,6 +122,9 @@ std::vector<Contact> find_contacts_with_itself(const Scene& scene, const State& 
 /// q~ of a vertex that has ridden on the carrier during the last step.
 Vec3 ridden_position(const Carrier& carrier, const State& state, double forward, int vertex);
 
+/// Sets the contact's gap from the prediction.
+void update_gap(const Carrier& carrier, const Prediction& prediction, Contact& contact);
+
 /// Sets each contact's gap from the prediction.
 void update_gaps(const Carriers& carriers, const Prediction& prediction, std::vector<Contact>& contacts);
 
@@ -132,22 +140,6 @@ Contact place_contact(const ObstacleContact& found, int obstacle, double thickne
                       const Prediction& prediction);
 Contact place_contact(const SelfContact& found, double thickness, const Carriers& carriers,
                       const Prediction& prediction);
-
-/// Result of `share_room`: whether a contact keeps less now, and a vertex (index) without any room.
-struct SharedRoom {
-    bool is_changed = false;
-    std::optional<int> overconstrained;
-};
-
-/// Lets a vertex's contacts share the room at the step's end, where two obstacles, or two faces of one, leave
-/// less than both stand-offs. Only two planes that face each other exactly can leave no room: between others
-/// the vertex could slip out sideways.
-SharedRoom share_room(const Carriers& carriers, const Prediction& prediction, std::vector<Contact>& contacts);
-
-/// Lets a contact yield whose row could not be met together with the others. It keeps its current gap, which
-/// riding on the obstacle preserves; if that is not less than it keeps now, half of what it keeps. A fold
-/// contact keeps nothing any more. False where nothing is left to yield.
-bool yield_stand_off(const Carriers& carriers, const Prediction& prediction, Contact& contact);
 
 /// 1 / mass of each vertex, 1/kg, with which contacts shift positions and history; 0 at vertices pinned in
 /// all directions, which stay.

@@ -73,6 +73,7 @@ void restore_stand_off(const std::vector<Contact>& contacts, const Carriers& car
     constexpr double kFoldShare = 0.1;  // of the push-out: moving aside stretches straight cloth
     constexpr int kPushes = 5;          // a layer that is pushed away from another may have to come back
     const auto push_out = [&](const Contact& contact) {
+        if (contact.is_squeezed()) return;
         const Vec3 point = carriers[contact.obstacle].end(contact.point_in_frame);
         const double gap = contact.normal.dot(contact.at(world) - point);
         const double share = contact.is_fold() ? kFoldShare : 1.0;
@@ -90,7 +91,7 @@ void restore_stand_off(const std::vector<Contact>& contacts, const Carriers& car
 
 bool Violations::is_clean() const
 {
-    return self_faces.empty() &&
+    return contacts.empty() && self_faces.empty() &&
            std::all_of(faces.begin(), faces.end(), [](const std::vector<int>& f) { return f.empty(); });
 }
 

@@ -222,7 +222,8 @@ std::vector<FeatureSite> find_feature_sites(const Scene& scene, const State& sta
     std::map<std::array<int, 2>, std::vector<FeatureSite>> by_feature;  // by obstacle and edge
     for (std::size_t c = 0; c < state.active.size(); ++c) {
         const ActiveContact& contact = state.active[c];
-        if (contact.obstacle == kClothItself) continue;
+        // Squeezed cloth presses on the faces beside a feature as well, and does not turn at the feature.
+        if (contact.obstacle == kClothItself || contact.is_squeezed) continue;
         const bool is_eol =
             contact.kind == ContactKind::Vertex && state.eol_entry(contact.vertex_ids[0]) >= 0;
         std::optional<FeatureSite> site = is_eol ? std::nullopt : finder_of(contact.obstacle).find(contact);

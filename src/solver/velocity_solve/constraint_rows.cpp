@@ -98,7 +98,8 @@ ScaledRow scale_row(const VelocityProblem& problem, const Eigen::VectorXd& diago
         value /= scaled.scale;
         scaled.compliance += value * value / diagonal[coordinate];
     }
-    scaled.give = scaled.compliance / kStiffness;
+    scaled.spring = row.give / (scaled.scale * scaled.scale);
+    scaled.give = std::max(scaled.spring, scaled.compliance / kStiffness);
     return scaled;
 }
 
@@ -156,7 +157,7 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
         if (!result.is_finite) return result;
         result.rows.push_back(scale_row(problem, diagonal, row));
         const bool can_move = !result.rows.back().entries.empty();
-        if (!can_move && row.lower > 0.0)
+        if (!can_move && row.lower > 0.0 && !(row.give > 0.0))
             result.impossible.push_back(static_cast<int>(result.rows.size() - first) - 1);
         // The speed that the row needs over all its coordinates: if only a tiny part can move, that part may
         // need any speed.
@@ -171,7 +172,8 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
             row.lower = kMostSpeed * speed;
             result.impossible.push_back(static_cast<int>(k));
         }
-        row.lower += std::min(row.give * problem.rows[k].expected * row.scale, result.unmet_speed);
+        row.lower +=
+            std::min((row.give - row.spring) * problem.rows[k].expected * row.scale, result.unmet_speed);
         result.is_finite = result.is_finite && std::isfinite(1.0 / row.give) && std::isfinite(row.lower);
     }
     return result;
@@ -227,7 +229,7 @@ std::vector<int> find_infeasible_rows(const ConstraintRows& constraints, const E
     for (std::size_t k = first; k < constraints.rows.size(); ++k) {
         const ScaledRow& row = constraints.rows[k];
         if (row.entries.empty()) continue;
-        if (row.give * multipliers[static_cast<Eigen::Index>(k)] > constraints.unmet_speed)
+        if ((row.give - row.spring) * multipliers[static_cast<Eigen::Index>(k)] > constraints.unmet_speed)
             infeasible.push_back(static_cast<int>(k) - first);
     }
     std::sort(infeasible.begin(), infeasible.end());

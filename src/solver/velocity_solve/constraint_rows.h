@@ -20,6 +20,7 @@ struct ScaledRow {
     double lower = 0.0;       ///< m/s: the given one, and the way that the expected multiplier presses
     double scale = 1.0;       ///< given row = scale * g; given multiplier = multiplier / scale
     double compliance = 1.0;  ///< g^T D^-1 g, D = diag A, 1/kg: gap opened by a unit impulse without coupling
+    double spring = 0.0;      ///< 1/kg: part of `give` that is the row's own
     double give = 0.0;        ///< 1/kg: speed by which the row gives way to a unit multiplier
     int group = 0;
 };

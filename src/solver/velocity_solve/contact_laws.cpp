@@ -240,10 +240,14 @@ VelocitySolution ContactLaws::make_solution(const ContactIterate& at) const
             solution.velocity[i] = problem_->lower[i];
     }
     const int first = constraints_->slip_count();
-    for (std::size_t k = 0; k < problem_->rows.size(); ++k)
+    for (std::size_t k = 0; k < problem_->rows.size(); ++k) {
+        const ScaledRow& scaled = constraints_->rows[first + k];
+        const ConstraintRow& row = problem_->rows[k];
         solution.row_multipliers[static_cast<Eigen::Index>(k)] =
-            std::max(at.multipliers[static_cast<Eigen::Index>(first + k)], 0.0) /
-            constraints_->rows[first + k].scale;
+            scaled.entries.empty() && row.give > 0.0  // a spring between what is held: its force is known
+                ? std::max(row.lower, 0.0) / row.give
+                : std::max(at.multipliers[static_cast<Eigen::Index>(first + k)], 0.0) / scaled.scale;
+    }
     for (int p = 0; p < constraints_->pair_count(); ++p) {
         const double scale = constraints_->rows[2 * p].scale;
         const Vector2d lower(problem_->friction[p].slip[0].lower, problem_->friction[p].slip[1].lower);

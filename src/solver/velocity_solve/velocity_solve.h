@@ -21,6 +21,7 @@ struct ConstraintRow {
     int count = 0;
     double lower = 0.0;     ///< m/s where the coefficients are weights
     double expected = 0.0;  ///< multiplier, N s where the coefficients are weights
+    double give = 0.0;      ///< 1/kg, speed per multiplier by which it gives way; 0: nearly none
     int group = 0;          ///< one per cloth face: only the worst row of a group joins at a time
 };
 

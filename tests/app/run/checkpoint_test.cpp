@@ -26,7 +26,7 @@ Checkpoint make_checkpoint()
     checkpoint.state.time = 0.1;
     checkpoint.state.step = 17;
     checkpoint.state.previous_dt = 0.005;
-    checkpoint.state.active = {{{2, 5}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1},
+    checkpoint.state.active = {{{2, 5}, ContactKind::Edge, 0, 3, Vec3::UnitX(), 0.1, {}, true},
                                {{2}, ContactKind::Vertex, 1, 7, Vec3::UnitZ(), 1e-7}};
     checkpoint.state.eol = {{1, FeatureId::bend(0, 4, 1), Vec3::UnitZ(), 0, 0},
                             {5, FeatureId::corner(1, 2), Vec3::UnitX(), 2, -1}};
@@ -67,7 +67,9 @@ TEST(Checkpoint, ReadsBackToTheSameBytes)
     EXPECT_EQ(read.state.active[0].kind, ContactKind::Edge);
     EXPECT_EQ(read.state.active[0].element, 3);
     EXPECT_EQ(read.state.active[0].normal, Vec3::UnitX());
+    EXPECT_TRUE(read.state.active[0].is_squeezed);
     EXPECT_EQ(read.state.active[1].obstacle, 1);
+    EXPECT_FALSE(read.state.active[1].is_squeezed);
     ASSERT_EQ(read.state.refused_edges.size(), 2u);
     EXPECT_EQ(read.state.refused_edges[0].vertex_ids[1], 5u);
     EXPECT_EQ(read.state.refused_edges[0].refusals, 2);

@@ -397,7 +397,7 @@ TEST_F(Run, ThatObstaclesCrushNamesAVertexByItsPlace)
 
 TEST_F(Run, ThatFailsAfterTheOpeningOfItsFirstStepTellsThat)
 {
-    // The pin is driven into the floor after a third of the step and before its end.
+    // The pin presses the cloth to its least thickness on the floor after a third of the step.
     write_bytes(
         scene,
         "duration = 0.1\n[cloth]\nsize = [0.2, 0.2]\nresolution = [2, 2]\ntranslate = [-0.1, -0.1, 0.05]\n"

@@ -157,7 +157,8 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[cloth.material]\nbending_stifness = 1\n",
      {},
      "s.toml:6: cloth.material.bending_stifness = 1: unknown key, did you mean bending_stiffness?; allowed: "
-     "preset, density, youngs_modulus, poisson_ratio, bending_stiffness, bending_model, damping, thickness"},
+     "preset, density, youngs_modulus, poisson_ratio, bending_stiffness, bending_model, damping, thickness, "
+     "compression_modulus"},
     {"KeyOfAnotherTable",
      kBase + "step = 0.01\n",
      {},

@@ -69,6 +69,7 @@ bending_stiffness = 2e-5
 bending_model     = "plate"
 damping           = 0.01
 thickness         = 2e-3
+compression_modulus = 3e4
 [[pin]]
 material = [[0.0, 0.0], [0.0, 0.5]]
 velocity = [1.0, 2.0, 3.0]
@@ -122,6 +123,7 @@ TEST(SceneLoad, TakesEveryKeyToItsPlace)
     EXPECT_EQ(material.bending_model, BendingModel::Plate);
     EXPECT_EQ(material.damping, 0.01);
     EXPECT_EQ(material.thickness, 2e-3);
+    EXPECT_EQ(material.compression_modulus, 3e4);
 
     ASSERT_TRUE(config.scene.gravity);
     EXPECT_EQ(config.scene.gravity->acceleration, Vec3(0.0, 0.0, -1.6));
@@ -206,7 +208,7 @@ TEST(SceneLoad, WritesOutWhatTheSceneLeavesToDefaults)
             "velocity": [0.0, 0.0, 0.0],
             "material": {"preset": "cotton", "density": 0.15, "youngs_modulus": 500.0, "poisson_ratio": 0.3,
                          "bending_stiffness": 1e-5, "bending_model": "hinge", "damping": 0.0,
-                         "thickness": 0.001}},
+                         "thickness": 0.001, "compression_modulus": 10000.0}},
         "pin": [{"material": [[0.0, 0.0], [0.0, 1.0]], "velocity": [0.0, 0.0, 0.0],
                  "angular_velocity": [0.0, 0.0, 0.0], "pivot": [0.0, 0.0, 0.0],
                  "directions": ["x", "y", "z"], "start": 0.0, "release": null}],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Processing of contacts after the search: sharing of room, yielding stand-offs, flattening of history.
+// Processing of contacts after the search: flattening of history.
 // Planes and points are placed by hand, and the expected results are written out.
 #include "solver/contact/contacts.h"
 
@@ -45,129 +45,7 @@ struct Setting {
         contact.least_gap = least_gap;
         contacts.push_back(place_contact(contact, obstacle, kThickness, steps, prediction));
     }
-
-    SharedRoom share() { return share_room(steps, prediction, contacts); }
 };
-
-/// A vertex between a floor at z = 0 and a lid at z = `room`.
-Setting make_gap(double room, double place)
-{
-    Setting gap({Vec3(3, 4, place)}, 2);
-    gap.add(0, 0, Vec3::UnitZ(), Vec3::Zero());
-    gap.add(1, 0, -Vec3::UnitZ(), Vec3(0, 0, room));
-    return gap;
-}
-
-TEST(ShareRoom, LeavesPlanesThatHaveRoomForBothStandOffs)
-{
-    for (const double room : {2.1e-3, 0.1, 1e6}) {
-        Setting gap = make_gap(room, 1e-3);
-        EXPECT_FALSE(gap.share().is_changed) << room;
-        for (const Contact& contact : gap.contacts) {
-            EXPECT_EQ(contact.least_gap, kThickness);
-            EXPECT_TRUE(contact.may_grow);
-        }
-    }
-}
-
-TEST(ShareRoom, DividesWhatThereIs)
-{
-    for (const double room : {2e-3, 1.5e-3, 1e-4, 1e-8})
-        for (const double where : {0.1, 0.5, 0.9}) {
-            Setting gap = make_gap(room, where * room);
-            const SharedRoom shared = gap.share();
-            EXPECT_TRUE(shared.is_changed);
-            EXPECT_FALSE(shared.overconstrained) << room;
-            double kept = 0.0;
-            for (const Contact& contact : gap.contacts) {
-                kept += contact.least_gap;
-                EXPECT_GT(contact.least_gap, 0.49 * room);
-                EXPECT_FALSE(contact.may_grow);
-            }
-            EXPECT_LT(kept, room) << "both can be kept at once";
-            EXPECT_NEAR(gap.contacts[0].gap, where * room - gap.contacts[0].least_gap, kRoundOff);
-            EXPECT_NEAR(gap.contacts[1].gap, (1.0 - where) * room - gap.contacts[1].least_gap, kRoundOff);
-        }
-}
-
-TEST(ShareRoom, DividesInProportionToWhatEachWants)
-{
-    Setting gap({Vec3(0, 0, 5e-4)}, 2);
-    gap.add(0, 0, Vec3::UnitZ(), Vec3::Zero(), 1e-3);
-    gap.add(1, 0, -Vec3::UnitZ(), Vec3(0, 0, 1e-3), 5e-4);
-    EXPECT_TRUE(gap.share().is_changed);
-    EXPECT_NEAR(gap.contacts[0].least_gap / gap.contacts[1].least_gap, 2.0, 1e-12);
-}
-
-TEST(ShareRoom, NamesAVertexThatHasNone)
-{
-    for (const double room : {0.0, -1e-3, -10.0}) {
-        Setting gap = make_gap(room, 0.5 * room);
-        const SharedRoom shared = gap.share();
-        ASSERT_TRUE(shared.overconstrained) << room;
-        EXPECT_EQ(*shared.overconstrained, 0);
-        for (const Contact& contact : gap.contacts) EXPECT_EQ(contact.least_gap, 0.0);
-    }
-}
-
-TEST(ShareRoom, LetsAVertexSlipOutBetweenPlanesThatDoNotFaceEachOther)
-{
-    Setting wedge({Vec3::Zero()}, 2);
-    wedge.add(0, 0, Vec3::UnitZ(), Vec3::Zero());
-    wedge.add(1, 0, Vec3(0.3, 0, -1), Vec3::Zero());
-    const SharedRoom shared = wedge.share();
-    EXPECT_TRUE(shared.is_changed);
-    EXPECT_FALSE(shared.overconstrained);
-}
-
-TEST(ShareRoom, IsOfOneVertexAndOfNormalsThatOppose)
-{
-    Setting two({Vec3(0, 0, 5e-4), Vec3(0, 0, 5e-4)}, 2);
-    two.add(0, 0, Vec3::UnitZ(), Vec3::Zero());
-    two.add(1, 1, -Vec3::UnitZ(), Vec3(0, 0, 1e-3));
-    EXPECT_FALSE(two.share().is_changed) << "two vertices";
-    Setting corner({Vec3(0, 0, 5e-4)}, 2);
-    corner.add(0, 0, Vec3::UnitZ(), Vec3::Zero());
-    corner.add(1, 0, Vec3::UnitX(), Vec3::Zero());
-    EXPECT_FALSE(corner.share().is_changed) << "a corner";
-    EXPECT_FALSE(Setting({}, 0).share().is_changed) << "nothing";
-}
-
-TEST(YieldStandOff, KeepsTheGapThereIsThenHalves)
-{
-    Setting near({Vec3(0, 0, 4e-4)}, 1);
-    near.add(0, 0, Vec3::UnitZ(), Vec3::Zero());
-    Contact& contact = near.contacts[0];
-    EXPECT_TRUE(yield_stand_off(near.steps, near.prediction, contact));
-    EXPECT_NEAR(contact.least_gap, 4e-4, kRoundOff);
-    EXPECT_NEAR(contact.gap, 0.0, kRoundOff) << "riding on the obstacle keeps it";
-    EXPECT_FALSE(contact.may_grow);
-    EXPECT_TRUE(yield_stand_off(near.steps, near.prediction, contact));
-    EXPECT_NEAR(contact.least_gap, 2e-4, kRoundOff);
-    EXPECT_NEAR(contact.gap, 2e-4, kRoundOff);
-}
-
-TEST(YieldStandOff, EndsWithTheSurfaceKept)
-{
-    for (const double place : {0.5, 1e-3, 1e-5, 1e-7}) {
-        Setting one({Vec3(0, 0, place)}, 1);
-        one.add(0, 0, Vec3::UnitZ(), Vec3::Zero());
-        int times = 0;
-        while (yield_stand_off(one.steps, one.prediction, one.contacts[0])) ASSERT_LT(++times, 20);
-        EXPECT_GT(times, 0);
-        EXPECT_GT(one.contacts[0].least_gap, 0.0) << place;
-        EXPECT_LE(one.contacts[0].least_gap, 1e-3 * kThickness);
-    }
-}
-
-TEST(YieldStandOff, RefusesWhatKeepsNothing)
-{
-    for (const double least : {0.0, -1e-3, 1e-7, std::numeric_limits<double>::quiet_NaN()}) {
-        Setting one({Vec3(0, 0, 0.1)}, 1);
-        one.add(0, 0, Vec3::UnitZ(), Vec3::Zero(), least);
-        EXPECT_FALSE(yield_stand_off(one.steps, one.prediction, one.contacts[0])) << least;
-    }
-}
 
 /// A vertex that met a floor in the last step. It came down at 2 m/s while moving along at 3 m/s. Now it is
 /// at its stand-off and still moves along. The floor's upper side is z = 0 at the step's start.

@@ -526,6 +526,41 @@ TEST(ConstraintRows, OfFixedCoordinatesAreMetOrImpossible)
     EXPECT_EQ(solve(problem).status, SolveStatus::Infeasible);
 }
 
+/// A pushing spring of `give` G: lambda = max(0, l - g^T u) / G, whatever else is solved.
+TEST(ConstraintRows, WithAGiveOfTheirOwnPressAsSprings)
+{
+    for (const double give : {10.0, 1e3}) {
+        ClothWithRows cloth(6);
+        VelocityProblem& problem = cloth.owned.problem;
+        const VelocitySolution none = solve(problem);
+        problem.rows = {make_row({{5, 1.0}, {8, -2.0}}, none.velocity[5] - 2.0 * none.velocity[8] + 0.5),
+                        make_row({{11, 1.0}}, none.velocity[11] - 0.5)};
+        for (ConstraintRow& row : problem.rows) row.give = give;
+        const VelocitySolution solution = solve(problem);
+        EXPECT_EQ(solution.status, SolveStatus::Certified);
+        const double slip = problem.rows[0].lower - (solution.velocity[5] - 2.0 * solution.velocity[8]);
+        EXPECT_GT(slip, 0.0);
+        EXPECT_NEAR(solution.row_multipliers[0], slip / give, 1e-9 * slip / give) << give;
+        EXPECT_EQ(solution.row_multipliers[1], 0.0);
+        // An expected force, which only speeds the search up, changes nothing.
+        problem.rows[0].expected = 3.0 * solution.row_multipliers[0];
+        expect_same_velocity(solve(problem), solution);
+    }
+}
+
+TEST(ConstraintRows, WithAGiveOfTheirOwnPressWhatIsHeldWithAKnownForce)
+{
+    ClothWithRows cloth(6);
+    VelocityProblem& problem = cloth.owned.problem;
+    for (const int i : {0, 1, 2}) problem.is_fixed[i] = 1;
+    problem.rows = {make_row({{2, 1.0}}, 0.1), make_row({{2, -1.0}}, -0.1)};
+    for (ConstraintRow& row : problem.rows) row.give = 4.0;
+    const VelocitySolution solution = solve(problem);
+    EXPECT_EQ(solution.status, SolveStatus::Certified);
+    EXPECT_NEAR(solution.row_multipliers[0], 0.025, 1e-15);
+    EXPECT_EQ(solution.row_multipliers[1], 0.0);
+}
+
 TEST(ConstraintRows, CountNothingWhereTheyTouchTheFixed)
 {
     ClothWithRows cloth(6);
