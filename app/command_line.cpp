@@ -16,6 +16,7 @@
 #include "app/run/run_export_options.h"
 #include "app/scene/mesh_forecast.h"
 #include "app/scene/scene_docs.h"
+#include "app/scene/scene_load.h"
 #include "app/step_docs.h"
 #include "app/study/study.h"
 #include "app/text/printable.h"

@@ -15,7 +15,7 @@
 #include "app/export/viewer_html.h"
 #include "app/files/frame_files.h"
 #include "app/files/frame_source.h"
-#include "app/scene/obstacle_records.h"
+#include "app/scene/parts/obstacle_records.h"
 #include "geometry/input_error.h"
 
 namespace arris {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/files/frame_source.h"
-#include "app/scene/obstacle_records.h"
+#include "app/scene/parts/obstacle_records.h"
 
 namespace arris {
 

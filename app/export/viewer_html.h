@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/scene/obstacle_records.h"
+#include "app/scene/parts/obstacle_records.h"
 
 namespace arris {
 

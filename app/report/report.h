@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/scene/scene_effects.h"
+#include "app/scene/parts/scene_effects.h"
 #include "solver/model/step_report.h"
 
 namespace arris {

@@ -8,7 +8,7 @@
 #include "app/run/friction_warning.h"
 #include "app/run/strain_warnings.h"
 #include "app/run/timeline.h"
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
 #include "solver/model/state.h"
 
 namespace arris {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/run/strain_warnings.h"
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
 
 namespace arris {
 

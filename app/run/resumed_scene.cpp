@@ -12,6 +12,7 @@
 #include "app/files/frame_files.h"
 #include "app/run/run_directory.h"
 #include "app/run/timeline.h"
+#include "app/scene/scene_load.h"
 #include "app/text/printable.h"
 #include "geometry/input_error.h"
 #include "solver/velocity_solve/blas_kernel.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/run/checkpoint.h"
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
 
 namespace arris {
 

@@ -19,7 +19,8 @@
 
 #include "app/files/frame_files.h"
 #include "app/report/report.h"
-#include "app/scene/obstacle_records.h"
+#include "app/scene/parts/obstacle_records.h"
+#include "app/scene/scene_load.h"
 #include "app/text/printable.h"
 #include "app/text/shell_word.h"
 #include "geometry/input_error.h"

@@ -9,7 +9,7 @@
 #include "app/files/csv_table.h"
 #include "app/files/frame.h"
 #include "app/run/checkpoint.h"
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
 
 namespace arris {
 

@@ -9,7 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/run/run_directory.h"
-#include "app/scene/obstacle_records.h"
+#include "app/scene/parts/obstacle_records.h"
+#include "app/scene/scene_load.h"
 #include "geometry/input_error.h"
 
 namespace arris {

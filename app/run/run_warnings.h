@@ -6,7 +6,7 @@
 
 #include "app/report/report.h"
 #include "app/run/checkpoint.h"
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
 
 namespace arris {
 

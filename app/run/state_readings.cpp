@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "geometry/cloth/material_locator.h"
-#include "physics/inertia.h"
+#include "physics/forces/inertia.h"
 #include "solver/contact/contacts.h"
 #include "solver/eol/cloth_stars.h"
 #include "solver/eol/eol_features.h"

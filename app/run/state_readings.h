@@ -5,8 +5,8 @@
 
 #include "app/files/csv_table.h"
 #include "app/files/frame.h"
-#include "app/scene/run_config.h"
-#include "physics/energies.h"
+#include "app/scene/parts/run_config.h"
+#include "physics/forces/energies.h"
 #include "solver/model/state.h"
 
 namespace arris {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "geometry/cloth/mesh_quality.h"
-#include "physics/inertia.h"
+#include "physics/forces/inertia.h"
 
 namespace arris {
 

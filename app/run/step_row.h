@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/files/csv_table.h"
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
 #include "solver/contact/audit.h"
 #include "solver/model/state.h"
 #include "solver/model/step_report.h"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "app/run/moving_causes.h"
-#include "app/scene/scene_estimate.h"
-#include "app/scene/start_strain.h"
+#include "app/scene/parts/scene_estimate.h"
+#include "app/scene/parts/start_strain.h"
 #include "geometry/cloth/material_box.h"
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/cloth/mesh_topology.h"

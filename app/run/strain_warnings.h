@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
 #include "solver/cloth_strain.h"
 #include "solver/model/state.h"
 

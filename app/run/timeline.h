@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
 
 namespace arris {
 

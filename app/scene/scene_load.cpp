@@ -2,6 +2,8 @@
 // Turns a scene file into a RunConfig. Cheap checks come first: each key by itself (scene_values), rules
 // between keys (scene_rules), the size of the run (scene_estimate). The cloth, its pins, pulls and probes,
 // and the obstacles follow.
+#include "app/scene/scene_load.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,18 +11,17 @@
 #include <optional>
 #include <utility>
 
-#include "app/scene/merge_events.h"
-#include "app/scene/run_config.h"
-#include "app/scene/scene_cloth.h"
-#include "app/scene/scene_document.h"
-#include "app/scene/scene_estimate.h"
-#include "app/scene/scene_json.h"
-#include "app/scene/scene_obstacles.h"
-#include "app/scene/scene_remeshing.h"
+#include "app/scene/parts/merge_events.h"
+#include "app/scene/parts/scene_cloth.h"
+#include "app/scene/keys/scene_document.h"
+#include "app/scene/parts/scene_estimate.h"
+#include "app/scene/keys/scene_json.h"
+#include "app/scene/parts/scene_obstacles.h"
+#include "app/scene/parts/scene_remeshing.h"
 #include "app/scene/scene_rules.h"
-#include "app/scene/scene_values.h"
-#include "app/scene/scene_warnings.h"
-#include "app/scene/start_strain.h"
+#include "app/scene/keys/scene_values.h"
+#include "app/scene/warnings/scene_warnings.h"
+#include "app/scene/parts/start_strain.h"
 #include "app/text/counted.h"
 #include "geometry/cloth/material_locator.h"
 #include "geometry/input_error.h"

@@ -7,10 +7,10 @@
 #include <initializer_list>
 #include <map>
 
-#include "app/scene/scene_cloth.h"
-#include "app/scene/scene_keys.h"
+#include "app/scene/parts/scene_cloth.h"
+#include "app/scene/keys/scene_keys.h"
 #include "app/text/printable.h"
-#include "physics/material.h"
+#include "physics/elements/material.h"
 
 namespace arris {
 namespace {

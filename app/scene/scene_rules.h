@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/scene/scene_document.h"
+#include "app/scene/keys/scene_document.h"
 
 namespace arris {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/scene/scene_document.h"
+#include "app/scene/keys/scene_document.h"
 
 namespace arris {
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "app/files/csv_table.h"
-#include "app/scene/scene_document.h"
-#include "app/scene/scene_values.h"
+#include "app/scene/keys/scene_document.h"
+#include "app/scene/keys/scene_values.h"
 #include "app/study/fingerprint.h"
 #include "app/study/time_history.h"
 #include "app/text/printable.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "app/scene/scene_document.h"
+#include "app/scene/keys/scene_document.h"
 #include "app/study/fingerprint.h"
 #include "app/study/run_outcome.h"
 #include "app/text/version.h"

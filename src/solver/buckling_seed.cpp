@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include "physics/membrane.h"
+#include "physics/forces/membrane.h"
 #include "solver/mesh_change/step_mesh.h"
 #include "solver/plane_stars.h"
 

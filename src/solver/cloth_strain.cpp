@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "physics/membrane.h"
+#include "physics/forces/membrane.h"
 #include "solver/plane_stars.h"
 
 namespace arris {

@@ -6,7 +6,7 @@
 
 #include "geometry/cloth/cloth_mesh.h"
 #include "geometry/cloth/mesh_topology.h"
-#include "physics/material.h"
+#include "physics/elements/material.h"
 
 namespace arris {
 

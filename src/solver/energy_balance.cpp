@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/energies.h"
-#include "physics/feature_impulse.h"
-#include "physics/inertia.h"
+#include "physics/forces/energies.h"
+#include "physics/system/feature_impulse.h"
+#include "physics/forces/inertia.h"
 #include "solver/contact/constraints.h"
 #include "solver/contact/squeezed.h"
 #include "solver/eol/eol_coordinates.h"

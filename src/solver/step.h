@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "physics/energies.h"
+#include "physics/forces/energies.h"
 #include "solver/model/planned_step.h"
 #include "solver/model/scene.h"
 #include "solver/model/settings.h"

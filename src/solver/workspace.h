@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "physics/energies.h"
+#include "physics/forces/energies.h"
 #include "solver/contact/contacts.h"
 #include "solver/contact/proposal.h"
 #include "solver/contact/squeezed.h"

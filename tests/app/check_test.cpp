@@ -4,7 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/scene/scene_effects.h"
+#include "app/scene/parts/scene_effects.h"
+#include "app/scene/scene_load.h"
 
 namespace arris {
 namespace {

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
 #include "tests/app/temporary_directory.h"
 
 namespace arris {

@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "app/files/csv_table.h"
+#include "app/scene/scene_load.h"
 #include "solver/mesh_change/strain_allowance.h"
 #include "tests/app/program.h"
 #include "tests/scatter.h"

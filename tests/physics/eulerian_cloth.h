@@ -8,7 +8,7 @@
 #include <random>
 
 #include "geometry/cloth_input/cloth_grid.h"
-#include "physics/linear_system.h"
+#include "physics/system/linear_system.h"
 
 namespace arris {
 

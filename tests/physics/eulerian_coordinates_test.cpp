@@ -8,7 +8,8 @@
 #include <numbers>
 
 #include "eulerian_cloth.h"
-#include "physics/inertia.h"
+#include "physics/forces/inertia.h"
+#include "physics/forces/make_terms.h"
 #include "sliding_cloth.h"
 
 namespace arris {

@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "eulerian_cloth.h"
-#include "physics/bending.h"
-#include "physics/energies.h"
-#include "physics/gravity_force.h"
-#include "physics/inertia.h"
-#include "physics/membrane.h"
-#include "physics/plate_bending.h"
-#include "physics/pull_force.h"
+#include "physics/forces/bending.h"
+#include "physics/forces/energies.h"
+#include "physics/forces/gravity_force.h"
+#include "physics/forces/inertia.h"
+#include "physics/forces/membrane.h"
+#include "physics/forces/plate_bending.h"
+#include "physics/forces/pull_force.h"
 
 namespace arris {
 namespace {

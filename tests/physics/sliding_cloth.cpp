@@ -5,8 +5,8 @@
 
 #include <Eigen/Dense>
 
-#include "physics/energies.h"
-#include "physics/inertia.h"
+#include "physics/forces/energies.h"
+#include "physics/forces/inertia.h"
 
 namespace arris {
 

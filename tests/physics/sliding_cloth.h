@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "physics/linear_system.h"
+#include "physics/system/linear_system.h"
 
 namespace arris {
 

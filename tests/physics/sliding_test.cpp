@@ -9,8 +9,9 @@
 #include <numbers>
 
 #include "geometry/cloth_input/cloth_grid.h"
-#include "physics/energies.h"
-#include "physics/inertia.h"
+#include "physics/forces/energies.h"
+#include "physics/forces/inertia.h"
+#include "physics/forces/make_terms.h"
 #include "sliding_cloth.h"
 #include "tests/validation/ode.h"
 

@@ -8,7 +8,7 @@
 
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/rigid_motion.h"
-#include "physics/membrane.h"
+#include "physics/forces/membrane.h"
 
 namespace arris {
 namespace {

@@ -10,8 +10,9 @@
 
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
-#include "physics/energies.h"
-#include "physics/inertia.h"
+#include "physics/forces/energies.h"
+#include "physics/forces/inertia.h"
+#include "physics/forces/make_terms.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/mesh_change/mesh_transfer.h"
 #include "solver/step.h"

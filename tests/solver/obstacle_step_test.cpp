@@ -11,7 +11,7 @@
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "geometry/surgery/initial_target.h"
-#include "physics/inertia.h"
+#include "physics/forces/inertia.h"
 #include "solver/advance.h"
 #include "solver/energy_balance.h"
 #include "solver/step.h"

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "geometry/cloth_input/cloth_grid.h"
-#include "physics/inertia.h"
+#include "physics/forces/inertia.h"
 #include "tests/solver/floor.h"
 
 namespace arris {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/cloth/cloth_mesh.h"
-#include "physics/material.h"
+#include "physics/elements/material.h"
 
 namespace arris {
 

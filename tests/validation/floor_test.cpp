@@ -11,7 +11,7 @@
 #include "cloth_run.h"
 #include "geometry/obstacle_input/obstacle_import.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
-#include "physics/inertia.h"
+#include "physics/forces/inertia.h"
 #include "refinement.h"
 #include "solver/advance.h"
 #include "solver/energy_balance.h"

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "cloth_run.h"
-#include "physics/inertia.h"
+#include "physics/forces/inertia.h"
 #include "refinement.h"
 
 namespace arris {

@@ -13,7 +13,7 @@
 #include "cloth_run.h"
 #include "geometry/cloth/mesh_quality.h"
 #include "grid_patterns.h"
-#include "physics/feature_impulse.h"
+#include "physics/system/feature_impulse.h"
 #include "refinement.h"
 #include "tests/failures_since.h"
 

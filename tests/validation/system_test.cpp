@@ -11,7 +11,8 @@
 
 #include "cloth_run.h"
 #include "grid_patterns.h"
-#include "physics/inertia.h"
+#include "physics/forces/inertia.h"
+#include "physics/forces/make_terms.h"
 
 namespace arris {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "cloth_run.h"
 #include "ode.h"
-#include "physics/inertia.h"
+#include "physics/forces/inertia.h"
 #include "refinement.h"
 
 namespace arris {

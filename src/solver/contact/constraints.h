@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "physics/linearization.h"
+#include "physics/elements/linearization.h"
 #include "solver/contact/contacts.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/model/pin_targets.h"

@@ -9,7 +9,7 @@
 #include "geometry/contact/obstacle_contact.h"
 #include "geometry/self_contact/self_contact.h"
 #include "geometry/self_contact/self_surface.h"
-#include "physics/cloth_elements.h"
+#include "physics/elements/cloth_elements.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/model/pin_targets.h"
 #include "solver/model/scene.h"

@@ -4,14 +4,14 @@
 #include <array>
 #include <vector>
 
-#include "physics/cloth_elements.h"
+#include "physics/elements/cloth_elements.h"
 #include "solver/eol/cloth_stars.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
 
 namespace arris {
 
-/// The hinges of a mesh that are creases (physics/bending.h).
+/// The hinges of a mesh that are creases (physics/forces/bending.h).
 struct Creases {
     double width = 0.0;                     ///< m; 0 without creases
     std::vector<std::array<int, 2>> edges;  ///< edges of the cloth along features; ends and list ascend

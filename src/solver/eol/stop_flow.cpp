@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "physics/deformation_gradient.h"
+#include "physics/elements/deformation_gradient.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/model/pin_targets.h"
 

@@ -14,7 +14,7 @@
 
 #include <vector>
 
-#include "physics/feature_impulse.h"
+#include "physics/system/feature_impulse.h"
 #include "solver/friction/friction_pairs.h"
 
 namespace arris {

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "physics/cloth_elements.h"
-#include "physics/linearization.h"
+#include "physics/elements/cloth_elements.h"
+#include "physics/elements/linearization.h"
 #include "solver/contact/contacts.h"
 #include "solver/eol/cloth_stars.h"
 #include "solver/velocity_solve/velocity_solve.h"

@@ -6,6 +6,7 @@
 
 #include "geometry/from_least.h"
 #include "geometry/sort_unique.h"
+#include "physics/forces/make_terms.h"
 #include "solver/mesh_change/strain_allowance.h"
 #include "solver/mesh_change/surgery_energy.h"
 #include "solver/model/cell_length.h"

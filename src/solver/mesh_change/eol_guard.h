@@ -5,7 +5,7 @@
 
 #include "geometry/surgery/cloth_surgery.h"
 #include "geometry/surgery/surgery_clearance.h"
-#include "physics/term.h"
+#include "physics/elements/term.h"
 #include "solver/mesh_change/patch_relaxation.h"
 #include "solver/mesh_change/relaxation_memo.h"
 #include "solver/model/scene.h"

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "geometry/self_contact/self_surface.h"
-#include "physics/cloth_elements.h"
-#include "physics/linear_system.h"
-#include "physics/term.h"
+#include "physics/elements/cloth_elements.h"
+#include "physics/system/linear_system.h"
+#include "physics/elements/term.h"
 #include "solver/eol/cloth_stars.h"
 #include "solver/model/row_cause.h"
 #include "solver/model/state.h"

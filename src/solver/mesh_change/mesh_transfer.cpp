@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "geometry/cloth/mesh_topology.h"
-#include "physics/deformation_gradient.h"
+#include "physics/elements/deformation_gradient.h"
 #include "solver/eol/stop_flow.h"
 #include "solver/mesh_change/changed_patches.h"
 

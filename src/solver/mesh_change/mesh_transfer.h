@@ -2,7 +2,7 @@
 // Carries velocity and history of the cloth over to a changed mesh. A new vertex on the surface gets the
 // interpolated state, which changes nothing. Where an edge or vertex has gone, or a vertex has become or
 // ceased to be EOL, the velocity around it is fitted: the nearest that the new mesh can have with the same
-// momentum (physics/velocity_fit.h).
+// momentum (physics/system/velocity_fit.h).
 #pragma once
 
 #include <limits>

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "geometry/cloth/cloth_mesh.h"
-#include "physics/block_ordering.h"
-#include "physics/dense_system.h"
-#include "physics/linear_system.h"
+#include "physics/system/block_ordering.h"
+#include "physics/system/dense_system.h"
+#include "physics/system/linear_system.h"
 
 namespace arris {
 

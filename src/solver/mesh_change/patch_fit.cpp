@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "geometry/sort_unique.h"
-#include "physics/deformation_gradient.h"
-#include "physics/velocity_fit.h"
+#include "physics/elements/deformation_gradient.h"
+#include "physics/system/velocity_fit.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/mesh_change/patch_relaxation.h"
 #include "solver/mesh_change/strain_allowance.h"

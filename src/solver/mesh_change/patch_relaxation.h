@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "physics/energies.h"
+#include "physics/forces/energies.h"
 #include "solver/eol/creases.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"

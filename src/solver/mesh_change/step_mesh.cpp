@@ -9,7 +9,8 @@
 
 #include "geometry/self_contact/self_intersection.h"
 #include "geometry/sort_unique.h"
-#include "physics/membrane.h"
+#include "physics/forces/make_terms.h"
+#include "physics/forces/membrane.h"
 #include "solver/eol/creases.h"
 #include "solver/eol/stop_flow.h"
 #include "solver/mesh_change/conform.h"

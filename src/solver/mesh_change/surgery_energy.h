@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "geometry/surgery/cloth_surgery.h"
-#include "physics/energies.h"
+#include "physics/forces/energies.h"
 
 namespace arris {
 

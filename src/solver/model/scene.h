@@ -10,8 +10,8 @@
 #include "geometry/cloth/mesh_target.h"
 #include "geometry/obstacle/moving_obstacle.h"
 #include "geometry/rigid_motion.h"
-#include "physics/effects.h"
-#include "physics/material.h"
+#include "physics/elements/effects.h"
+#include "physics/elements/material.h"
 #include "solver/model/remeshing.h"
 
 namespace arris {

@@ -9,8 +9,8 @@
 
 #include "geometry/cloth/material_grid.h"
 #include "geometry/cloth/mesh_topology.h"
-#include "physics/deformation_gradient.h"
-#include "physics/hinge_fold.h"
+#include "physics/elements/deformation_gradient.h"
+#include "physics/elements/hinge_fold.h"
 #include "solver/eol/eol_features.h"
 #include "solver/model/cell_length.h"
 

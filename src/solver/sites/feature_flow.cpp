@@ -10,7 +10,7 @@
 #include <Eigen/LU>
 
 #include "geometry/obstacle/feature_path.h"
-#include "physics/deformation_gradient.h"
+#include "physics/elements/deformation_gradient.h"
 
 namespace arris {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/run/strain_causes.h"
+#include "app/scene/scene_load.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

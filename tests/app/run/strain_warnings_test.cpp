@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/files/csv_table.h"
+#include "app/scene/scene_load.h"
 #include "tests/app/program.h"
 
 namespace arris {

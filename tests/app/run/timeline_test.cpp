@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/run/timeline.h"
-#include "app/scene/merge_events.h"
+#include "app/scene/parts/merge_events.h"
 
 #include <gtest/gtest.h>
 

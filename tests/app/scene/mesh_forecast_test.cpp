@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/scene/scene_load.h"
 #include "geometry/input_error.h"
 
 namespace arris {

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
+#include "app/scene/scene_load.h"
 #include "geometry/input_error.h"
 
 namespace arris {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/scene/run_config.h"
+#include "app/scene/parts/run_config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "app/scene/scene_load.h"
 #include "geometry/input_error.h"
 #include "solver/step.h"
 #include "tests/app/temporary_directory.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/forces/make_terms.h"
 #include "solver/mesh_change/eol_guard.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,7 @@
 #include <random>
 
 #include "geometry/sort_unique.h"
-#include "physics/energies.h"
+#include "physics/forces/energies.h"
 #include "solver/eol/creases.h"
 #include "solver/mesh_change/surgery_energy.h"
 #include "tests/solver/eol_cloth.h"

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "geometry/surgery/cloth_surgery.h"
-#include "physics/inertia.h"
+#include "physics/forces/inertia.h"
 #include "solver/model/pin_targets.h"
 #include "tests/solver/eol_cloth.h"
 

@@ -13,8 +13,8 @@
 
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
-#include "physics/energies.h"
-#include "physics/momentum_flux.h"
+#include "physics/forces/energies.h"
+#include "physics/elements/momentum_flux.h"
 #include "solver/buckling_seed.h"
 #include "solver/contact/audit.h"
 #include "solver/contact/proposal.h"

@@ -9,7 +9,7 @@
 #include "geometry/obstacle/feature_nodes.h"
 #include "geometry/obstacle/feature_path.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
-#include "physics/deformation_gradient.h"
+#include "physics/elements/deformation_gradient.h"
 #include "solver/eol/eol_features.h"
 #include "tests/solver/eol_cloth.h"
 

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/parts/obstacle_records.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "app/files/binary_stream.h"
+#include "app/scene/keys/scene_keys.h"
+#include "geometry/obstacle/obstacle_topology.h"
+
+namespace arris {
+namespace {
+
+// The format has a version of its own, so that a later version of the program can export an earlier run.
+constexpr FileKind kKind = {"ARRIS obstacles\n", "obstacles 1", "there are no obstacles",
+                            "is not an obstacles file of arris"};
+
+void write_placement(BinaryWriter& out, const Placement& placement)
+{
+    for (int row = 0; row < 3; ++row) out.vector(placement.rotation.row(row));
+    out.vector(placement.translation);
+}
+
+Placement read_placement(BinaryReader& in)
+{
+    Placement placement;
+    for (int row = 0; row < 3; ++row) placement.rotation.row(row) = in.vector();
+    placement.translation = in.vector();
+    return placement;
+}
+
+void write_motion(BinaryWriter& out, const RigidMotion& motion)
+{
+    for (const Vec3* vector : {&motion.velocity, &motion.angular_velocity, &motion.pivot})
+        out.vector(*vector);
+    out.number(motion.start);
+    out.number(motion.stop);
+    out.list(motion.keyframes, [&](const Keyframe& key) {
+        out.number(key.time);
+        out.vector(key.translate);
+        for (const double c : key.rotate.coeffs()) out.number(c);
+    });
+}
+
+RigidMotion read_motion(BinaryReader& in)
+{
+    RigidMotion motion;
+    for (Vec3* vector : {&motion.velocity, &motion.angular_velocity, &motion.pivot}) *vector = in.vector();
+    motion.start = in.number<double>();
+    motion.stop = in.number<double>();
+    motion.keyframes = in.list<Keyframe>(8 * sizeof(double), [&] {
+        Keyframe key;
+        key.time = in.number<double>();
+        key.translate = in.vector();
+        for (double& c : key.rotate.coeffs()) c = in.number<double>();
+        return key;
+    });
+    return motion;
+}
+
+template <std::size_t size>
+void write_tuples(BinaryWriter& out, const std::vector<std::array<int, size>>& tuples)
+{
+    out.list(tuples, [&](const std::array<int, size>& tuple) {
+        for (const int index : tuple) out.number(static_cast<std::int32_t>(index));
+    });
+}
+
+template <std::size_t size>
+std::vector<std::array<int, size>> read_tuples(BinaryReader& in)
+{
+    return in.list<std::array<int, size>>(size * sizeof(std::int32_t), [&] {
+        std::array<int, size> tuple;
+        for (int& index : tuple) index = in.number<std::int32_t>();
+        return tuple;
+    });
+}
+
+void write_mesh(BinaryWriter& out, const ObstacleMesh& mesh)
+{
+    out.vectors(mesh.points);
+    write_tuples(out, mesh.faces);
+    write_tuples(out, mesh.segments);
+    out.list(mesh.lone_points, [&](int point) { out.number(static_cast<std::int32_t>(point)); });
+}
+
+ObstacleMesh read_mesh(BinaryReader& in)
+{
+    ObstacleMesh mesh;
+    mesh.points = in.vectors();
+    mesh.faces = read_tuples<3>(in);
+    mesh.segments = read_tuples<2>(in);
+    mesh.lone_points =
+        in.list<int>(sizeof(std::int32_t), [&] { return static_cast<int>(in.number<std::int32_t>()); });
+    return mesh;
+}
+
+/// Describes the first invalid value; empty if there is none.
+std::string find_defect(const ObstacleRecord& record)
+{
+    if (!is_scene_name(record.name)) return "the name of an obstacle is invalid";
+    const RigidMotion& motion = record.motion;
+    bool is_sound = record.placement.rotation.allFinite() && record.placement.translation.allFinite() &&
+                    motion.velocity.allFinite() && motion.angular_velocity.allFinite() &&
+                    motion.pivot.allFinite() && std::isfinite(motion.start) && motion.stop >= motion.start;
+    for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+        const Keyframe& key = motion.keyframes[k];
+        const bool is_later = k == 0 || key.time > motion.keyframes[k - 1].time;
+        is_sound = is_sound && is_later && std::isfinite(key.time) && key.translate.allFinite() &&
+                   key.rotate.coeffs().allFinite() && key.rotate.norm() > 0.5;
+    }
+    if (!is_sound) return record.name + ": the motion is invalid";
+    const std::string defect = validate(record.mesh);
+    return defect.empty() ? defect : record.name + ": " + defect;
+}
+
+}  // namespace
+
+std::string obstacles_file(const std::string& run_dir)
+{
+    return (std::filesystem::path(run_dir) / "obstacles").string();
+}
+
+void write_obstacles(const std::string& run_dir, const std::vector<ObstacleRecord>& obstacles)
+{
+    BinaryWriter body;
+    body.list(obstacles, [&](const ObstacleRecord& record) {
+        body.text(record.name);
+        write_mesh(body, record.mesh);
+        write_placement(body, record.placement);
+        write_motion(body, record.motion);
+    });
+    write_sealed(obstacles_file(run_dir), kKind, body.bytes());
+}
+
+std::vector<ObstacleRecord> read_obstacles(const std::string& run_dir)
+{
+    const std::string path = obstacles_file(run_dir);
+    if (!std::filesystem::exists(path)) return {};
+    const std::string body = read_sealed(path, kKind);
+    BinaryReader in(body, path);
+    constexpr std::size_t kLeastRecordBytes = 24 * sizeof(double);
+    std::vector<ObstacleRecord> records = in.list<ObstacleRecord>(kLeastRecordBytes, [&] {
+        ObstacleRecord record;
+        record.name = in.text();
+        record.mesh = read_mesh(in);
+        record.placement = read_placement(in);
+        record.motion = read_motion(in);
+        return record;
+    });
+    if (!in.is_at_end()) in.fail("is damaged: it is longer than its counts say");
+    std::set<std::string> names = {"cloth"};
+    for (const ObstacleRecord& record : records) {
+        if (const std::string defect = find_defect(record); !defect.empty()) in.fail("is damaged: " + defect);
+        if (!names.insert(record.name).second) in.fail("is damaged: a name occurs twice");
+    }
+    return records;
+}
+
+std::size_t count_obstacle_frames(const ObstacleRecord& obstacle, std::size_t frame_count)
+{
+    return obstacle.motion.is_moving() ? frame_count : std::min<std::size_t>(frame_count, 1);
+}
+
+}  // namespace arris

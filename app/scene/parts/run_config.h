@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/scene/parts/obstacle_records.h"
+#include "geometry/cloth/cloth_mesh.h"
+#include "solver/model/scene.h"
+#include "solver/model/settings.h"
+
+namespace arris {
+
+struct Probe {
+    std::string name;
+    Vec2 material = Vec2::Zero();
+};
+
+struct OutputOptions {
+    double frames_per_second = 24.0;  ///< 0 writes no frames
+    std::vector<std::string> formats = {"viewer"};
+};
+
+/// A loaded and validated scene file: the input of `run`. Movable only, because Scene is.
+struct RunConfig {
+    std::string title;
+    double duration = 0.0;  ///< s
+    Scene scene;
+    Settings settings;
+    OutputOptions output;
+    std::vector<Probe> probes;
+
+    ClothMesh cloth;                             ///< placed and folded, before pins are attached
+    Vec3 cloth_velocity = Vec3::Zero();          ///< m/s, initial
+    std::vector<Placement> obstacle_placements;  ///< of the obstacles' frames, before their motions
+    std::vector<std::string> intersections;      ///< of the cloth with obstacles at time 0, one line each
+
+    std::vector<std::string> warnings;
+    std::vector<std::string> notes;  ///< on the cloth and on obstacles' files: valid, but worth knowing
+    nlohmann::ordered_json as_run;   ///< the scene by key, with every default filled in
+};
+
+/// The text of a scene file and its overrides, stored so that a run can be resumed without the file.
+struct SceneSource {
+    std::string path;                    ///< as given; paths in the scene are relative to its folder
+    std::string text;                    ///< TOML
+    std::vector<std::string> overrides;  ///< "KEY=VALUE"
+};
+
+/// Inputs of load_scene besides the scene.
+struct LoadOptions {
+    /// For a resumed run: the cloth at time 0 and the meshes of the obstacles, as stored with the run. Checks
+    /// and warnings about time 0 are then omitted.
+    const ClothMesh* cloth = nullptr;
+    const std::vector<ObstacleRecord>* obstacles = nullptr;
+    std::string obstacles_file;  ///< the file that `obstacles` comes from
+
+    /// Whether intersections with obstacles at time 0 are returned in the config, instead of an InputError.
+    bool tells_intersections = false;
+
+    /// Program and arguments that import a mesh file in a separate process; by default this program.
+    std::vector<std::string> importer = {"/proc/self/exe", "import-obstacle"};
+};
+
+}  // namespace arris

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/parts/scene_effects.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace arris {
+namespace {
+
+SceneEffect obstacle_effect(const RunConfig& config)
+{
+    constexpr std::size_t kMostNames = 5;
+    const std::vector<MovingObstacle>& obstacles = config.scene.obstacles;
+    if (obstacles.empty()) return {"obstacle", false, "no [[obstacle]]"};
+    std::string names;
+    for (std::size_t i = 0; i < std::min(obstacles.size(), kMostNames); ++i)
+        names += (i > 0 ? ", " : "") + obstacles[i].name();
+    if (obstacles.size() > kMostNames) names += fmt::format(" and {} more", obstacles.size() - kMostNames);
+    return {"obstacle", true, fmt::format("{} [[obstacle]]: {}", obstacles.size(), names)};
+}
+
+SceneEffect eol_effect(const RunConfig& config)
+{
+    if (config.scene.eol) return {"eol", true, "eol.enabled is true, and an obstacle has sharp features"};
+    return {"eol", false,
+            has_features(config.scene) ? "eol.enabled is false: contacts keep the cloth off sharp features"
+                                       : "no obstacle has sharp features"};
+}
+
+SceneEffect remesh_effect(const RunConfig& config)
+{
+    if (!config.scene.remesh)
+        return {"remesh", false, "no [remesh]: the mesh changes only near sharp features, with EOL vertices"};
+    const Remeshing& remesh = *config.scene.remesh;
+    return {"remesh", true,
+            fmt::format("edges of {:g} to {:g} m, about {} vertices at most", remesh.shortest, remesh.longest,
+                        remesh.most_vertices)};
+}
+
+SceneEffect friction_effect(const RunConfig& config)
+{
+    const std::optional<Friction>& friction = config.scene.friction;
+    if (!friction) return {"friction", false, "no [friction]: the cloth slides freely over obstacles"};
+    const bool do_layers_rub = config.scene.self_contact && friction->between_layers > 0.0;
+    if (config.scene.obstacles.empty() && !do_layers_rub)
+        return {"friction", false, "no [[obstacle]] that could rub"};
+    const std::set<double> coefficients(friction->coefficients.begin(), friction->coefficients.end());
+    std::vector<std::string> parts;
+    for (const double coefficient : coefficients) parts.push_back(fmt::format("{:g}", coefficient));
+    if (do_layers_rub) parts.push_back(fmt::format("{:g} between layers", friction->between_layers));
+    return {"friction", true, fmt::format("coefficient {}", fmt::join(parts, ", "))};
+}
+
+SceneEffect self_contact_effect(const RunConfig& config)
+{
+    const std::optional<ClothContact>& contact = config.scene.self_contact;
+    if (!contact) return {"self_contact", false, "no [self_contact]: the cloth may pass through itself"};
+    return {"self_contact", true, fmt::format("layers keep {:g} m apart", contact->thickness)};
+}
+
+SceneEffect by_table(const RunConfig& config, const std::string& table, bool is_list)
+{
+    const bool is_on = config.as_run.contains(table) && !config.as_run[table].empty();
+    const std::string name = is_list ? fmt::format("[[{}]]", table) : fmt::format("[{}]", table);
+    if (!is_on) return {table, false, "no " + name};
+    if (!is_list) return {table, true, name + " is given"};
+    return {table, true, fmt::format("{} {}", config.as_run[table].size(), name)};
+}
+
+SceneEffect by_value(const std::string& name, const std::string& key, double value, std::string_view unit)
+{
+    const bool is_on = value > 0.0;
+    return {name, is_on, fmt::format("{} is {:g} {}", key, value, unit)};
+}
+
+}  // namespace
+
+std::vector<SceneEffect> list_effects(const RunConfig& config)
+{
+    const Material& material = config.scene.material;
+    return {
+        by_value("bending", "cloth.material.bending_stiffness", material.bending_stiffness, "J"),
+        by_value("damping", "cloth.material.damping", material.damping, "s"),
+        by_table(config, "gravity", false),
+        by_table(config, "wind", false),
+        by_table(config, "pull", true),
+        by_table(config, "pin", true),
+        obstacle_effect(config),
+        eol_effect(config),
+        remesh_effect(config),
+        friction_effect(config),
+        self_contact_effect(config),
+    };
+}
+
+bool is_on(const std::vector<SceneEffect>& effects, std::string_view name)
+{
+    return std::any_of(effects.begin(), effects.end(),
+                       [&](const SceneEffect& effect) { return effect.is_on && effect.name == name; });
+}
+
+}  // namespace arris

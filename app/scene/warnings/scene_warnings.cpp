@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/warnings/scene_warnings.h"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "app/scene/warnings/layer_warnings.h"
+#include "app/scene/warnings/motion_warnings.h"
+#include "app/scene/warnings/placement_warnings.h"
+#include "app/scene/parts/scene_estimate.h"
+#include "app/scene/warnings/still_scene.h"
+#include "app/scene/warnings/warnings.h"
+#include "app/text/counted.h"
+#include "geometry/cloth/mesh_quality.h"
+#include "geometry/cloth/mesh_topology.h"
+#include "geometry/obstacle_input/repair/sheet_opening.h"
+#include "solver/eol/creases.h"
+
+namespace arris {
+namespace {
+
+void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
+{
+    if (!warnings.is_written("cloth.file")) {
+        warnings.add("cloth.units", "the cloth is not from a file");
+        warnings.add("cloth.up", "the cloth is not from a file");
+        warnings.add("cloth.uv_scale", "the cloth is not from a file");
+    }
+    if (config.as_run["cloth"].value("pattern", "") == "unstructured")
+        warnings.add("cloth.pattern_angle", "an unstructured mesh has no direction");
+
+    const Material& material = config.scene.material;
+    constexpr std::array kPresetKeys = {"density", "youngs_modulus", "poisson_ratio", "bending_stiffness"};
+    const bool overrides_all = std::all_of(kPresetKeys.begin(), kPresetKeys.end(), [&](const char* key) {
+        return warnings.is_written(std::string("cloth.material.") + key);
+    });
+    if (overrides_all) warnings.add("cloth.material.preset", "keys override all values of the preset");
+    constexpr double kStiffest = 1e6;  // N/m: ten times what sailcloth has
+    if (material.youngs_modulus > kStiffest && warnings.is_written("cloth.material.youngs_modulus"))
+        warnings.note("cloth.material.youngs_modulus",
+                      "exceeds that of any cloth: the unit is N/m, a modulus in Pa times the cloth's "
+                      "physical thickness in m");
+    constexpr double kHeaviest = 3.0;  // kg/m^2: three times what thick leather has
+    if (material.density > kHeaviest && warnings.is_written("cloth.material.density"))
+        warnings.note("cloth.material.density",
+                      "exceeds that of any cloth: the unit is kg/m^2, and 150 g/m^2 are 0.15");
+    if (material.bending_stiffness > 0.0 && topology.hinges.empty())
+        warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
+    const bool keeps_layers = config.scene.self_contact && !warnings.is_written("self_contact.thickness");
+    if (config.scene.obstacles.empty() && !keeps_layers)
+        warnings.add("cloth.material.thickness", "the scene has no obstacle");
+}
+
+/// Warns of a cloth of implausible size, mostly because the unit is wrong.
+void check_cloth_size(const RunConfig& config, Warnings& warnings)
+{
+    constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m, longer side
+    Eigen::AlignedBox2d material;
+    for (const Vec2& X : config.cloth.material) material.extend(X);
+    const Vec2 sides = material.sizes();
+    if (sides.maxCoeff() >= kSmallest && sides.maxCoeff() <= kLargest) return;
+    const char* key = warnings.is_written("cloth.outline") ? "cloth.outline" : "cloth.size";
+    const char* advice = "sizes are in metres";
+    if (warnings.is_written("cloth.units")) {
+        key = "cloth.units";
+        advice = "check this unit; it is that of positions, while cloth.uv_scale is that of UVs";
+    } else if (warnings.is_written("cloth.file")) {
+        key = "cloth.file";
+        advice =
+            "a file that is not in metres needs 'units', such as \"mm\", for positions, and 'uv_scale' for "
+            "UVs";
+    }
+    warnings.note(key, fmt::format("the cloth is {:.4g} x {:.4g} m: {}", sides.x(), sides.y(), advice));
+}
+
+void check_wind(const RunConfig& config, Warnings& warnings)
+{
+    if (config.scene.gravity && is_zero(config.scene.gravity->acceleration))
+        warnings.add("gravity.acceleration", "the acceleration is zero");
+    if (!config.scene.wind) return;
+    const Wind& wind = *config.scene.wind;
+    if (is_zero(wind.drag) || is_zero(wind.air_density))
+        warnings.add("wind", is_zero(wind.drag) ? "wind.drag is zero" : "wind.air_density is zero");
+    if (!wind.gust) return;
+    if (is_zero(wind.velocity))
+        warnings.add("wind.gust", "the wind's velocity is zero");
+    else if (is_zero(wind.gust->amplitude))
+        warnings.add("wind.gust", "the amplitude is zero");
+}
+
+void check_pulls(const RunConfig& config, Warnings& warnings)
+{
+    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i) {
+        const Pull& pull = config.scene.pulls[i];
+        const std::string path = fmt::format("pull.{}", i);
+        if (is_zero(pull.force)) warnings.add(path + ".force", "the force is zero");
+        if (pull.start >= config.duration)
+            warnings.add(path + ".start", "the pull starts after the end of the run");
+        else if (pull.stop >= config.duration)
+            warnings.add(path + ".stop", "the run ends before that time");
+    }
+}
+
+/// Warns of a surface that is closed except for a hole: it looks solid, but is a sheet.
+void check_inside(const RunConfig& config, std::size_t i, Warnings& warnings)
+{
+    const auto& json = config.as_run["obstacle"][i];
+    if (!json.contains("file")) return;
+    const Obstacle& obstacle = config.scene.obstacles[i].shape();
+    int count = 0, border_edges = 0;
+    for (const SheetOpening& opening : find_sheet_openings(obstacle.mesh(), obstacle.topology())) {
+        if (!opening.looks_solid()) continue;
+        ++count;
+        border_edges += opening.border_edges;
+    }
+    if (count == 0) return;
+    const std::string which = count == 1 ? "a surface" : fmt::format("each of {} surfaces", count);
+    warnings.note(fmt::format("obstacle.{}.file", i),
+                  fmt::format("{} is closed except for a hole ({}{}), and so is a sheet without an "
+                              "inside: cloth may enter through the hole; if a solid is meant, close the mesh",
+                              which, counted(border_edges, "border edge", "border edges"),
+                              count == 1 ? "" : " in all"));
+}
+
+void check_obstacles(const RunConfig& config, Warnings& warnings)
+{
+    for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
+        const MovingObstacle& obstacle = config.scene.obstacles[i];
+        const std::string path = fmt::format("obstacle.{}", i);
+        const auto& json = config.as_run["obstacle"][i];
+        if (!json.contains("file")) {
+            warnings.add(path + ".units", "the obstacle is not from a file");
+            warnings.add(path + ".up", "the obstacle is not from a file");
+        }
+        if (!json.contains("wire")) warnings.add(path + ".closed", "the obstacle is not a wire");
+        if (obstacle.shape().mesh().faces.empty())
+            warnings.add(path + ".feature_angle", "the obstacle has no faces");
+        check_inside(config, i, warnings);
+        check_obstacle_motion(config, obstacle.motion(), path, warnings);
+    }
+    if (config.as_run["eol"]["enabled"].get<bool>() && !config.scene.eol)
+        warnings.add("eol.enabled", "no obstacle has a sharp feature");
+}
+
+void check_time(const RunConfig& config, Warnings& warnings)
+{
+    const double fps = config.output.frames_per_second;
+    if (is_zero(fps) && !config.output.formats.empty())
+        warnings.add("output.formats", "with frames_per_second = 0 there are no frames to export");
+    const double longest = fps > 0.0 ? std::min(config.duration, 1.0 / fps) : config.duration;
+    if (config.settings.step > longest * (1.0 + 1e-9))
+        warnings.note(
+            "time.step",
+            fmt::format("is shortened to {:.6g} s: steps end at frames and at the duration", longest));
+}
+
+/// Square root of the world's area over the material's.
+double mean_stretch(const ClothMesh& cloth)
+{
+    double world_area = 0.0;
+    for (const auto& [a, b, c] : cloth.faces)
+        world_area += (cloth.world[b] - cloth.world[a]).cross(cloth.world[c] - cloth.world[a]).norm() / 2.0;
+    return std::sqrt(world_area / material_area(cloth));
+}
+
+/// Warns of a cloth that starts strongly strained, mostly because its UVs are not in metres.
+void check_strain(const RunConfig& config, const StrainRange& placed, Warnings& warnings)
+{
+    if (!placed.is_surprising()) return;
+    const bool is_scaled = warnings.is_written("cloth.scale");
+    const bool is_from_file = config.as_run["cloth"].contains("file");
+    std::string remedy;
+    if (is_from_file)
+        remedy = fmt::format("; scale the UVs in the file to metres, or set cloth.uv_scale (near {:.3g})",
+                             config.as_run["cloth"]["uv_scale"].get<double>() * mean_stretch(config.cloth));
+    else if (is_scaled)
+        remedy = "; change 'size' instead of 'scale'";
+    warnings.note(is_scaled ? "cloth.scale" : "cloth",
+                  fmt::format("{} strained, {}: material coordinates are in metres, and the "
+                              "cloth will contract or expand to their size{}",
+                              is_scaled ? "starts the cloth" : "starts", in_words(placed), remedy));
+}
+
+/// Warns of thin faces. Mesh surgery refuses operations that leave thin faces, so few EOL vertices fit in.
+void check_angles(const RunConfig& config, Warnings& warnings)
+{
+    constexpr double kThin = 5.0;  // degrees
+    if (!config.scene.eol) return;
+    const ClothMesh& cloth = config.cloth;
+    int thin = 0, thinnest = 0;
+    double least = kThin;
+    for (int f = 0; f < cloth.face_count(); ++f) {
+        const double angle = least_material_angle(cloth, f);
+        if (!(angle < kThin)) continue;
+        ++thin;
+        if (angle < least) std::tie(least, thinnest) = std::pair(angle, f);
+    }
+    if (thin == 0) return;
+    const bool is_from_file = warnings.is_written("cloth.file");
+    const bool is_outline = warnings.is_written("cloth.outline");
+    const Vec2& X = cloth.material[cloth.faces[thinnest][0]];
+    warnings.note(
+        is_from_file ? "cloth.file"
+        : is_outline ? "cloth.outline"
+                     : "cloth.resolution",
+        fmt::format(
+            "{} of {} an angle below {:g} degrees, the least {:.2g} degrees at [{:.6g}, {:.6g}] "
+            "(material): EOL vertices can hardly be placed in such thin faces; {}",
+            thin, counted(cloth.face_count(), "face has", thin == 1 ? "faces has" : "faces have"), kThin,
+            least, X.x(), X.y(),
+            is_outline ? "round off sharp corners"
+            : is_from_file
+                ? "remesh the file with more even faces"
+                : "use cells with more even sides, or folds and a pattern_angle that cut off no slivers"));
+}
+
+/// Warns of a thickness above the mean edge, mostly because the unit is wrong.
+void check_thickness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
+{
+    if (config.scene.obstacles.empty()) return;
+    const double cell = measure_edges(config.cloth, topology).mean;
+    const double thickness = config.scene.material.thickness;
+    if (thickness > cell)
+        warnings.note(
+            "cloth.material.thickness",
+            fmt::format("exceeds the mean edge of the cloth's mesh, {:.3g} m: the thickness is the distance "
+                        "kept from obstacles, in metres, and should be well below that edge",
+                        cell));
+}
+
+/// Warns where the mesh resolves the bend of the cloth over a feature: EOL vertices then only cost time and
+/// energy.
+void check_bends(const RunConfig& config, Warnings& warnings)
+{
+    if (!resolves_bends(config.scene, config.cloth)) return;
+    const std::string stiffness = "cloth.material.bending_stiffness", preset = "cloth.material.preset";
+    const double bending_stiffness = config.scene.material.bending_stiffness;
+    const std::string what = fmt::format(
+        "the mean edge of {:.3g} m resolves the bend of cloth with a bending stiffness of {:.3g} J over a "
+        "sharp feature: without EOL vertices (eol.enabled = false) the cloth slides as well, at less cost; "
+        "see docs/accuracy.md, Stiff bends",
+        config.scene.eol->mean_length, bending_stiffness);
+    if (warnings.is_written(stiffness))
+        warnings.note(stiffness, what);
+    else if (warnings.is_written(preset))
+        warnings.note(preset, what);
+    else
+        warnings.note(what);
+}
+
+void check_stillness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
+{
+    if (stays_still(config, topology))
+        warnings.note(
+            "nothing moves the cloth: there is no [gravity], no acting wind or [[pull]], no moving pin or "
+            "obstacle and no cloth.velocity, and the cloth starts flat and unstrained");
+}
+
+/// Warns of remeshing that may make fewer vertices than the first mesh has, or than its longest edges need.
+void check_remeshing(const RunConfig& config, Warnings& warnings)
+{
+    if (!config.scene.remesh) return;
+    const Remeshing& remesh = *config.scene.remesh;
+    if (remesh.most_vertices < config.cloth.vertex_count())
+        warnings.note("remesh.vertices",
+                      fmt::format("is below the {} vertices of the first mesh, so cells become coarser "
+                                  "everywhere",
+                                  config.cloth.vertex_count()));
+    const double written = config.as_run["remesh"]["edge_length"][1].get<double>();
+    if (!(remesh.longest > written)) return;
+    warnings.note(
+        warnings.is_written("remesh.vertices") ? "remesh.vertices" : "remesh",
+        fmt::format("edges of {:g} m need more than {} vertices on this cloth, so edges may be as long as "
+                    "{:.3g} m; allow more vertices or longer edges",
+                    written, remesh.most_vertices, remesh.longest));
+}
+
+}  // namespace
+
+std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config,
+                                               const StrainRange& placed)
+{
+    Warnings warnings(document);
+    const MeshTopology topology = make_topology(config.cloth.vertex_count(), config.cloth.faces);
+    check_time(config, warnings);
+    check_cloth(config, topology, warnings);
+    check_cloth_size(config, warnings);
+    check_angles(config, warnings);
+    check_pins(config, warnings);
+    check_wind(config, warnings);
+    check_pulls(config, warnings);
+    check_obstacles(config, warnings);
+    check_placement(config, warnings);
+    check_turns(config, warnings);
+    check_strain(config, placed, warnings);
+    check_thickness(config, topology, warnings);
+    check_layers(config, topology, warnings);
+    check_bends(config, warnings);
+    check_stillness(config, topology, warnings);
+    check_remeshing(config, warnings);
+    return warnings.lines_;
+}
+
+}  // namespace arris

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/elements/cloth_elements.h"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <span>
+
+namespace arris {
+
+namespace {
+
+bool has_moved(const std::vector<char>& is_moved, std::span<const int> vertices)
+{
+    return std::any_of(vertices.begin(), vertices.end(), [&](int v) { return is_moved[v] != 0; });
+}
+
+/// Greedy colouring: each element, in order, takes the lowest colour that none of its vertices has.
+template <typename Element>
+ElementColors color_elements(int vertex_count, const std::vector<Element>& elements)
+{
+    // Colours used at each vertex so far: used[begin[v]] .. used[end[v] - 1].
+    std::vector<int> begin(vertex_count + 1, 0);
+    for (const Element& element : elements)
+        for (const int v : element.vertices) ++begin[v + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<int> end(begin.begin(), begin.end() - 1), used(begin.back());
+    std::vector<int> color(elements.size());
+    std::vector<int> seen_by;  // for each colour, the last element that met it
+    int color_count = 0;
+    for (int e = 0; e < static_cast<int>(elements.size()); ++e) {
+        for (const int v : elements[e].vertices)
+            for (int u = begin[v]; u < end[v]; ++u) seen_by[used[u]] = e;
+        int free_color = 0;
+        while (free_color < color_count && seen_by[free_color] == e) ++free_color;
+        if (free_color == color_count) {
+            ++color_count;
+            seen_by.push_back(-1);
+        }
+        color[e] = free_color;
+        for (const int v : elements[e].vertices) used[end[v]++] = free_color;
+    }
+
+    // Counting sort by colour; within a colour, elements keep their order.
+    ElementColors colors;
+    colors.start.assign(color_count + 1, 0);
+    for (const int k : color) ++colors.start[k + 1];
+    for (int k = 0; k < color_count; ++k) colors.start[k + 1] += colors.start[k];
+    colors.order.resize(elements.size());
+    std::vector<int> next = colors.start;
+    for (int e = 0; e < static_cast<int>(elements.size()); ++e) colors.order[next[color[e]]++] = e;
+    return colors;
+}
+
+}  // namespace
+
+FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face)
+{
+    const Vec2& a = material[face[0]];
+    const Vec2& b = material[face[1]];
+    const Vec2& c = material[face[2]];
+    const double doubled = twice_area(a, b, c);
+    assert(doubled > 0.0 && "material faces are counter-clockwise");
+
+    // grad N_a is perpendicular to the edge opposite a, and its length is one over the altitude.
+    const auto gradient = [&](const Vec2& from, const Vec2& to) -> Vec2 {
+        return Vec2(from.y() - to.y(), to.x() - from.x()) / doubled;
+    };
+    return {face, 0.5 * doubled, {gradient(b, c), gradient(c, a), gradient(a, b)}};
+}
+
+double compute_hinge_weight(const std::vector<Vec2>& material, const HingeElement& hinge, double area_c,
+                            double area_d)
+{
+    const Vec2 e = material[hinge.vertices[1]] - material[hinge.vertices[0]];
+    return hinge.is_crease() ? 3.0 * e.norm() / hinge.crease_width
+                             : 3.0 * e.squaredNorm() / (area_c + area_d);
+}
+
+std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& material,
+                                                   const HingeElement& hinge, const FaceElement& c,
+                                                   const FaceElement& d)
+{
+    const Vec2 e = material[hinge.vertices[1]] - material[hinge.vertices[0]];
+    std::array<Vec2, 4> gradients = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+    if (hinge.is_crease()) {
+        gradients[1] = 3.0 / hinge.crease_width * e.normalized();
+        gradients[0] = -gradients[1];
+        return gradients;
+    }
+    // w = 3 |e|^2 / A: dw = 6 e . de / A - w dA / A, and a face's area grows by A_f b_i . dX_i.
+    const double area = c.area + d.area;
+    const double weight = compute_hinge_weight(material, hinge, c.area, d.area);
+    for (int i = 0; i < 4; ++i)
+        for (const FaceElement* face : {&c, &d})
+            for (int k = 0; k < 3; ++k)
+                if (face->vertices[k] == hinge.vertices[i])
+                    gradients[i] -= weight * face->area / area * face->gradients[k];
+    const Vec2 along_edge = 6.0 / area * e;
+    gradients[0] -= along_edge;
+    gradients[1] += along_edge;
+    return gradients;
+}
+
+ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology, HingeUse use)
+{
+    ClothElements elements;
+    elements.vertex_count = mesh.vertex_count();
+    elements.hinge_use = use;
+    elements.faces.reserve(mesh.faces.size());
+    for (const Face& face : mesh.faces) elements.faces.push_back(make_face_element(mesh.material, face));
+    if (use == HingeUse::None) return elements;
+    elements.hinges.reserve(topology.hinges.size());
+    for (const Hinge& hinge : topology.hinges) {
+        HingeElement made{{hinge.a, hinge.b, hinge.c, hinge.d}, {hinge.face_c, hinge.face_d}};
+        made.weight = compute_hinge_weight(mesh.material, made, elements.faces[hinge.face_c].area,
+                                           elements.faces[hinge.face_d].area);
+        elements.hinges.push_back(made);
+    }
+    return elements;
+}
+
+ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology, HingeUse use)
+{
+    ClothElements elements = list_elements(mesh, topology, use);
+    elements.face_colors = color_elements(elements.vertex_count, elements.faces);
+    if (use == HingeUse::Terms)
+        elements.hinge_colors = color_elements(elements.vertex_count, elements.hinges);
+    return elements;
+}
+
+void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, ClothElements& elements)
+{
+    for (FaceElement& face : elements.faces)
+        if (has_moved(is_moved, face.vertices)) face = make_face_element(mesh.material, face.vertices);
+    for (HingeElement& hinge : elements.hinges)
+        if (has_moved(is_moved, hinge.vertices))
+            hinge.weight = compute_hinge_weight(mesh.material, hinge, elements.faces[hinge.faces[0]].area,
+                                                elements.faces[hinge.faces[1]].area);
+}
+
+std::vector<double> lump_masses(double density, const ClothElements& elements)
+{
+    std::vector<double> mass(static_cast<std::size_t>(elements.vertex_count), 0.0);
+    for (const FaceElement& face : elements.faces)
+        for (const int v : face.vertices) mass[v] += density * face.area / 3.0;
+    return mass;
+}
+
+}  // namespace arris

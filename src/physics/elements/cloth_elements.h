@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/cloth/cloth_mesh.h"
+#include "geometry/cloth/mesh_topology.h"
+
+namespace arris {
+
+/// A triangle's shape in the material. `gradients` are the gradients of its shape functions, 1/m, so that F =
+/// sum_i x_i gradients[i]^T (3x2).
+struct FaceElement {
+    Face vertices;
+    double area = 0.0;  ///< m^2, in the material
+    std::array<Vec2, 3> gradients;
+};
+
+/// Two faces (a, b, c), (b, a, d) that share the edge (a, b). `weight` = 3 |e|^2 / A, with e the edge and A
+/// the area of both faces, in the material; for a crease, 3 |e| / its width.
+struct HingeElement {
+    std::array<int, 4> vertices;
+    std::array<int, 2> faces;
+    double weight = 0.0;
+    double crease_width = 0.0;  ///< m; 0 if the hinge is no crease (physics/forces/bending.h)
+
+    bool is_crease() const { return crease_width > 0.0; }
+};
+
+/// Elements in classes ("colours") without common vertices. Elements of one class can be added to a system in
+/// parallel without a race. Each matrix entry gets the same sum for any number of threads. Class k consists
+/// of order[start[k]] .. order[start[k + 1] - 1].
+struct ElementColors {
+    std::vector<int> order;
+    std::vector<int> start;
+};
+
+/// What a cloth's hinges are for: nothing, so that there are none; the momentum of material that flows around
+/// them (momentum_flux.h); or, beside that, the hinge terms of an effect such as bending.
+enum class HingeUse { None, Flow, Terms };
+
+/// Everything about the mesh that the terms need, besides its positions. Rebuilt where the mesh changes.
+/// Where only material coordinates change, `update_elements` suffices.
+struct ClothElements {
+    int vertex_count = 0;
+    std::vector<FaceElement> faces;
+    std::vector<HingeElement> hinges;
+    std::vector<FaceElement> rim;  ///< where `faces` are a part of a cloth: further faces of `hinges`, which
+                                   ///< have the indices from faces.size() on, and no terms of their own
+    HingeUse hinge_use = HingeUse::Terms;
+    ElementColors face_colors, hinge_colors;
+};
+
+/// Elements without colours, which suffice for energies and for assembling a few elements one after the
+/// other. Linear in face count. Material orientations must be positive (`validate` checks this).
+ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology,
+                            HingeUse use = HingeUse::Terms);
+
+/// Elements with colours. Hinges are listed if `use` is not None, and get colours if it is Terms.
+ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology,
+                            HingeUse use = HingeUse::Terms);
+
+/// Recomputes the elements at vertices with `is_moved` (one entry per vertex) from the mesh's material
+/// coordinates. The result is bitwise that of `make_elements`. Faces, and so colours, must be unchanged.
+void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, ClothElements& elements);
+
+/// Mass of each vertex, kg: a third of its faces'. `density` in kg/m^2.
+std::vector<double> lump_masses(double density, const ClothElements& elements);
+
+/// Element of the triangle with corners at `material[face[i]]`, m; it must be counter-clockwise.
+FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face);
+
+/// `weight` of a hinge with vertices at `material`, m, between faces with these areas.
+double compute_hinge_weight(const std::vector<Vec2>& material, const HingeElement& hinge, double area_c,
+                            double area_d);
+
+/// Derivatives of a hinge's weight by the material coordinates of its vertices, 1/m. `c` and `d` are the
+/// elements of its faces at `material`.
+std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& material,
+                                                   const HingeElement& hinge, const FaceElement& c,
+                                                   const FaceElement& d);
+
+}  // namespace arris

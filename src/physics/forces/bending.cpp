@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/forces/bending.h"
+
+#include <optional>
+
+#include "physics/elements/hinge_fold.h"
+
+namespace arris {
+
+namespace {
+
+/// V / (K w) of a hinge, and its derivative by sigma = sin^2(theta/2).
+struct Response {
+    double energy, slope;
+};
+
+Response find_response(const HingeElement& hinge, double sigma)
+{
+    // theta = 60 degrees. A right angle within one cell exceeds this; spread over three cells it does not.
+    constexpr double kCreased = 0.25;
+    if (!hinge.is_crease()) return {sigma, 1.0};
+    if (sigma >= kCreased) return {0.5 * kCreased, 0.0};
+    return {sigma * (1.0 - 0.5 * sigma / kCreased), 1.0 - sigma / kCreased};
+}
+
+}  // namespace
+
+double Bending::energy(const HingeState& hinge) const
+{
+    const std::optional<HingeFold> fold = find_fold(hinge.x);
+    if (!fold) return 0.0;
+    return stiffness_ * hinge.element.weight * find_response(hinge.element, fold->squared_sine()).energy;
+}
+
+void Bending::add(const HingeState& hinge, HingeSystem& system) const
+{
+    const std::optional<HingeFold> fold = find_fold(hinge.x);
+    if (!fold) return;
+    const std::array<Vec3, 4> gradient = angle_gradient(*fold, hinge.x);
+
+    // dV/dtheta = K w sin(theta/2) cos(theta/2) = K w sin(theta) / 2; the stiffness has the factor 2 K w
+    // (cos(theta/2) / 2)^2. A crease scales both by its slope. The part with a crease's curvature is negative
+    // and left out.
+    const Response response = find_response(hinge.element, fold->squared_sine());
+    const double scale = stiffness_ * hinge.element.weight * response.slope;
+    const double sin_theta = sine_of_angle(*fold, hinge.x);
+    const double squared_cos_half = fold->squared_cosine();
+    for (int i = 0; i < 4; ++i) {
+        system.add_elastic_force(i, -0.5 * scale * sin_theta * gradient[i]);
+        for (int j = 0; j <= i; ++j)
+            system.add_stiffness(i, j,
+                                 0.5 * scale * squared_cos_half * gradient[i] * gradient[j].transpose());
+    }
+    if (!system.is_eulerian()) return;
+    for (int i = 0; i < 4; ++i)
+        system.add_material_force(i, -stiffness_ * response.energy * hinge.weight_gradients->at(i));
+}
+
+}  // namespace arris

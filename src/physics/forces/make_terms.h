@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "physics/elements/effects.h"
+#include "physics/elements/material.h"
+#include "physics/elements/term.h"
+
+namespace arris {
+
+/// Always inertia and membrane; other terms if their effect is present. A new term takes one file and one
+/// line here.
+Terms make_terms(const Material& material, const std::optional<Gravity>& gravity,
+                 const std::optional<Wind>& wind, const std::vector<Pull>& pulls);
+
+}  // namespace arris

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/forces/plate_bending.h"
+
+#include <cmath>
+
+#include "physics/elements/hinge_fold.h"
+
+namespace arris {
+
+double PlateBending::energy(const HingeState& hinge) const
+{
+    return hinge.element.is_crease() ? crease_.energy(hinge) : hinge.moment->energy;
+}
+
+void PlateBending::add(const HingeState& hinge, HingeSystem& system) const
+{
+    if (hinge.element.is_crease()) {
+        crease_.add(hinge, system);
+        return;
+    }
+    const HingeMoment& moment = *hinge.moment;
+    if (const std::optional<HingeFold> fold = find_fold(hinge.x)) {
+        // ds = cos(theta/2) dtheta
+        const double squared_cosine = fold->squared_cosine();
+        const double cosine = std::sqrt(squared_cosine);
+        const std::array<Vec3, 4> gradient = angle_gradient(*fold, hinge.x);
+        for (int i = 0; i < 4; ++i) {
+            system.add_elastic_force(i, -moment.moment * cosine * gradient[i]);
+            for (int j = 0; j <= i; ++j)
+                system.add_stiffness(
+                    i, j, moment.stiffness * squared_cosine * gradient[i] * gradient[j].transpose());
+        }
+    }
+    if (!system.is_eulerian()) return;
+    for (int i = 0; i < 4; ++i) system.add_material_force(i, moment.material_force[i]);
+}
+
+}  // namespace arris
