@@ -8,10 +8,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "app/scene/warnings/missing_effects.h"
 #include "app/scene/parts/scene_effects.h"
 #include "app/scene/parts/scene_estimate.h"
 #include "app/scene/parts/scene_obstacles.h"
+#include "app/scene/warnings/missing_effects.h"
 #include "app/text/counted.h"
 #include "app/text/printable.h"
 #include "geometry/cloth/material_locator.h"

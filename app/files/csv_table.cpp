@@ -140,7 +140,7 @@ void require_same_header(const std::string& path, const std::string& header)
 
 }  // namespace
 
-std::string rows_column(RowCause cause)
+std::string rows_column(ConstraintCause cause)
 {
     return std::string("rows_") + to_string(cause);
 }
@@ -149,7 +149,8 @@ std::string step_header()
 {
     std::vector<std::string> cells;
     for (const StepColumn& column : kStepColumns) cells.push_back(column.name);
-    for (std::size_t k = 0; k < kRowCauses; ++k) cells.push_back(rows_column(static_cast<RowCause>(k)));
+    for (std::size_t k = 0; k < kConstraintCauses; ++k)
+        cells.push_back(rows_column(static_cast<ConstraintCause>(k)));
     return join(cells);
 }
 
@@ -157,7 +158,7 @@ std::string format_row(const StepRow& row)
 {
     std::vector<std::string> cells;
     for (const StepColumn& column : kStepColumns) cells.push_back(column.cell(row));
-    for (std::size_t k = 0; k < kRowCauses; ++k)
+    for (std::size_t k = 0; k < kConstraintCauses; ++k)
         cells.push_back(row.rows_by_cause ? fmt::format("{}", (*row.rows_by_cause)[k]) : std::string());
     return join(cells);
 }

@@ -44,8 +44,8 @@ struct StepRow {
     std::optional<std::int64_t> self_contacts;      ///< of the cloth with itself, with a positive multiplier
     std::optional<std::int64_t> remeshed;           ///< splits, merges and flips of remeshing
     std::optional<double> remesh_energy;            ///< J, added by all changes of the mesh in this step
-    double max_strain = 0.0;                 ///< size of the greatest principal strain around any vertex
-    std::optional<RowCounts> rows_by_cause;  ///< `feature_rows` by cause, columns rows_<cause>
+    double max_strain = 0.0;  ///< size of the greatest principal strain around any vertex
+    std::optional<ConstraintCounts> rows_by_cause;  ///< `feature_rows` by cause, columns rows_<cause>
 };
 
 /// World position (m) and velocity (m/s) of a material point at one time.
@@ -55,7 +55,7 @@ struct ProbeSample {
 };
 
 /// Name of the column of feature rows with this cause: rows_<cause>.
-std::string rows_column(RowCause cause);
+std::string rows_column(ConstraintCause cause);
 
 /// Header and rows, without a line end. Numbers read back to the same double.
 std::string step_header();

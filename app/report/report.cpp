@@ -78,8 +78,8 @@ std::string to_string(RunStatus status)
 std::optional<double> FeatureTotals::eol_share() const
 {
     std::int64_t rows = 0;
-    for (std::size_t k = 0; k < kRowCauses; ++k)
-        if (counts_in_share(static_cast<RowCause>(k))) rows += by_cause[k];
+    for (std::size_t k = 0; k < kConstraintCauses; ++k)
+        if (counts_in_share(static_cast<ConstraintCause>(k))) rows += by_cause[k];
     if (eol + rows == 0) return std::nullopt;
     return static_cast<double>(eol) / static_cast<double>(eol + rows);
 }
@@ -97,8 +97,8 @@ StepTotals sum_steps(const std::string& steps_csv)
     const std::array touches = {reader.column("contacts"), reader.column("eol_vertices"),
                                 reader.column("feature_rows")};
     std::vector<std::size_t> cause_columns;
-    for (std::size_t k = 0; k < kRowCauses; ++k)
-        cause_columns.push_back(reader.column(rows_column(static_cast<RowCause>(k))));
+    for (std::size_t k = 0; k < kConstraintCauses; ++k)
+        cause_columns.push_back(reader.column(rows_column(static_cast<ConstraintCause>(k))));
 
     StepTotals totals;
     std::vector<double> row;
@@ -119,7 +119,7 @@ StepTotals sum_steps(const std::string& steps_csv)
         if (std::isnan(row[eol])) continue;
         if (!totals.features) totals.features.emplace();
         totals.features->eol += to_count(row[eol], steps_csv);
-        for (std::size_t k = 0; k < kRowCauses; ++k)
+        for (std::size_t k = 0; k < kConstraintCauses; ++k)
             totals.features->by_cause[k] += to_count(row[cause_columns[k]], steps_csv);
     }
     return totals;
@@ -137,8 +137,8 @@ namespace {
 nlohmann::ordered_json to_json(const FeatureTotals& features)
 {
     nlohmann::ordered_json rows = nlohmann::ordered_json::object();
-    for (std::size_t k = 0; k < kRowCauses; ++k)
-        rows[to_string(static_cast<RowCause>(k))] = features.by_cause[k];
+    for (std::size_t k = 0; k < kConstraintCauses; ++k)
+        rows[to_string(static_cast<ConstraintCause>(k))] = features.by_cause[k];
     nlohmann::ordered_json json = {{"eol", features.eol}, {"rows", rows}, {"eol_share", nullptr}};
     if (const std::optional<double> share = features.eol_share()) json["eol_share"] = *share;
     return json;

@@ -21,8 +21,8 @@ std::string to_string(RunStatus status);
 
 /// Numbers of contacts that pressed on sharp features, summed over all steps of a run with EOL vertices.
 struct FeatureTotals {
-    std::int64_t eol = 0;                             ///< as EOL vertices
-    std::array<std::int64_t, kRowCauses> by_cause{};  ///< as rows
+    std::int64_t eol = 0;                                    ///< as EOL vertices
+    std::array<std::int64_t, kConstraintCauses> by_cause{};  ///< as rows
 
     /// Share of EOL vertices among EOL vertices and the rows whose cause counts (`counts_in_share`). Nothing
     /// if there are none.

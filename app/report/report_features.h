@@ -8,7 +8,7 @@
 namespace arris {
 
 /// Explains to a user why a contact is a row of the velocity solve and not an EOL vertex.
-const char* explain(RowCause cause);
+const char* explain(ConstraintCause cause);
 
 /// "98.3 %", or "no contacts" if there is no share.
 std::string format_share(const std::optional<double>& share);

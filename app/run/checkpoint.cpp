@@ -137,7 +137,7 @@ void write_state(BinaryWriter& out, const State& state)
     out.list(state.coupled, [&](const std::array<int, 2>& pair) {
         for (const int v : pair) out.number(static_cast<std::int32_t>(v));
     });
-    out.list(state.cell_lengths, [&](float length) { out.number(length); });
+    out.list(state.sizing_field, [&](float length) { out.number(length); });
     out.list(state.refused_edges, [&](const RefusedEdge& edge) {
         for (const std::uint32_t id : edge.vertex_ids) out.number(id);
         out.number(edge.refusals);
@@ -207,7 +207,7 @@ State read_state(BinaryReader& in)
         for (int& v : pair) v = in.number<std::int32_t>();
         return pair;
     });
-    state.cell_lengths = in.list<float>(sizeof(float), [&] { return in.number<float>(); });
+    state.sizing_field = in.list<float>(sizeof(float), [&] { return in.number<float>(); });
     constexpr std::size_t kRefusedBytes = 3 * sizeof(std::int32_t) + sizeof(std::int64_t);
     state.refused_edges = in.list<RefusedEdge>(kRefusedBytes, [&] {
         RefusedEdge edge;

@@ -38,7 +38,7 @@ std::string find_defect(const std::vector<ActiveContact>& contacts, const std::v
         };
         for (std::size_t i = 0; i < contact.vertex_ids.size(); ++i) {
             const bool may_be_missing = i > 0 && contact.obstacle != kClothItself;
-            const bool is_missing = contact.vertex_ids[i] == ActiveContact::kNoVertex;
+            const bool is_missing = contact.vertex_ids[i] == ContactVertexIds::kNoVertex;
             if (is_missing ? !may_be_missing : !is_known(contact.vertex_ids[i]))
                 return fmt::format("contact {} refers to an unknown vertex", k);
         }
@@ -114,8 +114,8 @@ std::string find_defect(const Checkpoint& checkpoint)
                          std::pair(state.anchors[k - 1].pin, state.anchors[k - 1].vertex_id))
             return "anchors are not in ascending order";
     }
-    for (std::size_t k = 0; k < state.cell_lengths.size(); ++k)
-        if (!(state.cell_lengths[k] > 0.0f) || !std::isfinite(state.cell_lengths[k]))
+    for (std::size_t k = 0; k < state.sizing_field.size(); ++k)
+        if (!(state.sizing_field[k] > 0.0f) || !std::isfinite(state.sizing_field[k]))
             return fmt::format("cell length {} is not positive", k);
     if (const std::string defect = find_defect(state.refused_edges, state.ids); !defect.empty())
         return defect;

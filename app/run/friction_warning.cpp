@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/text/counted.h"
-#include "solver/friction.h"
+#include "solver/step_friction.h"
 
 namespace arris {
 

@@ -53,9 +53,9 @@ void check_references(const std::string& directory, const State& state, const Sc
     const bool has_obstacles = std::all_of(state.active.begin(), state.active.end(), is_there) &&
                                std::all_of(state.eol.begin(), state.eol.end(), is_on_feature);
     const std::size_t nodes = scene.remesh ? static_cast<std::size_t>(scene.remesh->grid.size()) : 0;
-    if (state.cell_lengths.size() != nodes)
+    if (state.sizing_field.size() != nodes)
         throw InputError(fmt::format("{}: is damaged: it has {} cell lengths where the scene has {}",
-                                     printable(checkpoint_file(directory)), state.cell_lengths.size(),
+                                     printable(checkpoint_file(directory)), state.sizing_field.size(),
                                      nodes));
     if (!has_pins || !has_obstacles)
         throw InputError(fmt::format("{}: is damaged: it refers to {} that the scene does not have",

@@ -109,7 +109,7 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
 
 /// Makes one planned step and writes a row for each part; an opening has no row of its own. Throws
 /// Interrupted.
-std::optional<RunEnding> advance(Run& run)
+std::optional<RunEnding> make_planned_step(Run& run)
 {
     State& state = run.at.state;
     if (run.timeline.jumps_at(state.time)) restart(state);
@@ -136,7 +136,7 @@ std::optional<RunEnding> advance(Run& run)
     }
     if (run.audited.obstacle >= 0) return explain_ending(run.audited, run.config.scene, state);
     if (run.crossed.count > 0) return explain_ending(run.crossed, state);
-    run.at.position = run.timeline.advance(run.at.position);
+    run.at.position = run.timeline.next(run.at.position);
     return std::nullopt;
 }
 
@@ -156,7 +156,7 @@ RunEnding simulate(Run& run, bool is_quiet)
         }
         RunProgress before = run.at;
         try {
-            if (const std::optional<RunEnding> failed = advance(run)) {
+            if (const std::optional<RunEnding> failed = make_planned_step(run)) {
                 ending = *failed;
                 break;
             }

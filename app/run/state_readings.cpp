@@ -46,7 +46,8 @@ Frame make_frame(const std::vector<MovingObstacle>& obstacles, const State& stat
     frame.contact.assign(state.ids.size(), 0);
     for (const ActiveContact& contact : state.active)
         for (const std::uint32_t id : contact.vertex_ids)  // a fold plane is not an obstacle's surface
-            if (id != ActiveContact::kNoVertex && !is_fold(contact)) frame.contact[state.index_of(id)] = 1;
+            if (id != ContactVertexIds::kNoVertex && !is_fold_plane(contact))
+                frame.contact[state.index_of(id)] = 1;
     frame.faces = state.mesh.faces;
     FaceReadings readings = compute_face_readings(elements, terms, state.mesh.world);
     frame.strain = std::move(readings.strain);

@@ -41,7 +41,7 @@ double Timeline::next_end(const TimelinePosition& at) const
     return at.begin + (end - at.begin) * (static_cast<double>(at.done + 1) / static_cast<double>(steps));
 }
 
-TimelinePosition Timeline::advance(const TimelinePosition& at) const
+TimelinePosition Timeline::next(const TimelinePosition& at) const
 {
     const double end = interval_end(at.begin);
     if (at.done + 1 >= interval_steps(at.begin, end)) return {end, 0};

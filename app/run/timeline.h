@@ -24,7 +24,7 @@ class Timeline {
 
     /// End of the next step, s.
     double next_end(const TimelinePosition& at) const;
-    TimelinePosition advance(const TimelinePosition& at) const;
+    TimelinePosition next(const TimelinePosition& at) const;
 
     /// Whether the input jumps at `time`.
     bool jumps_at(double time) const;

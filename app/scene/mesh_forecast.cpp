@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "app/scene/parts/scene_cloth.h"
 #include "app/scene/keys/scene_document.h"
-#include "app/scene/scene_rules.h"
 #include "app/scene/keys/scene_values.h"
+#include "app/scene/parts/scene_cloth.h"
+#include "app/scene/scene_rules.h"
 
 namespace arris {
 

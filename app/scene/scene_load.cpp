@@ -11,17 +11,17 @@
 #include <optional>
 #include <utility>
 
+#include "app/scene/keys/scene_document.h"
+#include "app/scene/keys/scene_json.h"
+#include "app/scene/keys/scene_values.h"
 #include "app/scene/parts/merge_events.h"
 #include "app/scene/parts/scene_cloth.h"
-#include "app/scene/keys/scene_document.h"
 #include "app/scene/parts/scene_estimate.h"
-#include "app/scene/keys/scene_json.h"
 #include "app/scene/parts/scene_obstacles.h"
 #include "app/scene/parts/scene_remeshing.h"
-#include "app/scene/scene_rules.h"
-#include "app/scene/keys/scene_values.h"
-#include "app/scene/warnings/scene_warnings.h"
 #include "app/scene/parts/start_strain.h"
+#include "app/scene/scene_rules.h"
+#include "app/scene/warnings/scene_warnings.h"
 #include "app/text/counted.h"
 #include "geometry/cloth/material_locator.h"
 #include "geometry/input_error.h"

@@ -7,8 +7,8 @@
 #include <initializer_list>
 #include <map>
 
-#include "app/scene/parts/scene_cloth.h"
 #include "app/scene/keys/scene_keys.h"
+#include "app/scene/parts/scene_cloth.h"
 #include "app/text/printable.h"
 #include "physics/elements/material.h"
 

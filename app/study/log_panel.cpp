@@ -77,7 +77,7 @@ std::string draw_text(double x, double y, const char* anchor, const std::string&
                        escape_html(text));
 }
 
-std::string draw_frame(const std::string& title, const std::string& y_label)
+std::string draw_border(const std::string& title, const std::string& y_label)
 {
     return draw_text(kLeft, 18, "start", title, " class=\"title\"") +
            fmt::format(
@@ -209,7 +209,7 @@ PanelDrawing draw_panel(const LogPanel& panel)
     const LogAxis x = make_axis(all_values(panel, &PanelCurve::x, at_border), kLeft, kPanelWidth - kRight);
     const LogAxis y = make_axis(all_values(panel, &PanelCurve::y, {}), kBottom, kTop);
     std::string svg = draw_y_axis(y) + draw_x_axis(x, panel.named_x, panel.x_label) +
-                      draw_frame(panel.title, panel.y_label);
+                      draw_border(panel.title, panel.y_label);
     for (const PanelCurve& curve : panel.curves) svg += draw_curve(curve, x, y);
     svg += draw_front(panel, x, y) + draw_failed(panel.failed_x, x);
     Legend legend;
@@ -246,7 +246,7 @@ PanelDrawing draw_panel(const SharePanel& panel)
         legend.add(fmt::format("<rect width=\"12\" height=\"12\" y=\"-8\" fill=\"{}\"/>", colour),
                    panel.names[k]);
     }
-    svg += draw_x_axis(x, panel.named_x, panel.x_label) + draw_frame(panel.title, "share of a step (%)");
+    svg += draw_x_axis(x, panel.named_x, panel.x_label) + draw_border(panel.title, "share of a step (%)");
     for (const int tick : {0, 25, 50, 75, 100})
         svg += draw_text(kLeft - 6, kBottom - kPlotHeight * tick / 100.0 + 4, "end", std::to_string(tick));
     return legend.finish(svg);

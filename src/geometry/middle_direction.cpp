@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/tolerances.h"
+
 namespace arris {
 namespace {
 
@@ -13,7 +15,6 @@ namespace {
 template <typename Visit>
 void for_each_candidate(const std::vector<Vec3>& directions, const Visit& visit)
 {
-    constexpr double kIndependent = 1e-9;  // determinant of three unit vectors
     const std::size_t n = directions.size();
     for (std::size_t i = 0; i < n; ++i) {
         visit(directions[i]);
@@ -22,7 +23,7 @@ void for_each_candidate(const std::vector<Vec3>& directions, const Visit& visit)
             for (std::size_t k = j + 1; k < n; ++k) {
                 Mat3 rows;
                 rows << directions[i].transpose(), directions[j].transpose(), directions[k].transpose();
-                if (std::abs(rows.determinant()) > kIndependent) visit(rows.inverse() * Vec3::Ones());
+                if (std::abs(rows.determinant()) > kAccumulated) visit(rows.inverse() * Vec3::Ones());
             }
         }
     }

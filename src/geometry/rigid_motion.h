@@ -26,7 +26,7 @@ inline Placement operator*(const Placement& second, const Placement& first)
 }
 
 /// Converts world points to the frame that `placement` puts into the world.
-inline std::vector<Vec3> to_frame(const Placement& placement, const std::vector<Vec3>& world)
+inline std::vector<Vec3> to_local(const Placement& placement, const std::vector<Vec3>& world)
 {
     std::vector<Vec3> points;
     points.reserve(world.size());

@@ -14,6 +14,10 @@ namespace arris {
 /// factor 2 covers the normal's own rounding. Raising it costs proofs that two elements are apart.
 inline constexpr double kProductRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
+/// Some units in the last place of a number: what is left where terms of its size cancel. Relative to that
+/// size. Raising it takes small differences for none.
+inline constexpr double kLastPlaces = 1e-15;
+
 /// Lengths and times that differ by less, relative to their scale, differ by the rounding of some dozens of
 /// operations. Far above the rounding of one difference (1e-14). Raising it takes small lengths for none.
 inline constexpr double kComputed = 1e-12;
@@ -21,6 +25,14 @@ inline constexpr double kComputed = 1e-12;
 /// Positions in space also carry the rounding of what came before: earlier steps, earlier folds. Elements
 /// nearer than this share of their boxes' size count as touching. Raising it stops cloth farther off.
 inline constexpr double kTouching = 1e-11;
+
+/// Energies, gaps and directions that have gone through sums over elements or a linear solve carry more
+/// rounding, relative to their size. Raising it takes small changes for none.
+inline constexpr double kAccumulated = 1e-9;
+
+/// Distance, in the cloth's thicknesses, within which a point lies on a surface or in a plane. Raising it
+/// takes cloth just beside a feature for cloth on it.
+inline constexpr double kOnSurface = 1e-6;
 
 // --- differences by the numbers in a file
 

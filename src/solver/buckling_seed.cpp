@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 
+#include "geometry/tolerances.h"
 #include "physics/forces/membrane.h"
 #include "solver/mesh_change/step_mesh.h"
 #include "solver/plane_stars.h"
@@ -18,7 +19,8 @@ namespace arris {
 namespace {
 
 // Deviation from the plane in one step, relative to the longest edge at a vertex. Raising it lets cloth fold
-// a few steps earlier, as deviations grow exponentially. Round-off of positions is about 1e-15.
+// a few steps earlier, as deviations grow exponentially. Must be well above kComputed, up to which cloth
+// counts as exactly plane: beyond, a deviation grows without a seed.
 constexpr double kSeed = 1e-10;
 
 // Share of the deviation that differs from vertex to vertex, so that free cloth is bent and not just moved.
@@ -26,17 +28,10 @@ constexpr double kSeed = 1e-10;
 // With signs at random it hooked onto a rod that meets a hanging sheet, in three of five runs.
 constexpr double kVariation = 0.5;
 
-// Deviation up to which cloth counts as exactly plane, relative to the same edge. Above it, the deviation
-// grows without a seed. Must be well below kSeed.
-constexpr double kPlane = 1e-12;
-
 // Least compressive tension that is seeded, as a share of Young's modulus: a strain of 0.1 %, which costs
 // little energy. Plane cloth in tension stays below: 0.07 % in the statics of a hanging sheet, 0.002 % in
 // data/scenes.
 constexpr double kLeastCompression = 1e-3;
-
-// Sine of the angle with the cloth above which gravity or a contact acts across it.
-constexpr double kAcross = 1e-6;
 
 /// 1 for each vertex of a compressed face; empty where no face is compressed.
 std::vector<char> mark_compressed(const Material& material, const ClothMesh& mesh,
@@ -66,7 +61,7 @@ class UnloadedNormals {
     std::optional<Vec3> operator()(int v)
     {
         const std::optional<Vec3> normal =
-            find_plane_normal(v, state_.mesh.faces, stars_, state_.mesh.world, kPlane);
+            find_plane_normal(v, state_.mesh.faces, stars_, state_.mesh.world, kComputed);
         return normal && !is_loaded(v, *normal) && stays_plane(v) ? normal : std::nullopt;
     }
 
@@ -75,14 +70,13 @@ class UnloadedNormals {
     {
         if (scene_.gravity) {
             const Vec3& g = scene_.gravity->acceleration;
-            if (std::abs(g.dot(normal)) > kAcross * g.norm()) return true;
+            if (std::abs(g.dot(normal)) > kLevel * g.norm()) return true;
         }
         if (state_.eol_entry(state_.ids[v]) >= 0) return true;
         if (!pressing_) find_pressing();
         const auto [begin, end] = pressing_->equal_range(v);
-        return std::any_of(begin, end, [&](const auto& pressing) {
-            return std::abs(pressing.second.dot(normal)) > kAcross;
-        });
+        return std::any_of(
+            begin, end, [&](const auto& pressing) { return std::abs(pressing.second.dot(normal)) > kLevel; });
     }
 
     void find_pressing()
@@ -101,7 +95,7 @@ class UnloadedNormals {
             moved_ = state_.mesh.world;
             for (std::size_t w = 0; w < moved_.size(); ++w) moved_[w] += dt_ * state_.velocity[w];
         }
-        return find_plane_normal(v, state_.mesh.faces, stars_, moved_, kPlane).has_value();
+        return find_plane_normal(v, state_.mesh.faces, stars_, moved_, kComputed).has_value();
     }
 
     const Scene& scene_;

@@ -9,8 +9,8 @@
 #include "solver/eol/stop_flow.h"
 #include "solver/feature_census.h"
 #include "solver/model/pin_targets.h"
-#include "solver/remesh/cell_lengths.h"
 #include "solver/remesh/misfits.h"
+#include "solver/remesh/sizing_field.h"
 #include "solver/sites/gathering.h"
 
 namespace arris {
@@ -52,7 +52,7 @@ void commit(const Scene& scene, const PlannedStep& planned, double end, Workspac
     report.self_contacts =
         count([](const ActiveContact& contact) { return contact.obstacle == kClothItself; });
     report.yielded = count([](const ActiveContact& contact) { return contact.is_squeezed; });
-    report.contacts = static_cast<int>(state.active.size()) - report.self_contacts - count(is_fold);
+    report.contacts = static_cast<int>(state.active.size()) - report.self_contacts - count(is_fold_plane);
     state.previous_world.swap(state.mesh.world);
     state.previous_velocity.swap(state.velocity);
     state.mesh.world.swap(work.proposal.world);

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/tolerances.h"
 #include "physics/forces/energies.h"
-#include "physics/system/feature_impulse.h"
 #include "physics/forces/inertia.h"
+#include "physics/system/feature_impulse.h"
 #include "solver/contact/constraints.h"
 #include "solver/contact/squeezed.h"
 #include "solver/eol/eol_coordinates.h"
@@ -29,8 +30,8 @@ void subtract_row(const ConstraintRow& row, double multiplier, Eigen::VectorXd& 
     for (int e = 0; e < row.count; ++e) impulse[row.coordinate[e]] -= multiplier * row.coefficient[e];
 }
 
-/// Work of pins, J. A u - b is the impulse of all constraints. Without the impulses of rows and friction, the
-/// pins' impulses remain along the pinned coordinates.
+/// Work of pins, J. A u - b is the impulse of all constraints. Without the impulses of contacts and friction,
+/// the pins' impulses remain along the pinned coordinates.
 double work_of_pins(const State& state, const Workspace& work)
 {
     if (work.pin_targets.empty()) return 0.0;
@@ -91,8 +92,8 @@ double work_of_features(const State& state, const std::vector<double>& multiplie
 double work_of_friction(const Workspace& work)
 {
     double sum = 0.0;
-    for (const Rub& rub : work.rubs) {
-        const Contact& contact = work.contacts[rub.contact];
+    for (const SlipContact& slipping : work.slip_contacts) {
+        const Contact& contact = work.contacts[slipping.contact];
         if (contact.eol >= 0) continue;
         const Carrier& carrier = work.carriers[contact.obstacle];
         const Vec3 place = contact.at(carrier.motion.begin);
@@ -142,12 +143,11 @@ double total_area(const ClothElements& elements)
 /// Elastic energy, J, of strains due to round-off alone, for positions as far from the origin as the cloth's.
 double round_off_energy(const Scene& scene, const State& state, const ClothElements& elements)
 {
-    constexpr double kRoundOff = 1e-15;  // relative to a coordinate: some units in the last place
     const double area = total_area(elements);
     double far = 0.0;
     for (const Vec3& x : state.mesh.world) far = std::max(far, x.cwiseAbs().maxCoeff());
     const double squared_length = area / static_cast<double>(elements.faces.size());
-    return scene.material.youngs_modulus * area * kRoundOff * kRoundOff * far * far / squared_length;
+    return scene.material.youngs_modulus * area * kLastPlaces * kLastPlaces * far * far / squared_length;
 }
 
 }  // namespace
@@ -176,7 +176,6 @@ double compute_driven_work(const State& state, const Workspace& work)
 
 double energy_scale(const Workspace& work)
 {
-    constexpr double kRoundOff = 1e-9;  // relative to the energies, which are sums over elements
     const ClothEnergy& before = work.energies.start;
     const ClothEnergy& after = work.energies.solved;
     double exchanged = 0.0, size = 0.0;
@@ -187,7 +186,7 @@ double energy_scale(const Workspace& work)
         exchanged += std::abs(b - a);
         size += std::abs(a) + std::abs(b);
     }
-    return work.energies.floor + before.kinetic + exchanged + kRoundOff * size;
+    return work.energies.floor + before.kinetic + exchanged + kAccumulated * size;
 }
 
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work)
@@ -230,9 +229,9 @@ double find_unforeseen_energy(const Scene& scene, const State& state, const Work
 
 void measure_start_energy(const Scene& scene, const State& state, Workspace& work)
 {
-    // Share of m g L that counts as a change: cloth at rest moves by round-off and as rows give way. In a
-    // stack of layers, where other rows press in each step, all of it moves by up to 2e-8 of its size.
-    // Without this share, changes at rest would be compared with themselves.
+    // Share of m g L that counts as a change: cloth at rest moves by round-off and as constraints give way.
+    // In a stack of layers, where other constraints press in each step, all of it moves by up to 2e-8 of its
+    // size. Without this share, changes at rest would be compared with themselves.
     constexpr double kRest = 1e-5;
     const double area = total_area(work.mesh.elements);
     work.energies.floor = scene.gravity ? kRest * scene.material.density * area *

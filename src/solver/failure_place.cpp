@@ -122,7 +122,7 @@ void name_crease(const State& state, const std::vector<Contact>& contacts, std::
     const int vertex = static_cast<int>(at - state.ids.begin());
     std::vector<const Contact*> met;
     for (const Contact& contact : contacts)
-        if (!contact.is_with_itself() && !contact.is_fold() && has_vertex(contact, vertex))
+        if (!contact.is_with_itself() && !contact.is_fold_plane() && has_vertex(contact, vertex))
             met.push_back(&contact);
     double least = 0.0;  // cosine between the normals
     for (std::size_t i = 0; i < met.size(); ++i)

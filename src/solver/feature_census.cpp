@@ -9,6 +9,7 @@
 #include "geometry/closest_point.h"
 #include "geometry/obstacle/feature_nodes.h"
 #include "geometry/obstacle/feature_path.h"
+#include "geometry/tolerances.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/eol/eol_features.h"
 
@@ -16,15 +17,13 @@ namespace arris {
 
 namespace {
 
-constexpr double kTouching = 1e-6;  // thicknesses: the contact's point lies on the obstacle
-constexpr double kAtEnd = 0.95;     // weight of an edge's end: no vertex is inserted nearer to it
+constexpr double kAtEnd = 0.95;  // weight of an edge's end: no vertex is inserted nearer to it
 
 bool is_plane_of_face(const Obstacle& obstacle, const Contact& contact)
 {
-    constexpr double kSame = 1e-9;  // 1 - cosine: rounding
     const auto& normals = obstacle.topology().face_normals;
     return contact.element >= 0 && contact.element < static_cast<int>(normals.size()) &&
-           std::abs(normals[contact.element].dot(contact.normal_in_frame)) > 1.0 - kSame;
+           std::abs(normals[contact.element].dot(contact.local_normal)) > 1.0 - kAccumulated;
 }
 
 class Census {
@@ -34,35 +33,35 @@ class Census {
     {
     }
 
-    RowCause find_cause(const Contact& contact) const
+    ConstraintCause find_cause(const Contact& contact) const
     {
         const int entry = contact.is_vertex() ? state_.eol_entry(state_.ids[contact.vertices[0]]) : -1;
         if (entry >= 0) return of_eol_vertex(entry, contact);
-        if (!contact.was_active()) return RowCause::New;
+        if (!contact.was_active()) return ConstraintCause::New;
         const Beside beside = find_beside(contact);
-        if (beside.is_at) return beside.refusal ? *beside.refusal : RowCause::AtEol;
+        if (beside.is_at) return beside.refusal ? *beside.refusal : ConstraintCause::AtEol;
         const auto refused = std::find_if(work_.mesh.refused.begin(), work_.mesh.refused.end(),
                                           [&](const RefusedContact& r) { return is_same(r, contact); });
         if (refused != work_.mesh.refused.end()) return refused->cause;
-        return beside.is_any ? RowCause::BesideEol : RowCause::NotCrossing;
+        return beside.is_any ? ConstraintCause::BesideEol : ConstraintCause::NotCrossing;
     }
 
   private:
     /// Cause for a contact of an EOL vertex: the vertex has no coordinates in this step, or the contact is
     /// with another feature or obstacle.
-    RowCause of_eol_vertex(int entry, const Contact& contact) const
+    ConstraintCause of_eol_vertex(int entry, const Contact& contact) const
     {
-        if (const std::optional<RowCause> refusal = find_refusal(entry)) return *refusal;
-        if (!contact.was_active()) return RowCause::New;
-        return contact.obstacle == state_.eol[entry].on.obstacle ? RowCause::OtherFeature
-                                                                 : RowCause::OtherObstacle;
+        if (const std::optional<ConstraintCause> refusal = find_refusal(entry)) return *refusal;
+        if (!contact.was_active()) return ConstraintCause::New;
+        return contact.obstacle == state_.eol[entry].on.obstacle ? ConstraintCause::OtherFeature
+                                                                 : ConstraintCause::OtherObstacle;
     }
 
     /// EOL vertices beside a contact, on the feature that the contact touches.
     struct Beside {
         bool is_any = false;
-        bool is_at = false;               ///< the contact is at one of them, or between two
-        std::optional<RowCause> refusal;  ///< why that vertex has no coordinates in this step, if so
+        bool is_at = false;                      ///< the contact is at one of them, or between two
+        std::optional<ConstraintCause> refusal;  ///< why that vertex has no coordinates in this step, if so
     };
 
     Beside find_beside(const Contact& contact) const
@@ -101,8 +100,8 @@ class Census {
         const ObstaclePose obstacle = scene_.obstacles[eol.on.obstacle].at(state_.time);
         const auto& edges = obstacle->features().edges;
         if (!eol.on.is_corner()) return edges[eol.on.index].polyline == edges[feature].polyline;
-        constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-        return distance_to_corner(obstacle, {feature, 0.5}, eol.on.index, kAnywhere).has_value();
+        const double anywhere = std::numeric_limits<double>::infinity();
+        return distance_to_corner(obstacle, {feature, 0.5}, eol.on.index, anywhere).has_value();
     }
 
     /// Whether a contact belongs to an edge of the trace. Either the contact's cloth edge is a trace edge. Or
@@ -142,11 +141,11 @@ class Census {
     {
         const std::vector<Vec3>& begin = work_.carriers[contact.obstacle].motion.begin;
         const Vec3 &a = begin[contact.vertices[i]], &b = begin[contact.vertices[j]];
-        const double s = closest_on_segment(contact.point_in_frame, a, b);
-        return (contact.point_in_frame - a - s * (b - a)).norm() <= kOnFeature * scene_.material.thickness;
+        const double s = closest_on_segment(contact.local_point, a, b);
+        return (contact.local_point - a - s * (b - a)).norm() <= kOnFeature * scene_.material.thickness;
     }
 
-    /// Whether a contact lies at that vertex of the cloth, by the rule in row_cause.h.
+    /// Whether a contact lies at that vertex of the cloth, by the rule in constraint_cause.h.
     bool is_at(const Contact& contact, int vertex) const
     {
         Vec2 material = Vec2::Zero();
@@ -159,7 +158,7 @@ class Census {
         return (material - state_.mesh.material[vertex]).norm() <= kOnFeature * scene_.material.thickness;
     }
 
-    std::optional<RowCause> find_refusal(int entry) const
+    std::optional<ConstraintCause> find_refusal(int entry) const
     {
         const EolVertex& eol = state_.eol[entry];
         const Carrier& way = work_.carriers[eol.on.obstacle];
@@ -174,7 +173,7 @@ class Census {
         if (contact.kind != ContactKind::Vertex && refused.element != contact.element) return false;
         for (int i = 0; i < 4; ++i) {
             const std::uint32_t id =
-                contact.vertices[i] < 0 ? ActiveContact::kNoVertex : state_.ids[contact.vertices[i]];
+                contact.vertices[i] < 0 ? ContactVertexIds::kNoVertex : state_.ids[contact.vertices[i]];
             if (id != refused.vertex_ids[i]) return false;
         }
         return true;
@@ -192,16 +191,16 @@ bool touches_feature(const Obstacle& obstacle, const Contact& contact, double th
     if (contact.kind == ContactKind::Vertex && is_plane_of_face(obstacle, contact)) return false;
     if (contact.kind == ContactKind::Edge && feature_of_edge(obstacle.features(), contact.element) >= 0)
         return true;
-    const double reach = kTouching * thickness;
-    const Box3 box(contact.point_in_frame.array() - reach, contact.point_in_frame.array() + reach);
+    const double reach = kOnSurface * thickness;
+    const Box3 box(contact.local_point.array() - reach, contact.local_point.array() + reach);
     std::vector<int> found;
     obstacle.find_corners(box, found);
     if (!found.empty()) return true;
     obstacle.find_feature_edges(box, found);
     return std::any_of(found.begin(), found.end(), [&](int feature) {
         const auto [a, b] = feature_segment(obstacle, feature);
-        const double s = closest_on_segment(contact.point_in_frame, a, b);
-        return (contact.point_in_frame - a - s * (b - a)).norm() <= reach;
+        const double s = closest_on_segment(contact.local_point, a, b);
+        return (contact.local_point - a - s * (b - a)).norm() <= reach;
     });
 }
 
@@ -217,7 +216,7 @@ FeatureCensus take_census(const Scene& scene, const State& state, const Workspac
             ++census.eol;
             continue;
         }
-        if (contact.is_with_itself() || contact.is_fold() ||
+        if (contact.is_with_itself() || contact.is_fold_plane() ||
             !touches_feature(*work.carriers[contact.obstacle].obstacle, contact, scene.material.thickness))
             continue;
         ++census.rows;

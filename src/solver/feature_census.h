@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "solver/model/row_cause.h"
+#include "solver/model/constraint_cause.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
 #include "solver/workspace.h"
@@ -12,9 +12,9 @@ namespace arris {
 
 /// Counts of the contacts that press on sharp edges, corners, wires and points at a step's end.
 struct FeatureCensus {
-    int eol = 0;           ///< EOL vertices that press
-    int rows = 0;          ///< other pressing contacts, also of single vertices
-    RowCounts by_cause{};  ///< `rows` by cause; zero in a scene without EOL vertices
+    int eol = 0;                  ///< EOL vertices that press
+    int rows = 0;                 ///< other pressing contacts, also of single vertices
+    ConstraintCounts by_cause{};  ///< `rows` by cause; zero in a scene without EOL vertices
 };
 
 /// Counts for a solved step from `state`, before its commit. `multiplier` has one entry a contact of the

@@ -14,7 +14,7 @@ bool has_vertex(const Contact& contact, int vertex)
     return std::find(contact.vertices.begin(), contact.vertices.end(), vertex) != contact.vertices.end();
 }
 
-/// Contacts with obstacles that the step cannot meet, in the order of their rows.
+/// Contacts with obstacles that the step cannot meet, in the order of their constraints.
 std::vector<const Contact*> list_unmet(const UnmetStep& step, const std::optional<int>& overconstrained)
 {
     std::vector<const Contact*> unmet;
@@ -52,7 +52,7 @@ int find_vertex(const UnmetStep& step, const std::vector<const Contact*>& unmet)
 }
 
 /// Obstacle whose contact faces `unmet` most directly at the vertex; -1 without one. A contact that is a
-/// bound of the velocity solve is never among the unmet rows.
+/// bound of the velocity solve is never among the unmet constraints.
 int find_opponent(const UnmetStep& step, int vertex, const Contact& unmet)
 {
     int opponent = -1;
@@ -68,7 +68,7 @@ int find_opponent(const UnmetStep& step, int vertex, const Contact& unmet)
     return opponent;
 }
 
-/// Obstacle that presses one element of the row most directly towards the other; -1 without one.
+/// Obstacle that presses one element of the constraint most directly towards the other; -1 without one.
 int find_presser(const UnmetStep& step, const Contact& pair)
 {
     int presser = -1;

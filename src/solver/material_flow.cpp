@@ -6,21 +6,20 @@
 #include <utility>
 
 #include "solver/eol/eol_coordinates.h"
-#include "solver/model/cell_length.h"
 #include "solver/model/eol_limits.h"
+#include "solver/model/target_length.h"
 
 namespace arris {
 
 std::vector<Overrun> find_overrun(const std::vector<Vec2>& material, const std::vector<EolCoordinates>& eol,
                                   const MeshCache& mesh, double dt)
 {
-    constexpr double kLeast = 1.0 - kMostFaceTaken;
     std::vector<Overrun> overrun;
     for (const EolCoordinates& at : eol)
         for (const int f : mesh.stars.faces[at.vertex]) {
             const auto& [a, b, c] = mesh.faces_of_elements[f];
             const double left = 0.5 * twice_area(material[a], material[b], material[c]);
-            if (left >= kLeast * mesh.elements.faces[f].area) continue;
+            if (left >= (1.0 - kMostFaceTaken) * mesh.elements.faces[f].area) continue;
             const Vec2 way = material[at.vertex] - mesh.material_of_elements[at.vertex];
             overrun.push_back({at.vertex, way / dt});
         }
@@ -63,18 +62,17 @@ Shortened shorten(const State& state, const std::vector<EolCoordinates>& eol, co
 
 int find_flow_parts(const Scene& scene, const State& state, double dt)
 {
-    // Cells that a part may take. Faces ahead of a vertex with a cleared way are at least a cell high, so
-    // steps that take more rarely succeed.
-    constexpr double kMostCells = kMostFaceTaken;
+    // A part may take kMostFaceTaken of a cell. Faces ahead of a vertex with a cleared way are at least a
+    // cell high, so steps that take more rarely succeed.
     constexpr int kMostParts = 4;  // a bound, as the flow of a single vertex may be far too large
     double most = 0.0;
     for (const EolVertex& eol : state.eol) {
         const int v = state.index_of(eol.vertex_id);
         const double way = dt * state.material_velocity[v].norm();
-        most = std::max(most, way / cell_length(scene, state, state.mesh.material[v]));
+        most = std::max(most, way / target_length(scene, state, state.mesh.material[v]));
     }
     int parts = 1;
-    while (parts < kMostParts && most > parts * kMostCells) parts *= 2;
+    while (parts < kMostParts && most > parts * kMostFaceTaken) parts *= 2;
     return parts;
 }
 

@@ -68,7 +68,7 @@ std::vector<int> find_overconstrained_by_work(const Workspace& work)
     return overconstrained;
 }
 
-std::vector<int> find_overconstraining_folds(const Workspace& work)
+std::vector<int> find_overconstraining_fold_planes(const Workspace& work)
 {
     constexpr double kAgainst = -0.5;  // cosine of the normals
     std::vector<int> overconstraining;
@@ -76,12 +76,12 @@ std::vector<int> find_overconstraining_folds(const Workspace& work)
     const auto is_pressing = [&](std::size_t c) { return multiplier[c] > 0.0; };
     for (std::size_t f = 0; f < work.contacts.size(); ++f) {
         const Contact& fold = work.contacts[f];
-        if (!fold.is_fold() || !is_pressing(f)) continue;
+        if (!fold.is_fold_plane() || !is_pressing(f)) continue;
         const int vertex = fold.vertices[0];
         for (std::size_t c = 0; c < work.contacts.size(); ++c) {
             const Contact& other = work.contacts[c];
             const std::array<int, 4>& vertices = other.vertices;
-            if (other.is_fold() || other.is_with_itself() || other.obstacle == fold.obstacle ||
+            if (other.is_fold_plane() || other.is_with_itself() || other.obstacle == fold.obstacle ||
                 !is_pressing(c) || !(other.normal.dot(fold.normal) < kAgainst) ||
                 std::find(vertices.begin(), vertices.end(), vertex) == vertices.end())
                 continue;

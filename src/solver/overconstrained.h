@@ -20,7 +20,7 @@ std::vector<int> find_overconstrained_by_work(const Workspace& work);
 
 /// Contacts (indices) of fold planes that press cloth against another obstacle. A fold plane is no surface,
 /// so it can yield.
-std::vector<int> find_overconstraining_folds(const Workspace& work);
+std::vector<int> find_overconstraining_fold_planes(const Workspace& work);
 
 /// Overconstrained EOL vertices of an infeasible step: vertices in contacts that no velocity meets, or else
 /// the result of `find_overconstrained_by_work`. Empty if the status is not Infeasible.

@@ -7,6 +7,8 @@
 #include <limits>
 #include <span>
 
+#include "geometry/tolerances.h"
+
 namespace arris {
 
 namespace {
@@ -35,7 +37,6 @@ std::optional<Vec3> find_normal(const std::vector<Face>& faces, std::span<const 
 std::optional<Vec3> find_plane_normal(int vertex, const std::vector<Face>& faces, const VertexFaces& stars,
                                       const std::vector<Vec3>& positions, double tolerance)
 {
-    constexpr double kRoundOff = 16.0 * std::numeric_limits<double>::epsilon();  // relative to a coordinate
     const std::optional<Vec3> normal = find_normal(faces, stars[vertex], positions);
     if (!normal) return std::nullopt;
     double height = 0.0, squared_length = 0.0;
@@ -45,7 +46,7 @@ std::optional<Vec3> find_plane_normal(int vertex, const std::vector<Face>& faces
             height = std::max(height, std::abs(normal->dot(way)));
             squared_length = std::max(squared_length, way.squaredNorm());
         }
-    const double round_off = kRoundOff * positions[vertex].cwiseAbs().maxCoeff();
+    const double round_off = kProductRounding * positions[vertex].cwiseAbs().maxCoeff();
     return height <= tolerance * std::sqrt(squared_length) + round_off ? normal : std::nullopt;
 }
 

@@ -13,6 +13,10 @@ namespace arris {
 
 namespace {
 
+// Least share of the way from v^ to the velocity found that v^ goes. Where the objective grows, v^ goes that
+// far nevertheless, as the objective lacks wind and pulls. Raising it fails more steps.
+constexpr double kShortest = 0.1;
+
 constexpr int kMostRelinearisations = 4;  // one nearly always suffices; where any help, three do
 
 /// Sets v^ to `next`, and marks the contacts that press now for the next solve.
@@ -28,7 +32,6 @@ void expand_at(ClothVelocity next, Workspace& work, StepReport& report)
 /// would grow.
 void relinearise(const Scene& scene, bool is_measure, Workspace& work, StepReport& report)
 {
-    constexpr double kShortest = 0.1;  // some way always: the objective lacks wind and pulls
     ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
     if (is_measure) {
         const double now = compute_step_objective(scene, work, work.expansion);
@@ -63,7 +66,7 @@ Next enforce_energy_balance(const Scene& scene, const State& state, Attempt atte
         work.least.rise = rise;
         work.least.at = work.expansion;
     }
-    if (work.least.is_taken) {  // rows added since may have raised the energy
+    if (work.least.is_taken) {  // constraints added since may have raised the energy
         return rise > 0.0 && attempt == Attempt::Ordinary ? fail() : Next::Accept;
     }
     const bool may_again = report.relinearisations < kMostRelinearisations && may_solve_again;
@@ -90,7 +93,6 @@ bool restore_least_rise(Workspace& work, StepReport& report)
 
 bool linearise_nearer(double dt, Workspace& work, StepReport& report)
 {
-    constexpr double kShortest = 0.1;
     if (report.relinearisations >= kMostRelinearisations) return false;
     ClothVelocity next = {work.proposal.velocity, work.proposal.material_velocity};
     const auto has_overrun = [&] {

@@ -104,7 +104,7 @@ void RetryPolicy::note_overrun(bool is_last, const State& state, const State& st
         std::none_of(failure.overrun.begin(), failure.overrun.end(),
                      [&](const Overrun& at) { return state.eol_entry(start.ids[at.vertex]) >= 0; });
     // The next attempt cannot clear a way for vertices that it inserts itself: it would fail like this one.
-    // Their contacts were rows until now and stay so for this step, as a shorter step would cost more.
+    // Their contacts were constraints until now and stay so for this step, as a shorter step would cost more.
     if (is_all_new) overruns_ = std::max(overruns_, kDemotes);
     for (const auto& [v, flow] : failure.overrun) {
         // The next attempt inserts such a vertex under another id, so its place identifies it.

@@ -9,7 +9,6 @@
 #include "solver/contact/constraints.h"
 #include "solver/energy_balance.h"
 #include "solver/failure_place.h"
-#include "solver/friction.h"
 #include "solver/infeasible.h"
 #include "solver/material_flow.h"
 #include "solver/model/eol_limits.h"
@@ -19,6 +18,7 @@
 #include "solver/overconstrained.h"
 #include "solver/relinearization.h"
 #include "solver/step_contacts.h"
+#include "solver/step_friction.h"
 
 namespace arris {
 
@@ -57,7 +57,7 @@ bool assemble(Rounds& round)
     build_constraints(work.pin_targets, work.eol, work.prediction, state, work.contacts, work.linearization,
                       work.problem);
     make_room_for_layers(work);
-    work.rubs = add_friction_pairs(rubbing_cloth(round.scene, state, work), work.problem);
+    work.slip_contacts = add_friction_pairs(slipping_cloth(round.scene, state, work), work.problem);
     Linearization& at = work.linearization;
     const Prediction& prediction = work.prediction;
     at.begin = state.time;
@@ -171,7 +171,7 @@ enum class RoundEnd {
     Unsolved,
     NotFinite,
     Unmet,
-    FoldPresses,
+    FoldPlanePresses,
     Overrun,
     Violated,
     Overconstrained,
@@ -200,7 +200,7 @@ RoundEnd run_round(Next from, Rounds& round)
             break;
     }
     if (report.friction_residual > kOffLaw && round.attempt == Attempt::Ordinary) return RoundEnd::Unsolved;
-    if (round.may_solve_again() && drop_overconstraining_folds(work)) return RoundEnd::FoldPresses;
+    if (round.may_solve_again() && drop_overconstraining_fold_planes(work)) return RoundEnd::FoldPlanePresses;
     watch.lap();
     if (!propose_flow(round)) return RoundEnd::Overrun;
     const bool is_finite = propose_and_check(round);
@@ -302,7 +302,7 @@ constexpr Rule kRules[] = {
       "the cloth is squeezed there, and a new system is solved; where it is already, the attempt fails "
       "(infeasible), or the last one moves cloth back on its path",
       "12 solves"}},
-    {RoundEnd::FoldPresses,
+    {RoundEnd::FoldPlanePresses,
      solve_again,
      {"a plane behind a wire presses cloth on another obstacle", "the plane keeps nothing in this step",
       "12 solves"}},

@@ -4,8 +4,8 @@
 //   stage                 result                                       code, in src/solver
 //   1. choose_step_mesh   mesh with EOL vertices on pressing features  mesh_change/step_mesh
 //   2. move               predicted cloth, pins and obstacles at end   model/time_integration
-//   3. collect_contacts   contacts that the cloth may meet             step_contacts, contact/contacts
-//   4. assemble           A, b; contacts as bounds or rows             contact/constraints, material_flow
+//   3. find_contacts      contacts that the cloth may meet             step_contacts, contact/contacts
+//   4. assemble           A, b; contacts as bounds or constraints      contact/constraints, material_flow
 //   5. solve_velocity     velocity, with its certificate               velocity_solve/velocity_solve
 //   6. propose_and_check  new positions, whole path checked            contact/proposal, energy_balance
 //   7. commit             the proposal becomes the new state           commit
@@ -27,7 +27,7 @@
 #include "solver/model/stopwatch.h"
 #include "solver/not_finite.h"
 #include "solver/overconstrained.h"
-#include "solver/remesh/cell_lengths.h"
+#include "solver/remesh/sizing_field.h"
 #include "solver/rounds.h"
 #include "solver/step_contacts.h"
 
@@ -84,7 +84,7 @@ StepReport make_stages(const Scene& scene, const Settings& settings, const Plann
     report.seconds.move += watch.lap();
 
     // 3. Contacts of vertices, edges and faces. A vertex without room fails the step.
-    const bool has_room = collect_contacts(scene, start, work, report);
+    const bool has_room = find_contacts(scene, start, work, report);
     if (!scene.obstacles.empty()) report.seconds.contacts += watch.lap();
     if (!has_room) {
         work.retry.note(report, attempt, state, start, {});
@@ -95,8 +95,8 @@ StepReport make_stages(const Scene& scene, const Settings& settings, const Plann
     measure_start_energy(scene, start, work);
     report.seconds.move += watch.lap();
 
-    // 4 - 6. Solve, propose and check, in bounded rounds: violations become rows. A mesh with EOL vertices
-    // takes no last resorts, as RetryPolicy first tries a mesh without any.
+    // 4 - 6. Solve, propose and check, in bounded rounds: violations become constraints. A mesh with EOL
+    // vertices takes no last resorts, as RetryPolicy first tries a mesh without any.
     const std::vector<Overrun> overrun = run_rounds(
         scene, settings, end, start, start.eol.empty() ? attempt : Attempt::Ordinary, work, report);
     watch.lap();
@@ -129,7 +129,7 @@ State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity)
     state.previous_material = state.mesh.material;
     state.previous_material_velocity.assign(n, Vec2::Zero());
     attach_pins(scene, state);
-    start_cell_lengths(scene, state);
+    start_sizing_field(scene, state);
     return state;
 }
 

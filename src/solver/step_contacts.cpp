@@ -32,19 +32,19 @@ void append(const std::vector<Contact>& added, std::vector<Contact>& contacts)
     contacts.insert(contacts.end(), added.begin(), added.end());
 }
 
-std::vector<int> find_unmet_folds(const Workspace& work)
+std::vector<int> find_unmet_fold_planes(const Workspace& work)
 {
     const UnmetStep step = {work.contacts, work.pin_targets, work.solution.infeasible_rows};
     std::vector<int> folds;
     for (std::size_t c = 0; c < work.contacts.size(); ++c)
-        if (work.contacts[c].is_fold() && step.is_unmet(work.contacts[c].row))
+        if (work.contacts[c].is_fold_plane() && step.is_unmet(work.contacts[c].row))
             folds.push_back(static_cast<int>(c));
     return folds;
 }
 
 /// Lets fold planes keep nothing in this step: they are only a help, as the check finds cloth that passes
 /// without them. True where one kept anything.
-bool drop_folds(const std::vector<int>& folds, Workspace& work)
+bool drop_fold_planes(const std::vector<int>& folds, Workspace& work)
 {
     constexpr double kFree = 1e3;  // m: farther than any step moves
     bool is_changed = false;
@@ -61,10 +61,10 @@ bool drop_folds(const std::vector<int>& folds, Workspace& work)
 
 }  // namespace
 
-bool collect_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
+bool find_contacts(const Scene& scene, const State& state, Workspace& work, StepReport& report)
 {
     if (note_not_finite(CheckedStage::Move, state, work, report)) return false;
-    work.contacts = find_contacts(scene, state, work.prediction, work.carriers);
+    work.contacts = find_contacts_with_obstacles(scene, state, work.prediction, work.carriers);
     // An EOL vertex has one bound of its own instead of contacts with its feature.
     work.eol.clear();
     if (!state.eol.empty()) {
@@ -128,16 +128,16 @@ bool squeeze_unmet(Workspace& work)
     const UnmetStep step = {work.contacts, work.pin_targets, work.solution.infeasible_rows};
     bool is_changed = false;
     for (Contact& contact : work.contacts) {
-        if (!step.is_unmet(contact.row) || contact.is_fold()) continue;
+        if (!step.is_unmet(contact.row) || contact.is_fold_plane()) continue;
         if (!squeeze(work.cushion, work.carriers, work.prediction, contact)) continue;
         is_changed = true;
     }
-    return is_changed | drop_folds(find_unmet_folds(work), work);
+    return is_changed | drop_fold_planes(find_unmet_fold_planes(work), work);
 }
 
-bool drop_overconstraining_folds(Workspace& work)
+bool drop_overconstraining_fold_planes(Workspace& work)
 {
-    return drop_folds(find_overconstraining_folds(work), work);
+    return drop_fold_planes(find_overconstraining_fold_planes(work), work);
 }
 
 std::optional<Next> add_violations(const Scene& scene, const State& state, const Violations& violations,

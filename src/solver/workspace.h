@@ -25,7 +25,7 @@ struct ClothEnergy {
 
 /// The cloth's energy during one step, as `energy_balance` measures it.
 struct StepEnergies {
-    double floor = 0.0;  ///< least scale of changes: smaller ones are round-off, or rows that give way
+    double floor = 0.0;  ///< least scale of changes: smaller ones are round-off, or constraints that give way
     ClothEnergy start;
     ClothEnergy solved;    ///< of the proposal before cloth is pushed out to its stand-off
     ClothEnergy proposed;  ///< of the proposal after cloth is pushed out
@@ -58,7 +58,7 @@ struct Workspace {
     Linearization linearization;
     ClothVelocity expansion;  ///< v^: q^ = q~ + gamma v^ is where forces are linearised
     VelocityProblem problem;
-    std::vector<Rub> rubs;  ///< contacts with friction, one per friction pair of `problem`
+    std::vector<SlipContact> slip_contacts;  ///< contacts with friction, one per friction pair of `problem`
     Cushion cushion;
 
     // solve_velocity, propose

@@ -29,7 +29,7 @@ class TraceMotion {
         for (int k = 0; k < count && report.verdict == Verdict::Done; ++k) {
             const double share = 1.0 / (count - k);
             const std::size_t events = surgery_.events().size();
-            std::vector<TraceAdvance> ahead;
+            std::vector<TraceShift> ahead;
             for (const auto& [v, way] : rest_) ahead.push_back({v, share * way.vector});
             report.blocked = clear_ahead(surgery_, target_, ahead).blocked;
             follow(events);

@@ -110,7 +110,7 @@ TEST(DrivenWork, OfATurningObstacleIsThatWhereTheClothIsWhereverItsPlaneIsNamed)
     OneStep one(scene, kEverywhere, 1.0);
     const double driven = one.driven();
     ASSERT_GT(driven, 0.0);
-    for (Contact& contact : one.work.contacts) contact.point_in_frame += Vec3(0.3, 0.0, 0.0);
+    for (Contact& contact : one.work.contacts) contact.local_point += Vec3(0.3, 0.0, 0.0);
     EXPECT_NEAR(one.driven() / driven, 1.0, kRoundOff);
 }
 

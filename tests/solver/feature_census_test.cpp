@@ -42,8 +42,8 @@ struct Solved {
         contact.kind = kind;
         std::copy(vertices.begin(), vertices.end(), contact.vertices.begin());
         contact.element = element;
-        contact.normal_in_frame = Vec3::UnitZ();
-        contact.point_in_frame = Vec3(0, 0.1, 0);
+        contact.local_normal = Vec3::UnitZ();
+        contact.local_point = Vec3(0, 0.1, 0);
         contact.obstacle = 0;
         contact.normal = Vec3::UnitZ();
         contact.last_multiplier = was_active ? 1.0 : 0.0;
@@ -58,7 +58,7 @@ struct Solved {
         work.carriers.obstacles[0].obstacle = cloth.scene.obstacles[0].at(cloth.state.time).shape;
         return take_census(cloth.scene, cloth.state, work, multiplier);
     }
-    int count(RowCause cause) { return take().by_cause[static_cast<std::size_t>(cause)]; }
+    int count(ConstraintCause cause) { return take().by_cause[static_cast<std::size_t>(cause)]; }
 };
 
 TEST(FeatureCensus, OfNothingThereIsNothing)
@@ -75,8 +75,8 @@ TEST(FeatureCensus, ARowIsNewUntilItHasPressedTwice)
     Solved solved;
     solved.add(ContactKind::Edge, {3, 4, -1}, solved.tip(), false);
     solved.add(ContactKind::Edge, {4, 5, -1}, solved.tip(), true);
-    EXPECT_EQ(solved.count(RowCause::New), 1);
-    EXPECT_EQ(solved.count(RowCause::NotCrossing), 1)
+    EXPECT_EQ(solved.count(ConstraintCause::New), 1);
+    EXPECT_EQ(solved.count(ConstraintCause::NotCrossing), 1)
         << "nothing has refused it: there was no place to put one";
     EXPECT_EQ(solved.take().rows, 2);
 }
@@ -84,23 +84,23 @@ TEST(FeatureCensus, ARowIsNewUntilItHasPressedTwice)
 TEST(FeatureCensus, ARowHasTheCauseForWhichItWasRefused)
 {
     Solved solved;
-    solved.work.mesh.refused = {{{3, 4}, ContactKind::Edge, 0, solved.tip(), RowCause::Guard},
-                                {{4, 5}, ContactKind::Edge, 0, solved.tip() + 1, RowCause::Guard},
-                                {{5, 6}, ContactKind::Edge, 1, solved.tip(), RowCause::Guard},
-                                {{6, 7, 8}, ContactKind::Triangle, 0, 2, RowCause::Quality},
-                                {{9}, ContactKind::Vertex, 0, -1, RowCause::Released}};
+    solved.work.mesh.refused = {{{3, 4}, ContactKind::Edge, 0, solved.tip(), ConstraintCause::Guard},
+                                {{4, 5}, ContactKind::Edge, 0, solved.tip() + 1, ConstraintCause::Guard},
+                                {{5, 6}, ContactKind::Edge, 1, solved.tip(), ConstraintCause::Guard},
+                                {{6, 7, 8}, ContactKind::Triangle, 0, 2, ConstraintCause::Quality},
+                                {{9}, ContactKind::Vertex, 0, -1, ConstraintCause::Released}};
     solved.add(ContactKind::Edge, {3, 4, -1}, solved.tip(), true);
     solved.add(ContactKind::Edge, {4, 5, -1}, solved.tip(), true);  // refused at another edge of the obstacle
     solved.add(ContactKind::Edge, {5, 6, -1}, solved.tip(), true);  // refused at another obstacle
     solved.add(ContactKind::Triangle, {6, 7, 8}, 2, true);
     solved.add(ContactKind::Vertex, {9, -1, -1}, 1, true);
-    EXPECT_EQ(solved.count(RowCause::Guard), 1);
-    EXPECT_EQ(solved.count(RowCause::NotCrossing), 2);
-    EXPECT_EQ(solved.count(RowCause::Quality), 1);
-    EXPECT_EQ(solved.count(RowCause::Released), 1);
+    EXPECT_EQ(solved.count(ConstraintCause::Guard), 1);
+    EXPECT_EQ(solved.count(ConstraintCause::NotCrossing), 2);
+    EXPECT_EQ(solved.count(ConstraintCause::Quality), 1);
+    EXPECT_EQ(solved.count(ConstraintCause::Released), 1);
     solved.cloth.scene.eol.reset();
     EXPECT_EQ(solved.take().rows, 5);
-    EXPECT_EQ(solved.count(RowCause::Guard), 0) << "nothing is to be EOL";
+    EXPECT_EQ(solved.count(ConstraintCause::Guard), 0) << "nothing is to be EOL";
 }
 
 TEST(FeatureCensus, EolVerticesThatPressAreCountedAndWhatElseTheyTouch)
@@ -130,12 +130,12 @@ TEST(FeatureCensus, EolVerticesThatPressAreCountedAndWhatElseTheyTouch)
     EXPECT_EQ(solved.take().rows, 0);
 
     solved.add(ContactKind::Vertex, {a, -1, -1}, 1000, true);
-    EXPECT_EQ(solved.count(RowCause::OtherFeature), 1);
+    EXPECT_EQ(solved.count(ConstraintCause::OtherFeature), 1);
 
     // An EOL vertex of upright cloth has no coordinates; its contact is a row with the cause EdgeOn.
     for (Vec3& x : cloth.state.mesh.world) x = Vec3(0.0, x.y(), kThickness + x.x());
     solved.work.carriers.obstacles[0].motion.begin = cloth.state.mesh.world;
-    EXPECT_EQ(solved.count(RowCause::EdgeOn), 1);
+    EXPECT_EQ(solved.count(ConstraintCause::EdgeOn), 1);
 }
 
 TEST(FeatureCensus, ARowAtTheEolVertexOfItsFeatureIsTheSameContact)
@@ -151,15 +151,15 @@ TEST(FeatureCensus, ARowAtTheEolVertexOfItsFeatureIsTheSameContact)
         if (is_other_eol) solved.cloth.add_eol(w, false, tip);
         Contact& contact = solved.add(ContactKind::Edge, {v, w, -1}, ridge.features().edges[tip].edge, true);
         contact.weights = {weight, 1.0 - weight, 0.0};
-        for (const RowCause cause : {RowCause::AtEol, RowCause::BesideEol})
+        for (const ConstraintCause cause : {ConstraintCause::AtEol, ConstraintCause::BesideEol})
             if (solved.count(cause) == 1) return cause;
-        return RowCause::New;
+        return ConstraintCause::New;
     };
-    EXPECT_EQ(cause_at(0.96, false), RowCause::AtEol);
-    EXPECT_EQ(cause_at(0.94, false), RowCause::BesideEol)
+    EXPECT_EQ(cause_at(0.96, false), ConstraintCause::AtEol);
+    EXPECT_EQ(cause_at(0.94, false), ConstraintCause::BesideEol)
         << "it is 3.4 thicknesses away, and 6 % of the edge";
-    EXPECT_EQ(cause_at(0.5, false), RowCause::BesideEol);
-    EXPECT_EQ(cause_at(0.5, true), RowCause::AtEol) << "the edge is the trace";
+    EXPECT_EQ(cause_at(0.5, false), ConstraintCause::BesideEol);
+    EXPECT_EQ(cause_at(0.5, true), ConstraintCause::AtEol) << "the edge is the trace";
 }
 
 /// The ridge with an additional mesh point in the middle of its tip, which is the last point.
@@ -201,13 +201,13 @@ TEST(FeatureCensus, AFaceOnAPointInTheMiddleOfAnEdgeTouchesTheTraceThere)
         if (has_trace) solved.cloth.add_eol(w, false, tip);
         Contact& contact = solved.add(ContactKind::Triangle, {v, w, beside}, point, true);
         contact.weights = {0.6 - off, 0.4, off};
-        contact.point_in_frame = ridge.mesh().points[point];
-        const Vec3 near = contact.point_in_frame + Vec3(aside, 0.0, 1e-3);
+        contact.local_point = ridge.mesh().points[point];
+        const Vec3 near = contact.local_point + Vec3(aside, 0.0, 1e-3);
         std::vector<Vec3>& begin = solved.work.carriers.obstacles[0].motion.begin;
         begin[v] = near - 0.4 * testing::kLyingCell * Vec3::UnitY();
         begin[w] = near + 0.6 * testing::kLyingCell * Vec3::UnitY();
         EXPECT_EQ(solved.take().rows, 1);
-        return solved.count(RowCause::AtEol) == 1;
+        return solved.count(ConstraintCause::AtEol) == 1;
     };
     const int middle = static_cast<int>(ridge.mesh().points.size()) - 1;
     ASSERT_EQ(ridge.features().corners.size(), testing::make_ridge(60.0).shape().features().corners.size());
@@ -229,8 +229,8 @@ TEST(FeatureCensus, ARowAtAnEolVertexWithoutCoordinatesSaysWhyThatHasNone)
         solved.cloth.add_eol(corner, false, tip);
         Contact& contact = solved.add(ContactKind::Edge, {0, 1, -1}, ridge.features().edges[tip].edge, true);
         contact.weights = {weight, 1.0 - weight, 0.0};
-        EXPECT_EQ(solved.count(RowCause::ClothCorner), weight > 0.95 ? 1 : 0);
-        EXPECT_EQ(solved.count(RowCause::AtEol), 0);
+        EXPECT_EQ(solved.count(ConstraintCause::ClothCorner), weight > 0.95 ? 1 : 0);
+        EXPECT_EQ(solved.count(ConstraintCause::AtEol), 0);
     };
     count_at(0.97);
     count_at(0.6);
@@ -246,10 +246,11 @@ TEST(FeatureCensus, AFaceThatTouchesACornerBesideItsEolVertexIsAContactOfItsOwn)
         Contact& contact = solved.add(ContactKind::Triangle, {v, v + 1, v + 2},
                                       ridge.features().corners[corner].point, true);
         contact.weights = {weight, 0.0, 1.0 - weight};
-        return solved.count(RowCause::AtEol) == 1 ? RowCause::AtEol : RowCause::BesideEol;
+        return solved.count(ConstraintCause::AtEol) == 1 ? ConstraintCause::AtEol
+                                                         : ConstraintCause::BesideEol;
     };
-    EXPECT_EQ(cause_at(0.99), RowCause::AtEol);
-    EXPECT_EQ(cause_at(0.9), RowCause::BesideEol);
+    EXPECT_EQ(cause_at(0.99), ConstraintCause::AtEol);
+    EXPECT_EQ(cause_at(0.9), ConstraintCause::BesideEol);
 }
 
 TEST(FeatureCensus, AnEdgeThatEndsAtAnEolVertexOfItsFeatureIsBesideIt)
@@ -261,7 +262,8 @@ TEST(FeatureCensus, AnEdgeThatEndsAtAnEolVertexOfItsFeatureIsBesideIt)
         solved.cloth.add_eol(4, false, tip);
         const int feature = is_tip ? tip : tip == 0 ? 1 : 0;
         solved.add(ContactKind::Edge, vertices, ridge.features().edges[feature].edge, true);
-        return std::pair(solved.count(RowCause::BesideEol), solved.count(RowCause::NotCrossing));
+        return std::pair(solved.count(ConstraintCause::BesideEol),
+                         solved.count(ConstraintCause::NotCrossing));
     };
     EXPECT_EQ(count_at({3, 4, -1}, true), std::pair(1, 0));
     EXPECT_EQ(count_at({2, 3, -1}, true), std::pair(0, 1)) << "no end is";
@@ -275,8 +277,8 @@ TEST(FeatureCensus, AVertexTouchesAFeatureWhereItsPlaneIsNoFaces)
         Contact contact;
         contact.vertices[0] = 0;
         contact.element = element;
-        contact.point_in_frame = point;
-        contact.normal_in_frame = normal.normalized();
+        contact.local_point = point;
+        contact.local_normal = normal.normalized();
         return touches_feature(obstacle, contact, kThickness);
     };
     const auto face_to = [&](const Vec3& normal) {
@@ -312,8 +314,8 @@ TEST(FeatureCensus, AnEdgeOrFaceOfTheClothTouchesAFeatureWhereItsPointIsOnOne)
         contact.kind = kind;
         contact.vertices = {0, 1, kind == ContactKind::Edge ? -1 : 2, -1};
         contact.element = element;
-        contact.point_in_frame = point;
-        contact.normal_in_frame = Vec3(1, 0, 1).normalized();
+        contact.local_point = point;
+        contact.local_normal = Vec3(1, 0, 1).normalized();
         return touches_feature(obstacle, contact, kThickness);
     };
     const auto& edges = box.topology().edges;

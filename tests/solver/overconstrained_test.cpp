@@ -66,34 +66,35 @@ TEST(OverconstrainedVertices, AreThoseWhoseContactIsAcrossTheirWay)
     }
 }
 
-TEST(OverconstrainingFolds, ArePlanesThatPressClothAgainstAnotherObstacle)
+TEST(OverconstrainingFoldPlanes, ArePlanesThatPressClothAgainstAnotherObstacle)
 {
     const auto make_fold = [](double angle) {
         Workspace work = make_vise(angle, false);
-        work.contacts[0].element = kFoldElement;
+        work.contacts[0].element = kFoldPlaneElement;
         return work;
     };
-    EXPECT_EQ(find_overconstraining_folds(make_fold(170.0)), std::vector{0});
-    EXPECT_TRUE(find_overconstraining_folds(make_fold(90.0)).empty()) << "it may slip out";
-    EXPECT_TRUE(find_overconstraining_folds(make_vise(170.0, false)).empty()) << "no fold";
+    EXPECT_EQ(find_overconstraining_fold_planes(make_fold(170.0)), std::vector{0});
+    EXPECT_TRUE(find_overconstraining_fold_planes(make_fold(90.0)).empty()) << "it may slip out";
+    EXPECT_TRUE(find_overconstraining_fold_planes(make_vise(170.0, false)).empty()) << "no fold";
 
     Workspace own = make_fold(170.0);
     own.contacts[1].obstacle = 0;
-    EXPECT_TRUE(find_overconstraining_folds(own).empty()) << "the wire that it is folded over";
+    EXPECT_TRUE(find_overconstraining_fold_planes(own).empty()) << "the wire that it is folded over";
     Workspace elsewhere = make_fold(170.0);
     elsewhere.contacts[1].vertices = {6, -1, -1, -1};
-    EXPECT_TRUE(find_overconstraining_folds(elsewhere).empty()) << "another vertex";
+    EXPECT_TRUE(find_overconstraining_fold_planes(elsewhere).empty()) << "another vertex";
     Workspace edge = make_fold(170.0);
     edge.contacts[1].vertices = {6, 7, -1, -1};
-    EXPECT_EQ(find_overconstraining_folds(edge), std::vector{0}) << "an edge of the cloth that ends there";
+    EXPECT_EQ(find_overconstraining_fold_planes(edge), std::vector{0})
+        << "an edge of the cloth that ends there";
     for (const int c : {0, 1}) {
         Workspace open = make_fold(170.0);
         open.solution.row_multipliers[c] = 0.0;
-        EXPECT_TRUE(find_overconstraining_folds(open).empty()) << "one does not press: " << c;
+        EXPECT_TRUE(find_overconstraining_fold_planes(open).empty()) << "one does not press: " << c;
     }
     Workspace both = make_fold(170.0);
-    both.contacts[1].element = kFoldElement;
-    EXPECT_TRUE(find_overconstraining_folds(both).empty()) << "two planes";
+    both.contacts[1].element = kFoldPlaneElement;
+    EXPECT_TRUE(find_overconstraining_fold_planes(both).empty()) << "two planes";
 }
 
 TEST(OverconstrainedVertices, AreOfAnInfeasibleStepOnly)

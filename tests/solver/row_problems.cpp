@@ -134,25 +134,26 @@ std::vector<ConstraintRow> make_rows(const ClothShape& shape, const Eigen::Vecto
     return rows;
 }
 
-Eigen::VectorXd find_gives(const VelocityProblem& problem)
+Eigen::VectorXd find_compliances(const VelocityProblem& problem)
 {
     const ConstraintRows constraints = scale_rows(problem, estimate_free_speed(problem));
-    Eigen::VectorXd gives(static_cast<Eigen::Index>(problem.rows.size()));
-    for (Eigen::Index k = 0; k < gives.size(); ++k)
-        gives[k] = constraints.rows[k].give * constraints.rows[k].scale * constraints.rows[k].scale;
-    return gives;
+    Eigen::VectorXd compliances(static_cast<Eigen::Index>(problem.rows.size()));
+    for (Eigen::Index k = 0; k < compliances.size(); ++k)
+        compliances[k] =
+            constraints.rows[k].compliance * constraints.rows[k].scale * constraints.rows[k].scale;
+    return compliances;
 }
 
 HildrethAnswer solve_by_hildreth(const VelocityProblem& problem)
 {
-    const Vector gives = find_gives(problem).cast<Real>();
+    const Vector compliances = find_compliances(problem).cast<Real>();
     std::vector<int> free, bounded;
     for (int i = 0; i < problem.lower.size(); ++i)
         if (!problem.is_fixed[i]) free.push_back(i);
     for (const int i : free)
         if (std::isfinite(problem.lower[i])) bounded.push_back(i);
     const Matrix a = dense_symmetric(*problem.matrix).cast<Real>()(free, free);
-    const Eigen::Index bounds = static_cast<Eigen::Index>(bounded.size()), rows = gives.size();
+    const Eigen::Index bounds = static_cast<Eigen::Index>(bounded.size()), rows = compliances.size();
     Matrix c = Matrix::Zero(bounds + rows, problem.rhs->size());
     Vector lower(bounds + rows);
     for (Eigen::Index k = 0; k < bounds; ++k) {
@@ -166,7 +167,7 @@ HildrethAnswer solve_by_hildreth(const VelocityProblem& problem)
     const Matrix moved = cholesky.solve(Matrix(g.transpose()));
     const Vector start = cholesky.solve(Vector(problem.rhs->cast<Real>()(free)));
     Matrix s = g * moved;
-    s.diagonal().tail(rows) += gives;
+    s.diagonal().tail(rows) += compliances;
     const Vector w0 = g * start - lower;
     Vector z = Vector::Zero(bounds + rows), w = w0;
     std::vector<char> is_row;
@@ -199,7 +200,7 @@ HildrethAnswer solve_by_hildreth(const VelocityProblem& problem)
 
 double dense_kkt_residual_of_rows(const VelocityProblem& problem, const VelocitySolution& solution)
 {
-    const Vector gives = find_gives(problem).cast<Real>();
+    const Vector compliances = find_compliances(problem).cast<Real>();
     const Matrix a = dense_symmetric(*problem.matrix).cast<Real>(), c = dense_rows(problem);
     const Vector u = solution.velocity.cast<Real>(), b = problem.rhs->cast<Real>(),
                  force = solution.multipliers.cast<Real>(), z = solution.row_multipliers.cast<Real>();
@@ -229,7 +230,8 @@ double dense_kkt_residual_of_rows(const VelocityProblem& problem, const Velocity
     }
     for (Eigen::Index k = 0; k < z.size(); ++k)
         if (size[k] > 0)
-            count_pair((c.row(k).dot(u) - problem.rows[k].lower + gives[k] * z[k]) / size[k], z[k] * size[k]);
+            count_pair((c.row(k).dot(u) - problem.rows[k].lower + compliances[k] * z[k]) / size[k],
+                       z[k] * size[k]);
     return static_cast<double>(worst);
 }
 

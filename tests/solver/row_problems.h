@@ -24,7 +24,7 @@ std::vector<ConstraintRow> make_rows(const ClothShape& shape, const Eigen::Vecto
                                      RowPattern pattern, int count, double speed, unsigned seed);
 
 /// Ways of the rows' springs per multiplier, in the units of the rows as given.
-Eigen::VectorXd find_gives(const VelocityProblem& problem);
+Eigen::VectorXd find_compliances(const VelocityProblem& problem);
 
 /// The vertices of the grid's faces, two faces for each cell.
 std::vector<std::array<int, 3>> grid_faces(int side);

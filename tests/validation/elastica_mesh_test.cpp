@@ -68,7 +68,7 @@ ClothMesh make_strip(const Strip& strip, int cells)
     grid.resolution = {2 * cells, strip.cells_across};
     grid.pattern = strip.pattern;
     if (strip.pattern == GridPattern::Unstructured)  // a fold by 0 degrees: mesh edges on the clamp's line
-        grid.folds = {Fold{{Vec2(1.0, -1.0), Vec2(1.0, 1.0)}, 0.0}};
+        grid.folds = {FoldLine{{Vec2(1.0, -1.0), Vec2(1.0, 1.0)}, 0.0}};
     ClothMesh mesh = make_cloth_grid(grid);
     disturb(strip.disorder / cells, mesh);
     for (Vec2& X : mesh.material) {

@@ -62,7 +62,7 @@ Tip settle_cantilever(const Pattern& pattern, int cells, double weight, double t
     grid.pattern = pattern.pattern;
     if (pattern.pattern ==
         GridPattern::Unstructured)  // a fold by 0 degrees puts mesh edges on the clamp's line
-        grid.folds = {Fold{{Vec2(1.0, -1.0), Vec2(1.0, 1.0)}, 0.0}};
+        grid.folds = {FoldLine{{Vec2(1.0, -1.0), Vec2(1.0, 1.0)}, 0.0}};
 
     const Material material = {1.0, modulus_of(thickness), 0.0, kBending, 0.0, 1e-3};
     return settle_cantilever(make_cloth_grid(grid), material, weight * D, tip_load * D);

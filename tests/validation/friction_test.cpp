@@ -122,7 +122,7 @@ TEST(FrictionOnMovingObstacles, RidesOnATurntableWithoutCreep)
 
 /// Strip over an edge: x" (x + e (L - x)) = g (x (sin b - mu cos b) + e (L - x) (sin a - mu cos a)) + (e - 1)
 /// x'^2 with e = exp(mu (b - a)); on a slope beyond the vertical nothing presses.
-double rubbed_length_after(const StripCase& strip, double time)
+double length_with_friction_after(const StripCase& strip, double time)
 {
     const double a = strip.slopes.before, b = strip.slopes.after, mu = strip.friction, L = strip.length;
     const double e = std::exp(mu * (b - a));
@@ -150,7 +150,7 @@ double way_over_edge(const StripCase& strip, double duration, double step)
     ClothRun run = make_strip_run(strip);
     run.advance(duration, step);
     return (measure_length_after(strip, run) - strip.start) /
-           (rubbed_length_after(strip, duration) - strip.start);
+           (length_with_friction_after(strip, duration) - strip.start);
 }
 
 TEST(FrictionOverAnEdge, SlidesByTheCapstansLawOnAnyMesh)

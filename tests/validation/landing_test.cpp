@@ -92,7 +92,7 @@ TEST(FrictionAtLanding, TakesMuTimesTheNormalSpeedAtAnyPhase)
                 }
 }
 
-// The weight, too, begins to rub in the middle of a step: BDF2 misses mu g h / 2 at most.
+// Friction of the weight, too, begins in the middle of a step: BDF2 misses mu g h / 2 at most.
 TEST(FrictionAtLanding, ConvergesUnderGravityWithTheStep)
 {
     constexpr double kGravity = 9.81, kFriction = 0.3, kAlong = 1.0, kExact = 1e-4;  // m/s^2, -, m/s, m/s

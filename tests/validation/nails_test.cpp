@@ -45,9 +45,9 @@ Pressing fall(int cells)
     Pressing found;
     run.advance(kFall, kStep, [&](const StepReport& report) {
         found.eol += report.eol_pressing;
-        for (std::size_t k = 0; k < kRowCauses; ++k) {
-            const auto cause = static_cast<RowCause>(k);
-            if (cause != RowCause::New && !is_excluded(cause)) found.rows += report.rows_by_cause[k];
+        for (std::size_t k = 0; k < kConstraintCauses; ++k) {
+            const auto cause = static_cast<ConstraintCause>(k);
+            if (cause != ConstraintCause::New && !is_excluded(cause)) found.rows += report.rows_by_cause[k];
         }
         found.rise = std::max(found.rise, report.energy_rise);
         EXPECT_EQ(report.crossings, 0) << cells << " cells";

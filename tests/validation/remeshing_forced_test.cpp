@@ -10,7 +10,7 @@
 #include "cloth_run.h"
 #include "elastica.h"
 #include "geometry/cloth/mesh_quality.h"
-#include "solver/remesh/cell_lengths.h"
+#include "solver/remesh/sizing_field.h"
 
 namespace arris {
 namespace {
@@ -118,7 +118,7 @@ TEST(ForcedRemeshing, LeavesAPendulumOfAPlateItsEnergy)
     double added = 0.0, exchanged = 0.0, kinetic = 0.0;  // J
     const Changes changes = alternate(run, kStripWishes, [&] {
         twin.state = run.state;
-        twin.state.cell_lengths.clear();
+        twin.state.sizing_field.clear();
         const int operations = advance_once(run);
         const ClothEnergy energy = measure_energy(run);
         exchanged += std::abs(energy.kinetic - kinetic);

@@ -12,7 +12,7 @@
 #include "geometry/surgery/initial_target.h"
 #include "grid_patterns.h"
 #include "sliding_strip.h"
-#include "solver/remesh/cell_lengths.h"
+#include "solver/remesh/sizing_field.h"
 
 namespace arris {
 namespace {

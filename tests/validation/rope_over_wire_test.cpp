@@ -56,7 +56,7 @@ struct RopeCase {
     int segments = 1;  ///< number of wire segments
     std::array<double, 2> ends = {-1.0,
                                   1.0};  ///< y of the wire's ends, m; the rope's borders are at -.1 and .1
-    bool is_frame = false;               ///< whether the wire goes on downward at its ends, to a closed frame
+    bool is_loop = false;                ///< whether the wire goes on downward at its ends, to a closed frame
     /// Angle between the sides at the start: a little more than the fold planes require.
     double open_degrees = 0.6;
     double stiffness = 2e5;  ///< N/m
@@ -126,9 +126,9 @@ ObstacleMesh make_wire_of(const RopeCase& rope)
     std::vector<Vec3> points;
     for (int k = 0; k <= rope.segments; ++k)
         points.emplace_back(0.0, from + (to - from) * k / rope.segments, 0.0);
-    if (rope.is_frame)
+    if (rope.is_loop)
         for (const double y : {to, from}) points.emplace_back(0.0, y, -2.0);
-    return make_wire(points, rope.is_frame);
+    return make_wire(points, rope.is_loop);
 }
 
 /// A run with the rope folded over the wire, with EOL vertices on the wire where they are given.
@@ -180,7 +180,7 @@ double measure_displacement(const ClothRun& run)
 /// y of a rope with friction that starts at rest, after `time`. With phi the angle by which the rope turns
 /// and e = exp(mu phi), the tensions beyond rho y'^2 differ by the factor e: y" = g (l2 - e l1 + (e - 1) y'^2
 /// / g) / (l2 + e l1), l1 = L/2 - y, l2 = L/2 + y.
-double rubbed_displacement(const RopeCase& rope, double time)
+double displacement_with_friction(const RopeCase& rope, double time)
 {
     const double e = std::exp(rope.friction * (180.0 - rope.open_degrees) * M_PI / 180.0);
     const auto slope = [&](double, const Eigen::Vector2d& at) {
@@ -448,7 +448,7 @@ TEST(RopeOverWire, SlidesOnAWireThatEndsWithItsBordersOrBeforeThem)
         std::array<double, 2> ends;  // m
         std::array<int, 2> cells;
         GridPattern pattern;
-        bool is_frame = false;
+        bool is_loop = false;
         double share = kShare;  ///< of kLiftOff
     };
     constexpr double kEndError = 1e-3;  // relative to y
@@ -469,7 +469,7 @@ TEST(RopeOverWire, SlidesOnAWireThatEndsWithItsBordersOrBeforeThem)
         rope.cells = c.cells;
         rope.pattern = c.pattern;
         rope.ends = c.ends;
-        rope.is_frame = c.is_frame;
+        rope.is_loop = c.is_loop;
         rope.stiffness = 2e4;
         rope.damping = kDamping;
         rope.is_given = false;
@@ -585,7 +585,7 @@ TEST(RopeOverWire, SlidesByTheCapstansLaw)
         rope.start = 1.1 * find_onset(rope.friction, rope.open_degrees);
         ClothRun run = make_rope_run(rope);
         run.advance(kDuration, kStep);
-        const double way = rubbed_displacement(rope, kDuration) - rope.start;
+        const double way = displacement_with_friction(rope, kDuration) - rope.start;
         EXPECT_NEAR((measure_displacement(run) - rope.start) / way, 1.0, kError)
             << describe(rope) << ", friction " << rope.friction;
     }
@@ -612,9 +612,9 @@ double speed_along_wire(const ClothRun& run)
     return sum / static_cast<double>(run.state.velocity.size());
 }
 
-// Along the wire the pressure around the whole turn phi rubs: phi / 2 times the sum of both tensions, while
-// their resultant is only sin(phi / 2) times that sum. The short sides keep the rope tight on its whole
-// width.
+// Along the wire the pressure around the whole turn phi slip_contacts: phi / 2 times the sum of both
+// tensions, while their resultant is only sin(phi / 2) times that sum. The short sides keep the rope tight on
+// its whole width.
 TEST(RopeOverWire, SlidesAlongItsWireByMuTimesHalfItsTurn)
 {
     constexpr double kDuration = 0.2;  // s

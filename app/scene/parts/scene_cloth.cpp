@@ -40,9 +40,9 @@ auto blame(const SceneDocument& document, const std::string& key, const Build& b
     }
 }
 
-std::vector<Fold> to_folds(const Json& cloth)
+std::vector<FoldLine> to_folds(const Json& cloth)
 {
-    std::vector<Fold> folds;
+    std::vector<FoldLine> folds;
     for (const Json& fold : cloth.value("folds", Json::array()))
         folds.push_back({{to_vec2(fold["line"][0]), to_vec2(fold["line"][1])}, to_double(fold["degrees"])});
     return folds;

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "app/scene/parts/run_config.h"
 #include "app/scene/keys/scene_document.h"
+#include "app/scene/parts/run_config.h"
 #include "app/scene/parts/scene_estimate.h"
 
 namespace arris {

@@ -46,13 +46,13 @@ SceneEffect friction_effect(const RunConfig& config)
 {
     const std::optional<Friction>& friction = config.scene.friction;
     if (!friction) return {"friction", false, "no [friction]: the cloth slides freely over obstacles"};
-    const bool do_layers_rub = config.scene.self_contact && friction->between_layers > 0.0;
-    if (config.scene.obstacles.empty() && !do_layers_rub)
+    const bool do_layers_slip = config.scene.self_contact && friction->between_layers > 0.0;
+    if (config.scene.obstacles.empty() && !do_layers_slip)
         return {"friction", false, "no [[obstacle]] that could rub"};
     const std::set<double> coefficients(friction->coefficients.begin(), friction->coefficients.end());
     std::vector<std::string> parts;
     for (const double coefficient : coefficients) parts.push_back(fmt::format("{:g}", coefficient));
-    if (do_layers_rub) parts.push_back(fmt::format("{:g} between layers", friction->between_layers));
+    if (do_layers_slip) parts.push_back(fmt::format("{:g} between layers", friction->between_layers));
     return {"friction", true, fmt::format("coefficient {}", fmt::join(parts, ", "))};
 }
 

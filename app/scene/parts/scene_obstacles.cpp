@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "app/scene/parts/scene_estimate.h"
 #include "app/scene/keys/scene_json.h"
+#include "app/scene/parts/scene_estimate.h"
 #include "app/text/counted.h"
 #include "app/text/printable.h"
 #include "geometry/cloth/mesh_topology.h"

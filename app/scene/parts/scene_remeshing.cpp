@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "app/scene/keys/scene_json.h"
-#include "solver/remesh/cell_lengths.h"
+#include "solver/remesh/sizing_field.h"
 
 namespace arris {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "app/scene/parts/run_config.h"
 #include "app/scene/keys/scene_document.h"
+#include "app/scene/parts/run_config.h"
 #include "solver/model/remeshing.h"
 
 namespace arris {

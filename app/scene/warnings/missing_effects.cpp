@@ -10,8 +10,8 @@
 #include <numbers>
 #include <optional>
 
-#include "app/scene/warnings/cloth_poses.h"
 #include "app/scene/parts/scene_effects.h"
+#include "app/scene/warnings/cloth_poses.h"
 #include "app/scene/warnings/under_cloth.h"
 
 namespace arris {

@@ -9,10 +9,10 @@
 #include <cmath>
 #include <tuple>
 
+#include "app/scene/parts/scene_estimate.h"
 #include "app/scene/warnings/layer_warnings.h"
 #include "app/scene/warnings/motion_warnings.h"
 #include "app/scene/warnings/placement_warnings.h"
-#include "app/scene/parts/scene_estimate.h"
 #include "app/scene/warnings/still_scene.h"
 #include "app/scene/warnings/warnings.h"
 #include "app/text/counted.h"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/scene/parts/run_config.h"
 #include "app/scene/keys/scene_document.h"
+#include "app/scene/parts/run_config.h"
 #include "app/scene/parts/start_strain.h"
 
 namespace arris {

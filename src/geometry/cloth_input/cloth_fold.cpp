@@ -13,7 +13,7 @@
 namespace arris {
 namespace {
 
-std::string describe(const Fold& fold)
+std::string describe(const FoldLine& fold)
 {
     const auto& [p, q] = fold.line;
     return fmt::format("fold [[{}, {}], [{}, {}]] by {} degrees", p.x(), p.y(), q.x(), q.y(), fold.degrees);
@@ -26,7 +26,7 @@ struct Sides {
     std::vector<int> on_line;
 };
 
-Sides sort_by_side(const Fold& fold, const ClothMesh& mesh)
+Sides sort_by_side(const FoldLine& fold, const ClothMesh& mesh)
 {
     const Vec2 along = (fold.line[1] - fold.line[0]).stableNormalized();
     const double tolerance = kComputed * material_size(mesh.material);
@@ -43,7 +43,7 @@ Sides sort_by_side(const Fold& fold, const ClothMesh& mesh)
     return sides;
 }
 
-void require_line_in_mesh(const Fold& fold, const ClothMesh& mesh, const Sides& sides)
+void require_line_in_mesh(const FoldLine& fold, const ClothMesh& mesh, const Sides& sides)
 {
     if (sides.on_line.size() < 2)
         throw InputError(fmt::format("{}: its line does not run through the cloth", describe(fold)));
@@ -74,7 +74,7 @@ Axis axis_of(const ClothMesh& mesh, const Sides& sides)
 }
 
 // Each face turns or stays as a whole, so the fold is isometric exactly if its line is still straight.
-void require_straight(const Fold& fold, const ClothMesh& mesh, const Sides& sides, const Axis& axis)
+void require_straight(const FoldLine& fold, const ClothMesh& mesh, const Sides& sides, const Axis& axis)
 {
     const double tolerance = kTouching * material_size(mesh.material);
     for (const int v : sides.on_line) {
@@ -87,7 +87,7 @@ void require_straight(const Fold& fold, const ClothMesh& mesh, const Sides& side
     }
 }
 
-void turn_right_side(const Fold& fold, const Sides& sides, const Axis& axis, ClothMesh& mesh)
+void turn_right_side(const FoldLine& fold, const Sides& sides, const Axis& axis, ClothMesh& mesh)
 {
     const Mat3 rotation = rotation_about(axis.direction, fold.degrees);
     for (int v = 0; v < mesh.vertex_count(); ++v)
@@ -96,9 +96,9 @@ void turn_right_side(const Fold& fold, const Sides& sides, const Axis& axis, Clo
 
 }  // namespace
 
-void fold_cloth(const std::vector<Fold>& folds, ClothMesh& mesh)
+void fold_cloth(const std::vector<FoldLine>& folds, ClothMesh& mesh)
 {
-    for (const Fold& fold : folds) {
+    for (const FoldLine& fold : folds) {
         const bool is_finite =
             fold.line[0].allFinite() && fold.line[1].allFinite() && std::isfinite(fold.degrees);
         if (!is_finite || fold.line[0] == fold.line[1])

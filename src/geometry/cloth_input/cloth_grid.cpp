@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "geometry/cloth_input/cut_pattern.h"
-#include "geometry/cloth_input/fold_lines.h"
+#include "geometry/cloth_input/mesh_lines.h"
 #include "geometry/cloth_input/pattern_lattice.h"
 #include "geometry/cloth_input/unstructured.h"
 #include "geometry/input_error.h"
@@ -112,7 +112,7 @@ double count_faces(double vertices, double border)
 // strip on either side.
 GridCount estimate_cut_pattern(const ClothGrid& grid)
 {
-    const FoldLines graph = make_fold_lines(rectangle_border(grid.size), grid.folds);
+    const MeshLines graph = make_mesh_lines(rectangle_border(grid.size), grid.folds);
     const Mat2 back = rotation_about(Vec3::UnitZ(), -grid.pattern_angle).topLeftCorner<2, 2>();
     const Vec2 cell(grid.size.x() / grid.resolution[0], grid.size.y() / grid.resolution[1]);
     double border = 0.0, inside = 0.0;
@@ -156,7 +156,7 @@ void require_few(const ClothGrid& grid, const char* how, double vertices)
 ClothMesh make_mesh(const ClothGrid& grid)
 {
     if (grid.pattern == GridPattern::Unstructured)
-        return make_unstructured(make_fold_lines(rectangle_border(grid.size), grid.folds), mean_side(grid));
+        return make_unstructured(make_mesh_lines(rectangle_border(grid.size), grid.folds), mean_side(grid));
     return is_cut(grid) ? make_cut_pattern(grid) : make_regular(grid);
 }
 

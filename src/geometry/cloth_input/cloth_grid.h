@@ -12,7 +12,7 @@ enum class GridPattern { Diagonal, Alternating, Cross, Unstructured };
 
 /// A straight fold line of the initial cloth. The material right of the line (from its first to its second
 /// point) is turned down about the line by `degrees`.
-struct Fold {
+struct FoldLine {
     std::array<Vec2, 2> line;
     double degrees = 0.0;
 };
@@ -25,8 +25,8 @@ struct ClothGrid {
     Vec2 size = Vec2::Ones();                ///< m
     std::array<int, 2> resolution = {1, 1};  ///< cells along u and v
     GridPattern pattern = GridPattern::Cross;
-    double pattern_angle = 0.0;  ///< degrees by which the pattern is turned in the rectangle
-    std::vector<Fold> folds;     ///< mesh edges are made along their lines
+    double pattern_angle = 0.0;   ///< degrees by which the pattern is turned in the rectangle
+    std::vector<FoldLine> folds;  ///< mesh edges are made along their lines
 };
 
 /// Makes a flat mesh of the rectangle, with world = (u, v, 0). Mesh edges run along every fold line (clipped
@@ -62,6 +62,6 @@ GridCount estimate_cloth_grid(const ClothGrid& grid);
 /// about the line's current place in the world. A line that an earlier fold laid back on itself (180 degrees)
 /// is still straight. Throws InputError if a fold's line is not along mesh edges, or if an earlier fold bent
 /// the line.
-void fold_cloth(const std::vector<Fold>& folds, ClothMesh& mesh);
+void fold_cloth(const std::vector<FoldLine>& folds, ClothMesh& mesh);
 
 }  // namespace arris

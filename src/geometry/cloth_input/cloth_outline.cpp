@@ -72,7 +72,7 @@ ClothMesh make_cloth_outline(const ClothOutline& outline)
         throw InputError(
             fmt::format("edges of {} m would give about {:.3g} vertices; at most {:.0e} are allowed",
                         outline.edge_length, vertices, kMostGridVertices));
-    return make_relaxed(make_fold_lines(outline.border, outline.folds), outline.edge_length);
+    return make_relaxed(make_mesh_lines(outline.border, outline.folds), outline.edge_length);
 }
 
 }  // namespace arris

@@ -5,15 +5,15 @@
 #include <string>
 
 #include "geometry/cloth_input/cloth_grid.h"
-#include "geometry/cloth_input/fold_lines.h"
+#include "geometry/cloth_input/mesh_lines.h"
 
 namespace arris {
 
 /// A flat piece of cloth of any shape, to be meshed.
 struct ClothOutline {
-    BorderLoops border;        ///< the outline, then the holes
-    double edge_length = 0.0;  ///< m, aimed at
-    std::vector<Fold> folds;   ///< mesh edges are made along their lines
+    BorderLoops border;           ///< the outline, then the holes
+    double edge_length = 0.0;     ///< m, aimed at
+    std::vector<FoldLine> folds;  ///< mesh edges are made along their lines
 };
 
 /// Largest number of corners of an outline with its holes.

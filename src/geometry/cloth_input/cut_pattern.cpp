@@ -21,7 +21,7 @@
 #include "geometry/cloth/material_box.h"
 #include "geometry/cloth_input/angle_relaxation.h"
 #include "geometry/cloth_input/delaunay.h"
-#include "geometry/cloth_input/fold_lines.h"
+#include "geometry/cloth_input/mesh_lines.h"
 #include "geometry/cloth_input/pattern_lattice.h"
 
 namespace arris {
@@ -41,7 +41,7 @@ struct CreaseVertex {
 class CutPattern {
   public:
     explicit CutPattern(const ClothGrid& grid)
-        : graph_(make_fold_lines(rectangle_border(grid.size), grid.folds)),
+        : graph_(make_mesh_lines(rectangle_border(grid.size), grid.folds)),
           lattice_(grid),
           index_(lattice_.vertex_count()),
           is_dropped_(lattice_.vertex_count(), 0)
@@ -322,7 +322,7 @@ class CutPattern {
         return mesh;
     }
 
-    FoldLines graph_;
+    MeshLines graph_;
     PatternLattice lattice_;
     std::vector<std::optional<int>> index_;  // mesh vertex of each pattern vertex that is in the mesh
     std::vector<char> is_dropped_;           // the pattern vertex will not be in the mesh

@@ -127,7 +127,7 @@ std::string describe_turned(const PlacedFaces& mesh, const std::vector<int>& tur
         name_faces(mesh, turned), is_one ? "its" : "their");
 }
 
-std::string describe_fold(const PlacedFaces& mesh, std::span<const Side> edge)
+std::string describe_turned_faces(const PlacedFaces& mesh, std::span<const Side> edge)
 {
     ClothMesh cloth;
     cloth.world = mesh.places;
@@ -226,7 +226,7 @@ std::string explain_turns(const PlacedFaces& mesh, const std::vector<int>& turns
         turned.insert(turned.end(), minority.begin(), minority.end());
     }
     if (!turned.empty()) return describe_turned(mesh, turned);
-    if (!fold.empty()) return describe_fold(mesh, fold);
+    if (!fold.empty()) return describe_turned_faces(mesh, fold);
     return describe_mirrored(mesh, parts, turns);
 }
 

@@ -23,7 +23,7 @@ constexpr double kLargestRelaxed = 1.45;  // the vertices' moves make some sides
 constexpr double kShortestSide = 1e-3;
 
 // The lines, with vertices about `side` apart.
-PlanarGraph divide(const FoldLines& lines, double side)
+PlanarGraph divide(const MeshLines& lines, double side)
 {
     PlanarGraph graph{lines.nodes, {}, {}};
     std::size_t border_end = 0;
@@ -45,7 +45,7 @@ PlanarGraph divide(const FoldLines& lines, double side)
     return graph;
 }
 
-RefinedTriangulation refine_lines(const FoldLines& lines, double side, double largest_side,
+RefinedTriangulation refine_lines(const MeshLines& lines, double side, double largest_side,
                                   double shortest_side)
 {
     const RefinedTriangulation refined = refine(divide(lines, side), largest_side,
@@ -100,13 +100,13 @@ std::vector<std::array<int, 2>> outer_sides(const std::vector<Face>& faces)
 
 }  // namespace
 
-ClothMesh make_unstructured(const FoldLines& lines, double side)
+ClothMesh make_unstructured(const MeshLines& lines, double side)
 {
     const RefinedTriangulation refined = refine_lines(lines, side, kLargestSide * side, 0.0);
     return to_mesh(refined.points, refined.faces);
 }
 
-ClothMesh make_relaxed(const FoldLines& lines, double side)
+ClothMesh make_relaxed(const MeshLines& lines, double side)
 {
     const RefinedTriangulation refined =
         refine_lines(lines, side, kLargestRelaxed * side, kShortestSide * side);

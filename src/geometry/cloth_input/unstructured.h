@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "geometry/cloth_input/fold_lines.h"
+#include "geometry/cloth_input/mesh_lines.h"
 
 namespace arris {
 
 /// CGAL's Delaunay refinement of the cloth between `lines`, with world = (u, v, 0). Edges are about `side`
 /// long (m). Vertices begin with the lines' nodes. Throws InputError where lines come so near to one another
 /// that the mesh would need more than kMostGridVertices vertices.
-ClothMesh make_unstructured(const FoldLines& lines, double side);
+ClothMesh make_unstructured(const MeshLines& lines, double side);
 
 /// As make_unstructured, with vertices moved to open angles below 30 degrees. Vertices on a line stay on it,
 /// and nodes stay in place. Throws InputError, too, where the mesh would need sides below 1/1000 of `side`.
-ClothMesh make_relaxed(const FoldLines& lines, double side);
+ClothMesh make_relaxed(const MeshLines& lines, double side);
 
 }  // namespace arris

@@ -13,10 +13,9 @@ namespace arris {
 
 double touch_distance(const Obstacle& obstacle, double thickness)
 {
-    constexpr double kShare = 1e-6;
     const Box3& bounds = obstacle.bounds();
     const double largest = std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
-    return std::max(kShare * thickness, kProductRounding * largest);
+    return std::max(kOnSurface * thickness, kProductRounding * largest);
 }
 
 double longest_reach(const ClothMotion& motion, std::span<const int> vertices, double thickness)

@@ -25,7 +25,7 @@
 namespace arris {
 namespace {
 
-constexpr int kMaxAdvances = 256;  // 3 are usual; more only where planar elements pivot at a tiny gap
+constexpr int kMaxRounds = 256;  // 3 are usual; more only where planar elements pivot at a tiny gap
 // Rounding bound, relative to size, of the Bernstein coefficients of a product of three differences, and of
 // their subdivision (repeated averaging).
 constexpr double kVolumeRounding = 8.0 * kProductRounding;
@@ -265,7 +265,7 @@ std::optional<Touch> first_touch(const Pair& pair, double distance)
     const Volume volume(pair);
     double time = next_coplanar(volume, 0.0);
     Vec3 normal = Vec3::Zero();
-    for (int round = 0; round < kMaxAdvances && time < kNever; ++round) {
+    for (int round = 0; round < kMaxRounds && time < kNever; ++round) {
         const Search search = search_at(pair, time, margin);
         if (search.longest.until >= kNever) return std::nullopt;
         if (search.separation > margin || round == 0) normal = search.widest;

@@ -18,9 +18,8 @@ namespace arris {
 namespace {
 
 constexpr int kMostLegs = 4;
-constexpr int kMostCuts = 8;        // halvings of a leg that still touches because of rounding, before it
-                                    // is dropped
-constexpr double kSameTime = 1e-9;  // fraction of a leg within which two faces count as met together
+constexpr int kMostCuts = 8;  // halvings of a leg that still touches because of rounding, before it
+                              // is dropped
 
 using Triangle = std::array<Vec3, 3>;
 
@@ -103,8 +102,8 @@ class Slide {
             const Obstruction met =
                 meet(place, way, {points[corners[0]], points[corners[1]], points[corners[2]]},
                      obstacle_.topology().face_normals[f]);
-            const bool is_sooner = met.time < first.time - kSameTime;
-            const bool is_together = std::abs(met.time - first.time) <= kSameTime;
+            const bool is_sooner = met.time < first.time - kAccumulated;
+            const bool is_together = std::abs(met.time - first.time) <= kAccumulated;
             if (is_sooner || (is_together && met.approach > first.approach)) first = met;
         }
         return first;

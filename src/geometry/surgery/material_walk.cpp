@@ -56,7 +56,7 @@ bool MaterialWalk::is_past_end() const
     return exact_orientation(p, surgery_.material(hit_.q), to_) >= 0;
 }
 
-void MaterialWalk::advance()
+void MaterialWalk::cross_next()
 {
     if (hit_.is_vertex()) {
         hit_ = first_hit(surgery_, hit_.p, to_);
@@ -84,7 +84,7 @@ bool leads_off(const ClothSurgery& surgery, VertexId v, const Vec2& way)
         if (walk.has_left()) return true;
         if (walk.is_past_end()) return false;
         if (walk.hit().is_vertex() && surgery.is_border(walk.hit().p)) return true;
-        walk.advance();
+        walk.cross_next();
     }
     return false;
 }

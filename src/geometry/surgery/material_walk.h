@@ -29,7 +29,7 @@ class MaterialWalk {
     const RingHit& hit() const { return hit_; }
     /// Whether the line's end is at or before the present crossing.
     bool is_past_end() const;
-    void advance();
+    void cross_next();
 
   private:
     const ClothSurgery& surgery_;

@@ -99,8 +99,8 @@ bool is_free(const SurgeryEvent& event, const Obstacle& obstacle, const Placemen
         end[patch.index_of(event.edge[0])] = patch.begin[kept];
     }
     const MeshTopology topology = make_topology(static_cast<int>(patch.begin.size()), patch.faces);
-    const ClothMotion motion = {&patch.faces, &topology.edges, to_frame(placement, patch.begin),
-                                to_frame(placement, end)};
+    const ClothMotion motion = {&patch.faces, &topology.edges, to_local(placement, patch.begin),
+                                to_local(placement, end)};
     return check_sweep(obstacle, motion, thickness).is_clean();
 }
 

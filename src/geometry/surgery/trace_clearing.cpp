@@ -312,12 +312,12 @@ bool turns_over(const PatchFace& face, const TraceWays& ways)
 // vertices of one cell after the other can be merged into the trace, but not those behind others. Then
 // shorter ways are cleared up to kCrowded target lengths: room ahead, which another trace may also take.
 ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
-                            const std::vector<TraceAdvance>& advances)
+                            const std::vector<TraceShift>& shifts)
 {
     TraceWays ahead;
-    for (const TraceAdvance& advance : advances) {
-        const bool is_cut = advance.least < 1.0 && leads_off(surgery, advance.vertex, advance.ahead);
-        ahead[advance.vertex] = (is_cut ? advance.least : 1.0) * advance.ahead;
+    for (const TraceShift& shift : shifts) {
+        const bool is_cut = shift.least < 1.0 && leads_off(surgery, shift.vertex, shift.ahead);
+        ahead[shift.vertex] = (is_cut ? shift.least : 1.0) * shift.ahead;
     }
     double stages = 1.0;
     TraceWays room;
@@ -343,9 +343,9 @@ ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
     }
     clear_part(room, Need::Room);
     TraceWays least = ahead;
-    for (const TraceAdvance& advance : advances)
-        if (const auto at = least.find(advance.vertex); at != least.end())
-            at->second = advance.least * advance.ahead;
+    for (const TraceShift& shift : shifts)
+        if (const auto at = least.find(shift.vertex); at != least.end())
+            at->second = shift.least * shift.ahead;
     report.blocked = find_blocked(surgery, least, watch.vertices());
     report.ways = std::move(room);
     report.needed = std::move(ahead);

@@ -9,7 +9,7 @@
 namespace arris {
 
 /// A trace vertex that is about to move through the material.
-struct TraceAdvance {
+struct TraceShift {
     VertexId vertex;
     Vec2 ahead;          ///< m: direction and distance over which the material must be clear
     double least = 1.0;  ///< least share of `ahead` to be clear, else the vertex is blocked; if `ahead` leads
@@ -37,6 +37,6 @@ struct ClearanceReport {
 /// The way cleared is `ahead`, or 0.3 of the target length where that is longer and does not lead off the
 /// cloth. A vertex whose `ahead` is zero counts as resting. Vertices must exist.
 ClearanceReport clear_ahead(ClothSurgery& surgery, const MeshTarget& target,
-                            const std::vector<TraceAdvance>& advances);
+                            const std::vector<TraceShift>& shifts);
 
 }  // namespace arris

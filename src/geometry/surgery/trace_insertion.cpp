@@ -120,7 +120,7 @@ int count_crossings(const ClothSurgery& surgery, VertexId from, VertexId end)
     MaterialWalk walk(surgery, from, surgery.material(end));
     int count = 0;
     for (; !walk.has_left() && walk.hit().p != end && count < 4 * surgery.vertex_count(); ++count)
-        walk.advance();
+        walk.cross_next();
     return count;
 }
 
@@ -150,7 +150,7 @@ class TraceWalk {
                 join.verdict = Verdict::Budget;
                 break;
             }
-            join.verdict = advance(join.vertices.back());
+            join.verdict = find_next(join.vertices.back());
             if (join.verdict == Verdict::Done && !visited.insert(next_).second)
                 join.verdict = Verdict::Budget;
             if (join.verdict == Verdict::Done) join.verdict = connect(join.vertices.back(), next_);
@@ -162,7 +162,7 @@ class TraceWalk {
 
   private:
     // Finds or makes the next vertex, a neighbour of `current`, and stores it in `next_`.
-    Verdict advance(VertexId current)
+    Verdict find_next(VertexId current)
     {
         // The loop ends, as each further round has one vertex less.
         for (;;) {

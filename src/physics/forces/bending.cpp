@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "physics/elements/hinge_fold.h"
+#include "physics/elements/hinge_angle.h"
 
 namespace arris {
 
@@ -27,24 +27,24 @@ Response find_response(const HingeElement& hinge, double sigma)
 
 double Bending::energy(const HingeState& hinge) const
 {
-    const std::optional<HingeFold> fold = find_fold(hinge.x);
-    if (!fold) return 0.0;
-    return stiffness_ * hinge.element.weight * find_response(hinge.element, fold->squared_sine()).energy;
+    const std::optional<HingeAngle> angle = find_hinge_angle(hinge.x);
+    if (!angle) return 0.0;
+    return stiffness_ * hinge.element.weight * find_response(hinge.element, angle->squared_sine()).energy;
 }
 
 void Bending::add(const HingeState& hinge, HingeSystem& system) const
 {
-    const std::optional<HingeFold> fold = find_fold(hinge.x);
-    if (!fold) return;
-    const std::array<Vec3, 4> gradient = angle_gradient(*fold, hinge.x);
+    const std::optional<HingeAngle> angle = find_hinge_angle(hinge.x);
+    if (!angle) return;
+    const std::array<Vec3, 4> gradient = angle_gradient(*angle, hinge.x);
 
     // dV/dtheta = K w sin(theta/2) cos(theta/2) = K w sin(theta) / 2; the stiffness has the factor 2 K w
     // (cos(theta/2) / 2)^2. A crease scales both by its slope. The part with a crease's curvature is negative
     // and left out.
-    const Response response = find_response(hinge.element, fold->squared_sine());
+    const Response response = find_response(hinge.element, angle->squared_sine());
     const double scale = stiffness_ * hinge.element.weight * response.slope;
-    const double sin_theta = sine_of_angle(*fold, hinge.x);
-    const double squared_cos_half = fold->squared_cosine();
+    const double sin_theta = sine_of_angle(*angle, hinge.x);
+    const double squared_cos_half = angle->squared_cosine();
     for (int i = 0; i < 4; ++i) {
         system.add_elastic_force(i, -0.5 * scale * sin_theta * gradient[i]);
         for (int j = 0; j <= i; ++j)

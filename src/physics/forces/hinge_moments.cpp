@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "physics/elements/eulerian_element.h"
-#include "physics/elements/hinge_fold.h"
+#include "physics/elements/hinge_angle.h"
 
 namespace arris {
 
@@ -189,8 +189,8 @@ Vec3 least_compliance(const PlateFace& face)
 /// 2 sin(theta/2) with the sign of theta; zero where a face has collapsed.
 double signed_sine(const std::array<Vec3, 4>& x)
 {
-    const std::optional<HingeFold> fold = find_fold(x);
-    return fold ? std::copysign(2.0 * std::sqrt(fold->squared_sine()), sine_of_angle(*fold, x)) : 0.0;
+    const std::optional<HingeAngle> angle = find_hinge_angle(x);
+    return angle ? std::copysign(2.0 * std::sqrt(angle->squared_sine()), sine_of_angle(*angle, x)) : 0.0;
 }
 
 double squared_length(const HingeElement& hinge, const std::vector<PlateFace>& faces)

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "physics/elements/hinge_fold.h"
+#include "physics/elements/hinge_angle.h"
 
 namespace arris {
 
@@ -19,11 +19,11 @@ void PlateBending::add(const HingeState& hinge, HingeSystem& system) const
         return;
     }
     const HingeMoment& moment = *hinge.moment;
-    if (const std::optional<HingeFold> fold = find_fold(hinge.x)) {
+    if (const std::optional<HingeAngle> angle = find_hinge_angle(hinge.x)) {
         // ds = cos(theta/2) dtheta
-        const double squared_cosine = fold->squared_cosine();
+        const double squared_cosine = angle->squared_cosine();
         const double cosine = std::sqrt(squared_cosine);
-        const std::array<Vec3, 4> gradient = angle_gradient(*fold, hinge.x);
+        const std::array<Vec3, 4> gradient = angle_gradient(*angle, hinge.x);
         for (int i = 0; i < 4; ++i) {
             system.add_elastic_force(i, -moment.moment * cosine * gradient[i]);
             for (int j = 0; j <= i; ++j)

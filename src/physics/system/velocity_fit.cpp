@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "physics/system/block_ordering.h"
 #include "physics/elements/deformation_gradient.h"
+#include "physics/system/block_ordering.h"
 
 namespace arris {
 

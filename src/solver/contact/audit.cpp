@@ -36,7 +36,7 @@ std::vector<Audit> find_penetrations(const Scene& scene, const State& state)
     for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
         const ObstaclePose pose = scene.obstacles[o].at(state.time);
         Penetration found =
-            find_penetration(pose, to_frame(pose.placement, state.mesh.world), state.mesh.faces);
+            find_penetration(pose, to_local(pose.placement, state.mesh.world), state.mesh.faces);
         if (!found.is_any()) continue;
         found.place = pose.placement(found.place);
         penetrations.push_back({static_cast<int>(o), found});

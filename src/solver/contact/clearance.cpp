@@ -6,6 +6,7 @@
 #include "geometry/check/sweep_check.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/obstacle/feature_path.h"
+#include "geometry/tolerances.h"
 #include "solver/contact/contacts.h"
 #include "solver/eol/wire_fold.h"
 #include "solver/model/eol_limits.h"
@@ -38,10 +39,9 @@ std::vector<Carrier> stand_still(const Scene& scene, const ClothMesh& mesh,
 bool push_out(const ObstacleContact& contact, const Carrier& carrier, double thickness,
               std::vector<Vec3>& world)
 {
-    constexpr double kRoundOff = 1e-9;  // of the thickness
     const Vec3 normal = carrier.end.rotation * contact.normal;
     const double gap = normal.dot(contact.at(world) - carrier.end(contact.point));
-    if (gap >= (1.0 - kRoundOff) * thickness) return false;
+    if (gap >= (1.0 - kAccumulated) * thickness) return false;
     contact.shift((thickness - gap) * normal, world);
     return true;
 }
@@ -71,12 +71,12 @@ class FoldsAround {
             if (obstacle.features().edges[feature].kind == FeatureKind::Convex) return false;
             const std::array<Vec3, 2> segment = feature_segment(obstacle, feature);
             return std::any_of(contact.vertices.begin(), contact.vertices.end(),
-                               [&](int v) { return v >= 0 && is_fold(v, segment, places); });
+                               [&](int v) { return v >= 0 && is_fold_at(v, segment, places); });
         });
     }
 
   private:
-    bool is_fold(int v, const std::array<Vec3, 2>& segment, const std::vector<Vec3>& places) const
+    bool is_fold_at(int v, const std::array<Vec3, 2>& segment, const std::vector<Vec3>& places) const
     {
         std::vector<Vec3> around;
         for (const int w : neighbours_[v]) around.push_back(places[w]);
@@ -112,7 +112,7 @@ bool is_free_way(const Scene& scene, const std::vector<MeshEdge>& edges, const C
 {
     std::vector<Carrier> carriers = stand_still(scene, from, edges);
     for (std::size_t o = 0; o < carriers.size(); ++o) {
-        carriers[o].motion.end = to_frame(carriers[o].end, to.world);
+        carriers[o].motion.end = to_local(carriers[o].end, to.world);
         if (!check_sweep(*carriers[o].obstacle, carriers[o].motion, scene.material.thickness).is_clean())
             return false;
     }

@@ -8,12 +8,14 @@
 #include <limits>
 #include <numeric>
 
+#include "geometry/tolerances.h"
+
 namespace arris {
 
 namespace {
 
 /// Rows of a vertex's coordinates: pinned axes, then contact normals.
-struct Frame {
+struct VertexBasis {
     Mat3 rows = Mat3::Zero();
     Mat3 span = Mat3::Zero();  ///< orthonormal basis of the span of `rows`
     int count = 0;
@@ -45,7 +47,7 @@ struct Frame {
 };
 
 /// Fixes the pinned directions: their axes come first, and their u is 0.
-void hold(const std::vector<PinTarget>& held, const Prediction& prediction, std::vector<Frame>& frames,
+void hold(const std::vector<PinTarget>& held, const Prediction& prediction, std::vector<VertexBasis>& bases,
           Linearization& at, VelocityProblem& problem)
 {
     for (const PinTarget& vertex : held) {
@@ -54,8 +56,8 @@ void hold(const std::vector<PinTarget>& held, const Prediction& prediction, std:
         for (int d = 0; d < 3; ++d) {
             if (!vertex.held[d]) continue;
             at.drift[v][d] = drift[d];
-            problem.is_fixed[3 * v + frames[v].count] = 1;
-            frames[v].add(Vec3::Unit(d));
+            problem.is_fixed[3 * v + bases[v].count] = 1;
+            bases[v].add(Vec3::Unit(d));
         }
     }
 }
@@ -103,21 +105,20 @@ bool is_expected(const Contact& contact, const Prediction& prediction, const Sta
 /// for any speed.
 bool is_kept_at_rest(const ConstraintRow& row, const Prediction& prediction, const Contact& contact)
 {
-    constexpr double kRoundOff = 1e-9;  // of the gap to be kept
     const auto last = row.coefficient.begin() + row.count;
     const bool can_move = std::any_of(row.coefficient.begin(), last, [](double g) { return g != 0.0; });
-    return !can_move && row.lower * prediction.gamma <= kRoundOff * contact.least_gap;
+    return !can_move && row.lower * prediction.gamma <= kAccumulated * contact.least_gap;
 }
 
-/// Appends a contact's row; to the guess, too, where it is `expected` to press.
+/// Appends a contact's constraint; to the guess, too, where it is `expected` to press.
 void add_row(const Prediction& prediction, const Linearization& at, bool is_expected, Contact& contact,
              VelocityProblem& problem)
 {
-    constexpr double kRoundOff = 1e-15;  // of a unit normal: a smaller part along a coordinate is none
     ConstraintRow row;
     row.lower = -contact.gap / prediction.gamma;
     row.expected = contact.last_multiplier;
-    if (contact.is_squeezed()) row.give = 1.0 / (prediction.gamma * prediction.gamma * contact.stiffness);
+    if (contact.is_squeezed())
+        row.compliance = 1.0 / (prediction.gamma * prediction.gamma * contact.stiffness);
     for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
         if (contact.weights[i] == 0.0) continue;
         const int v = contact.vertices[i];
@@ -125,7 +126,7 @@ void add_row(const Prediction& prediction, const Linearization& at, bool is_expe
         row.lower -= contact.weights[i] * contact.normal.dot(at.drift[v]);
         for (int d = 0; d < 3; ++d) {
             row.coordinate[row.count] = 3 * v + d;
-            row.coefficient[row.count++] = std::abs(gradient[d]) < kRoundOff ? 0.0 : gradient[d];
+            row.coefficient[row.count++] = std::abs(gradient[d]) < kLastPlaces ? 0.0 : gradient[d];
         }
     }
     if (is_kept_at_rest(row, prediction, contact)) row.lower = -std::numeric_limits<double>::infinity();
@@ -160,8 +161,8 @@ void build_constraints(const std::vector<PinTarget>& held, const std::vector<Eol
     problem.row_guess.clear();
 
     // Bounds: all contacts of a vertex with independent normals.
-    std::vector<Frame> frames(n);
-    hold(held, prediction, frames, at, problem);
+    std::vector<VertexBasis> bases(n);
+    hold(held, prediction, bases, at, problem);
     let_flow(eol, prediction, at);
     for (const std::size_t c : order_of(contacts)) {
         Contact& contact = contacts[c];
@@ -172,20 +173,20 @@ void build_constraints(const std::vector<PinTarget>& held, const std::vector<Eol
             contact.bound = 3 * v;
         } else {
             const bool is_flowing = at.flow && at.flow->is_eulerian[v];
-            if (!contact.is_vertex() || is_flowing || !frames[v].add(contact.normal)) continue;
-            contact.bound = 3 * v + frames[v].count - 1;
+            if (!contact.is_vertex() || is_flowing || !bases[v].add(contact.normal)) continue;
+            contact.bound = 3 * v + bases[v].count - 1;
         }
         problem.lower[contact.bound] = -contact.gap / prediction.gamma - contact.normal.dot(at.drift[v]);
         if (is_expected(contact, prediction, state)) problem.guess.push_back(contact.bound);
     }
     std::sort(problem.guess.begin(), problem.guess.end());
     for (std::size_t v = 0; v < n; ++v) {
-        if (frames[v].count == 0) continue;
-        at.basis[v] = frames[v].basis();
+        if (bases[v].count == 0) continue;
+        at.basis[v] = bases[v].basis();
         at.has_basis[v] = at.basis[v] != Mat3::Identity();
     }
 
-    // Rows: all other contacts.
+    // Constraints: all other contacts.
     for (Contact& contact : contacts) {
         if (contact.bound >= 0) continue;
         add_row(prediction, at, is_expected(contact, prediction, state), contact, problem);

@@ -32,7 +32,7 @@ bool runs_into(const Carrier& carrier, const Contact& contact, double shift)
 {
     if (contact.was_active()) return true;
     const auto distance = [&](const std::vector<Vec3>& place) {
-        return contact.normal_in_frame.dot(contact.at(place) - contact.point_in_frame);
+        return contact.local_normal.dot(contact.at(place) - contact.local_point);
     };
     return distance(carrier.motion.begin) + shift < contact.least_gap &&
            distance(carrier.motion.end) < contact.least_gap;

@@ -38,7 +38,7 @@ class RememberedPairs {
             if (active.obstacle != obstacle || active.kind == ContactKind::Vertex) continue;
             std::array<int, 3> vertices = {-1, -1, -1};
             bool is_there = true;
-            for (int i = 0; i < 3 && active.vertex_ids[i] != ActiveContact::kNoVertex; ++i) {
+            for (int i = 0; i < 3 && active.vertex_ids[i] != ContactVertexIds::kNoVertex; ++i) {
                 vertices[i] = state_.index_of(active.vertex_ids[i]);
                 is_there = is_there && vertices[i] >= 0;
             }
@@ -137,8 +137,8 @@ Carriers move_obstacles(const Scene& scene, const State& state, const std::vecto
         const ObstaclePose pose = obstacle.at(end);
         carrier.obstacle = pose.shape;
         carrier.end = pose.placement;
-        carrier.motion = {&state.mesh.faces, &edges, to_frame(carrier.begin, state.mesh.world),
-                          to_frame(carrier.end, free_end)};
+        carrier.motion = {&state.mesh.faces, &edges, to_local(carrier.begin, state.mesh.world),
+                          to_local(carrier.end, free_end)};
         carriers.obstacles.push_back(std::move(carrier));
     }
     return carriers;
@@ -168,7 +168,7 @@ void recall(const State& state, const Carriers& carriers, Contact& contact)
     for (; active != state.active.end() && active->vertex_ids[0] == ids[0]; ++active) {
         if (active->obstacle != contact.obstacle || active->kind != contact.kind) continue;
         const bool is_same = active->vertex_ids == ids && active->element == contact.element;
-        const double cosine = is_vertex ? active->normal.dot(contact.normal_in_frame) : is_same ? 1.0 : 0.0;
+        const double cosine = is_vertex ? active->normal.dot(contact.local_normal) : is_same ? 1.0 : 0.0;
         if (!(cosine > best_cosine)) continue;
         last = &*active;
         best_cosine = cosine;
@@ -191,7 +191,7 @@ double way_along(const Carriers& carriers, const Contact& contact)
 
 void update_gap(const Carrier& carrier, const Prediction& prediction, Contact& contact)
 {
-    contact.gap = contact.normal.dot(contact.at(prediction.position) - carrier.end(contact.point_in_frame)) -
+    contact.gap = contact.normal.dot(contact.at(prediction.position) - carrier.end(contact.local_point)) -
                   contact.least_gap;
 }
 
@@ -205,8 +205,8 @@ Contact place_contact(const ObstacleContact& found, int obstacle, double thickne
     contact.obstacle = obstacle;
     contact.element = found.element;
     contact.normal = carriers[obstacle].end.rotation * found.normal;
-    contact.normal_in_frame = found.normal;
-    contact.point_in_frame = found.point;
+    contact.local_normal = found.normal;
+    contact.local_point = found.point;
     contact.least_gap = found.least_gap;
     contact.stand_off = thickness;
     update_gap(carriers[obstacle], prediction, contact);
@@ -221,16 +221,16 @@ Contact place_contact(const SelfContact& found, double thickness, const Carriers
     contact.weights = found.weights;
     contact.kind = found.kind == SelfContactKind::VertexFace ? ContactKind::Vertex : ContactKind::Edge;
     contact.obstacle = kClothItself;
-    contact.normal = contact.normal_in_frame = found.normal;
-    contact.point_in_frame = Vec3::Zero();
+    contact.normal = contact.local_normal = found.normal;
+    contact.local_point = Vec3::Zero();
     contact.least_gap = found.least_gap;
     contact.stand_off = thickness;
     update_gap(carriers.cloth, prediction, contact);
     return contact;
 }
 
-std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
-                                   Carriers& carriers)
+std::vector<Contact> find_contacts_with_obstacles(const Scene& scene, const State& state,
+                                                  const Prediction& prediction, Carriers& carriers)
 {
     std::vector<Contact> contacts;
     const double thickness = scene.material.thickness;
@@ -289,10 +289,10 @@ std::vector<ActiveContact> active_contacts(const State& state, const Carriers& c
     for (std::size_t c = 0; c < contacts.size(); ++c) {
         const Contact& contact = contacts[c];
         if (!(multiplier[c] > 0.0)) continue;
-        const Mat3 to_frame = contact.eol >= 0 ? Mat3(Mat3::Identity())
+        const Mat3 to_local = contact.eol >= 0 ? Mat3(Mat3::Identity())
                                                : Mat3(carriers[contact.obstacle].end.rotation.transpose());
         active.push_back({ids_of(state, contact), contact.kind, contact.obstacle, contact.element,
-                          contact.normal_in_frame, multiplier[c], rotate(to_frame, contact.friction),
+                          contact.local_normal, multiplier[c], rotate(to_local, contact.friction),
                           contact.is_squeezed() || contact.is_floor});
     }
     std::sort(active.begin(), active.end(), [](const ActiveContact& a, const ActiveContact& b) {

@@ -19,12 +19,12 @@
 namespace arris {
 
 /// `element` of a fold contact, which is not with the obstacle: it keeps one side of cloth folded over a wire
-/// from passing to the other side (fold_contacts.h).
-inline constexpr int kFoldElement = -2;
+/// from passing to the other side (fold_plane_contacts.h).
+inline constexpr int kFoldPlaneElement = -2;
 
-inline bool is_fold(const ActiveContact& contact)
+inline bool is_fold_plane(const ActiveContact& contact)
 {
-    return contact.kind == ContactKind::Vertex && contact.element == kFoldElement;
+    return contact.kind == ContactKind::Vertex && contact.element == kFoldPlaneElement;
 }
 
 /// An obstacle during one step, or the cloth itself where it meets itself, and the motion of the cloth in its
@@ -77,9 +77,9 @@ struct Contact : ClothPoints {
     int obstacle = kClothItself;             ///< index in the scene, or kClothItself
     int element = 0;                         ///< as ObstacleContact's
     Vec3 normal = Vec3::Zero();              ///< unit, at the step's end
-    Vec3 normal_in_frame = Vec3::Zero(), point_in_frame = Vec3::Zero();  ///< of the carrier
-    double least_gap = 0.0;                                              ///< m
-    double stand_off = 0.0;                                              ///< m: up to which the gap may grow
+    Vec3 local_normal = Vec3::Zero(), local_point = Vec3::Zero();  ///< of the carrier
+    double least_gap = 0.0;                                        ///< m
+    double stand_off = 0.0;                                        ///< m: up to which the gap may grow
     double gap = 0.0;  ///< distance of q~ beyond the gap to be kept at the step's end, m; negative inside
     double last_multiplier = 0.0;  ///< N s, of the last step; 0 where it did not press
     ContactFriction last_friction =
@@ -92,12 +92,12 @@ struct Contact : ClothPoints {
     bool is_beside_rim = false;     ///< of a squeezed vertex with the plane of a squeezed edge past a rim
     bool is_floor = false;          ///< keeps squeezed cloth from going below the least thickness
     int eol = -1;                   ///< index of the EOL coordinates whose first one it bounds; else -1
-    int bound = -1;                 ///< coordinate of the velocity solve, 3 a vertex; -1 where it is a row
-    int row = -1;                   ///< row of the velocity solve, or -1
+    int bound = -1;  ///< coordinate of the velocity solve, 3 a vertex; -1 where it is a constraint
+    int row = -1;    ///< row of the velocity solve, or -1
 
     bool is_with_itself() const { return obstacle == kClothItself; }
     bool is_squeezed() const { return stiffness > 0.0; }
-    bool is_fold() const { return is_vertex() && element == kFoldElement; }
+    bool is_fold_plane() const { return is_vertex() && element == kFoldPlaneElement; }
     bool is_vertex() const { return vertices[1] < 0; }  ///< a single vertex, at an obstacle
     bool was_active() const { return last_multiplier > 0.0; }
 };
@@ -109,8 +109,8 @@ Carriers move_obstacles(const Scene& scene, const State& state, const std::vecto
 
 /// Contacts with obstacles possible in the step: of vertices, edges and faces, and the pairs that pressed at
 /// the end of the last step.
-std::vector<Contact> find_contacts(const Scene& scene, const State& state, const Prediction& prediction,
-                                   Carriers& carriers);
+std::vector<Contact> find_contacts_with_obstacles(const Scene& scene, const State& state,
+                                                  const Prediction& prediction, Carriers& carriers);
 
 /// Contacts of the cloth with itself possible in the step, as predicted. None without self-contact in the
 /// scene.

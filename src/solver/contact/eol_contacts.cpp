@@ -6,7 +6,7 @@
 #include "geometry/contact/contact_plane.h"
 #include "geometry/obstacle/feature_nodes.h"
 #include "geometry/obstacle/feature_path.h"
-#include "solver/contact/fold_contacts.h"
+#include "solver/contact/fold_plane_contacts.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/eol/eol_features.h"
 
@@ -31,7 +31,7 @@ bool is_beside(const Obstacle& obstacle, const EolVertex& eol, const EolCoordina
     const ObstacleFeatures& features = obstacle.features();
     const Vec3 from = place - at.frame.point, along = at.frame.tangent.dot(from) * at.frame.tangent;
     const double height = std::max((from - along).norm(), thickness);
-    if ((contact.point_in_frame - at.frame.point).norm() > kReach * height) return false;
+    if ((contact.local_point - at.frame.point).norm() > kReach * height) return false;
     const int corner = fixed_point(obstacle, eol);
     const auto is_of_wire = [&](int edge) {
         const auto& ends = obstacle.topology().edges[edge].points;
@@ -69,23 +69,24 @@ bool is_covered(const Obstacle& obstacle, const EolVertex& eol, const EolCoordin
         return is_beside(obstacle, eol, at, place, thickness, contact);
     if (contact.kind == ContactKind::Triangle) return contact.element == corner;
     if (contact.kind == ContactKind::Vertex)
-        return contact.normal_in_frame.dot(at.frame.outward) > 0.0 &&
-               is_near_feature(obstacle, eol, at, thickness, contact.point_in_frame);
+        return contact.local_normal.dot(at.frame.outward) > 0.0 &&
+               is_near_feature(obstacle, eol, at, thickness, contact.local_point);
     const ObstacleEdge& edge = obstacle.topology().edges[contact.element];
     if (!eol.on.is_corner()) return contact.element == features.edges[eol.on.index].edge;
     return edge.points[0] == corner || edge.points[1] == corner;
 }
 
 /// Keeps the sides of cloth folded over a wire apart.
-void append_folds(const Scene& scene, const State& state, const ClothStars& stars,
-                  const Prediction& prediction, const Carriers& carriers,
-                  const std::vector<EolCoordinates>& eol, std::vector<Contact>& contacts)
+void append_fold_planes(const Scene& scene, const State& state, const ClothStars& stars,
+                        const Prediction& prediction, const Carriers& carriers,
+                        const std::vector<EolCoordinates>& eol, std::vector<Contact>& contacts)
 {
     std::vector<const std::vector<Vec3>*> positions;
     for (const Carrier& carrier : carriers.obstacles) positions.push_back(&carrier.motion.begin);
-    for (const FoldContact& fold : find_fold_contacts(scene.obstacles, state, stars, eol, positions)) {
+    for (const FoldPlaneContact& fold :
+         find_fold_plane_contacts(scene.obstacles, state, stars, eol, positions)) {
         const ObstacleContact contact =
-            make_contact(ContactKind::Vertex, {{fold.vertex, -1, -1}, {1.0, 0.0, 0.0}}, kFoldElement,
+            make_contact(ContactKind::Vertex, {{fold.vertex, -1, -1}, {1.0, 0.0, 0.0}}, kFoldPlaneElement,
                          fold.bound.normal, fold.point, fold.bound.least_gap);
         contacts.push_back(place_contact(contact, fold.obstacle, fold.bound.wanted, carriers, prediction));
     }
@@ -148,8 +149,8 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         slot[placing.coordinates->vertex] = static_cast<int>(eol.size());
         eol.push_back(*placing.coordinates);
     }
-    // A cloth edge between two EOL vertices on one wire is the trace itself: a row there would be almost
-    // singular.
+    // A cloth edge between two EOL vertices on one wire is the trace itself: a constraint there would be
+    // almost singular.
     const auto is_trace = [&](const Contact& contact) {
         const int a = contact.vertices[0], b = contact.vertices[1];
         if (contact.kind != ContactKind::Edge || slot[a] < 0 || slot[b] < 0) return false;
@@ -182,7 +183,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
         contacts.back().may_grow = false;  // a push-out would stretch the cloth on both sides
     }
     // With self-contact the sides of a fold stop each other.
-    if (!scene.self_contact) append_folds(scene, state, stars, prediction, carriers, eol, contacts);
+    if (!scene.self_contact) append_fold_planes(scene, state, stars, prediction, carriers, eol, contacts);
     for (std::size_t c = found; c < contacts.size(); ++c) recall(state, carriers, contacts[c]);
     return eol;
 }

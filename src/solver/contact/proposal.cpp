@@ -70,13 +70,13 @@ class Shares {
 void restore_stand_off(const std::vector<Contact>& contacts, const Carriers& carriers,
                        const std::vector<double>& mobility, double growth, std::vector<Vec3>& world)
 {
-    constexpr double kFoldShare = 0.1;  // of the push-out: moving aside stretches straight cloth
-    constexpr int kPushes = 5;          // a layer that is pushed away from another may have to come back
+    constexpr double kFoldPlaneShare = 0.1;  // of the push-out: moving aside stretches straight cloth
+    constexpr int kPushes = 5;               // a layer that is pushed away from another may have to come back
     const auto push_out = [&](const Contact& contact) {
         if (contact.is_squeezed()) return;
-        const Vec3 point = carriers[contact.obstacle].end(contact.point_in_frame);
+        const Vec3 point = carriers[contact.obstacle].end(contact.local_point);
         const double gap = contact.normal.dot(contact.at(world) - point);
-        const double share = contact.is_fold() ? kFoldShare : 1.0;
+        const double share = contact.is_fold_plane() ? kFoldPlaneShare : 1.0;
         const double wanted = contact.least_gap + (contact.may_grow ? share * growth : 0.0);
         const double missing = std::min(contact.stand_off, wanted) - gap;
         if (missing > 0.0) contact.shift(missing * contact.normal, mobility, world);
@@ -102,7 +102,7 @@ Violations check_proposal(const Scene& scene, const State& state, const SelfSurf
     Violations violations;
     for (int o = 0; o < static_cast<int>(carriers.obstacles.size()); ++o) {
         Carrier& carrier = carriers.obstacles[o];
-        carrier.motion.end = to_frame(carrier.end, proposal.world);
+        carrier.motion.end = to_local(carrier.end, proposal.world);
         SweepReport report = check_sweep(*carrier.obstacle, carrier.motion, thickness);
         for (const ObstacleContact& found : report.violations)
             violations.contacts.push_back(place_contact(found, o, thickness, carriers, prediction));

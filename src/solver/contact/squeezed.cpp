@@ -24,12 +24,12 @@ double area_at(const Cushion& cushion, const Contact& contact)
 
 double end_distance(const Carrier& carrier, const Contact& contact, const std::vector<Vec3>& world)
 {
-    return contact.normal.dot(contact.at(world) - carrier.end(contact.point_in_frame));
+    return contact.normal.dot(contact.at(world) - carrier.end(contact.local_point));
 }
 
 double begin_distance(const Carrier& carrier, const Contact& contact)
 {
-    return contact.normal_in_frame.dot(contact.at(carrier.motion.begin) - contact.point_in_frame);
+    return contact.local_normal.dot(contact.at(carrier.motion.begin) - contact.local_point);
 }
 
 /// Whether squeezed cloth is thinner than the least thickness, but for the round-off of a solve.
@@ -67,8 +67,8 @@ std::optional<double> find_room(const Carriers& carriers, const Contact& a, cons
 {
     if (!(a.normal.dot(b.normal) < opposite)) return std::nullopt;
     const Vec3 place = carriers[a.obstacle].end(a.at(carriers[a.obstacle].reference));
-    const double room = a.normal.dot(place - carriers[a.obstacle].end(a.point_in_frame)) +
-                        b.normal.dot(place - carriers[b.obstacle].end(b.point_in_frame));
+    const double room = a.normal.dot(place - carriers[a.obstacle].end(a.local_point)) +
+                        b.normal.dot(place - carriers[b.obstacle].end(b.local_point));
     return room / (a.stand_off + b.stand_off);
 }
 
@@ -90,7 +90,8 @@ Squeezed squeeze_between(const Cushion& cushion, const Carriers& carriers, const
 
 bool keeps_distance_from_obstacle(const Contact& contact)
 {
-    return !contact.is_with_itself() && !contact.is_fold() && !contact.is_floor && !contact.is_squeezed();
+    return !contact.is_with_itself() && !contact.is_fold_plane() && !contact.is_floor &&
+           !contact.is_squeezed();
 }
 
 /// Squeezes the cloth at contacts that press it against contacts where it is squeezed. If they kept their
@@ -154,8 +155,8 @@ bool squeeze_beside_edges(const Cushion& cushion, const Carriers& carriers, cons
         const Contact* edge = find_edge_beside(contact, contacts);
         if (edge == nullptr) continue;
         contact.normal = edge->normal;
-        contact.normal_in_frame = edge->normal_in_frame;
-        contact.point_in_frame = edge->point_in_frame;
+        contact.local_normal = edge->local_normal;
+        contact.local_point = edge->local_point;
         contact.is_beside_rim = true;
         is_changed = squeeze(cushion, carriers, prediction, contact) || is_changed;
     }
@@ -182,7 +183,8 @@ Squeezed squeeze_contacts(const Cushion& cushion, const Carriers& carriers, cons
         // A vertex needs its opposite contact: past a rim the springs of its last one would throw it out.
         if (contact.was_squeezed && !contact.is_vertex())
             squeezed.is_changed = squeeze(cushion, carriers, prediction, contact) || squeezed.is_changed;
-        if (!contact.is_with_itself() && !contact.is_fold() && !contact.is_floor) sorted.push_back(&contact);
+        if (!contact.is_with_itself() && !contact.is_fold_plane() && !contact.is_floor)
+            sorted.push_back(&contact);
     }
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const Contact* a, const Contact* b) { return a->vertices < b->vertices; });

@@ -5,8 +5,8 @@
 //   F = E A (t - d) / t,   d < t,
 //
 // with the compression modulus E (Pa), the cloth's area A at the contact, the stand-off t and the distance d
-// at the step's end. In the velocity solve this is a row with a give of its own, and friction has its force.
-// Two plates in a gap g hold 2 mu A E (1 - g / (2 t)). At t / 50 it is a constraint again. A vertex is
+// at the step's end. In the velocity solve this is a row with a compliance of its own, and friction has its
+// force. Two plates in a gap g hold 2 mu A E (1 - g / (2 t)). At t / 50 it is a constraint again. A vertex is
 // squeezed while its opposite contacts leave too little room; contacts of edges, faces and layers stay so as
 // long as they press. What presses against squeezed cloth is squeezed, too. Past the rim of a gap a vertex
 // takes the plane of its squeezed edge there: a slanted plane would hold cloth back at the entry, or throw it

@@ -18,8 +18,8 @@ struct Creases {
 };
 
 /// Whether the mesh resolves the bend of this cloth at a feature under the tension of its own weight: cells
-/// are shorter than sqrt(K / T), the length over which the cloth bends. Rows then let the cloth slide as well
-/// as EOL vertices do. False without gravity, and without a target for the mesh.
+/// are shorter than sqrt(K / T), the length over which the cloth bends. Constraints then let the cloth slide
+/// as well as EOL vertices do. False without gravity, and without a target for the mesh.
 bool resolves_bends(const Scene& scene, const ClothMesh& cloth);
 
 /// Width, m, of the creases of this cloth. Zero without a target for the mesh, and where the cloth's bend

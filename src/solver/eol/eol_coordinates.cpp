@@ -144,7 +144,6 @@ ArrivingCloth find_arriving(const Sides& sides, const Vec2& trace, const Vec2& f
 /// has left the point stays: carrying it across flying cloth would do work on the cloth.
 void turn_with_cone(const Star& star, double thickness, double dt, FeatureFrame& frame, Vec3& place)
 {
-    constexpr double kShare = 0.5;  // of the remaining angle per step: the cone follows cloth that shakes
     const double height = (place - frame.point).norm();
     if (!(height > 0.0)) return;
     if (height > kOnFeature * thickness) dt = 0.0;
@@ -153,7 +152,7 @@ void turn_with_cone(const Star& star, double thickness, double dt, FeatureFrame&
     for (const StarFace& face : star.faces) sectors.push_back(face.sector);
     const Vec3 wanted = -find_cone_axis(sectors, -now);
     const double angle = std::atan2(now.cross(wanted).norm(), now.dot(wanted));
-    const double share = std::min(kShare, kMendingSpeed * dt / (height * angle));
+    const double share = std::min(kTurnPerStep, kMendingSpeed * dt / (height * angle));
     const auto turn = Eigen::Quaterniond::FromTwoVectors(now, wanted);
     frame.outward = Eigen::Quaterniond::Identity().slerp(angle > 0.0 ? share : 0.0, turn) * now;
     place = frame.point + height * frame.outward;
@@ -202,7 +201,7 @@ bool leads_along(const Star& star, const Vec2& border, const Vec2& trace, const 
 EolPlacing finish(const Star& star, const Placement& end, EolCoordinates at)
 {
     at.opening = find_opening(star, at.basis, at.material_basis);
-    if (!at.opening.allFinite()) return {std::nullopt, RowCause::EdgeOn};
+    if (!at.opening.allFinite()) return {std::nullopt, ConstraintCause::EdgeOn};
     at.basis = end.rotation * at.basis;
     return {at, {}};
 }
@@ -217,25 +216,25 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
     const int v = state.index_of(eol.vertex_id);
     const Vec3& place = positions[v];
     const std::optional<Vec2> border = find_border(state.mesh, stars, v);
-    if (border && border->isZero()) return {std::nullopt, RowCause::ClothCorner};
-    if (border && eol.on.is_fixed()) return {std::nullopt, RowCause::AlongBorder};
+    if (border && border->isZero()) return {std::nullopt, ConstraintCause::ClothCorner};
+    if (border && eol.on.is_fixed()) return {std::nullopt, ConstraintCause::AlongBorder};
 
     const Vec3 tangent = feature_tangent(obstacle, eol);
     const Star star = look_around(state.mesh, stars.faces[v], v, positions);
     Vec2 trace = Vec2::Zero();
     if (!eol.on.is_corner())
         trace = find_trace(obstacle, state, entry, v, stars.faces[v], positions, star, tangent);
-    if (!trace.allFinite()) return {std::nullopt, RowCause::NoDirection};
+    if (!trace.allFinite()) return {std::nullopt, ConstraintCause::NoDirection};
     Sides sides;
     const ClothAround around =
         eol.on.is_corner() ? sum_around(star, eol) : sum_sides(star, trace, tangent, eol, sides);
     std::optional<FeatureFrame> frame = find_frame(obstacle, eol, place, around);
-    if (!frame) return {std::nullopt, RowCause::NoDirection};
+    if (!frame) return {std::nullopt, ConstraintCause::NoDirection};
     if (is_on_convex_edge(obstacle, eol))
         frame = turn_to_free_fold(obstacle.features().edges[eol.on.index],
                                   find_arriving(sides, trace, state.material_velocity[v]), place, thickness,
                                   *frame);
-    if (is_edge_on(star, frame->outward)) return {std::nullopt, RowCause::EdgeOn};
+    if (is_edge_on(star, frame->outward)) return {std::nullopt, ConstraintCause::EdgeOn};
 
     EolCoordinates at{v,
                       entry,
@@ -257,7 +256,8 @@ EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const St
         at.material_basis.col(2) = Vec2::UnitY();
         return finish(star, end, at);
     }
-    if (border && leads_along(star, *border, trace, tangent)) return {std::nullopt, RowCause::AlongBorder};
+    if (border && leads_along(star, *border, trace, tangent))
+        return {std::nullopt, ConstraintCause::AlongBorder};
     at.trace = trace;
     if (eol.on.is_bend()) at.material_basis.col(1) = trace;
     at.material_basis.col(2) = border ? *border : perpendicular(trace);

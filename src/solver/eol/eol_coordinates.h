@@ -12,7 +12,7 @@
 #include "geometry/obstacle/moving_obstacle.h"
 #include "geometry/rigid_motion.h"
 #include "solver/eol/cloth_stars.h"
-#include "solver/model/row_cause.h"
+#include "solver/model/constraint_cause.h"
 #include "solver/model/state.h"
 
 namespace arris {
@@ -36,7 +36,7 @@ struct EolCoordinates {
 /// of the cloth, m.
 struct EolPlacing {
     std::optional<EolCoordinates> coordinates;
-    RowCause refusal = RowCause::NoDirection;  ///< without coordinates
+    ConstraintCause refusal = ConstraintCause::NoDirection;  ///< without coordinates
 };
 EolPlacing place_eol_vertex(const Obstacle& obstacle, double thickness, const State& state, int entry,
                             const ClothStars& stars, const std::vector<Vec3>& positions, const Placement& end,

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/tolerances.h"
+
 namespace arris {
 
 namespace {
@@ -45,9 +47,8 @@ Vec3 turned_between(const FeatureEdge& edge, const Vec3& outward, const Vec3& be
     for (const Vec3& normal : edge.normals)
         if (const double into = normal.dot(nearest); into < 0.0) nearest -= into * normal;
     nearest = nearest.stableNormalized();
-    constexpr double kRounding = 1e-9;
     for (const Vec3& normal : edge.normals)
-        if (!(normal.dot(nearest) >= -kRounding)) return between;
+        if (!(normal.dot(nearest) >= -kAccumulated)) return between;
     return nearest.isZero(0.0) ? between : nearest;
 }
 

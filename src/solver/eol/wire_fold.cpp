@@ -67,22 +67,22 @@ double angle_behind(const FeatureFrame& frame, const Vec3& place)
 Vec3 turn_outward(const FeatureFrame& wanted, const Vec3& place, const std::vector<Vec3>& beside, double dt)
 {
     constexpr double kRoundOff = 1e-13;
-    constexpr double kShare = 0.5;  // of the remaining angle per step: outward follows cloth that shakes
     const Vec3& t = wanted.tangent;
     const Vec3 from = place - wanted.point - t.dot(place - wanted.point) * t;
     if (!(from.norm() > kRoundOff * place.norm())) return wanted.outward;
     const Vec3 outward = from.normalized();
-    double turn = kShare * std::atan2(t.dot(outward.cross(wanted.outward)), outward.dot(wanted.outward));
+    double turn =
+        kTurnPerStep * std::atan2(t.dot(outward.cross(wanted.outward)), outward.dot(wanted.outward));
     turn = std::clamp(turn, -kMendingSpeed * dt / from.norm(), kMendingSpeed * dt / from.norm());
     for (const Vec3& neighbour : beside) {
         const double angle = angle_behind({wanted.point, t, outward, 1.0}, neighbour);
-        const double room = kShare * std::max(std::abs(angle) - kLeastAngle, 0.0);
+        const double room = kTurnPerStep * std::max(std::abs(angle) - kLeastAngle, 0.0);
         turn = angle > 0.0 ? std::min(turn, room) : std::max(turn, -room);
     }
     return Eigen::AngleAxisd(turn, t) * outward;
 }
 
-FoldBound find_fold_bound(const FeatureFrame& frame, const Vec3& place, int side)
+FoldPlaneBound find_fold_plane_bound(const FeatureFrame& frame, const Vec3& place, int side)
 {
     const Vec3 from = place - frame.point, normal = side * frame.outward.cross(frame.tangent);
     const double wanted = std::max(-kLeastAngle * frame.outward.dot(from), 0.0);

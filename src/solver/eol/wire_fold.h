@@ -40,11 +40,11 @@ Vec3 turn_outward(const FeatureFrame& wanted, const Vec3& place, const std::vect
 double angle_behind(const FeatureFrame& frame, const Vec3& place);
 
 /// Bound that keeps a place on its side, 1 or -1 as the sign of its angle, of cloth folded over a wire.
-struct FoldBound {
+struct FoldPlaneBound {
     Vec3 normal;       ///< unit, from the plane to its side
     double least_gap;  ///< m, from the wire along `normal`: `wanted`, or the current gap if smaller
     double wanted;     ///< m, at the least angle
 };
-FoldBound find_fold_bound(const FeatureFrame& frame, const Vec3& place, int side);
+FoldPlaneBound find_fold_plane_bound(const FeatureFrame& frame, const Vec3& place, int side);
 
 }  // namespace arris

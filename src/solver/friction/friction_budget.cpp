@@ -28,7 +28,7 @@ struct Side {
     double tension, pressure;
 };
 
-bool lies_on_face(const RubbingCloth& cloth, const EolVertex& eol, const Vec3& normal)
+bool lies_on_face(const SlippingCloth& cloth, const EolVertex& eol, const Vec3& normal)
 {
     const Obstacle& obstacle = *cloth.carriers[eol.on.obstacle].obstacle;
     if (!is_on_convex_edge(obstacle, eol)) return false;
@@ -38,7 +38,7 @@ bool lies_on_face(const RubbingCloth& cloth, const EolVertex& eol, const Vec3& n
                        [&](const Vec3& of_face) { return (rotation * of_face).dot(normal) > kCosOnFace; });
 }
 
-std::array<Side, 2> find_sides(const RubbingCloth& cloth, const EolCoordinates& at,
+std::array<Side, 2> find_sides(const SlippingCloth& cloth, const EolCoordinates& at,
                                const TraceSides& cloth_sides)
 {
     const Vec3 tangent = cloth.at.basis[at.vertex].col(1), outward = cloth.at.basis[at.vertex].col(0);
@@ -85,7 +85,7 @@ double capstan_budget(const std::array<Side, 2>& sides, const Vec3& outward, dou
 
 /// At a corner or point: mu times the pressure's sum over that of its parts along the normal force, for a cap
 /// of uniform pressure whose normals reach `beta` from outward.
-double cap_factor(const RubbingCloth& cloth, const EolCoordinates& at)
+double cap_factor(const SlippingCloth& cloth, const EolCoordinates& at)
 {
     const int v = at.vertex;
     const Star star = look_around(cloth.state.mesh, cloth.stars.faces[v], v, cloth.state.mesh.world);
@@ -95,14 +95,15 @@ double cap_factor(const RubbingCloth& cloth, const EolCoordinates& at)
     return 2.0 / (1.0 + least);
 }
 
-std::vector<TraceVertex> find_trace_vertices(const RubbingCloth& cloth, const std::vector<Rub>& rubs,
+std::vector<TraceVertex> find_trace_vertices(const SlippingCloth& cloth,
+                                             const std::vector<SlipContact>& slip_contacts,
                                              std::vector<int>& slot)
 {
     std::vector<TraceVertex> vertices;
-    slot.assign(rubs.size(), -1);
-    for (std::size_t r = 0; r < rubs.size(); ++r) {
-        if (cloth.contacts[rubs[r].contact].eol < 0) continue;
-        const EolCoordinates& at = cloth.eol[cloth.contacts[rubs[r].contact].eol];
+    slot.assign(slip_contacts.size(), -1);
+    for (std::size_t r = 0; r < slip_contacts.size(); ++r) {
+        if (cloth.contacts[slip_contacts[r].contact].eol < 0) continue;
+        const EolCoordinates& at = cloth.eol[cloth.contacts[slip_contacts[r].contact].eol];
         if (cloth.state.eol[at.entry].on.is_fixed()) continue;
         slot[r] = static_cast<int>(vertices.size());
         vertices.push_back({at.vertex, at.trace});
@@ -112,19 +113,20 @@ std::vector<TraceVertex> find_trace_vertices(const RubbingCloth& cloth, const st
 
 }  // namespace
 
-std::vector<double> compute_budgets(const RubbingCloth& cloth, const Terms& terms,
-                                    const std::vector<Rub>& rubs, const VelocitySolution& solution)
+std::vector<double> compute_budgets(const SlippingCloth& cloth, const Terms& terms,
+                                    const std::vector<SlipContact>& slip_contacts,
+                                    const VelocitySolution& solution)
 {
     const std::vector<double> multiplier = contact_multipliers(cloth.contacts, solution);
     std::vector<int> slot;
-    const std::vector<TraceVertex> vertices = find_trace_vertices(cloth, rubs, slot);
+    const std::vector<TraceVertex> vertices = find_trace_vertices(cloth, slip_contacts, slot);
     std::vector<TraceSides> sides;
     if (!vertices.empty())
         sides = compute_trace_sides(vertices, cloth.elements, terms, cloth.at, solution.velocity);
     std::vector<double> budgets;
-    for (std::size_t r = 0; r < rubs.size(); ++r) {
-        const Contact& contact = cloth.contacts[rubs[r].contact];
-        const double normal = multiplier[rubs[r].contact], mu = rubs[r].coefficient;
+    for (std::size_t r = 0; r < slip_contacts.size(); ++r) {
+        const Contact& contact = cloth.contacts[slip_contacts[r].contact];
+        const double normal = multiplier[slip_contacts[r].contact], mu = slip_contacts[r].coefficient;
         double budget = mu * normal;
         if (normal > 0.0 && contact.eol >= 0) {
             const EolCoordinates& at = cloth.eol[contact.eol];

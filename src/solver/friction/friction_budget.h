@@ -19,8 +19,9 @@
 
 namespace arris {
 
-/// Budgets, N s, one a rub, from a solution's impulses. 0 where a contact does not press.
-std::vector<double> compute_budgets(const RubbingCloth& cloth, const Terms& terms,
-                                    const std::vector<Rub>& rubs, const VelocitySolution& solution);
+/// Budgets, N s, one a contact that can slip, from a solution's impulses. 0 where a contact does not press.
+std::vector<double> compute_budgets(const SlippingCloth& cloth, const Terms& terms,
+                                    const std::vector<SlipContact>& slip_contacts,
+                                    const VelocitySolution& solution);
 
 }  // namespace arris

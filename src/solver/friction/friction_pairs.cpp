@@ -11,7 +11,7 @@ namespace {
 
 /// Velocity v' with which the vertex rides on the obstacle: its path from the last step's start to this
 /// step's end is then rigid, whatever its history.
-Vec3 riding_velocity(const RubbingCloth& cloth, const Carrier& carrier, int v)
+Vec3 riding_velocity(const SlippingCloth& cloth, const Carrier& carrier, int v)
 {
     const Prediction& prediction = cloth.prediction;
     return (carrier.end(carrier.motion.begin[v]) -
@@ -26,7 +26,7 @@ void add_entry(int coordinate, double coefficient, ConstraintRow& row)
 }
 
 /// Slip of a contact's point along a world direction: direction . sum_i w_i (v'_i - v_ride).
-ConstraintRow slip_along(const RubbingCloth& cloth, const Contact& contact, const Vec3& direction)
+ConstraintRow slip_along(const SlippingCloth& cloth, const Contact& contact, const Vec3& direction)
 {
     ConstraintRow row;
     const Carrier& carrier = cloth.carriers[contact.obstacle];
@@ -65,7 +65,7 @@ Vec2 find_way(const Star& star, const Vec2& trace, const Vec3& tangent, const Ve
 }
 
 /// Slip of the material at an EOL vertex, -F V, plus the vertex's own way along the feature.
-std::array<ConstraintRow, 2> slip_over_feature(const RubbingCloth& cloth, const Contact& contact)
+std::array<ConstraintRow, 2> slip_over_feature(const SlippingCloth& cloth, const Contact& contact)
 {
     const EolCoordinates& eol = cloth.eol[contact.eol];
     const int v = eol.vertex;
@@ -95,11 +95,12 @@ std::array<ConstraintRow, 2> slip_over_feature(const RubbingCloth& cloth, const 
 /// Slip, m/s, from which the search starts: that of this step's last solve, if there was one. Else sliding
 /// cloth goes on with the acceleration of the last step until it would turn round, and what stuck goes on
 /// sticking.
-std::array<double, 2> predict_slip(const RubbingCloth& cloth, const Contact& contact, const Rub& rub)
+std::array<double, 2> predict_slip(const SlippingCloth& cloth, const Contact& contact,
+                                   const SlipContact& slipping)
 {
     const ContactFriction& last = contact.friction;
     const auto components = [&](const Vec3& slip) {
-        return std::array<double, 2>{rub.directions[0].dot(slip), rub.directions[1].dot(slip)};
+        return std::array<double, 2>{slipping.directions[0].dot(slip), slipping.directions[1].dot(slip)};
     };
     if (contact.eol >= 0 || contact.is_pressing || !cloth.prediction.has_history)
         return components(last.slip);
@@ -116,15 +117,15 @@ std::array<double, 2> predict_slip(const RubbingCloth& cloth, const Contact& con
 }
 
 /// Whether material flows through any of the vertices; unused ones are -1.
-bool is_any_eulerian(const RubbingCloth& cloth, const std::array<int, 4>& vertices)
+bool is_any_eulerian(const SlippingCloth& cloth, const std::array<int, 4>& vertices)
 {
     return std::any_of(vertices.begin(), vertices.end(),
                        [&](int v) { return v >= 0 && cloth.at.flow && cloth.at.flow->is_eulerian[v]; });
 }
 
-bool can_rub(const RubbingCloth& cloth, const Contact& contact)
+bool can_slip(const SlippingCloth& cloth, const Contact& contact)
 {
-    if (contact.is_fold()) return false;
+    if (contact.is_fold_plane()) return false;
     return contact.eol >= 0 || !is_any_eulerian(cloth, contact.vertices);
 }
 
@@ -144,42 +145,42 @@ double slipping_mass(const ClothPoints& points, const std::vector<double>& mass)
     return 1.0 / compliance;
 }
 
-/// Completes the pair of a rub whose slip rows are known, from the friction of the last step and solve.
-void set_forces(const RubbingCloth& cloth, const Rub& rub, const ContactFriction& last,
+/// Completes the pair of a contact whose slip rows are known, from the friction of the last step and solve.
+void set_forces(const SlippingCloth& cloth, const SlipContact& slipping, const ContactFriction& last,
                 const ContactFriction& now, FrictionPair& pair)
 {
     const double gamma = cloth.prediction.gamma;
     pair.budget = gamma * now.budget;
-    for (int d = 0; d < 2; ++d) pair.slip[d].expected = gamma * rub.directions[d].dot(last.force);
+    for (int d = 0; d < 2; ++d) pair.slip[d].expected = gamma * slipping.directions[d].dot(last.force);
 }
 
 }  // namespace
 
-std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& problem)
+std::vector<SlipContact> add_friction_pairs(const SlippingCloth& cloth, VelocityProblem& problem)
 {
-    std::vector<Rub> rubs;
+    std::vector<SlipContact> slip_contacts;
     problem.friction.clear();
-    if (!cloth.scene.friction || cloth.contacts.empty()) return rubs;
+    if (!cloth.scene.friction || cloth.contacts.empty()) return slip_contacts;
     const std::vector<double> mass = lump_masses(cloth.scene.material.density, cloth.elements);
     for (std::size_t c = 0; c < cloth.contacts.size(); ++c) {
         const Contact& contact = cloth.contacts[c];
         const double coefficient = cloth.scene.friction->coefficient(contact.obstacle);
-        if (!(coefficient > 0.0) || !can_rub(cloth, contact)) continue;
-        Rub rub{static_cast<int>(c), coefficient, {Vec3::UnitX(), Vec3::UnitY()}};
+        if (!(coefficient > 0.0) || !can_slip(cloth, contact)) continue;
+        SlipContact slipping{static_cast<int>(c), coefficient, {Vec3::UnitX(), Vec3::UnitY()}};
         FrictionPair pair;
         if (contact.eol >= 0) {
             pair.slip = slip_over_feature(cloth, contact);
         } else {
-            rub.directions = directions_across(contact.normal);
-            for (int d = 0; d < 2; ++d) pair.slip[d] = slip_along(cloth, contact, rub.directions[d]);
+            slipping.directions = directions_across(contact.normal);
+            for (int d = 0; d < 2; ++d) pair.slip[d] = slip_along(cloth, contact, slipping.directions[d]);
         }
         pair.mass = slipping_mass(contact, mass);
-        set_forces(cloth, rub, contact.last_friction, contact.friction, pair);
-        pair.last = predict_slip(cloth, contact, rub);
-        rubs.push_back(rub);
+        set_forces(cloth, slipping, contact.last_friction, contact.friction, pair);
+        pair.last = predict_slip(cloth, contact, slipping);
+        slip_contacts.push_back(slipping);
         problem.friction.push_back(pair);
     }
-    return rubs;
+    return slip_contacts;
 }
 
 }  // namespace arris

@@ -13,7 +13,7 @@
 namespace arris {
 
 /// A contact with friction; the problem's friction pair of the same index belongs to it.
-struct Rub {
+struct SlipContact {
     int contact;  ///< index
     double coefficient;
     /// World directions of the pair's two components; at EOL vertices unit vectors X and Y (ContactFriction).
@@ -21,7 +21,7 @@ struct Rub {
 };
 
 /// The cloth and its contacts in a step, as far as friction needs them.
-struct RubbingCloth {
+struct SlippingCloth {
     const Scene& scene;
     const State& state;
     const ClothStars& stars;
@@ -33,12 +33,12 @@ struct RubbingCloth {
     const Linearization& at;
 };
 
-/// Adds to `problem` a friction pair for each contact that can rub, and returns where they are. Slip is
+/// Adds to `problem` a friction pair for each contact that can slip, and returns where they are. Slip is
 /// measured against an obstacle's material that moves with a smooth rigid motion, so that sticking cloth
 /// rides on the obstacle exactly. At an EOL vertex the material slips: along the feature by the motion of
 /// vertex and material, across it by the flow. Parts of the cloth slip against each other by their
 /// difference in velocity. Without friction: folds, and contacts of EOL vertices with anything but their
 /// feature.
-std::vector<Rub> add_friction_pairs(const RubbingCloth& cloth, VelocityProblem& problem);
+std::vector<SlipContact> add_friction_pairs(const SlippingCloth& cloth, VelocityProblem& problem);
 
 }  // namespace arris

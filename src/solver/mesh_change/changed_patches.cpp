@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/sort_unique.h"
+#include "solver/mesh_change/strain_allowance.h"
 
 namespace arris {
 
@@ -39,9 +40,8 @@ class PatchFinder {
 
     std::vector<ChangedPatch> find()
     {
-        constexpr int kRings = 2;
         mark_changed();
-        for (int ring = 0; ring < kRings; ++ring) grow();
+        for (int ring = 0; ring < kPatchRings; ++ring) grow();
         join();
         for (ChangedPatch& patch : patches_) complete(patch);
         add_faces_before();

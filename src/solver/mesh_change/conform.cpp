@@ -10,9 +10,9 @@
 #include "solver/mesh_change/self_guard.h"
 #include "solver/mesh_change/site_insertion.h"
 #include "solver/mesh_change/way_clearing.h"
-#include "solver/model/cell_length.h"
 #include "solver/model/eol_limits.h"
 #include "solver/model/pin_targets.h"
+#include "solver/model/target_length.h"
 #include "solver/remesh/misfits.h"
 #include "solver/sites/trace_mesh.h"
 #include "solver/sites/trace_order.h"
@@ -47,10 +47,10 @@ class Conforming {
           trace_(scene, state, stars, find_pinned(scene, state, state.time + dt)),
           surgery_(trace_.surgery()),
           guard_(scene, state, limits.strain, limits.careful_at, relaxations),
-          admission_(scene, state, stars, trace_, kClearSteps * dt),
-          ways_(scene, kClearSteps * dt, trace_, guard_),
+          admission_(scene, state, stars, trace_, kClearSteps.edge * dt),
+          ways_(scene, kClearSteps.edge * dt, trace_, guard_),
           refused_(state),
-          insertion_(scene, state, stars, kClearSteps * dt, trace_, admission_, ways_, refused_)
+          insertion_(scene, state, stars, kClearSteps.edge * dt, trace_, admission_, ways_, refused_)
     {
         guard_.watch(surgery_);
         if (scene.self_contact) self_guard_.emplace(state);
@@ -71,9 +71,10 @@ class Conforming {
     std::optional<ConformedMesh> find_mesh(const MeshChanges& changes)
     {
         // Release vertices without retention, and vertices on which attempts at this step have failed.
-        for (const EolRelease& release : changes.released) demote_to_row(release.vertex, release.cause);
+        for (const EolRelease& release : changes.released)
+            demote_to_constraint(release.vertex, release.cause);
         for (const VertexId v : failed_.given_up)
-            if (trace_.is_on_trace(v)) demote_to_row(v, RowCause::GivenUp);
+            if (trace_.is_on_trace(v)) demote_to_constraint(v, ConstraintCause::GivenUp);
         for (const auto& [v, flow] : failed_.flow) ways_.expect_flow(v, flow);
 
         // Clear the ways of sliding vertices, before new vertices may stand there.
@@ -115,14 +116,14 @@ class Conforming {
         // Demote vertices whose way leads off the cloth: as ordinary vertices they block no other's way.
         for (const EolVertex& e : trace_.eol())
             if (trace_.is_on_trace(e.vertex_id) && ways_.leads_off_cloth(e))
-                demote_to_row(e.vertex_id, RowCause::Blocked);
-        const std::vector<TraceAdvance> advances = ways_.find_advances();
-        if (advances.empty()) return;
-        const ClearanceReport cleared = ways_.clear(advances);
-        // Only the blocked vertex itself becomes a row: the rest of its trace carries the cloth on.
-        for (const VertexId v : cleared.blocked) demote_to_row(v, RowCause::Blocked);
+                demote_to_constraint(e.vertex_id, ConstraintCause::Blocked);
+        const std::vector<TraceShift> shifts = ways_.find_shifts();
+        if (shifts.empty()) return;
+        const ClearanceReport cleared = ways_.clear(shifts);
+        // Only the blocked vertex itself becomes a constraint: the rest of its trace carries the cloth on.
+        for (const VertexId v : cleared.blocked) demote_to_constraint(v, ConstraintCause::Blocked);
         blocked_ += static_cast<int>(cleared.blocked.size());
-        for (const TraceAdvance& advance : advances) lost_ += trace_.is_on_trace(advance.vertex) ? 0 : 1;
+        for (const TraceShift& shift : shifts) lost_ += trace_.is_on_trace(shift.vertex) ? 0 : 1;
     }
 
     void insert(const std::vector<FeatureSite>& sites)
@@ -132,8 +133,8 @@ class Conforming {
             // Once failed attempts at the step have demoted EOL vertices, none is inserted any more; nor is
             // one inserted where an inserted vertex has failed.
             const bool has_failed = !failed_.given_up.empty() || has_failed_near(site.material);
-            const std::optional<RowCause> cause =
-                has_failed ? RowCause::GivenUp : insertion_.try_insert(site);
+            const std::optional<ConstraintCause> cause =
+                has_failed ? ConstraintCause::GivenUp : insertion_.try_insert(site);
             if (cause && site.contact >= 0) refused_.refuse(site.contact, *cause);
         }
         ways_.set_inserting(false);
@@ -145,8 +146,8 @@ class Conforming {
         return failed_.has_failed_near(material, kNear * trace_.target().length(material));
     }
 
-    /// Takes a vertex off its trace: its contact becomes a row.
-    void demote_to_row(VertexId v, RowCause cause)
+    /// Takes a vertex off its trace: its contact becomes a constraint.
+    void demote_to_constraint(VertexId v, ConstraintCause cause)
     {
         surgery_.release_vertex(v);
         ++report_.released;
@@ -185,7 +186,7 @@ class Conforming {
 
     /// A vertex that clean-up has put on a trace between two EOL vertices becomes EOL, too. An inserted
     /// vertex must also lie on the side to which its wire presses (`refuse_inserted`). Here the two
-    /// neighbours keep the fold on that side, and a row between them would make the trace snag. With
+    /// neighbours keep the fold on that side, and a constraint between them would make the trace snag. With
     /// `refuse_inserted`, the EOL share of scene `frame` falls from 99 to 95 %, and that of `hoop` from 99.7
     /// to 98.9 %.
     ConformedMesh result() const
@@ -209,7 +210,7 @@ class Conforming {
     const ConformLimits& limits_;
     TraceMesh trace_;
     ClothSurgery& surgery_;  ///< of `trace_`
-    EolGuard guard_;
+    MeshChangeGuard guard_;
     std::optional<SelfGuard> self_guard_;  ///< with self-contact
     EolAdmission admission_;
     WayClearing ways_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Conforms the mesh to the features that press. A contact with a sharp feature is a row at first. If it
-// pressed at the end of the last step, the mesh gets an EOL vertex on the feature, where quality allows. Mesh
-// edges along the feature then join such vertices. Every operation may be refused: the contact then stays a
-// row, which is always safe.
+// Conforms the mesh to the features that press. A contact with a sharp feature is a constraint at first. If
+// it pressed at the end of the last step, the mesh gets an EOL vertex on the feature, where quality allows.
+// Mesh edges along the feature then join such vertices. Every operation may be refused: the contact then
+// stays a constraint, which is always safe.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@
 
 #include "geometry/surgery/cloth_surgery.h"
 #include "solver/eol/cloth_stars.h"
-#include "solver/mesh_change/eol_guard.h"
+#include "solver/mesh_change/mesh_change_guard.h"
+#include "solver/model/constraint_cause.h"
 #include "solver/model/failed_flow.h"
-#include "solver/model/row_cause.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
 #include "solver/sites/eol_decision.h"
@@ -59,7 +59,7 @@ struct ConformLimits {
 /// Result of `conform_mesh`.
 struct ConformOutcome {
     std::optional<ConformedMesh> mesh;    ///< nothing where the mesh stays as it is
-    std::vector<RefusedContact> refused;  ///< contacts that pressed on a feature and are rows
+    std::vector<RefusedContact> refused;  ///< contacts that pressed on a feature and are constraints
     int lost = 0;                         ///< EOL vertices that clearing blocked, or merged into others
     int blocked = 0;                      ///< of these, vertices whose way could not be cleared
     /// Vertices, ascending, of operations that the guard allowed only because the cloth around gives way.

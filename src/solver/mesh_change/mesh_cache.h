@@ -5,10 +5,10 @@
 
 #include "geometry/self_contact/self_surface.h"
 #include "physics/elements/cloth_elements.h"
-#include "physics/system/linear_system.h"
 #include "physics/elements/term.h"
+#include "physics/system/linear_system.h"
 #include "solver/eol/cloth_stars.h"
-#include "solver/model/row_cause.h"
+#include "solver/model/constraint_cause.h"
 #include "solver/model/state.h"
 
 namespace arris {
@@ -27,7 +27,8 @@ struct MeshCache {
     std::vector<Vec3> world_of_stretches;  ///< empty where `stretches` are not those of `elements`
 
     // choose_step_mesh
-    std::vector<RefusedContact> refused;  ///< contacts that pressed on a feature and are rows in this step
+    std::vector<RefusedContact>
+        refused;  ///< contacts that pressed on a feature and are constraints in this step
     std::vector<std::array<std::uint32_t, 2>> misfits;  ///< edges that were to be split or merged
     State conformed;  ///< the state at the step's begin, where its mesh or the flow through it has changed
 };

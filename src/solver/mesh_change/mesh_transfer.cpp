@@ -128,7 +128,7 @@ void drop_contacts_without_element(const ClothStars& stars, State& state)
 {
     const auto has_element = [&](const ActiveContact& contact) {
         const auto is_there = [&](std::uint32_t id) {
-            return id == ActiveContact::kNoVertex || state.index_of(id) >= 0;
+            return id == ContactVertexIds::kNoVertex || state.index_of(id) >= 0;
         };
         if (contact.obstacle == kClothItself || contact.kind == ContactKind::Vertex)
             return std::all_of(contact.vertex_ids.begin(), contact.vertex_ids.end(), is_there);
@@ -140,7 +140,7 @@ void drop_contacts_without_element(const ClothStars& stars, State& state)
         const std::span<const int> around = stars.faces[first];
         return std::any_of(around.begin(), around.end(), [&](int f) {
             return std::all_of(contact.vertex_ids.begin(), contact.vertex_ids.end(), [&](std::uint32_t id) {
-                return id == ActiveContact::kNoVertex || has_corner(state.mesh.faces[f], id);
+                return id == ContactVertexIds::kNoVertex || has_corner(state.mesh.faces[f], id);
             });
         });
     };
@@ -160,7 +160,7 @@ State on_new_mesh(const State& before, const ConformedMesh& conformed, const Car
     after.anchors = before.anchors;
     after.active = before.active;
     if (after.mesh.faces == before.mesh.faces) after.coupled = before.coupled;
-    after.cell_lengths = before.cell_lengths;
+    after.sizing_field = before.sizing_field;
     after.refused_edges = before.refused_edges;
     after.crossings = before.crossings;
     const std::size_t n = after.ids.size();

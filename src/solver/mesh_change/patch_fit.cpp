@@ -11,8 +11,8 @@
 #include "solver/eol/eol_coordinates.h"
 #include "solver/mesh_change/patch_relaxation.h"
 #include "solver/mesh_change/strain_allowance.h"
-#include "solver/model/cell_length.h"
 #include "solver/model/pin_targets.h"
+#include "solver/model/target_length.h"
 
 namespace arris {
 
@@ -159,7 +159,7 @@ class PatchFitter {
             const double part =
                 0.5 * twice_area(X, before_.mesh.material[face[1]], before_.mesh.material[face[2]]);
             area += part;
-            length += part * cell_length(scene_, before_, X);
+            length += part * target_length(scene_, before_, X);
         }
         const double kinetic = compute_kinetic_energy(scene_.material.density, field);
         return std::max(moving_energy(elastic, kinetic, area, length / area), kinetic + elastic);
@@ -189,7 +189,7 @@ class PatchFitter {
         int last = -1;
         for (const int f : patch.faces)
             if (const int v = after_.mesh.faces[f][0]; v != last)
-                cell = std::max(cell, cell_length(scene_, after_, after_.mesh.material[last = v]));
+                cell = std::max(cell, target_length(scene_, after_, after_.mesh.material[last = v]));
         return strain(cell);
     }
 

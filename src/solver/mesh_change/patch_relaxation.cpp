@@ -15,12 +15,13 @@
 #include "geometry/cloth/sub_mesh.h"
 #include "geometry/obstacle/obstacle_distance.h"
 #include "geometry/self_contact/self_sweep.h"
-#include "physics/forces/energies.h"
+#include "geometry/tolerances.h"
 #include "physics/elements/term.h"
+#include "physics/forces/energies.h"
 #include "physics/forces/make_terms.h"
 #include "solver/mesh_change/patch_equations.h"
 #include "solver/mesh_change/strain_allowance.h"
-#include "solver/model/cell_length.h"
+#include "solver/model/target_length.h"
 
 namespace arris {
 
@@ -139,8 +140,8 @@ class Relaxation {
         std::vector<int> met;
         for (const MovingObstacle& obstacle : scene_.obstacles) {
             const ObstaclePose pose = obstacle.at(time);
-            const ClothMotion motion = {&patch_.mesh.faces, &edges_, to_frame(pose.placement, begin),
-                                        to_frame(pose.placement, patch_.mesh.world)};
+            const ClothMotion motion = {&patch_.mesh.faces, &edges_, to_local(pose.placement, begin),
+                                        to_local(pose.placement, patch_.mesh.world)};
             const SweepReport swept = check_sweep(pose, motion, scene_.material.thickness);
             met.insert(met.end(), swept.faces.begin(), swept.faces.end());
         }
@@ -318,7 +319,6 @@ bool is_stuck(const State& state, std::uint32_t vertex_id)
 double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& patch, State& state)
 {
     constexpr int kMostRetreats = 4;
-    constexpr double kRounding = 1e-9;  // of sums over the patch: a split does not change the energy
     SubMesh part = extract_faces(state.mesh, patch.faces);
     LoosePatch loose{std::move(part.mesh), {}, {}, find_part(creases, part.vertices)};
     for (const int v : part.vertices) {
@@ -329,7 +329,7 @@ double relax(const Scene& scene, const Creases& creases, const RelaxedPatch& pat
     for (int k = 0; k < kMostRetreats; ++k) {
         Relaxation relaxation(scene, loose);
         const double before = relaxation.energy();
-        if (before - patch.wanted <= kRounding * std::abs(patch.wanted)) return before;
+        if (before - patch.wanted <= kAccumulated * std::abs(patch.wanted)) return before;
         relaxation.run_on(patch.wanted);
         relaxation.rise_to(patch.wanted);
         relaxation.keep_off(begin, state.time);

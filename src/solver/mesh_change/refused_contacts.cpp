@@ -3,20 +3,18 @@
 
 namespace arris {
 
-void RefusedContacts::refuse(int contact, RowCause cause)
+void RefusedContacts::refuse(int contact, ConstraintCause cause)
 {
     const ActiveContact& active = state_.active[contact];
     refused_.push_back({active.vertex_ids, active.kind, active.obstacle, active.element, cause});
 }
 
-void RefusedContacts::refuse_vertex(VertexId v, RowCause cause)
+void RefusedContacts::refuse_vertex(VertexId v, ConstraintCause cause)
 {
-    constexpr std::uint32_t kNone = ActiveContact::kNoVertex;
     const int entry = state_.eol_entry(v);
     const auto inserted = contact_of_.find(v);
     if (entry >= 0)
-        refused_.push_back(
-            {{v, kNone, kNone}, ContactKind::Vertex, state_.eol[entry].on.obstacle, -1, cause});
+        refused_.push_back({{v}, ContactKind::Vertex, state_.eol[entry].on.obstacle, -1, cause});
     else if (inserted != contact_of_.end())
         refuse(inserted->second, cause);
 }

@@ -19,20 +19,20 @@ SiteInsertion::SiteInsertion(const Scene& scene, const State& state, const Cloth
 {
 }
 
-std::optional<RowCause> SiteInsertion::try_insert(const FeatureSite& site)
+std::optional<ConstraintCause> SiteInsertion::try_insert(const FeatureSite& site)
 {
     const int v = state_.index_of(site.near);
     const Vec2 flow = find_feature_flow(scene_, state_, stars_, site);
-    if (const std::optional<RowCause> cause = admission_.find_refusal(site, v, flow)) return cause;
+    if (const std::optional<ConstraintCause> cause = admission_.find_refusal(site, v, flow)) return cause;
     if (site.on.is_bend()) {
         const std::optional<VertexId> beside = find_beside(site);
-        if (beside && trace_.surgery().role(*beside) == TraceRole::Node) return RowCause::BesideEol;
+        if (beside && trace_.surgery().role(*beside) == TraceRole::Node) return ConstraintCause::BesideEol;
         if (beside && lock_at_bend(*beside, site)) return std::nullopt;
     }
     return insert_vertex(site, flow);
 }
 
-std::optional<RowCause> SiteInsertion::insert_vertex(const FeatureSite& site, const Vec2& flow)
+std::optional<ConstraintCause> SiteInsertion::insert_vertex(const FeatureSite& site, const Vec2& flow)
 {
     ClothSurgery& surgery = trace_.surgery();
     const TraceVertex wanted{site.on.is_fixed() ? TraceRole::Node : TraceRole::OnTrace,
@@ -40,14 +40,14 @@ std::optional<RowCause> SiteInsertion::insert_vertex(const FeatureSite& site, co
     const VertexId near = surgery.has_vertex(site.near) ? site.near : trace_.nearest_to(site.material);
     const TraceInsertion made = make_vertex(site.material, near, wanted);
     if (made.verdict != Verdict::Done)
-        return made.verdict == Verdict::Guard ? RowCause::Guard : RowCause::Quality;
+        return made.verdict == Verdict::Guard ? ConstraintCause::Guard : ConstraintCause::Quality;
     if (trace_.find(made.vertex)) {
         const bool has_slid = site.is_in_face() && slide_to(made.vertex, site);
-        return has_slid ? std::nullopt : std::optional(RowCause::BesideEol);
+        return has_slid ? std::nullopt : std::optional(ConstraintCause::BesideEol);
     }
     EolVertex vertex{made.vertex, site.on, site.outward, 0};
     vertex.side = trace_.side_beside(wanted.tag, site.material);
-    if (const std::optional<RowCause> cause = admission_.refuse_inserted(vertex, site)) {
+    if (const std::optional<ConstraintCause> cause = admission_.refuse_inserted(vertex, site)) {
         surgery.release_vertex(made.vertex);
         ways_.erase_coming(made.vertex);
         return cause;
@@ -77,21 +77,21 @@ void SiteInsertion::note_proposal(const SurgeryEvent& event)
     ways_.add_coming(proposed_, making_->way);
 }
 
-/// Vertex of the bend's trace that is too near to the bend for a new one. A fixed vertex within kFixedBeside
-/// comes first, then the nearest sliding one within kSlidingBeside, with which clean-up would merge a new
-/// vertex.
+/// Vertex of the bend's trace that is too near to the bend for a new one. A fixed vertex within
+/// kBesideBend.fixed comes first, then the nearest sliding one within kBesideBend.sliding, with which
+/// clean-up would merge a new vertex.
 std::optional<VertexId> SiteInsertion::find_beside(const FeatureSite& bend) const
 {
     const ClothSurgery& surgery = trace_.surgery();
     const int tag = trace_.tags().tag(bend.on);
     const double h = trace_.target().length(bend.material);
-    double least = kSlidingBeside * h;
+    double least = kBesideBend.sliding * h;
     std::optional<VertexId> nearest;
     for (const EolVertex& e : trace_.eol()) {
         if (!trace_.is_on_trace(e.vertex_id) || surgery.tag(e.vertex_id) != tag) continue;
         const double distance = (surgery.material(e.vertex_id) - bend.material).norm();
         const bool is_fixed = surgery.role(e.vertex_id) == TraceRole::Node;
-        if (is_fixed && distance < kFixedBeside * h) return e.vertex_id;
+        if (is_fixed && distance < kBesideBend.fixed * h) return e.vertex_id;
         if (is_fixed || !(distance < least)) continue;
         nearest = e.vertex_id;
         least = distance;

@@ -25,7 +25,7 @@ class SiteInsertion {
                   RefusedContacts& refused);
 
     /// Inserts an EOL vertex at the site, or returns the cause if there is none.
-    std::optional<RowCause> try_insert(const FeatureSite& site);
+    std::optional<ConstraintCause> try_insert(const FeatureSite& site);
 
     int inserted() const { return inserted_; }
 
@@ -33,7 +33,7 @@ class SiteInsertion {
     void note_proposal(const SurgeryEvent& event);
 
   private:
-    std::optional<RowCause> insert_vertex(const FeatureSite& site, const Vec2& flow);
+    std::optional<ConstraintCause> insert_vertex(const FeatureSite& site, const Vec2& flow);
     TraceInsertion make_vertex(const Vec2& material, VertexId near, const TraceVertex& wanted);
     std::optional<VertexId> find_beside(const FeatureSite& bend) const;
     bool slide_to(VertexId v, const FeatureSite& bend);

@@ -18,8 +18,8 @@
 #include "solver/mesh_change/patch_relaxation.h"
 #include "solver/mesh_change/relaxation_memo.h"
 #include "solver/mesh_change/strain_allowance.h"
-#include "solver/model/cell_length.h"
 #include "solver/model/stopwatch.h"
+#include "solver/model/target_length.h"
 
 namespace arris {
 
@@ -70,7 +70,10 @@ double find_potential_energy(const Scene& scene, const State& state, const Cloth
 }
 
 constexpr double kAny = std::numeric_limits<double>::infinity();
-constexpr int kAnyNumber = std::numeric_limits<int>::max();
+
+// Times that a strained mesh is made anew: after one try, the strained patches are mostly others. Raising it
+// costs a mesh each.
+constexpr int kMostTries = 2;
 
 /// A candidate mesh, and the state on it once that has been transferred.
 struct TriedMesh {
@@ -128,8 +131,8 @@ class MeshTries {
         for (const FeatureSite& site : changes_.sites) {
             if (site.contact < 0) continue;
             const ActiveContact& contact = state_.active[site.contact];
-            none.outcome.refused.push_back(
-                {contact.vertex_ids, contact.kind, contact.obstacle, contact.element, RowCause::Guard});
+            none.outcome.refused.push_back({contact.vertex_ids, contact.kind, contact.obstacle,
+                                            contact.element, ConstraintCause::Guard});
         }
         return none;
     }
@@ -170,7 +173,6 @@ class MeshTries {
     /// Makes a mesh in which no edge is mended where that strains the cloth: such edges wait.
     TriedMesh make_without_strain()
     {
-        constexpr int kMostTries = 2;
         TriedMesh made = make({});
         for (int k = 0; !changes_.misfits.empty(); ++k) {
             carry_over(made, kAny);
@@ -200,12 +202,11 @@ class MeshTries {
     /// and its strain is at most kTraceStrain.
     TriedMesh more_careful(TriedMesh mesh)
     {
-        constexpr int kMostTries = 2;  // after one try, the strained patches are mostly others
         ConformLimits limits;
         for (int k = 0; k <= kMostTries && mesh.strain() > kPatchStrain; ++k) {
             if (!add_strained(mesh, limits.careful_at)) break;
             if (k == kMostTries) limits = {.strain = StrainLimit::AsMade};
-            limits.lost = mesh.strain() <= kTraceStrain ? mesh.outcome.lost : kAnyNumber;
+            limits.lost = mesh.strain() <= kTraceStrain ? mesh.outcome.lost : ConformLimits().lost;
             TriedMesh next = make(limits);
             if (next.outcome.lost > limits.lost) break;
             if (k < kMostTries) carry_over(next, kTraceStrain);

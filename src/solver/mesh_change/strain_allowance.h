@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Limits on the strain that mesh changes may cause in a step. Strain is the elastic energy added to a patch
 // of cloth, relative to the patch's kinetic energy plus its weight over one cell. The limits act one
-// after another. EolGuard refuses a single operation above 1 % (kAllowedStrain; eol_guard.cpp adds small
-// terms, and a factor while clearing). Allowed operations may add up, so step_mesh.cpp measures each patch of
-// a finished mesh after relaxation. A mesh is good up to 3 % (kPatchStrain); above, it is made again with
-// more care. Up to 6 % (kTraceStrain) is accepted where less strain would lose or block EOL vertices. The
-// best mesh is used up to 50 % (kMostStrain), and up to 1 % of the whole cloth (kMostClothStrain); above, the
-// step keeps the mesh it has.
+// after another. MeshChangeGuard refuses a single operation above 1 % (kAllowedStrain; mesh_change_guard.cpp
+// adds small terms, and a factor while clearing). Allowed operations may add up, so step_mesh.cpp measures
+// each patch of a finished mesh after relaxation. A mesh is good up to 3 % (kPatchStrain); above, it is made
+// again with more care. Up to 6 % (kTraceStrain) is accepted where less strain would lose or block EOL
+// vertices. The best mesh is used up to 50 % (kMostStrain), and up to 1 % of the whole cloth
+// (kMostClothStrain); above, the step keeps the mesh it has.
 #pragma once
 
 #include "solver/model/scene.h"
 
 namespace arris {
 
-/// Limit for a single operation (EolGuard): the strain of one operation stays invisible.
+/// Rings of faces around a mesh change that belong to its patch: they may give way. Raising it costs time,
+/// and lets more strain go.
+inline constexpr int kPatchRings = 2;
+
+/// Limit for a single operation (MeshChangeGuard): the strain of one operation stays invisible.
 inline constexpr double kAllowedStrain = 0.01;
 
 /// Limit for all operations of a step on one patch. A smaller one would cost sliding traces their vertices,

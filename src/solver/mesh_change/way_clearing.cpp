@@ -22,33 +22,33 @@ void WayClearing::expect_flow(VertexId v, const Vec2& failed)
 double WayClearing::least_steps(const EolVertex& eol) const
 {
     const ObstaclePose obstacle = trace_.pose_of(eol);
-    if (eol.on.is_corner()) return is_tip(obstacle, eol.on.index) ? kTipSteps : kClearSteps;
-    return is_on_convex_edge(obstacle, eol) ? kClearSteps : kWireSteps;
+    if (eol.on.is_corner()) return is_tip(obstacle, eol.on.index) ? kClearSteps.tip : kClearSteps.edge;
+    return is_on_convex_edge(obstacle, eol) ? kClearSteps.edge : kClearSteps.wire;
 }
 
-TraceAdvance WayClearing::advance_of(const EolVertex& eol) const
+TraceShift WayClearing::shift_of(const EolVertex& eol) const
 {
-    return {eol.vertex_id, soon_ * trace_.flow(eol.vertex_id), least_steps(eol) / kClearSteps};
+    return {eol.vertex_id, soon_ * trace_.flow(eol.vertex_id), least_steps(eol) / kClearSteps.edge};
 }
 
 bool WayClearing::leads_off_cloth(const EolVertex& eol) const
 {
-    const TraceAdvance advance = advance_of(eol);
-    return leads_off(trace_.surgery(), eol.vertex_id, advance.least * advance.ahead);
+    const TraceShift shift = shift_of(eol);
+    return leads_off(trace_.surgery(), eol.vertex_id, shift.least * shift.ahead);
 }
 
-std::vector<TraceAdvance> WayClearing::find_advances() const
+std::vector<TraceShift> WayClearing::find_shifts() const
 {
-    std::vector<TraceAdvance> advances;
+    std::vector<TraceShift> shifts;
     for (const EolVertex& eol : trace_.eol())
-        if (trace_.is_on_trace(eol.vertex_id)) advances.push_back(advance_of(eol));
-    return advances;
+        if (trace_.is_on_trace(eol.vertex_id)) shifts.push_back(shift_of(eol));
+    return shifts;
 }
 
-ClearanceReport WayClearing::clear(const std::vector<TraceAdvance>& advances)
+ClearanceReport WayClearing::clear(const std::vector<TraceShift>& shifts)
 {
     guard_.set_clearing(true);
-    ClearanceReport cleared = clear_ahead(trace_.surgery(), trace_.target(), advances);
+    ClearanceReport cleared = clear_ahead(trace_.surgery(), trace_.target(), shifts);
     guard_.set_clearing(false);
     ways_ = cleared.ways;
     needed_ = cleared.needed;

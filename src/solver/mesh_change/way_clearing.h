@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/surgery/trace_clearing.h"
-#include "solver/mesh_change/eol_guard.h"
+#include "solver/mesh_change/mesh_change_guard.h"
 #include "solver/model/scene.h"
 #include "solver/sites/trace_mesh.h"
 
@@ -16,7 +16,7 @@ namespace arris {
 class WayClearing {
   public:
     /// `soon` (s): time for which flowing material must find room.
-    WayClearing(const Scene& scene, double soon, TraceMesh& trace, EolGuard& guard)
+    WayClearing(const Scene& scene, double soon, TraceMesh& trace, MeshChangeGuard& guard)
         : scene_(scene), soon_(soon), trace_(trace), guard_(guard)
     {
     }
@@ -30,8 +30,8 @@ class WayClearing {
     bool leads_off_cloth(const EolVertex& eol) const;
 
     /// Ways to clear ahead of all vertices on traces.
-    std::vector<TraceAdvance> find_advances() const;
-    ClearanceReport clear(const std::vector<TraceAdvance>& advances);
+    std::vector<TraceShift> find_shifts() const;
+    ClearanceReport clear(const std::vector<TraceShift>& shifts);
 
     void forget_released();
 
@@ -45,14 +45,14 @@ class WayClearing {
     bool keeps_way(const SurgeryEvent& event) const;
 
   private:
-    TraceAdvance advance_of(const EolVertex& eol) const;
+    TraceShift shift_of(const EolVertex& eol) const;
     double least_steps(const EolVertex& eol) const;
     bool stands_in_way(const PatchFace& face) const;
 
     const Scene& scene_;
     double soon_;
     TraceMesh& trace_;
-    EolGuard& guard_;
+    MeshChangeGuard& guard_;
     TraceWays ways_;                  ///< full ways of the sliding vertices
     TraceWays needed_;                ///< the parts of these ways that are needed soon
     const TraceWays* kept_ = &ways_;  ///< `ways_` or `needed_`

@@ -9,14 +9,17 @@ namespace arris {
 
 // ---- Thresholds to become and to stay an EOL vertex (sites/eol_decision.h) ----
 
-/// Room, in cells, along the trace from a vertex to the cloth's border. An EOL vertex stays with less
-/// room than a new one needs, so that it does not come and go. Raising either leaves more rows near borders.
-struct BorderRoom {
+/// A length, in cells, around an EOL vertex.
+struct CellsAround {
     double sliding;  ///< for a vertex that slides along its feature
-    double fixed;    ///< for a vertex at a corner or a bend of a wire, near borders on any side
+    double fixed;    ///< for a vertex at a corner or a bend of a wire
 };
-inline constexpr BorderRoom kRoomToEnter = {.sliding = kCrowded, .fixed = 0.5};
-inline constexpr BorderRoom kRoomToStay = {.sliding = 0.15, .fixed = 0.3};
+
+/// Room along the trace from a vertex to the cloth's border; around a fixed one to borders on any side. An
+/// EOL vertex stays with less room than a new one needs, so that it does not come and go. Raising either
+/// leaves more constraints in place of EOL vertices near borders.
+inline constexpr CellsAround kRoomToEnter = {.sliding = kCrowded, .fixed = 0.5};
+inline constexpr CellsAround kRoomToStay = {.sliding = 0.15, .fixed = 0.3};
 
 /// Distance from a feature, in thicknesses, within which cloth lies on the feature: slightly more than the
 /// mitre. A vertex becomes EOL within this distance. Raising it treats contacts beside a feature as contacts
@@ -66,22 +69,22 @@ inline constexpr double kOffPlane = 0.1;
 /// "Bends of wires".
 inline constexpr double kMissedByChord = 0.3;
 
-/// Cells. A fixed vertex nearer to a bend than kFixedBeside counts as the bend's vertex. A sliding one nearer
-/// than kSlidingBeside moves to the bend.
-inline constexpr double kFixedBeside = 0.2;
-inline constexpr double kSlidingBeside = 0.5;
-
+/// Cells. A fixed vertex nearer to a bend counts as the bend's vertex; a sliding one nearer moves to the
+/// bend. Raising either leaves bends without a vertex exactly on them.
+inline constexpr CellsAround kBesideBend = {.sliding = 0.5, .fixed = 0.2};
 // ---- Flow of material through EOL vertices ----
 
 /// Share of a face's material that one step may take. Raising it makes faces too small for a reliable strain.
 inline constexpr double kMostFaceTaken = 0.6;
 
-/// Steps of its own flow that must be clear ahead of a vertex. kTipSteps applies at a tip, where a pleat
-/// stands in the way and merges more easily the nearer it is. kWireSteps applies on wires and sheet borders,
-/// where the two sides swing. Raising them releases more vertices. Notes: "Room ahead of a sliding vertex".
-inline constexpr double kClearSteps = 4.0;
-inline constexpr double kTipSteps = 1.0;
-inline constexpr double kWireSteps = 1.0 / kMostFaceTaken;
+/// Steps of its own flow that must be clear ahead of a vertex. Raising them releases more vertices. Notes:
+/// "Room ahead of a sliding vertex".
+struct ClearSteps {
+    double edge;  ///< on a convex edge
+    double wire;  ///< on wires and sheet borders, where the two sides swing
+    double tip;   ///< at a tip, where a pleat stands in the way and merges more easily the nearer it is
+};
+inline constexpr ClearSteps kClearSteps = {.edge = 4.0, .wire = 1.0 / kMostFaceTaken, .tip = 1.0};
 
 /// Flow over a convex edge, m/s, above which a fold off its edge moves along the face on which the cloth
 /// arrives. Slower cloth that shakes or hangs between corners returns. Notes: "Which way the fold is led".
@@ -90,5 +93,9 @@ inline constexpr double kFreeFlow = 1.0;
 /// Speed, m/s, at which a vertex moves in position alone: out to its stand-off, round a wire or round a tip.
 /// Raising it does work on the cloth.
 inline constexpr double kMendingSpeed = 0.1;
+
+/// Share of the angle still to go by which an outward direction at a wire or tip turns in a step, as the
+/// cloth shakes. Raising it lets the direction shake with the cloth.
+inline constexpr double kTurnPerStep = 0.5;
 
 }  // namespace arris

@@ -16,9 +16,9 @@ struct Remeshing {
     int most_vertices = 0;       ///< about the most to make; 0: a multiple of the first mesh's
     double step = 0.005;         ///< s, a planned time step: material does not flow past a whole cell in it
 
-    // Set by measure_first_mesh (remesh/cell_lengths.h).
+    // Set by measure_first_mesh (remesh/sizing_field.h).
     MeshTarget initial;  ///< of the first mesh: its mean length, and least angles
-    MaterialGrid grid;   ///< of State::cell_lengths
+    MaterialGrid grid;   ///< of State::sizing_field
 };
 
 }  // namespace arris

@@ -15,7 +15,7 @@ namespace arris {
 
 /// Friction at a contact that presses, in the obstacle's frame. At an EOL vertex: components along the
 /// feature and across, at corners in the material. The force tells how far the contact's spring is strained
-/// (velocity_solve/friction_springs.h).
+/// (velocity_solve/slip_law.h).
 struct ContactFriction {
     Vec3 force = Vec3::Zero();  ///< N
     Vec3 slip = Vec3::Zero();   ///< m/s; zero where it sticks
@@ -36,7 +36,6 @@ struct ContactVertexIds : std::array<std::uint32_t, 4> {
 /// A contact that pressed at the end of a step, with its multiplier. The next solve starts from it, and the
 /// next search tests it again.
 struct ActiveContact {
-    static constexpr std::uint32_t kNoVertex = ContactVertexIds::kNoVertex;
     ContactVertexIds vertex_ids;  ///< as Contact's vertices
     ContactKind kind;
     std::int32_t obstacle;  ///< index in the scene, or kClothItself
@@ -96,7 +95,7 @@ struct State {
     /// the order of elimination, and so the last bits of a step.
     std::vector<std::array<int, 2>> coupled;
     /// Target edge lengths at the nodes of the scene's remeshing grid, m; empty without remeshing.
-    std::vector<float> cell_lengths;
+    std::vector<float> sizing_field;
     std::vector<RefusedEdge> refused_edges;  ///< ascending by vertex_ids
     std::int64_t crossings = 0;              ///< passages through obstacles so far
 

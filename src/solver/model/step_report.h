@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "solver/model/row_cause.h"
+#include "solver/model/constraint_cause.h"
 
 namespace arris {
 
@@ -63,20 +63,20 @@ struct StepReport {
     StepStatus status = StepStatus::Done;
     double dt = 0.0;  ///< s
     StepPart part = StepPart::Ordinary;
-    FailurePlace place;         ///< of a failed step, but for a number that is not finite
-    Infeasible infeasible;      ///< of an infeasible step
-    NotFinite not_finite;       ///< of a step that met such a number
-    int contacts = 0;           ///< pressing, with obstacles
-    int self_contacts = 0;      ///< of the cloth with itself, pressing
-    int feature_rows = 0;       ///< pressing, at a sharp edge, corner, wire or point, without EOL vertices
-    RowCounts rows_by_cause{};  ///< `feature_rows` by cause, in a scene with EOL vertices
-    int eol_pressing = 0;       ///< EOL vertices with a positive multiplier
-    int crossings = 0;          ///< in this step
-    int solves = 0;             ///< velocity solves: more than one if the check found violations
-    int relinearisations = 0;   ///< solves with relinearised forces (relinearization.h)
-    double energy_rise = 0.0;   ///< J, energy added by a step that no further attempt could mend
-    int yielded = 0;            ///< contacts at which the cloth is squeezed below its stand-off
-    int rewound = 0;            ///< vertices put back on their path so that they pass nothing
+    FailurePlace place;     ///< of a failed step, but for a number that is not finite
+    Infeasible infeasible;  ///< of an infeasible step
+    NotFinite not_finite;   ///< of a step that met such a number
+    int contacts = 0;       ///< pressing, with obstacles
+    int self_contacts = 0;  ///< of the cloth with itself, pressing
+    int feature_rows = 0;   ///< pressing, at a sharp edge, corner, wire or point, without EOL vertices
+    ConstraintCounts rows_by_cause{};  ///< `feature_rows` by cause, in a scene with EOL vertices
+    int eol_pressing = 0;              ///< EOL vertices with a positive multiplier
+    int crossings = 0;                 ///< in this step
+    int solves = 0;                    ///< velocity solves: more than one if the check found violations
+    int relinearisations = 0;          ///< solves with relinearised forces (relinearization.h)
+    double energy_rise = 0.0;          ///< J, energy added by a step that no further attempt could mend
+    int yielded = 0;                   ///< contacts at which the cloth is squeezed below its stand-off
+    int rewound = 0;                   ///< vertices put back on their path so that they pass nothing
     double kkt_residual = 0.0;
     int factorisations = 0;
     double solve_work = 0.0;  ///< of the velocity solves, in factorisations' worth

@@ -6,8 +6,8 @@
 #include <tuple>
 
 #include "geometry/cloth/mesh_limits.h"
-#include "solver/model/cell_length.h"
-#include "solver/remesh/cell_lengths.h"
+#include "solver/model/target_length.h"
+#include "solver/remesh/sizing_field.h"
 
 namespace arris {
 
@@ -61,7 +61,7 @@ std::vector<std::array<VertexId, 2>> find_misfits(const Scene& scene, const Stat
         const double length = (X[e.b] - X[e.a]).norm();
         if (length <= kLongEdge * shortest_cell(scene) && length >= kShortEdge * longest_cell(scene))
             continue;
-        const double cells = length / cell_length(scene, state, 0.5 * (X[e.a] + X[e.b]));
+        const double cells = length / target_length(scene, state, 0.5 * (X[e.a] + X[e.b]));
         const double miss = std::max(cells / kLongEdge, kShortEdge / cells);
         const std::array<VertexId, 2> edge = {state.ids[e.a], state.ids[e.b]};
         if (miss > 1.0 && !is_waiting(state, edge)) misfits.push_back({miss, cells > 1.0, edge});

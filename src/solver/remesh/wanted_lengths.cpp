@@ -10,9 +10,9 @@
 #include "geometry/cloth/material_grid.h"
 #include "geometry/cloth/mesh_topology.h"
 #include "physics/elements/deformation_gradient.h"
-#include "physics/elements/hinge_fold.h"
+#include "physics/elements/hinge_angle.h"
 #include "solver/eol/eol_features.h"
-#include "solver/model/cell_length.h"
+#include "solver/model/target_length.h"
 
 namespace arris {
 
@@ -43,9 +43,9 @@ enum Channel { kArea = 0, kSigned = 1, kSizes = 4, kCompression = 7, kVelocity =
 double turn(const std::vector<Vec3>& x, const Hinge& hinge)
 {
     const std::array<Vec3, 4> corners = {x[hinge.a], x[hinge.b], x[hinge.c], x[hinge.d]};
-    const std::optional<HingeFold> fold = find_fold(corners);
-    if (!fold) return 0.0;
-    return std::atan2(sine_of_angle(*fold, corners), fold->normal_c.dot(fold->normal_d));
+    const std::optional<HingeAngle> angle = find_hinge_angle(corners);
+    if (!angle) return 0.0;
+    return std::atan2(sine_of_angle(*angle, corners), angle->normal_c.dot(angle->normal_d));
 }
 
 /// Adds half of each hinge's second fundamental form to the two faces beside it.
@@ -165,7 +165,7 @@ void keep_budget(const Scene& scene, const State& state, const std::vector<Measu
     const double longest = longest_cell(scene);
     const double most = double(scene.remesh->most_vertices) / state.mesh.vertex_count();
     const auto is_within = [&](double factor) {
-        return count_ratio(nodes, wanted, state.cell_lengths, factor, longest) <= most;
+        return count_ratio(nodes, wanted, state.sizing_field, factor, longest) <= most;
     };
     if (is_within(1.0)) return;
     double low = 1.0, high = scene.remesh->longest / scene.remesh->shortest;
@@ -244,7 +244,7 @@ std::vector<float> find_wanted_lengths(const Scene& scene, const State& state, c
     for (int i = 0; i < grid.count[0]; ++i)
         for (int j = 0; j < grid.count[1]; ++j) {
             const int k = grid.index(i, j);
-            const double cell = state.cell_lengths[k];
+            const double cell = state.sizing_field[k];
             const int reach = static_cast<int>(std::lround(cell / grid.spacing));
             const Measures sum = sums.over({i - reach, j - reach}, {i + reach, j + reach});
             wanted[k] = static_cast<float>(kMeanEdge * find_length(scene, sum, cell / kMeanEdge));

@@ -11,8 +11,8 @@
 #include "geometry/closest_point.h"
 #include "geometry/obstacle/feature_path.h"
 #include "solver/eol/eol_features.h"
-#include "solver/model/cell_length.h"
 #include "solver/model/eol_limits.h"
+#include "solver/model/target_length.h"
 
 namespace arris {
 
@@ -123,7 +123,7 @@ class BendFinder {
     std::optional<FeatureSite> between(const Place& p, const Place& q, const std::vector<WireBend>& bends,
                                        double length) const
     {
-        const double cell = cell_length(scene_, state_, p.material);
+        const double cell = target_length(scene_, state_, p.material);
         if (!((p.material - q.material).norm() < kLongEdge * cell)) return std::nullopt;
         const WireBend* worst = nullptr;
         double most = kMissedByChord * scene_.material.thickness;
@@ -185,7 +185,7 @@ class BendFinder {
 bool locks_at_bend(const Scene& scene, const State& state, const Obstacle& obstacle, const FeatureBend& bend,
                    const Vec2& material)
 {
-    const double half_cell = 0.5 * cell_length(scene, state, material);
+    const double half_cell = 0.5 * target_length(scene, state, material);
     return missed_by_chord(obstacle, bend, half_cell) > kMissedByChord * scene.material.thickness;
 }
 

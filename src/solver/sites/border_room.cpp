@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "solver/eol/cloth_stars.h"
 #include "solver/eol/eol_features.h"
 #include "solver/model/eol_limits.h"
 
@@ -22,11 +23,8 @@ Vec3 tangent_of(const Scene& scene, const State& state, const EolVertex& eol)
 
 bool is_cloth_corner(const State& state, const ClothStars& stars, int v)
 {
-    constexpr double kStraight = 0.9;  // cosine
-    const auto [a, b] = stars.border_neighbours[v];
-    const Vec2 before = (state.mesh.material[v] - state.mesh.material[a]).normalized();
-    const Vec2 after = (state.mesh.material[b] - state.mesh.material[v]).normalized();
-    return before.dot(after) < kStraight;
+    const std::optional<Vec2> border = find_border(state.mesh, stars, v);
+    return border && border->isZero(0.0);
 }
 
 }  // namespace

@@ -11,17 +11,17 @@
 #include "geometry/obstacle/feature_path.h"
 #include "geometry/obstacle/normal_cone.h"
 #include "geometry/sort_unique.h"
+#include "geometry/tolerances.h"
 #include "solver/eol/eol_features.h"
 #include "solver/eol/wire_fold.h"
-#include "solver/model/cell_length.h"
+#include "solver/model/target_length.h"
 #include "solver/sites/wire_end.h"
 
 namespace arris {
 
 namespace {
 
-constexpr double kInPlane = 1e-6;  // thicknesses from a feature's plane: counts as in the plane
-constexpr double kAsGood = 0.1;    // thicknesses: for an edge that begins or ends near the plane
+constexpr double kAsGood = 0.1;  // thicknesses: for an edge that begins or ends near the plane
 
 }  // namespace
 
@@ -34,25 +34,25 @@ EdgeCrossings::EdgeCrossings(const Scene& scene, const State& state, const Cloth
       o_(obstacle),
       thickness_(scene.material.thickness),
       target_(surgery_target(scene, state)),
-      positions_(to_frame(obstacle_.placement, state.mesh.world))
+      positions_(to_local(obstacle_.placement, state.mesh.world))
 {
 }
 
 std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const Vec3& normal) const
 {
-    return find(a, b, feature, normal, {kInPlane, kOnFeature * thickness_});
+    return find(a, b, feature, normal, {kOnSurface, kOnFeature * thickness_});
 }
 
 std::optional<FeatureSite> EdgeCrossings::find_past_end(int a, int b, int feature, const Vec3& normal) const
 {
-    const auto site = find(a, b, feature, normal, {kInPlane, kOnFeature * thickness_, true});
+    const auto site = find(a, b, feature, normal, {kOnSurface, kOnFeature * thickness_, true});
     return site && is_past_end(feature, *site) ? site : std::nullopt;
 }
 
 std::optional<FeatureSite> EdgeCrossings::find_pressed(int a, int b, int feature, const Vec3& normal) const
 {
     const double height = kOnFeature * thickness_ + find_rise(a, b, feature, normal);
-    for (const double in_plane : {kInPlane, kAsGood})
+    for (const double in_plane : {kOnSurface, kAsGood})
         if (const auto crossing = find(a, b, feature, normal, {in_plane, height})) return crossing;
     return find_beyond_end(a, b, feature, normal);
 }
@@ -120,7 +120,7 @@ bool EdgeCrossings::is_past_end(int feature, const FeatureSite& site) const
 
 /// Site on a fold of the cloth around a wire or border. Each side of the fold has a nearest point of its own,
 /// a little way from the fold. A vertex there would be in cloth that does not bend there, and would leave the
-/// fold itself to rows.
+/// fold itself to constraints.
 std::optional<FeatureSite> EdgeCrossings::find_on_fold(const FoldEnd& fold, int feature) const
 {
     const int v = fold.vertex;

@@ -9,7 +9,7 @@
 #include "geometry/obstacle/feature_path.h"
 #include "solver/eol/eol_features.h"
 #include "solver/eol/free_fold.h"
-#include "solver/model/cell_length.h"
+#include "solver/model/target_length.h"
 #include "solver/sites/border_room.h"
 #include "solver/sites/gathering.h"
 #include "solver/sites/wire_end.h"
@@ -18,7 +18,7 @@ namespace arris {
 
 namespace {
 
-double room_wanted(const BorderRoom& room, const FeatureId& on)
+double room_wanted(const CellsAround& room, const FeatureId& on)
 {
     return on.is_fixed() ? room.fixed : room.sliding;
 }
@@ -93,7 +93,7 @@ bool is_on_feature(const Scene& scene, const State& state, const EolVertex& eol,
     const Vec2& X = state.mesh.material[state.index_of(eol.vertex_id)];
     return end < 0 || length_past_end(obstacle, eol.on.index, place) <
                           reach_past_end(obstacle, eol.on.index, end, scene.material.thickness, kPastEnd.stay,
-                                         cell_length(scene, state, X));
+                                         target_length(scene, state, X));
 }
 
 /// Whether an EOL vertex is so near to the cloth's border that it is released.
@@ -103,19 +103,20 @@ bool is_at_border(const Scene& scene, const State& state, const ClothStars& star
     const Vec2& X = state.mesh.material[v];
     const double wanted = room_wanted(kRoomToStay, eol.on);
     const double room = room_to_border(scene, state, stars, X, v, stars.border_neighbours[v][0] >= 0, eol);
-    return !(room > wanted * longest_cell(scene)) && !(room > wanted * cell_length(scene, state, X));
+    return !(room > wanted * longest_cell(scene)) && !(room > wanted * target_length(scene, state, X));
 }
 
 }  // namespace
 
-std::optional<RowCause> EolAdmission::find_refusal(const FeatureSite& site, int v, const Vec2& flow) const
+std::optional<ConstraintCause> EolAdmission::find_refusal(const FeatureSite& site, int v,
+                                                          const Vec2& flow) const
 {
-    if (is_pinned(site.material)) return RowCause::Quality;
-    if (const std::optional<RowCause> border = find_border_cause(site, v, flow)) return border;
-    if (is_beside_other(site)) return RowCause::OtherFeature;
-    if (gathers(site, v)) return RowCause::Gathering;
-    if (const std::optional<RowCause> fold = find_fold_cause(site)) return fold;
-    if ((site.on.is_fixed()) && has_vertex_on(site)) return RowCause::BesideEol;
+    if (is_pinned(site.material)) return ConstraintCause::Quality;
+    if (const std::optional<ConstraintCause> border = find_border_cause(site, v, flow)) return border;
+    if (is_beside_other(site)) return ConstraintCause::OtherFeature;
+    if (gathers(site, v)) return ConstraintCause::Gathering;
+    if (const std::optional<ConstraintCause> fold = find_fold_cause(site)) return fold;
+    if ((site.on.is_fixed()) && has_vertex_on(site)) return ConstraintCause::BesideEol;
     return std::nullopt;
 }
 
@@ -127,24 +128,24 @@ bool EolAdmission::is_pinned(const Vec2& material) const
 }
 
 /// Cause if the cloth's border leaves no room for a vertex; nothing if there is room.
-std::optional<RowCause> EolAdmission::find_border_cause(const FeatureSite& site, int v,
-                                                        const Vec2& flow) const
+std::optional<ConstraintCause> EolAdmission::find_border_cause(const FeatureSite& site, int v,
+                                                               const Vec2& flow) const
 {
-    const double h = cell_length(scene_, state_, site.material);
+    const double h = target_length(scene_, state_, site.material);
     const EolVertex eol{site.near, site.on, site.outward, 0};
-    if (site.is_on_border && site.on.is_bend()) return RowCause::NearBorder;
+    if (site.is_on_border && site.on.is_bend()) return ConstraintCause::NearBorder;
     if (site.is_on_border && !site.on.is_corner() && is_along_border(scene_, state_, stars_, site.edge, eol))
-        return RowCause::AlongBorder;
+        return ConstraintCause::AlongBorder;
     const auto room_at = [&](const Vec2& X) {
         return room_to_border(scene_, state_, stars_, X, v, site.is_on_border, eol);
     };
     const double room = room_at(site.material);
-    if (room < room_wanted(kRoomToEnter, eol.on) * h) return RowCause::NearBorder;
+    if (room < room_wanted(kRoomToEnter, eol.on) * h) return ConstraintCause::NearBorder;
     // A vertex that moves fast towards the border would be released at once.
     constexpr double kAside = 1e-3;  // target lengths: for a finite difference of the room
     const Vec2 aside = kAside * h * flow.stableNormalized();
     const double closing = (room - room_at(site.material + aside)) / (kAside * h) * flow.norm();
-    if (room < soon_ * closing) return RowCause::BorderAhead;
+    if (room < soon_ * closing) return ConstraintCause::BorderAhead;
     return std::nullopt;
 }
 
@@ -165,7 +166,7 @@ bool EolAdmission::is_beside_other(const FeatureSite& site) const
     if (site.on.is_corner()) return false;
     const ObstaclePose obstacle = scene_.obstacles[site.on.obstacle].at(state_.time);
     const std::vector<FeatureEdge>& edges = obstacle->features().edges;
-    const double h = cell_length(scene_, state_, site.material);
+    const double h = target_length(scene_, state_, site.material);
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
         if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
             edges[e.on.index].polyline == edges[site.on.index].polyline ||
@@ -201,17 +202,17 @@ Vec3 EolAdmission::world_at(const FeatureSite& site) const
 /// Cause if a site follows a free fold over the edge. The cloth that follows is mostly flat, and then needs
 /// no EOL vertex. Where it is not flat, it gets a trace of its own, as soon as there is room for two traces.
 /// A site in line with the fold belongs to the fold's trace, part of which has returned, and is not refused.
-std::optional<RowCause> EolAdmission::find_fold_cause(const FeatureSite& site) const
+std::optional<ConstraintCause> EolAdmission::find_fold_cause(const FeatureSite& site) const
 {
-    constexpr double kRoom = 1.0;  // target lengths: nearer traces cannot be distinguished
     if (site.on.is_corner()) return std::nullopt;
     const std::optional<double> way = find_free_fold(site);
     if (!way) return std::nullopt;
     const bool is_between = site.contact < 0;  // fills a gap, and does not press itself
     if (is_between || is_along_face(scene_.obstacles[site.on.obstacle].shape(), site))
-        return RowCause::FlatBehind;
-    return *way < kRoom * cell_length(scene_, state_, site.material) ? std::optional(RowCause::BesideEol)
-                                                                     : std::nullopt;
+        return ConstraintCause::FlatBehind;
+    // Traces nearer than a cell cannot be distinguished.
+    return *way < target_length(scene_, state_, site.material) ? std::optional(ConstraintCause::BesideEol)
+                                                               : std::nullopt;
 }
 
 /// Distance, m, from the edge to the free fold that a site follows: the least, if there are several. Nothing
@@ -222,7 +223,7 @@ std::optional<double> EolAdmission::find_free_fold(const FeatureSite& site) cons
     const std::vector<FeatureEdge>& edges = obstacle->features().edges;
     const Vec3 here = obstacle.placement.inverse(world_at(site));
     const auto [from, to] = feature_segment(obstacle, site.on.index);
-    const double h = cell_length(scene_, state_, site.material);
+    const double h = target_length(scene_, state_, site.material);
     std::optional<double> least;
     for (const EolVertex& e : trace_.eol()) {
         if (e.on.obstacle != site.on.obstacle || e.on.is_corner() || !trace_.is_on_trace(e.vertex_id) ||
@@ -230,22 +231,24 @@ std::optional<double> EolAdmission::find_free_fold(const FeatureSite& site) cons
             continue;
         constexpr double kShare = 0.5;  // least material across, over the fold's distance from the edge
         constexpr double kSoon = 0.05;  // s: longest time of flow between site and fold
-        constexpr double kNear = 2.0 * kFlyingCells;  // cells: twice the distance up to which a fold is held
         const Vec3 off = trace_.placed(e).place - here;
         const double along = std::abs((to - from).normalized().dot(off));
         const double way = (trace_.surgery().material(e.vertex_id) - site.material).norm();
         const double across = std::sqrt(std::max(way * way - along * along, 0.0));
         const double left = std::sqrt(std::max(off.squaredNorm() - along * along, 0.0));
-        const double reach = std::min(kNear * h, kSoon * trace_.flow(e.vertex_id).norm());
+        // Twice the distance up to which a fold is held.
+        const double reach = std::min(2.0 * kFlyingCells * h, kSoon * trace_.flow(e.vertex_id).norm());
         if (way < reach && along < h && across > kShare * left) least = std::min(least.value_or(left), left);
     }
     return least;
 }
 
-std::optional<RowCause> EolAdmission::refuse_inserted(const EolVertex& eol, const FeatureSite& site) const
+std::optional<ConstraintCause> EolAdmission::refuse_inserted(const EolVertex& eol,
+                                                             const FeatureSite& site) const
 {
-    return (site.is_on_fold || is_in_plane(eol)) && is_on_side(eol) ? std::nullopt
-                                                                    : std::optional(RowCause::OffPlane);
+    return (site.is_on_fold || is_in_plane(eol)) && is_on_side(eol)
+               ? std::nullopt
+               : std::optional(ConstraintCause::OffPlane);
 }
 
 bool EolAdmission::is_in_plane(const EolVertex& eol) const
@@ -280,7 +283,7 @@ bool EolAdmission::is_on_side(const EolVertex& eol) const
 /// Whether a corner or bend has its EOL vertex already: cloth over it gets only one.
 bool EolAdmission::has_vertex_on(const FeatureSite& site) const
 {
-    const double h = cell_length(scene_, state_, site.material);
+    const double h = target_length(scene_, state_, site.material);
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
         return e.on.is_fixed() && e.on == site.on && trace_.is_on_trace(e.vertex_id) &&
                (trace_.surgery().material(e.vertex_id) - site.material).norm() < h;
@@ -295,7 +298,7 @@ EolRetention decide_retention(const Scene& scene, const State& state, const Clot
     const double gap = way_off(at.frame, place).norm();
     const double cells = is_led_astray(scene, state, eol, at, place) ? kAstrayCells : kFlyingCells;
     if (gap > cells * shortest_cell(scene) &&
-        gap > cells * cell_length(scene, state, state.mesh.material[at.vertex]))
+        gap > cells * target_length(scene, state, state.mesh.material[at.vertex]))
         return EolRetention::None;
     const bool has_left = gap > kOnFeature * scene.material.thickness;
     if (has_left && is_corner_under_face(scene, state, eol)) return EolRetention::None;
@@ -334,7 +337,7 @@ std::vector<EolRelease> find_releases(const Scene& scene, const State& state, co
 {
     EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
     std::vector<EolRetention> retained(state.eol.size(), EolRetention::None);
-    std::vector<RowCause> causes(state.eol.size(), RowCause::Released);
+    std::vector<ConstraintCause> causes(state.eol.size(), ConstraintCause::Released);
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {
         const EolVertex& eol = state.eol[entry];
         const ObstaclePose obstacle = scene.obstacles[eol.on.obstacle].at(state.time);
@@ -343,14 +346,14 @@ std::vector<EolRelease> find_releases(const Scene& scene, const State& state, co
         if (!placing.coordinates)
             causes[entry] = placing.refusal;
         else if (is_at_border(scene, state, stars, eol))
-            causes[entry] = RowCause::NearBorder;
+            causes[entry] = ConstraintCause::NearBorder;
         else if (is_on_feature(scene, state, eol, place))
             retained[entry] = decide_retention(scene, state, stars, entry, *placing.coordinates, place);
     }
     for (std::size_t entry = 0; entry < retained.size(); ++entry) {
         if (!has_gathered(state.eol[entry]) || retained[entry] == EolRetention::None) continue;
         retained[entry] = EolRetention::None;
-        causes[entry] = RowCause::Gathering;
+        causes[entry] = ConstraintCause::Gathering;
     }
     retain_between(scene, state, stars, retained);
     std::vector<EolRelease> released;

@@ -5,7 +5,7 @@
 // numbers that one question alone asks are beside that question in eol_decision.cpp. The census
 // (feature_census.h) only reports the causes that are found here.
 //
-// An admitted site may still stay a row for three reasons: the mesh has no place
+// An admitted site may still stay a constraint for three reasons: the mesh has no place
 // (mesh_change/site_insertion), a vertex there has no coordinates (eol/eol_coordinates), or attempts at the
 // step failed (retry_policy).
 //
@@ -26,8 +26,8 @@
 #include "geometry/cloth/mesh_target.h"
 #include "solver/eol/cloth_stars.h"
 #include "solver/eol/eol_coordinates.h"
+#include "solver/model/constraint_cause.h"
 #include "solver/model/eol_limits.h"
-#include "solver/model/row_cause.h"
 #include "solver/model/scene.h"
 #include "solver/model/state.h"
 #include "solver/sites/feature_sites.h"
@@ -52,12 +52,12 @@ class EolAdmission {
 
     /// Cause for which a site gets no EOL vertex, whatever the mesh there; nothing if it may get one. `v` is
     /// the index of the site's vertex, `flow` (m/s) the flow of material over the feature there.
-    std::optional<RowCause> find_refusal(const FeatureSite& site, int v, const Vec2& flow) const;
+    std::optional<ConstraintCause> find_refusal(const FeatureSite& site, int v, const Vec2& flow) const;
 
     /// Cause for which a vertex just inserted does not become EOL; nothing if it does. Surgery at one site
     /// bends the surface slightly at the next. A vertex inserted off its plane or side could not return
     /// there. A fold around a wire may come down to the wire later.
-    std::optional<RowCause> refuse_inserted(const EolVertex& eol, const FeatureSite& site) const;
+    std::optional<ConstraintCause> refuse_inserted(const EolVertex& eol, const FeatureSite& site) const;
 
     /// Whether a pin holds vertices at this material point in the next step: a pinned vertex is never EOL.
     bool is_pinned(const Vec2& material) const;
@@ -71,10 +71,10 @@ class EolAdmission {
     /// Whether a vertex on a wire or border is on the side to which the feature has pressed. Outward points
     /// from the feature to the vertex; on the other side it would oppose the contacts beside it.
     bool is_on_side(const EolVertex& eol) const;
-    std::optional<RowCause> find_border_cause(const FeatureSite& site, int v, const Vec2& flow) const;
+    std::optional<ConstraintCause> find_border_cause(const FeatureSite& site, int v, const Vec2& flow) const;
     bool is_beside_other(const FeatureSite& site) const;
     bool gathers(const FeatureSite& site, int v) const;
-    std::optional<RowCause> find_fold_cause(const FeatureSite& site) const;
+    std::optional<ConstraintCause> find_fold_cause(const FeatureSite& site) const;
     std::optional<double> find_free_fold(const FeatureSite& site) const;
     bool has_vertex_on(const FeatureSite& site) const;
     bool has_left(const EolVertex& eol) const;
@@ -111,7 +111,7 @@ void retain_between(const Scene& scene, const State& state, const ClothStars& st
 /// An EOL vertex that becomes an ordinary one, and the cause.
 struct EolRelease {
     VertexId vertex;
-    RowCause cause;
+    ConstraintCause cause;
 };
 
 /// EOL vertices to release, in the order of `state.eol`. These have no retention or no coordinates, have

@@ -11,6 +11,7 @@
 #include "geometry/obstacle/feature_nodes.h"
 #include "geometry/obstacle/feature_path.h"
 #include "geometry/obstacle/normal_cone.h"
+#include "geometry/tolerances.h"
 #include "solver/eol/eol_features.h"
 #include "solver/sites/bend_sites.h"
 #include "solver/sites/edge_crossings.h"
@@ -38,7 +39,7 @@ class SiteFinder {
     std::optional<FeatureSite> find(const ActiveContact& contact) const
     {
         std::array<int, 3> v = {-1, -1, -1};
-        for (int i = 0; i < 3 && contact.vertex_ids[i] != ActiveContact::kNoVertex; ++i) {
+        for (int i = 0; i < 3 && contact.vertex_ids[i] != ContactVertexIds::kNoVertex; ++i) {
             v[i] = state_.index_of(contact.vertex_ids[i]);
             if (v[i] < 0) return std::nullopt;
         }
@@ -86,7 +87,6 @@ class SiteFinder {
     /// the face straight outward from it. A trace without a vertex there would miss the bend.
     std::optional<FeatureSite> at_rim_bend(int point, const std::array<int, 3>& v, const Vec3& normal) const
     {
-        constexpr double kInside = 1e-6;  // thicknesses
         const Vec3& p = obstacle_->mesh().points[point];
         const std::array<Vec3, 3> face = {crossings_.positions()[v[0]], crossings_.positions()[v[1]],
                                           crossings_.positions()[v[2]]};
@@ -101,7 +101,7 @@ class SiteFinder {
             if (!(height >= 0.0 && height <= kOnFeature * thickness_)) continue;
             const Vec3 there = p + height * frame->outward;
             const PointOnTriangle closest = closest_on_triangle(there, face, up);
-            if (!((closest.point - there).norm() <= kInside * thickness_)) continue;
+            if (!((closest.point - there).norm() <= kOnSurface * thickness_)) continue;
             Vec2 X = Vec2::Zero();
             for (int i = 0; i < 3; ++i) X += closest.weights[i] * state_.mesh.material[v[i]];
             const auto heaviest = std::max_element(closest.weights.begin(), closest.weights.end());

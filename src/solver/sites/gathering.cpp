@@ -7,8 +7,9 @@
 #include <limits>
 #include <numbers>
 
+#include "geometry/tolerances.h"
 #include "solver/eol/eol_features.h"
-#include "solver/model/cell_length.h"
+#include "solver/model/target_length.h"
 
 namespace arris {
 
@@ -45,12 +46,11 @@ double force_on(const State& state, int v)
 /// Growth rate, 1/s, of the pleat that grows fastest; negative where none pays. `strain`: compression.
 double find_growth_rate(const Scene& scene, const State& state, const ClothStars& stars, int v, double strain)
 {
-    constexpr double kLeast = 1e-12;  // compression: a smaller one is round-off
     const Material& material = scene.material;
-    const double e = std::max(strain, kLeast), area = area_at(state, stars, v);
+    const double e = std::max(strain, kComputed), area = area_at(state, stars, v);
     const double weight = scene.gravity ? material.density * area * scene.gravity->acceleration.norm() : 0.0;
     const double force = std::max(force_on(state, v), weight);
-    const double cell = cell_length(scene, state, state.mesh.material[v]);
+    const double cell = target_length(scene, state, state.mesh.material[v]);
     double fastest = -std::numeric_limits<double>::infinity();
     for (const double q : {std::numbers::pi / cell, 0.5 * std::numbers::pi / cell}) {
         const double drive = 0.5 * material.youngs_modulus * e - plate_rigidity(material) * q * q -
@@ -89,7 +89,7 @@ double find_compression_with_pleats(const Scene& scene, const State& state, cons
     if (vertex.on.is_corner()) return 0.0;
     const int v = state.index_of(vertex.vertex_id);
     const Vec2& X = state.mesh.material[v];
-    const double reach = kReach * cell_length(scene, state, X);
+    const double reach = kReach * target_length(scene, state, X);
     const ObstaclePose obstacle = scene.obstacles[vertex.on.obstacle].at(state.time);
     const Placement now = obstacle.placement;
     const Vec3 place = now.inverse(state.mesh.world[v]);

@@ -2,7 +2,7 @@
 // Cloth that gathers along a feature, as drawn through a ring or over the inside corner of a bent wire. More
 // cloth comes to the trace than the feature is long, and wants to leave it in pleats. EOL vertices in a row
 // cannot pass each other and keep the cloth on the feature, which strains it up to a hundredfold. Such cloth
-// needs rows, between which it can rise.
+// needs constraints, between which it can rise.
 #pragma once
 
 #include <vector>

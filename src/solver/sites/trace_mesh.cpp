@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "geometry/obstacle/feature_path.h"
-#include "solver/model/cell_length.h"
 #include "solver/model/eol_limits.h"
+#include "solver/model/target_length.h"
 
 namespace arris {
 

@@ -8,18 +8,11 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/velocity_solve/dense_solve.h"
 #include "solver/velocity_solve/nlopt_outcome.h"
 
 namespace arris {
 namespace {
-
-/// Diagonal shift with which Cholesky factorises a unit-diagonal matrix that is singular to round-off. Two
-/// refinements remove the error of the shift.
-constexpr double kShift = 1e-12;
-constexpr int kRefinements = 2;
-
-/// Signs smaller than this, relative to the largest z or w, are round-off.
-constexpr double kSignTolerance = 1e-13;
 
 /// Exchanges of the whole infeasible set allowed without a new least count (p of Judice and Pires 1994).
 constexpr int kPatience = 10;
@@ -107,17 +100,10 @@ bool solve_on_set(const CondensedQp& qp, CondensedAnswer& answer, double& round_
     const Eigen::MatrixXd part = qp.hessian(set, set);
     Eigen::MatrixXd shifted = part;
     shifted.diagonal().array() += kShift;
-    const Eigen::LLT<Eigen::MatrixXd> cholesky(shifted);
-    if (cholesky.info() != Eigen::Success) return false;
-    const Eigen::VectorXd rhs = -qp.linear(set);
-    Eigen::VectorXd z = cholesky.solve(rhs);
-    round_off = 0.0;
-    for (int refinement = 0; refinement < kRefinements; ++refinement) {
-        const Eigen::VectorXd change = cholesky.solve(rhs - part * z);
-        round_off = change.lpNorm<Eigen::Infinity>();
-        z += change;
-    }
-    for (std::size_t k = 0; k < set.size(); ++k) answer.z[set[k]] = z[static_cast<Eigen::Index>(k)];
+    const std::optional<RefinedSolution> solved = solve_refined(part, shifted, -qp.linear(set));
+    if (!solved) return false;
+    round_off = solved->last_change;
+    for (std::size_t k = 0; k < set.size(); ++k) answer.z[set[k]] = solved->x[static_cast<Eigen::Index>(k)];
     multiply(qp.hessian, answer.z.data(), answer.w.data());
     answer.w += qp.linear;
     for (const int i : set) answer.w[i] = 0.0;

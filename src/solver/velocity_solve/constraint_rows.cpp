@@ -93,23 +93,23 @@ ScaledRow scale_row(const VelocityProblem& problem, const Eigen::VectorXd& diago
     for (const auto& [coordinate, value] : scaled.entries)
         scaled.scale = std::max(scaled.scale, std::abs(value));
     scaled.lower = row.lower / scaled.scale;
-    scaled.compliance = 0.0;
+    scaled.mobility = 0.0;
     for (auto& [coordinate, value] : scaled.entries) {
         value /= scaled.scale;
-        scaled.compliance += value * value / diagonal[coordinate];
+        scaled.mobility += value * value / diagonal[coordinate];
     }
-    scaled.spring = row.give / (scaled.scale * scaled.scale);
-    scaled.give = std::max(scaled.spring, scaled.compliance / kStiffness);
+    scaled.spring = row.compliance / (scaled.scale * scaled.scale);
+    scaled.compliance = std::max(scaled.spring, scaled.mobility / kStiffness);
     return scaled;
 }
 
-/// Both rows of a pair get one scale and one give, so that the budget's disc stays a disc. A direction in
-/// which nothing can move keeps an empty row.
+/// Both rows of a pair get one scale and one compliance, so that the budget's disc stays a disc. A direction
+/// in which nothing can move keeps an empty row.
 void add_pair(const VelocityProblem& problem, const Eigen::VectorXd& diagonal, const FrictionPair& pair,
               ConstraintRows& result)
 {
     std::array<ScaledRow, 2> rows;
-    double scale = 0.0, compliance = 0.0;
+    double scale = 0.0, mobility = 0.0;
     for (int d = 0; d < 2; ++d) {
         result.is_finite =
             result.is_finite && is_well_formed(pair.slip[d]) && std::isfinite(pair.slip[d].lower);
@@ -124,19 +124,20 @@ void add_pair(const VelocityProblem& problem, const Eigen::VectorXd& diagonal, c
             value /= scale;
             sum += value * value / diagonal[coordinate];
         }
-        compliance = std::max(compliance, sum);
+        mobility = std::max(mobility, sum);
     }
-    if (!can_move) compliance = 1.0;
+    if (!can_move) mobility = 1.0;
     for (int d = 0; d < 2; ++d) {
         rows[d].scale = scale;
-        rows[d].compliance = compliance;
-        rows[d].give = compliance / kStiffness;
-        rows[d].lower = pair.slip[d].lower / scale + rows[d].give * pair.slip[d].expected * scale;
+        rows[d].mobility = mobility;
+        rows[d].compliance = mobility / kStiffness;
+        rows[d].lower = pair.slip[d].lower / scale + rows[d].compliance * pair.slip[d].expected * scale;
         result.rows.push_back(rows[d]);
     }
     result.budgets.push_back(can_move ? pair.budget * scale : 0.0);
     result.masses.push_back(pair.mass * scale * scale);
-    result.is_finite = result.is_finite && std::isfinite(1.0 / rows[0].give) && std::isfinite(pair.budget);
+    result.is_finite =
+        result.is_finite && std::isfinite(1.0 / rows[0].compliance) && std::isfinite(pair.budget);
 }
 
 }  // namespace
@@ -157,7 +158,7 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
         if (!result.is_finite) return result;
         result.rows.push_back(scale_row(problem, diagonal, row));
         const bool can_move = !result.rows.back().entries.empty();
-        if (!can_move && row.lower > 0.0 && !(row.give > 0.0))
+        if (!can_move && row.lower > 0.0 && !(row.compliance > 0.0))
             result.impossible.push_back(static_cast<int>(result.rows.size() - first) - 1);
         // The speed that the row needs over all its coordinates: if only a tiny part can move, that part may
         // need any speed.
@@ -172,9 +173,10 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
             row.lower = kMostSpeed * speed;
             result.impossible.push_back(static_cast<int>(k));
         }
-        row.lower +=
-            std::min((row.give - row.spring) * problem.rows[k].expected * row.scale, result.unmet_speed);
-        result.is_finite = result.is_finite && std::isfinite(1.0 / row.give) && std::isfinite(row.lower);
+        row.lower += std::min((row.compliance - row.spring) * problem.rows[k].expected * row.scale,
+                              result.unmet_speed);
+        result.is_finite =
+            result.is_finite && std::isfinite(1.0 / row.compliance) && std::isfinite(row.lower);
     }
     return result;
 }
@@ -217,7 +219,7 @@ double estimate_free_speed(const VelocityProblem& problem)
 
 double gap(const ScaledRow& row, const Eigen::VectorXd& velocity, double multiplier)
 {
-    double value = row.give * multiplier;
+    double value = row.compliance * multiplier;
     for (const auto& [coordinate, coefficient] : row.entries) value += coefficient * velocity[coordinate];
     return value - row.lower;
 }
@@ -229,7 +231,8 @@ std::vector<int> find_infeasible_rows(const ConstraintRows& constraints, const E
     for (std::size_t k = first; k < constraints.rows.size(); ++k) {
         const ScaledRow& row = constraints.rows[k];
         if (row.entries.empty()) continue;
-        if ((row.give - row.spring) * multipliers[static_cast<Eigen::Index>(k)] > constraints.unmet_speed)
+        if ((row.compliance - row.spring) * multipliers[static_cast<Eigen::Index>(k)] >
+            constraints.unmet_speed)
             infeasible.push_back(static_cast<int>(k) - first);
     }
     std::sort(infeasible.begin(), infeasible.end());

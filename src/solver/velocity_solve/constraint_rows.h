@@ -19,16 +19,16 @@ struct ScaledRow {
     RowEntries entries;       ///< g, by ascending coordinate; empty where the row constrains nothing
     double lower = 0.0;       ///< m/s: the given one, and the way that the expected multiplier presses
     double scale = 1.0;       ///< given row = scale * g; given multiplier = multiplier / scale
-    double compliance = 1.0;  ///< g^T D^-1 g, D = diag A, 1/kg: gap opened by a unit impulse without coupling
-    double spring = 0.0;      ///< 1/kg: part of `give` that is the row's own
-    double give = 0.0;        ///< 1/kg: speed by which the row gives way to a unit multiplier
+    double mobility = 1.0;    ///< g^T D^-1 g, D = diag A, 1/kg: gap opened by a unit impulse without coupling
+    double spring = 0.0;      ///< 1/kg: part of `compliance` that is the row's own
+    double compliance = 0.0;  ///< 1/kg: speed by which the row gives way to a unit multiplier
     int group = 0;
 };
 
-/// The rows of a problem. Each is a stiff spring that only pushes: multiplier = max(0, lower - g^T u) / give.
-/// The problem is then min 1/2 u^T A u - b^T u + sum_k max(0, lower_k - g_k^T u)^2 / (2 give_k). It is
-/// strictly convex, so it has one answer, however many rows repeat or contradict each other. Rows that can be
-/// met give way by less than 1e-5 of the free speed.
+/// The rows of a problem. Each is a stiff spring that only pushes: multiplier = max(0, lower - g^T u) /
+/// compliance. The problem is then min 1/2 u^T A u - b^T u + sum_k max(0, lower_k - g_k^T u)^2 / (2
+/// compliance_k). It is strictly convex, so it has one answer, however many rows repeat or contradict each
+/// other. Rows that can be met give way by less than 1e-5 of the free speed.
 struct ConstraintRows {
     std::vector<ScaledRow> rows;  ///< two per friction pair, then one per row of the problem
     std::vector<double> budgets;  ///< N s, in the scale of the rows, one per friction pair
@@ -52,7 +52,7 @@ ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed);
 /// coordinates; costs a few products with A.
 double estimate_free_speed(const VelocityProblem& problem);
 
-/// g^T u - lower + give * multiplier: 0 for a row that presses.
+/// g^T u - lower + compliance * multiplier: 0 for a row that presses.
 double gap(const ScaledRow& row, const Eigen::VectorXd& velocity, double multiplier);
 
 /// The problem's rows that give way further than rows that can be met, and rows without a movable coordinate,

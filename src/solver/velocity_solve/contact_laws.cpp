@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "solver/velocity_solve/friction_springs.h"
+#include "solver/velocity_solve/slip_law.h"
 #include "solver/velocity_solve/symmetric_product.h"
 
 namespace arris {
@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-/// Distance from a bound, as a share of the largest speed, at which a linear model has held it: the give of
-/// the stiff springs that stand for bounds, with a margin.
+/// Distance from a bound, as a share of the largest speed, at which a linear model has held it: the
+/// compliance of the stiff springs that stand for bounds, with a margin.
 constexpr double kHeld = 1e-7;
 
 double largest(const VectorXd& values)
@@ -74,7 +74,7 @@ ContactIterate ContactLaws::start_from_guess() const
         const ScaledRow& row = constraints_->rows[first + guessed];
         if (row.entries.empty()) continue;
         at.wanted.is_pressing[first + guessed] = 1;
-        at.multipliers[first + guessed] = row.lower / row.give;
+        at.multipliers[first + guessed] = row.lower / row.compliance;
     }
     for (int p = 0; p < pairs; ++p) {
         const FrictionPair& pair = problem_->friction[p];
@@ -84,7 +84,7 @@ ContactIterate ContactLaws::start_from_guess() const
         const double budget = constraints_->budgets[p];
         const Vector2d unlimited = unlimited_at(*constraints_, p, slip),
                        impulse = project_on_disc(unlimited, budget);
-        at.wanted.stiffness.push_back(slip_stiffness(unlimited, impulse, budget, row.give));
+        at.wanted.stiffness.push_back(slip_stiffness(unlimited, impulse, budget, row.compliance));
         at.multipliers.segment<2>(2 * p) = impulse + at.wanted.stiffness[p] * slip;
     }
     at.impulses = at.multipliers.head(first);
@@ -131,7 +131,7 @@ void ContactLaws::evaluate(const std::vector<char>& acts, ContactIterate& at) co
 {
     const double speed = speed_at(at.point);
     const auto is_round_off = [&](double difference, const ScaledRow& row) {
-        return difference <= kSignTolerance * speed / row.give;
+        return difference <= kSignTolerance * speed / row.compliance;
     };
     at.missed.resize(constraints_->pair_count());
     for (int p = 0; p < constraints_->pair_count(); ++p) {
@@ -144,7 +144,7 @@ void ContactLaws::evaluate(const std::vector<char>& acts, ContactIterate& at) co
     }
     for (int k = constraints_->slip_count(); k < static_cast<int>(constraints_->rows.size()); ++k) {
         const ScaledRow& row = constraints_->rows[k];
-        const double law = acts[k] ? std::max(row.lower - at.point.row_values[k], 0.0) / row.give : 0.0;
+        const double law = acts[k] ? std::max(row.lower - at.point.row_values[k], 0.0) / row.compliance : 0.0;
         const bool presses = law > 0.0 && at.multipliers[k] > 0.0;
         if (!presses || !is_round_off(std::abs(at.multipliers[k] - law), row)) at.multipliers[k] = law;
     }
@@ -191,7 +191,7 @@ void ContactLaws::set_rows_at(const ContactPoint& point, const std::vector<char>
         const double depth = row.entries.empty() ? 0.0 : row.lower - point.row_values[k];
         state.is_pressing[k] = acts[k] && depth > 0.0;
         if (acts[k] || !(depth > kSignTolerance * constraints_->least_speed)) continue;
-        const double weighed = depth / std::sqrt(row.compliance);
+        const double weighed = depth / std::sqrt(row.mobility);
         const auto [at, is_new] = worst.try_emplace(row.group, weighed, k);
         if (!is_new && weighed > at->second.first) at->second = {weighed, k};
     }
@@ -199,7 +199,7 @@ void ContactLaws::set_rows_at(const ContactPoint& point, const std::vector<char>
     for (int p = 0; p < constraints_->pair_count(); ++p)
         state.stiffness[p] = slip_stiffness(
             unlimited_at(*constraints_, p, point.row_values.segment<2>(2 * p)), impulses.segment<2>(2 * p),
-            constraints_->budgets[p], constraints_->rows[2 * p].give);
+            constraints_->budgets[p], constraints_->rows[2 * p].compliance);
 }
 
 LawfulBudgets ContactLaws::find_budgets(const ContactIterate& at) const
@@ -244,8 +244,8 @@ VelocitySolution ContactLaws::make_solution(const ContactIterate& at) const
         const ScaledRow& scaled = constraints_->rows[first + k];
         const ConstraintRow& row = problem_->rows[k];
         solution.row_multipliers[static_cast<Eigen::Index>(k)] =
-            scaled.entries.empty() && row.give > 0.0  // a spring between what is held: its force is known
-                ? std::max(row.lower, 0.0) / row.give
+            scaled.entries.empty() && row.compliance > 0.0  // a spring between what is held: its force is known
+                ? std::max(row.lower, 0.0) / row.compliance
                 : std::max(at.multipliers[static_cast<Eigen::Index>(first + k)], 0.0) / scaled.scale;
     }
     for (int p = 0; p < constraints_->pair_count(); ++p) {
@@ -253,7 +253,7 @@ VelocitySolution ContactLaws::make_solution(const ContactIterate& at) const
         const Vector2d lower(problem_->friction[p].slip[0].lower, problem_->friction[p].slip[1].lower);
         solution.friction[p] = at.multipliers.segment<2>(2 * p) / scale;
         solution.slip[p] = scale * at.point.row_values.segment<2>(2 * p) - lower;
-        // The law is solved for the impulse: 1 / give would magnify the slip's round-off.
+        // The law is solved for the impulse: 1 / compliance would magnify the slip's round-off.
         constexpr double kInside = 1.0 - 1e-9;
         const bool sticks = solution.friction[p].norm() < kInside * constraints_->budgets[p] / scale;
         solution.unlimited[p] =

@@ -6,13 +6,11 @@
 #include <vector>
 
 #include "solver/velocity_solve/constraint_rows.h"
+#include "solver/velocity_solve/dense_solve.h"
 #include "solver/velocity_solve/spring_base.h"
 #include "solver/velocity_solve/velocity_solve.h"
 
 namespace arris {
-
-/// Values nearer to 0 are round-off, and tell no sign: of a gap, as a share of the largest speed.
-inline constexpr double kSignTolerance = 1e-13;
 
 /// A velocity u, or a change of it, with A u and C u.
 struct ContactPoint {

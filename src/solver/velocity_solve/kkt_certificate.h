@@ -12,10 +12,10 @@ namespace arris {
 ///   primal violation max(lower - C u, 0) / max|u|, and |u| / max|u| where fixed
 ///   wrong sign       max(-lambda, 0) / max|lambda|
 ///   complementarity  |lambda (C u - lower)| / (max|lambda| max|u|)
-/// where C holds the bounds and the scaled rows; C u - lower of a row includes give * lambda. With rows,
-/// max|u| is at least their least speed, and diag(A) times that speed is added to the scale of stationarity.
-/// 0/0 counts as 0. NaN where anything is NaN; infinite where a coordinate without a bound has a multiplier.
-/// `row_multipliers` belong to the scaled rows. Impulses of friction are taken as given forces;
+/// where C holds the bounds and the scaled rows; C u - lower of a row includes compliance * lambda. With
+/// rows, max|u| is at least their least speed, and diag(A) times that speed is added to the scale of
+/// stationarity. 0/0 counts as 0. NaN where anything is NaN; infinite where a coordinate without a bound has
+/// a multiplier. `row_multipliers` belong to the scaled rows. Impulses of friction are taken as given forces;
 /// `VelocitySolution::law_residual` tells how far they are from the law.
 double kkt_residual(const VelocityProblem& problem, const ConstraintRows& constraints,
                     const Eigen::VectorXd& velocity, const Eigen::VectorXd& multipliers,

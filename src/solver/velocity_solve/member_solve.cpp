@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "solver/velocity_solve/dense_solve.h"
-#include "solver/velocity_solve/friction_springs.h"
 #include "solver/velocity_solve/line_search.h"
+#include "solver/velocity_solve/slip_law.h"
 
 namespace arris {
 namespace {
@@ -23,13 +23,13 @@ using Eigen::VectorXd;
 /// With the springs of the base taken out, z are whole forces: with f the forces now and K the base's
 /// stiffness, displacement = now + way + T (z - f), T = (1 - S K)^-1 S, way = (1 - S K)^-1 offset.
 struct WithoutSprings {
-    MatrixXd compliance;  ///< T
+    MatrixXd mobility;  ///< T
     VectorXd way, force;
 };
 
 std::optional<WithoutSprings> take_out_springs(const MemberProblem& problem, DenseBudget& budget)
 {
-    WithoutSprings result = {problem.compliance, problem.offset, VectorXd::Zero(problem.offset.size())};
+    WithoutSprings result = {problem.mobility, problem.offset, VectorXd::Zero(problem.offset.size())};
     std::vector<int> in_base;
     VectorXd stiffness = VectorXd::Zero(problem.offset.size());
     for (const BoundMember& member : problem.bounds) result.force[member.place] = member.force;
@@ -42,14 +42,14 @@ std::optional<WithoutSprings> take_out_springs(const MemberProblem& problem, Den
     const auto count = static_cast<Eigen::Index>(in_base.size()), size = problem.offset.size();
     const double k = static_cast<double>(count), n = static_cast<double>(size);
     if (!budget.spend(2.0 / 3.0 * k * k * k + 2.0 * k * k * n + 2.0 * k * n * n)) return std::nullopt;
-    const MatrixXd columns = problem.compliance(Eigen::all, in_base);
+    const MatrixXd columns = problem.mobility(Eigen::all, in_base);
     const MatrixXd stiff = columns * stiffness(in_base).asDiagonal();
     MatrixXd right(count, size + 1);
     right << columns.transpose(), problem.offset(in_base);
     const MatrixXd moved =
         solve_dense(MatrixXd::Identity(count, count) - stiff(in_base, Eigen::all), std::move(right));
-    result.compliance += stiff * moved.leftCols(size);
-    result.compliance = (0.5 * (result.compliance + result.compliance.transpose())).eval();
+    result.mobility += stiff * moved.leftCols(size);
+    result.mobility = (0.5 * (result.mobility + result.mobility.transpose())).eval();
     result.way += stiff * moved.col(size);
     return result;
 }
@@ -60,8 +60,6 @@ std::optional<WithoutSprings> take_out_springs(const MemberProblem& problem, Den
 VectorXd find_change_of_force(const CondensedQp& qp, const WithoutSprings& free, const VectorXd& gap,
                               const std::vector<char>& is_pushing, DenseBudget& budget)
 {
-    constexpr double kShift = 1e-12;  // of the diagonal, where the matrix is singular; refinements remove it
-    constexpr int kRefinements = 2;
     std::vector<int> pushing;
     VectorXd change = -free.force;
     for (Eigen::Index k = 0; k < gap.size(); ++k)
@@ -76,13 +74,9 @@ VectorXd find_change_of_force(const CondensedQp& qp, const WithoutSprings& free,
     const MatrixXd part = qp.hessian(pushing, pushing);
     MatrixXd shifted = part;
     shifted.diagonal() *= 1.0 + kShift;
-    const Eigen::LLT<MatrixXd> cholesky(shifted);
-    if (cholesky.info() != Eigen::Success)
-        return VectorXd::Constant(gap.size(), std::numeric_limits<double>::quiet_NaN());
-    VectorXd solved = cholesky.solve(rhs);
-    for (int refinement = 0; refinement < kRefinements; ++refinement)
-        solved += cholesky.solve(rhs - part * solved);
-    change(pushing) = solved;
+    const std::optional<RefinedSolution> solved = solve_refined(part, shifted, rhs);
+    if (!solved) return VectorXd::Constant(gap.size(), std::numeric_limits<double>::quiet_NaN());
+    change(pushing) = solved->x;
     return change;
 }
 
@@ -91,18 +85,18 @@ std::optional<VectorXd> push_by_nlopt(const MemberProblem& problem, DenseBudget&
     const std::optional<WithoutSprings> without = take_out_springs(problem, budget);
     if (!without) return std::nullopt;
     const WithoutSprings& free = *without;
-    CondensedQp qp = {free.compliance, problem.now + free.way - free.compliance * free.force};
+    CondensedQp qp = {free.mobility, problem.now + free.way - free.mobility * free.force};
     VectorXd gap = problem.now;  // with the forces now
     for (const RowMember& member : problem.rows) {
-        qp.hessian(member.place, member.place) += member.give;
-        gap[member.place] += member.give * member.force;
+        qp.hessian(member.place, member.place) += member.compliance;
+        gap[member.place] += member.compliance * member.force;
     }
     const std::optional<CondensedAnswer> answer = solve_condensed_qp(qp, free.force.cwiseMax(0.0), budget);
     if (!answer) return std::nullopt;
     evaluations += answer->nlopt_evaluations;
     VectorXd beyond = find_change_of_force(qp, free, gap, answer->is_positive, budget);
     if (!beyond.allFinite()) return std::nullopt;
-    const VectorXd change = free.way + free.compliance * beyond;
+    const VectorXd change = free.way + free.mobility * beyond;
     for (const RowMember& member : problem.rows)
         beyond[member.place] += member.base_stiffness * change[member.place];
     return beyond;
@@ -118,10 +112,11 @@ class MemberNewton {
 
   private:
     /// Of the spring that stands for a bound.
-    double give_of(const BoundMember& member) const
+    double compliance_of(const BoundMember& member) const
     {
-        constexpr double kGive = 1e-8;  // of the bound's compliance; with 1e-5 some problems do not converge
-        return kGive * problem_->compliance(member.place, member.place);
+        constexpr double kCompliance =
+            1e-8;  // of the bound's mobility; with 1e-5 some problems do not converge
+        return kCompliance * problem_->mobility(member.place, member.place);
     }
     VectorXd law_at(const VectorXd& change) const;
     bool take_step(bool does_search);
@@ -141,17 +136,17 @@ VectorXd MemberNewton::law_at(const VectorXd& change) const
     VectorXd force = VectorXd::Zero(change.size());
     for (const BoundMember& member : problem_->bounds) {
         const double x = problem_->now[member.place] + change[member.place];
-        force[member.place] = std::max(member.force - x / give_of(member), 0.0) - member.force;
+        force[member.place] = std::max(member.force - x / compliance_of(member), 0.0) - member.force;
     }
     for (const RowMember& member : problem_->rows) {
         const double x = problem_->now[member.place] + change[member.place];
-        force[member.place] =
-            (std::max(-x, 0.0) / member.give - member.force) + member.base_stiffness * change[member.place];
+        force[member.place] = (std::max(-x, 0.0) / member.compliance - member.force) +
+                              member.base_stiffness * change[member.place];
     }
-    for (const RubbingMember& pair : problem_->rubbing) {
+    for (const SlipMember& pair : problem_->slipping) {
         const Vector2d way = change(pair.place), x = problem_->now(pair.place) + way;
         force(pair.place) =
-            (project_on_disc(-x / pair.give, pair.budget) - pair.force) + pair.base_stiffness * way;
+            (project_on_disc(-x / pair.compliance, pair.budget) - pair.force) + pair.base_stiffness * way;
     }
     return force;
 }
@@ -169,16 +164,18 @@ void MemberNewton::enter_slopes(const VectorXd& change)
         if (std::abs(slope) > 0.0) differing_.push_back(place);
     };
     for (const BoundMember& member : problem_->bounds) {
-        const double give = give_of(member);
-        enter(member.place, member.force - displacement[member.place] / give > 0.0 ? 1.0 / give : 0.0);
+        const double compliance = compliance_of(member);
+        enter(member.place,
+              member.force - displacement[member.place] / compliance > 0.0 ? 1.0 / compliance : 0.0);
     }
     for (const RowMember& member : problem_->rows)
         enter(member.place,
-              (displacement[member.place] < 0.0 ? 1.0 / member.give : 0.0) - member.base_stiffness);
-    for (const RubbingMember& pair : problem_->rubbing) {
+              (displacement[member.place] < 0.0 ? 1.0 / member.compliance : 0.0) - member.base_stiffness);
+    for (const SlipMember& pair : problem_->slipping) {
         const Vector2d x = displacement(pair.place);
         const Matrix2d slope =
-            slip_stiffness(-x / pair.give, pair.impulse, pair.budget, pair.give) - pair.base_stiffness;
+            slip_stiffness(-x / pair.compliance, pair.impulse, pair.budget, pair.compliance) -
+            pair.base_stiffness;
         if (slope.isZero(0.0)) continue;
         for (const int d : {0, 1}) {
             partner_[pair.place[d]] = pair.place[1 - d];
@@ -200,7 +197,7 @@ VectorXd MemberNewton::slopes_times(const VectorXd& way) const
 /// (1 + D S) dz = psi - z with D = `slopes_`; where D is 0, dz is known. False where the matrix is singular.
 bool MemberNewton::take_step(bool does_search)
 {
-    const MatrixXd& S = problem_->compliance;
+    const MatrixXd& S = problem_->mobility;
     const auto count = static_cast<Eigen::Index>(differing_.size());
     const double n = static_cast<double>(force_.size()), k = static_cast<double>(count);
     if (!budget_->spend(2.0 / 3.0 * k * k * k + 4.0 * n * n)) return false;
@@ -231,7 +228,7 @@ bool MemberNewton::take_step(bool does_search)
         share = search_share(
             [&](double t) { return at_start + t * growth - way.dot(law_at(change_ + t * way)); });
     }
-    for (RubbingMember& pair : problem_->rubbing) {
+    for (SlipMember& pair : problem_->slipping) {
         const Vector2d moved_by = change_(pair.place) + way(pair.place);
         pair.impulse = force_(pair.place) + step(pair.place) + pair.force - pair.base_stiffness * moved_by;
     }
@@ -285,8 +282,8 @@ std::optional<VectorXd> MemberNewton::run(double tolerance)
 std::optional<VectorXd> solve_members(MemberProblem& problem, double tolerance, DenseBudget& budget,
                                       int& nlopt_evaluations)
 {
-    if (!problem.compliance.allFinite() || !problem.offset.allFinite()) return std::nullopt;
-    if (problem.rubbing.empty()) return push_by_nlopt(problem, budget, nlopt_evaluations);
+    if (!problem.mobility.allFinite() || !problem.offset.allFinite()) return std::nullopt;
+    if (problem.slipping.empty()) return push_by_nlopt(problem, budget, nlopt_evaluations);
     return MemberNewton(problem, budget).run(tolerance);
 }
 

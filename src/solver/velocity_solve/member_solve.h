@@ -10,11 +10,11 @@
 
 namespace arris {
 
-/// A row among the members: its force is max(0, -displacement) / give. What the base gives is `force` -
+/// A row among the members: its force is max(0, -displacement) / compliance. What the base gives is `force` -
 /// `base_stiffness` times the change of the displacement: nothing large cancels in it.
 struct RowMember {
     int place;  ///< in the response
-    double give, force, base_stiffness;
+    double compliance, force, base_stiffness;
 };
 
 /// A bound among the members: its displacement is not negative. What counts is its force beyond `force`, the
@@ -24,23 +24,23 @@ struct BoundMember {
     double force;
 };
 
-/// A friction pair among the members: its force is -displacement / give, projected onto the disc of the
+/// A friction pair among the members: its force is -displacement / compliance, projected onto the disc of the
 /// budget. The base gives `force` - `base_stiffness` times the change of the displacement.
-struct RubbingMember {
+struct SlipMember {
     std::array<int, 2> place;
-    double give, budget;
+    double compliance, budget;
     Eigen::Vector2d force;
     Eigen::Matrix2d base_stiffness;
     Eigen::Vector2d impulse;  ///< of the last linear model; that of this solve's last one, on return
 };
 
-/// The members' laws with their response: displacement = now + offset + compliance * force beyond the base.
+/// The members' laws with their response: displacement = now + offset + mobility * force beyond the base.
 struct MemberProblem {
-    Eigen::MatrixXd compliance;
+    Eigen::MatrixXd mobility;
     Eigen::VectorXd offset, now;
     std::vector<BoundMember> bounds;
     std::vector<RowMember> rows;
-    std::vector<RubbingMember> rubbing;
+    std::vector<SlipMember> slipping;
 };
 
 /// Forces beyond the base, with an error below `tolerance` (N s) where possible. Without friction, NLopt and

@@ -122,7 +122,7 @@ bool Members::condense()
     for (int k = 0; k < size(); ++k)
         (members_[k].kind == Member::Kind::Released ? released_ : others_).push_back(k);
     const Eigen::MatrixXd& gram = columns_.gram();
-    compliance_ = gram;
+    mobility_ = gram;
     is_condensed_ = released_.empty();
     if (is_condensed_) return true;
     const auto count = static_cast<Eigen::Index>(released_.size());
@@ -132,15 +132,15 @@ bool Members::condense()
     stiffness_.compute(direct_(released_, released_) - gram(released_, released_));
     if (stiffness_.info() != Eigen::Success) return false;
     const Eigen::MatrixXd inverse = stiffness_.solve(Eigen::MatrixXd::Identity(count, count));
-    compliance_(released_, released_) = 0.5 * (inverse + inverse.transpose());
+    mobility_(released_, released_) = 0.5 * (inverse + inverse.transpose());
     coupling_ = gram(released_, others_) - direct_(released_, others_);
     is_condensed_ = true;
     if (others_.empty()) return true;
     const Eigen::MatrixXd moved = stiffness_.solve(coupling_);
-    compliance_(released_, others_) = -moved;
-    compliance_(others_, released_) = -moved.transpose();
+    mobility_(released_, others_) = -moved;
+    mobility_(others_, released_) = -moved.transpose();
     const Eigen::MatrixXd more = coupling_.transpose() * moved;
-    compliance_(others_, others_) += 0.5 * (more + more.transpose());
+    mobility_(others_, others_) += 0.5 * (more + more.transpose());
     return true;
 }
 
@@ -150,7 +150,7 @@ std::optional<MemberResponse> Members::respond(const Eigen::VectorXd& velocity,
                                                const Eigen::VectorXd& forward)
 {
     if (!is_condensed_ && !condense()) return std::nullopt;
-    MemberResponse response = {compliance_, columns_.dot(forward), Eigen::VectorXd(size())};
+    MemberResponse response = {mobility_, columns_.dot(forward), Eigen::VectorXd(size())};
     if (!released_.empty()) {
         Eigen::VectorXd force(static_cast<Eigen::Index>(released_.size()));
         for (std::size_t k = 0; k < released_.size(); ++k)

@@ -26,10 +26,10 @@ struct Member {
 };
 
 /// The dense response of the members, from where the velocity is now: displacement = now + offset +
-/// compliance * force, with everything else as the base has it. Displacement: u - lower of a bound, y - lower
+/// mobility * force, with everything else as the base has it. Displacement: u - lower of a bound, y - lower
 /// of a row. Force: the multiplier of a bound; of a row what it gives beyond its spring in the base.
 struct MemberResponse {
-    Eigen::MatrixXd compliance;  ///< symmetric, positive semidefinite
+    Eigen::MatrixXd mobility;  ///< symmetric, positive semidefinite
     Eigen::VectorXd offset;
     Eigen::VectorXd now;  ///< displacements before
 };
@@ -90,7 +90,7 @@ class Members {
     std::vector<int> released_, others_;
     Eigen::LLT<Eigen::MatrixXd> stiffness_;  ///< C
     Eigen::MatrixXd coupling_;               ///< B
-    Eigen::MatrixXd compliance_;
+    Eigen::MatrixXd mobility_;
     Eigen::VectorXd step_;  ///< C^-1 (residual_R - W^T forward), of the last response
 };
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/velocity_solve/friction_springs.h"
 #include "solver/velocity_solve/line_search.h"
+#include "solver/velocity_solve/slip_law.h"
 
 namespace arris {
 namespace {
@@ -76,7 +76,7 @@ ModelChanges find_first_changes(const ContactLaws& laws, const SpringBase& base,
                 from.point.row_values.segment<2>(2 * p) + share * step.row_values.segment<2>(2 * p);
             const Eigen::Matrix2d stiffness =
                 slip_stiffness(unlimited_at(constraints, p, y), from.impulses.segment<2>(2 * p),
-                               constraints.budgets[p], constraints.rows[2 * p].give);
+                               constraints.budgets[p], constraints.rows[2 * p].compliance);
             if (distance(has.stiffness[p], stiffness, constraints.masses[p]) <= kNear) continue;
             changes.push_back({share, false, 2 * p});
             break;
@@ -113,7 +113,8 @@ double find_share(const ContactLaws& laws, const ContactPoint& from, const Conta
     };
     for (int k = constraints.slip_count(); k < static_cast<int>(constraints.rows.size()); ++k) {
         const ScaledRow& row = constraints.rows[k];
-        if (!row.entries.empty()) enter(from.row_values[k] - row.lower, step.row_values[k], 1.0 / row.give);
+        if (!row.entries.empty())
+            enter(from.row_values[k] - row.lower, step.row_values[k], 1.0 / row.compliance);
     }
     const VectorXd diagonal = problem.matrix->diagonal();
     for (int i = 0; i < step.velocity.size(); ++i)

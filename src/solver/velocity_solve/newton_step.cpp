@@ -24,8 +24,8 @@ MemberProblem make_member_problem(const ConstraintRows& constraints, const Sprin
             if (index % 2 == 0) place_of_first[index / 2] = k;
         } else if (kind == Member::Kind::Row) {
             const ScaledRow& row = constraints.rows[index];
-            const double stiffness = has.is_pressing[index] ? 1.0 / row.give : 0.0;
-            problem.rows.push_back({k, row.give, at.multipliers[index], stiffness});
+            const double stiffness = has.is_pressing[index] ? 1.0 / row.compliance : 0.0;
+            problem.rows.push_back({k, row.compliance, at.multipliers[index], stiffness});
         } else {
             problem.bounds.push_back({k, at.bound_force(index)});
         }
@@ -34,12 +34,12 @@ MemberProblem make_member_problem(const ConstraintRows& constraints, const Sprin
         const auto [kind, index] = members[k];
         if (kind != Member::Kind::Slip || index % 2 == 0) continue;
         const int p = index / 2;
-        problem.rubbing.push_back({{place_of_first[p], k},
-                                   constraints.rows[2 * p].give,
-                                   constraints.budgets[p],
-                                   at.multipliers.segment<2>(2 * p),
-                                   has.stiffness[p],
-                                   at.impulses.segment<2>(2 * p)});
+        problem.slipping.push_back({{place_of_first[p], k},
+                                    constraints.rows[2 * p].compliance,
+                                    constraints.budgets[p],
+                                    at.multipliers.segment<2>(2 * p),
+                                    has.stiffness[p],
+                                    at.impulses.segment<2>(2 * p)});
     }
     return problem;
 }
@@ -78,7 +78,7 @@ std::optional<NewtonStep> find_step(const ContactLaws& laws, const SpringBase& b
             members.respond(at.point.velocity, at.point.row_values, rhs, forward);
         if (!response) return std::nullopt;
         dense = make_member_problem(constraints, base, members, at);
-        dense.compliance = std::move(response->compliance);
+        dense.mobility = std::move(response->mobility);
         dense.offset = std::move(response->offset);
         dense.now = std::move(response->now);
         const std::optional<VectorXd> found =
@@ -86,11 +86,11 @@ std::optional<NewtonStep> find_step(const ContactLaws& laws, const SpringBase& b
         if (!found) return std::nullopt;
         forces = *found;
         change = members.change(forces, forward);
-        const VectorXd moved = dense.offset + dense.compliance * forces;
+        const VectorXd moved = dense.offset + dense.mobility * forces;
         for (const RowMember& member : dense.rows)
             at.multipliers[members[member.place].index] =
                 forces[member.place] + member.force - member.base_stiffness * moved[member.place];
-        for (const RubbingMember& pair : dense.rubbing)
+        for (const SlipMember& pair : dense.slipping)
             at.multipliers.segment<2>(members[pair.place[0]].index) =
                 forces(pair.place) + pair.force - pair.base_stiffness * moved(pair.place);
     }
@@ -104,9 +104,9 @@ std::optional<NewtonStep> find_step(const ContactLaws& laws, const SpringBase& b
             at.multipliers.segment<2>(2 * p) -= has.stiffness[p] * step.change.row_values.segment<2>(2 * p);
     for (int k = constraints.slip_count(); k < static_cast<int>(constraints.rows.size()); ++k)
         if (has.is_pressing[k] && !members.has_row(k))
-            at.multipliers[k] -= step.change.row_values[k] / constraints.rows[k].give;
+            at.multipliers[k] -= step.change.row_values[k] / constraints.rows[k].compliance;
     at.impulses = at.multipliers.head(constraints.slip_count());
-    for (const RubbingMember& pair : dense.rubbing)
+    for (const SlipMember& pair : dense.slipping)
         at.impulses.segment<2>(members[pair.place[0]].index) = pair.impulse;
     for (int i = 0; i < to_bound.size(); ++i)
         if (base.is_pinned(i) && !members.has_bound(i) && !problem.is_fixed[i]) at.wanted.is_active[i] = 1;

@@ -99,7 +99,7 @@ bool SpringBase::factorise(const ContactState& wanted)
         if (!rows_[k].has_room) is_pressing = 0;
         if (!is_pressing) continue;
         Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
-        stiffness(0, 0) = 1.0 / constraints_->rows[first + k].give;
+        stiffness(0, 0) = 1.0 / constraints_->rows[first + k].compliance;
         add(rows_[k], stiffness);
     }
     for (std::size_t p = 0; p < pairs_.size(); ++p) {

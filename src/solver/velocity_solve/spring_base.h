@@ -19,9 +19,9 @@ struct ContactState {
     std::vector<Eigen::Matrix2d> stiffness;  ///< by friction pair, kg
 };
 
-/// The factor of A' = A + sum over pressing rows g g^T / give + sum over pairs g^T K g, without the pinned
-/// coordinates (active bounds and fixed coordinates). A row or pair for which A has no entries is left out of
-/// A'.
+/// The factor of A' = A + sum over pressing rows g g^T / compliance + sum over pairs g^T K g, without the
+/// pinned coordinates (active bounds and fixed coordinates). A row or pair for which A has no entries is left
+/// out of A'.
 class SpringBase {
   public:
     SpringBase(const VelocityProblem& problem, const ConstraintRows& constraints,

@@ -19,16 +19,16 @@ struct ConstraintRow {
     std::array<int, kMostEntries> coordinate{};
     std::array<double, kMostEntries> coefficient{};
     int count = 0;
-    double lower = 0.0;     ///< m/s where the coefficients are weights
-    double expected = 0.0;  ///< multiplier, N s where the coefficients are weights
-    double give = 0.0;      ///< 1/kg, speed per multiplier by which it gives way; 0: nearly none
-    int group = 0;          ///< one per cloth face: only the worst row of a group joins at a time
+    double lower = 0.0;       ///< m/s where the coefficients are weights
+    double expected = 0.0;    ///< multiplier, N s where the coefficients are weights
+    double compliance = 0.0;  ///< 1/kg, speed per multiplier by which it gives way; 0: nearly none
+    int group = 0;            ///< one per cloth face: only the worst row of a group joins at a time
 };
 
 /// Friction of one contact: an impulse f in the contact's plane, |f| <= budget, which opposes the slip s. The
 /// slip's components are sum_k coefficient_k u_(coordinate_k) - lower in two perpendicular unit directions.
-/// As a row, friction gives way a little: it is a stiff spring, f = expected - s / give, which yields at the
-/// budget. So s is 0 where f is the expected impulse, and f = -budget s / |s| where s is not tiny.
+/// As a row, friction gives way a little: it is a stiff spring, f = expected - s / compliance, which yields
+/// at the budget. So s is 0 where f is the expected impulse, and f = -budget s / |s| where s is not tiny.
 struct FrictionPair {
     std::array<ConstraintRow, 2> slip;  ///< `expected`: impulses, N s
     double budget = 0.0;                ///< N s

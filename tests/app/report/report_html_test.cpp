@@ -201,17 +201,18 @@ TEST(ReportHtml, TellsTheShareOfEolVerticesAndWhyRowsAreRows)
     write_steps(dir, 4, [](StepRow& row) {
         row.eol_vertices = row.eol_pressing = 9;
         row.rows_by_cause.emplace().fill(0);
-        (*row.rows_by_cause)[static_cast<std::size_t>(RowCause::Guard)] = 1;
-        (*row.rows_by_cause)[static_cast<std::size_t>(RowCause::NearBorder)] = 3;
+        (*row.rows_by_cause)[static_cast<std::size_t>(ConstraintCause::Guard)] = 1;
+        (*row.rows_by_cause)[static_cast<std::size_t>(ConstraintCause::NearBorder)] = 3;
     });
     const std::string html = html_of(dir);
     EXPECT_NO_THROW(elements_of(html));
     for (const std::string& part :
          {std::string("<dt>EOL share</dt><dd>90 %"), std::string("Contacts on sharp features"),
           std::string("<th scope=\"row\">EOL vertex</th><td class=\"count\">45</td>"),
-          std::string("row: guard</th><td class=\"count\">5</td><td>") + explain(RowCause::Guard) + "</td>",
+          std::string("row: guard</th><td class=\"count\">5</td><td>") + explain(ConstraintCause::Guard) +
+              "</td>",
           std::string("row: near_border</th><td class=\"count\">15</td><td>") +
-              explain(RowCause::NearBorder) + " (not counted in the EOL share)</td>"})
+              explain(ConstraintCause::NearBorder) + " (not counted in the EOL share)</td>"})
         EXPECT_THAT(html, HasSubstr(part));
     EXPECT_THAT(html, Not(HasSubstr("row: blocked"))) << "what did not happen says nothing";
 
@@ -222,8 +223,8 @@ TEST(ReportHtml, TellsTheShareOfEolVerticesAndWhyRowsAreRows)
 
 TEST(ReportHtml, ExplainsEveryFigureItShows)
 {
-    for (std::size_t k = 0; k < kRowCauses; ++k)
-        EXPECT_GT(std::string(explain(static_cast<RowCause>(k))).size(), 15U) << k;
+    for (std::size_t k = 0; k < kConstraintCauses; ++k)
+        EXPECT_GT(std::string(explain(static_cast<ConstraintCause>(k))).size(), 15U) << k;
     for (const NamedSeconds& phase : list_phases({}))
         EXPECT_GT(std::string(phase.what).size(), 10U) << phase.name;
     const TemporaryDirectory dir;

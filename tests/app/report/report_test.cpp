@@ -65,16 +65,16 @@ TEST(Report, CountsFeatureContactsByWhatTheyWere)
     StepRow row = make_row(3);
     row.eol_pressing = 80;
     row.rows_by_cause.emplace();
-    const auto count = [&row](RowCause cause, int rows) {
+    const auto count = [&row](ConstraintCause cause, int rows) {
         (*row.rows_by_cause)[static_cast<std::size_t>(cause)] = rows;
     };
-    count(RowCause::New, 20);
-    count(RowCause::AlongBorder, 5);
-    count(RowCause::OtherObstacle, 3);
-    count(RowCause::NearBorder, 4);
-    count(RowCause::AtEol, 7);
-    count(RowCause::Guard, 1);
-    count(RowCause::OtherFeature, 1);
+    count(ConstraintCause::New, 20);
+    count(ConstraintCause::AlongBorder, 5);
+    count(ConstraintCause::OtherObstacle, 3);
+    count(ConstraintCause::NearBorder, 4);
+    count(ConstraintCause::AtEol, 7);
+    count(ConstraintCause::Guard, 1);
+    count(ConstraintCause::OtherFeature, 1);
     const std::string path = write_steps(dir, 2);
     CsvWriter writer = CsvWriter::append_to(path, step_header());
     writer.append(format_row(row));
@@ -86,7 +86,7 @@ TEST(Report, CountsFeatureContactsByWhatTheyWere)
     ASSERT_TRUE(report.totals.features);
     const nlohmann::ordered_json json = to_json(report)["feature_contacts"];
     EXPECT_EQ(json["eol"], 88);
-    EXPECT_EQ(json["rows"].size(), kRowCauses);
+    EXPECT_EQ(json["rows"].size(), kConstraintCauses);
     EXPECT_EQ(json["rows"]["new"], 20);
     EXPECT_EQ(json["rows"]["along_border"], 5);
     EXPECT_EQ(json["rows"]["other_obstacle"], 3);

@@ -39,7 +39,7 @@ TEST(Frames, MarkWhatAnObstacleOrALayerPressesAndNoPlaneBehindAWire)
     State state = make_state(Scene{}, make_cloth_grid(grid), Vec3::Zero());
     state.active = {{{2}, ContactKind::Vertex, 0, -1, Vec3::UnitZ(), 1.0},
                     {{3, 8}, ContactKind::Edge, 0, 0, Vec3::UnitZ(), 1.0},
-                    {{5}, ContactKind::Vertex, 0, kFoldElement, Vec3::UnitX(), 1.0},
+                    {{5}, ContactKind::Vertex, 0, kFoldPlaneElement, Vec3::UnitX(), 1.0},
                     {{10, 11, 12, 13}, ContactKind::Vertex, kClothItself, 0, Vec3::UnitZ(), 1.0}};
     const ClothElements elements =
         make_elements(state.mesh, make_topology(state.mesh.vertex_count(), state.mesh.faces));

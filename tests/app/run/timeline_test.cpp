@@ -21,7 +21,7 @@ RunConfig make_config(double duration, double step, double frames_per_second)
 std::vector<double> step_ends(const Timeline& timeline)
 {
     std::vector<double> ends;
-    for (TimelinePosition at; !timeline.is_over(at); at = timeline.advance(at)) {
+    for (TimelinePosition at; !timeline.is_over(at); at = timeline.next(at)) {
         ends.push_back(timeline.next_end(at));
         if (ends.size() > 1000000) break;
     }

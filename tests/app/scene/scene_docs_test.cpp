@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/scene/parts/run_config.h"
 #include "app/scene/keys/scene_keys.h"
+#include "app/scene/parts/run_config.h"
 #include "app/scene/scene_load.h"
 #include "tests/app/temporary_directory.h"
 

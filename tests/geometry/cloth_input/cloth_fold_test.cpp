@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kIsometry = 1e-12;  // relative
 
-ClothMesh fold_grid(const std::vector<Fold>& folds, GridPattern pattern = GridPattern::Cross,
+ClothMesh fold_grid(const std::vector<FoldLine>& folds, GridPattern pattern = GridPattern::Cross,
                     double angle = 0.0, const Vec2& size = Vec2(1, 1))
 {
     ClothGrid grid;
@@ -99,8 +99,8 @@ TEST(FoldCloth, ParallelFoldsMakeAStaircase)
 
 TEST(FoldCloth, TheOrderOfParallelFoldsDoesNotMatter)
 {
-    const Fold first{{Vec2(0.25, 0), Vec2(0.25, 1)}, 50.0};
-    const Fold second{{Vec2(0.65, 0), Vec2(0.65, 1)}, 70.0};
+    const FoldLine first{{Vec2(0.25, 0), Vec2(0.25, 1)}, 50.0};
+    const FoldLine second{{Vec2(0.65, 0), Vec2(0.65, 1)}, 70.0};
     const ClothMesh forth = fold_grid({first, second});
     const ClothMesh back = fold_grid({second, first});
     ASSERT_EQ(forth.vertex_count(), back.vertex_count());
@@ -116,7 +116,7 @@ TEST(FoldCloth, TheOrderOfParallelFoldsDoesNotMatter)
 
 TEST(FoldCloth, RepeatedLineAddsItsAngles)
 {
-    const Fold half{{Vec2(0.5, 0), Vec2(0.5, 1)}, 45.0};
+    const FoldLine half{{Vec2(0.5, 0), Vec2(0.5, 1)}, 45.0};
     const ClothMesh mesh = fold_grid({half, half});
     expect_shape(mesh, [](const Vec2& X) {
         return X.x() <= 0.5 ? Vec3(X.x(), X.y(), 0.0) : Vec3(0.5, X.y(), 0.5 - X.x());
@@ -125,8 +125,8 @@ TEST(FoldCloth, RepeatedLineAddsItsAngles)
 
 TEST(FoldCloth, CrossingFoldsMustNotStretch)
 {
-    const Fold along_v{{Vec2(0.5, 0), Vec2(0.5, 1)}, 90.0};
-    const Fold along_u{{Vec2(0, 0.5), Vec2(1, 0.5)}, 90.0};
+    const FoldLine along_v{{Vec2(0.5, 0), Vec2(0.5, 1)}, 90.0};
+    const FoldLine along_u{{Vec2(0, 0.5), Vec2(1, 0.5)}, 90.0};
     EXPECT_THROW(fold_grid({along_v, along_u}), InputError);
     // Fold lines may cross if one has angle 0, or is folded flat onto itself, because the other line then
     // stays straight.

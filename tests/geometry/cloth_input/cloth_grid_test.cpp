@@ -104,7 +104,7 @@ void expect_sound(const ClothMesh& mesh, const Vec2& size)
 }
 
 // Edges of the mesh with both ends within `tolerance` of the line cover its part inside the cloth.
-void expect_covered(const ClothMesh& mesh, const Fold& fold, double length)
+void expect_covered(const ClothMesh& mesh, const FoldLine& fold, double length)
 {
     const Vec2 along = (fold.line[1] - fold.line[0]).normalized();
     const auto off = [&](int v) {
@@ -263,12 +263,12 @@ TEST(Unstructured, HoldsItsAngleOnAnyRectangle)
 
 // --- folds
 
-Fold fold_along(const Vec2& p, const Vec2& q)
+FoldLine fold_along(const Vec2& p, const Vec2& q)
 {
     return {{p, q}, 90.0};
 }
 
-TEST(FoldLines, AlongThePatternsOwnEdgesLeaveItAsItIs)
+TEST(MeshLines, AlongThePatternsOwnEdgesLeaveItAsItIs)
 {
     for (const GridPattern pattern : kRegular) {
         ClothGrid grid = make_grid({1, 1}, {10, 10}, pattern);
@@ -289,7 +289,7 @@ TEST(FoldLines, AlongThePatternsOwnEdgesLeaveItAsItIs)
     }
 }
 
-TEST(FoldLines, BetweenThePatternsEdgesAreCutIn)
+TEST(MeshLines, BetweenThePatternsEdgesAreCutIn)
 {
     for (const GridPattern pattern : kAll) {
         for (double u = 0.501; u < 0.6; u += 0.0077) {
@@ -305,7 +305,7 @@ TEST(FoldLines, BetweenThePatternsEdgesAreCutIn)
     }
 }
 
-TEST(FoldLines, SlantedAndCrossingKeepTheirAngles)
+TEST(MeshLines, SlantedAndCrossingKeepTheirAngles)
 {
     std::mt19937 random(7);
     const auto place = [&] { return std::uniform_real_distribution<>(0.15, 0.85)(random); };
@@ -316,13 +316,14 @@ TEST(FoldLines, SlantedAndCrossingKeepTheirAngles)
         const ClothMesh mesh = make_cloth_grid(grid);
         SCOPED_TRACE(k);
         expect_sound(mesh, grid.size);
-        for (const Fold& fold : grid.folds) expect_covered(mesh, fold, (fold.line[1] - fold.line[0]).norm());
+        for (const FoldLine& fold : grid.folds)
+            expect_covered(mesh, fold, (fold.line[1] - fold.line[0]).norm());
         const bool is_refined = grid.pattern == GridPattern::Unstructured;
         EXPECT_GE(least_angle(mesh), is_refined ? kRefinedFloor : kFoldedFloor);
     }
 }
 
-TEST(FoldLines, ThroughCornersAlongDiagonalsAndAlongTheBorderAreSound)
+TEST(MeshLines, ThroughCornersAlongDiagonalsAndAlongTheBorderAreSound)
 {
     for (const GridPattern pattern : kAll) {
         for (const double angle : {0.0, 30.0}) {
@@ -332,13 +333,13 @@ TEST(FoldLines, ThroughCornersAlongDiagonalsAndAlongTheBorderAreSound)
                           fold_along({0.5, 1}, {0.7, 0}), fold_along({1, 1}, {0, 0})};
             const ClothMesh mesh = make_cloth_grid(grid);
             expect_sound(mesh, grid.size);
-            for (const Fold& fold : grid.folds)
+            for (const FoldLine& fold : grid.folds)
                 expect_covered(mesh, fold, (fold.line[1] - fold.line[0]).norm());
         }
     }
 }
 
-TEST(FoldLines, CloseTogetherOrConcurrentAreSound)
+TEST(MeshLines, CloseTogetherOrConcurrentAreSound)
 {
     for (const GridPattern pattern : kAll) {
         ClothGrid grid = make_grid({1, 1}, {8, 8}, pattern, 10.0);
@@ -347,12 +348,12 @@ TEST(FoldLines, CloseTogetherOrConcurrentAreSound)
                       fold_along({0.0, 0.5}, {1.0, 0.5})};
         const ClothMesh mesh = make_cloth_grid(grid);
         expect_sound(mesh, grid.size);
-        for (const Fold& fold : {grid.folds[0], grid.folds[1], grid.folds[4]})
+        for (const FoldLine& fold : {grid.folds[0], grid.folds[1], grid.folds[4]})
             expect_covered(mesh, fold, 1.0);
     }
 }
 
-TEST(FoldLines, NastyOnesAreSoundAtEveryScale)
+TEST(MeshLines, NastyOnesAreSoundAtEveryScale)
 {
     std::mt19937 random(3);
     const auto uniform = [&] { return std::uniform_real_distribution<>(0, 1)(random); };
@@ -368,8 +369,8 @@ TEST(FoldLines, NastyOnesAreSoundAtEveryScale)
             return uniform() < 0.25 ? std::round(4.0 * c) / 4.0 : c;
         };
         for (int f = 0; f < 1 + k % 4; ++f) {
-            const Fold fold = fold_along(grid.size.cwiseProduct(Vec2(coordinate(), coordinate())),
-                                         grid.size.cwiseProduct(Vec2(coordinate(), coordinate())));
+            const FoldLine fold = fold_along(grid.size.cwiseProduct(Vec2(coordinate(), coordinate())),
+                                             grid.size.cwiseProduct(Vec2(coordinate(), coordinate())));
             if ((fold.line[1] - fold.line[0]).norm() > 1e-3 * scale) grid.folds.push_back(fold);
         }
         const ClothMesh mesh = make_cloth_grid(grid);
@@ -469,8 +470,8 @@ TEST(ClothGrid, RefusesWhatHasNoMesh)
     refused(make_grid({1e6, 1e-3}, {1000, 1}, GridPattern::Cross, 45.0));
     refused(make_grid({1e6, 1e-3}, {1, 1}, GridPattern::Unstructured));
     ClothGrid grid = make_grid({1, 1}, {4, 4}, GridPattern::Diagonal);
-    for (const Fold& fold : {fold_along({2, 0}, {2, 1}), fold_along({0.5, 0.5}, {0.5, 0.5}),
-                             fold_along({nan, 0}, {1, 1}), fold_along({-1, 1}, {1, -1})}) {
+    for (const FoldLine& fold : {fold_along({2, 0}, {2, 1}), fold_along({0.5, 0.5}, {0.5, 0.5}),
+                                 fold_along({nan, 0}, {1, 1}), fold_along({-1, 1}, {1, -1})}) {
         grid.folds = {fold};
         refused(grid);
     }

@@ -249,7 +249,7 @@ TEST(ClothOutline, IsAFunctionOfItsArguments)
 
 TEST(ClothOutline, RefusesPartsOfTheBorderThatNearlyTouch)
 {
-    const auto refusal = [](const BorderLoops& border, const std::vector<Fold>& folds) -> std::string {
+    const auto refusal = [](const BorderLoops& border, const std::vector<FoldLine>& folds) -> std::string {
         try {
             make_cloth_outline({border, 0.05, folds});
         } catch (const InputError& error) {
@@ -477,7 +477,7 @@ TEST(BorderDefect, AgreesWithBruteForceOnASmallGrid)
 // --- folds
 
 // Length of the mesh edges that lie on the fold's line.
-double length_on(const Fold& fold, const ClothMesh& mesh)
+double length_on(const FoldLine& fold, const ClothMesh& mesh)
 {
     const Vec2 along = (fold.line[1] - fold.line[0]).normalized();
     const auto off = [&](int v) {
@@ -495,7 +495,7 @@ double length_on(const Fold& fold, const ClothMesh& mesh)
 struct FoldedShape {
     const char* name;
     BorderLoops border;
-    Fold fold;
+    FoldLine fold;
     double length;  // of the line inside the cloth or on its border
 };
 
@@ -531,19 +531,20 @@ TEST(ClothOutline, IsFoldedAlongEveryPartOfALineInIt)
 TEST(ClothOutline, IsFoldedAlongCrossingLines)
 {
     const BorderLoops border = {regular(48, 0.5)};
-    const std::vector<Fold> folds = {{{Vec2(-1, 0.02), Vec2(1, 0.1)}, 30.0},
-                                     {{Vec2(0.1, -1), Vec2(0.1, 1)}, 0.0},
-                                     {{Vec2(-1, -1), Vec2(1, 1)}, 0.0}};
+    const std::vector<FoldLine> folds = {{{Vec2(-1, 0.02), Vec2(1, 0.1)}, 30.0},
+                                         {{Vec2(0.1, -1), Vec2(0.1, 1)}, 0.0},
+                                         {{Vec2(-1, -1), Vec2(1, 1)}, 0.0}};
     const ClothMesh mesh = make_cloth_outline({border, 0.05, folds});
     expect_sound(mesh, border);
-    for (const Fold& fold : folds) EXPECT_GT(length_on(fold, mesh), 0.9);
+    for (const FoldLine& fold : folds) EXPECT_GT(length_on(fold, mesh), 0.9);
 }
 
 TEST(ClothOutline, RefusesFoldsThatMissIt)
 {
     const BorderLoops ell = {{{0, 0}, {1, 0}, {1, 0.4}, {0.4, 0.4}, {0.4, 1}, {0, 1}}};
-    for (const Fold& fold : {Fold{{Vec2(2, 0), Vec2(2, 1)}, 10.0}, Fold{{Vec2(1.4, 0), Vec2(0, 1.4)}, 10.0},
-                             Fold{{Vec2(2, 0), Vec2(0, -2)}, 10.0}, Fold{{Vec2(0, 1), Vec2(-1, 0)}, 10.0}})
+    for (const FoldLine& fold :
+         {FoldLine{{Vec2(2, 0), Vec2(2, 1)}, 10.0}, FoldLine{{Vec2(1.4, 0), Vec2(0, 1.4)}, 10.0},
+          FoldLine{{Vec2(2, 0), Vec2(0, -2)}, 10.0}, FoldLine{{Vec2(0, 1), Vec2(-1, 0)}, 10.0}})
         EXPECT_THROW(make_cloth_outline({ell, 0.1, {fold}}), InputError);
 }
 

@@ -96,10 +96,10 @@ TEST(ClearAhead, LeavesRoomForTheWholeWay)
         const MeshTarget target = target_of(cloth);
         cut(surgery, target, {{0.2, 0.4}, {0.5, 0.45}, {0.8, 0.4}}, 1);
         clean_up(surgery, target);
-        std::vector<TraceAdvance> advances;
+        std::vector<TraceShift> shifts;
         for (const VertexMove& move : shifted(surgery, 1, {0, way}))
-            advances.push_back({move.vertex, {0, way}});
-        EXPECT_TRUE(clear_ahead(surgery, target, advances).blocked.empty());
+            shifts.push_back({move.vertex, {0, way}});
+        EXPECT_TRUE(clear_ahead(surgery, target, shifts).blocked.empty());
         EXPECT_EQ(check.find_wrong(surgery), "");
         // At least the way and 30 % of the target length are clear. On this way no face is inverted.
         const double clear = std::max(way, 0.3 * 1.14 * cloth.cell);
@@ -127,10 +127,9 @@ TEST(ClearAhead, ThreeTenthsOfTheTargetLengthAreClearHoweverSmallTheStep)
         const VertexId above = nearest_vertex(surgery, {0.25, 0.625});
         const SurgeryProposal split = surgery.propose_edge_split(node, above, height);
         ASSERT_EQ(surgery.commit(split), Verdict::Done);
-        std::vector<TraceAdvance> advances;
-        for (const VertexMove& move : shifted(surgery, 1, {0, 0}))
-            advances.push_back({move.vertex, {0, 1e-9}});
-        EXPECT_TRUE(clear_ahead(surgery, target, advances).blocked.empty());
+        std::vector<TraceShift> shifts;
+        for (const VertexMove& move : shifted(surgery, 1, {0, 0})) shifts.push_back({move.vertex, {0, 1e-9}});
+        EXPECT_TRUE(clear_ahead(surgery, target, shifts).blocked.empty());
         EXPECT_EQ(surgery.has_vertex(split.event.changes[0].vertex), height > 0.3 * 1.14);
     }
 }
@@ -179,9 +178,9 @@ TEST(ClearAhead, WhatItCallsClearIsClearForRandomTracesAndWays)
         clean_up(surgery, target);
         const double angle = 6.28 * unit(random);
         const Vec2 way = 2.5 * cloth.cell * unit(random) * Vec2(std::cos(angle), std::sin(angle));
-        std::vector<TraceAdvance> advances;
-        for (const VertexMove& move : shifted(surgery, 1, way)) advances.push_back({move.vertex, way});
-        const bool is_blocked = !clear_ahead(surgery, target, advances).blocked.empty();
+        std::vector<TraceShift> shifts;
+        for (const VertexMove& move : shifted(surgery, 1, way)) shifts.push_back({move.vertex, way});
+        const bool is_blocked = !clear_ahead(surgery, target, shifts).blocked.empty();
         ASSERT_EQ(check.find_wrong(surgery), "") << seed;
         ++trials;
         blocked += is_blocked ? 1 : 0;
@@ -216,10 +215,10 @@ TEST(ClearAhead, ACornerThatSlidesAlongItsEdgeTakesInTheVerticesOfTheEdge)
     const VertexId corner = cut(surgery, target, {{0.25, 0.5}, {0.5, 0.5}, {0.5, 0.25}}, 1)[1];
     const VertexId on_arm = trace_vertex(surgery, {0.375, 0.5});
     const VertexId end = trace_vertex(surgery, {0.25, 0.5});
-    std::vector<TraceAdvance> advances;
+    std::vector<TraceShift> shifts;
     for (const VertexMove& move : corner_moves(surgery, way))
-        advances.push_back({move.vertex, move.material - surgery.material(move.vertex)});
-    EXPECT_TRUE(clear_ahead(surgery, target, advances).blocked.empty());
+        shifts.push_back({move.vertex, move.material - surgery.material(move.vertex)});
+    EXPECT_TRUE(clear_ahead(surgery, target, shifts).blocked.empty());
     EXPECT_EQ(check.find_wrong(surgery), "");
     EXPECT_FALSE(surgery.has_vertex(on_arm));
     EXPECT_NE(surgery.edge_tag(corner, end), kNoTag);
@@ -253,10 +252,10 @@ TEST(ClearAhead, LeavesNoFaceOfWhichRoundingDecidesWhichSideIsUp)
         for (const VertexId v : surgery.result().ids)
             for (const VertexId w : surgery.ring(v).vertices)
                 if (unit(random) < 0.05) surgery.commit(surgery.propose_edge_split(v, w, 0.3));
-        std::vector<TraceAdvance> advances;
+        std::vector<TraceShift> shifts;
         for (const VertexMove& move : shifted(surgery, 1, {0, 0}))
-            advances.push_back({move.vertex, {0.05 * unit(random), 0.2 * unit(random)}});
-        clear_ahead(surgery, target, advances);
+            shifts.push_back({move.vertex, {0.05 * unit(random), 0.2 * unit(random)}});
+        clear_ahead(surgery, target, shifts);
         least = std::min(least, least_material_angle(surgery.result().mesh));
     }
     EXPECT_GT(least, 0.09);
@@ -292,14 +291,14 @@ TEST(ClearAhead, TheBorderStaysAsItIsWhereATraceComesNearIt)
         cut(surgery, target, {0.1 * u + 0.03 * v, 0.9 * u + 0.03 * v}, 1);
         clean_up(surgery, target);
         const int vertices = surgery.vertex_count();
-        std::vector<TraceAdvance> advances;
+        std::vector<TraceShift> shifts;
         for (const VertexMove& move : shifted(surgery, 1, {0, 0})) {
             // Some ways lead beyond the border, where only the share of the way on the cloth must be clear.
-            const bool is_tip = advances.size() % 2 == 1;
-            advances.push_back({move.vertex, (is_tip ? -0.04 : -0.02) * v, is_tip ? 0.5 : 1.0});
+            const bool is_tip = shifts.size() % 2 == 1;
+            shifts.push_back({move.vertex, (is_tip ? -0.04 : -0.02) * v, is_tip ? 0.5 : 1.0});
         }
-        EXPECT_GT(advances.size(), 5u);
-        EXPECT_TRUE(clear_ahead(surgery, target, advances).blocked.empty()) << cloth.name;
+        EXPECT_GT(shifts.size(), 5u);
+        EXPECT_TRUE(clear_ahead(surgery, target, shifts).blocked.empty()) << cloth.name;
         EXPECT_EQ(surgery.vertex_count(), vertices) << cloth.name;
     }
 }
@@ -310,11 +309,11 @@ TEST(ClearAhead, IsBlockedByFixedVerticesOtherTracesAndTheGuard)
     const MeshTarget target = target_of(cloth);
     const auto blocked = [&](ClothSurgery& surgery) {
         cut(surgery, target, {{0.25, 0.25}, {0.75, 0.25}}, 1);
-        std::vector<TraceAdvance> advances;
+        std::vector<TraceShift> shifts;
         for (const VertexMove& move : shifted(surgery, 1, {0, 0.3}))
-            advances.push_back({move.vertex, {0, 0.3}});
+            shifts.push_back({move.vertex, {0, 0.3}});
         const SurgeryCheck check(surgery);
-        const bool is_blocked = !clear_ahead(surgery, target, advances).blocked.empty();
+        const bool is_blocked = !clear_ahead(surgery, target, shifts).blocked.empty();
         EXPECT_EQ(check.find_wrong(surgery), "");
         return is_blocked;
     };
@@ -346,10 +345,10 @@ TEST(ClearAhead, TracesNearerThanTheRoomAheadAreInEachOthersWayOnlyWhereTheyMeet
         clean_up(surgery, target);
         const std::vector<VertexMove> low = shifted(surgery, 1, {0, way}),
                                       high = shifted(surgery, 2, {0, -way});
-        std::vector<TraceAdvance> advances;
-        for (const VertexMove& move : low) advances.push_back({move.vertex, {0, way}});
-        for (const VertexMove& move : high) advances.push_back({move.vertex, {0, -way}});
-        const ClearanceReport cleared = clear_ahead(surgery, target, advances);
+        std::vector<TraceShift> shifts;
+        for (const VertexMove& move : low) shifts.push_back({move.vertex, {0, way}});
+        for (const VertexMove& move : high) shifts.push_back({move.vertex, {0, -way}});
+        const ClearanceReport cleared = clear_ahead(surgery, target, shifts);
         EXPECT_EQ(cleared.blocked.empty(), 2.0 * way < kGap) << way;
         EXPECT_EQ(check.find_wrong(surgery), "");
         if (2.0 * way > kGap) continue;

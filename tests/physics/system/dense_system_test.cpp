@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "physics/forces/make_terms.h"
 #include "physics/system/dense_system.h"
+#include "physics/forces/make_terms.h"
 
 #include <gtest/gtest.h>
 

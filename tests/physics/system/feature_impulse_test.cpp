@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "physics/forces/make_terms.h"
 #include "physics/system/feature_impulse.h"
+#include "physics/forces/make_terms.h"
 
 #include <gtest/gtest.h>
 

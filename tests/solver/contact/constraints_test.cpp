@@ -26,8 +26,8 @@ ConstraintRow row_of(const Vec3& normal, double gap)
     at.drift = {Vec3::Zero()};
     std::vector<Contact> contacts(1);
     Contact& contact = contacts[0];
-    contact.point_in_frame = Vec3::Zero();
-    contact.normal_in_frame = normal;
+    contact.local_point = Vec3::Zero();
+    contact.local_normal = normal;
     contact.vertices[0] = 0;
     contact.weights[0] = 1.0;
     contact.kind = ContactKind::Vertex;

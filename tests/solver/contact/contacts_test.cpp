@@ -80,8 +80,8 @@ struct Landed {
         carrier.before = scene.obstacles[0].at(0.0).placement;
         carrier.begin = scene.obstacles[0].at(kStep).placement;
         carrier.end = scene.obstacles[0].at(2.0 * kStep).placement;
-        carrier.motion.begin = to_frame(carrier.begin, state.mesh.world);
-        carrier.motion.end = to_frame(carrier.end, prediction.position);
+        carrier.motion.begin = to_local(carrier.begin, state.mesh.world);
+        carrier.motion.end = to_local(carrier.end, prediction.position);
         steps.obstacles = {carrier};
     }
 

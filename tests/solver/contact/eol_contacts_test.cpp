@@ -33,7 +33,8 @@ TEST(EolContacts, WhatIsOnItsWayOutIsNotHeldToItsSpeed)
         const std::vector<MeshEdge> edges = testing::edges_of(cloth.state);
         const Prediction prediction = predict(cloth.state, Integrator::Bdf2, 0.005);
         Carriers steps = move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
-        std::vector<Contact> contacts = find_contacts(cloth.scene, cloth.state, prediction, steps);
+        std::vector<Contact> contacts =
+            find_contacts_with_obstacles(cloth.scene, cloth.state, prediction, steps);
         ASSERT_EQ(add_eol_contacts(cloth.scene, cloth.state, cloth.stars(), prediction, prediction.gamma,
                                    steps, contacts)
                       .size(),
@@ -68,13 +69,14 @@ TEST(EolContacts, GoAlongWithAVertexThatSlidesAlongItsFeature)
         const std::vector<MeshEdge> edges = testing::edges_of(cloth.state);
         const Prediction prediction = predict(cloth.state, Integrator::Bdf2, 0.005);
         Carriers steps = move_obstacles(cloth.scene, cloth.state, edges, prediction, {}, 0.005);
-        std::vector<Contact> contacts = find_contacts(cloth.scene, cloth.state, prediction, steps);
+        std::vector<Contact> contacts =
+            find_contacts_with_obstacles(cloth.scene, cloth.state, prediction, steps);
         add_eol_contacts(cloth.scene, cloth.state, cloth.stars(), prediction, prediction.gamma, steps,
                          contacts);
         for (const Contact& contact : contacts)
             EXPECT_TRUE(contact.eol >= 0 || !contact.is_vertex() ||
                         cloth.state.eol_entry(cloth.state.ids[contact.vertices[0]]) < 0)
-                << (is_wire ? "wire" : "ridge") << ", at " << contact.point_in_frame.y();
+                << (is_wire ? "wire" : "ridge") << ", at " << contact.local_point.y();
     }
 }
 

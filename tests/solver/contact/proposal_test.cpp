@@ -63,7 +63,7 @@ struct Above {
 
     void expect_free() const
     {
-        const std::vector<Vec3> end = to_frame(scene.obstacles[0].at(kStep).placement, proposal.world);
+        const std::vector<Vec3> end = to_local(scene.obstacles[0].at(kStep).placement, proposal.world);
         EXPECT_FALSE(find_penetration(scene.obstacles[0].shape(), end, state.mesh.faces).is_any());
     }
 };
@@ -155,7 +155,7 @@ TEST(CheckProposal, NamesWhatWouldHavePreventedIt)
     for (const Contact& contact : violations.contacts) {
         EXPECT_EQ(contact.obstacle, 0);
         const double end =
-            contact.normal.dot(contact.at(above.proposal.world) - above.steps[0].end(contact.point_in_frame));
+            contact.normal.dot(contact.at(above.proposal.world) - above.steps[0].end(contact.local_point));
         EXPECT_LT(end, contact.least_gap) << "the end violates it";
     }
 }

@@ -435,7 +435,7 @@ TEST(EolPlacing, AtTheClothsOwnCorners)
         cloth.add_eol(v, false, testing::tip_of(cloth.scene.obstacles[0].shape()));
         const EolPlacing placing = cloth.place(v);
         ASSERT_FALSE(placing.coordinates);
-        EXPECT_EQ(placing.refusal, RowCause::ClothCorner);
+        EXPECT_EQ(placing.refusal, ConstraintCause::ClothCorner);
     }
 }
 
@@ -448,7 +448,7 @@ TEST(EolPlacing, WhereTheTraceMeetsTheBorderAtLessThan20Degrees)
         const EolPlacing placing = cloth.place(v);
         ASSERT_EQ(placing.coordinates.has_value(), std::abs(turn) > 20.0) << turn;
         if (!placing.coordinates) {
-            EXPECT_EQ(placing.refusal, RowCause::AlongBorder);
+            EXPECT_EQ(placing.refusal, ConstraintCause::AlongBorder);
         }
     }
 }
@@ -469,7 +469,7 @@ TEST(EolPlacing, WhereTheBorderHasTurnedAlongTheFeature)
         const EolPlacing placing = cloth.place(v);
         ASSERT_EQ(placing.coordinates.has_value(), std::abs(turned) < 70.0) << turned;
         if (!placing.coordinates) {
-            EXPECT_EQ(placing.refusal, RowCause::AlongBorder);
+            EXPECT_EQ(placing.refusal, ConstraintCause::AlongBorder);
         }
     }
 }
@@ -494,7 +494,7 @@ TEST(EolPlacing, OfACornerOnTheBorder)
     cloth.add_eol(v, true, testing::end_of(cloth.scene.obstacles[0].shape()));
     const EolPlacing placing = cloth.place(v);
     ASSERT_FALSE(placing.coordinates);
-    EXPECT_EQ(placing.refusal, RowCause::AlongBorder);
+    EXPECT_EQ(placing.refusal, ConstraintCause::AlongBorder);
 }
 
 TEST(EolPlacing, OfFlatClothThatAllButContainsTheOutwardDirection)
@@ -506,7 +506,7 @@ TEST(EolPlacing, OfFlatClothThatAllButContainsTheOutwardDirection)
         const EolPlacing placing = place_middle(cloth);
         ASSERT_EQ(placing.coordinates.has_value(), lean > 10.0) << lean;
         if (!placing.coordinates) {
-            EXPECT_EQ(placing.refusal, RowCause::EdgeOn);
+            EXPECT_EQ(placing.refusal, ConstraintCause::EdgeOn);
         }
     }
     // Cloth that is folded at the ridge is never edge-on.
@@ -517,7 +517,7 @@ TEST(EolPlacing, OfCollapsedClothAndOfAWireWhoseClothTellsNoSide)
 {
     EolCloth wire = on_wire({8, 0.0, 180.0});
     for (Vec3& x : wire.state.mesh.world) x = Vec3(0, x.y(), 0);  // all cloth collapsed to the wire's line
-    EXPECT_EQ(place_middle(wire, true).refusal, RowCause::NoDirection);
+    EXPECT_EQ(place_middle(wire, true).refusal, ConstraintCause::NoDirection);
     EXPECT_FALSE(place_middle(wire, true).coordinates);
 
     EolCloth point = on_ridge({8, 0.0, 180.0});

@@ -192,7 +192,7 @@ TEST(TurnOutward, StaysOffTheClothsSides)
 
 /// Least distance between the wire and the edge from the vertex to the place `begin`, moved onto its bound;
 /// over the vertex's height.
-double find_nearest(const FoldBound& bound, const Wire& wire, const Vec3& begin, double height)
+double find_nearest(const FoldPlaneBound& bound, const Wire& wire, const Vec3& begin, double height)
 {
     const Vec3 kept = begin - (bound.normal.dot(begin - wire.point) - bound.least_gap) * bound.normal;
     const Vec3 reach = 10.0 * wire.tangent();
@@ -201,7 +201,7 @@ double find_nearest(const FoldBound& bound, const Wire& wire, const Vec3& begin,
     return (pair.first - pair.second).norm() / height;
 }
 
-TEST(FoldBound, KeepsTheEdgeOffTheWire)
+TEST(FoldPlaneBound, KeepsTheEdgeOffTheWire)
 {
     std::mt19937 random(4);
     std::uniform_real_distribution<double> any(0.0, 1.0);
@@ -211,7 +211,7 @@ TEST(FoldBound, KeepsTheEdgeOffTheWire)
         for (const int side : {1, -1}) {
             const Vec3 begin = wire.at(side * angle, 0.01 + any(random), any(random));
             const int told = angle_behind(wire.frame(), begin) > 0.0 ? 1 : -1;
-            const FoldBound bound = find_fold_bound(wire.frame(), begin, told);
+            const FoldPlaneBound bound = find_fold_plane_bound(wire.frame(), begin, told);
             EXPECT_GT(bound.least_gap, 0.0);
             EXPECT_EQ(bound.least_gap, bound.wanted);
             const double below = -wire.outward().dot(begin - wire.point);
@@ -220,19 +220,19 @@ TEST(FoldBound, KeepsTheEdgeOffTheWire)
     }
 }
 
-TEST(FoldBound, LetsWhatIsNearerGetNoNearer)
+TEST(FoldPlaneBound, LetsWhatIsNearerGetNoNearer)
 {
     const Wire wire(5);
     // Angles over the least angle; negative: on the wrong side.
     for (const double share : {0.5, 1e-3, -0.5, -20.0}) {
         const Vec3 begin = wire.at(share * kLeast, 0.1);
         const int side = angle_behind(wire.frame(), wire.at(0.1, 0.1)) > 0.0 ? 1 : -1;
-        const FoldBound bound = find_fold_bound(wire.frame(), begin, side);
+        const FoldPlaneBound bound = find_fold_plane_bound(wire.frame(), begin, side);
         EXPECT_NEAR(bound.least_gap, 0.1 * std::sin(share * kLeast), kRoundOff);
         EXPECT_NEAR(bound.wanted, kLeast * 0.1 * std::cos(share * kLeast), kRoundOff);
     }
     // There is no fold plane in front of the wire.
-    EXPECT_EQ(find_fold_bound(wire.frame(), wire.at(2.0, 0.1), 1).wanted, 0.0);
+    EXPECT_EQ(find_fold_plane_bound(wire.frame(), wire.at(2.0, 0.1), 1).wanted, 0.0);
 }
 
 }  // namespace

@@ -325,7 +325,7 @@ TEST(Conform, WhatIsNotOnTheSideToWhichAWirePressesIsNoVertexOfIt)
         const ConformOutcome made = conform_cloth(cloth);
         EXPECT_EQ(made.mesh ? made.mesh->eol.empty() : true, below > 1.0) << below;
         for (const RefusedContact& refused : made.refused) {
-            EXPECT_TRUE(below < 1.0 || refused.cause == RowCause::OffPlane) << below;
+            EXPECT_TRUE(below < 1.0 || refused.cause == ConstraintCause::OffPlane) << below;
         }
     }
 }
@@ -504,9 +504,10 @@ TEST(Conform, BehindAFoldThatHasFlownOffWhatLiesFlatOnAFaceGetsNoTrace)
         ASSERT_GT(cloth.state.active.size(), 5u) << cells;
         const ConformOutcome outcome = conform_cloth(cloth);
         EXPECT_TRUE(!outcome.mesh || outcome.mesh->eol.size() == cloth.state.eol.size()) << cells;
-        EXPECT_GT(std::count_if(outcome.refused.begin(), outcome.refused.end(),
-                                [](const RefusedContact& r) { return r.cause == RowCause::FlatBehind; }),
-                  5)
+        EXPECT_GT(
+            std::count_if(outcome.refused.begin(), outcome.refused.end(),
+                          [](const RefusedContact& r) { return r.cause == ConstraintCause::FlatBehind; }),
+            5)
             << cells;
     }
 }

@@ -65,10 +65,11 @@ TEST(StepMesh, AVertexWhoseWayCannotBeClearedBecomesARow)
             choose_step_mesh(cloth.scene, {cloth.state.time, cloth.state.time + kStep},
                              cloth.state.time + kStep, FailedFlow(), cloth.state, cache, report)
                 .start;
-        EXPECT_GT(
-            std::count_if(cache.refused.begin(), cache.refused.end(),
-                          [](const RefusedContact& refused) { return refused.cause == RowCause::Blocked; }),
-            0);
+        EXPECT_GT(std::count_if(cache.refused.begin(), cache.refused.end(),
+                                [](const RefusedContact& refused) {
+                                    return refused.cause == ConstraintCause::Blocked;
+                                }),
+                  0);
         EXPECT_LT(start.eol.size(), eol);
     }
 }

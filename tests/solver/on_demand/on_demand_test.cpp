@@ -13,13 +13,13 @@
 
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
-#include "physics/forces/energies.h"
 #include "physics/elements/momentum_flux.h"
+#include "physics/forces/energies.h"
 #include "solver/buckling_seed.h"
 #include "solver/contact/audit.h"
 #include "solver/contact/proposal.h"
 #include "solver/mesh_change/step_mesh.h"
-#include "solver/remesh/cell_lengths.h"
+#include "solver/remesh/sizing_field.h"
 #include "solver/step.h"
 #include "tests/solver/on_demand/allocations.h"
 
@@ -111,10 +111,10 @@ std::map<std::string, double> count(const SheetRun& run)
         {"moved obstacles", run.work.carriers.obstacles.size()},
         {"contacts", run.work.contacts.size()},
         {"seconds of contacts", run.seconds.contacts},
-        {"rubbing contacts", run.work.rubs.size()},
+        {"slip contacts", run.work.slip_contacts.size()},
         {"faces to search for contact with itself", mesh.self_surface.faces.size()},
         {"mobility of vertices", run.work.mobility.size()},
-        {"target edge lengths", run.state.cell_lengths.size()},
+        {"target edge lengths", run.state.sizing_field.size()},
         {"EOL vertices", run.most_eol},
         {"conformed meshes", run.work.mesh.conformed.mesh.faces.size()},
         {"flow of material", run.work.linearization.flow.has_value() ? 1.0 : 0.0},
@@ -177,7 +177,7 @@ const Effect kEffects[] = {
          add_table(s);
          s.friction.emplace().coefficients = {0.5};
      },
-     with_obstacle({"rubbing contacts"})},
+     with_obstacle({"slip contacts"})},
     {"self_contact",
      [](Scene& s) { s.self_contact = ClothContact{1e-3}; },
      {"faces to search for contact with itself", "mobility of vertices"}},
@@ -259,8 +259,8 @@ const Stage kStages[] = {
          move_obstacles(r.scene, r.state, r.work.mesh.stars.topology.edges, r.work.prediction, {},
                         r.state.time + kStep);
      }},
-    {"find_contacts", "obstacle",
-     [](SheetRun& r) { find_contacts(r.scene, r.state, r.work.prediction, r.work.carriers); }},
+    {"find_contacts_with_obstacles", "obstacle",
+     [](SheetRun& r) { find_contacts_with_obstacles(r.scene, r.state, r.work.prediction, r.work.carriers); }},
     {"check_proposal", "obstacle",
      [](SheetRun& r) {
          check_proposal(r.scene, r.state, r.work.mesh.self_surface, r.work.proposal, r.work.prediction,

@@ -11,7 +11,7 @@
 #include "geometry/cloth_input/cloth_grid.h"
 #include "solver/advance.h"
 #include "solver/model/settings.h"
-#include "solver/remesh/cell_lengths.h"
+#include "solver/remesh/sizing_field.h"
 #include "solver/step.h"
 #include "solver/workspace.h"
 
@@ -52,7 +52,7 @@ Sheet make_sheet(int cells, float length, const std::function<Vec3(const Vec2&)>
     measure_first_mesh(mesh, remesh);
     sheet.scene.remesh = remesh;
     sheet.state = make_state(sheet.scene, std::move(mesh), Vec3::Zero());
-    std::fill(sheet.state.cell_lengths.begin(), sheet.state.cell_lengths.end(), length);
+    std::fill(sheet.state.sizing_field.begin(), sheet.state.sizing_field.end(), length);
     return sheet;
 }
 
@@ -71,7 +71,7 @@ TEST(Misfits, AreNoMoreLongEdgesThanTheBudgetHasRoomFor)
     EXPECT_EQ(count(5), 5u);
     EXPECT_EQ(count(0), 0u);
     EXPECT_EQ(count(-5), 0u);
-    std::fill(sheet.state.cell_lengths.begin(), sheet.state.cell_lengths.end(), 0.35f);
+    std::fill(sheet.state.sizing_field.begin(), sheet.state.sizing_field.end(), 0.35f);
     EXPECT_GT(count(-5), 0u) << "short edges give room";
 }
 
@@ -191,7 +191,7 @@ TEST(Misfits, ThatAreRefusedDoNotKeepFoldedClothFromBecomingCoarser)
                              [](const Vec2& X) { return X.x() > 0.501; });
     };
     sheet.state = make_state(sheet.scene, std::move(sheet.state.mesh), Vec3::Zero());
-    std::fill(sheet.state.cell_lengths.begin(), sheet.state.cell_lengths.end(), 0.3f);
+    std::fill(sheet.state.sizing_field.begin(), sheet.state.sizing_field.end(), 0.3f);
     const auto before = count_upper();
     advance(sheet, 60, 0.005);
     EXPECT_LT(10 * count_upper(), 6 * before) << "others are near the fold";

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "geometry/cloth_input/cloth_grid.h"
-#include "solver/model/cell_length.h"
-#include "solver/remesh/cell_lengths.h"
+#include "solver/model/target_length.h"
+#include "solver/remesh/sizing_field.h"
 #include "solver/step.h"
 
 namespace arris {
@@ -116,7 +116,7 @@ TEST(WantedLengths, HalveWhereClothIsCompressedAndCouldBuckle)
     EXPECT_NEAR(squeezed(0.996).in_the_middle(), 0.5, 1e-6) << "below the limit of .005";
     const Sheet sheet = squeezed(0.95);
     const double now =
-        interpolate(sheet.scene.remesh->grid, sheet.state.cell_lengths, Vec2(0.5, 0.5)) / kMeanEdge;
+        interpolate(sheet.scene.remesh->grid, sheet.state.sizing_field, Vec2(0.5, 0.5)) / kMeanEdge;
     EXPECT_NEAR(sheet.in_the_middle(), 0.5 * now, 0.01 * now);
 }
 
@@ -160,7 +160,7 @@ TEST(WantedLengths, GrowByOneFactorWhereTheBudgetIsSmaller)
     });
     const double free = sheet.in_the_middle();
     const double cell =
-        interpolate(sheet.scene.remesh->grid, sheet.state.cell_lengths, Vec2(0.5, 0.5)) / kMeanEdge;
+        interpolate(sheet.scene.remesh->grid, sheet.state.sizing_field, Vec2(0.5, 0.5)) / kMeanEdge;
     // Vertices go with 1 / length^2.
     const double vertices = sheet.state.mesh.vertex_count() * cell * cell / (free * free);
     sheet.scene.remesh->most_vertices = static_cast<int>(vertices / 4.0);
@@ -215,7 +215,7 @@ TEST(CellLengths, HalveInAHundredthOfASecondAndGrowMoreSlowly)
     });
     const ClothStars stars = make_stars(sheet.state.mesh.vertex_count(), sheet.state.mesh.faces);
     const auto now = [&] {
-        return interpolate(sheet.scene.remesh->grid, sheet.state.cell_lengths, Vec2(0.5, 0.5));
+        return interpolate(sheet.scene.remesh->grid, sheet.state.sizing_field, Vec2(0.5, 0.5));
     };
     const double begin = now();
     follow_wanted_lengths(sheet.scene, stars, 0.01 / kRemeshPeriod, sheet.state);

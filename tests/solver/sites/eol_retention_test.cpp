@@ -219,7 +219,7 @@ TEST(EolRetention, AtABendOfAWireNeedsTheRoomOfACorner)
         eol.outward = Vec3::UnitZ();
         if (is_bend) eol.on = FeatureId::bend(0, bend->feature, bend->end);
         const std::vector<EolRelease> released = find_releases(cloth.scene, cloth.state, cloth.stars());
-        for (const EolRelease& release : released) EXPECT_EQ(release.cause, RowCause::NearBorder);
+        for (const EolRelease& release : released) EXPECT_EQ(release.cause, ConstraintCause::NearBorder);
         return released.empty();
     };
     EXPECT_TRUE(is_kept(true, kRoomToStay.fixed + 0.05));

@@ -155,7 +155,7 @@ TEST(CondensedQp, RejectsWhatIsNotFiniteOrNotPositive)
 
 TEST(CondensedQp, IsSolvedWhereConstraintsDependOnEachOther)
 {
-    // S = G^T G with more columns than rows, some opposite or nearly equal, and the give of springs.
+    // S = G^T G with more columns than rows, some opposite or nearly equal, and the compliance of springs.
     std::mt19937 random(7);
     std::normal_distribution<double> normal;
     for (int trial = 0; trial < 100; ++trial) {

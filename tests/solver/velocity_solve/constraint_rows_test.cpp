@@ -289,7 +289,7 @@ TEST(ConstraintRows, OfWhichTheCoefficientsAreScaledSayTheSame)
 }
 
 /// Repeated rows are stiffer: they give way less than one, which gives way by less than this share.
-constexpr double kGive = 1e-4;
+constexpr double kCompliance = 1e-4;
 
 TEST(ConstraintRows, RepeatedAreWorthOne)
 {
@@ -311,7 +311,7 @@ TEST(ConstraintRows, RepeatedAreWorthOne)
             ASSERT_EQ(often.status, SolveStatus::Certified) << often.kkt_residual;
             EXPECT_LE(often.factorisations, 12);
             EXPECT_LE((often.velocity - once.velocity).lpNorm<Eigen::Infinity>(),
-                      kGive * once.velocity.lpNorm<Eigen::Infinity>());
+                      kCompliance * once.velocity.lpNorm<Eigen::Infinity>());
         }
 }
 
@@ -408,7 +408,7 @@ TEST(ConstraintRows, AgainstAnActiveBoundOfTheSameVertexGiveWay)
             if (is_guessed) owned.problem.row_guess = {30, 31};
             const VelocitySolution equal = solve(owned.problem);
             EXPECT_EQ(equal.status, SolveStatus::Certified) << equal.kkt_residual;
-            EXPECT_NEAR(equal.velocity[bounded], lower, kGive * std::abs(lower));
+            EXPECT_NEAR(equal.velocity[bounded], lower, kCompliance * std::abs(lower));
             owned.problem.rows.push_back(down);
             if (is_guessed) owned.problem.row_guess = {30, 31, 32};
             const VelocitySolution solution = solve(owned.problem);
@@ -458,8 +458,8 @@ TEST(ConstraintRows, HoldWhatIsAtRestThoughNothingMoves)
     for (int guess = 0; guess < 2; ++guess) {
         const VelocitySolution solution = solve(owned.problem);
         EXPECT_EQ(solution.status, SolveStatus::Certified);
-        EXPECT_LE(solution.velocity.lpNorm<Eigen::Infinity>(), kGive * 9.81 * shape.step);
-        EXPECT_NEAR(solution.row_multipliers[0], -fall[2], kGive * -fall[2]);
+        EXPECT_LE(solution.velocity.lpNorm<Eigen::Infinity>(), kCompliance * 9.81 * shape.step);
+        EXPECT_NEAR(solution.row_multipliers[0], -fall[2], kCompliance * -fall[2]);
         owned.problem.row_guess = {0};
     }
 }
@@ -476,13 +476,13 @@ TEST(ConstraintRows, CarryAWholeClothOnOnePoint)
     const VelocitySolution solution = solve(owned.problem);
     EXPECT_EQ(solution.status, SolveStatus::Certified);
     const ConstraintRows constraints = scale_rows(owned.problem, estimate_free_speed(owned.problem));
-    const double give = constraints.rows[0].give * solution.row_multipliers[0];
-    EXPECT_NEAR(solution.velocity[3 * 210 + 2], -give, 1e-9 * give);
-    EXPECT_LT(give, 0.01 * constraints.unmet_speed);
+    const double compliance = constraints.rows[0].compliance * solution.row_multipliers[0];
+    EXPECT_NEAR(solution.velocity[3 * 210 + 2], -compliance, 1e-9 * compliance);
+    EXPECT_LT(compliance, 0.01 * constraints.unmet_speed);
     // Told of its multiplier, the row holds exactly.
     owned.problem.rows[0].expected = solution.row_multipliers[0];
     const VelocitySolution held = solve(owned.problem);
-    EXPECT_NEAR(held.velocity[3 * 210 + 2], 0.0, 1e-4 * give);
+    EXPECT_NEAR(held.velocity[3 * 210 + 2], 0.0, 1e-4 * compliance);
 }
 
 TEST(ConstraintRows, ThatCarryAStackAreMet)
@@ -526,7 +526,7 @@ TEST(ConstraintRows, OfFixedCoordinatesAreMetOrImpossible)
     EXPECT_EQ(solve(problem).status, SolveStatus::Infeasible);
 }
 
-/// A pushing spring of `give` G: lambda = max(0, l - g^T u) / G, whatever else is solved.
+/// A pushing spring of compliance G: lambda = max(0, l - g^T u) / G, whatever else is solved.
 TEST(ConstraintRows, WithAGiveOfTheirOwnPressAsSprings)
 {
     for (const double give : {10.0, 1e3}) {
@@ -535,7 +535,7 @@ TEST(ConstraintRows, WithAGiveOfTheirOwnPressAsSprings)
         const VelocitySolution none = solve(problem);
         problem.rows = {make_row({{5, 1.0}, {8, -2.0}}, none.velocity[5] - 2.0 * none.velocity[8] + 0.5),
                         make_row({{11, 1.0}}, none.velocity[11] - 0.5)};
-        for (ConstraintRow& row : problem.rows) row.give = give;
+        for (ConstraintRow& row : problem.rows) row.compliance = give;
         const VelocitySolution solution = solve(problem);
         EXPECT_EQ(solution.status, SolveStatus::Certified);
         const double slip = problem.rows[0].lower - (solution.velocity[5] - 2.0 * solution.velocity[8]);
@@ -554,7 +554,7 @@ TEST(ConstraintRows, WithAGiveOfTheirOwnPressWhatIsHeldWithAKnownForce)
     VelocityProblem& problem = cloth.owned.problem;
     for (const int i : {0, 1, 2}) problem.is_fixed[i] = 1;
     problem.rows = {make_row({{2, 1.0}}, 0.1), make_row({{2, -1.0}}, -0.1)};
-    for (ConstraintRow& row : problem.rows) row.give = 4.0;
+    for (ConstraintRow& row : problem.rows) row.compliance = 4.0;
     const VelocitySolution solution = solve(problem);
     EXPECT_EQ(solution.status, SolveStatus::Certified);
     EXPECT_NEAR(solution.row_multipliers[0], 0.025, 1e-15);
@@ -572,7 +572,7 @@ TEST(ConstraintRows, CountNothingWhereTheyTouchTheFixed)
     const VelocitySolution solution = solve(problem);
     EXPECT_EQ(solution.status, SolveStatus::Certified);
     expect_same_velocity(solution, solve(without.problem));
-    EXPECT_NEAR(0.5 * solution.velocity[5] + 0.5 * solution.velocity[8], 0.3, kGive * 0.3);
+    EXPECT_NEAR(0.5 * solution.velocity[5] + 0.5 * solution.velocity[8], 0.3, kCompliance * 0.3);
 }
 
 TEST(ConstraintRows, AppendedAreResumedWithoutAFactorisation)

@@ -61,8 +61,8 @@ class LawsOfAParticle : public ::testing::Test {
 
 TEST_F(LawsOfAParticle, RowPushesByItsSpringOnly)
 {
-    const double give = constraints.rows[2].give;
-    EXPECT_NEAR(evaluate_at({1.0, 0.25 - give, 0.0}).multipliers[2], 1.0, 1e-6);
+    const double compliance = constraints.rows[2].compliance;
+    EXPECT_NEAR(evaluate_at({1.0, 0.25 - compliance, 0.0}).multipliers[2], 1.0, 1e-6);
     EXPECT_EQ(evaluate_at({1.0, 0.3, 0.0}).multipliers[2], 0.0);
     EXPECT_FALSE(evaluate_at({1.0, 0.3, 0.0}).wanted.is_pressing[2]);
     EXPECT_TRUE(evaluate_at({1.0, 0.2, 0.0}).wanted.is_pressing[2]);
@@ -70,10 +70,11 @@ TEST_F(LawsOfAParticle, RowPushesByItsSpringOnly)
 
 TEST_F(LawsOfAParticle, FrictionSticksWithinItsBudgetAndOpposesSlipBeyond)
 {
-    const double give = constraints.rows[0].give;
-    const ContactIterate sticking = evaluate_at({1.0, -give, 2.0 * give});
+    const double compliance = constraints.rows[0].compliance;
+    const ContactIterate sticking = evaluate_at({1.0, -compliance, 2.0 * compliance});
     EXPECT_LE((sticking.multipliers.head<2>() - Vector2d(1.0, -2.0)).norm(), 1e-6);
-    EXPECT_LE((sticking.wanted.stiffness[0] - Eigen::Matrix2d::Identity() / give).norm(), 1e-9 / give);
+    EXPECT_LE((sticking.wanted.stiffness[0] - Eigen::Matrix2d::Identity() / compliance).norm(),
+              1e-9 / compliance);
     const ContactIterate sliding = evaluate_at({1.0, -3.0, 4.0});
     EXPECT_LE((sliding.multipliers.head<2>() - 3.0 * Vector2d(0.6, -0.8)).norm(), 1e-9);
 }

@@ -27,9 +27,9 @@ ConstraintRow unit_row(int coordinate)
     return row;
 }
 
-/// Vertices that rest on bounds of their first coordinate and rub along the other two; some pairs and rows
+/// Vertices that rest on bounds of their first coordinate and slip along the other two; some pairs and rows
 /// lie across three vertices.
-OwnedProblem make_rubbing_problem(int vertices, std::mt19937& random)
+OwnedProblem make_slipping_problem(int vertices, std::mt19937& random)
 {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> chance;
@@ -88,11 +88,11 @@ Reference solve_by_descent(const VelocityProblem& problem)
         if (!problem.is_fixed[i] && std::isfinite(problem.lower[i])) bounds.push_back(i);
     const int m = count + static_cast<int>(bounds.size());
     Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, m);
-    Eigen::VectorXd lower(m), give = Eigen::VectorXd::Zero(m);
+    Eigen::VectorXd lower(m), compliance = Eigen::VectorXd::Zero(m);
     for (int k = 0; k < count; ++k) {
         for (const auto& [i, a] : rows.rows[k].entries) C(i, k) = a;
         lower[k] = rows.rows[k].lower;
-        give[k] = rows.rows[k].give;
+        compliance[k] = rows.rows[k].compliance;
     }
     for (int k = count; k < m; ++k) {
         C(bounds[k - count], k) = 1.0;
@@ -111,7 +111,7 @@ Reference solve_by_descent(const VelocityProblem& problem)
     const Eigen::LLT<Eigen::MatrixXd> factor(A);
     const Eigen::MatrixXd Y = factor.solve(C);
     Eigen::MatrixXd S = C.transpose() * Y;
-    S.diagonal() += give;
+    S.diagonal() += compliance;
     const Eigen::VectorXd free = factor.solve(b), q = C.transpose() * free - lower;
     Eigen::VectorXd z = Eigen::VectorXd::Zero(m);
     for (int sweep = 0; sweep < 20000; ++sweep) {
@@ -147,7 +147,7 @@ TEST(Friction, EqualsDescentOnTheDual)
     std::mt19937 random(3);
     int sticking = 0, sliding = 0;
     for (int trial = 0; trial < 200; ++trial) {
-        const OwnedProblem owned = make_rubbing_problem(2 + trial % 10, random);
+        const OwnedProblem owned = make_slipping_problem(2 + trial % 10, random);
         const VelocitySolution solution = VelocitySolver().solve(owned.problem, Settings());
         ASSERT_EQ(solution.status, SolveStatus::Certified) << trial;
         const Reference reference = solve_by_descent(owned.problem);
@@ -169,7 +169,7 @@ TEST(Friction, BudgetsFollowTheLaw)
 {
     // Budgets that fall with the pair's own friction, and depend on its neighbour's: a fixed point.
     std::mt19937 random(11);
-    OwnedProblem owned = make_rubbing_problem(100, random);
+    OwnedProblem owned = make_slipping_problem(100, random);
     const std::vector<FrictionPair> pairs = owned.problem.friction;
     owned.problem.law = [&](const VelocitySolution& solution) {
         std::vector<double> budgets;
@@ -195,7 +195,7 @@ TEST(Friction, NamesThePairThatIsFarthestOffItsLaw)
 {
     // The budgets asked for alternate for ever at one pair.
     std::mt19937 random(11);
-    OwnedProblem owned = make_rubbing_problem(40, random);
+    OwnedProblem owned = make_slipping_problem(40, random);
     const std::vector<FrictionPair> pairs = owned.problem.friction;
     const VelocitySolution tresca = VelocitySolver().solve(owned.problem, Settings());
     int sliding = 0;
@@ -215,7 +215,7 @@ TEST(Friction, NamesThePairThatIsFarthestOffItsLaw)
 TEST(Friction, RestsWhereNothingPushes)
 {
     std::mt19937 random(11);
-    OwnedProblem owned = make_rubbing_problem(40, random);
+    OwnedProblem owned = make_slipping_problem(40, random);
     owned.rhs.setZero();
     owned.problem.lower.setConstant(-std::numeric_limits<double>::infinity());
     for (FrictionPair& pair : owned.problem.friction) {
@@ -234,7 +234,7 @@ TEST(Friction, RestsWhereNothingPushes)
 TEST(Friction, TakesNoMoreWorkThanAllowed)
 {
     std::mt19937 random(11);
-    OwnedProblem owned = make_rubbing_problem(400, random);
+    OwnedProblem owned = make_slipping_problem(400, random);
     const double all = VelocitySolver().solve(owned.problem, Settings()).work;
     ASSERT_GT(all, 2.0);
     for (const double share : {0.3, 0.6, 0.9}) {
@@ -281,7 +281,7 @@ TEST(Friction, IsAccurateWhereAllMovesFast)
 TEST(Friction, WithoutBudgetChangesNothing)
 {
     std::mt19937 random(5);
-    OwnedProblem owned = make_rubbing_problem(8, random);
+    OwnedProblem owned = make_slipping_problem(8, random);
     for (FrictionPair& pair : owned.problem.friction) pair.budget = 0.0;
     const VelocitySolution with = VelocitySolver().solve(owned.problem, Settings());
     owned.problem.friction.clear();

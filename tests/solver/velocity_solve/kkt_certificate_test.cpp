@@ -137,7 +137,7 @@ struct WithRow {
     {
         owned.problem.rows[0].lower = lower;
         constraints = scale_rows(owned.problem, 1.0);
-        constraints.rows[0].give = 0.0;  // rigid, but where a test says otherwise
+        constraints.rows[0].compliance = 0.0;  // rigid, but where a test says otherwise
     }
     double residual() const
     {
@@ -168,9 +168,9 @@ TEST(KktCertificate, LetsARowGiveWayAsItsSpringDoes)
     WithRow row;
     row.set_bound(16.0);  // 4 for the scaled row, whose gap is -1 at lambda = 8/5
     EXPECT_NEAR(row.residual(), 1.0 / 3.8, 1e-12);
-    row.constraints.rows[0].give = 1.0 / 1.6;
+    row.constraints.rows[0].compliance = 1.0 / 1.6;
     EXPECT_LE(row.residual(), 1e-15);
-    row.constraints.rows[0].give = 1.1 / 1.6;  // the spring would push less
+    row.constraints.rows[0].compliance = 1.1 / 1.6;  // the spring would push less
     EXPECT_NEAR(row.residual(), 0.1 / 3.8, 1e-12);
 }
 

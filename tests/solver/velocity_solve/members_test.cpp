@@ -109,7 +109,7 @@ TEST_F(MembersOfACloth, RespondAsADenseSolveDoes)
         const Eigen::VectorXd change = members.change(forces, forward);
         const Eigen::VectorXd expected = dense_change(members, residual, forces);
         EXPECT_LE((change - expected).norm(), 1e-9 * expected.norm());
-        const Eigen::VectorXd displacement = response->now + response->offset + response->compliance * forces;
+        const Eigen::VectorXd displacement = response->now + response->offset + response->mobility * forces;
         for (int k = 0; k < members.size(); ++k) {
             const Member& member = members[k];
             double moved = response->now[k];
@@ -119,7 +119,7 @@ TEST_F(MembersOfACloth, RespondAsADenseSolveDoes)
                 for (const auto& [i, a] : constraints.rows[member.index].entries) moved += a * expected[i];
             EXPECT_NEAR(displacement[k], moved, 1e-9 * displacement.norm());
         }
-        EXPECT_LE((response->compliance - response->compliance.transpose()).norm(), 1e-12);
+        EXPECT_LE((response->mobility - response->mobility.transpose()).norm(), 1e-12);
     }
 }
 
@@ -130,7 +130,7 @@ TEST_F(MembersOfACloth, BaseHasTheSpringsOfItsState)
         if (!state.is_pressing[k]) continue;
         Eigen::VectorXd g = Eigen::VectorXd::Zero(expected.rows());
         for (const auto& [i, a] : constraints.rows[k].entries) g[i] = a;
-        expected += g * g.transpose() / constraints.rows[k].give;
+        expected += g * g.transpose() / constraints.rows[k].compliance;
     }
     EXPECT_LE((testing::dense_symmetric(base->matrix()) - expected).norm(), 1e-13 * expected.norm());
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/velocity_solve/friction_springs.h"
+#include "solver/velocity_solve/slip_law.h"
 #include "tests/solver/cloth_system.h"
 #include "tests/solver/row_problems.h"
 
@@ -59,20 +59,20 @@ class ModelsOfACloth : public ::testing::Test {
         const VelocityProblem& problem = owned.problem;
         const Eigen::MatrixXd A = testing::dense_symmetric(owned.matrix);
         double sum = 0.5 * u.dot(A * u) - owned.rhs.dot(u);
-        const auto push = [&](double depth, double give) {
-            if (depth > 0.0) sum += 0.5 * depth * depth / give;
+        const auto push = [&](double depth, double compliance) {
+            if (depth > 0.0) sum += 0.5 * depth * depth / compliance;
         };
         for (int i = 0; i < u.size(); ++i)
             if (std::isfinite(problem.lower[i])) push(problem.lower[i] - u[i], 1e-8 / A(i, i));
         for (int k = constraints.slip_count(); k < static_cast<int>(constraints.rows.size()); ++k)
-            push(-gap(constraints.rows[k], u, 0.0), constraints.rows[k].give);
+            push(-gap(constraints.rows[k], u, 0.0), constraints.rows[k].compliance);
         for (int p = 0; p < constraints.pair_count(); ++p) {
             Vector2d y = Vector2d::Zero();
             for (const int d : {0, 1})
                 for (const auto& [i, a] : constraints.rows[2 * p + d].entries) y[d] += a * u[i];
             const double v = unlimited_at(constraints, p, y).norm(), budget = constraints.budgets[p],
-                         give = constraints.rows[2 * p].give;
-            sum += give * (v <= budget ? 0.5 * v * v : budget * (v - 0.5 * budget));
+                         compliance = constraints.rows[2 * p].compliance;
+            sum += compliance * (v <= budget ? 0.5 * v * v : budget * (v - 0.5 * budget));
         }
         return sum;
     }

@@ -83,7 +83,7 @@ TEST(CountSteps, IsWhatTheTimelinePlans)
         const RunConfig config = load_scene(SceneSource{"s.toml", text, {"output.frames_per_second=" + fps}});
         const Timeline timeline(config);
         double planned = 0.0;
-        for (TimelinePosition at; !timeline.is_over(at); at = timeline.advance(at)) planned += 1.0;
+        for (TimelinePosition at; !timeline.is_over(at); at = timeline.next(at)) planned += 1.0;
         const double frames_per_second = config.output.frames_per_second;
         EXPECT_EQ(count_steps(config.duration, 0.007, frames_per_second, input_jumps(config.scene)), planned)
             << fps;

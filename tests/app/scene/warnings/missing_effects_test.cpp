@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/scene/scene_load.h"
 #include "app/scene/warnings/missing_effects.h"
+#include "app/scene/scene_load.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

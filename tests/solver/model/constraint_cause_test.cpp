@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/model/row_cause.h"
+#include "solver/model/constraint_cause.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using testing::kStep;
 using testing::lying;
 using testing::press_edges;
 
-int count(const ConformOutcome& outcome, RowCause cause)
+int count(const ConformOutcome& outcome, ConstraintCause cause)
 {
     return static_cast<int>(
         std::count_if(outcome.refused.begin(), outcome.refused.end(),
@@ -44,33 +44,34 @@ void hold(EolCloth& cloth, double from, double to)
     cloth.scene.pins = {pin};
 }
 
-TEST(RowCause, EachHasItsOwnName)
+TEST(ConstraintCause, EachHasItsOwnName)
 {
     std::set<std::string> names;
-    for (std::size_t k = 0; k < kRowCauses; ++k) names.insert(to_string(static_cast<RowCause>(k)));
-    EXPECT_EQ(names.size(), kRowCauses);
+    for (std::size_t k = 0; k < kConstraintCauses; ++k)
+        names.insert(to_string(static_cast<ConstraintCause>(k)));
+    EXPECT_EQ(names.size(), kConstraintCauses);
     EXPECT_FALSE(names.contains(""));
 }
 
-TEST(RowCause, WhatBecomesEolIsRefusedByNothing)
+TEST(ConstraintCause, WhatBecomesEolIsRefusedByNothing)
 {
     EolCloth cloth = lying(17.0);
     press_edges(cloth);
     const ConformOutcome outcome = conform_cloth(cloth);
     ASSERT_TRUE(outcome.mesh);
-    EXPECT_GE(outcome.mesh->report.inserted + count(outcome, RowCause::BesideEol),
+    EXPECT_GE(outcome.mesh->report.inserted + count(outcome, ConstraintCause::BesideEol),
               static_cast<int>(cloth.state.active.size()));
-    EXPECT_EQ(static_cast<int>(outcome.refused.size()), count(outcome, RowCause::BesideEol))
+    EXPECT_EQ(static_cast<int>(outcome.refused.size()), count(outcome, ConstraintCause::BesideEol))
         << "two edges that cross the feature at one vertex of the cloth";
 }
 
-TEST(RowCause, EveryRowNearABorderIsCounted)
+TEST(ConstraintCause, EveryRowNearABorderIsCounted)
 {
     EolCloth cloth = lying(0.0, 0.2 - 0.1 * kLyingCell);
     press_edges(cloth);
     const ConformOutcome outcome = conform_cloth(cloth);
     EXPECT_FALSE(outcome.mesh);
-    EXPECT_EQ(count(outcome, RowCause::NearBorder), static_cast<int>(cloth.state.active.size()));
+    EXPECT_EQ(count(outcome, ConstraintCause::NearBorder), static_cast<int>(cloth.state.active.size()));
     ASSERT_GT(cloth.state.active.size(), 6u);
     for (std::size_t k = 0; k < outcome.refused.size(); ++k) {
         EXPECT_EQ(outcome.refused[k].kind, ContactKind::Edge);
@@ -78,7 +79,7 @@ TEST(RowCause, EveryRowNearABorderIsCounted)
     }
 }
 
-TEST(RowCause, WhatComesFastToABorderIsNotNearItYet)
+TEST(ConstraintCause, WhatComesFastToABorderIsNotNearItYet)
 {
     // 34 mm of material are left; four steps use up 20 mm for each m/s. Negative speed moves the border away.
     for (const double speed : {1.5, 2.0, -2.0}) {
@@ -86,13 +87,13 @@ TEST(RowCause, WhatComesFastToABorderIsNotNearItYet)
         for (Vec3& v : cloth.state.velocity) v = Vec3(speed, 0, 0);
         press_edges(cloth);
         const ConformOutcome outcome = conform_cloth(cloth);
-        EXPECT_EQ(count(outcome, RowCause::BorderAhead),
+        EXPECT_EQ(count(outcome, ConstraintCause::BorderAhead),
                   speed > 1.7 ? static_cast<int>(cloth.state.active.size()) : 0);
-        EXPECT_EQ(count(outcome, RowCause::NearBorder), 0);
+        EXPECT_EQ(count(outcome, ConstraintCause::NearBorder), 0);
     }
 }
 
-TEST(RowCause, WhereTheBorderRunsAlongTheFeatureItIsNotTried)
+TEST(ConstraintCause, WhereTheBorderRunsAlongTheFeatureItIsNotTried)
 {
     for (const double turn : {8.0, 17.0, 23.0, 40.0}) {
         EolCloth cloth = lying(turn, 0.2);
@@ -105,12 +106,12 @@ TEST(RowCause, WhereTheBorderRunsAlongTheFeatureItIsNotTried)
         });
         ASSERT_EQ(cloth.state.active.size(), 1u) << turn;
         const ConformOutcome outcome = conform_cloth(cloth);
-        EXPECT_EQ(count(outcome, RowCause::AlongBorder), turn < 20.0 ? 1 : 0) << turn;
+        EXPECT_EQ(count(outcome, ConstraintCause::AlongBorder), turn < 20.0 ? 1 : 0) << turn;
         EXPECT_EQ(outcome.mesh.has_value(), turn > 20.0) << turn;
     }
 }
 
-TEST(RowCause, WhatHasComeToTheBorderIsCountedAsNearIt)
+TEST(ConstraintCause, WhatHasComeToTheBorderIsCountedAsNearIt)
 {
     EolCloth cloth = lying(0.0, 0.2 - 0.6 * kLyingCell);
     press_edges(cloth);
@@ -119,11 +120,11 @@ TEST(RowCause, WhatHasComeToTheBorderIsCountedAsNearIt)
     for (const EolVertex& e : cloth.state.eol)
         cloth.state.mesh.material[cloth.state.index_of(e.vertex_id)].x() = 0.1 * kLyingCell;
     const ConformOutcome outcome = conform_cloth(cloth);
-    EXPECT_EQ(count(outcome, RowCause::NearBorder), static_cast<int>(cloth.state.eol.size()));
-    EXPECT_EQ(count(outcome, RowCause::Released), 0);
+    EXPECT_EQ(count(outcome, ConstraintCause::NearBorder), static_cast<int>(cloth.state.eol.size()));
+    EXPECT_EQ(count(outcome, ConstraintCause::Released), 0);
 }
 
-TEST(RowCause, AVertexThatIsGivenUpIsCountedAndWhatIsNotTriedAgain)
+TEST(ConstraintCause, AVertexThatIsGivenUpIsCountedAndWhatIsNotTriedAgain)
 {
     EolCloth cloth = lying(17.0);
     press_edges(cloth);
@@ -133,16 +134,16 @@ TEST(RowCause, AVertexThatIsGivenUpIsCountedAndWhatIsNotTriedAgain)
     const ConformOutcome alone = conform_cloth(cloth, {{}, {given_up}});
     ASSERT_TRUE(alone.mesh);
     ASSERT_EQ(alone.refused.size(), 1u);
-    EXPECT_EQ(alone.refused[0].cause, RowCause::GivenUp);
+    EXPECT_EQ(alone.refused[0].cause, ConstraintCause::GivenUp);
     EXPECT_EQ(alone.refused[0].vertex_ids[0], given_up);
 
     EolCloth fresh = lying(17.0);
     fresh.state.active = rows;
     const ConformOutcome none = conform_cloth(fresh, {{}, {given_up}});
-    EXPECT_EQ(count(none, RowCause::GivenUp), static_cast<int>(rows.size()));
+    EXPECT_EQ(count(none, ConstraintCause::GivenUp), static_cast<int>(rows.size()));
 }
 
-TEST(RowCause, WhatIsReleasedIsCountedWithItsReason)
+TEST(ConstraintCause, WhatIsReleasedIsCountedWithItsReason)
 {
     EolCloth cloth = lying(17.0);
     press_edges(cloth);
@@ -157,13 +158,13 @@ TEST(RowCause, WhatIsReleasedIsCountedWithItsReason)
     last->idle = kIdleSteps;  // an end of the trace: it is not between two firm vertices
     const ConformOutcome idle = conform_cloth(cloth);
     ASSERT_EQ(idle.refused.size(), 1u);
-    EXPECT_EQ(idle.refused[0].cause, RowCause::Released);
+    EXPECT_EQ(idle.refused[0].cause, ConstraintCause::Released);
     EXPECT_EQ(idle.refused[0].vertex_ids[0], last->vertex_id);
-    EXPECT_EQ(idle.refused[0].vertex_ids[1], ActiveContact::kNoVertex);
+    EXPECT_EQ(idle.refused[0].vertex_ids[1], ContactVertexIds::kNoVertex);
     EXPECT_EQ(idle.refused[0].kind, ContactKind::Vertex);
 }
 
-TEST(RowCause, WhatLiesBetweenPressingContactsIsNoContact)
+TEST(ConstraintCause, WhatLiesBetweenPressingContactsIsNoContact)
 {
     // Two contacts press near the border, with other crossings between them. None becomes EOL, and only the
     // two contacts are counted.
@@ -174,42 +175,44 @@ TEST(RowCause, WhatLiesBetweenPressingContactsIsNoContact)
     EXPECT_EQ(conform_cloth(cloth).refused.size(), 2u);
 }
 
-TEST(RowCause, WhatHasNoCoordinatesSaysWhy)
+TEST(ConstraintCause, WhatHasNoCoordinatesSaysWhy)
 {
     // Upright cloth over the ridge: its plane contains the outward direction.
     EolCloth upright = lying(0.0);
     for (Vec3& x : upright.state.mesh.world) x = Vec3(0.0, x.y(), x.x() + 0.3);
     upright.add_eol(upright.vertex_at(0.2, 0.2), false, testing::tip_of(upright.scene.obstacles[0].shape()));
-    EXPECT_EQ(count(conform_cloth(upright), RowCause::EdgeOn), 1);
+    EXPECT_EQ(count(conform_cloth(upright), ConstraintCause::EdgeOn), 1);
 
     // A border along the ridge, and a corner of the cloth.
     EolCloth along = lying(0.0, 0.2);
     along.add_eol(along.vertex_at(0.0, 0.2), false, testing::tip_of(along.scene.obstacles[0].shape()));
-    EXPECT_EQ(count(conform_cloth(along), RowCause::AlongBorder), 1);
+    EXPECT_EQ(count(conform_cloth(along), ConstraintCause::AlongBorder), 1);
     EolCloth corner = lying(0.0, 0.2);
     corner.add_eol(corner.vertex_at(0.0, 0.0), false, testing::tip_of(corner.scene.obstacles[0].shape()));
-    EXPECT_EQ(count(conform_cloth(corner), RowCause::ClothCorner), 1);
+    EXPECT_EQ(count(conform_cloth(corner), ConstraintCause::ClothCorner), 1);
 
-    for (const RowCause cause :
-         {RowCause::NoDirection, RowCause::AlongBorder, RowCause::EdgeOn, RowCause::ClothCorner,
-          RowCause::OtherObstacle, RowCause::NearBorder, RowCause::AtEol, RowCause::FlatBehind})
+    for (const ConstraintCause cause :
+         {ConstraintCause::NoDirection, ConstraintCause::AlongBorder, ConstraintCause::EdgeOn,
+          ConstraintCause::ClothCorner, ConstraintCause::OtherObstacle, ConstraintCause::NearBorder,
+          ConstraintCause::AtEol, ConstraintCause::FlatBehind})
         EXPECT_TRUE(is_excluded(cause)) << to_string(cause);
-    for (const RowCause cause :
-         {RowCause::New, RowCause::NotCrossing, RowCause::BesideEol, RowCause::BorderAhead, RowCause::Guard,
-          RowCause::Quality, RowCause::OffPlane, RowCause::Blocked, RowCause::GivenUp, RowCause::Released,
-          RowCause::OtherFeature})
+    for (const ConstraintCause cause :
+         {ConstraintCause::New, ConstraintCause::NotCrossing, ConstraintCause::BesideEol,
+          ConstraintCause::BorderAhead, ConstraintCause::Guard, ConstraintCause::Quality,
+          ConstraintCause::OffPlane, ConstraintCause::Blocked, ConstraintCause::GivenUp,
+          ConstraintCause::Released, ConstraintCause::OtherFeature})
         EXPECT_FALSE(is_excluded(cause)) << to_string(cause);
 }
 
-TEST(RowCause, WhereHeldVerticesLeaveNoPlaceTheMeshIsTheReason)
+TEST(ConstraintCause, WhereHeldVerticesLeaveNoPlaceTheMeshIsTheReason)
 {
     // The ridge is 2 % of a cell beside a row of pinned vertices.
     EolCloth cloth = lying(0.0, 0.2 - 3.02 * kLyingCell);
     hold(cloth, 3.0 * kLyingCell - 1e-6, 3.0 * kLyingCell + 1e-6);
     press_edges(cloth);
     const ConformOutcome outcome = conform_cloth(cloth);
-    EXPECT_GT(count(outcome, RowCause::Quality), 4);
-    EXPECT_EQ(count(outcome, RowCause::Guard), 0);
+    EXPECT_GT(count(outcome, ConstraintCause::Quality), 4);
+    EXPECT_EQ(count(outcome, ConstraintCause::Guard), 0);
 }
 
 /// A trace flows towards a pinned row half a cell away. It would arrive within the four steps for which its
@@ -227,20 +230,20 @@ EolCloth heading_for_held_row()
     return cloth;
 }
 
-TEST(RowCause, AWayThatCannotBeClearedIsCounted)
+TEST(ConstraintCause, AWayThatCannotBeClearedIsCounted)
 {
     const ConformOutcome outcome = conform_cloth(heading_for_held_row());
     ASSERT_TRUE(outcome.mesh);
     EXPECT_GT(outcome.mesh->report.released, 2);
-    EXPECT_EQ(count(outcome, RowCause::Blocked), outcome.mesh->report.released);
+    EXPECT_EQ(count(outcome, ConstraintCause::Blocked), outcome.mesh->report.released);
     EXPECT_GT(outcome.blocked, 0);
     EXPECT_LE(outcome.blocked, outcome.mesh->report.released)
         << "some lead off the cloth: no force clears that";
     EXPECT_GE(outcome.lost, outcome.mesh->report.released) << "others may have been merged";
-    EXPECT_EQ(count(outcome, RowCause::GivenUp), 0);
+    EXPECT_EQ(count(outcome, ConstraintCause::GivenUp), 0);
 }
 
-TEST(RowCause, AMeshThatLosesMoreVerticesThanItMayIsNotMade)
+TEST(ConstraintCause, AMeshThatLosesMoreVerticesThanItMayIsNotMade)
 {
     const EolCloth cloth = heading_for_held_row();
     const ConformOutcome whole = conform_cloth(cloth);
@@ -251,7 +254,7 @@ TEST(RowCause, AMeshThatLosesMoreVerticesThanItMayIsNotMade)
     EXPECT_EQ(unfinished.blocked, whole.blocked);
 }
 
-TEST(RowCause, WhatIsMadeAndFindsNoWayIsCountedAsTheContactItWas)
+TEST(ConstraintCause, WhatIsMadeAndFindsNoWayIsCountedAsTheContactItWas)
 {
     for (const double side : {-1.0, 1.0}) {
         EolCloth cloth = lying(0.0);
@@ -262,13 +265,13 @@ TEST(RowCause, WhatIsMadeAndFindsNoWayIsCountedAsTheContactItWas)
         const ConformOutcome outcome = conform_cloth(cloth);
         ASSERT_TRUE(outcome.mesh);
         EXPECT_GT(outcome.mesh->report.released, 1);
-        EXPECT_EQ(count(outcome, RowCause::Blocked), outcome.mesh->report.released);
+        EXPECT_EQ(count(outcome, ConstraintCause::Blocked), outcome.mesh->report.released);
         for (const RefusedContact& refused : outcome.refused)
             EXPECT_EQ(refused.kind, ContactKind::Edge) << "none was EOL before";
     }
 }
 
-TEST(RowCause, StiffClothThatWouldBeStrainedIsGuarded)
+TEST(ConstraintCause, StiffClothThatWouldBeStrainedIsGuarded)
 {
     // The cloth has a crease along the row of vertices beside the ridge. Moved onto the ridge, these vertices
     // would strain the cloth. If the row is nearer than 10 % of the target length, another row does not fit
@@ -283,7 +286,7 @@ TEST(RowCause, StiffClothThatWouldBeStrainedIsGuarded)
         }
         press_edges(cloth);
         const ConformOutcome outcome = conform_cloth(cloth, {}, {.strain = StrainLimit::AsMade});
-        const int guarded = count(outcome, RowCause::Guard);
+        const int guarded = count(outcome, ConstraintCause::Guard);
         if (cells < 0.1) {
             EXPECT_GT(guarded, 4);
         } else {
@@ -294,7 +297,7 @@ TEST(RowCause, StiffClothThatWouldBeStrainedIsGuarded)
     }
 }
 
-TEST(RowCause, WhatSurgeryBesideItMovesOffThePlaneIsCounted)
+TEST(ConstraintCause, WhatSurgeryBesideItMovesOffThePlaneIsCounted)
 {
     // Material lines are wavy across the ridge, and the cloth is so soft that strain prevents no mesh change.
     EolCloth cloth = lying(17.0);
@@ -303,7 +306,7 @@ TEST(RowCause, WhatSurgeryBesideItMovesOffThePlaneIsCounted)
     for (Vec3& x : cloth.state.mesh.world) x.x() += 0.012 * std::sin(90.0 * x.y() + 40.0 * x.x());
     press_edges(cloth);
     const ConformOutcome outcome = conform_cloth(cloth);
-    EXPECT_GT(count(outcome, RowCause::OffPlane), 0);
+    EXPECT_GT(count(outcome, ConstraintCause::OffPlane), 0);
 }
 
 }  // namespace

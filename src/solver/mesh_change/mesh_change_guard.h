@@ -22,12 +22,12 @@ enum class StrainLimit {
 /// Guards mesh surgery: refuses operations that would pass through an obstacle or strain the cloth. The sum
 /// of stretch, bending and gravity energy may not rise beyond a small allowance. Terms and creases are the
 /// step's.
-class EolGuard {
+class MeshChangeGuard {
   public:
     /// At the vertices `careful_at` (ascending) no operation may rely on cloth that gives way. `relaxations`
     /// belongs to the scene.
-    EolGuard(const Scene& scene, const State& state, StrainLimit limit, std::vector<VertexId> careful_at,
-             RelaxationMemo& relaxations);
+    MeshChangeGuard(const Scene& scene, const State& state, StrainLimit limit,
+                    std::vector<VertexId> careful_at, RelaxationMemo& relaxations);
 
     /// Sets the mesh under surgery, whose patches may give way.
     void watch(const ClothSurgery& surgery) { surgery_ = &surgery; }

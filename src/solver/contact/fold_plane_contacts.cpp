@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/contact/fold_contacts.h"
+#include "solver/contact/fold_plane_contacts.h"
 
 #include <algorithm>
 #include <array>
@@ -23,10 +23,11 @@ constexpr double kFarRound = 1.0, kWrong = 0.5;
 // wire pushes the cloth, more so the farther it reaches: kTimeOfMoving.
 constexpr double kCells = 4.0, kTime = 1.0, kTimeOfMoving = 0.2;  // s
 
-class FoldSearch {
+class FoldPlaneSearch {
   public:
-    FoldSearch(const std::vector<MovingObstacle>& obstacles, const State& state, const ClothStars& stars,
-               const std::vector<EolCoordinates>& eol, const std::vector<const std::vector<Vec3>*>& positions)
+    FoldPlaneSearch(const std::vector<MovingObstacle>& obstacles, const State& state, const ClothStars& stars,
+                    const std::vector<EolCoordinates>& eol,
+                    const std::vector<const std::vector<Vec3>*>& positions)
         : obstacles_(obstacles),
           state_(state),
           stars_(stars),
@@ -37,7 +38,7 @@ class FoldSearch {
         for (const EolCoordinates& at : eol) is_eol_[at.vertex] = 1;
     }
 
-    std::vector<FoldContact> run()
+    std::vector<FoldPlaneContact> run()
     {
         for (const EolCoordinates& at : eol_) {
             const EolVertex& vertex = state_.eol[at.entry];
@@ -152,14 +153,15 @@ class FoldSearch {
         if (is_disputed) known->second.side = 0;
     }
 
-    std::vector<FoldContact> contacts() const
+    std::vector<FoldPlaneContact> contacts() const
     {
-        std::vector<FoldContact> found;
+        std::vector<FoldPlaneContact> found;
         for (const auto& [key, plane] : planes_)
             if (plane.side != 0 && plane.angle < kFarRound && plane.angle > -kWrong && !is_eol_[key.vertex])
-                found.push_back({key.vertex, key.wire[0],
-                                 find_fold_bound(plane.at->frame, place_of(key.vertex, key.wire), plane.side),
-                                 plane.at->frame.point});
+                found.push_back(
+                    {key.vertex, key.wire[0],
+                     find_fold_plane_bound(plane.at->frame, place_of(key.vertex, key.wire), plane.side),
+                     plane.at->frame.point});
         return found;
     }
 
@@ -176,11 +178,12 @@ class FoldSearch {
 
 }  // namespace
 
-std::vector<FoldContact> find_fold_contacts(const std::vector<MovingObstacle>& obstacles, const State& state,
-                                            const ClothStars& stars, const std::vector<EolCoordinates>& eol,
-                                            const std::vector<const std::vector<Vec3>*>& positions)
+std::vector<FoldPlaneContact> find_fold_plane_contacts(const std::vector<MovingObstacle>& obstacles,
+                                                       const State& state, const ClothStars& stars,
+                                                       const std::vector<EolCoordinates>& eol,
+                                                       const std::vector<const std::vector<Vec3>*>& positions)
 {
-    return FoldSearch(obstacles, state, stars, eol, positions).run();
+    return FoldPlaneSearch(obstacles, state, stars, eol, positions).run();
 }
 
 }  // namespace arris

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/friction.h"
+#include "solver/step_friction.h"
 
 #include "solver/friction/friction_budget.h"
 
@@ -11,15 +11,15 @@ namespace {
 void store(Workspace& work)
 {
     const double gamma = work.prediction.gamma;
-    for (std::size_t r = 0; r < work.rubs.size(); ++r) {
-        const Rub& rub = work.rubs[r];
-        ContactFriction& friction = work.contacts[rub.contact].friction;
+    for (std::size_t r = 0; r < work.slip_contacts.size(); ++r) {
+        const SlipContact& slipping = work.slip_contacts[r];
+        ContactFriction& friction = work.contacts[slipping.contact].friction;
         const double budget = work.solution.budgets[r];
         friction = {Vec3::Zero(), Vec3::Zero(), budget / gamma};
         const bool is_sliding = work.solution.unlimited[r].norm() > budget;
         for (int d = 0; d < 2; ++d) {
-            friction.force += work.solution.friction[r][d] / gamma * rub.directions[d];
-            if (is_sliding) friction.slip += work.solution.slip[r][d] * rub.directions[d];
+            friction.force += work.solution.friction[r][d] / gamma * slipping.directions[d];
+            if (is_sliding) friction.slip += work.solution.slip[r][d] * slipping.directions[d];
         }
     }
 }
@@ -28,7 +28,7 @@ void count(const Workspace& work, StepReport& report)
 {
     report.sticking = report.sliding = 0;
     report.friction_work = 0.0;
-    for (std::size_t r = 0; r < work.rubs.size(); ++r) {
+    for (std::size_t r = 0; r < work.slip_contacts.size(); ++r) {
         const double budget = work.solution.budgets[r];
         if (!(budget > 0.0)) continue;
         ++(work.solution.unlimited[r].norm() <= budget ? report.sticking : report.sliding);
@@ -39,7 +39,7 @@ void count(const Workspace& work, StepReport& report)
 
 }  // namespace
 
-RubbingCloth rubbing_cloth(const Scene& scene, const State& state, const Workspace& work)
+SlippingCloth slipping_cloth(const Scene& scene, const State& state, const Workspace& work)
 {
     return {scene,         state,    work.mesh.stars, work.mesh.elements, work.prediction,
             work.carriers, work.eol, work.contacts,   work.linearization};
@@ -48,7 +48,8 @@ RubbingCloth rubbing_cloth(const Scene& scene, const State& state, const Workspa
 void set_friction_law(const Scene& scene, const State& state, Workspace& work)
 {
     work.problem.law = [&scene, &state, &work](const VelocitySolution& solution) {
-        return compute_budgets(rubbing_cloth(scene, state, work), work.mesh.terms, work.rubs, solution);
+        return compute_budgets(slipping_cloth(scene, state, work), work.mesh.terms, work.slip_contacts,
+                               solution);
     };
 }
 
@@ -59,7 +60,7 @@ void note_friction(const State& state, Workspace& work, StepReport& report)
     report.friction_residual = solution.law_residual;
     if (solution.law_worst >= 0)
         report.friction_place =
-            state.mesh.world[work.contacts[work.rubs[solution.law_worst].contact].vertices[0]];
+            state.mesh.world[work.contacts[work.slip_contacts[solution.law_worst].contact].vertices[0]];
     store(work);
     count(work, report);
 }

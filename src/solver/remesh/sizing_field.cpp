@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/remesh/cell_lengths.h"
+#include "solver/remesh/sizing_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "geometry/cloth/mesh_quality.h"
 #include "geometry/surgery/initial_target.h"
-#include "solver/model/cell_length.h"
+#include "solver/model/target_length.h"
 #include "solver/remesh/wanted_lengths.h"
 
 namespace arris {
@@ -33,14 +33,14 @@ void measure_first_mesh(const ClothMesh& first, Remeshing& remesh)
     remesh.longest *= std::max(1.0, std::sqrt(area / vertex_area(kMeanEdge * remesh.longest)));
 }
 
-void start_cell_lengths(const Scene& scene, State& state)
+void start_sizing_field(const Scene& scene, State& state)
 {
     if (!scene.remesh) return;
     const MaterialGrid& grid = scene.remesh->grid;
-    state.cell_lengths.resize(static_cast<std::size_t>(grid.size()));
+    state.sizing_field.resize(static_cast<std::size_t>(grid.size()));
     for (int i = 0; i < grid.count[0]; ++i)
         for (int j = 0; j < grid.count[1]; ++j)
-            state.cell_lengths[grid.index(i, j)] = static_cast<float>(std::clamp(
+            state.sizing_field[grid.index(i, j)] = static_cast<float>(std::clamp(
                 scene.remesh->initial.length(grid.node(i, j)), shortest_cell(scene), longest_cell(scene)));
 }
 
@@ -51,11 +51,11 @@ void follow_wanted_lengths(const Scene& scene, const ClothStars& stars, double d
     const double time = kRemeshPeriod * dt;
     const double finer = std::exp2(-time / kRefineTime), coarser = std::exp2(time / kCoarsenTime);
     for (std::size_t k = 0; k < wanted.size(); ++k) {
-        const double length = state.cell_lengths[k], goal = wanted[k];
+        const double length = state.sizing_field[k], goal = wanted[k];
         if (goal < kClearlyFiner * length)
-            state.cell_lengths[k] = static_cast<float>(std::max(goal, finer * length));
+            state.sizing_field[k] = static_cast<float>(std::max(goal, finer * length));
         else if (goal > length)
-            state.cell_lengths[k] = static_cast<float>(std::min(goal, coarser * length));
+            state.sizing_field[k] = static_cast<float>(std::min(goal, coarser * length));
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/contact/fold_contacts.h"
+#include "solver/contact/fold_plane_contacts.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ EolCloth make_folded(double fold, double end = 1.0, MovingObstacle wire = make_l
     return cloth;
 }
 
-std::vector<FoldContact> find(const EolCloth& cloth)
+std::vector<FoldPlaneContact> find(const EolCloth& cloth)
 {
     const ClothStars stars = cloth.stars();
     std::vector<EolCoordinates> eol;
@@ -56,20 +56,20 @@ std::vector<FoldContact> find(const EolCloth& cloth)
             eol.push_back(*placing.coordinates);
     const std::vector<const std::vector<Vec3>*> positions(cloth.scene.obstacles.size(),
                                                           &cloth.state.mesh.world);
-    return find_fold_contacts(cloth.scene.obstacles, cloth.state, stars, eol, positions);
+    return find_fold_plane_contacts(cloth.scene.obstacles, cloth.state, stars, eol, positions);
 }
 
-double along_x(const EolCloth& cloth, const FoldContact& contact)
+double along_x(const EolCloth& cloth, const FoldPlaneContact& contact)
 {
     return cloth.state.mesh.material[contact.vertex].x() - 0.2;
 }
 
-TEST(FoldContacts, KeepEachSideOfAFoldOnItsSide)
+TEST(FoldPlaneContacts, KeepEachSideOfAFoldOnItsSide)
 {
     const EolCloth cloth = make_folded(20.0);
-    const std::vector<FoldContact> found = find(cloth);
+    const std::vector<FoldPlaneContact> found = find(cloth);
     std::vector<int> vertices;
-    for (const FoldContact& contact : found) {
+    for (const FoldPlaneContact& contact : found) {
         EXPECT_GT(contact.bound.normal.x() * along_x(cloth, contact),
                   0.9 * std::abs(along_x(cloth, contact)));
         EXPECT_GT(contact.bound.least_gap, 0.0);
@@ -86,13 +86,14 @@ TEST(FoldContacts, KeepEachSideOfAFoldOnItsSide)
     }
 }
 
-TEST(FoldContacts, AreNoneOfAVertexThatIsHeldElsewhere)
+TEST(FoldPlaneContacts, AreNoneOfAVertexThatIsHeldElsewhere)
 {
     // The vertex is EOL on a nail beside the fold.
     EolCloth cloth = make_folded(20.0);
     const auto is_of = [&](int v) {
-        const std::vector<FoldContact> found = find(cloth);
-        return std::any_of(found.begin(), found.end(), [&](const FoldContact& c) { return c.vertex == v; });
+        const std::vector<FoldPlaneContact> found = find(cloth);
+        return std::any_of(found.begin(), found.end(),
+                           [&](const FoldPlaneContact& c) { return c.vertex == v; });
     };
     const int beside = cloth.vertex_at(0.2 + kCell, 0.2), other = cloth.vertex_at(0.2 - kCell, 0.2);
     ASSERT_TRUE(is_of(beside));
@@ -104,16 +105,16 @@ TEST(FoldContacts, AreNoneOfAVertexThatIsHeldElsewhere)
     EXPECT_TRUE(is_of(other));
 }
 
-TEST(FoldContacts, AreNoneWhereTheClothIsFarFromThePlane)
+TEST(FoldPlaneContacts, AreNoneWhereTheClothIsFarFromThePlane)
 {
     EXPECT_TRUE(find(make_folded(180.0)).empty());
     EXPECT_TRUE(find(make_folded(20.0, -1.0)).empty()) << "no vertex is on the wire";
     // There are no fold contacts beyond the end of a trace, on the fold's line.
     const EolCloth ending = make_folded(20.0, 0.2);
-    for (const FoldContact& contact : find(ending)) EXPECT_GT(std::abs(along_x(ending, contact)), kSame);
+    for (const FoldPlaneContact& contact : find(ending)) EXPECT_GT(std::abs(along_x(ending, contact)), kSame);
 }
 
-TEST(FoldContacts, AreNoneOfWhatHangsDownPastTheWiresEnd)
+TEST(FoldPlaneContacts, AreNoneOfWhatHangsDownPastTheWiresEnd)
 {
     // The fold continues past the wire's end. There its line hangs down in the fold plane of the vertices on
     // the wire.
@@ -122,13 +123,13 @@ TEST(FoldContacts, AreNoneOfWhatHangsDownPastTheWiresEnd)
         const Vec2 past = cloth.state.mesh.material[v] - Vec2(0.2, 0.2);
         if (past.y() > kSame) cloth.state.mesh.world[v] = Vec3(0.3 * past.x(), 0.1 * past.y(), -past.y());
     }
-    const std::vector<FoldContact> found = find(cloth);
+    const std::vector<FoldPlaneContact> found = find(cloth);
     ASSERT_FALSE(found.empty());
-    for (const FoldContact& contact : found)
+    for (const FoldPlaneContact& contact : found)
         EXPECT_LT(cloth.state.mesh.material[contact.vertex].y(), 0.2 + kSame);
 }
 
-TEST(FoldContacts, DoNotLearnTheirSideFromWhatIsHeldAtTheWiresEnd)
+TEST(FoldPlaneContacts, DoNotLearnTheirSideFromWhatIsHeldAtTheWiresEnd)
 {
     // Offset of the held vertex, m; this vertex is on neither side of the fold.
     for (const double aside : {-1e-5, 1e-5}) {
@@ -139,19 +140,19 @@ TEST(FoldContacts, DoNotLearnTheirSideFromWhatIsHeldAtTheWiresEnd)
         for (std::size_t c = 0; c < obstacle.features().corners.size(); ++c)
             if (obstacle.mesh().points[obstacle.features().corners[c].point].y() > 0.0)
                 cloth.add_eol(held, true, static_cast<int>(c));
-        const std::vector<FoldContact> found = find(cloth);
+        const std::vector<FoldPlaneContact> found = find(cloth);
         for (int v = 0; v < cloth.state.mesh.vertex_count(); ++v) {
             const Vec2 from = cloth.state.mesh.material[v] - Vec2(0.2, 0.2);
             if (std::abs(from.x()) < kSame || std::abs(from.x()) > 2.5 * kCell || from.y() > kSame) continue;
-            const auto of =
-                std::find_if(found.begin(), found.end(), [&](const FoldContact& c) { return c.vertex == v; });
+            const auto of = std::find_if(found.begin(), found.end(),
+                                         [&](const FoldPlaneContact& c) { return c.vertex == v; });
             ASSERT_NE(of, found.end()) << from.transpose();
             EXPECT_GT(of->bound.normal.x() * from.x(), 0.9 * std::abs(from.x())) << from.transpose();
         }
     }
 }
 
-TEST(FoldContacts, ReachAsFarAsFlowBringsClothSoonOnAWireAtRest)
+TEST(FoldPlaneContacts, ReachAsFarAsFlowBringsClothSoonOnAWireAtRest)
 {
     RigidMotion turning;
     turning.angular_velocity = Vec3(0.0, 0.0, 1.0);
@@ -159,7 +160,7 @@ TEST(FoldContacts, ReachAsFarAsFlowBringsClothSoonOnAWireAtRest)
         EolCloth cloth = make_folded(20.0, 1.0, make_line({{0, -1, 0}, {0, 1, 0}}, motion));
         const auto farthest = [&] {
             double most = 0.0;
-            for (const FoldContact& contact : find(cloth))
+            for (const FoldPlaneContact& contact : find(cloth))
                 most = std::max(most, std::abs(along_x(cloth, contact)));
             return most;
         };
@@ -190,7 +191,7 @@ int advance(EolCloth& cloth, Workspace& work, double dt, int steps)
     return parts;
 }
 
-TEST(FoldContacts, SidesThrownAtEachOtherDoNotGetPastTheWire)
+TEST(FoldPlaneContacts, SidesThrownAtEachOtherDoNotGetPastTheWire)
 {
     constexpr int kSteps = 20;
     for (const double speed : {1.0, 5.0, 20.0})
@@ -207,7 +208,7 @@ TEST(FoldContacts, SidesThrownAtEachOtherDoNotGetPastTheWire)
         }
 }
 
-TEST(FoldContacts, AreToldFromWhatPressesOnTheObstacle)
+TEST(FoldPlaneContacts, AreToldFromWhatPressesOnTheObstacle)
 {
     EolCloth cloth = make_folded(40.0);
     for (std::size_t v = 0; v < cloth.state.mesh.world.size(); ++v)
@@ -218,7 +219,7 @@ TEST(FoldContacts, AreToldFromWhatPressesOnTheObstacle)
         const StepReport report = step(cloth.scene, Settings(), cloth.state.time + 0.005, cloth.state, work);
         int count = 0;
         for (const ActiveContact& contact : cloth.state.active) {
-            if (!is_fold(contact)) continue;
+            if (!is_fold_plane(contact)) continue;
             ++count;
             EXPECT_LT(cloth.state.eol_entry(contact.vertex_ids[0]), 0);
         }
@@ -228,7 +229,7 @@ TEST(FoldContacts, AreToldFromWhatPressesOnTheObstacle)
     EXPECT_GT(planes, 0);
 }
 
-TEST(FoldContacts, ClothFallsOnWiresThatAreNearerThanAStandOffOrBend)
+TEST(FoldPlaneContacts, ClothFallsOnWiresThatAreNearerThanAStandOffOrBend)
 {
     const auto fall_on = [](const ObstacleMesh& wires) {
         EolCloth cloth(MovingObstacle("wires", wires, {}, {}, 30.0), make_draped({8, 0.0, 180.0}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/mesh_change/eol_guard.h"
+#include "solver/mesh_change/mesh_change_guard.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,7 +9,7 @@
 #include "physics/forces/make_terms.h"
 #include "solver/mesh_change/strain_allowance.h"
 #include "solver/mesh_change/surgery_energy.h"
-#include "solver/model/cell_length.h"
+#include "solver/model/target_length.h"
 
 namespace arris {
 
@@ -28,8 +28,8 @@ bool contains(const std::vector<VertexId>& ascending, VertexId v)
 
 }  // namespace
 
-EolGuard::EolGuard(const Scene& scene, const State& state, StrainLimit limit,
-                   std::vector<VertexId> careful_at, RelaxationMemo& relaxations)
+MeshChangeGuard::MeshChangeGuard(const Scene& scene, const State& state, StrainLimit limit,
+                                 std::vector<VertexId> careful_at, RelaxationMemo& relaxations)
     : scene_(scene),
       state_(state),
       terms_(make_terms(scene.material, scene.gravity, {}, {})),
@@ -40,7 +40,7 @@ EolGuard::EolGuard(const Scene& scene, const State& state, StrainLimit limit,
 {
 }
 
-bool EolGuard::allows(const SurgeryEvent& event)
+bool MeshChangeGuard::allows(const SurgeryEvent& event)
 {
     const double thickness = scene_.material.thickness;
     if (strains(event)) return false;
@@ -50,11 +50,11 @@ bool EolGuard::allows(const SurgeryEvent& event)
     });
 }
 
-double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) const
+double MeshChangeGuard::allowance(const SurgeryEvent& event, double elastic_energy) const
 {
     constexpr double kShare = 0.01;  // of the patch's elastic energy
     // Clearing may raise the energy by this many times as much. Otherwise the trace would be released, and a
-    // row would hold everything that slides.
+    // constraint would hold everything that slides.
     constexpr double kClearing = 10.0;
     double area = 0.0, squared_speed = 0.0;
     for (const PatchFace& face : event.before) {
@@ -63,13 +63,14 @@ double EolGuard::allowance(const SurgeryEvent& event, double elastic_energy) con
             if (const int v = state_.index_of(id); v >= 0)
                 squared_speed = std::max(squared_speed, state_.velocity[v].squaredNorm());
     }
-    const double motion = 0.5 * scene_.material.density * area * squared_speed +
-                          weight_over(scene_, area, cell_length(scene_, state_, event.before[0].material[0]));
+    const double motion =
+        0.5 * scene_.material.density * area * squared_speed +
+        weight_over(scene_, area, target_length(scene_, state_, event.before[0].material[0]));
     return (is_clearing_ ? kClearing : 1.0) *
            (kShare * elastic_energy + kAllowedStrain * motion + unseen_energy(scene_, area));
 }
 
-bool EolGuard::strains(const SurgeryEvent& event)
+bool MeshChangeGuard::strains(const SurgeryEvent& event)
 {
     const bool is_split =
         event.operation == SurgeryOperation::SplitEdge || event.operation == SurgeryOperation::SplitFace;
@@ -83,7 +84,7 @@ bool EolGuard::strains(const SurgeryEvent& event)
     return !can_give_way(event, rise);
 }
 
-bool EolGuard::can_give_way(const SurgeryEvent& event, double rise)
+bool MeshChangeGuard::can_give_way(const SurgeryEvent& event, double rise)
 {
     const auto is_careful = [this](const PatchFace& face) {
         return std::any_of(face.vertices.begin(), face.vertices.end(),
@@ -98,21 +99,20 @@ bool EolGuard::can_give_way(const SurgeryEvent& event, double rise)
     return true;
 }
 
-std::vector<VertexId> EolGuard::relies_at() const
+std::vector<VertexId> MeshChangeGuard::relies_at() const
 {
     std::vector<VertexId> vertices = relies_at_;
     sort_unique(vertices);
     return vertices;
 }
 
-EolGuard::Neighbourhood EolGuard::look_around(const SurgeryEvent& event) const
+MeshChangeGuard::Neighbourhood MeshChangeGuard::look_around(const SurgeryEvent& event) const
 {
-    constexpr int kRings = 2;
     std::vector<std::pair<VertexId, VertexRing>> found;  // ring after ring
     std::vector<VertexId> near, added;                   // ascending
     for (const PatchFace& face : event.before)
         added.insert(added.end(), face.vertices.begin(), face.vertices.end());
-    for (int ring = 0; ring <= kRings; ++ring) {
+    for (int ring = 0; ring <= kPatchRings; ++ring) {
         sort_unique(added);
         std::erase_if(added, [&](VertexId v) { return contains(near, v); });
         const auto known = static_cast<std::ptrdiff_t>(near.size());
@@ -133,7 +133,7 @@ EolGuard::Neighbourhood EolGuard::look_around(const SurgeryEvent& event) const
     return around;
 }
 
-void EolGuard::add_kept_faces(const SurgeryEvent& event, Neighbourhood& around) const
+void MeshChangeGuard::add_kept_faces(const SurgeryEvent& event, Neighbourhood& around) const
 {
     std::vector<IdFace> replaced, faces;
     for (const PatchFace& face : event.before) replaced.push_back(from_least(face.vertices));
@@ -154,7 +154,7 @@ void EolGuard::add_kept_faces(const SurgeryEvent& event, Neighbourhood& around) 
     for (const IdFace& face : faces) around.kept.push_back(surgery_->patch_face(face));
 }
 
-LoosePatch EolGuard::make_patch(const SurgeryEvent& event) const
+LoosePatch MeshChangeGuard::make_patch(const SurgeryEvent& event) const
 {
     const Neighbourhood around = look_around(event);
     LoosePatch patch;
@@ -187,8 +187,8 @@ LoosePatch EolGuard::make_patch(const SurgeryEvent& event) const
     return patch;
 }
 
-bool EolGuard::is_loose(VertexId v, const VertexRing& ring, const std::vector<VertexId>& near,
-                        const SurgeryEvent& event) const
+bool MeshChangeGuard::is_loose(VertexId v, const VertexRing& ring, const std::vector<VertexId>& near,
+                               const SurgeryEvent& event) const
 {
     const bool is_changed = std::any_of(event.changes.begin(), event.changes.end(),
                                         [v](const VertexChange& change) { return change.vertex == v; });

@@ -11,7 +11,7 @@ namespace arris {
 inline constexpr double kOffLaw = 1e-3;
 
 /// The parts of a step that friction reads.
-RubbingCloth rubbing_cloth(const Scene& scene, const State& state, const Workspace& work);
+SlippingCloth slipping_cloth(const Scene& scene, const State& state, const Workspace& work);
 
 /// Gives `work.problem` the law of its friction pairs. It refers to all three arguments.
 void set_friction_law(const Scene& scene, const State& state, Workspace& work);

@@ -16,7 +16,7 @@ inline constexpr int kRemeshPeriod = 4;
 void measure_first_mesh(const ClothMesh& first, Remeshing& remesh);
 
 /// Lengths of a mesh as it was made, within the limits of remeshing. Nothing without remeshing.
-void start_cell_lengths(const Scene& scene, State& state);
+void start_sizing_field(const Scene& scene, State& state);
 
 /// Lets the state's cell lengths follow those that its shape and motion ask for, after each kRemeshPeriod-th
 /// planned step. `dt`: of a planned step, s. Cells become finer at most twofold in kRefineTime, so that the

@@ -24,9 +24,9 @@ inline const MeshTarget& initial_target(const Scene& scene)
 }
 
 /// Target edge length, m, at a material point: one cell. The scene's mesh changes.
-double cell_length(const Scene& scene, const State& state, const Vec2& X);
+double target_length(const Scene& scene, const State& state, const Vec2& X);
 
-/// Bounds of `cell_length`, m. They save most calls of it.
+/// Bounds of `target_length`, m. They save most calls of it.
 double shortest_cell(const Scene& scene);
 double longest_cell(const Scene& scene);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/cloth_input/fold_lines.h"
+#include "geometry/cloth_input/mesh_lines.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -62,7 +62,7 @@ class GraphBuilder {
         tolerance_ = kComputed * box.sizes().maxCoeff();
     }
 
-    void add_fold(const Fold& fold)
+    void add_fold(const FoldLine& fold)
     {
         const Line line = make_line(fold);
         const std::vector<Meeting> meetings = meet_border(line);
@@ -85,7 +85,7 @@ class GraphBuilder {
         folds_.push_back({line, std::move(chains)});
     }
 
-    FoldLines build()
+    MeshLines build()
     {
         for (std::size_t i = 0; i < folds_.size(); ++i)
             for (std::size_t j = i + 1; j < folds_.size(); ++j) cross(folds_[i], folds_[j]);
@@ -106,13 +106,13 @@ class GraphBuilder {
         std::vector<Chain> chains;
     };
 
-    static std::string refusal(const Fold& fold, const char* why)
+    static std::string refusal(const FoldLine& fold, const char* why)
     {
         const auto& [p, q] = fold.line;
         return fmt::format("fold [[{}, {}], [{}, {}]]: {}", p.x(), p.y(), q.x(), q.y(), why);
     }
 
-    static Line make_line(const Fold& fold)
+    static Line make_line(const FoldLine& fold)
     {
         const Vec2& p = fold.line[0];
         const Vec2 d = fold.line[1] - p;
@@ -254,7 +254,7 @@ class GraphBuilder {
             graph_.segments.push_back({nodes[k], nodes[k + 1]});
     }
 
-    FoldLines graph_;
+    MeshLines graph_;
     int corner_count_ = 0;
     double tolerance_ = 0.0;
     std::vector<std::array<int, 2>> sides_;  // of the border, as nodes
@@ -270,10 +270,10 @@ BorderLoops rectangle_border(const Vec2& size)
     return {{Vec2(0.0, 0.0), Vec2(size.x(), 0.0), size, Vec2(0.0, size.y())}};
 }
 
-FoldLines make_fold_lines(const BorderLoops& border, const std::vector<Fold>& folds)
+MeshLines make_mesh_lines(const BorderLoops& border, const std::vector<FoldLine>& folds)
 {
     GraphBuilder builder(border);
-    for (const Fold& fold : folds) builder.add_fold(fold);
+    for (const FoldLine& fold : folds) builder.add_fold(fold);
     return builder.build();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/mesh_change/mesh_change_guard.h"
 #include "physics/forces/make_terms.h"
-#include "solver/mesh_change/eol_guard.h"
 
 #include <gtest/gtest.h>
 
@@ -129,7 +129,7 @@ TEST(SurgeryEnergy, OfAPlateIsNearTheRiseThatTheStepWillFind)
     }
 }
 
-TEST(EolGuard, DoesNotLetStiffClothBeBent)
+TEST(MeshChangeGuard, DoesNotLetStiffClothBeBent)
 {
     // Flipping an edge of the fold makes the fold a zigzag. The cloth is so soft that the stretch has no
     // noticeable energy.
@@ -140,7 +140,7 @@ TEST(EolGuard, DoesNotLetStiffClothBeBent)
         cloth.cloth.scene.gravity.reset();
         for (Vec3& v : cloth.cloth.state.velocity) v = Vec3(0.3, 0.0, 0.0);
         RelaxationMemo relaxations;
-        EolGuard guard(cloth.cloth.scene, cloth.cloth.state, StrainLimit::AsMade, {}, relaxations);
+        MeshChangeGuard guard(cloth.cloth.scene, cloth.cloth.state, StrainLimit::AsMade, {}, relaxations);
         guard.watch(cloth.surgery);
         const SurgeryProposal flip = cloth.surgery.propose_flip(cloth.at(0.2, 0.3), cloth.at(0.2, 0.35));
         ASSERT_TRUE(flip.is_legal());
@@ -148,7 +148,7 @@ TEST(EolGuard, DoesNotLetStiffClothBeBent)
     }
 }
 
-TEST(EolGuard, DoesNotLetClothBeLifted)
+TEST(MeshChangeGuard, DoesNotLetClothBeLifted)
 {
     // Soft cloth sags. Collapsing a vertex of the valley lifts the cloth around it to the chord.
     for (const bool is_heavy : {false, true}) {
@@ -161,7 +161,7 @@ TEST(EolGuard, DoesNotLetClothBeLifted)
             state.mesh.world[v].z() += 5.0 * std::pow(state.mesh.material[v].x() - 0.2, 2);
         const ClothSurgery sagging(state.mesh, state.ids, state.next_id);
         RelaxationMemo relaxations;
-        EolGuard guard(cloth.cloth.scene, state, StrainLimit::AsMade, {}, relaxations);
+        MeshChangeGuard guard(cloth.cloth.scene, state, StrainLimit::AsMade, {}, relaxations);
         guard.watch(sagging);
         const SurgeryProposal gone = sagging.propose_collapse(cloth.at(0.2, 0.2), cloth.at(0.25, 0.2));
         ASSERT_TRUE(gone.is_legal());
@@ -169,7 +169,7 @@ TEST(EolGuard, DoesNotLetClothBeLifted)
     }
 }
 
-TEST(EolGuard, WithCareNothingCountsOnClothThatGivesWay)
+TEST(MeshChangeGuard, WithCareNothingCountsOnClothThatGivesWay)
 {
     // On rough cloth, selects the edges whose flip strains the cloth but is allowed because the cloth gives
     // way.
@@ -178,7 +178,7 @@ TEST(EolGuard, WithCareNothingCountsOnClothThatGivesWay)
     RelaxationMemo relaxations;
     const auto ask = [&](const SurgeryEvent& event, StrainLimit limit,
                          const std::vector<VertexId>& careful_at, std::vector<VertexId>& relies_at) {
-        EolGuard guard(cloth.cloth.scene, cloth.cloth.state, limit, careful_at, relaxations);
+        MeshChangeGuard guard(cloth.cloth.scene, cloth.cloth.state, limit, careful_at, relaxations);
         guard.watch(cloth.surgery);
         const bool is_allowed = guard.allows(event);
         relies_at = guard.relies_at();
@@ -206,12 +206,12 @@ TEST(EolGuard, WithCareNothingCountsOnClothThatGivesWay)
     EXPECT_GT(counted, 0);
 }
 
-TEST(EolGuard, SplitsAreFree)
+TEST(MeshChangeGuard, SplitsAreFree)
 {
     Folded cloth;
     cloth.cloth.scene.material.bending_stiffness = 1e-1;
     RelaxationMemo relaxations;
-    EolGuard guard(cloth.cloth.scene, cloth.cloth.state, StrainLimit::AsMade, {}, relaxations);
+    MeshChangeGuard guard(cloth.cloth.scene, cloth.cloth.state, StrainLimit::AsMade, {}, relaxations);
     guard.watch(cloth.surgery);
     const SurgeryProposal split =
         cloth.surgery.propose_edge_split(cloth.at(0.2, 0.2), cloth.at(0.15, 0.2), 0.1);
