@@ -207,7 +207,6 @@ double find_unforeseen_energy(const Scene& scene, const State& state, const Work
 {
     // A third difference over thirds of the way is 4/9 of a fourth-order term and 2/9 of a third-order term.
     // The stretch of cloth that moves across itself is of fourth order.
-    constexpr double kFourthOrder = 9.0 / 4.0;
     const double least = kRise * energy_scale(work) + round_off_energy(scene, state, work.mesh.elements);
     const Energies &before = work.energies.start.potential, &after = work.energies.solved.potential;
     const ClothVelocity& from = work.expansion;
@@ -223,7 +222,7 @@ double find_unforeseen_energy(const Scene& scene, const State& state, const Work
     const double third = after.sum() - at_expansion.sum() +
                          3.0 * (potential_at(blend(from, to, 1.0 / 3.0)).sum() -
                                 potential_at(blend(from, to, 2.0 / 3.0)).sum());
-    const double unforeseen = kFourthOrder * std::abs(third);
+    const double unforeseen = 9.0 / 4.0 * std::abs(third);
     return unforeseen > least ? unforeseen : 0.0;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "geometry/closest_point.h"
+#include "geometry/cloth/mesh_limits.h"
 #include "geometry/obstacle/feature_nodes.h"
 #include "geometry/obstacle/feature_path.h"
 #include "geometry/tolerances.h"
@@ -17,7 +18,7 @@ namespace arris {
 
 namespace {
 
-constexpr double kAtEnd = 0.95;  // weight of an edge's end: no vertex is inserted nearer to it
+constexpr double kAtEnd = 1.0 - kSplitFromEnd;  // weight of an edge's end
 
 bool is_plane_of_face(const Obstacle& obstacle, const Contact& contact)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "eulerian_cloth.h"
+#include "tests/physics/eulerian_cloth.h"
 
 #include <Eigen/Dense>
 #include <cmath>

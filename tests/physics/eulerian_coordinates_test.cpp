@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "eulerian_cloth.h"
 #include "physics/forces/inertia.h"
 #include "physics/forces/make_terms.h"
-#include "sliding_cloth.h"
+#include "tests/physics/eulerian_cloth.h"
+#include "tests/physics/sliding_cloth.h"
 
 namespace arris {
 namespace {

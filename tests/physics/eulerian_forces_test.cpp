@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "eulerian_cloth.h"
 #include "physics/forces/bending.h"
 #include "physics/forces/energies.h"
 #include "physics/forces/gravity_force.h"
@@ -14,6 +13,7 @@
 #include "physics/forces/membrane.h"
 #include "physics/forces/plate_bending.h"
 #include "physics/forces/pull_force.h"
+#include "tests/physics/eulerian_cloth.h"
 
 namespace arris {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sliding_cloth.h"
+#include "tests/physics/sliding_cloth.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "physics/forces/energies.h"
 #include "physics/forces/inertia.h"
 #include "physics/forces/make_terms.h"
-#include "sliding_cloth.h"
+#include "tests/physics/sliding_cloth.h"
 #include "tests/validation/ode.h"
 
 namespace arris {

@@ -17,4 +17,8 @@ inline constexpr double kShortEdge = 0.5;
 /// edge. It also limits the distance between neighbours along a trace.
 inline constexpr double kLongEdge = 2.0;
 
+/// Share of an edge, from an end that cannot move, within which surgery does not split it. Raising it leaves
+/// more contacts near vertices without an EOL vertex, lowering it makes thin faces.
+inline constexpr double kSplitFromEnd = 0.05;
+
 }  // namespace arris

@@ -28,8 +28,7 @@
 namespace arris {
 namespace {
 
-constexpr double kLeastFraction = 0.05;  // of an edge: least distance of a split from an end that cannot move
-constexpr double kTraceFraction = 1e-3;  // least distance if the end is on another trace or is left behind
+constexpr double kTraceFraction = 1e-3;  // as kSplitFromEnd, if the end is on another trace or is left behind
 constexpr double kLeastApart = 0.1;  // of the target length: a vertex nearer to a trace may not stay ahead
 constexpr double kSnapAngle = 5.0;   // degrees: a vertex does not move if that leaves a thinner face
 
@@ -82,7 +81,7 @@ bool is_crowded(const ClothSurgery& surgery, VertexId a, VertexId b, double s, c
     const Vec2 X = surgery.material(a) + s * (surgery.material(b) - surgery.material(a));
     const auto least = [&](VertexId v) {
         return surgery.role(v) != TraceRole::Free || is_behind(surgery, v, X, way) ? kTraceFraction
-                                                                                   : kLeastFraction;
+                                                                                   : kSplitFromEnd;
     };
     return s < least(a) || 1.0 - s < least(b);
 }

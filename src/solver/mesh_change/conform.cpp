@@ -142,8 +142,8 @@ class Conforming {
 
     bool has_failed_near(const Vec2& material) const
     {
-        constexpr double kNear = 0.5;  // target lengths: clean-up may have moved the vertex
-        return failed_.has_failed_near(material, kNear * trace_.target().length(material));
+        // Clean-up may have moved the vertex.
+        return failed_.has_failed_near(material, kShortEdge * trace_.target().length(material));
     }
 
     /// Takes a vertex off its trace: its contact becomes a constraint.

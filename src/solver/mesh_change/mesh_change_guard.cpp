@@ -52,7 +52,6 @@ bool MeshChangeGuard::allows(const SurgeryEvent& event)
 
 double MeshChangeGuard::allowance(const SurgeryEvent& event, double elastic_energy) const
 {
-    constexpr double kShare = 0.01;  // of the patch's elastic energy
     // Clearing may raise the energy by this many times as much. Otherwise the trace would be released, and a
     // constraint would hold everything that slides.
     constexpr double kClearing = 10.0;
@@ -67,7 +66,7 @@ double MeshChangeGuard::allowance(const SurgeryEvent& event, double elastic_ener
         0.5 * scene_.material.density * area * squared_speed +
         weight_over(scene_, area, target_length(scene_, state_, event.before[0].material[0]));
     return (is_clearing_ ? kClearing : 1.0) *
-           (kShare * elastic_energy + kAllowedStrain * motion + unseen_energy(scene_, area));
+           (kAllowedStrain * elastic_energy + kAllowedStrain * motion + unseen_energy(scene_, area));
 }
 
 bool MeshChangeGuard::strains(const SurgeryEvent& event)

@@ -69,8 +69,6 @@ double find_potential_energy(const Scene& scene, const State& state, const Cloth
     return find_patch_energy(scene, find_creases(scene, state, stars), state.mesh);
 }
 
-constexpr double kAny = std::numeric_limits<double>::infinity();
-
 // Times that a strained mesh is made anew: after one try, the strained patches are mostly others. Raising it
 // costs a mesh each.
 constexpr int kMostTries = 2;
@@ -166,7 +164,7 @@ class MeshTries {
         TriedMesh giving = make_without_strain();
         carry_over(giving, kTraceStrain);
         TriedMesh careful = more_careful(std::move(giving));
-        carry_over(careful, kAny);
+        carry_over(careful);
         return careful;
     }
 
@@ -175,7 +173,7 @@ class MeshTries {
     {
         TriedMesh made = make({});
         for (int k = 0; !changes_.misfits.empty(); ++k) {
-            carry_over(made, kAny);
+            carry_over(made);
             if (made.strain() <= kPatchStrain) break;
             if (k == kMostTries || !drop_strained_misfits(made)) changes_.misfits.clear();
             made = make({});
@@ -241,7 +239,7 @@ class MeshTries {
 
     /// Transfers the state to the mesh, unless that is done. Left unfinished where a patch is strained by
     /// more than `most_strain`.
-    void carry_over(TriedMesh& made, double most_strain)
+    void carry_over(TriedMesh& made, double most_strain = std::numeric_limits<double>::infinity())
     {
         if (!made.outcome.mesh || made.is_carried_over()) return;
         const ClothMesh& mesh = made.outcome.mesh->surgery.mesh;

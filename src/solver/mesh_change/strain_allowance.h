@@ -17,7 +17,8 @@ namespace arris {
 /// and lets more strain go.
 inline constexpr int kPatchRings = 2;
 
-/// Limit for a single operation (MeshChangeGuard): the strain of one operation stays invisible.
+/// Limit for a single operation (MeshChangeGuard): the strain of one operation stays invisible. Likewise the
+/// same share of the elastic energy that the patch has already.
 inline constexpr double kAllowedStrain = 0.01;
 
 /// Limit for all operations of a step on one patch. A smaller one would cost sliding traces their vertices,

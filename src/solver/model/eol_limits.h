@@ -59,7 +59,8 @@ inline constexpr double kFlat = 0.9986;
 inline constexpr double kLeastCrossing = 20.0;
 
 /// Largest distance of a new vertex from its edge's plane, in thicknesses: a vertex inserted farther off
-/// would stay off the plane.
+/// would stay off the plane. Also the distance within which an edge that begins or ends near the plane
+/// serves.
 inline constexpr double kOffPlane = 0.1;
 
 // ---- Bends of wires (sites/bend_sites.h) ----
@@ -71,7 +72,7 @@ inline constexpr double kMissedByChord = 0.3;
 
 /// Cells. A fixed vertex nearer to a bend counts as the bend's vertex; a sliding one nearer moves to the
 /// bend. Raising either leaves bends without a vertex exactly on them.
-inline constexpr CellsAround kBesideBend = {.sliding = 0.5, .fixed = 0.2};
+inline constexpr CellsAround kBesideBend = {.sliding = kShortEdge, .fixed = 0.2};
 // ---- Flow of material through EOL vertices ----
 
 /// Share of a face's material that one step may take. Raising it makes faces too small for a reliable strain.

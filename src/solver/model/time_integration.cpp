@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/model/time_integration.h"
 
+#include <numbers>
+
 namespace arris {
 
 bool has_past(const State& state, double dt)
 {
-    constexpr double kGreatestRatio = 2.4142135623730951;  // 1 + sqrt 2: beyond, BDF2 is not zero-stable
-    return dt <= kGreatestRatio * state.previous_dt;
+    return dt <= (1.0 + std::numbers::sqrt2) * state.previous_dt;  // beyond, BDF2 is not zero-stable
 }
 
 Prediction predict(const State& state, Integrator integrator, double dt)

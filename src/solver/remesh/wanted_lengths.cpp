@@ -35,9 +35,8 @@ double largest_eigenvalue(const Sym2& S)
 
 /// Sums over the material: area, curvature with and without sign, compression, squared gradient of
 /// velocity. All but the first are weighted by area.
-constexpr int kChannels = 9;
+enum Channel { kArea = 0, kSigned = 1, kSizes = 4, kCompression = 7, kVelocity = 8, kChannels };
 using Measures = Eigen::Matrix<double, kChannels, 1>;
-enum Channel { kArea = 0, kSigned = 1, kSizes = 4, kCompression = 7, kVelocity = 8 };
 
 /// Signed angle, rad, by which the surface turns over a hinge. 0 where a face has collapsed.
 double turn(const std::vector<Vec3>& x, const Hinge& hinge)

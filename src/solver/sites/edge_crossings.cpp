@@ -14,16 +14,11 @@
 #include "geometry/tolerances.h"
 #include "solver/eol/eol_features.h"
 #include "solver/eol/wire_fold.h"
+#include "solver/model/eol_limits.h"
 #include "solver/model/target_length.h"
 #include "solver/sites/wire_end.h"
 
 namespace arris {
-
-namespace {
-
-constexpr double kAsGood = 0.1;  // thicknesses: for an edge that begins or ends near the plane
-
-}  // namespace
 
 EdgeCrossings::EdgeCrossings(const Scene& scene, const State& state, const ClothStars& stars,
                              std::int32_t obstacle)
@@ -52,7 +47,7 @@ std::optional<FeatureSite> EdgeCrossings::find_past_end(int a, int b, int featur
 std::optional<FeatureSite> EdgeCrossings::find_pressed(int a, int b, int feature, const Vec3& normal) const
 {
     const double height = kOnFeature * thickness_ + find_rise(a, b, feature, normal);
-    for (const double in_plane : {kOnSurface, kAsGood})
+    for (const double in_plane : {kOnSurface, kOffPlane})
         if (const auto crossing = find(a, b, feature, normal, {in_plane, height})) return crossing;
     return find_beyond_end(a, b, feature, normal);
 }

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "eulerian_cloth.h"
+#include "tests/physics/eulerian_cloth.h"
 
 namespace arris {
 namespace {

@@ -7,7 +7,6 @@
 
 #include <Eigen/Dense>
 
-#include "eulerian_cloth.h"
 #include "physics/forces/bending.h"
 #include "physics/forces/gravity_force.h"
 #include "physics/forces/inertia.h"
@@ -15,6 +14,7 @@
 #include "physics/forces/membrane.h"
 #include "physics/forces/pull_force.h"
 #include "physics/forces/wind_force.h"
+#include "tests/physics/eulerian_cloth.h"
 
 namespace arris {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "eulerian_cloth.h"
 #include "physics/forces/inertia.h"
 #include "physics/forces/make_terms.h"
+#include "tests/physics/eulerian_cloth.h"
 
 namespace arris {
 namespace {

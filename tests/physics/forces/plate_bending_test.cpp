@@ -8,8 +8,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "eulerian_cloth.h"
 #include "physics/forces/energies.h"
+#include "tests/physics/eulerian_cloth.h"
 
 namespace arris {
 namespace {

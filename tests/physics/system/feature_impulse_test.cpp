@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "eulerian_cloth.h"
+#include "tests/physics/eulerian_cloth.h"
 
 namespace arris {
 namespace {

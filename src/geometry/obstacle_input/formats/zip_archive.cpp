@@ -10,6 +10,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
+#include "geometry/obstacle_input/formats/mesh_file_limits.h"
 
 // A ZIP archive ends with a directory. Its end record comes last; before it, one entry per file names the
 // position of the file's local header and data.
@@ -22,7 +23,6 @@ constexpr std::size_t kEntry = 46;
 constexpr std::size_t kLocalHeader = 30;
 constexpr std::size_t kLocator64 = 20;
 constexpr std::uint64_t kIn64Bits = 0xffffffff;  // the number stands in a 64-bit field
-constexpr std::uint64_t kLargestFile = std::uint64_t{2} << 30;
 
 [[noreturn]] void refuse_truncated()
 {
