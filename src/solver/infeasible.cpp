@@ -20,8 +20,7 @@ std::vector<const Contact*> list_unmet(const UnmetStep& step, const std::optiona
     std::vector<const Contact*> unmet;
     if (overconstrained) {
         for (const Contact& contact : step.contacts)
-            if (contact.is_vertex() && has_vertex(contact, *overconstrained) && contact.is_squeezed())
-                unmet.push_back(&contact);
+            if (contact.is_squeezed() && has_vertex(contact, *overconstrained)) unmet.push_back(&contact);
         return unmet;
     }
     for (const int row : step.rows)

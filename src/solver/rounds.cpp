@@ -225,7 +225,7 @@ Next give_up(Rounds& round)
     StepReport& report = round.report;
     std::vector<int> unmet = list_too_thin(work.carriers, work.contacts, work.proposal.world);
     unmet.insert(unmet.end(), work.solution.infeasible_rows.begin(), work.solution.infeasible_rows.end());
-    if (!unmet.empty()) {
+    if (work.solution.status == SolveStatus::Infeasible || !unmet.empty()) {
         report.status = StepStatus::Infeasible;
         report.infeasible = name_infeasible(round.state, {work.contacts, work.pin_targets, unmet});
     } else {

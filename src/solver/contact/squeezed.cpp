@@ -234,7 +234,8 @@ std::vector<int> list_too_thin(const Carriers& carriers, const std::vector<Conta
 {
     std::vector<int> rows;
     for (const Contact& contact : contacts)
-        if (is_too_thin(contact, end_distance(carriers[contact.obstacle], contact, world)))
+        if (contact.row >= 0 &&
+            is_too_thin(contact, end_distance(carriers[contact.obstacle], contact, world)))
             rows.push_back(contact.row);
     std::sort(rows.begin(), rows.end());
     return rows;
