@@ -243,8 +243,10 @@ VelocitySolution ContactLaws::make_solution(const ContactIterate& at) const
     for (std::size_t k = 0; k < problem_->rows.size(); ++k) {
         const ScaledRow& scaled = constraints_->rows[first + k];
         const ConstraintRow& row = problem_->rows[k];
+        // The force of a spring between vertices that are held is known.
+        const bool is_between_held = scaled.entries.empty() && row.compliance > 0.0;
         solution.row_multipliers[static_cast<Eigen::Index>(k)] =
-            scaled.entries.empty() && row.compliance > 0.0  // a spring between what is held: its force is known
+            is_between_held
                 ? std::max(row.lower, 0.0) / row.compliance
                 : std::max(at.multipliers[static_cast<Eigen::Index>(first + k)], 0.0) / scaled.scale;
     }
