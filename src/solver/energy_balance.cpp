@@ -140,6 +140,16 @@ double total_area(const ClothElements& elements)
     return area;
 }
 
+/// Elastic energy, J, that squeezed cloth gains over the step.
+double energy_of_squeezing(const Workspace& work)
+{
+    if (std::none_of(work.contacts.begin(), work.contacts.end(),
+                     [](const Contact& contact) { return contact.is_squeezed(); }))
+        return 0.0;
+    return energy_stored(work.carriers, work.contacts,
+                         find_end(work.prediction, velocity_of(work.proposal)).world);
+}
+
 /// Elastic energy, J, of strains due to round-off alone, for positions as far from the origin as the cloth's.
 double round_off_energy(const Scene& scene, const State& state, const ClothElements& elements)
 {
@@ -192,9 +202,7 @@ double energy_scale(const Workspace& work)
 double find_energy_rise(const Scene& scene, const State& state, const Workspace& work)
 {
     double allowed = kRise * energy_scale(work);
-    double rise = work.energies.solved.sum() - work.energies.start.sum() +
-                  energy_stored(work.carriers, work.contacts,
-                                find_end(work.prediction, velocity_of(work.proposal)).world);
+    double rise = work.energies.solved.sum() - work.energies.start.sum() + energy_of_squeezing(work);
     if (!(rise > allowed)) return 0.0;
     allowed += round_off_energy(scene, state, work.mesh.elements);
     const double driven = compute_driven_work(state, work);

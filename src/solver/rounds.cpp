@@ -154,6 +154,7 @@ bool propose_and_check(Rounds& round)
         const std::vector<Contact> floors =
             find_floors(work.carriers, work.prediction, work.contacts, work.proposal.world);
         round.violations.contacts.insert(round.violations.contacts.end(), floors.begin(), floors.end());
+        round.report.crossings = round.violations.crossings;
     };
     propose_measured(growth);
     if (note_not_finite(CheckedStage::Proposal, round.state, work, round.report)) return false;
@@ -231,7 +232,6 @@ Next give_up(Rounds& round)
     } else {
         report.status = StepStatus::Penetration;
     }
-    report.crossings = round.violations.crossings;
     if (round.attempt == Attempt::Ordinary || !(report.kkt_residual <= round.settings.tolerance))
         return Next::Fail;
     const std::optional<int> rewound =
@@ -316,8 +316,7 @@ constexpr Rule kRules[] = {
      add_rows_or_give_up,
      {"the check of the path finds contacts, or cloth squeezed below its least thickness",
       "they become rows of the same system, or of a new one where history changes or the cloth is squeezed; "
-      "without any the "
-      "attempt fails (penetration), or the last one moves cloth back on its path",
+      "without any the attempt fails (penetration), or the last one moves cloth back on its path",
       "12 solves"}},
     {RoundEnd::Overconstrained,
      fail<StepStatus::Infeasible>,
@@ -346,7 +345,7 @@ std::vector<Overrun> run_rounds(const Scene& scene, const Settings& settings, do
         report.seconds.check += watch.lap();
         // A step that fails may return to an earlier linearisation that raised no energy.
         if (next == Next::Fail && restore_least_rise(work, report)) next = Next::Assemble;
-        if (next == Next::Accept) report.status = StepStatus::Done, report.crossings = 0;
+        if (next == Next::Accept) report.status = StepStatus::Done;
     }
     name_failure(state, work, round.violations, round.overrun, report);
     return round.overrun;

@@ -32,31 +32,16 @@ void append(const std::vector<Contact>& added, std::vector<Contact>& contacts)
     contacts.insert(contacts.end(), added.begin(), added.end());
 }
 
-std::vector<int> find_unmet_fold_planes(const Workspace& work)
-{
-    const UnmetStep step = {work.contacts, work.pin_targets, work.solution.infeasible_rows};
-    std::vector<int> folds;
-    for (std::size_t c = 0; c < work.contacts.size(); ++c)
-        if (work.contacts[c].is_fold_plane() && step.is_unmet(work.contacts[c].row))
-            folds.push_back(static_cast<int>(c));
-    return folds;
-}
-
-/// Lets fold planes keep nothing in this step: they are only a help, as the check finds cloth that passes
-/// without them. True where one kept anything.
-bool drop_fold_planes(const std::vector<int>& folds, Workspace& work)
+/// Lets a fold plane keep nothing in this step: it is only a help, as the check finds cloth that passes
+/// without it. True where it kept anything.
+bool drop_fold_plane(Workspace& work, Contact& plane)
 {
     constexpr double kFree = 1e3;  // m: farther than any step moves
-    bool is_changed = false;
-    for (const int f : folds) {
-        Contact& fold = work.contacts[f];
-        if (fold.least_gap <= -kFree) continue;
-        fold.least_gap = -kFree;
-        fold.may_grow = false;
-        update_gap(work.carriers[fold.obstacle], work.prediction, fold);
-        is_changed = true;
-    }
-    return is_changed;
+    if (plane.least_gap <= -kFree) return false;
+    plane.least_gap = -kFree;
+    plane.may_grow = false;
+    update_gap(work.carriers[plane.obstacle], work.prediction, plane);
+    return true;
 }
 
 }  // namespace
@@ -72,12 +57,13 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
         work.eol = add_eol_contacts(scene, state, work.mesh.stars, work.prediction, turning, work.carriers,
                                     work.contacts);
     }
-    work.cushion = {scene.material.compression_modulus, lump_masses(1.0, work.mesh.elements)};
+    if (!scene.obstacles.empty() || scene.self_contact) {
+        work.cushion = {scene.material.compression_modulus, lump_masses(1.0, work.mesh.elements)};
+        work.mobility = find_mobility(scene.material.density, work.mesh.elements, work.pin_targets);
+    }
     const std::optional<int> overconstrained =
         squeeze_contacts(work.cushion, work.carriers, work.prediction, work.contacts).overconstrained;
     append(expect_floors(work.carriers, work.prediction, work.contacts), work.contacts);
-    if (!scene.obstacles.empty() || scene.self_contact)
-        work.mobility = find_mobility(scene.material.density, work.mesh.elements, work.pin_targets);
     flatten_contacts(scene, state, 0, work);
     // Layers are searched along their way as the obstacles have left it.
     const std::size_t with_obstacles = work.contacts.size();
@@ -128,16 +114,20 @@ bool squeeze_unmet(Workspace& work)
     const UnmetStep step = {work.contacts, work.pin_targets, work.solution.infeasible_rows};
     bool is_changed = false;
     for (Contact& contact : work.contacts) {
-        if (!step.is_unmet(contact.row) || contact.is_fold_plane()) continue;
-        if (!squeeze(work.cushion, work.carriers, work.prediction, contact)) continue;
-        is_changed = true;
+        if (!step.is_unmet(contact.row)) continue;
+        is_changed |= contact.is_fold_plane()
+                          ? drop_fold_plane(work, contact)
+                          : squeeze(work.cushion, work.carriers, work.prediction, contact);
     }
-    return is_changed | drop_fold_planes(find_unmet_fold_planes(work), work);
+    return is_changed;
 }
 
 bool drop_overconstraining_fold_planes(Workspace& work)
 {
-    return drop_fold_planes(find_overconstraining_fold_planes(work), work);
+    bool is_changed = false;
+    for (const int plane : find_overconstraining_fold_planes(work))
+        is_changed |= drop_fold_plane(work, work.contacts[plane]);
+    return is_changed;
 }
 
 std::optional<Next> add_violations(const Scene& scene, const State& state, const Violations& violations,

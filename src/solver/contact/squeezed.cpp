@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <map>
 
 namespace arris {
 
@@ -32,12 +32,18 @@ double begin_distance(const Carrier& carrier, const Contact& contact)
     return contact.local_normal.dot(contact.at(carrier.motion.begin) - contact.local_point);
 }
 
+/// Whether squeezed cloth is thinner than a share of its stand-off. A plane borrowed from an edge does not
+/// tell.
+bool is_thinner(double share, const Contact& contact, double distance)
+{
+    return contact.is_squeezed() && !contact.is_beside_rim && distance < share * contact.stand_off;
+}
+
 /// Whether squeezed cloth is thinner than the least thickness, but for the round-off of a solve.
 bool is_too_thin(const Contact& contact, double distance)
 {
     constexpr double kRoundOff = 1e-9;  // of the stand-off
-    return contact.is_squeezed() && !contact.is_beside_rim &&
-           distance < (kLeastThickness - kRoundOff) * contact.stand_off;
+    return is_thinner(kLeastThickness - kRoundOff, contact, distance);
 }
 
 /// Whether two contacts keep the least thickness at the same place.
@@ -94,6 +100,17 @@ bool keeps_distance_from_obstacle(const Contact& contact)
            !contact.is_squeezed();
 }
 
+/// Contacts (indices) where the cloth is squeezed, by vertex, in their order.
+std::multimap<int, std::size_t> index_squeezed(const std::vector<Contact>& contacts)
+{
+    std::multimap<int, std::size_t> squeezed_at;
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+        for (int i = 0; i < 4 && contacts[c].vertices[i] >= 0; ++i)
+            if (contacts[c].is_squeezed() && contacts[c].weights[i] != 0.0)
+                squeezed_at.emplace(contacts[c].vertices[i], c);
+    return squeezed_at;
+}
+
 /// Squeezes the cloth at contacts that press it against contacts where it is squeezed. If they kept their
 /// distance there, two planes at a small angle would throw the cloth out sideways.
 bool squeeze_against(const Cushion& cushion, const Carriers& carriers, const Prediction& prediction,
@@ -101,58 +118,54 @@ bool squeeze_against(const Cushion& cushion, const Carriers& carriers, const Pre
 {
     // Cosine between the normals: a slanted plane beside a gap would press cloth out of it as a spring.
     constexpr double kNearlyFacing = -0.99;
-    std::unordered_multimap<int, std::size_t> squeezed_at;  // by vertex
-    for (std::size_t c = 0; c < contacts.size(); ++c)
-        for (int i = 0; i < 4 && contacts[c].vertices[i] >= 0; ++i)
-            if (contacts[c].is_squeezed() && contacts[c].weights[i] != 0.0)
-                squeezed_at.emplace(contacts[c].vertices[i], c);
-    bool is_changed = false;
+    const std::multimap<int, std::size_t> squeezed_at = index_squeezed(contacts);
     const auto is_pressed_against = [&](const Contact& contact) {
         for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
+            if (contact.weights[i] == 0.0) continue;
             const auto [first, last] = squeezed_at.equal_range(contact.vertices[i]);
             const bool is_found = std::any_of(first, last, [&](const auto& entry) {
                 const std::optional<double> room =
                     find_room(carriers, contact, contacts[entry.second], kNearlyFacing);
                 return room && *room < 1.0;
             });
-            if (is_found && contact.weights[i] != 0.0) return true;
+            if (is_found) return true;
         }
         return false;
     };
+    bool is_changed = false;
     for (Contact& contact : contacts)
         if (keeps_distance_from_obstacle(contact) && is_pressed_against(contact))
             is_changed = squeeze(cushion, carriers, prediction, contact) || is_changed;
     return is_changed;
 }
 
-/// The contact of a squeezed edge with the same obstacle that presses nearest to the vertex; null without
-/// one.
-const Contact* find_edge_beside(const Contact& vertex, const std::vector<Contact>& contacts)
-{
-    const Contact* nearest = nullptr;
-    double most = 0.0;
-    for (const Contact& edge : contacts) {
-        if (!edge.is_squeezed() || edge.kind != ContactKind::Edge || edge.obstacle != vertex.obstacle ||
-            !(edge.normal.dot(vertex.normal) > 0.0))
-            continue;
-        for (int i = 0; i < 2; ++i) {
-            if (edge.vertices[i] != vertex.vertices[0] || !(edge.weights[i] > most)) continue;
-            nearest = &edge;
-            most = edge.weights[i];
-        }
-    }
-    return nearest;
-}
-
 /// A vertex about to pass a rim where its edges are squeezed has that rim in its way, at a slant. It takes
-/// the plane of its edge there: a slanted one would hold cloth back at the entry of a gap, or throw it out.
+/// the plane of the edge there that presses nearest to it: a slanted one would hold cloth back at the entry
+/// of a gap, or throw it out.
 bool squeeze_beside_edges(const Cushion& cushion, const Carriers& carriers, const Prediction& prediction,
                           std::vector<Contact>& contacts)
 {
+    const std::multimap<int, std::size_t> squeezed_at = index_squeezed(contacts);
+    const auto find_edge_beside = [&](const Contact& vertex) {
+        const Contact* nearest = nullptr;
+        double most = 0.0;
+        const auto [first, last] = squeezed_at.equal_range(vertex.vertices[0]);
+        for (auto entry = first; entry != last; ++entry) {
+            const Contact& edge = contacts[entry->second];
+            if (edge.kind != ContactKind::Edge || edge.obstacle != vertex.obstacle ||
+                !(edge.normal.dot(vertex.normal) > 0.0))
+                continue;
+            const double weight = edge.weights[edge.vertices[0] == vertex.vertices[0] ? 0 : 1];
+            if (!(weight > most)) continue;
+            nearest = &edge;
+            most = weight;
+        }
+        return nearest;
+    };
     bool is_changed = false;
     for (Contact& contact : contacts) {
         if (!contact.is_vertex() || !keeps_distance_from_obstacle(contact) || contact.eol >= 0) continue;
-        const Contact* edge = find_edge_beside(contact, contacts);
+        const Contact* edge = find_edge_beside(contact);
         if (edge == nullptr) continue;
         contact.normal = edge->normal;
         contact.local_normal = edge->local_normal;
@@ -207,8 +220,7 @@ std::vector<Contact> expect_floors(const Carriers& carriers, const Prediction& p
     std::vector<Contact> floors;
     for (const Contact& contact : contacts) {
         const Carrier& carrier = carriers[contact.obstacle];
-        if (contact.is_squeezed() && !contact.is_beside_rim &&
-            begin_distance(carrier, contact) < kNear * kLeastThickness * contact.stand_off)
+        if (is_thinner(kNear * kLeastThickness, contact, begin_distance(carrier, contact)))
             floors.push_back(make_floor(carrier, prediction, contact));
     }
     return floors;

@@ -127,16 +127,22 @@ std::vector<GripCase> list_cases(const TemporaryDirectory& folder)
     };
 }
 
+/// Runs a scene to its end. Returns its probes.
+CsvTable run_scene(const TemporaryDirectory& folder, const std::string& text)
+{
+    write_bytes(folder / "scene.toml", text);
+    Program program(folder, {"run", folder / "scene.toml", "-o", folder / "out", "--overwrite", "--quiet",
+                             "--set", "output.formats=[]", "--set", "output.frames_per_second=4"});
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    return read_csv(folder / "out/probes.csv");
+}
+
 TEST(Grip, HoldsClothBetweenObstaclesByFriction)
 {
     const TemporaryDirectory folder;
     for (const GripCase& one : list_cases(folder)) {
         SCOPED_TRACE(one.name);
-        write_bytes(folder / "scene.toml", one.text + kFriction);
-        Program program(folder, {"run", folder / "scene.toml", "-o", folder / "out", "--overwrite", "--quiet",
-                                 "--set", "output.formats=[]", "--set", "output.frames_per_second=4"});
-        ASSERT_EQ(program.wait(), 0) << program.err();
-        const CsvTable probe = read_csv(folder / "out/probes.csv");
+        const CsvTable probe = run_scene(folder, one.text + kFriction);
         const std::size_t last = probe.row_count() - 1;
         const char* axes[] = {"p_x", "p_y", "p_z"};
         for (int d = 0; d < 3; ++d) {
@@ -154,11 +160,7 @@ TEST(Grip, HoldsNothingWithoutFriction)
         const bool is_lifted = std::string(one.name) == "tweezers lift";
         if (!is_lifted && std::string(one.name) != "rollers transport") continue;
         SCOPED_TRACE(one.name);
-        write_bytes(folder / "scene.toml", one.text);
-        Program program(folder, {"run", folder / "scene.toml", "-o", folder / "out", "--overwrite", "--quiet",
-                                 "--set", "output.formats=[]", "--set", "output.frames_per_second=4"});
-        ASSERT_EQ(program.wait(), 0) << program.err();
-        const CsvTable probe = read_csv(folder / "out/probes.csv");
+        const CsvTable probe = run_scene(folder, one.text);
         const std::vector<double> x = probe.column("p_x"), z = probe.column("p_z");
         EXPECT_LT(std::abs(x.back() - x.front()), 0.01);
         if (is_lifted) {
