@@ -26,20 +26,24 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
     work.retry.forget();
     while (state.time < end) {
         const double part_end = parts == 1 ? end : state.time + (end - state.time) / parts;
-        const Attempt attempt = shrink == RetryPolicy::kMostParts ? Attempt::Last : Attempt::Ordinary;
+        const bool is_shortest = shrink == RetryPolicy::kMostParts;
+        const Attempt attempt = work.retry.choose_attempt(is_shortest);
         StepReport report = make_part(scene, settings, planned, part_end, state, work, attempt);
         if (report.status == StepStatus::Done) {
             report.add_cost(std::exchange(failed, {}));
             report.part = part;
             parts = part == StepPart::Opening ? 1 : std::max(parts - 1, 1);
             part = part == StepPart::Opening ? StepPart::Rest : StepPart::Ordinary;
+            if (shrink > 1 && parts % 2 == 0) {  // a hard moment may be over
+                shrink /= 2;
+                parts /= 2;
+            }
             if (!accept(report, report.part == StepPart::Ordinary && report.dt < planned.length()))
                 return std::nullopt;
             continue;
         }
         failed.add_cost(report);
-        const bool is_shortest = attempt == Attempt::Last;
-        switch (work.retry.choose_next({report.status, work.prediction.has_history, is_shortest})) {
+        switch (work.retry.choose_next({report.status, attempt, work.prediction.has_history, is_shortest})) {
             case NextAttempt::WholeWithoutEol:
                 parts = std::max(parts / shrink, 1);
                 shrink = 1;

@@ -25,9 +25,11 @@ constexpr Rung kRungs[] = {
     // Without EOL vertices the whole step may succeed, even where the shortest failed with them.
     {NextAttempt::WholeWithoutEol,
      [](const RetryPolicy& policy, const FailedStep& failed) {
-         return failed.is_shortest && policy.has_new_mesh() && policy.has_given_up_all();
+         return failed.attempt == Attempt::Last && policy.has_new_mesh() && policy.has_given_up_all();
      },
-     {"the shortest part failed with EOL vertices", "the whole step without any", "once"}},
+     {"a last attempt failed with EOL vertices: at the shortest part, or after 400 factorisations' worth of "
+      "work",
+      "the rest of the step without any, in as few parts as planned", "once"}},
     {NextAttempt::WithoutRemeshing,
      [](const RetryPolicy& policy, const FailedStep&) { return policy.has_stopped_remeshing(); },
      {"the mesh was remeshed for the attempt", "on a mesh whose cells keep their size", "once"}},
@@ -71,9 +73,11 @@ void RetryPolicy::note(const StepReport& report, Attempt attempt, const State& s
                        const Failure& failure)
 {
     const bool was_staying = is_staying_;
+    const double work = work_ += report.solve_work;
     if (report.status == StepStatus::Done) {
         if (!has_given_up_all_) forget();
         is_staying_ = was_staying;
+        work_ = work;
         return;
     }
     has_stopped_remeshing_ = report.remeshed > 0;

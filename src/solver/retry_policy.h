@@ -13,7 +13,8 @@ namespace arris {
 /// Whether an attempt at a step may take last resorts where its solves and checks do not succeed.
 enum class Attempt {
     Ordinary,  ///< it fails instead: another attempt may succeed
-    Last       ///< on a mesh without EOL vertices, it may rewind cloth and accept an energy rise
+    Last       ///< on a mesh without EOL vertices, it may rewind cloth, and accept an energy rise or friction
+               ///< off its law
 };
 
 /// An EOL vertex through which more material would flow in the step than the faces beside it can give.
@@ -49,6 +50,7 @@ std::vector<AttemptRule> list_attempt_rules();
 /// A failed attempt, as input of `RetryPolicy::choose_next`.
 struct FailedStep {
     StepStatus status;
+    Attempt attempt;
     bool has_history;  ///< the attempt used BDF2
     bool is_shortest;  ///< no shorter step is tried
 };
@@ -60,14 +62,22 @@ class RetryPolicy {
     static constexpr int kMostOverruns = 5;         ///< overruns before all EOL vertices are given up
     static constexpr int kMostOverconstrained = 3;  ///< attempts that demote overconstrained vertices
     static constexpr int kMostParts = 64;           ///< shortest part of a planned step: 1/64
+    /// Work of the velocity solves of one planned step, in factorisations' worth, after which attempts at the
+    /// rest of it are last ones.
+    static constexpr double kMostWork = 400.0;
 
     /// Records an attempt that started from `start`: `state` itself, or its cloth on the step's mesh. A
-    /// successful attempt clears the record. Two decisions hold until `forget`: to give up all EOL vertices,
-    /// and not to go round wires and tips.
+    /// successful attempt clears the record. Its work and two decisions hold until `forget`: to give up all
+    /// EOL vertices, and not to go round wires and tips.
     void note(const StepReport& report, Attempt attempt, const State& state, const State& start,
               const Failure& failure);
     void forget() { *this = RetryPolicy(); }
 
+    /// Whether the next attempt, at the shortest part or not, may take last resorts.
+    Attempt choose_attempt(bool is_shortest) const
+    {
+        return is_shortest || work_ > kMostWork ? Attempt::Last : Attempt::Ordinary;
+    }
     /// The attempt that follows the one recorded last.
     NextAttempt choose_next(const FailedStep& failed) const;
 
@@ -91,7 +101,8 @@ class RetryPolicy {
 
     int overruns_ = 0;
     int overconstrained_ = 0;
-    int unsolved_ = 0;  ///< attempts whose velocity solve failed
+    int unsolved_ = 0;   ///< attempts whose velocity solve failed
+    double work_ = 0.0;  ///< factorisations' worth
     bool has_new_mesh_ = false, has_stopped_turning_ = false, has_stopped_remeshing_ = false;
     bool is_staying_ = false, has_given_up_all_ = false;
     FailedFlow flow_;

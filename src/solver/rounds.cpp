@@ -28,8 +28,8 @@ namespace {
 constexpr int kMostSolves = 12;
 
 /// Work of one attempt at a step in all its velocity solves, in factorisations' worth. Beyond it the attempt
-/// fails, and the next one is shorter. The last one may do more, as the run ends where it fails.
-constexpr double kMostWork = 60.0, kMostWorkOfLast = 600.0;
+/// fails.
+constexpr double kMostWork = 60.0;
 
 /// One attempt's rounds.
 struct Rounds {
@@ -93,8 +93,7 @@ void solve_velocity(const Rounds& round, bool does_resume)
     StepReport& report = round.report;
     work.problem.matrix = &work.mesh.system.matrix();
     work.problem.rhs = &work.mesh.system.rhs();
-    work.problem.most_work =
-        (round.attempt == Attempt::Last ? kMostWorkOfLast : kMostWork) - report.solve_work;
+    work.problem.most_work = kMostWork - report.solve_work;
     work.problem.is_repeat = report.solves > 0;
     if (!work.problem.friction.empty()) set_friction_law(round.scene, round.state, work);
     work.solution = does_resume ? work.solver.resume(work.problem, round.settings)
@@ -284,7 +283,7 @@ struct Rule {
     RoundRule in_words;
 };
 
-static_assert(kMostSolves == 12 && kMostWork == 60.0 && kMostWorkOfLast == 600.0, "the words below say so");
+static_assert(kMostSolves == 12 && kMostWork == 60.0, "the words below say so");
 constexpr Rule kRules[] = {
     {RoundEnd::Starved,
      fail<StepStatus::Overrun>,
@@ -292,7 +291,7 @@ constexpr Rule kRules[] = {
     {RoundEnd::Unsolved,
      fail<StepStatus::NotConverged>,
      {"the solve has no certificate, or friction is off its law", "the attempt fails (not converged)",
-      "60 factorisations' worth of work an attempt, 600 in the last one"}},
+      "60 factorisations' worth of work an attempt"}},
     {RoundEnd::NotFinite,
      fail<StepStatus::NotFinite>,
      {"a number is not finite", "the attempt fails, and names it", ""}},

@@ -175,7 +175,8 @@ TEST(RetryPolicy, TakesTheFirstRungThatApplies)
 {
     const State state = state_with_eol({1});
     const auto next = [](const RetryPolicy& policy, StepStatus status, bool has_history, bool is_shortest) {
-        return policy.choose_next({status, has_history, is_shortest});
+        return policy.choose_next(
+            {status, is_shortest ? Attempt::Last : Attempt::Ordinary, has_history, is_shortest});
     };
     RetryPolicy plain;
     plain.note(with(StepStatus::EnergyRise), Attempt::Ordinary, state, state, {});
@@ -202,6 +203,28 @@ TEST(RetryPolicy, TakesTheFirstRungThatApplies)
     EXPECT_EQ(next(last, StepStatus::NotConverged, true, true), NextAttempt::None);
 }
 
+TEST(RetryPolicy, TakesLastResortsAtTheShortestPartOrAfterMuchWork)
+{
+    const State state = state_with_eol({1, 2});
+    StepReport costly = with(StepStatus::NotConverged), done = with(StepStatus::Done);
+    costly.solve_work = 0.3 * RetryPolicy::kMostWork;
+    done.solve_work = 0.5 * RetryPolicy::kMostWork;
+    RetryPolicy policy;
+    EXPECT_EQ(policy.choose_attempt(false), Attempt::Ordinary);
+    EXPECT_EQ(policy.choose_attempt(true), Attempt::Last);
+    policy.note(costly, Attempt::Ordinary, state, state, {});
+    policy.note(done, Attempt::Ordinary, state, state, {});
+    EXPECT_EQ(policy.choose_attempt(false), Attempt::Ordinary);
+    policy.note(costly, Attempt::Ordinary, state, state, {});
+    EXPECT_EQ(policy.choose_attempt(false), Attempt::Last) << "parts that were accepted count";
+    // With EOL vertices a last attempt takes no last resorts. So the next one has none, and is long again.
+    policy.note(costly, Attempt::Last, state, state, {});
+    EXPECT_EQ(policy.choose_next({StepStatus::NotConverged, Attempt::Last, false, false}),
+              NextAttempt::WholeWithoutEol);
+    policy.forget();
+    EXPECT_EQ(policy.choose_attempt(false), Attempt::Ordinary);
+}
+
 // The attempts at a step end, whichever failure recurs.
 TEST(RetryPolicy, ComesToAnEnd)
 {
@@ -213,12 +236,13 @@ TEST(RetryPolicy, ComesToAnEnd)
         bool has_history = true;
         for (NextAttempt next = NextAttempt::Shorter; next != NextAttempt::None && attempts < 1000;
              ++attempts) {
-            const bool is_last = shrink == RetryPolicy::kMostParts;
+            const bool is_shortest = shrink == RetryPolicy::kMostParts;
+            const Attempt attempt = policy.choose_attempt(is_shortest);
             const State state = state_with_eol(policy.has_given_up_all() ? std::vector<std::uint32_t>()
                                                                          : std::vector<std::uint32_t>{1, 2});
-            policy.note(with(status), is_last ? Attempt::Last : Attempt::Ordinary, state, state,
+            policy.note(with(status), attempt, state, state,
                         state.eol.empty() ? Failure() : Failure{{{1, {1.0, 0.0}}}, {2}, true});
-            next = policy.choose_next({status, has_history, is_last});
+            next = policy.choose_next({status, attempt, has_history, is_shortest});
             if (next == NextAttempt::Shorter) shrink *= 2;
             if (next == NextAttempt::WholeWithoutEol) shrink = 1;
             if (next == NextAttempt::WithoutHistory) has_history = false;

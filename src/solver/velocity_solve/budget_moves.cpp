@@ -31,7 +31,7 @@ VectorXd BudgetMoves::next(const VectorXd& now, const VectorXd& wanted)
 VectorXd BudgetMoves::accelerate(const VectorXd& now, const VectorXd& wanted, const VectorXd& change)
 {
     constexpr std::size_t kDepth = 5;  // moves that are remembered
-    constexpr double kLargestWeight = 10.0, kFarthest = 3.0;
+    constexpr double kFarthest = 3.0;  // ratio of a move
     if (last_.size() != now.size()) return wanted;
     if (change.norm() > 2.0 * last_change_.norm()) {
         moves_.clear();
@@ -49,7 +49,7 @@ VectorXd BudgetMoves::accelerate(const VectorXd& now, const VectorXd& wanted, co
     for (Eigen::Index k = 0; k < depth; ++k) columns.col(k) = differences_[k];
     const VectorXd weights = columns.colPivHouseholderQr().solve(change);
     VectorXd next = wanted;
-    if (weights.allFinite() && weights.norm() < kLargestWeight)
+    if (weights.allFinite())
         for (Eigen::Index k = 0; k < depth; ++k) next -= weights[k] * (moves_[k] + differences_[k]);
     for (Eigen::Index p = 0; p < next.size(); ++p) {
         const double least = now[p] > 0.0 ? std::min(now[p], wanted[p]) : wanted[p];

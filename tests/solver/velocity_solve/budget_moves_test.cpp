@@ -38,6 +38,20 @@ TEST(BudgetMoves, FindTheFixedPointOfALinearMapInItsDimension)
     EXPECT_LE(count_moves(offset, law, 1e-9), 8);
 }
 
+TEST(BudgetMoves, ReachFarAheadWhereForcesFollowSlowly)
+{
+    // Two contacts press the harder the more friction each has. Repetition comes nearer to the fixed point by
+    // a share of 1 - rate a move.
+    for (const double rate : {0.5, 0.9, 0.99, 0.997}) {
+        const auto law = [&](const VectorXd& b) {
+            return VectorXd((VectorXd(3) << (1.0 - rate) * 3.0 + rate * b[1],
+                             (1.0 - rate) * 3.1 + rate * b[0], 2.0 + 0.1 * b[0])
+                                .finished());
+        };
+        EXPECT_LE(count_moves(VectorXd::Ones(3), law, 1e-5), 8) << rate;
+    }
+}
+
 TEST(BudgetMoves, FollowContactsThatCouple)
 {
     std::mt19937 random(7);
