@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include "app/scene/parts/scene_effects.h"
 #include "app/scene/parts/scene_estimate.h"
@@ -121,33 +121,21 @@ std::string elements_in_words(const Obstacle& obstacle)
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// Length of each polyline of sharp edges, m.
-std::vector<double> line_lengths(const Obstacle& obstacle)
-{
-    const ObstacleFeatures& features = obstacle.features();
-    std::vector<double> lengths(static_cast<std::size_t>(features.polyline_count), 0.0);
-    for (const FeatureEdge& feature : features.edges) {
-        const auto& [a, b] = obstacle.topology().edges[static_cast<std::size_t>(feature.edge)].points;
-        lengths[static_cast<std::size_t>(feature.polyline)] +=
-            (obstacle.mesh().points[static_cast<std::size_t>(a)] -
-             obstacle.mesh().points[static_cast<std::size_t>(b)])
-                .norm();
-    }
-    return lengths;
-}
-
 /// Describes the features, with lengths relative to `cell`, the cloth's mean edge (m).
 std::string features_in_words(const Obstacle& obstacle, double cell)
 {
     const ObstacleFeatures& features = obstacle.features();
-    const std::vector<double> lengths = line_lengths(obstacle);
     Lines parts;
-    if (!lengths.empty()) {
-        const double least = *std::min_element(lengths.begin(), lengths.end());
+    if (!features.polylines.empty()) {
+        double least = std::numeric_limits<double>::infinity(), sum = 0.0;
+        for (const FeaturePolyline& line : features.polylines) {
+            least = std::min(least, line.length);
+            sum += line.length;
+        }
         parts.push_back(fmt::format(
             "{} in {}, {:.6g} m in all, the shortest line {:.4g} m, {:.3g} times the cloth's mean edge",
-            counted(features.edges.size(), "edge", "edges"), counted(lengths.size(), "line", "lines"),
-            std::accumulate(lengths.begin(), lengths.end(), 0.0), least, least / cell));
+            counted(features.edges.size(), "edge", "edges"),
+            counted(features.polylines.size(), "line", "lines"), sum, least, least / cell));
     }
     if (!features.corners.empty())
         parts.push_back(counted(features.corners.size(), "corner or point", "corners or points"));

@@ -29,6 +29,8 @@ const char* explain(ConstraintCause cause)
         case ConstraintCause::FlatBehind:
             return "the cloth lies flat on a face beside the feature, behind a fold that has left the "
                    "feature";
+        case ConstraintCause::Unresolved:
+            return "the feature is finer than the cells of the cloth, which cannot follow it";
         case ConstraintCause::NearBorder:
             return "the cloth's border is so near that it would slide past an EOL vertex at once";
         case ConstraintCause::BorderAhead:

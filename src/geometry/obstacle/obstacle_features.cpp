@@ -263,26 +263,35 @@ void mark_apexes(const ObstacleMesh& mesh, const ObstacleTopology& topology, con
 }
 
 /// Numbers the chains of feature edges between corners, in the order of their first edges.
-int chain(const ObstacleTopology& topology, const std::vector<EdgesAt>& at,
-          const std::vector<char>& is_corner, std::vector<FeatureEdge>& edges)
+std::vector<FeaturePolyline> chain(const ObstacleMesh& mesh, const ObstacleTopology& topology,
+                                   const std::vector<EdgesAt>& at, const std::vector<char>& is_corner,
+                                   std::vector<FeatureEdge>& edges)
 {
-    int count = 0;
+    std::vector<FeaturePolyline> polylines;
+    const auto add = [&](int k) {
+        const auto& [a, b] = topology.edges[edges[k].edge].points;
+        edges[k].polyline = static_cast<int>(polylines.size()) - 1;
+        polylines.back().length += (mesh.points[b] - mesh.points[a]).norm();
+    };
     for (int seed = 0; seed < static_cast<int>(edges.size()); ++seed) {
         if (edges[seed].polyline >= 0) continue;
-        const int polyline = count++;
+        polylines.emplace_back();
+        add(seed);
         for (int point : topology.edges[edges[seed].edge].points) {
             // A chain ends at a corner, or where a closed chain returns to its start.
             int k = seed;
-            edges[k].polyline = polyline;
             while (!is_corner[point]) {
                 k = at[point].other_than(k);
-                if (edges[k].polyline >= 0) break;
-                edges[k].polyline = polyline;
+                if (edges[k].polyline >= 0) {
+                    polylines.back().is_closed = true;
+                    break;
+                }
+                add(k);
                 point = other_end(topology.edges[edges[k].edge], point);
             }
         }
     }
-    return count;
+    return polylines;
 }
 
 std::vector<int> find_patches(const ObstacleMesh& mesh, const ObstacleTopology& topology,
@@ -347,7 +356,7 @@ ObstacleFeatures find_features(const ObstacleMesh& mesh, const ObstacleTopology&
     for (int p = 0; p < static_cast<int>(mesh.points.size()); ++p)
         if (is_node(mesh, topology, features.edges, at[p], p)) is_corner[p] = 1;
 
-    features.polyline_count = chain(topology, at, is_corner, features.edges);
+    features.polylines = chain(mesh, topology, at, is_corner, features.edges);
     for (int p = 0; p < static_cast<int>(mesh.points.size()); ++p)
         if (is_corner[p])
             features.corners.push_back({p, normals_around(topology, planes, features.patch, p)});

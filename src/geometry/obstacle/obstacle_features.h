@@ -18,8 +18,7 @@ struct FeatureEdge {
     FeatureKind kind;
     std::array<Vec3, 2> normals;  ///< normals of the faces beside the edge; border: twice that of its only
                                   ///< face; wire: zero
-    int polyline;                 ///< number shared by the edges of one kind that form a chain from corner to
-                                  ///< corner
+    int polyline;                 ///< index in ObstacleFeatures::polylines
 };
 
 /// A point where features meet, end or bend sharply, a cone's apex, or a lone point.
@@ -29,12 +28,18 @@ struct FeatureCorner {
                                 ///< and lone points
 };
 
+/// A chain of feature edges of one kind from corner to corner, or closed.
+struct FeaturePolyline {
+    double length = 0.0;  ///< m
+    bool is_closed = false;
+};
+
 struct ObstacleFeatures {
     std::vector<FeatureEdge> edges;      ///< ascending by `edge`
     std::vector<FeatureCorner> corners;  ///< ascending by `point`; includes lone points
     std::vector<int> patch;              ///< planar patch of each face: connected faces in one plane, within
                                          ///< 1e-6 rad
-    int polyline_count = 0;
+    std::vector<FeaturePolyline> polylines;
 };
 
 /// Finds the features of a mesh that passes `validate`. An edge is sharp where the normals of its faces

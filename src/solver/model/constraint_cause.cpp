@@ -16,6 +16,8 @@ const char* to_string(ConstraintCause cause)
             return "beside_eol";
         case ConstraintCause::FlatBehind:
             return "flat_behind";
+        case ConstraintCause::Unresolved:
+            return "unresolved";
         case ConstraintCause::NearBorder:
             return "near_border";
         case ConstraintCause::BorderAhead:
@@ -55,6 +57,7 @@ bool is_excluded(ConstraintCause cause)
     switch (cause) {
         case ConstraintCause::AtEol:
         case ConstraintCause::FlatBehind:
+        case ConstraintCause::Unresolved:
         case ConstraintCause::Gathering:
         case ConstraintCause::NearBorder:
         case ConstraintCause::NoDirection:

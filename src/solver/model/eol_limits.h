@@ -21,6 +21,10 @@ struct CellsAround {
 inline constexpr CellsAround kRoomToEnter = {.sliding = kCrowded, .fixed = 0.5};
 inline constexpr CellsAround kRoomToStay = {.sliding = 0.15, .fixed = 0.3};
 
+/// Length, in cells, of a convex polyline from corner to corner, from which a mesh can follow it. Raising it
+/// leaves larger boxes and facets to constraints; lowering it makes smaller faces at small ones.
+inline constexpr double kResolved = 0.5;
+
 /// Distance from a feature, in thicknesses, within which cloth lies on the feature: slightly more than the
 /// mitre. A vertex becomes EOL within this distance. Raising it treats contacts beside a feature as contacts
 /// on it.

@@ -113,6 +113,7 @@ std::optional<ConstraintCause> EolAdmission::find_refusal(const FeatureSite& sit
 {
     if (is_pinned(site.material)) return ConstraintCause::Quality;
     if (const std::optional<ConstraintCause> border = find_border_cause(site, v, flow)) return border;
+    if (is_unresolved(site)) return ConstraintCause::Unresolved;
     if (is_beside_other(site)) return ConstraintCause::OtherFeature;
     if (gathers(site, v)) return ConstraintCause::Gathering;
     if (const std::optional<ConstraintCause> fold = find_fold_cause(site)) return fold;
@@ -157,6 +158,36 @@ bool EolAdmission::gathers(const FeatureSite& site, int v) const
     const auto [from, to] = feature_segment(obstacle, site.on.index);
     const Vec3 tangent = obstacle.placement.rotation * (to - from).normalized();
     return is_near_gathering(scene_, state_, stars_, v, tangent);
+}
+
+/// Whether a feature is finer than the cells: a convex polyline shorter than they can follow, or a corner
+/// from which such polylines lead to others. Cloth that follows two or more polylines needs the corner
+/// between them. Any other such corner is the tip of something thin, on which the cloth has room for one
+/// vertex.
+bool EolAdmission::is_unresolved(const FeatureSite& site) const
+{
+    if (site.on.is_bend()) return false;
+    const Obstacle& obstacle = scene_.obstacles[site.on.obstacle].shape();
+    const ObstacleFeatures& features = obstacle.features();
+    const double least = kResolved * target_length(scene_, state_, site.material);
+    const auto is_short = [&](int feature) {
+        const FeatureEdge& edge = features.edges[feature];
+        const FeaturePolyline& polyline = features.polylines[edge.polyline];
+        return edge.kind == FeatureKind::Convex && !polyline.is_closed && polyline.length < least;
+    };
+    if (!site.on.is_corner()) return is_short(site.on.index);
+    int followed = 0, unresolved = 0;
+    const ObstacleTopology& topology = obstacle.topology();
+    const int point = features.corners[site.on.index].point;
+    for (int k = 0; k < topology.edge_count_at(point); ++k)
+        if (const int feature = feature_of_edge(features, topology.edge_at(point, k)); feature >= 0)
+            ++(is_short(feature) ? unresolved : followed);
+    if (unresolved == 0 || followed > 1) return false;
+    return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
+        return e.on.obstacle == site.on.obstacle && e.on.is_corner() && e.on != site.on &&
+               trace_.is_on_trace(e.vertex_id) &&
+               (trace_.surgery().material(e.vertex_id) - site.material).norm() < least;
+    });
 }
 
 /// Whether another edge nearer than the thickness has a trace here: between two traces there would be no

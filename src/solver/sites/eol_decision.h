@@ -72,6 +72,7 @@ class EolAdmission {
     /// from the feature to the vertex; on the other side it would oppose the contacts beside it.
     bool is_on_side(const EolVertex& eol) const;
     std::optional<ConstraintCause> find_border_cause(const FeatureSite& site, int v, const Vec2& flow) const;
+    bool is_unresolved(const FeatureSite& site) const;
     bool is_beside_other(const FeatureSite& site) const;
     bool gathers(const FeatureSite& site, int v) const;
     std::optional<ConstraintCause> find_fold_cause(const FeatureSite& site) const;

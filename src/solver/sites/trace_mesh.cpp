@@ -14,15 +14,15 @@ FeatureTags::FeatureTags(const std::vector<MovingObstacle>& obstacles) : obstacl
     for (const MovingObstacle& obstacle : obstacles) {
         first_.push_back(count_);
         const ObstacleFeatures& features = obstacle.shape().features();
-        count_ += features.polyline_count + static_cast<int>(features.corners.size());
+        count_ += static_cast<int>(features.polylines.size() + features.corners.size());
     }
 }
 
 int FeatureTags::tag(const FeatureId& on) const
 {
     const ObstacleFeatures& features = obstacles_[on.obstacle].shape().features();
-    return first_[on.obstacle] +
-           (on.is_corner() ? features.polyline_count + on.index : features.edges[on.index].polyline);
+    return first_[on.obstacle] + (on.is_corner() ? static_cast<int>(features.polylines.size()) + on.index
+                                                 : features.edges[on.index].polyline);
 }
 
 TraceMesh::TraceMesh(const Scene& scene, const State& state, const ClothStars& stars,

@@ -52,7 +52,7 @@ TEST(CsvTable, HasTheColumnsOfStepsInTheirOrder)
         ::testing::EndsWith(
             ",output_s,cpu_s,halved,solves,rewound,yielded,energy_rise,eol_pressing,"
             "max_strain,friction_sweeps,friction_residual,friction_work,sticking,sliding,self_contacts,remeshed,remesh_energy,"
-            "rows_new,rows_not_crossing,rows_at_eol,rows_beside_eol,rows_flat_behind,"
+            "rows_new,rows_not_crossing,rows_at_eol,rows_beside_eol,rows_flat_behind,rows_unresolved,"
             "rows_near_border,rows_border_ahead,"
             "rows_guard,rows_quality,rows_off_plane,rows_blocked,rows_gathering,"
             "rows_given_up,rows_released,rows_no_direction,"

@@ -42,9 +42,9 @@ std::vector<int> corner_points(const ObstacleFeatures& features)
 }
 
 /// Number of edges of each polyline, ascending.
-std::vector<int> polyline_lengths(const ObstacleFeatures& features)
+std::vector<int> polyliness(const ObstacleFeatures& features)
 {
-    std::vector<int> lengths(features.polyline_count, 0);
+    std::vector<int> lengths(features.polylines.size(), 0);
     for (const FeatureEdge& edge : features.edges) ++lengths.at(edge.polyline);
     std::sort(lengths.begin(), lengths.end());
     return lengths;
@@ -67,7 +67,7 @@ TEST(ObstacleFeatures, BoxHasTwelveConvexEdgesAndEightCornersOfThreePlanes)
     const ObstacleFeatures features = features_of(kBox);
     EXPECT_EQ(count(features, FeatureKind::Convex), 12);
     EXPECT_THAT(features.edges, SizeIs(12));
-    EXPECT_THAT(polyline_lengths(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1));
+    EXPECT_THAT(polyliness(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1));
     EXPECT_THAT(corner_points(features), ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
     EXPECT_EQ(patch_count(features), 6);
 
@@ -160,7 +160,7 @@ TEST(ObstacleFeatures, CountsAreThoseOfTheShapeAtAnySizeAndPlace)
             const ObstacleFeatures features = features_of(samples::moved(samples::l_prism(), map));
             EXPECT_THAT(features.edges, SizeIs(27)) << size << " " << offset;
             EXPECT_THAT(features.corners, SizeIs(12));
-            EXPECT_EQ(features.polyline_count, 17);
+            EXPECT_EQ(features.polylines.size(), 17u);
             EXPECT_THAT(features_of(samples::moved(kBox, map)).edges, SizeIs(12));
             EXPECT_EQ(patch_count(features_of(samples::moved(kBox, map))), 6);
         }
@@ -169,19 +169,19 @@ TEST(ObstacleFeatures, CountsAreThoseOfTheShapeAtAnySizeAndPlace)
 TEST(ObstacleFeatures, SidesOfACylinderAreSharpBelowTheirTurn)
 {
     const ObstacleFeatures coarse = features_of(samples::cylinder(16), 30.0);
-    EXPECT_THAT(polyline_lengths(coarse), ElementsAre(16, 16));  // two closed rims
+    EXPECT_THAT(polyliness(coarse), ElementsAre(16, 16));  // two closed rims
     EXPECT_THAT(coarse.corners, IsEmpty());
     EXPECT_EQ(patch_count(coarse), 18);
 
     const ObstacleFeatures fine = features_of(samples::cylinder(16), 20.0);
     EXPECT_THAT(fine.edges, SizeIs(48));
     EXPECT_THAT(fine.corners, SizeIs(32));
-    EXPECT_EQ(fine.polyline_count, 48);
+    EXPECT_EQ(fine.polylines.size(), 48u);
 }
 
 TEST(ObstacleFeatures, ARimThatTurnsByThirtyDegreesIsOnePolylineByMoreIsCut)
 {
-    EXPECT_THAT(polyline_lengths(features_of(samples::cylinder(12), 80.0)), ElementsAre(12, 12));
+    EXPECT_THAT(polyliness(features_of(samples::cylinder(12), 80.0)), ElementsAre(12, 12));
     EXPECT_THAT(features_of(samples::cylinder(12), 80.0).corners, IsEmpty());
     EXPECT_THAT(features_of(samples::cylinder(11), 80.0).corners, SizeIs(22));
 }
@@ -192,7 +192,7 @@ TEST(ObstacleFeatures, ReflexEdgesAreNoneButTheirEndsAreCorners)
     const ObstacleFeatures features = features_of(mesh);
     EXPECT_EQ(count(features, FeatureKind::Convex), 27);
     EXPECT_THAT(corner_points(features), ElementsAre(0, 1, 2, 3, 4, 5, 18, 19, 20, 21, 22, 23));
-    EXPECT_THAT(polyline_lengths(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 3, 3, 3, 3, 3));
+    EXPECT_THAT(polyliness(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 3, 3, 3, 3, 3));
     const ObstacleTopology topology = make_topology(mesh);
     for (const FeatureEdge& edge : features.edges) {
         const std::array<int, 2>& ends = topology.edges[edge.edge].points;
@@ -219,7 +219,7 @@ TEST(ObstacleFeatures, AConesApexIsACornerThoughNoEdgeThereIsSharp)
     const ObstacleFeatures features = features_of(samples::cone(100, 0.3));
     EXPECT_THAT(corner_points(features), ElementsAre(100));
     EXPECT_THAT(features.corners[0].normals, SizeIs(100));
-    EXPECT_THAT(polyline_lengths(features), ElementsAre(100));
+    EXPECT_THAT(polyliness(features), ElementsAre(100));
     // The angle defect is 360 (1 - r / sqrt(r^2 + 1)) degrees: 57.1 at r = 1.56, 62.9 at r = 1.44.
     EXPECT_THAT(features_of(samples::cone(100, 1.56)).corners, IsEmpty());
     EXPECT_THAT(features_of(samples::cone(100, 1.44)).corners, SizeIs(1));
@@ -243,7 +243,7 @@ TEST(ObstacleFeatures, PointsOnTheLineOfAnEdgeChain)
     const ObstacleMesh layered = samples::prism({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {0, .2, .4, .7, 1});
     const ObstacleFeatures features = features_of(layered);
     EXPECT_THAT(features.edges, SizeIs(24));
-    EXPECT_THAT(polyline_lengths(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 4));
+    EXPECT_THAT(polyliness(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 4));
     EXPECT_THAT(features.corners, SizeIs(8));
     EXPECT_EQ(patch_count(features), 6);
 }
@@ -265,7 +265,7 @@ TEST(ObstacleFeatures, FlatSheetHasItsBorder)
     const ObstacleFeatures features = features_of(samples::sheet(4, 3, [](int, int) { return 0.0; }));
     EXPECT_EQ(count(features, FeatureKind::Border), 14);
     EXPECT_THAT(features.edges, SizeIs(14));
-    EXPECT_THAT(polyline_lengths(features), ElementsAre(3, 3, 4, 4));
+    EXPECT_THAT(polyliness(features), ElementsAre(3, 3, 4, 4));
     EXPECT_THAT(corner_points(features), ElementsAre(0, 3, 16, 19));
     EXPECT_EQ(patch_count(features), 1);
     for (const FeatureEdge& edge : features.edges) {
@@ -282,7 +282,7 @@ TEST(ObstacleFeatures, EveryCreaseOfASheetIsOneWhicheverWayItTurns)
     EXPECT_EQ(count(features, FeatureKind::Convex), 6);
     EXPECT_EQ(count(features, FeatureKind::Border), 12);
     EXPECT_THAT(features.corners, SizeIs(4 + 6));
-    EXPECT_EQ(features.polyline_count, 3 + 2 + 8);
+    EXPECT_EQ(features.polylines.size(), 3u + 2 + 8);
     EXPECT_EQ(patch_count(features), 4);
     // Inside out, the sheet has the same number of feature edges.
     EXPECT_THAT(
@@ -331,7 +331,7 @@ TEST(ObstacleFeatures, NoiseOnFlatSidesMakesNoFeatures)
     for (Vec3& p : mesh.points) p += Vec3(noise(random), noise(random), noise(random));
     const ObstacleFeatures features = features_of(mesh);
     EXPECT_THAT(features.edges, SizeIs(8 + 4 * 50));
-    EXPECT_EQ(features.polyline_count, 12);
+    EXPECT_EQ(features.polylines.size(), 12u);
     EXPECT_THAT(features.corners, SizeIs(8));
 }
 
@@ -363,7 +363,7 @@ TEST(ObstacleFeatures, ASliverBentByRoundingIsNoEdgeOfItsOwn)
             const ObstacleFeatures features = features_of(box_with_cap(off));
             EXPECT_THAT(features.edges, SizeIs(13)) << off.transpose();
             EXPECT_EQ(count(features, FeatureKind::Convex), 13);
-            EXPECT_EQ(features.polyline_count, 12);
+            EXPECT_EQ(features.polylines.size(), 12u);
             EXPECT_THAT(features.corners, SizeIs(8));
         }
 }
@@ -387,7 +387,7 @@ TEST(ObstacleFeatures, WiresEndTurnAndCross)
     const ObstacleFeatures straight = features_of(samples::wire({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}, false));
     EXPECT_EQ(count(straight, FeatureKind::Wire), 2);
     EXPECT_THAT(corner_points(straight), ElementsAre(0, 2));
-    EXPECT_THAT(polyline_lengths(straight), ElementsAre(2));
+    EXPECT_THAT(polyliness(straight), ElementsAre(2));
     EXPECT_THAT(straight.corners[0].normals, IsEmpty());
     EXPECT_EQ(straight.edges[0].normals[0], Vec3(0, 0, 0));
     EXPECT_THAT(straight.patch, IsEmpty());
@@ -395,13 +395,13 @@ TEST(ObstacleFeatures, WiresEndTurnAndCross)
     const ObstacleFeatures square =
         features_of(samples::wire({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, true));
     EXPECT_THAT(corner_points(square), ElementsAre(0, 1, 2, 3));
-    EXPECT_THAT(polyline_lengths(square), ElementsAre(1, 1, 1, 1));
+    EXPECT_THAT(polyliness(square), ElementsAre(1, 1, 1, 1));
 
     ObstacleMesh cross;
     cross.points = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 0}};
     cross.segments = {{0, 4}, {4, 1}, {2, 4}, {4, 3}};
     EXPECT_THAT(corner_points(features_of(cross)), ElementsAre(0, 1, 2, 3, 4));
-    EXPECT_THAT(polyline_lengths(features_of(cross)), ElementsAre(1, 1, 1, 1));
+    EXPECT_THAT(polyliness(features_of(cross)), ElementsAre(1, 1, 1, 1));
 }
 
 TEST(ObstacleFeatures, AClosedSmoothWireIsOnePolylineWithoutCorners)
@@ -412,13 +412,13 @@ TEST(ObstacleFeatures, AClosedSmoothWireIsOnePolylineWithoutCorners)
         circle.push_back(some_rotation() * Vec3(std::cos(angle), std::sin(angle), 0.0));
     }
     const ObstacleFeatures features = features_of(samples::wire(circle, true));
-    EXPECT_THAT(polyline_lengths(features), ElementsAre(32));
+    EXPECT_THAT(polyliness(features), ElementsAre(32));
     EXPECT_THAT(features.corners, IsEmpty());
     // A nail on a wire divides the polyline.
     ObstacleMesh nailed = samples::wire(circle, true);
     nailed.lone_points = {7};
     EXPECT_THAT(corner_points(features_of(nailed)), ElementsAre(7));
-    EXPECT_THAT(polyline_lengths(features_of(nailed)), ElementsAre(32));
+    EXPECT_THAT(polyliness(features_of(nailed)), ElementsAre(32));
 }
 
 TEST(ObstacleFeatures, AWireTurnsAtMoreThanSixtyDegrees)
@@ -460,7 +460,7 @@ TEST(ObstacleFeatures, LonePointsAreCornersWithoutNormals)
     EXPECT_THAT(corner_points(features), ElementsAre(0, 1, 2));
     EXPECT_THAT(features.corners[1].normals, IsEmpty());
     EXPECT_THAT(features.edges, IsEmpty());
-    EXPECT_EQ(features.polyline_count, 0);
+    EXPECT_EQ(features.polylines.size(), 0u);
 }
 
 TEST(ObstacleFeatures, NothingHasNone)

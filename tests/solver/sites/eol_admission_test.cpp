@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/geometry/sample_obstacles.h"
 #include "tests/solver/eol_cloth.h"
 
 namespace arris {
@@ -37,6 +38,64 @@ TEST(EolAdmission, OfWhatHasLeftAnEdgeOnlyBeyondBothItsFaces)
         EXPECT_TRUE(may_be_at(Vec3(side * 0.3 * kFar, 0.0, kFar)));
         EXPECT_FALSE(may_be_at(Vec3(side * kFar, 0.0, 0.0)));
         EXPECT_FALSE(may_be_at(Vec3(side * kFar, 0.0, -kFar)));
+    }
+}
+
+struct FineFeatures {
+    const char* name;
+    ObstacleMesh mesh;
+    int edges;    ///< that cells of 50 mm cannot follow
+    int corners;  ///< where one of the obstacle's corners has a vertex within half a cell; -1: all but that
+                  ///< one
+};
+
+// A post, a small box or the facets of a rough stone would get an EOL vertex at each corner and edge, with
+// faces as small as they are. Cloth has room for one vertex there.
+TEST(EolAdmission, OfWhatIsFinerThanTheCellsOnlyOneCorner)
+{
+    const auto box = [](double x, double y, double z) { return samples::box({0, 0, 0}, {x, y, z}); };
+    const auto scaled = [](const ObstacleMesh& mesh, double by) {
+        return samples::moved(mesh, [by](const Vec3& x) -> Vec3 { return by * x; });
+    };
+    const FineFeatures kCases[] = {
+        {"post of 2 mm", box(0.002, 0.002, 0.03), 8, -1},
+        {"cube below half a cell", box(0.024, 0.024, 0.024), 12, -1},
+        {"cube above half a cell", box(0.026, 0.026, 0.026), 0, 0},
+        {"blade, of whose corners two edges go on", box(0.3, 0.002, 0.3), 4, 0},
+        {"thin plate", box(0.3, 0.3, 0.002), 4, 0},
+        {"table", box(1.0, 0.7, 0.7), 0, 0},
+        {"ball of small facets", scaled(samples::sphere(6, 8), 0.02), 104, -1},
+        {"ball of large facets", scaled(samples::sphere(6, 8), 1.0), 0, 0},
+        {"rim of many short edges", samples::cylinder(40), 0, 0},
+        {"nails", samples::nails({{0, 0, 0}, {0.001, 0, 0}}), 0, 0},
+        {"frame of short wires",
+         samples::wire({{0, 0, 0}, {0.01, 0, 0}, {0.01, 0.01, 0}, {0, 0.01, 0}}, true), 0, 0},
+        {"small sheet's border", scaled(samples::sheet(2, 2, [](int, int) { return 0.0; }), 0.01), 0, 0},
+    };
+    for (const FineFeatures& one : kCases) {
+        SCOPED_TRACE(one.name);
+        testing::EolCloth cloth(MovingObstacle("it", one.mesh, {}, {}, 14.0),
+                                testing::make_draped({8, 0.0, 180.0, 1.0}));
+        const ObstacleFeatures& features = cloth.scene.obstacles[0].shape().features();
+        const int v = cloth.vertex_at(0.2, 0.2);
+        const ClothStars stars = cloth.stars();
+        const auto count = [&](bool is_corner) {
+            const TraceMesh trace(cloth.scene, cloth.state, stars, {});
+            const EolAdmission admission(cloth.scene, cloth.state, stars, trace, 0.02);
+            const std::size_t size = is_corner ? features.corners.size() : features.edges.size();
+            int found = 0;
+            for (int k = 0; k < static_cast<int>(size); ++k) {
+                const FeatureId on = is_corner ? FeatureId::corner(0, k) : FeatureId::edge(0, k);
+                const FeatureSite site{on, Vec2(0.21, 0.2), cloth.state.ids[v], Vec3::UnitZ()};
+                found += admission.find_refusal(site, v, Vec2::Zero()) == ConstraintCause::Unresolved;
+            }
+            return found;
+        };
+        EXPECT_EQ(count(false), one.edges);
+        EXPECT_EQ(count(true), 0) << "none has a vertex yet";
+        if (features.corners.empty()) continue;
+        cloth.add_eol(v, true, 0);
+        EXPECT_EQ(count(true), one.corners < 0 ? static_cast<int>(features.corners.size()) - 1 : one.corners);
     }
 }
 
