@@ -92,7 +92,7 @@ bool is_on_feature(const Scene& scene, const State& state, const EolVertex& eol,
     const int end = eol.on.is_corner() ? -1 : end_passed(obstacle, eol.on.index, place);
     const Vec2& X = state.mesh.material[state.index_of(eol.vertex_id)];
     return end < 0 || length_past_end(obstacle, eol.on.index, place) <
-                          reach_past_end(obstacle, eol.on.index, end, scene.material.thickness, kPastEnd.stay,
+                          reach_past_end(obstacle, eol.on.index, end, scene.material.thickness,
                                          target_length(scene, state, X));
 }
 
