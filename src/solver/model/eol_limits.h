@@ -15,11 +15,10 @@ struct CellsAround {
     double fixed;    ///< for a vertex at a corner or a bend of a wire
 };
 
-/// Room along the trace from a vertex to the cloth's border; around a fixed one to borders on any side. An
-/// EOL vertex stays with less room than a new one needs, so that it does not come and go. Raising either
-/// leaves more constraints in place of EOL vertices near borders.
-inline constexpr CellsAround kRoomToEnter = {.sliding = kCrowded, .fixed = 0.5};
-inline constexpr CellsAround kRoomToStay = {.sliding = 0.15, .fixed = 0.3};
+/// Room along the trace from a new vertex to the cloth's border; around a fixed one to borders on any side.
+/// An EOL vertex stays with kStayRatio of it. Raising it leaves more constraints in place of EOL vertices
+/// near borders.
+inline constexpr CellsAround kRoom = {.sliding = kCrowded, .fixed = 0.5};
 
 /// Distance from a feature, in thicknesses, within which cloth lies on the feature: slightly more than the
 /// mitre. A vertex becomes EOL within this distance. Raising it treats contacts beside a feature as contacts

@@ -9,6 +9,7 @@
 
 #include "geometry/tolerances.h"
 #include "solver/eol/eol_features.h"
+#include "solver/model/hysteresis.h"
 #include "solver/model/target_length.h"
 
 namespace arris {
@@ -134,13 +135,12 @@ bool has_gathered(const EolVertex& vertex)
 bool is_near_gathering(const Scene& scene, const State& state, const ClothStars& stars, int v,
                        const Vec3& tangent)
 {
-    constexpr double kNear = 2.0;
     const Star star = look_around(state.mesh, stars.faces[v], v, state.mesh.world);
     if (!(star.squared_F.determinant() > 0.0)) return false;
     // The material direction that maps onto the tangent, as nearly as the faces agree.
     const Vec2 direction = star.squared_F.inverse() * (star.F_transposed * tangent);
     if (!(direction.norm() > 0.0)) return false;
-    return find_growth_rate(scene, state, stars, v, kNear * (1.0 - 1.0 / direction.norm())) > 0.0;
+    return find_growth_rate(scene, state, stars, v, (1.0 - 1.0 / direction.norm()) / kStayRatio) > 0.0;
 }
 
 }  // namespace arris

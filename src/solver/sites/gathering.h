@@ -27,8 +27,8 @@ void grow_gathering(const Scene& scene, const ClothStars& stars, double dt, Stat
 /// Whether a pleat has grown at an EOL vertex, by a factor of 20.
 bool has_gathered(const EolVertex& vertex);
 
-/// Whether a pleat would pay at vertex `v` of the cloth along `tangent` (unit, world) at twice its present
-/// compression: a trace begins only where it would not soon be released.
+/// Whether a pleat would pay at vertex `v` of the cloth along `tangent` (unit, world) at 1 / kStayRatio of
+/// its present compression: a trace begins only where it would not soon be released.
 bool is_near_gathering(const Scene& scene, const State& state, const ClothStars& stars, int v,
                        const Vec3& tangent);
 
