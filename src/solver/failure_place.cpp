@@ -24,13 +24,6 @@ void add_obstacle(int obstacle, FailurePlace& place)
     }
 }
 
-bool has_vertex(const Contact& contact, int vertex)
-{
-    for (int i = 0; i < 4; ++i)
-        if (contact.vertices[i] == vertex && contact.weights[i] != 0.0) return true;
-    return false;
-}
-
 /// Names the vertex (index), and what is in contact with it.
 void name_vertex(const State& state, const Workspace& work, int vertex, FailurePlace& place)
 {
@@ -38,7 +31,7 @@ void name_vertex(const State& state, const Workspace& work, int vertex, FailureP
     place.world = state.mesh.world[vertex];
     place.material = state.mesh.material[vertex];
     for (const Contact& contact : work.contacts)
-        if (has_vertex(contact, vertex)) add_obstacle(contact.obstacle, place);
+        if (contact.has_vertex(vertex)) add_obstacle(contact.obstacle, place);
 }
 
 /// The first vertex of a face that meets something on its way; nothing where the proposal is clean.
@@ -57,7 +50,7 @@ FailurePlace find_meeting(const State& state, const Workspace& work, const Viola
     int vertex = face[0];
     for (const Contact& contact : violations.contacts)
         if (const auto met =
-                std::find_if(face.begin(), face.end(), [&](int v) { return has_vertex(contact, v); });
+                std::find_if(face.begin(), face.end(), [&](int v) { return contact.has_vertex(v); });
             met != face.end()) {
             vertex = *met;
             break;
@@ -122,7 +115,7 @@ void name_crease(const State& state, const std::vector<Contact>& contacts, std::
     const int vertex = static_cast<int>(at - state.ids.begin());
     std::vector<const Contact*> met;
     for (const Contact& contact : contacts)
-        if (!contact.is_with_itself() && !contact.is_fold_plane() && has_vertex(contact, vertex))
+        if (!contact.is_with_itself() && !contact.is_fold_plane() && contact.has_vertex(vertex))
             met.push_back(&contact);
     double least = 0.0;  // cosine between the normals
     for (std::size_t i = 0; i < met.size(); ++i)

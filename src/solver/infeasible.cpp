@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/infeasible.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -9,18 +8,13 @@ namespace arris {
 
 namespace {
 
-bool has_vertex(const Contact& contact, int vertex)
-{
-    return std::find(contact.vertices.begin(), contact.vertices.end(), vertex) != contact.vertices.end();
-}
-
 /// Contacts with obstacles that the step cannot meet, in the order of their constraints.
 std::vector<const Contact*> list_unmet(const UnmetStep& step, const std::optional<int>& overconstrained)
 {
     std::vector<const Contact*> unmet;
     if (overconstrained) {
         for (const Contact& contact : step.contacts)
-            if (contact.is_squeezed() && has_vertex(contact, *overconstrained)) unmet.push_back(&contact);
+            if (contact.is_squeezed() && contact.has_vertex(*overconstrained)) unmet.push_back(&contact);
         return unmet;
     }
     for (const int row : step.rows)
@@ -58,7 +52,7 @@ int find_opponent(const UnmetStep& step, int vertex, const Contact& unmet)
     double least = 0.0;
     for (const Contact& contact : step.contacts) {
         const double cosine = contact.normal.dot(unmet.normal);
-        if (contact.is_with_itself() || contact.obstacle == unmet.obstacle || !has_vertex(contact, vertex) ||
+        if (contact.is_with_itself() || contact.obstacle == unmet.obstacle || !contact.has_vertex(vertex) ||
             !(cosine < least))
             continue;
         opponent = contact.obstacle;
@@ -74,7 +68,7 @@ int find_presser(const UnmetStep& step, const Contact& pair)
     double least = 0.0;
     for (const Contact& contact : step.contacts)
         for (int i = 0; i < 4; ++i) {
-            if (contact.is_with_itself() || pair.weights[i] == 0.0 || !has_vertex(contact, pair.vertices[i]))
+            if (contact.is_with_itself() || pair.weights[i] == 0.0 || !contact.has_vertex(pair.vertices[i]))
                 continue;
             const double cosine = std::copysign(1.0, pair.weights[i]) * contact.normal.dot(pair.normal);
             if (!(cosine < least)) continue;
@@ -129,7 +123,7 @@ Infeasible name_infeasible(const State& state, const UnmetStep& step,
     named.vertex = state.ids[vertex];
     named.pin = pin;
     for (const Contact* contact : unmet) {
-        if (!has_vertex(*contact, vertex)) continue;
+        if (!contact->has_vertex(vertex)) continue;
         if (named.obstacles[0] < 0) named.obstacles[0] = contact->obstacle;
         if (named.pin < 0 && named.obstacles[1] < 0)
             named.obstacles[1] = find_opponent(step, vertex, *contact);

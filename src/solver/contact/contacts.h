@@ -65,6 +65,14 @@ struct ClothPoints {
         return sum;
     }
 
+    /// Whether the vertex has a weight.
+    bool has_vertex(int vertex) const
+    {
+        for (int i = 0; i < 4; ++i)
+            if (vertices[i] == vertex && weights[i] != 0.0) return true;
+        return false;
+    }
+
     /// Changes the value by `change` with the least momentum. `mobility`: 1 / mass of each vertex, 0 where it
     /// stays. Nothing changes where all stay.
     void shift(const Vec3& change, const std::vector<double>& mobility, std::vector<Vec3>& field) const;
@@ -86,7 +94,7 @@ struct Contact : ClothPoints {
         {};                         ///< of the last step, in the world; at EOL vertices see ContactFriction
     ContactFriction friction = {};  ///< likewise, of the last solve; before one, of the last step
     bool is_pressing = false;       ///< in the last solve of this step, at an earlier linearization
-    bool may_grow = true;           ///< whether its gap may grow to the stand-off; false where it has yielded
+    bool may_grow = true;           ///< whether its gap may grow to the stand-off (restore_stand_off)
     double stiffness = 0.0;         ///< N/m, of squeezed cloth (squeezed.h); 0 where it keeps `least_gap`
     bool was_squeezed = false;      ///< in the last step
     bool is_beside_rim = false;     ///< of a squeezed vertex with the plane of a squeezed edge past a rim

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "solver/model/hysteresis.h"
+
 namespace arris {
 
 namespace {
@@ -216,11 +218,10 @@ Squeezed squeeze_contacts(const Cushion& cushion, const Carriers& carriers, cons
 std::vector<Contact> expect_floors(const Carriers& carriers, const Prediction& prediction,
                                    const std::vector<Contact>& contacts)
 {
-    constexpr double kNear = 1.1;  // of the least thickness
     std::vector<Contact> floors;
     for (const Contact& contact : contacts) {
         const Carrier& carrier = carriers[contact.obstacle];
-        if (is_thinner(kNear * kLeastThickness, contact, begin_distance(carrier, contact)))
+        if (is_thinner(kLeastThickness / kStayRatio, contact, begin_distance(carrier, contact)))
             floors.push_back(make_floor(carrier, prediction, contact));
     }
     return floors;

@@ -50,7 +50,7 @@ struct Squeezed {
 Squeezed squeeze_contacts(const Cushion& cushion, const Carriers& carriers, const Prediction& prediction,
                           std::vector<Contact>& contacts);
 
-/// Contacts that keep the least thickness where the cloth begins the step with little more.
+/// Contacts that keep the least thickness where the cloth begins the step with at most 1 / kStayRatio of it.
 std::vector<Contact> expect_floors(const Carriers& carriers, const Prediction& prediction,
                                    const std::vector<Contact>& contacts);
 

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/cloth/mesh_pieces.h"
-
 namespace arris {
 
 namespace {
@@ -31,7 +29,6 @@ ClothStars make_stars(int vertex_count, const std::vector<Face>& faces)
     ClothStars stars;
     stars.topology = make_topology(vertex_count, faces);
     stars.faces = VertexFaces(vertex_count, faces);
-    stars.piece = label_pieces(vertex_count, faces);
     stars.border_neighbours.assign(vertex_count, {-1, -1});
     for (const MeshEdge& edge : stars.topology.edges) {
         if (edge.face_right >= 0) continue;

@@ -18,7 +18,6 @@ struct ClothStars {
     MeshTopology topology;
     VertexFaces faces;
     std::vector<std::array<int, 2>> border_neighbours;  ///< for a border vertex, ascending; else -1
-    std::vector<int> piece;  ///< least vertex of the connected piece of cloth that a vertex belongs to
 };
 ClothStars make_stars(int vertex_count, const std::vector<Face>& faces);
 

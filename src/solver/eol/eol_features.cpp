@@ -45,8 +45,8 @@ Vec3 point_on_feature(const Obstacle& obstacle, const PlacedEol& at)
                                  : place_on_feature(obstacle, at.eol.on.index, at.place).point;
 }
 
-/// Length, m, of the straight feature between two corners; nothing where there is none.
-std::optional<double> length_between_corners(const Obstacle& obstacle, int a, int b, double most)
+/// Whether one feature joins two corners by a length of at most `most`, m.
+bool are_corners_joined(const Obstacle& obstacle, int a, int b, double most)
 {
     const ObstacleFeatures& features = obstacle.features();
     const ObstacleTopology& topology = obstacle.topology();
@@ -56,37 +56,36 @@ std::optional<double> length_between_corners(const Obstacle& obstacle, int a, in
         const int feature = feature_of_edge(features, edge);
         if (feature < 0) continue;
         const double s = topology.edges[edge].points[0] == point ? 0.0 : 1.0;
-        if (const auto length = distance_to_corner(obstacle, {feature, s}, b, most)) return length;
+        if (distance_to_corner(obstacle, {feature, s}, b, most)) return true;
     }
-    return std::nullopt;
+    return false;
 }
 
-}  // namespace
-
-std::optional<double> trace_length(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b,
-                                   double most)
+/// Whether one polyline, with its ends, joins two vertices by a length of at most `most`, m.
+bool are_joined(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b, double most)
 {
-    if (a.eol.on.obstacle != b.eol.on.obstacle || !is_of_one_strand(obstacle, a, b)) return std::nullopt;
     const auto on = [&](const PlacedEol& at) {
         return FeaturePlace{at.eol.on.index, place_on_feature(obstacle, at.eol.on.index, at.place).s};
     };
     if (a.eol.on.is_corner() && b.eol.on.is_corner())
-        return length_between_corners(obstacle, a.eol.on.index, b.eol.on.index, most);
-    if (a.eol.on.is_corner()) return distance_to_corner(obstacle, on(b), a.eol.on.index, most);
-    if (b.eol.on.is_corner()) return distance_to_corner(obstacle, on(a), b.eol.on.index, most);
-    return distance_along(obstacle, on(a), on(b), most);
+        return are_corners_joined(obstacle, a.eol.on.index, b.eol.on.index, most);
+    if (a.eol.on.is_corner()) return distance_to_corner(obstacle, on(b), a.eol.on.index, most).has_value();
+    if (b.eol.on.is_corner()) return distance_to_corner(obstacle, on(a), b.eol.on.index, most).has_value();
+    return distance_along(obstacle, on(a), on(b), most).has_value();
 }
+
+}  // namespace
 
 bool is_trace_edge(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b)
 {
     constexpr double kLongestWay = 1.2;  // length over distance of an arc that bends by 120 degrees
-    if (a.eol.on.obstacle != b.eol.on.obstacle) return false;
+    if (a.eol.on.obstacle != b.eol.on.obstacle || !is_of_one_strand(obstacle, a, b)) return false;
     const bool is_one_edge =
         !a.eol.on.is_corner() && !b.eol.on.is_corner() && a.eol.on.index == b.eol.on.index;
     const double most =
         is_one_edge ? std::numeric_limits<double>::infinity()
                     : kLongestWay * (point_on_feature(obstacle, a) - point_on_feature(obstacle, b)).norm();
-    return trace_length(obstacle, a, b, most).has_value();
+    return are_joined(obstacle, a, b, most);
 }
 
 std::vector<std::array<int, 2>> find_trace_edges(const std::vector<MovingObstacle>& obstacles,

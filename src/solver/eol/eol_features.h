@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "geometry/obstacle/feature_path.h"
@@ -27,11 +26,6 @@ struct PlacedEol {
     const EolVertex& eol;
     Vec3 place;
 };
-
-/// Length, m, of the feature between two EOL vertices on one polyline or at its end. Returns nothing where
-/// the length exceeds `most` or they are not of one strand.
-std::optional<double> trace_length(const Obstacle& obstacle, const PlacedEol& a, const PlacedEol& b,
-                                   double most);
 
 /// Whether the cloth's edge between two EOL vertices lies along the feature: both are on one polyline, or at
 /// its end, and the polyline leads from one to the other nearly straight.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geometry/tolerances.h"
+#include "solver/model/hysteresis.h"
 
 namespace arris {
 
@@ -56,8 +57,8 @@ Vec3 turned_between(const FeatureEdge& edge, const Vec3& outward, const Vec3& be
 
 bool has_left_feature(const Vec3& nearest, const Vec3& place, double thickness)
 {
-    constexpr double kOff = 5.0;  // thicknesses: more than any mitre and the chatter on it
-    return (place - nearest).norm() > kOff * thickness;
+    // Farther off than any mitre and the chatter on it.
+    return (place - nearest).norm() > kOnFeature / kStayRatio * thickness;
 }
 
 FeatureFrame turn_to_free_fold(const FeatureEdge& edge, const ArrivingCloth& arriving, const Vec3& place,

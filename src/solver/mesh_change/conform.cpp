@@ -64,7 +64,7 @@ class Conforming {
     ConformOutcome run(const MeshChanges& changes)
     {
         std::optional<ConformedMesh> mesh = find_mesh(changes);
-        return {std::move(mesh), refused_.list(), lost_, blocked_, guard_.relies_at()};
+        return {std::move(mesh), refused_.list(), lost_, guard_.relies_at()};
     }
 
   private:
@@ -122,7 +122,6 @@ class Conforming {
         const ClearanceReport cleared = ways_.clear(shifts);
         // Only the blocked vertex itself becomes a constraint: the rest of its trace carries the cloth on.
         for (const VertexId v : cleared.blocked) demote_to_constraint(v, ConstraintCause::Blocked);
-        blocked_ += static_cast<int>(cleared.blocked.size());
         for (const TraceShift& shift : shifts) lost_ += trace_.is_on_trace(shift.vertex) ? 0 : 1;
     }
 
@@ -216,7 +215,7 @@ class Conforming {
     WayClearing ways_;
     RefusedContacts refused_;
     SiteInsertion insertion_;
-    int lost_ = 0, blocked_ = 0;  ///< as in ConformOutcome
+    int lost_ = 0;  ///< as in ConformOutcome
     ConformReport report_;
 };
 

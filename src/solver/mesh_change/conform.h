@@ -61,7 +61,6 @@ struct ConformOutcome {
     std::optional<ConformedMesh> mesh;    ///< nothing where the mesh stays as it is
     std::vector<RefusedContact> refused;  ///< contacts that pressed on a feature and are constraints
     int lost = 0;                         ///< EOL vertices that clearing blocked, or merged into others
-    int blocked = 0;                      ///< of these, vertices whose way could not be cleared
     /// Vertices, ascending, of operations that the guard allowed only because the cloth around gives way.
     std::vector<VertexId> relies_at;
 };

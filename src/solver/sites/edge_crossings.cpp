@@ -91,9 +91,8 @@ std::array<Vec3, 2> EdgeCrossings::segment_at(int v, int feature) const
     std::array<Vec3, 2> segment = feature_segment(obstacle_, feature);
     const Vec3 along = (segment[1] - segment[0]).normalized();
     for (const int end : {0, 1}) {
-        const double reach =
-            reach_past_end(obstacle_, feature, point_at(obstacle_, {feature, end}), thickness_,
-                           kPastEnd.enter, target_.length(state_.mesh.material[v]));
+        const double reach = reach_past_end(obstacle_, feature, point_at(obstacle_, {feature, end}),
+                                            thickness_, target_.length(state_.mesh.material[v]));
         segment[end] += (end == 1 ? reach : -reach) * along;
     }
     return segment;

@@ -9,6 +9,7 @@
 #include "geometry/obstacle/feature_path.h"
 #include "solver/eol/eol_features.h"
 #include "solver/eol/free_fold.h"
+#include "solver/model/hysteresis.h"
 #include "solver/model/target_length.h"
 #include "solver/sites/border_room.h"
 #include "solver/sites/gathering.h"
@@ -92,7 +93,7 @@ bool is_on_feature(const Scene& scene, const State& state, const EolVertex& eol,
     const int end = eol.on.is_corner() ? -1 : end_passed(obstacle, eol.on.index, place);
     const Vec2& X = state.mesh.material[state.index_of(eol.vertex_id)];
     return end < 0 || length_past_end(obstacle, eol.on.index, place) <
-                          reach_past_end(obstacle, eol.on.index, end, scene.material.thickness, kPastEnd.stay,
+                          reach_past_end(obstacle, eol.on.index, end, scene.material.thickness,
                                          target_length(scene, state, X));
 }
 
@@ -101,7 +102,7 @@ bool is_at_border(const Scene& scene, const State& state, const ClothStars& star
 {
     const int v = state.index_of(eol.vertex_id);
     const Vec2& X = state.mesh.material[v];
-    const double wanted = room_wanted(kRoomToStay, eol.on);
+    const double wanted = kStayRatio * room_wanted(kRoom, eol.on);
     const double room = room_to_border(scene, state, stars, X, v, stars.border_neighbours[v][0] >= 0, eol);
     return !(room > wanted * longest_cell(scene)) && !(room > wanted * target_length(scene, state, X));
 }
@@ -141,7 +142,7 @@ std::optional<ConstraintCause> EolAdmission::find_border_cause(const FeatureSite
         return room_to_border(scene_, state_, stars_, X, v, site.is_on_border, eol);
     };
     const double room = room_at(site.material);
-    if (room < room_wanted(kRoomToEnter, eol.on) * h) return ConstraintCause::NearBorder;
+    if (room < room_wanted(kRoom, eol.on) * h) return ConstraintCause::NearBorder;
     // A vertex that moves fast towards the border would be released at once.
     constexpr double kAside = 1e-3;  // target lengths: for a finite difference of the room
     const Vec2 aside = kAside * h * flow.stableNormalized();

@@ -9,6 +9,7 @@
 
 #include "geometry/tolerances.h"
 #include "solver/eol/eol_features.h"
+#include "solver/model/hysteresis.h"
 #include "solver/model/target_length.h"
 
 namespace arris {
@@ -80,48 +81,16 @@ std::vector<double> find_trace_compressions(const Scene& scene, const State& sta
     return compressions;
 }
 
-/// Compression of the cloth between an EOL vertex on an edge and all others near to it along the feature,
-/// whether that cloth lies on the feature or stands off it in pleats.
-double find_compression_with_pleats(const Scene& scene, const State& state, const ClothStars& stars,
-                                    const EolVertex& vertex)
-{
-    constexpr double kReach = 3.0;  // target lengths: a pleat on either side; five give what three do
-    if (vertex.on.is_corner()) return 0.0;
-    const int v = state.index_of(vertex.vertex_id);
-    const Vec2& X = state.mesh.material[v];
-    const double reach = kReach * target_length(scene, state, X);
-    const ObstaclePose obstacle = scene.obstacles[vertex.on.obstacle].at(state.time);
-    const Placement now = obstacle.placement;
-    const Vec3 place = now.inverse(state.mesh.world[v]);
-    double feature = 0.0, cloth = 0.0;  // lengths, m
-    for (const EolVertex& other : state.eol) {
-        if (other.on.obstacle != vertex.on.obstacle || other.vertex_id == vertex.vertex_id) continue;
-        if (!(other.outward.dot(vertex.outward) > 0.0)) continue;  // cloth on the other side of a wire
-        const int w = state.index_of(other.vertex_id);
-        const Vec3 other_place = now.inverse(state.mesh.world[w]);
-        if (stars.piece[w] != stars.piece[v] || !((other_place - place).norm() < reach)) continue;
-        const auto length = trace_length(obstacle, {vertex, place}, {other, other_place}, reach);
-        if (!length) continue;
-        feature += std::max(*length, (other_place - place).norm());  // past a wire's end its fold goes on
-        cloth += (state.mesh.material[w] - X).norm();
-    }
-    return cloth > 0.0 ? 1.0 - feature / cloth : 0.0;
-}
-
 }  // namespace
 
 void grow_gathering(const Scene& scene, const ClothStars& stars, double dt, State& state)
 {
-    // Cloth that stands in pleats between EOL vertices is free already, and yet shows that more wants to be.
-    constexpr double kPleats = 0.03;
     if (!scene.eol || state.eol.empty()) return;
     const std::vector<double> on_trace = find_trace_compressions(scene, state, stars);
     for (std::size_t entry = 0; entry < state.eol.size(); ++entry) {
         EolVertex& vertex = state.eol[entry];
-        const double strain =
-            std::max(on_trace[entry], kPleats * find_compression_with_pleats(scene, state, stars, vertex));
         const int v = state.index_of(vertex.vertex_id);
-        const double growth = dt * find_growth_rate(scene, state, stars, v, strain);
+        const double growth = dt * find_growth_rate(scene, state, stars, v, on_trace[entry]);
         vertex.gathering = std::clamp(vertex.gathering + growth, 0.0, kGathered);
     }
 }
@@ -134,13 +103,12 @@ bool has_gathered(const EolVertex& vertex)
 bool is_near_gathering(const Scene& scene, const State& state, const ClothStars& stars, int v,
                        const Vec3& tangent)
 {
-    constexpr double kNear = 2.0;
     const Star star = look_around(state.mesh, stars.faces[v], v, state.mesh.world);
     if (!(star.squared_F.determinant() > 0.0)) return false;
     // The material direction that maps onto the tangent, as nearly as the faces agree.
     const Vec2 direction = star.squared_F.inverse() * (star.F_transposed * tangent);
     if (!(direction.norm() > 0.0)) return false;
-    return find_growth_rate(scene, state, stars, v, kNear * (1.0 - 1.0 / direction.norm())) > 0.0;
+    return find_growth_rate(scene, state, stars, v, (1.0 - 1.0 / direction.norm()) / kStayRatio) > 0.0;
 }
 
 }  // namespace arris

@@ -14,8 +14,7 @@
 namespace arris {
 
 /// Updates `EolVertex::gathering` after a step of `dt` (s). The compression e is that of the cloth on the
-/// trace, or 3 % of that between the EOL vertices within three cells, pleats between them included, if
-/// that is greater. A pleat takes up e over a wavelength 2 pi / q of two or four cells. It costs bending and
+/// trace. A pleat takes up e over a wavelength 2 pi / q of two or four cells. It costs bending and
 /// the work against the force F with which the feature presses on the area A of a vertex. With E, N/m, and
 /// the plate's bending stiffness D, a wave (a / 2)(1 + cos q s) has the amplitude a = 4 sqrt(e) / q, and pays
 /// where
@@ -27,8 +26,8 @@ void grow_gathering(const Scene& scene, const ClothStars& stars, double dt, Stat
 /// Whether a pleat has grown at an EOL vertex, by a factor of 20.
 bool has_gathered(const EolVertex& vertex);
 
-/// Whether a pleat would pay at vertex `v` of the cloth along `tangent` (unit, world) at twice its present
-/// compression: a trace begins only where it would not soon be released.
+/// Whether a pleat would pay at vertex `v` of the cloth along `tangent` (unit, world) at 1 / kStayRatio of
+/// its present compression: a trace begins only where it would not soon be released.
 bool is_near_gathering(const Scene& scene, const State& state, const ClothStars& stars, int v,
                        const Vec3& tangent);
 

@@ -200,11 +200,11 @@ TEST(RestoreStandOff, MendsWhatIsMissingAndGrowsNoFurtherThanTheThickness)
     EXPECT_EQ(OverPlane(0.7, 5e-4).restore(1e-4), 0.7) << "never pulled in";
 }
 
-TEST(RestoreStandOff, LeavesWhatHasYieldedOrIsPinned)
+TEST(RestoreStandOff, LeavesWhatMayNotGrowOrIsPinned)
 {
-    OverPlane yielded(5e-4, 5e-4);
-    yielded.contacts[0].may_grow = false;
-    EXPECT_EQ(yielded.restore(1e-4), 5e-4);
+    OverPlane kept(5e-4, 5e-4);
+    kept.contacts[0].may_grow = false;
+    EXPECT_EQ(kept.restore(1e-4), 5e-4);
     const Vec3 target(0, 0, 5e-4);
     EXPECT_EQ(OverPlane(5e-4, 5e-4).restore(1e-4, {{0, {false, false, true}, target}}), 5e-4);
     EXPECT_GT(OverPlane(5e-4, 5e-4).restore(1e-4, {{0, {true, true, false}, target}}), 5e-4);

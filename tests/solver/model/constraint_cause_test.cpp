@@ -236,9 +236,6 @@ TEST(ConstraintCause, AWayThatCannotBeClearedIsCounted)
     ASSERT_TRUE(outcome.mesh);
     EXPECT_GT(outcome.mesh->report.released, 2);
     EXPECT_EQ(count(outcome, ConstraintCause::Blocked), outcome.mesh->report.released);
-    EXPECT_GT(outcome.blocked, 0);
-    EXPECT_LE(outcome.blocked, outcome.mesh->report.released)
-        << "some lead off the cloth: no force clears that";
     EXPECT_GE(outcome.lost, outcome.mesh->report.released) << "others may have been merged";
     EXPECT_EQ(count(outcome, ConstraintCause::GivenUp), 0);
 }
@@ -251,7 +248,6 @@ TEST(ConstraintCause, AMeshThatLosesMoreVerticesThanItMayIsNotMade)
     const ConformOutcome unfinished = conform_cloth(cloth, {}, {.lost = whole.lost - 1});
     EXPECT_FALSE(unfinished.mesh);
     EXPECT_EQ(unfinished.lost, whole.lost);
-    EXPECT_EQ(unfinished.blocked, whole.blocked);
 }
 
 TEST(ConstraintCause, WhatIsMadeAndFindsNoWayIsCountedAsTheContactItWas)

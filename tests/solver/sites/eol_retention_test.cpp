@@ -11,6 +11,7 @@
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "solver/eol/eol_coordinates.h"
 #include "solver/eol/eol_features.h"
+#include "solver/model/hysteresis.h"
 #include "solver/sites/feature_sites.h"
 #include "tests/solver/eol_cloth.h"
 
@@ -222,10 +223,11 @@ TEST(EolRetention, AtABendOfAWireNeedsTheRoomOfACorner)
         for (const EolRelease& release : released) EXPECT_EQ(release.cause, ConstraintCause::NearBorder);
         return released.empty();
     };
-    EXPECT_TRUE(is_kept(true, kRoomToStay.fixed + 0.05));
-    EXPECT_FALSE(is_kept(true, kRoomToStay.fixed - 0.05));
-    EXPECT_TRUE(is_kept(false, kRoomToStay.fixed - 0.05));
-    EXPECT_FALSE(is_kept(false, kRoomToStay.sliding - 0.05));
+    constexpr double kFixed = kStayRatio * kRoom.fixed, kSliding = kStayRatio * kRoom.sliding;
+    EXPECT_TRUE(is_kept(true, kFixed + 0.05));
+    EXPECT_FALSE(is_kept(true, kFixed - 0.05));
+    EXPECT_TRUE(is_kept(false, kFixed - 0.05));
+    EXPECT_FALSE(is_kept(false, kSliding - 0.05));
 }
 
 }  // namespace
