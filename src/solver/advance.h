@@ -20,7 +20,7 @@ using AcceptPart = std::function<bool(const StepReport& report, bool is_halved)>
 /// fast for one. A BDF2 step without history is made in two parts, a third of the step and the rest. As one
 /// implicit Euler step it would cause half of BDF2's error in a second of sliding. RetryPolicy
 /// (retry_policy.h) decides what follows a failed attempt. The rest of the step may be made in twice as many
-/// equal parts, at most six times; after two parts that succeed they are twice as long again. Returns the
+/// equal parts, down to a 64th; after two parts that succeed they are twice as long again. Returns the
 /// report of the attempt after which none was left; `state` is then at the last accepted part. `state.step`
 /// counts this planned step once, with its last part. Returns nothing where `end` was reached or `accept`
 /// stopped. Throws Interrupted; `state` is then at the last accepted part.

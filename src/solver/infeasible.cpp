@@ -37,7 +37,7 @@ int find_vertex(const UnmetStep& step, const std::vector<const Contact*>& unmet)
     int named = -1;
     for (const Contact* contact : unmet)
         for (const int v : contact->vertices) {
-            if (v < 0) continue;
+            if (v < 0 || !contact->has_vertex(v)) continue;
             if (find_pin(step, v) >= 0) return v;
             if (named < 0) named = v;
         }

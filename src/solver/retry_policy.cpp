@@ -19,8 +19,8 @@ struct Rung {
 };
 
 /// The first rung that applies is chosen. Each is bounded: all EOL vertices are given up once, going round
-/// wires and tips stops once, history is dropped once, and remeshing is left out once. New meshes are bounded
-/// by kMostOverruns + 1 overruns and kMostOverconstrained demotions, parts by kMostParts.
+/// wires and tips stops once, history is dropped once a part, and remeshing is left out once. New meshes are
+/// bounded by kMostOverruns + 1 overruns and kMostOverconstrained demotions, parts by kMostParts.
 constexpr Rung kRungs[] = {
     // Without EOL vertices the whole step may succeed, even where the shortest failed with them.
     {NextAttempt::WholeWithoutEol,

@@ -61,14 +61,14 @@ class RetryPolicy {
   public:
     static constexpr int kMostOverruns = 5;         ///< overruns before all EOL vertices are given up
     static constexpr int kMostOverconstrained = 3;  ///< attempts that demote overconstrained vertices
-    static constexpr int kMostParts = 64;           ///< shortest part of a planned step: 1/64
+    static constexpr int kMostParts = 64;           ///< the shortest part: 1/64 of a part as planned
     /// Work of the velocity solves of one planned step, in factorisations' worth, after which attempts at the
     /// rest of it are last ones.
     static constexpr double kMostWork = 400.0;
 
     /// Records an attempt that started from `start`: `state` itself, or its cloth on the step's mesh. A
-    /// successful attempt clears the record. Its work and two decisions hold until `forget`: to give up all
-    /// EOL vertices, and not to go round wires and tips.
+    /// successful attempt clears the record. The work and two decisions hold until `forget`: to give up all
+    /// EOL vertices (then the record stays, too), and not to go round wires and tips.
     void note(const StepReport& report, Attempt attempt, const State& state, const State& start,
               const Failure& failure);
     void forget() { *this = RetryPolicy(); }

@@ -24,12 +24,13 @@ namespace arris {
 
 namespace {
 
-/// Velocity solves of one step. Returning to the linearization with the least energy rise may add one more.
+/// Velocity solves of one attempt. Returning to the linearization with the least energy rise may add one
+/// more.
 constexpr int kMostSolves = 12;
 
 /// Work of one attempt at a step in all its velocity solves, in factorisations' worth. Beyond it the attempt
 /// fails.
-constexpr double kMostWork = 60.0;
+constexpr double kMostWorkOfAttempt = 60.0;
 
 /// One attempt's rounds.
 struct Rounds {
@@ -93,7 +94,7 @@ void solve_velocity(const Rounds& round, bool does_resume)
     StepReport& report = round.report;
     work.problem.matrix = &work.mesh.system.matrix();
     work.problem.rhs = &work.mesh.system.rhs();
-    work.problem.most_work = kMostWork - report.solve_work;
+    work.problem.most_work = kMostWorkOfAttempt - report.solve_work;
     work.problem.is_repeat = report.solves > 0;
     if (!work.problem.friction.empty()) set_friction_law(round.scene, round.state, work);
     work.solution = does_resume ? work.solver.resume(work.problem, round.settings)
@@ -283,7 +284,7 @@ struct Rule {
     RoundRule in_words;
 };
 
-static_assert(kMostSolves == 12 && kMostWork == 60.0, "the words below say so");
+static_assert(kMostSolves == 12 && kMostWorkOfAttempt == 60.0, "the words below say so");
 constexpr Rule kRules[] = {
     {RoundEnd::Starved,
      fail<StepStatus::Overrun>,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One time step, from `state.time` to `end`. `make_step` makes it in seven stages:
+// One time step, from `state.time` to `end`. `make_stages` makes it in seven stages:
 //
 //   stage                 result                                       code, in src/solver
 //   1. choose_step_mesh   mesh with EOL vertices on pressing features  mesh_change/step_mesh
@@ -11,8 +11,8 @@
 //   7. commit             the proposal becomes the new state           commit
 //
 // Stages 4 to 6 repeat in rounds until the proposal is clean (rounds.cpp: the table there says what follows
-// what). Only stage 7 changes the state. `advance` (advance.h) calls `step` and decides, with RetryPolicy,
-// what follows a failed step. docs/method.md derives the equations and explains their symbols;
+// what). Only stage 7 changes the state. `advance` (advance.h) calls `make_part` and decides, with
+// RetryPolicy, what follows a failed step. docs/method.md derives the equations and explains their symbols;
 // docs/glossary.md lists the words.
 #include "solver/step.h"
 

@@ -58,8 +58,8 @@ std::vector<Contact> expect_floors(const Carriers& carriers, const Prediction& p
 std::vector<Contact> find_floors(const Carriers& carriers, const Prediction& prediction,
                                  const std::vector<Contact>& contacts, const std::vector<Vec3>& world);
 
-/// Rows of the velocity solve, ascending, whose squeezed cloth has less than half the least thickness where
-/// it is at `world`.
+/// Rows of the velocity solve, ascending, whose squeezed cloth has less than the least thickness where it is
+/// at `world`.
 std::vector<int> list_too_thin(const Carriers& carriers, const std::vector<Contact>& contacts,
                                const std::vector<Vec3>& world);
 

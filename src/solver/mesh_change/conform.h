@@ -66,7 +66,7 @@ struct ConformOutcome {
 };
 
 /// Makes the mesh for the next step, of at most `dt` (s). Inserts EOL vertices where features pressed,
-/// releases others by `decide_retention`, clears the way of sliding ones and cleans up behind them; splits
+/// releases others by `find_releases`, clears the way of sliding ones and cleans up behind them; splits
 /// and merges edges that miss their cells. `stars`
 /// and `changes` belong to the state, `relaxations` to the scene. Returns no mesh where nothing changes, or
 /// where clearing exceeds `limits.lost`.

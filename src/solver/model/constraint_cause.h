@@ -56,7 +56,7 @@ using ConstraintCounts = std::array<int, kConstraintCauses>;  ///< by Constraint
 const char* to_string(ConstraintCause cause);
 
 /// Whether no EOL vertex is possible or wanted there, whatever the mesh: without coordinates, at once off the
-/// cloth's border, where the cloth gathers, or because there is one already.
+/// cloth's border, on flat cloth, finer than the cells, where it gathers, or because there is one already.
 bool is_excluded(ConstraintCause cause);
 
 /// Whether constraints with this cause count in the EOL share: neither excluded nor in their first step.

@@ -10,10 +10,10 @@
 
 namespace arris {
 
-/// Failures of earlier attempts at a step because too little material was left for the flow.
+/// Failures of earlier attempts at a step, mostly because too little material was left for the flow.
 struct FailedFlow {
     std::map<VertexId, Vec2> flow;  ///< m/s: a flow for which the mesh had too little material at that vertex
-    std::set<VertexId> given_up;    ///< vertices without room in any attempt: they are released
+    std::set<VertexId> given_up;    ///< vertices that failed without a remedy: they are released
     bool remeshes = true;           ///< whether edges that miss their cells' length are still mended
     std::vector<Vec2> made_at = {};  ///< material, m: places where new EOL vertices had too little material
     /// Whether one of `made_at` is nearer than `reach` (m) to a material point.

@@ -43,7 +43,8 @@ struct ActiveContact {
     Vec3 normal;            ///< in the obstacle's frame
     double multiplier;      ///< N s
     ContactFriction friction = {};
-    bool is_squeezed = false;  ///< the cloth is squeezed there: it presses as a spring (contact/squeezed.h)
+    bool is_squeezed =
+        false;  ///< the cloth is squeezed there, or at its least thickness (contact/squeezed.h)
 };
 
 /// A vertex on a sharp feature of an obstacle, through which the material flows (Eulerian on Lagrangian).

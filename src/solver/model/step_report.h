@@ -72,11 +72,11 @@ struct StepReport {
     ConstraintCounts rows_by_cause{};  ///< `feature_rows` by cause, in a scene with EOL vertices
     int eol_pressing = 0;              ///< EOL vertices with a positive multiplier
     int crossings = 0;                 ///< in this step
-    int solves = 0;                    ///< velocity solves: more than one if the check found violations
-    int relinearisations = 0;          ///< solves with relinearised forces (relinearization.h)
-    double energy_rise = 0.0;          ///< J, energy added by a step that no further attempt could mend
-    int yielded = 0;                   ///< contacts at which the cloth is squeezed below its stand-off
-    int rewound = 0;                   ///< vertices put back on their path so that they pass nothing
+    int solves = 0;            ///< velocity solves: more than one if constraints were added or forces changed
+    int relinearisations = 0;  ///< solves with relinearised forces (relinearization.h)
+    double energy_rise = 0.0;  ///< J, energy added by a step that no further attempt could mend
+    int yielded = 0;           ///< contacts at which the cloth is squeezed below its stand-off
+    int rewound = 0;           ///< vertices put back on their path so that they pass nothing
     double kkt_residual = 0.0;
     int factorisations = 0;
     double solve_work = 0.0;  ///< of the velocity solves, in factorisations' worth

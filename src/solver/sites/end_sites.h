@@ -3,7 +3,7 @@
 //      cloth              A fold that hangs on a wire leads on to the cloth's border, also where
 //     .------------.      the wire ends before it, or with it. Without an EOL vertex at the
 //     |   wire     |      border the cloth there would have to bend at its own vertices and edges:
-//     *---*---*....*      it would hold the whole fold, though nothing slip_contacts.
+//     *---*---*....*      it would hold the whole fold, though nothing slips.
 //     |          ^ |
 //     '--------end-'
 #pragma once

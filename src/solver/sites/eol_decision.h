@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Decides which contacts with sharp features are EOL vertices. `EolAdmission::find_refusal` decides whether a
 // site gets one, `refuse_inserted` whether an inserted vertex becomes one, and `find_releases` which ones of
-// the state are released. Thresholds to enter are in model/eol_limits.h, those to stay follow by kStayRatio
-// (model/hysteresis.h); numbers that one question alone asks are beside that question in eol_decision.cpp.
-// The census (feature_census.h) only reports the causes that are found here.
+// the state are released. Thresholds are in model/eol_limits.h; where one to stay belongs to one to enter, it
+// follows by kStayRatio (model/hysteresis.h); numbers that one question alone asks are beside that question
+// in eol_decision.cpp. The census (feature_census.h) only reports the causes that are found here.
 //
 // An admitted site may still stay a constraint for three reasons: the mesh has no place
 // (mesh_change/site_insertion), a vertex there has no coordinates (eol/eol_coordinates), or attempts at the

@@ -86,7 +86,7 @@ TEST(FollowPolyline, DoesNotJumpToAStrandNearby)
     points.emplace_back(1, 1e-3, 0);
     points.emplace_back(0, 1e-3, 0);
     const Obstacle hairpin = make_polyline(points, false);
-    EXPECT_EQ(hairpin.features().polyline_count, 1);
+    EXPECT_EQ(hairpin.features().polylines.size(), 1u);
     EXPECT_EQ(follow_polyline(hairpin, 0, Vec3(0.5, 9e-4, 0)).feature, 0);
 }
 

@@ -44,7 +44,7 @@ TEST(EolAdmission, OfWhatHasLeftAnEdgeOnlyBeyondBothItsFaces)
 struct FineFeatures {
     const char* name;
     ObstacleMesh mesh;
-    int edges;    ///< that cells of 50 mm cannot follow
+    int edges;    ///< that cells of 50 mm cannot follow; -1: all
     int corners;  ///< where one of the obstacle's corners has a vertex within half a cell; -1: all but that
                   ///< one
 };
@@ -64,7 +64,7 @@ TEST(EolAdmission, OfWhatIsFinerThanTheCellsOnlyOneCorner)
         {"blade, of whose corners two edges go on", box(0.3, 0.002, 0.3), 4, 0},
         {"thin plate", box(0.3, 0.3, 0.002), 4, 0},
         {"table", box(1.0, 0.7, 0.7), 0, 0},
-        {"ball of small facets", scaled(samples::sphere(6, 8), 0.02), 104, -1},
+        {"ball of small facets", scaled(samples::sphere(6, 8), 0.02), -1, -1},
         {"ball of large facets", scaled(samples::sphere(6, 8), 1.0), 0, 0},
         {"rim of many short edges", samples::cylinder(40), 0, 0},
         {"nails", samples::nails({{0, 0, 0}, {0.001, 0, 0}}), 0, 0},
@@ -91,7 +91,7 @@ TEST(EolAdmission, OfWhatIsFinerThanTheCellsOnlyOneCorner)
             }
             return found;
         };
-        EXPECT_EQ(count(false), one.edges);
+        EXPECT_EQ(count(false), one.edges < 0 ? static_cast<int>(features.edges.size()) : one.edges);
         EXPECT_EQ(count(true), 0) << "none has a vertex yet";
         if (features.corners.empty()) continue;
         cloth.add_eol(v, true, 0);
