@@ -49,14 +49,31 @@ std::string name_place(const FailurePlace& place)
     return place.vertex < 0 ? "" : " at " + name_vertex(place.vertex, place.world, place.material);
 }
 
+/// Says that friction locks the cloth where two faces close on it at too small an angle: each face's force is
+/// at most atan(coefficient) off its normal, so that the two can hold any other force.
+std::string explain_lock(const FailurePlace& place, const Scene& scene)
+{
+    constexpr double kDegree = M_PI / 180.0;
+    constexpr double kParallel = kDegree;  // such faces drive cloth nowhere, with or without friction
+    if (!scene.friction || place.crease[0] < 0 || !(place.crease_angle > kParallel)) return "";
+    const double coefficient = std::min(scene.friction->coefficient(place.crease[0]),
+                                        scene.friction->coefficient(place.crease[1])),
+                 locked = 2.0 * std::atan(coefficient);
+    if (!(place.crease_angle < locked)) return "";
+    return fmt::format(
+        "; friction locks it there: with a coefficient of {:.3g} cloth does not slip out of a crease of less "
+        "than {:.0f} degrees, and this one has {:.0f}; lower the coefficient, or close the crease less",
+        coefficient, locked / kDegree, place.crease_angle / kDegree);
+}
+
 /// Where the velocity solve fails: the vertex that presses hardest.
 std::string name_press(const FailurePlace& place, const Scene& scene)
 {
     if (place.vertex < 0) return "";
     const std::string met = name_met(place, scene, "");
-    return fmt::format("; {} {}{}", met.empty() ? "the stiffest part is" : "the cloth presses hardest at",
+    return fmt::format("; {} {}{}{}", met.empty() ? "the stiffest part is" : "the cloth presses hardest at",
                        name_vertex(place.vertex, place.world, place.material),
-                       met.empty() ? "" : fmt::format(" on {}", met));
+                       met.empty() ? "" : fmt::format(" on {}", met), explain_lock(place, scene));
 }
 
 /// Says which pins and obstacle press two layers of the cloth into each other.
@@ -104,23 +121,6 @@ std::string explain_infeasible(const Infeasible& infeasible, const Scene& scene,
             infeasible.pin, name(first));
     return fmt::format("no velocity keeps {} out of {} {}: {}", name_vertex(state, infeasible.vertex), where,
                        place, why);
-}
-
-/// Says that friction locks the cloth where two faces close on it at too small an angle: each face's force is
-/// at most atan(coefficient) off its normal, so that the two can hold any other force.
-std::string explain_lock(const FailurePlace& place, const Scene& scene)
-{
-    constexpr double kDegree = M_PI / 180.0;
-    constexpr double kParallel = kDegree;  // such faces drive cloth nowhere, with or without friction
-    if (!scene.friction || place.crease[0] < 0 || !(place.crease_angle > kParallel)) return "";
-    const double coefficient = std::min(scene.friction->coefficient(place.crease[0]),
-                                        scene.friction->coefficient(place.crease[1])),
-                 locked = 2.0 * std::atan(coefficient);
-    if (!(place.crease_angle < locked)) return "";
-    return fmt::format(
-        "; friction locks it there: with a coefficient of {:.3g} cloth does not slip out of a crease of less "
-        "than {:.0f} degrees, and this one has {:.0f}; lower the coefficient, or close the crease less",
-        coefficient, locked / kDegree, place.crease_angle / kDegree);
 }
 
 /// Says which number is not finite: "the pin's target of vertex 7, at [..], of pin.0", "the placement of

@@ -31,7 +31,7 @@ enum class ConstraintCause {
     BesideEol,   ///< its place on the mesh is an EOL vertex of that feature, but the cloth touches elsewhere;
                  ///< or it follows too near a fold that has just flown off the feature
     FlatBehind,  ///< follows a fold that flies off the feature, flat on a face beside it
-    Unresolved,  ///< the feature is finer than the cells, which cannot follow it (kResolved)
+    Unresolved,  ///< the feature is finer than the cells, which cannot follow it
     NearBorder,  ///< border of the cloth: nearer than where a trace may begin, or where it had to end
     BorderAhead,   ///< border of the cloth: so fast that the vertex would be released within a few steps
     Guard,         ///< the mesh change would strain the cloth, or an obstacle is in the way

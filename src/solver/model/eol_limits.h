@@ -16,13 +16,9 @@ struct CellsAround {
 };
 
 /// Room along the trace from a new vertex to the cloth's border; around a fixed one to borders on any side.
-/// An EOL vertex stays with kStayRatio of it. Raising it leaves more constraints in place of EOL vertices
-/// near borders.
+/// An EOL vertex stays with kStayRatio of it. Around a fixed one also to the corners of features finer than
+/// the cells. Raising it leaves more constraints in place of EOL vertices near borders.
 inline constexpr CellsAround kRoom = {.sliding = kCrowded, .fixed = 0.5};
-
-/// Length, in cells, of a convex polyline from corner to corner, from which a mesh can follow it. Raising it
-/// leaves larger boxes and facets to constraints; lowering it makes smaller faces at small ones.
-inline constexpr double kResolved = 0.5;
 
 /// Distance from a feature, in thicknesses, within which cloth lies on the feature: slightly more than the
 /// mitre. A vertex becomes EOL within this distance. Raising it treats contacts beside a feature as contacts

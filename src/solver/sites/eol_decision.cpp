@@ -161,20 +161,19 @@ bool EolAdmission::gathers(const FeatureSite& site, int v) const
     return is_near_gathering(scene_, state_, stars_, v, tangent);
 }
 
-/// Whether a feature is finer than the cells: a convex polyline shorter than they can follow, or a corner
-/// from which such polylines lead to others. Cloth that follows two or more polylines needs the corner
-/// between them. Any other such corner is the tip of something thin, on which the cloth has room for one
-/// vertex.
+/// Whether a feature is finer than the cells: a convex polyline shorter than one from corner to corner, or a
+/// corner at which such polylines end, without room beside another corner's vertex. Cloth that follows two or
+/// more polylines needs the corner between them. Any other is the tip of something thin, or roughness.
 bool EolAdmission::is_unresolved(const FeatureSite& site) const
 {
     if (site.on.is_bend()) return false;
     const Obstacle& obstacle = scene_.obstacles[site.on.obstacle].shape();
     const ObstacleFeatures& features = obstacle.features();
-    const double least = kResolved * target_length(scene_, state_, site.material);
+    const double cell = target_length(scene_, state_, site.material);
     const auto is_short = [&](int feature) {
         const FeatureEdge& edge = features.edges[feature];
         const FeaturePolyline& polyline = features.polylines[edge.polyline];
-        return edge.kind == FeatureKind::Convex && !polyline.is_closed && polyline.length < least;
+        return edge.kind == FeatureKind::Convex && !polyline.is_closed && polyline.length < cell;
     };
     if (!site.on.is_corner()) return is_short(site.on.index);
     int followed = 0, unresolved = 0;
@@ -187,7 +186,7 @@ bool EolAdmission::is_unresolved(const FeatureSite& site) const
     return std::any_of(trace_.eol().begin(), trace_.eol().end(), [&](const EolVertex& e) {
         return e.on.obstacle == site.on.obstacle && e.on.is_corner() && e.on != site.on &&
                trace_.is_on_trace(e.vertex_id) &&
-               (trace_.surgery().material(e.vertex_id) - site.material).norm() < least;
+               (trace_.surgery().material(e.vertex_id) - site.material).norm() < kRoom.fixed * cell;
     });
 }
 

@@ -342,6 +342,8 @@ VelocitySolution ContactNewton::finish()
         } else if (best_.kkt_residual <= std::max(settings_->tolerance, kNaming)) {
             best_.status = SolveStatus::Infeasible;
         }
+    } else {
+        best_.kkt_residual = best_residual_;
     }
     return best_;
 }

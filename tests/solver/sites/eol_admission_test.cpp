@@ -59,8 +59,8 @@ TEST(EolAdmission, OfWhatIsFinerThanTheCellsOnlyOneCorner)
     };
     const FineFeatures kCases[] = {
         {"post of 2 mm", box(0.002, 0.002, 0.03), 8, -1},
-        {"cube below half a cell", box(0.024, 0.024, 0.024), 12, -1},
-        {"cube above half a cell", box(0.026, 0.026, 0.026), 0, 0},
+        {"cube below a cell", box(0.049, 0.049, 0.049), 12, -1},
+        {"cube above a cell", box(0.051, 0.051, 0.051), 0, 0},
         {"blade, of whose corners two edges go on", box(0.3, 0.002, 0.3), 4, 0},
         {"thin plate", box(0.3, 0.3, 0.002), 4, 0},
         {"table", box(1.0, 0.7, 0.7), 0, 0},
