@@ -58,7 +58,7 @@ TEST(EolAdmission, OfWhatIsFinerThanTheCellsOnlyOneCorner)
         return samples::moved(mesh, [by](const Vec3& x) -> Vec3 { return by * x; });
     };
     const FineFeatures kCases[] = {
-        {"post of 2 mm", box(0.002, 0.002, 0.03), 8, -1},
+        {"post of 2 mm", box(0.002, 0.002, 0.1), 8, -1},
         {"cube below a cell", box(0.049, 0.049, 0.049), 12, -1},
         {"cube above a cell", box(0.051, 0.051, 0.051), 0, 0},
         {"blade, of whose corners two edges go on", box(0.3, 0.002, 0.3), 4, 0},
