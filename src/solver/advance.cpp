@@ -7,6 +7,7 @@
 #include "solver/material_flow.h"
 #include "solver/model/time_integration.h"
 #include "solver/step.h"
+#include "solver/step_friction.h"
 
 namespace arris {
 
@@ -34,7 +35,9 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
             report.part = part;
             parts = part == StepPart::Opening ? 1 : std::max(parts - 1, 1);
             part = part == StepPart::Opening ? StepPart::Rest : StepPart::Ordinary;
-            if (shrink > 1 && parts % 2 == 0) {  // a hard moment may be over
+            // The hard moment may be over, unless last resorts brought the cloth here.
+            const bool is_sound = report.friction_residual <= kOffLaw && report.energy_rise == 0.0;
+            if (shrink > 1 && parts % 2 == 0 && is_sound) {
                 shrink /= 2;
                 parts /= 2;
             }

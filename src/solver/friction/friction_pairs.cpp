@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "geometry/obstacle/feature_path.h"
+
 namespace arris {
 
 namespace {
@@ -25,7 +27,32 @@ void add_entry(int coordinate, double coefficient, ConstraintRow& row)
     row.coefficient[row.count++] = coefficient;
 }
 
-/// Slip of a contact's point along a world direction: direction . sum_i w_i (v'_i - v_ride).
+/// Mean deformation gradient at a contact's vertex, of the faces that hold all of the contact's vertices on
+/// that vertex's side: a part of the cloth touches with one vertex, edge or face.
+Mat32 deformation_at(const SlippingCloth& cloth, const Contact& contact, int i)
+{
+    const int split = !contact.is_with_itself() ? 4 : contact.is_vertex() ? 1 : 2;
+    const int first = i < split ? 0 : split, last = i < split ? split : 4;
+    std::vector<int> faces;
+    for (const int f : cloth.stars.faces[contact.vertices[i]]) {
+        const Face& face = cloth.state.mesh.faces[f];
+        bool holds_all = true;
+        for (int k = first; k < last && contact.vertices[k] >= 0; ++k)
+            holds_all = holds_all && std::find(face.begin(), face.end(), contact.vertices[k]) != face.end();
+        if (holds_all) faces.push_back(f);
+    }
+    Mat32 sum = Mat32::Zero();
+    double area = 0.0;
+    for (const StarFace& face :
+         look_around(cloth.state.mesh, faces, contact.vertices[i], cloth.state.mesh.world).faces) {
+        sum += face.area * face.F;
+        area += face.area;
+    }
+    return sum / area;
+}
+
+/// Slip of a contact's material along a world direction: direction . sum_i w_i (v'_i - F_i V'_i - v_ride), V'
+/// the flow of material through an EOL vertex.
 ConstraintRow slip_along(const SlippingCloth& cloth, const Contact& contact, const Vec3& direction)
 {
     ConstraintRow row;
@@ -35,7 +62,10 @@ ConstraintRow slip_along(const SlippingCloth& cloth, const Contact& contact, con
         const int v = contact.vertices[i];
         const Vec3 weighed = contact.weights[i] * direction;
         row.lower -= weighed.dot(cloth.at.drift[v] - riding_velocity(cloth, carrier, v));
-        const Vec3 gradient = cloth.at.basis[v].transpose() * weighed;
+        Vec3 gradient = cloth.at.basis[v].transpose() * weighed;
+        if (cloth.at.flow && cloth.at.flow->is_eulerian[v])
+            gradient -= cloth.at.flow->basis[v].transpose() *
+                        (deformation_at(cloth, contact, i).transpose() * weighed);
         for (int d = 0; d < 3; ++d) add_entry(3 * v + d, gradient[d], row);
     }
     return row;
@@ -116,17 +146,24 @@ std::array<double, 2> predict_slip(const SlippingCloth& cloth, const Contact& co
     return slip.dot(last.slip) > 0.0 ? components(slip) : std::array<double, 2>{0.0, 0.0};
 }
 
-/// Whether material flows through any of the vertices; unused ones are -1.
-bool is_any_eulerian(const SlippingCloth& cloth, const std::array<int, 4>& vertices)
+/// Whether an edge of the cloth touches the polyline on which one of its ends is an EOL vertex: that vertex
+/// has the friction there.
+bool is_beside_trace(const SlippingCloth& cloth, const Contact& contact)
 {
-    return std::any_of(vertices.begin(), vertices.end(),
-                       [&](int v) { return v >= 0 && cloth.at.flow && cloth.at.flow->is_eulerian[v]; });
+    if (contact.kind != ContactKind::Edge || contact.is_with_itself()) return false;
+    const ObstacleFeatures& features = cloth.carriers[contact.obstacle].obstacle->features();
+    const int feature = feature_of_edge(features, contact.element);
+    return feature >= 0 && std::any_of(cloth.eol.begin(), cloth.eol.end(), [&](const EolCoordinates& eol) {
+               const FeatureId& on = cloth.state.eol[eol.entry].on;
+               return (eol.vertex == contact.vertices[0] || eol.vertex == contact.vertices[1]) &&
+                      on.obstacle == contact.obstacle && !on.is_corner() &&
+                      features.edges[on.index].polyline == features.edges[feature].polyline;
+           });
 }
 
 bool can_slip(const SlippingCloth& cloth, const Contact& contact)
 {
-    if (contact.is_fold_plane()) return false;
-    return contact.eol >= 0 || !is_any_eulerian(cloth, contact.vertices);
+    return !contact.is_fold_plane() && (contact.eol >= 0 || !is_beside_trace(cloth, contact));
 }
 
 /// Two unit directions across a unit normal.

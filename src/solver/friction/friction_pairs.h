@@ -37,8 +37,8 @@ struct SlippingCloth {
 /// measured against an obstacle's material that moves with a smooth rigid motion, so that sticking cloth
 /// rides on the obstacle exactly. At an EOL vertex the material slips: along the feature by the motion of
 /// vertex and material, across it by the flow. Parts of the cloth slip against each other by their
-/// difference in velocity. Without friction: folds, and contacts of EOL vertices with anything but their
-/// feature.
+/// difference in velocity. Without friction: fold planes, and edges of the cloth on the polyline of an EOL
+/// vertex at their end, which has the friction there.
 std::vector<SlipContact> add_friction_pairs(const SlippingCloth& cloth, VelocityProblem& problem);
 
 }  // namespace arris

@@ -42,7 +42,7 @@ std::vector<int> corner_points(const ObstacleFeatures& features)
 }
 
 /// Number of edges of each polyline, ascending.
-std::vector<int> polyliness(const ObstacleFeatures& features)
+std::vector<int> polylines(const ObstacleFeatures& features)
 {
     std::vector<int> lengths(features.polylines.size(), 0);
     for (const FeatureEdge& edge : features.edges) ++lengths.at(edge.polyline);
@@ -67,7 +67,7 @@ TEST(ObstacleFeatures, BoxHasTwelveConvexEdgesAndEightCornersOfThreePlanes)
     const ObstacleFeatures features = features_of(kBox);
     EXPECT_EQ(count(features, FeatureKind::Convex), 12);
     EXPECT_THAT(features.edges, SizeIs(12));
-    EXPECT_THAT(polyliness(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1));
+    EXPECT_THAT(polylines(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1));
     EXPECT_THAT(corner_points(features), ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
     EXPECT_EQ(patch_count(features), 6);
 
@@ -169,7 +169,7 @@ TEST(ObstacleFeatures, CountsAreThoseOfTheShapeAtAnySizeAndPlace)
 TEST(ObstacleFeatures, SidesOfACylinderAreSharpBelowTheirTurn)
 {
     const ObstacleFeatures coarse = features_of(samples::cylinder(16), 30.0);
-    EXPECT_THAT(polyliness(coarse), ElementsAre(16, 16));  // two closed rims
+    EXPECT_THAT(polylines(coarse), ElementsAre(16, 16));  // two closed rims
     EXPECT_THAT(coarse.corners, IsEmpty());
     EXPECT_EQ(patch_count(coarse), 18);
 
@@ -181,7 +181,7 @@ TEST(ObstacleFeatures, SidesOfACylinderAreSharpBelowTheirTurn)
 
 TEST(ObstacleFeatures, ARimThatTurnsByThirtyDegreesIsOnePolylineByMoreIsCut)
 {
-    EXPECT_THAT(polyliness(features_of(samples::cylinder(12), 80.0)), ElementsAre(12, 12));
+    EXPECT_THAT(polylines(features_of(samples::cylinder(12), 80.0)), ElementsAre(12, 12));
     EXPECT_THAT(features_of(samples::cylinder(12), 80.0).corners, IsEmpty());
     EXPECT_THAT(features_of(samples::cylinder(11), 80.0).corners, SizeIs(22));
 }
@@ -192,7 +192,7 @@ TEST(ObstacleFeatures, ReflexEdgesAreNoneButTheirEndsAreCorners)
     const ObstacleFeatures features = features_of(mesh);
     EXPECT_EQ(count(features, FeatureKind::Convex), 27);
     EXPECT_THAT(corner_points(features), ElementsAre(0, 1, 2, 3, 4, 5, 18, 19, 20, 21, 22, 23));
-    EXPECT_THAT(polyliness(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 3, 3, 3, 3, 3));
+    EXPECT_THAT(polylines(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 3, 3, 3, 3, 3));
     const ObstacleTopology topology = make_topology(mesh);
     for (const FeatureEdge& edge : features.edges) {
         const std::array<int, 2>& ends = topology.edges[edge.edge].points;
@@ -219,7 +219,7 @@ TEST(ObstacleFeatures, AConesApexIsACornerThoughNoEdgeThereIsSharp)
     const ObstacleFeatures features = features_of(samples::cone(100, 0.3));
     EXPECT_THAT(corner_points(features), ElementsAre(100));
     EXPECT_THAT(features.corners[0].normals, SizeIs(100));
-    EXPECT_THAT(polyliness(features), ElementsAre(100));
+    EXPECT_THAT(polylines(features), ElementsAre(100));
     // The angle defect is 360 (1 - r / sqrt(r^2 + 1)) degrees: 57.1 at r = 1.56, 62.9 at r = 1.44.
     EXPECT_THAT(features_of(samples::cone(100, 1.56)).corners, IsEmpty());
     EXPECT_THAT(features_of(samples::cone(100, 1.44)).corners, SizeIs(1));
@@ -243,7 +243,7 @@ TEST(ObstacleFeatures, PointsOnTheLineOfAnEdgeChain)
     const ObstacleMesh layered = samples::prism({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {0, .2, .4, .7, 1});
     const ObstacleFeatures features = features_of(layered);
     EXPECT_THAT(features.edges, SizeIs(24));
-    EXPECT_THAT(polyliness(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 4));
+    EXPECT_THAT(polylines(features), ElementsAre(1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 4));
     EXPECT_THAT(features.corners, SizeIs(8));
     EXPECT_EQ(patch_count(features), 6);
 }
@@ -265,7 +265,7 @@ TEST(ObstacleFeatures, FlatSheetHasItsBorder)
     const ObstacleFeatures features = features_of(samples::sheet(4, 3, [](int, int) { return 0.0; }));
     EXPECT_EQ(count(features, FeatureKind::Border), 14);
     EXPECT_THAT(features.edges, SizeIs(14));
-    EXPECT_THAT(polyliness(features), ElementsAre(3, 3, 4, 4));
+    EXPECT_THAT(polylines(features), ElementsAre(3, 3, 4, 4));
     EXPECT_THAT(corner_points(features), ElementsAre(0, 3, 16, 19));
     EXPECT_EQ(patch_count(features), 1);
     for (const FeatureEdge& edge : features.edges) {
@@ -387,7 +387,7 @@ TEST(ObstacleFeatures, WiresEndTurnAndCross)
     const ObstacleFeatures straight = features_of(samples::wire({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}, false));
     EXPECT_EQ(count(straight, FeatureKind::Wire), 2);
     EXPECT_THAT(corner_points(straight), ElementsAre(0, 2));
-    EXPECT_THAT(polyliness(straight), ElementsAre(2));
+    EXPECT_THAT(polylines(straight), ElementsAre(2));
     EXPECT_THAT(straight.corners[0].normals, IsEmpty());
     EXPECT_EQ(straight.edges[0].normals[0], Vec3(0, 0, 0));
     EXPECT_THAT(straight.patch, IsEmpty());
@@ -395,13 +395,13 @@ TEST(ObstacleFeatures, WiresEndTurnAndCross)
     const ObstacleFeatures square =
         features_of(samples::wire({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, true));
     EXPECT_THAT(corner_points(square), ElementsAre(0, 1, 2, 3));
-    EXPECT_THAT(polyliness(square), ElementsAre(1, 1, 1, 1));
+    EXPECT_THAT(polylines(square), ElementsAre(1, 1, 1, 1));
 
     ObstacleMesh cross;
     cross.points = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 0}};
     cross.segments = {{0, 4}, {4, 1}, {2, 4}, {4, 3}};
     EXPECT_THAT(corner_points(features_of(cross)), ElementsAre(0, 1, 2, 3, 4));
-    EXPECT_THAT(polyliness(features_of(cross)), ElementsAre(1, 1, 1, 1));
+    EXPECT_THAT(polylines(features_of(cross)), ElementsAre(1, 1, 1, 1));
 }
 
 TEST(ObstacleFeatures, AClosedSmoothWireIsOnePolylineWithoutCorners)
@@ -412,13 +412,13 @@ TEST(ObstacleFeatures, AClosedSmoothWireIsOnePolylineWithoutCorners)
         circle.push_back(some_rotation() * Vec3(std::cos(angle), std::sin(angle), 0.0));
     }
     const ObstacleFeatures features = features_of(samples::wire(circle, true));
-    EXPECT_THAT(polyliness(features), ElementsAre(32));
+    EXPECT_THAT(polylines(features), ElementsAre(32));
     EXPECT_THAT(features.corners, IsEmpty());
     // A nail on a wire divides the polyline.
     ObstacleMesh nailed = samples::wire(circle, true);
     nailed.lone_points = {7};
     EXPECT_THAT(corner_points(features_of(nailed)), ElementsAre(7));
-    EXPECT_THAT(polyliness(features_of(nailed)), ElementsAre(32));
+    EXPECT_THAT(polylines(features_of(nailed)), ElementsAre(32));
 }
 
 TEST(ObstacleFeatures, AWireTurnsAtMoreThanSixtyDegrees)
