@@ -120,7 +120,7 @@ VelocitySolution ContactNewton::resume(const Settings& settings)
 VelocitySolution ContactNewton::iterate()
 {
     now_.is_agreed = !laws_.has_budget_law();
-    for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    for (now_.iterations = 0; now_.iterations < kMostIterations; ++now_.iterations) {
         settings_->stop_if_interrupted();
         laws_.evaluate(acting(), at_);
         if (!now_.is_agreed && agree_budgets()) laws_.evaluate(acting(), at_);
@@ -142,14 +142,20 @@ std::vector<char> ContactNewton::acting() const
     return acts;
 }
 
+/// Whether budgets may still move. The last iterations are for the answer with those that are then found,
+/// which is certain: with fixed budgets the energy is convex.
+bool ContactNewton::may_move() const
+{
+    return moves_.count() < kMostMoves && 3 * now_.iterations < 2 * kMostIterations;
+}
+
 /// True where budgets have moved.
 bool ContactNewton::agree_budgets()
 {
     constexpr double kSmall = 1e-3;  // relative step with which budgets may count as agreed
     if (!(now_.relative_step <= kFollow) || !now_.is_long_step) return false;
     const LawfulBudgets lawful = laws_.find_budgets(at_);
-    now_.is_agreed =
-        (lawful.error <= kAgreement && now_.relative_step <= kSmall) || moves_.count() >= kMostMoves;
+    now_.is_agreed = (lawful.error <= kAgreement && now_.relative_step <= kSmall) || !may_move();
     if (now_.is_agreed) return false;
     laws_.budgets() = moves_.next(laws_.budgets(), lawful.budgets);
     now_.is_steady = false;
@@ -188,7 +194,7 @@ bool ContactNewton::certify()
     }
     const bool is_accurate = residual <= accurate_ && changes.bounds.empty();
     if (!is_accurate && now_.without_better < kPatience) return false;
-    if (!laws_.has_budget_law() || moves_.count() >= kMostMoves) return true;
+    if (!laws_.has_budget_law() || !may_move()) return true;
     now_.is_agreed = lawful.error <= kOff * kAgreement;
     if (!now_.is_agreed) {
         best_residual_ = std::numeric_limits<double>::infinity();

@@ -50,6 +50,7 @@ class ContactNewton {
         bool is_long_step = true;  ///< not cut short by the line search
         bool is_agreed = false;    ///< budgets with their law
         bool has_fresh_members = false;
+        int iterations = 0;      ///< of this run
         int excursions = 0;      ///< steps since `reference_`
         int stalled = 0;         ///< line searches that went nowhere
         int without_better = 0;  ///< certificates since the best one
@@ -58,6 +59,7 @@ class ContactNewton {
 
     VelocitySolution iterate();
     std::vector<char> acting() const;
+    bool may_move() const;
     bool agree_budgets();
     bool certify();
     double unit_of_work() const;
