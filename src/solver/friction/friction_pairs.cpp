@@ -51,24 +51,28 @@ Mat32 deformation_at(const SlippingCloth& cloth, const Contact& contact, int i)
     return sum / area;
 }
 
-/// Slip of a contact's material along a world direction: direction . sum_i w_i (v'_i - F_i V'_i - v_ride), V'
-/// the flow of material through an EOL vertex.
-ConstraintRow slip_along(const SlippingCloth& cloth, const Contact& contact, const Vec3& direction)
+/// Slip of a contact's material along two world directions: direction . sum_i w_i (v'_i - F_i V'_i - v_ride),
+/// V' the flow of material through an EOL vertex.
+std::array<ConstraintRow, 2> slip_along(const SlippingCloth& cloth, const Contact& contact,
+                                        const std::array<Vec3, 2>& directions)
 {
-    ConstraintRow row;
+    std::array<ConstraintRow, 2> rows;
     const Carrier& carrier = cloth.carriers[contact.obstacle];
     for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
         if (contact.weights[i] == 0.0) continue;
         const int v = contact.vertices[i];
-        const Vec3 weighed = contact.weights[i] * direction;
-        row.lower -= weighed.dot(cloth.at.drift[v] - riding_velocity(cloth, carrier, v));
-        Vec3 gradient = cloth.at.basis[v].transpose() * weighed;
-        if (cloth.at.flow && cloth.at.flow->is_eulerian[v])
-            gradient -= cloth.at.flow->basis[v].transpose() *
-                        (deformation_at(cloth, contact, i).transpose() * weighed);
-        for (int d = 0; d < 3; ++d) add_entry(3 * v + d, gradient[d], row);
+        const Vec3 riding = cloth.at.drift[v] - riding_velocity(cloth, carrier, v);
+        const bool is_eulerian = cloth.at.flow && cloth.at.flow->is_eulerian[v];
+        const Mat32 F = is_eulerian ? deformation_at(cloth, contact, i) : Mat32::Zero();
+        for (int r = 0; r < 2; ++r) {
+            const Vec3 weighed = contact.weights[i] * directions[r];
+            rows[r].lower -= weighed.dot(riding);
+            Vec3 gradient = cloth.at.basis[v].transpose() * weighed;
+            if (is_eulerian) gradient -= cloth.at.flow->basis[v].transpose() * (F.transpose() * weighed);
+            for (int d = 0; d < 3; ++d) add_entry(3 * v + d, gradient[d], rows[r]);
+        }
     }
-    return row;
+    return rows;
 }
 
 /// The way of a material direction over a feature: along its tangent and across it. Both sides count equally.
@@ -209,7 +213,7 @@ std::vector<SlipContact> add_friction_pairs(const SlippingCloth& cloth, Velocity
             pair.slip = slip_over_feature(cloth, contact);
         } else {
             slipping.directions = directions_across(contact.normal);
-            for (int d = 0; d < 2; ++d) pair.slip[d] = slip_along(cloth, contact, slipping.directions[d]);
+            pair.slip = slip_along(cloth, contact, slipping.directions);
         }
         pair.mass = slipping_mass(contact, mass);
         set_forces(cloth, slipping, contact.last_friction, contact.friction, pair);
