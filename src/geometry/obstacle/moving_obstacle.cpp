@@ -6,11 +6,13 @@
 namespace arris {
 
 MovingObstacle::MovingObstacle(std::string name, ObstacleMesh mesh, const Placement& placement,
-                               RigidMotion motion, double feature_angle)
+                               RigidMotion motion, double feature_angle,
+                               std::shared_ptr<const Deformation> deformation)
     : name_(std::move(name)),
       shape_(std::make_shared<Obstacle>(std::move(mesh), feature_angle)),
       placement_(placement),
-      motion_(std::move(motion))
+      motion_(std::move(motion)),
+      deformation_(std::move(deformation))
 {
 }
 

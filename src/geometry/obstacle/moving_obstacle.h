@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/obstacle/deformation.h"
 #include "geometry/obstacle/obstacle.h"
 #include "geometry/rigid_motion.h"
 
@@ -27,7 +28,7 @@ class MovingObstacle {
     /// `mesh` must pass `validate`. At time 0 its frame's placement in the world is `motion.at(0) *
     /// placement`. Edges that turn by more than `feature_angle` (degrees) are sharp.
     MovingObstacle(std::string name, ObstacleMesh mesh, const Placement& placement, RigidMotion motion,
-                   double feature_angle);
+                   double feature_angle, std::shared_ptr<const Deformation> deformation = nullptr);
 
     const std::string& name() const { return name_; }
 
@@ -42,12 +43,15 @@ class MovingObstacle {
     bool is_moving() const { return motion_.is_moving(); }         ///< at any time
     std::vector<double> jumps() const { return motion_.jumps(); }  ///< s: times at which its velocity jumps
     const RigidMotion& motion() const { return motion_; }          ///< for records and words about it
+    /// How its mesh deforms in its frame; null for a rigid one.
+    const std::shared_ptr<const Deformation>& deformation() const { return deformation_; }
 
   private:
     std::string name_;
     std::shared_ptr<const Obstacle> shape_;
     Placement placement_;
     RigidMotion motion_;
+    std::shared_ptr<const Deformation> deformation_;
 };
 
 }  // namespace arris
