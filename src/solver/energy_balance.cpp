@@ -96,8 +96,7 @@ double work_of_friction(const Workspace& work)
         const Contact& contact = work.contacts[slipping.contact];
         if (contact.eol >= 0) continue;
         const Carrier& carrier = work.carriers[contact.obstacle];
-        const Vec3 place = contact.at(carrier.motion.begin);
-        sum += contact.friction.force.dot(carrier.end(place) - carrier.begin(place));
+        sum += contact.friction.force.dot(carrier.at_end(contact) - carrier.at_begin(contact));
     }
     return sum;
 }

@@ -17,6 +17,7 @@
 #include "geometry/check/swept_face.h"
 #include "geometry/cloth/element_owners.h"
 #include "geometry/obstacle/obstacle_touch.h"
+#include "geometry/obstacle/surface_ride.h"
 #include "geometry/sort_unique.h"
 #include "geometry/tolerances.h"
 
@@ -37,11 +38,12 @@ struct FaceFinding {
     bool is_clean() const { return !is_touching && !is_met && vertices.empty() && edges.empty(); }
 };
 
-std::vector<Box3> sweep_boxes(const ClothMotion& motion)
+std::vector<Box3> sweep_boxes(const std::vector<Face>& faces, const std::vector<Vec3>& begin,
+                              const std::vector<Vec3>& end)
 {
-    std::vector<Box3> boxes(motion.faces->size());
+    std::vector<Box3> boxes(faces.size());
     for (std::size_t f = 0; f < boxes.size(); ++f)
-        for (const int v : (*motion.faces)[f]) boxes[f].extend(motion.begin[v]).extend(motion.end[v]);
+        for (const int v : faces[f]) boxes[f].extend(begin[v]).extend(end[v]);
     return boxes;
 }
 
@@ -57,6 +59,7 @@ struct Meeting {
     ContactKind kind;
     int cloth_element, obstacle_element;
     SweepHit hit;
+    Vec3 begin;    ///< of the cloth's point, carried with the obstacle's element
     double depth;  ///< distance past the meeting point, against its normal, at which the cloth's point ends
 };
 
@@ -70,18 +73,28 @@ struct Near {
 class GroupSearch {
   public:
     GroupSearch(const Obstacle& obstacle, const ClothMotion& motion, double thickness,
-                const std::vector<Box3>& boxes, const std::vector<OwnedElements>& owned)
-        : obstacle_(obstacle), motion_(motion), thickness_(thickness), boxes_(boxes), owned_(owned)
+                const MovingSides* sides, const std::vector<Box3>& boxes,
+                const std::vector<OwnedElements>& owned)
+        : obstacle_(obstacle),
+          motion_(motion),
+          thickness_(thickness),
+          sides_(sides),
+          begin_(sides ? sides->cloth : motion.begin),
+          points_at_begin_((sides ? sides->obstacle : obstacle).mesh().points),
+          way_(longest_way(points_at_begin_, obstacle.mesh().points)),
+          boxes_(boxes),
+          owned_(owned)
     {
     }
 
     /// Appends findings that are not clean.
     void operator()(std::span<const int> faces, const Box3& group, std::vector<FaceFinding>& findings)
     {
-        if (!group.intersects(obstacle_.bounds())) return;
         // The face boxes compared below are exact; the query's box need not be.
-        const double margin = kTouching * group.diagonal().norm();
-        collect_group(Box3(group.min().array() - margin, group.max().array() + margin));
+        const double margin = kTouching * group.diagonal().norm() + way_;
+        const Box3 query(group.min().array() - margin, group.max().array() + margin);
+        if (!query.intersects(obstacle_.bounds())) return;
+        collect_group(query);
         for (const int f : faces) {
             FaceFinding finding{f};
             search_face(boxes_[f], owned_[f], finding);
@@ -98,13 +111,13 @@ class GroupSearch {
         near_wires_.clear();
         near_points_.clear();
         obstacle_.find_faces(group, found_);
-        for (const int f : found_) near_faces_.push_back({f, box_of(triangle(f))});
+        for (const int f : found_) near_faces_.push_back({f, box_of(way_of_face(f))});
         if (!mesh.segments.empty()) {
             obstacle_.find_feature_edges(group, found_);
             for (const int f : found_) {
                 const FeatureEdge& feature = features.edges[f];
                 if (feature.kind == FeatureKind::Wire)
-                    near_wires_.push_back({feature.edge, box_of(segment(feature.edge))});
+                    near_wires_.push_back({feature.edge, box_of(way_of_edge(feature.edge))});
             }
         }
         if (!mesh.lone_points.empty()) {
@@ -112,7 +125,8 @@ class GroupSearch {
             for (const int c : found_) {
                 const int p = features.corners[c].point;
                 if (obstacle_.topology().edge_count_at(p) == 0)
-                    near_points_.push_back({p, Box3(mesh.points[p], mesh.points[p])});
+                    near_points_.push_back(
+                        {p, Box3(mesh.points[p], mesh.points[p]).extend(points_at_begin_[p])});
             }
         }
     }
@@ -123,10 +137,10 @@ class GroupSearch {
         copy_touching(near_wires_, box, edges_);
         copy_touching(near_points_, box, points_);
         if (faces_.empty() && edges_.empty() && points_.empty()) return;
-        const SweptFace swept(motion_, finding.face);
+        const SweptFace swept(begin_, motion_.end, (*motion_.faces)[finding.face]);
         keep_reachable(swept);
         if (faces_.empty() && edges_.empty() && points_.empty()) return;
-        if (swept.is_moving()) {
+        if (swept.is_moving() || sides_) {
             distance_ = kTouching * box.diagonal().norm();
             meetings_.clear();
             sweep_vertices(owned, finding);
@@ -151,9 +165,12 @@ class GroupSearch {
     {
         const ObstacleMesh& mesh = obstacle_.mesh();
         const ObstacleTopology& topology = obstacle_.topology();
-        std::erase_if(faces_, [&](int f) { return swept.is_apart(triangle(f), &topology.face_normals[f]); });
-        std::erase_if(edges_, [&](int e) { return swept.is_apart(segment(e)); });
-        std::erase_if(points_, [&](int p) { return swept.is_apart(std::span(&mesh.points[p], 1)); });
+        std::erase_if(faces_,
+                      [&](int f) { return swept.is_apart(way_of_face(f), &topology.face_normals[f]); });
+        std::erase_if(edges_, [&](int e) { return swept.is_apart(way_of_edge(e)); });
+        std::erase_if(points_, [&](int p) {
+            return swept.is_apart(std::array<Vec3, 2>{points_at_begin_[p], mesh.points[p]});
+        });
         for (const int e : edges_) {
             const std::array<int, 2>& ends = topology.edges[e].points;
             points_.insert(points_.end(), ends.begin(), ends.end());
@@ -174,7 +191,8 @@ class GroupSearch {
             std::optional<SweepHit> first;
             int first_face = -1;
             for (const int f : faces_) {
-                const auto hit = sweep_vertex_face(motion_.begin[v], motion_.end[v], triangle(f), distance_);
+                const auto hit = sweep_vertex_face(begin_[v], motion_.end[v], triangle(points_at_begin_, f),
+                                                   triangle(obstacle_.mesh().points, f), distance_);
                 if (!hit || (first && hit->time >= first->time)) continue;
                 first = hit;
                 first_face = f;
@@ -192,8 +210,9 @@ class GroupSearch {
             const int a = (*motion_.edges)[c].a, b = (*motion_.edges)[c].b;
             bool is_met = false;
             for (const int e : edges_) {
-                const auto hit = sweep_edge_edge({motion_.begin[a], motion_.begin[b]},
-                                                 {motion_.end[a], motion_.end[b]}, segment(e), distance_);
+                const auto hit = sweep_edge_edge({begin_[a], begin_[b]}, {motion_.end[a], motion_.end[b]},
+                                                 segment(points_at_begin_, e),
+                                                 segment(obstacle_.mesh().points, e), distance_);
                 if (!hit) continue;
                 is_met = true;
                 note(ContactKind::Edge, c, e, *hit, {a, b, -1});
@@ -206,8 +225,8 @@ class GroupSearch {
     {
         const Face& face = (*motion_.faces)[finding.face];
         for (const int p : points_) {
-            const auto hit =
-                sweep_face_point(swept.begin(), swept.end(), obstacle_.mesh().points[p], distance_);
+            const auto hit = sweep_face_point(swept.begin(), swept.end(), points_at_begin_[p],
+                                              obstacle_.mesh().points[p], distance_);
             if (!hit) continue;
             finding.is_met = true;
             note(ContactKind::Triangle, finding.face, p, *hit, face);
@@ -217,8 +236,26 @@ class GroupSearch {
     void note(ContactKind kind, int cloth_element, int obstacle_element, const SweepHit& hit,
               const std::array<int, 3>& vertices)
     {
-        const Vec3 end = ClothPoint{vertices, hit.weights}.at(motion_.end);
-        meetings_.push_back({kind, cloth_element, obstacle_element, hit, hit.normal.dot(hit.point - end)});
+        const ClothPoint point{vertices, hit.weights};
+        Meeting meeting{kind, cloth_element, obstacle_element, hit, point.at(begin_), 0.0};
+        if (sides_) {
+            const Placement way = find_way(sides_->obstacle, obstacle_, place_of(meeting));
+            meeting.begin = way(meeting.begin);
+            meeting.hit.normal = way.rotation * hit.normal;
+        }
+        meeting.depth = meeting.hit.normal.dot(hit.point - point.at(motion_.end));
+        meetings_.push_back(meeting);
+    }
+
+    /// The meeting point's place on the obstacle.
+    SurfacePlace place_of(const Meeting& m) const
+    {
+        const int o = m.obstacle_element;
+        if (m.kind == ContactKind::Vertex)
+            return {SurfaceKind::Triangle, o, obstacle_.mesh().faces[o], m.hit.on_obstacle};
+        if (m.kind == ContactKind::Triangle) return {SurfaceKind::Point, o, {o, -1, -1}, {1.0, 0.0, 0.0}};
+        const auto& [a, b] = obstacle_.topology().edges[o].points;
+        return {SurfaceKind::Edge, o, {a, b, -1}, m.hit.on_obstacle};
     }
 
     /// A coarse cloth face may meet hundreds of elements of a fine obstacle.
@@ -238,31 +275,57 @@ class GroupSearch {
     {
         const int c = m.cloth_element, o = m.obstacle_element;
         if (m.kind == ContactKind::Vertex)
-            return make_vertex_violation(obstacle_, motion_, c, o, m.hit, thickness_);
+            return make_vertex_violation(obstacle_, motion_, c, o, m.hit, m.begin, thickness_);
         if (m.kind == ContactKind::Edge)
-            return make_edge_violation(obstacle_, motion_, c, o, m.hit, thickness_);
-        return make_face_violation(obstacle_, motion_, c, o, m.hit, thickness_);
+            return make_edge_violation(obstacle_, motion_, c, o, m.hit, m.begin, thickness_);
+        return make_face_violation(obstacle_, motion_, c, o, m.hit, m.begin, thickness_);
     }
 
-    std::array<Vec3, 3> triangle(int face) const
+    std::array<Vec3, 3> triangle(const std::vector<Vec3>& points, int face) const
     {
-        const std::vector<Vec3>& points = obstacle_.mesh().points;
         const Face& f = obstacle_.mesh().faces[face];
         return {points[f[0]], points[f[1]], points[f[2]]};
     }
 
-    std::array<Vec3, 2> segment(int edge) const
+    std::array<Vec3, 2> segment(const std::vector<Vec3>& points, int edge) const
     {
-        const std::vector<Vec3>& points = obstacle_.mesh().points;
         const std::array<int, 2>& ends = obstacle_.topology().edges[edge].points;
         return {points[ends[0]], points[ends[1]]};
+    }
+
+    // Points that span all places of an element during the step.
+
+    std::array<Vec3, 6> way_of_face(int face) const
+    {
+        const auto [a, b, c] = triangle(points_at_begin_, face);
+        const auto [p, q, r] = triangle(obstacle_.mesh().points, face);
+        return {a, b, c, p, q, r};
+    }
+
+    std::array<Vec3, 4> way_of_edge(int edge) const
+    {
+        const auto [a, b] = segment(points_at_begin_, edge);
+        const auto [p, q] = segment(obstacle_.mesh().points, edge);
+        return {a, b, p, q};
+    }
+
+    static double longest_way(const std::vector<Vec3>& begin, const std::vector<Vec3>& end)
+    {
+        double longest = 0.0;
+        for (std::size_t p = 0; &begin != &end && p < end.size(); ++p)
+            longest = std::max(longest, (end[p] - begin[p]).norm());
+        return longest;
     }
 
     const Obstacle& obstacle_;
     const ClothMotion& motion_;
     double thickness_;
-    const std::vector<Box3>& boxes_;           ///< of the cloth faces on their ways
-    const std::vector<OwnedElements>& owned_;  ///< by the cloth faces
+    const MovingSides* sides_;                  ///< null where the obstacle rests
+    const std::vector<Vec3>& begin_;            ///< of the cloth's vertices on their way
+    const std::vector<Vec3>& points_at_begin_;  ///< of the obstacle
+    double way_;                                ///< m, the longest of the obstacle's points
+    const std::vector<Box3>& boxes_;            ///< of the cloth faces on their ways
+    const std::vector<OwnedElements>& owned_;   ///< by the cloth faces
     double distance_ = 0.0;
     std::vector<Near> near_faces_, near_wires_, near_points_;  ///< near the group
     std::vector<int> faces_, edges_, points_;                  ///< of these, near the present face
@@ -317,17 +380,21 @@ SweepReport summarize(const ClothMotion& motion, const std::vector<FaceFinding>&
 
 }  // namespace
 
-SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, double thickness)
+SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, double thickness,
+                        const MovingSides* sides)
 {
     assert(motion.begin.size() == motion.end.size());
-    const std::vector<Box3> boxes = sweep_boxes(motion);
+    const std::vector<Box3> boxes =
+        sweep_boxes(*motion.faces, sides ? sides->cloth : motion.begin, motion.end);
     Box3 cloth;
     for (const Box3& box : boxes) cloth.extend(box);
-    if (!cloth.intersects(obstacle.bounds())) return {};
+    Box3 met = obstacle.bounds();
+    if (sides) met.extend(sides->obstacle.bounds());
+    if (!cloth.intersects(met)) return {};
 
     const std::vector<OwnedElements> owned =
         assign_owners(static_cast<int>(motion.begin.size()), *motion.faces, *motion.edges);
-    const GroupSearch search(obstacle, motion, thickness, boxes, owned);
+    const GroupSearch search(obstacle, motion, thickness, sides, boxes, owned);
     return summarize(motion, collect_in_groups<FaceFinding>(boxes, search));
 }
 

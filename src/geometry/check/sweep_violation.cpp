@@ -17,10 +17,10 @@ struct Meeting {
     ClothPoint cloth_point;
     int element;
     Vec3 point;
+    Vec3 begin;  ///< of the cloth's point
     double thickness;
     double touch;  ///< m, touch_distance
 
-    Vec3 begin() const { return cloth_point.at(motion.begin); }
     Vec3 end() const { return cloth_point.at(motion.end); }
 };
 
@@ -29,10 +29,10 @@ struct Meeting {
 /// shows what slides along a curve; here the end is the violation. A gap below the touch distance has to grow
 /// to it: rounding would close such a gap again, solve after solve.
 std::optional<ObstacleContact> as_violation(const Meeting& meeting, ObstacleContact contact,
-                                            double least_sine)
+                                            const Vec3& begin, double least_sine)
 {
     const ClothPoint cloth_point{contact.vertices, contact.weights};
-    const Vec3 way = cloth_point.at(meeting.motion.begin) - contact.point;
+    const Vec3 way = begin - contact.point;
     const double begin_gap = contact.normal.dot(way);
     if (!(begin_gap > least_sine * way.norm())) return std::nullopt;
     contact.least_gap = std::min(meeting.thickness, std::max(begin_gap, meeting.touch));
@@ -47,7 +47,7 @@ std::optional<ObstacleContact> try_normal(const Meeting& meeting, const Vec3& no
     if (!(normal.squaredNorm() > 0.0)) return std::nullopt;
     const ObstacleContact contact = make_contact(meeting.kind, meeting.cloth_point, meeting.element, normal,
                                                  meeting.point, meeting.thickness);
-    return as_violation(meeting, contact, least_sine);
+    return as_violation(meeting, contact, meeting.begin, least_sine);
 }
 
 /// The plane of the hit. If that fails, the plane across the way of the cloth's point, which began before the
@@ -55,50 +55,52 @@ std::optional<ObstacleContact> try_normal(const Meeting& meeting, const Vec3& no
 std::optional<ObstacleContact> by_hit(const Meeting& meeting, const SweepHit& hit)
 {
     const std::optional<ObstacleContact> contact = try_normal(meeting, hit.normal, 0.0);
-    return contact ? contact : try_normal(meeting, (meeting.begin() - meeting.end()).stableNormalized(), 0.0);
+    return contact ? contact : try_normal(meeting, (meeting.begin - meeting.end()).stableNormalized(), 0.0);
 }
 
 }  // namespace
 
 std::optional<ObstacleContact> make_vertex_violation(const Obstacle& obstacle, const ClothMotion& motion,
                                                      int vertex, int face, const SweepHit& hit,
-                                                     double thickness)
+                                                     const Vec3& begin, double thickness)
 {
-    const Meeting meeting{motion,    ContactKind::Vertex, {{vertex, -1, -1}, hit.weights},    face,
-                          hit.point, thickness,           touch_distance(obstacle, thickness)};
+    const Meeting meeting{motion, ContactKind::Vertex, {{vertex, -1, -1}, hit.weights},    face, hit.point,
+                          begin,  thickness,           touch_distance(obstacle, thickness)};
     const Vec3& normal = obstacle.topology().face_normals[face];
-    const bool is_above = normal.dot(meeting.begin() - hit.point) > 0.0;
+    const bool is_above = normal.dot(meeting.begin - hit.point) > 0.0;
     const auto contact = try_normal(meeting, is_above ? normal : Vec3(-normal), kAlongPlane);
     return contact ? contact : by_hit(meeting, hit);
 }
 
 std::optional<ObstacleContact> make_edge_violation(const Obstacle& obstacle, const ClothMotion& motion,
                                                    int cloth_edge, int edge, const SweepHit& hit,
-                                                   double thickness)
+                                                   const Vec3& begin, double thickness)
 {
     const MeshEdge& cloth = (*motion.edges)[cloth_edge];
-    const Meeting meeting{motion,    ContactKind::Edge, {{cloth.a, cloth.b, -1}, hit.weights}, edge,
-                          hit.point, thickness,         touch_distance(obstacle, thickness)};
+    const Meeting meeting{motion, ContactKind::Edge, {{cloth.a, cloth.b, -1}, hit.weights}, edge, hit.point,
+                          begin,  thickness,         touch_distance(obstacle, thickness)};
     const auto found = make_edge_contact(obstacle, motion, motion.end, {cloth.a, cloth.b}, edge, thickness);
     // The begin determines the side, however nearly the cloth moved along the edge: the hit's own normal may
     // point inside.
-    const auto contact = found ? as_violation(meeting, *found, 0.0) : std::nullopt;
+    const auto contact = found ? as_violation(meeting, *found, found->at(motion.begin), 0.0) : std::nullopt;
     return contact ? contact : by_hit(meeting, hit);
 }
 
 std::optional<ObstacleContact> make_face_violation(const Obstacle& obstacle, const ClothMotion& motion,
                                                    int cloth_face, int point, const SweepHit& hit,
-                                                   double thickness)
+                                                   const Vec3& begin, double thickness)
 {
     const Meeting meeting{motion,
                           ContactKind::Triangle,
                           {(*motion.faces)[cloth_face], hit.weights},
                           point,
                           hit.point,
+                          begin,
                           thickness,
                           touch_distance(obstacle, thickness)};
     const auto found = make_face_contact(obstacle, motion, motion.end, cloth_face, point, thickness);
-    const auto contact = found ? as_violation(meeting, *found, kAlongPlane) : std::nullopt;
+    const auto contact =
+        found ? as_violation(meeting, *found, found->at(motion.begin), kAlongPlane) : std::nullopt;
     return contact ? contact : by_hit(meeting, hit);
 }
 

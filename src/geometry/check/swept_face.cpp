@@ -22,8 +22,8 @@ Vec3 normal_of(const std::array<Vec3, 3>& t)
 
 }  // namespace
 
-SweptFace::SweptFace(const ClothMotion& motion, int face)
-    : begin_(corners(motion.begin, (*motion.faces)[face])), end_(corners(motion.end, (*motion.faces)[face]))
+SweptFace::SweptFace(const std::vector<Vec3>& begin, const std::vector<Vec3>& end, const Face& face)
+    : begin_(corners(begin, face)), end_(corners(end, face))
 {
     for (int k = 0; k < 3; ++k) {
         offsets_[k] = begin_[k] - begin_[0];
@@ -47,8 +47,8 @@ SweptFace::Slab SweptFace::make_slab(const Vec3& normal) const
 
 bool SweptFace::is_apart(std::span<const Vec3> points, const Vec3* normal) const
 {
-    assert(points.size() <= 3);
-    std::array<Vec3, 3> offsets;
+    assert(points.size() <= 6);
+    std::array<Vec3, 6> offsets;
     double size = size_;
     for (std::size_t k = 0; k < points.size(); ++k) {
         offsets[k] = points[k] - begin_[0];

@@ -3,8 +3,9 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
-#include "geometry/contact/obstacle_contact.h"
+#include "geometry/vectors.h"
 
 namespace arris {
 
@@ -12,14 +13,15 @@ namespace arris {
 /// hull.
 class SweptFace {
   public:
-    SweptFace(const ClothMotion& motion, int face);
+    /// `begin`, `end`: positions of the cloth's vertices.
+    SweptFace(const std::vector<Vec3>& begin, const std::vector<Vec3>& end, const Face& face);
 
     const std::array<Vec3, 3>& begin() const { return begin_; }
     const std::array<Vec3, 3>& end() const { return end_; }
     bool is_moving() const { return begin_ != end_; }
 
     /// Whether a plane across `normal` (unit) or across one of the cloth's own normals strictly separates the
-    /// hull and the hull of up to three points. If so, no elements of the two meet. True is certain in spite
+    /// hull and the hull of up to six points. If so, no elements of the two meet. True is certain in spite
     /// of rounding; false proves nothing.
     bool is_apart(std::span<const Vec3> points, const Vec3* normal = nullptr) const;
 

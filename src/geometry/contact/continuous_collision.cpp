@@ -340,40 +340,64 @@ std::optional<ClothSweepHit> sweep_cloth_edges(const std::array<Vec3, 4>& begin,
 std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
                                           const std::array<Vec3, 3>& triangle, double distance)
 {
-    const auto& [a, b, c] = triangle;
+    return sweep_vertex_face(begin, end, triangle, triangle, distance);
+}
+
+std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
+                                          const std::array<Vec3, 3>& triangle_begin,
+                                          const std::array<Vec3, 3>& triangle_end, double distance)
+{
+    const auto& [p, q, r] = triangle_begin;
+    const auto& [a, b, c] = triangle_end;
     const std::optional<ClothSweepHit> hit =
-        sweep_cloth_vertex_face({begin, a, b, c}, {end, a, b, c}, distance);
+        sweep_cloth_vertex_face({begin, p, q, r}, {end, a, b, c}, distance);
     if (!hit) return std::nullopt;
-    const Vec3 point = a - hit->weights[2] * (b - a) - hit->weights[3] * (c - a);
-    return SweepHit{hit->time, {1.0, 0.0, 0.0}, point, hit->normal};
+    const std::array<double, 4>& w = hit->weights;
+    const Vec3 point = a - w[2] * (b - a) - w[3] * (c - a);
+    return SweepHit{hit->time, {1.0, 0.0, 0.0}, {-w[1], -w[2], -w[3]}, point, hit->normal};
 }
 
 std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const std::array<Vec3, 2>& end,
                                         const std::array<Vec3, 2>& segment, double distance)
 {
-    const auto& [a, b] = segment;
+    return sweep_edge_edge(begin, end, segment, segment, distance);
+}
+
+std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const std::array<Vec3, 2>& end,
+                                        const std::array<Vec3, 2>& segment_begin,
+                                        const std::array<Vec3, 2>& segment_end, double distance)
+{
+    const auto& [p, q] = segment_begin;
+    const auto& [a, b] = segment_end;
     const std::optional<ClothSweepHit> hit =
-        sweep_cloth_edges({begin[0], begin[1], a, b}, {end[0], end[1], a, b}, distance);
+        sweep_cloth_edges({begin[0], begin[1], p, q}, {end[0], end[1], a, b}, distance);
     if (!hit) return std::nullopt;
-    return SweepHit{
-        hit->time, {hit->weights[0], hit->weights[1], 0.0}, at(a, b, -hit->weights[3]), hit->normal};
+    const std::array<double, 4>& w = hit->weights;
+    return SweepHit{hit->time, {w[0], w[1], 0.0}, {-w[2], -w[3], 0.0}, at(a, b, -w[3]), hit->normal};
 }
 
 std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin, const std::array<Vec3, 3>& end,
                                          const Vec3& point, double distance)
 {
+    return sweep_face_point(begin, end, point, point, distance);
+}
+
+std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin, const std::array<Vec3, 3>& end,
+                                         const Vec3& point_begin, const Vec3& point_end, double distance)
+{
     Pair pair;
     pair.gaps = 3;
     for (int k = 0; k < 3; ++k) {
-        pair.gap_begin[k] = begin[k] - point;
-        pair.gap_end[k] = end[k] - point;
+        pair.gap_begin[k] = begin[k] - point_begin;
+        pair.gap_end[k] = end[k] - point_end;
         pair.side_begin[k] = begin[(k + 1) % 3] - begin[k];
         pair.side_end[k] = end[(k + 1) % 3] - end[k];
     }
     const std::optional<Touch> touch = first_touch(pair, distance);
     if (!touch) return std::nullopt;
 
-    return SweepHit{touch->time, weights_of_least(gaps_at(pair, touch->time)), point, touch->normal};
+    return SweepHit{
+        touch->time, weights_of_least(gaps_at(pair, touch->time)), {1.0, 0.0, 0.0}, point_end, touch->normal};
 }
 
 }  // namespace arris

@@ -11,11 +11,12 @@ namespace arris {
 /// A time after the step, later than every touch.
 inline constexpr double kNever = 2.0;
 
-/// The first touch of a moving element of the cloth and a resting element of an obstacle.
+/// The first touch of a moving element of the cloth and an element of an obstacle.
 struct SweepHit {
     double time;                    ///< fraction of the step in [0, 1]
     std::array<double, 3> weights;  ///< weights of the meeting point on the cloth's element; unused ones 0
-    Vec3 point;                     ///< meeting point on the obstacle
+    std::array<double, 3> on_obstacle;  ///< the same on the obstacle's element
+    Vec3 point;                         ///< meeting point on the obstacle, where that is at the step's end
     Vec3 normal;  ///< unit vector from the obstacle to the cloth that separates the elements just before;
                   ///< zero if none does
 };
@@ -28,18 +29,28 @@ struct SweepHit {
 // `distance` is reported only if it comes within half of its initial gap. Gaps below 1e-14 of the pair's size
 // count as zero. Coordinates that are not finite are reported at time 0. Elements that pivot at a tiny gap in
 // one common plane may be reported where 256 rounds do not decide.
+//
+// The obstacle rests, or its points move linearly from their places at begin to those at the end.
 
 /// A vertex and a triangle.
 std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
                                           const std::array<Vec3, 3>& triangle, double distance);
+std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
+                                          const std::array<Vec3, 3>& triangle_begin,
+                                          const std::array<Vec3, 3>& triangle_end, double distance);
 
 /// A cloth edge and a segment.
 std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const std::array<Vec3, 2>& end,
                                         const std::array<Vec3, 2>& segment, double distance);
+std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const std::array<Vec3, 2>& end,
+                                        const std::array<Vec3, 2>& segment_begin,
+                                        const std::array<Vec3, 2>& segment_end, double distance);
 
 /// A cloth triangle and a point.
 std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin, const std::array<Vec3, 3>& end,
                                          const Vec3& point, double distance);
+std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin, const std::array<Vec3, 3>& end,
+                                         const Vec3& point_begin, const Vec3& point_end, double distance);
 
 /// The first touch of two moving elements of the cloth. `begin` and `end` hold the corners of both.
 struct ClothSweepHit {

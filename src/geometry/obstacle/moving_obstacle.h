@@ -7,11 +7,13 @@
 
 #include "geometry/obstacle/deformation.h"
 #include "geometry/obstacle/obstacle.h"
+#include "geometry/obstacle/surface_ride.h"
 #include "geometry/rigid_motion.h"
 
 namespace arris {
 
-/// An obstacle at one time: its shape in a frame, and that frame's placement in the world.
+/// An obstacle at one time: its shape in a frame, and that frame's placement in the world. The frame of one
+/// that deforms is the world.
 struct ObstaclePose {
     std::shared_ptr<const Obstacle> shape;
     Placement placement;
@@ -20,13 +22,13 @@ struct ObstaclePose {
     const Obstacle* operator->() const { return shape.get(); }
 };
 
-/// An obstacle of a scene: the one place that knows how obstacles move. This one is rigid. Another kind of
-/// motion has another class behind `at` and `velocity_after`; what indices of faces, edges and features mean
-/// must not change in time.
+/// An obstacle of a scene: the one place that knows how obstacles move. What indices of faces, edges and
+/// features mean does not change in time.
 class MovingObstacle {
   public:
     /// `mesh` must pass `validate`. At time 0 its frame's placement in the world is `motion.at(0) *
-    /// placement`. Edges that turn by more than `feature_angle` (degrees) are sharp.
+    /// placement`. Edges that turn by more than `feature_angle` (degrees) are sharp. `deformation` moves the
+    /// mesh's points within the frame.
     MovingObstacle(std::string name, ObstacleMesh mesh, const Placement& placement, RigidMotion motion,
                    double feature_angle, std::shared_ptr<const Deformation> deformation = nullptr);
 
@@ -35,23 +37,38 @@ class MovingObstacle {
     /// Its faces, edges and features, whose indices hold at all times.
     const Obstacle& shape() const { return *shape_; }
 
+    /// The same shape for ever where it is rigid; the last few poses are kept where it deforms.
     ObstaclePose at(double time) const;  ///< s
 
-    /// World velocity (m/s) just after `time` of the obstacle's material that is then at `place` (world).
-    Vec3 velocity_after(double time, const Vec3& place) const { return motion_.velocity_after(time, place); }
+    /// World velocity (m/s) just after `time` of the obstacle's material that is then at `place` (world), or
+    /// of what rides there on one that deforms.
+    Vec3 velocity_after(double time, const Vec3& place) const;
 
-    bool is_moving() const { return motion_.is_moving(); }         ///< at any time
-    std::vector<double> jumps() const { return motion_.jumps(); }  ///< s: times at which its velocity jumps
-    const RigidMotion& motion() const { return motion_; }          ///< for records and words about it
+    /// How what rides on an obstacle that deforms, at a place of its surface, moves in the world.
+    Placement way(double from, double to, const SurfacePlace& on) const;
+    Vec3 velocity_after(double time, const Vec3& place, const SurfacePlace& on) const;
+
+    /// World places of the mesh's points at `time`.
+    std::vector<Vec3> points_at(double time) const;
+
+    bool is_moving() const { return is_deforming() || motion_.is_moving(); }  ///< at any time
+    bool is_deforming() const { return deformation_ != nullptr; }
+    std::vector<double> jumps() const;                     ///< s: times at which its velocity jumps
+    const RigidMotion& motion() const { return motion_; }  ///< for records and words about it
     /// How its mesh deforms in its frame; null for a rigid one.
     const std::shared_ptr<const Deformation>& deformation() const { return deformation_; }
 
   private:
+    struct Posed;
+    class Poses;
+    std::shared_ptr<const Posed> posed_at(double time) const;
+
     std::string name_;
     std::shared_ptr<const Obstacle> shape_;
     Placement placement_;
     RigidMotion motion_;
     std::shared_ptr<const Deformation> deformation_;
+    std::shared_ptr<Poses> poses_;  ///< of one that deforms; copies of the obstacle share them
 };
 
 }  // namespace arris

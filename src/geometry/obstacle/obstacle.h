@@ -18,8 +18,12 @@ using Box3 = Eigen::AlignedBox3d;
 /// where it is at a time says `MovingObstacle`. Queries are const and may run in parallel.
 class Obstacle {
   public:
-    /// `mesh` must pass `validate`. Edges that turn by more than `feature_angle` (degrees) are sharp.
-    Obstacle(ObstacleMesh mesh, double feature_angle);
+    /// `mesh` must pass `validate`. Edges that turn by more than `feature_angle` (degrees) are sharp. Of a
+    /// mesh that deforms, whatever is sharp in one of its poses is a feature (find_features_of_poses).
+    Obstacle(ObstacleMesh mesh, double feature_angle, const VisitPoses& visit_poses = nullptr);
+
+    /// The same obstacle with its points (finite, any) elsewhere. Faces may lose their area there.
+    Obstacle(const Obstacle& shape, std::vector<Vec3> points);
     ~Obstacle();
     Obstacle(Obstacle&&) noexcept;
     Obstacle& operator=(Obstacle&&) noexcept;
@@ -29,7 +33,8 @@ class Obstacle {
     const ObstacleFeatures& features() const { return features_; }
     const Box3& bounds() const { return bounds_; }
 
-    // Elements that intersect a box, ascending, without duplicates. `found` is overwritten.
+    // Elements that intersect a box, ascending, without duplicates; of features those that are awake. `found`
+    // is overwritten.
     void find_faces(const Box3& box, std::vector<int>& found) const;
     void find_feature_edges(const Box3& box, std::vector<int>& found) const;  ///< indices in features().edges
     void find_corners(const Box3& box, std::vector<int>& found) const;        ///< indices in
@@ -43,6 +48,7 @@ class Obstacle {
     struct Trees;
     ObstacleMesh mesh_;
     ObstacleTopology topology_;
+    double feature_angle_;  ///< degrees
     ObstacleFeatures features_;
     Box3 bounds_;
     std::unique_ptr<Trees> trees_;

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "geometry/cgal.h"
+#include "geometry/obstacle/face_planes.h"
 #include "geometry/tolerances.h"
 
 namespace arris {
@@ -20,11 +21,6 @@ constexpr double kTurnSlack = 1e-2;  // degrees
 // to there a wire's two edges share one plane halfway between them, and a cone's tip is blunt.
 constexpr double kCornerTurn = 30.0;
 
-// Single-precision coordinates are rounded by up to 6e-8 of their size. The normal of a sliver lower than a
-// few such errors is noise.
-constexpr double kThinHeight = 3e-7;  // relative to the bounding box's diagonal
-constexpr double kThinAspect = 1e-2;  // relative to the face's longest edge
-
 double angle_between(const Vec3& a, const Vec3& b)
 {
     return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -33,68 +29,6 @@ double angle_between(const Vec3& a, const Vec3& b)
 double degrees(double radians)
 {
     return radians * 180.0 / std::numbers::pi;
-}
-
-double diagonal_of(const ObstacleMesh& mesh)
-{
-    Eigen::AlignedBox3d box;
-    for (const Vec3& p : mesh.points) box.extend(p);
-    return box.isEmpty() ? 0.0 : box.diagonal().norm();
-}
-
-/// The normals by which faces are compared. A thin face borrows the normal of the first face that is not
-/// thin, found across longest sides. So a cap that rounding bent out of its plane counts as part of its
-/// neighbour's plane, as intended.
-struct FacePlanes {
-    std::vector<Vec3> normals;
-    std::vector<char> is_borrowed;
-};
-
-double side_length(const ObstacleMesh& mesh, int face, int i)
-{
-    return (mesh.points[mesh.faces[face][(i + 1) % 3]] - mesh.points[mesh.faces[face][i]]).norm();
-}
-
-bool is_thin(const ObstacleMesh& mesh, int face, double diagonal)
-{
-    const auto& [a, b, c] = mesh.faces[face];
-    const double length =
-        std::max({side_length(mesh, face, 0), side_length(mesh, face, 1), side_length(mesh, face, 2)});
-    const Vec3 ab = mesh.points[b] - mesh.points[a], ac = mesh.points[c] - mesh.points[a];
-    const double height = (ab / length).cross(ac).norm();
-    return height < kThinHeight * diagonal && height < kThinAspect * length;
-}
-
-/// The neighbour across the longest side that is no border; -1 where all sides are borders.
-int widest_neighbour(const ObstacleMesh& mesh, const ObstacleTopology& topology, int face)
-{
-    int widest = -1;
-    double longest = -1.0;
-    for (int i = 0; i < 3; ++i)
-        if (topology.neighbour(face, i) >= 0 && side_length(mesh, face, i) > longest) {
-            longest = side_length(mesh, face, i);
-            widest = topology.neighbour(face, i);
-        }
-    return widest;
-}
-
-FacePlanes find_planes(const ObstacleMesh& mesh, const ObstacleTopology& topology, double diagonal)
-{
-    const int n = static_cast<int>(mesh.faces.size());
-    std::vector<char> thin(n);
-    for (int f = 0; f < n; ++f) thin[f] = is_thin(mesh, f, diagonal);
-
-    FacePlanes planes{topology.face_normals, std::vector<char>(n, 0)};
-    constexpr int kMostThinInARow = 64;  // bounds the search, which may run in a circle
-    for (int f = 0; f < n; ++f) {
-        int from = f;
-        for (int k = 0; k < kMostThinInARow && from >= 0 && thin[from]; ++k)
-            from = widest_neighbour(mesh, topology, from);
-        if (from < 0 || from == f || thin[from]) continue;
-        planes.normals[f] = topology.face_normals[from];
-        planes.is_borrowed[f] = 1;
-    }
-    return planes;
 }
 
 /// The edge vector in the direction in which `face` runs along the edge; not unit.
@@ -135,22 +69,39 @@ bool is_convex(const ObstacleMesh& mesh, const ObstacleTopology& topology, const
                              to_cgal(mesh.points[face[2]]), to_cgal(mesh.points[apex])) != CGAL::POSITIVE;
 }
 
-std::vector<FeatureEdge> find_feature_edges(const ObstacleMesh& mesh, const ObstacleTopology& topology,
-                                            const FacePlanes& planes, double feature_angle)
+/// Whether an inner edge is sharp in this pose.
+bool is_sharp(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes, int edge,
+              double feature_angle)
+{
+    const auto [f, g] = topology.edges[edge].faces;
+    if (!(degrees(angle_between(planes.normals[f], planes.normals[g])) > feature_angle + kTurnSlack))
+        return false;
+    const bool is_sheet = !topology.is_solid[topology.component[f]];
+    return is_sheet || is_convex(mesh, topology, planes, edge);
+}
+
+/// Marks the inner edges that are sharp in this pose; others stay as they are.
+void mark_sharp(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes,
+                double feature_angle, std::vector<char>& is_marked)
+{
+    for (int e = 0; e < topology.surface_edge_count; ++e)
+        if (!is_marked[e] && topology.edges[e].faces[1] >= 0 &&
+            is_sharp(mesh, topology, planes, e, feature_angle))
+            is_marked[e] = 1;
+}
+
+std::vector<FeatureEdge> make_feature_edges(const ObstacleTopology& topology, const FacePlanes& planes,
+                                            const std::vector<char>& is_marked)
 {
     std::vector<FeatureEdge> found;
     for (int e = 0; e < static_cast<int>(topology.edges.size()); ++e) {
         const auto [f, g] = topology.edges[e].faces;
-        if (f < 0) {
+        if (f < 0)
             found.push_back({e, FeatureKind::Wire, {Vec3::Zero(), Vec3::Zero()}, -1});
-        } else if (g < 0) {
+        else if (g < 0)
             found.push_back({e, FeatureKind::Border, {planes.normals[f], planes.normals[f]}, -1});
-        } else if (degrees(angle_between(planes.normals[f], planes.normals[g])) >
-                   feature_angle + kTurnSlack) {
-            const bool is_sheet = !topology.is_solid[topology.component[f]];
-            if (is_sheet || is_convex(mesh, topology, planes, e))
-                found.push_back({e, FeatureKind::Convex, {planes.normals[f], planes.normals[g]}, -1});
-        }
+        else if (is_marked[e])
+            found.push_back({e, FeatureKind::Convex, {planes.normals[f], planes.normals[g]}, -1});
     }
     return found;
 }
@@ -337,30 +288,90 @@ std::vector<Vec3> normals_around(const ObstacleTopology& topology, const FacePla
     return normals;
 }
 
+/// Marks the nodes of a pose, other points stay as they are.
+void mark_nodes(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes,
+                const std::vector<FeatureEdge>& edges, const std::vector<EdgesAt>& at,
+                std::vector<char>& is_corner)
+{
+    mark_apexes(mesh, topology, planes, is_corner);
+    for (int p = 0; p < static_cast<int>(mesh.points.size()); ++p)
+        if (is_node(mesh, topology, edges, at[p], p)) is_corner[p] = 1;
+}
+
+/// Distinct normals of the faces around a point, for a pose in which no faces share a plane.
+std::vector<Vec3> normals_in_pose(const ObstacleTopology& topology, int point)
+{
+    constexpr double kDistinct = 0.087;  // of unit normals: 5 degrees
+    std::vector<Vec3> normals;
+    for (int k = 0; k < topology.edge_count_at(point); ++k)
+        for (const int f : topology.edges[topology.edge_at(point, k)].faces) {
+            if (f < 0) continue;
+            const Vec3& normal = topology.face_normals[f];
+            if (!normal.isZero(0.0) && std::none_of(normals.begin(), normals.end(), [&](const Vec3& n) {
+                    return (n - normal).norm() <= kDistinct;
+                }))
+                normals.push_back(normal);
+        }
+    return normals;
+}
+
 }  // namespace
 
 ObstacleFeatures find_features(const ObstacleMesh& mesh, const ObstacleTopology& topology,
                                double feature_angle)
 {
-    const double diagonal = diagonal_of(mesh);
-    const FacePlanes planes = find_planes(mesh, topology, diagonal);
+    return find_features_of_poses(mesh, topology, feature_angle,
+                                  [&](const PoseVisitor& use) { use(mesh, topology); });
+}
 
+ObstacleFeatures find_features_of_poses(const ObstacleMesh& mesh, const ObstacleTopology& topology,
+                                        double feature_angle, const VisitPoses& visit_poses)
+{
+    const double diagonal = diagonal_of(mesh);
+    const auto planes_of = [&](const ObstacleMesh& pose, const ObstacleTopology& posed) {
+        return find_planes(pose, posed, diagonal_of(pose));
+    };
+    std::vector<char> is_marked(topology.edges.size(), 0);
+    visit_poses([&](const ObstacleMesh& pose, const ObstacleTopology& posed) {
+        mark_sharp(pose, posed, planes_of(pose, posed), feature_angle, is_marked);
+    });
+    const FacePlanes planes = planes_of(mesh, topology);
     ObstacleFeatures features;
-    features.edges = find_feature_edges(mesh, topology, planes, feature_angle);
+    features.edges = make_feature_edges(topology, planes, is_marked);
     features.patch = find_patches(mesh, topology, planes, diagonal);
 
     const std::vector<EdgesAt> at = gather_at_points(topology, features.edges, mesh.points.size());
     std::vector<char> is_corner(mesh.points.size(), 0);
-    mark_apexes(mesh, topology, planes, is_corner);
     for (const int p : mesh.lone_points) is_corner[p] = 1;
-    for (int p = 0; p < static_cast<int>(mesh.points.size()); ++p)
-        if (is_node(mesh, topology, features.edges, at[p], p)) is_corner[p] = 1;
-
+    visit_poses([&](const ObstacleMesh& pose, const ObstacleTopology& posed) {
+        mark_nodes(pose, posed, planes_of(pose, posed), features.edges, at, is_corner);
+    });
     features.polylines = chain(mesh, topology, at, is_corner, features.edges);
     for (int p = 0; p < static_cast<int>(mesh.points.size()); ++p)
         if (is_corner[p])
             features.corners.push_back({p, normals_around(topology, planes, features.patch, p)});
     return features;
+}
+
+void pose_features(const ObstacleMesh& mesh, const ObstacleTopology& topology, double feature_angle,
+                   ObstacleFeatures& features)
+{
+    const FacePlanes planes = find_planes(mesh, topology, diagonal_of(mesh));
+    std::vector<char> has_edge(mesh.points.size(), 0), has_awake(mesh.points.size(), 0);
+    for (FeatureEdge& feature : features.edges) {
+        const auto [f, g] = topology.edges[feature.edge].faces;
+        if (f >= 0) feature.normals = {planes.normals[f], planes.normals[g < 0 ? f : g]};
+        feature.is_awake = feature.kind != FeatureKind::Convex ||
+                           is_sharp(mesh, topology, planes, feature.edge, feature_angle);
+        for (const int p : topology.edges[feature.edge].points) {
+            has_edge[p] = 1;
+            has_awake[p] |= feature.is_awake;
+        }
+    }
+    for (FeatureCorner& corner : features.corners) {
+        corner.normals = normals_in_pose(topology, corner.point);
+        corner.is_awake = has_awake[corner.point] || !has_edge[corner.point];
+    }
 }
 
 }  // namespace arris

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "geometry/obstacle/obstacle_topology.h"
@@ -19,6 +20,7 @@ struct FeatureEdge {
     std::array<Vec3, 2> normals;  ///< normals of the faces beside the edge; border: twice that of its only
                                   ///< face; wire: zero
     int polyline;                 ///< index in ObstacleFeatures::polylines
+    bool is_awake = true;         ///< whether it is sharp in the present pose of an obstacle that deforms
 };
 
 /// A point where features meet, end or bend sharply, a cone's apex, or a lone point.
@@ -26,6 +28,7 @@ struct FeatureCorner {
     int point;                  ///< index in the mesh
     std::vector<Vec3> normals;  ///< normals of the planar patches around the point; none for ends of wires
                                 ///< and lone points
+    bool is_awake = true;       ///< whether one of its edges is, or it has none
 };
 
 /// A chain of feature edges of one kind from corner to corner, or closed.
@@ -56,5 +59,20 @@ struct ObstacleFeatures {
 /// neighbour at its longest side.
 ObstacleFeatures find_features(const ObstacleMesh& mesh, const ObstacleTopology& topology,
                                double feature_angle);
+
+/// Calls a function with each pose of a mesh: the same mesh with its points elsewhere.
+using PoseVisitor = std::function<void(const ObstacleMesh&, const ObstacleTopology&)>;
+using VisitPoses = std::function<void(const PoseVisitor&)>;
+
+/// Features of a mesh that deforms: what is sharp in at least one of its poses is a feature for ever, so that
+/// numbers of features mean the same at all times. Normals and lengths are those of the given `mesh`.
+/// `visit_poses` is called twice.
+ObstacleFeatures find_features_of_poses(const ObstacleMesh& mesh, const ObstacleTopology& topology,
+                                        double feature_angle, const VisitPoses& visit_poses);
+
+/// The same features in another pose of their mesh: sets their normals there, and which of them are awake. A
+/// convex edge is awake where its faces turn by more than `feature_angle` (degrees) over it.
+void pose_features(const ObstacleMesh& mesh, const ObstacleTopology& topology, double feature_angle,
+                   ObstacleFeatures& features);
 
 }  // namespace arris

@@ -122,11 +122,16 @@ ObstacleTopology make_topology(const ObstacleMesh& mesh)
     ObstacleTopology topology;
     make_edges(mesh, topology);
     make_point_edges(mesh, topology);
-    topology.face_normals.reserve(mesh.faces.size());
-    for (const auto& [a, b, c] : mesh.faces)
-        topology.face_normals.push_back(face_normal(mesh.points[a], mesh.points[b], mesh.points[c]));
+    update_normals(mesh, topology);
     make_components(mesh, topology);
     return topology;
+}
+
+void update_normals(const ObstacleMesh& mesh, ObstacleTopology& topology)
+{
+    topology.face_normals.clear();
+    for (const auto& [a, b, c] : mesh.faces)
+        topology.face_normals.push_back(face_normal(mesh.points[a], mesh.points[b], mesh.points[c]));
 }
 
 std::string validate(const ObstacleMesh& mesh)

@@ -21,12 +21,12 @@ struct ObstacleTopology {
     std::vector<ObstacleEdge> edges;
     int surface_edge_count = 0;
     std::vector<std::array<int, 3>> face_edges;  ///< edge i runs from corner i to corner i + 1
-    std::vector<Vec3> face_normals;              ///< unit
-    std::vector<int> first_edge;                 ///< start of each point's range in `point_edges`; size
-                                                 ///< points + 1
-    std::vector<int> point_edges;                ///< edges at a point, ascending
-    std::vector<int> component;                  ///< of each face
-    std::vector<char> is_solid;                  ///< 1 for each component without a border
+    std::vector<Vec3> face_normals;  ///< unit; zero where a face of a pose (obstacle.h) has no area
+    std::vector<int> first_edge;     ///< start of each point's range in `point_edges`; size
+                                     ///< points + 1
+    std::vector<int> point_edges;    ///< edges at a point, ascending
+    std::vector<int> component;      ///< of each face
+    std::vector<char> is_solid;      ///< 1 for each component without a border
 
     int edge_at(int point, int k) const { return point_edges[first_edge[point] + k]; }
     int edge_count_at(int point) const { return first_edge[point + 1] - first_edge[point]; }
@@ -61,6 +61,9 @@ void label_connected(const ObstacleTopology& topology, int seed, int label, cons
 
 /// Linear in the mesh size, apart from a sort. The mesh must pass `validate`.
 ObstacleTopology make_topology(const ObstacleMesh& mesh);
+
+/// Sets the face normals to those of the mesh's present points.
+void update_normals(const ObstacleMesh& mesh, ObstacleTopology& topology);
 
 /// Describes the first defect of an obstacle's mesh; empty if there is none. Coordinates must be finite and
 /// indices in range. No face or segment may be degenerate (exact predicate). At most two faces may meet at an

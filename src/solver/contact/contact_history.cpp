@@ -19,8 +19,7 @@ RiddenHistory find_ridden(const Carrier& carrier, const State& state, double for
     Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
     for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
         const int v = contact.vertices[i];
-        const Vec3 gained =
-            carrier.velocity_gained(state.mesh.world[v], carrier.before(carrier.motion.begin[v]));
+        const Vec3 gained = carrier.velocity_gained(v, state.mesh.world[v]);
         position += contact.weights[i] * ridden_position(carrier, state, forward, v);
         velocity += contact.weights[i] * (state.velocity[v] + forward * gained);
     }
@@ -70,8 +69,7 @@ Vec3 gain_of(const Carrier& carrier, const State& state, const Contact& contact)
     Vec3 gained = Vec3::Zero();
     for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
         const int v = contact.vertices[i];
-        gained += contact.weights[i] *
-                  carrier.velocity_gained(state.mesh.world[v], carrier.before(carrier.motion.begin[v]));
+        gained += contact.weights[i] * carrier.velocity_gained(v, state.mesh.world[v]);
     }
     return gained;
 }

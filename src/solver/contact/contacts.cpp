@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/contact/contacts.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <tuple>
 
@@ -91,6 +93,46 @@ ContactFriction rotate(const Mat3& rotation, const ContactFriction& friction)
     return {rotation * friction.force, rotation * friction.slip, friction.budget};
 }
 
+double longest_edge(const std::vector<Vec3>& world, const std::vector<MeshEdge>& edges)
+{
+    double longest = 0.0;
+    for (const MeshEdge& edge : edges) longest = std::max(longest, (world[edge.b] - world[edge.a]).norm());
+    return longest;
+}
+
+double longest_way(const std::vector<Vec3>& begin, const std::vector<Vec3>& end)
+{
+    double longest = 0.0;
+    for (std::size_t p = 0; p < end.size(); ++p) longest = std::max(longest, (end[p] - begin[p]).norm());
+    return longest;
+}
+
+/// Lets the cloth near an obstacle that deforms ride on it: each vertex with the nearest place of the
+/// surface. So gaps above faces stay, and the search for contacts, which knows the obstacle at the step's end
+/// only, finds what rests or slides there. What the search misses the check after the solve finds. `cell`:
+/// the longest edge of the cloth, m.
+void ride(double end, double cell, Carrier& carrier)
+{
+    const MovingObstacle& obstacle = *carrier.moving;
+    const ObstaclePose from = obstacle.at(carrier.time), to = obstacle.at(end);
+    const double reach = 2.0 * (cell + longest_way(from->mesh().points, to->mesh().points));
+    const std::vector<Vec3> world = carrier.motion.begin;  // the frame is the world
+    carrier.rides.resize(world.size());
+    tbb::parallel_for(std::size_t{0}, world.size(), [&](std::size_t v) {
+        const Vec3& place = world[v];
+        carrier.rides[v] = {place, place, Mat3::Identity(), Vec3::Zero()};
+        if (from->bounds().squaredExteriorDistance(place) > reach * reach) return;
+        const std::optional<SurfacePlace> on = find_nearest(from, place, reach);
+        if (!on) return;
+        const Placement way = obstacle.way(carrier.time, end, *on);
+        const Vec3 before = obstacle.way(carrier.time, carrier.previous_time, *on)(place);
+        carrier.motion.begin[v] = way(place);
+        carrier.rides[v] = {place, before, way.rotation,
+                            obstacle.velocity_after(carrier.time, place, *on) -
+                                obstacle.velocity_after(carrier.previous_time, before, *on)};
+    });
+}
+
 std::vector<Vec3> find_free_end(const State& state, const Prediction& prediction,
                                 const std::vector<PinTarget>& held)
 {
@@ -103,10 +145,40 @@ std::vector<Vec3> find_free_end(const State& state, const Prediction& prediction
 
 }  // namespace
 
-Vec3 Carrier::velocity_gained(const Vec3& at_start, const Vec3& one_step_ago) const
+Vec3 Carrier::one_step_ago(int vertex) const
+{
+    return rides.empty() ? before(motion.begin[vertex]) : rides[vertex].before;
+}
+
+Vec3 Carrier::velocity_gained(int vertex, const Vec3& at_start) const
 {
     if (!moving) return Vec3::Zero();
-    return moving->velocity_after(time, at_start) - moving->velocity_after(previous_time, one_step_ago);
+    if (!rides.empty()) return rides[vertex].gained;
+    return moving->velocity_after(time, at_start) -
+           moving->velocity_after(previous_time, one_step_ago(vertex));
+}
+
+Vec3 Carrier::at_begin(const ClothPoints& points) const
+{
+    if (rides.empty()) return begin(points.at(motion.begin));
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < 4 && points.vertices[i] >= 0; ++i)
+        sum += points.weights[i] * rides[points.vertices[i]].begin;
+    return sum;
+}
+
+Vec3 Carrier::at_end(const ClothPoints& points) const
+{
+    return end(points.at(motion.begin));
+}
+
+Mat3 Carrier::turn(const ClothPoints& points) const
+{
+    if (rides.empty()) return end.rotation;
+    int heaviest = 0;
+    for (int i = 1; i < 4 && points.vertices[i] >= 0; ++i)
+        if (points.weights[i] > points.weights[heaviest]) heaviest = i;
+    return rides[points.vertices[heaviest]].turn;
 }
 
 void ClothPoints::shift(const Vec3& change, const std::vector<double>& mobility,
@@ -139,6 +211,7 @@ Carriers move_obstacles(const Scene& scene, const State& state, const std::vecto
         carrier.end = pose.placement;
         carrier.motion = {&state.mesh.faces, &edges, to_local(carrier.begin, state.mesh.world),
                           to_local(carrier.end, free_end)};
+        if (obstacle.is_deforming()) ride(end, longest_edge(state.mesh.world, edges), carrier);
         carriers.obstacles.push_back(std::move(carrier));
     }
     return carriers;
@@ -152,7 +225,7 @@ void update_gaps(const Carriers& carriers, const Prediction& prediction, std::ve
 Vec3 ridden_position(const Carrier& carrier, const State& state, double forward, int vertex)
 {
     const Vec3& now = state.mesh.world[vertex];
-    return now + forward * (now - carrier.before(carrier.motion.begin[vertex]));
+    return now + forward * (now - carrier.one_step_ago(vertex));
 }
 
 void recall(const State& state, const Carriers& carriers, Contact& contact)
@@ -162,13 +235,17 @@ void recall(const State& state, const Carriers& carriers, Contact& contact)
     const bool is_vertex = contact.kind == ContactKind::Vertex;
     const ActiveContact* last = nullptr;
     double best_cosine = kSameNormal;
+    const Carrier& carrier = carriers[contact.obstacle];
+    const auto normal_of = [&](const ActiveContact& active) {
+        return carrier.rides.empty() ? active.normal : Vec3(carrier.turn(contact) * active.normal);
+    };
     auto active =
         std::lower_bound(state.active.begin(), state.active.end(), ids[0],
                          [](const ActiveContact& a, std::uint32_t first) { return a.vertex_ids[0] < first; });
     for (; active != state.active.end() && active->vertex_ids[0] == ids[0]; ++active) {
         if (active->obstacle != contact.obstacle || active->kind != contact.kind) continue;
         const bool is_same = active->vertex_ids == ids && active->element == contact.element;
-        const double cosine = is_vertex ? active->normal.dot(contact.local_normal) : is_same ? 1.0 : 0.0;
+        const double cosine = is_vertex ? normal_of(*active).dot(contact.local_normal) : is_same ? 1.0 : 0.0;
         if (!(cosine > best_cosine)) continue;
         last = &*active;
         best_cosine = cosine;
@@ -177,16 +254,14 @@ void recall(const State& state, const Carriers& carriers, Contact& contact)
     contact.last_multiplier = last->multiplier;
     contact.was_squeezed = last->is_squeezed;
     contact.last_friction = last->friction;
-    if (contact.eol < 0)
-        contact.last_friction = rotate(carriers[contact.obstacle].end.rotation, contact.last_friction);
+    if (contact.eol < 0) contact.last_friction = rotate(carrier.turn(contact), contact.last_friction);
     contact.friction = contact.last_friction;
 }
 
 double way_along(const Carriers& carriers, const Contact& contact)
 {
     const Carrier& carrier = carriers[contact.obstacle];
-    const Vec3 place = contact.at(carrier.motion.begin);
-    return contact.normal.dot(carrier.end(place) - carrier.begin(place));
+    return contact.normal.dot(carrier.at_end(contact) - carrier.at_begin(contact));
 }
 
 void update_gap(const Carrier& carrier, const Prediction& prediction, Contact& contact)

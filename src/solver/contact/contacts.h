@@ -27,18 +27,39 @@ inline bool is_fold_plane(const ActiveContact& contact)
     return contact.kind == ContactKind::Vertex && contact.element == kFoldPlaneElement;
 }
 
+/// A vertex of the cloth that rides on an obstacle that deforms.
+struct Ride {
+    Vec3 begin;   ///< its place at the step's start, world
+    Vec3 before;  ///< where what rides there was one step ago
+    Mat3 turn;    ///< how that turns in the step
+    Vec3 gained;  ///< m/s, that its velocity has gained in the last step
+};
+
+struct ClothPoints;
+
 /// An obstacle during one step, or the cloth itself where it meets itself, and the motion of the cloth in its
-/// frame. The frame of the cloth itself is the world, at rest.
+/// frame. The frame of the cloth itself is the world, at rest. The frame of an obstacle that deforms is the
+/// world, too, but the cloth's motion in it begins where the cloth would end if it rode on the surface.
 struct Carrier {
     Placement before, begin, end;  ///< placement of its frame: one step ago, at the step's start and end
     ClothMotion motion;            ///< ends where the cloth would be without contacts
+    std::vector<Ride> rides;       ///< of each vertex on an obstacle that deforms; else none
     std::vector<Vec3> reference;   ///< where the cloth would be if it slid along an obstacle in its way
     std::shared_ptr<const Obstacle> obstacle;  ///< its shape at the step's end; null: the cloth itself
     const MovingObstacle* moving = nullptr;    ///< likewise
     double previous_time = 0.0, time = 0.0;    ///< s, one step ago and at the step's start
 
-    /// Velocity, m/s, that its material at these places has gained in the last step.
-    Vec3 velocity_gained(const Vec3& at_start, const Vec3& one_step_ago) const;
+    /// What rides on it with a vertex (`at_start`: world): where it was one step ago, and the velocity, m/s,
+    /// that it has gained in the last step.
+    Vec3 one_step_ago(int vertex) const;
+    Vec3 velocity_gained(int vertex, const Vec3& at_start) const;
+
+    /// World places of what rides on it with a point of the cloth, at the step's start and end.
+    Vec3 at_begin(const ClothPoints& points) const;
+    Vec3 at_end(const ClothPoints& points) const;
+
+    /// Turns vectors of a contact from its frame at the state's time to the world at the step's end.
+    Mat3 turn(const ClothPoints& points) const;
 };
 
 /// The carriers of a step.

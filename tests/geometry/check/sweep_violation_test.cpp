@@ -31,8 +31,8 @@ struct Meeting {
 
     std::optional<ObstacleContact> contact(const Vec3& hit_normal) const
     {
-        const SweepHit hit{0.5, {1.0, 0.0, 0.0}, Vec3::Zero(), hit_normal};
-        return make_vertex_violation(obstacle, motion, 0, 0, hit, kThickness);
+        const SweepHit hit{0.5, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, Vec3::Zero(), hit_normal};
+        return make_vertex_violation(obstacle, motion, 0, 0, hit, motion.begin[0], kThickness);
     }
     Vec3 normal(const Vec3& hit_normal) const
     {

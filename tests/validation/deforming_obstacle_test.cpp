@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cloth on obstacles that deform, against closed forms and against the same motion of a rigid obstacle.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cloth_run.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "geometry/surgery/initial_target.h"
+#include "grid_patterns.h"
+#include "solver/contact/audit.h"
+#include "solver/energy_balance.h"
+#include "tests/formula_deformation.h"
+
+namespace arris {
+namespace {
+
+constexpr double kG = 9.81, kThickness = 1e-3;
+
+Scene make_scene()
+{
+    Scene scene;
+    scene.material = {0.15, 2000.0, 0.3, 1e-5, 0.0, kThickness};
+    scene.gravity = Gravity{};
+    return scene;
+}
+
+MovingObstacle make_deforming(ObstacleMesh mesh, FormulaDeformation::Formula place,
+                              FormulaDeformation::Formula velocity, std::vector<double> samples = {0.0})
+{
+    const auto deformation = std::make_shared<FormulaDeformation>(mesh.points, std::move(place),
+                                                                  std::move(velocity), std::move(samples));
+    return MovingObstacle("it", std::move(mesh), {}, {}, 30.0, deformation);
+}
+
+Vec3 mean_velocity(const ClothRun& run)
+{
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& v : run.state.velocity) sum += v;
+    return sum / static_cast<double>(run.state.velocity.size());
+}
+
+/// A sheet on a box that turns and moves, with friction.
+ClothRun make_box_run(MovingObstacle box, bool has_eol)
+{
+    Scene scene = make_scene();
+    scene.friction = Friction{{0.3}};
+    scene.obstacles.push_back(std::move(box));
+    ClothMesh mesh = make_sheet({0.4, 0.4}, {8, 8}, GridPattern::Cross);
+    lay(mesh, Vec3(-0.2, -0.2, 0.05 + kThickness));
+    if (has_eol) scene.eol = make_initial_target(mesh);
+    return ClothRun(std::move(scene), std::move(mesh));
+}
+
+TEST(DeformingObstacle, CarriesClothAsARigidOneWithTheSameMotion)
+{
+    constexpr double kRounding = 1e-8;  // m: the solves' tolerance, and rounding, after 40 steps
+    RigidMotion motion;
+    motion.velocity = Vec3(0.2, 0.0, 0.1);
+    motion.angular_velocity = Vec3(0.0, 0.3, 2.0);
+    const ObstacleMesh box = make_box({0.3, 0.3, 0.1});
+    const auto place = [&](const Vec3& rest, double time) { return motion.at(time)(rest); };
+    const auto velocity = [&](const Vec3& rest, double time) {
+        return motion.velocity_after(time, motion.at(time)(rest));
+    };
+    for (const bool has_eol : {false, true}) {
+        ClothRun rigid = make_box_run(MovingObstacle("it", box, {}, motion, 30.0), has_eol);
+        ClothRun deforming = make_box_run(make_deforming(box, place, velocity), has_eol);
+        double largest = 0.0;
+        for (int k = 0; k < 40; ++k) {
+            rigid.advance(0.005);
+            deforming.advance(0.005);
+            ASSERT_EQ(rigid.state.ids, deforming.state.ids);
+            ASSERT_EQ(rigid.state.eol.size(), deforming.state.eol.size());
+            for (std::size_t v = 0; v < rigid.state.mesh.world.size(); ++v)
+                largest =
+                    std::max(largest, (rigid.state.mesh.world[v] - deforming.state.mesh.world[v]).norm());
+        }
+        EXPECT_LT(largest, kRounding) << has_eol;
+        EXPECT_EQ(rigid.state.eol.empty(), !has_eol);
+    }
+}
+
+/// A floor that stretches, x = (1 + e t) X, drags a strip of width w: its middle x_c gains
+/// mu g clip(2 (x_c - v / E) / w, -1, 1), E = e / (1 + e t).
+TEST(DeformingObstacle, FloorThatStretchesDragsAStrip)
+{
+    constexpr double kRate = 1.0, kFriction = 0.3, kWidth = 0.1;
+    Scene scene = make_scene();
+    scene.material.youngs_modulus = 2e5;
+    scene.friction = Friction{{kFriction}};
+    const ObstacleMesh floor = {
+        {{-1, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
+    const auto stretch = [](const Vec3& rest, double time) {
+        return Vec3((1.0 + kRate * time) * rest.x(), rest.y(), rest.z());
+    };
+    const auto velocity = [](const Vec3& rest, double) { return Vec3(kRate * rest.x(), 0.0, 0.0); };
+    scene.obstacles.push_back(make_deforming(floor, stretch, velocity));
+    ClothMesh mesh = make_sheet({kWidth, 0.05}, {20, 4}, GridPattern::Cross);
+    lay(mesh, Vec3(0.5 - 0.5 * kWidth, -0.025, kThickness));
+    ClothRun run(std::move(scene), std::move(mesh));
+    run.advance(0.1, 0.0025);
+    EXPECT_NEAR(mean_velocity(run).x(), 0.2943, 1e-3);
+    run.advance(0.2, 0.0025);
+    EXPECT_NEAR(mean_velocity(run).x(), 0.4632, 1e-3);
+    EXPECT_NEAR(mean_velocity(run).y(), 0.0, 1e-5);
+}
+
+/// Cloth that is stuck to a floor that bends to and fro stays at its place.
+TEST(DeformingObstacle, FloorThatBendsKeepsClothThatSticks)
+{
+    constexpr double kPeriod = 0.2, kMost = 0.5;  // rad over a metre
+    constexpr double kWave = 2.0 * M_PI / kPeriod;
+    ObstacleMesh floor;
+    constexpr int kCells = 20;
+    for (int i = 0; i <= kCells; ++i)
+        for (const double y : {-0.5, 0.5}) floor.points.push_back(Vec3(-0.5 + i / double{kCells}, y, 0.0));
+    for (int i = 0; i < kCells; ++i) {
+        floor.faces.push_back({2 * i, 2 * i + 2, 2 * i + 3});
+        floor.faces.push_back({2 * i, 2 * i + 3, 2 * i + 1});
+    }
+    const auto height = [](double x) { return 0.5 * kMost * x * x; };
+    const auto bend = [&](const Vec3& rest, double time) {
+        return Vec3(rest.x(), rest.y(), height(rest.x()) * std::sin(kWave * time));
+    };
+    const auto velocity = [&](const Vec3& rest, double time) {
+        return Vec3(0.0, 0.0, height(rest.x()) * kWave * std::cos(kWave * time));
+    };
+    Scene scene = make_scene();
+    scene.material.youngs_modulus = 20.0;  // N/m: stiffer cloth would slip rather than stretch
+    scene.friction = Friction{{0.8}};
+    scene.obstacles.push_back(make_deforming(floor, bend, velocity));
+    ClothMesh mesh = make_sheet({0.2, 0.2}, {8, 8}, GridPattern::Cross);
+    lay(mesh, Vec3(-0.08, -0.1, kThickness));
+    ClothRun run(std::move(scene), std::move(mesh));
+    const auto middle = [&] {
+        Vec3 sum = Vec3::Zero();
+        for (const Vec3& x : run.state.mesh.world) sum += x;
+        return Vec3(sum / static_cast<double>(run.state.mesh.world.size()));
+    };
+    run.advance(kPeriod, 0.005);
+    const Vec3 first = middle();
+    run.advance(10.0 * kPeriod, 0.005);
+    EXPECT_LT((middle() - first).norm(), 1e-6);
+    EXPECT_TRUE(find_penetrations(run.scene, run.state).empty());
+}
+
+/// A sheet that slides over the edge of a table whose points move along that edge with the strain `rate` t.
+ClothRun make_stretched_table_run(double rate)
+{
+    const ObstacleMesh table = make_box({0.4, 1.0, 0.1});
+    Scene scene = make_scene();
+    scene.obstacles.push_back(make_deforming(
+        table,
+        [rate](const Vec3& rest, double time) {
+            return Vec3(rest.x(), (1.0 + rate * time) * rest.y(), rest.z());
+        },
+        [rate](const Vec3& rest, double) { return Vec3(0.0, rate * rest.y(), 0.0); }));
+    ClothMesh mesh = make_sheet({0.4, 0.2}, {8, 4}, GridPattern::Cross);
+    lay(mesh, Vec3(0.0, 0.1, 0.05 + kThickness));
+    scene.eol = make_initial_target(mesh);
+    return ClothRun(std::move(scene), std::move(mesh));
+}
+
+TEST(DeformingObstacle, EdgeThatStretchesDoesNotDragClothAlong)
+{
+    constexpr double kDuration = 0.15, kRounding = 1e-9;
+    ClothRun resting = make_stretched_table_run(0.0), stretching = make_stretched_table_run(2.0);
+    resting.advance(kDuration, 0.005);
+    stretching.advance(kDuration, 0.005);
+    EXPECT_EQ(stretching.state.eol.size(), 5u);
+    ASSERT_EQ(resting.state.ids, stretching.state.ids);
+    for (std::size_t v = 0; v < resting.state.mesh.world.size(); ++v)
+        EXPECT_LT((resting.state.mesh.world[v] - stretching.state.mesh.world[v]).norm(), kRounding);
+}
+
+/// A sphere that swells lifts the cloth on it.
+TEST(DeformingObstacle, SphereThatSwellsLiftsItsCloth)
+{
+    constexpr double kRadius = 0.1, kRate = 1.0;
+    ObstacleMesh sphere;
+    constexpr int kRings = 24, kAround = 48;
+    sphere.points.push_back(Vec3(0, 0, kRadius));
+    for (int i = 1; i < kRings; ++i)
+        for (int j = 0; j < kAround; ++j) {
+            const double polar = M_PI * i / kRings, turn = 2.0 * M_PI * j / kAround;
+            sphere.points.push_back(kRadius * Vec3(std::sin(polar) * std::cos(turn),
+                                                   std::sin(polar) * std::sin(turn), std::cos(polar)));
+        }
+    sphere.points.push_back(Vec3(0, 0, -kRadius));
+    const int last = static_cast<int>(sphere.points.size()) - 1;
+    const auto at = [](int i, int j) { return 1 + (i - 1) * kAround + j % kAround; };
+    for (int j = 0; j < kAround; ++j) {
+        sphere.faces.push_back({0, at(1, j), at(1, j + 1)});
+        sphere.faces.push_back({last, at(kRings - 1, j + 1), at(kRings - 1, j)});
+        for (int i = 1; i < kRings - 1; ++i) {
+            sphere.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            sphere.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    }
+    const auto swell = [&](const Vec3& rest, double time) { return Vec3((1.0 + kRate * time) * rest); };
+    const auto velocity = [&](const Vec3& rest, double) { return Vec3(kRate * rest); };
+    Scene scene = make_scene();
+    scene.friction = Friction{{0.5}};
+    scene.obstacles.push_back(make_deforming(sphere, swell, velocity));
+    ClothMesh mesh = make_sheet({0.3, 0.3}, {12, 12}, GridPattern::Cross);
+    lay(mesh, Vec3(-0.15, -0.15, kRadius + kThickness));
+    ClothRun run(std::move(scene), std::move(mesh));
+    run.advance(1.0, 0.005);
+    const double radius = kRadius * (1.0 + kRate * run.state.time);
+    double top = -1.0;
+    for (const Vec3& x : run.state.mesh.world) top = std::max(top, x.z());
+    EXPECT_NEAR(top, radius + kThickness, 1e-4);
+    EXPECT_TRUE(find_penetrations(run.scene, run.state).empty());
+}
+
+}  // namespace
+}  // namespace arris
