@@ -22,6 +22,24 @@ void write_vectors(BinaryWriter& out, const std::vector<Vec2>& vectors)
     });
 }
 
+void write_surface_place(BinaryWriter& out, const SurfacePlace& on)
+{
+    out.number(static_cast<std::int32_t>(on.kind));
+    out.number(static_cast<std::int32_t>(on.element));
+    for (const int point : on.points) out.number(static_cast<std::int32_t>(point));
+    for (const double weight : on.weights) out.number(weight);
+}
+
+SurfacePlace read_surface_place(BinaryReader& in)
+{
+    SurfacePlace on;
+    on.kind = static_cast<SurfaceKind>(in.number<std::int32_t>());
+    on.element = in.number<std::int32_t>();
+    for (int& point : on.points) point = in.number<std::int32_t>();
+    for (double& weight : on.weights) weight = in.number<double>();
+    return on;
+}
+
 /// The peaks in the order of the file.
 template <class Peaks>
 auto peaks_of(Peaks& peaks)
@@ -123,6 +141,7 @@ void write_state(BinaryWriter& out, const State& state)
         out.number(anchor.pin);
         out.number(anchor.vertex_id);
         out.vector(anchor.origin);
+        write_surface_place(out, anchor.on);
     });
     out.list(state.active, [&](const ActiveContact& contact) {
         for (const std::uint32_t id : contact.vertex_ids) out.number(id);
@@ -181,11 +200,13 @@ State read_state(BinaryReader& in)
         vertex.gathering = in.number<double>();
         return vertex;
     });
-    state.anchors = in.list<PinAnchor>(2 * sizeof(std::uint32_t) + 3 * sizeof(double), [&] {
+    constexpr std::size_t kAnchorBytes = 7 * sizeof(std::uint32_t) + 6 * sizeof(double);
+    state.anchors = in.list<PinAnchor>(kAnchorBytes, [&] {
         PinAnchor anchor;
         anchor.pin = in.number<std::uint32_t>();
         anchor.vertex_id = in.number<std::uint32_t>();
         anchor.origin = in.vector();
+        anchor.on = read_surface_place(in);
         return anchor;
     });
     constexpr std::size_t kContactBytes =

@@ -107,7 +107,11 @@ std::string find_defect(const Checkpoint& checkpoint)
     if (const std::string defect = find_defect(state.eol, state.ids); !defect.empty()) return defect;
     for (std::size_t k = 0; k < state.anchors.size(); ++k) {
         const PinAnchor& anchor = state.anchors[k];
-        if (!anchor.origin.allFinite()) return fmt::format("anchor {} is not finite", k);
+        const std::array<double, 3>& weights = anchor.on.weights;
+        const bool is_finite =
+            anchor.origin.allFinite() &&
+            std::all_of(weights.begin(), weights.end(), [](double weight) { return std::isfinite(weight); });
+        if (!is_finite) return fmt::format("anchor {} is not finite", k);
         if (!std::binary_search(state.ids.begin(), state.ids.end(), anchor.vertex_id))
             return fmt::format("anchor {} refers to an unknown vertex", k);
         if (k > 0 && std::pair(anchor.pin, anchor.vertex_id) <=

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "geometry/cloth/material_box.h"
@@ -22,12 +23,12 @@ struct Way {
 };
 
 /// Times from 0 to `end` (s) with all jumps of the motion between.
-std::vector<double> sample_times(const RigidMotion& motion, double end)
+std::vector<double> sample_times(const std::vector<double>& jumps, double end)
 {
     constexpr int kSamples = 64;
     std::vector<double> times;
     for (int k = 0; k <= kSamples; ++k) times.push_back(end * k / kSamples);
-    for (const double jump : motion.jumps())
+    for (const double jump : jumps)
         if (jump < end) times.push_back(jump);
     std::sort(times.begin(), times.end());
     return times;
@@ -39,15 +40,24 @@ Way measure_way(const std::vector<double>& times, const std::vector<Vec3>& point
                 Velocity velocity)
 {
     Way way;
-    for (const Vec3& point : points) {
-        const Vec3 start = place(point, times.front());
-        for (const double time : times) {
-            const Vec3 at = place(point, time);
-            way.length = std::max(way.length, (at - start).norm());
+    std::vector<Vec3> start;
+    for (const Vec3& point : points) start.push_back(place(point, times.front()));
+    for (const double time : times)
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            const Vec3 at = place(points[p], time);
+            way.length = std::max(way.length, (at - start[p]).norm());
             if (time < times.back()) way.speed = std::max(way.speed, velocity(time, at).norm());
         }
-    }
     return way;
+}
+
+/// Where what rides on an obstacle, and is at `place` (world) at time `from`, is at `to`.
+Vec3 ridden(const MovingObstacle& obstacle, double from, const Vec3& place, double to)
+{
+    const ObstaclePose pose = obstacle.at(from);
+    if (!obstacle.is_deforming()) return obstacle.at(to).placement(pose.placement.inverse(place));
+    const auto on = find_nearest(pose, place, std::numeric_limits<double>::infinity());
+    return on ? obstacle.way(from, to, *on)(place) : place;
 }
 
 std::vector<Vec3> corners_of(const Box3& box)
@@ -106,10 +116,11 @@ class Motions {
         const Vec3 at_peak = pose.placement.inverse(peak_.world);
         const double reach = scene_.material.thickness + kNear * edge_;
         const bool is_near = distance_to(pose, at_peak, 2.0 * reach) <= reach;
-        const std::vector<Vec3> points = is_near ? std::vector<Vec3>{at_peak} : corners_of(pose->bounds());
+        std::vector<Vec3> points = is_near ? std::vector<Vec3>{at_peak} : corners_of(pose->bounds());
+        for (Vec3& point : points) point = pose.placement(point);
         const Way way = measure_way(
-            sample_times(obstacle.motion(), peak_.time), points,
-            [&](const Vec3& point, double time) { return obstacle.at(time).placement(point); },
+            sample_times(obstacle.jumps(), peak_.time), points,
+            [&](const Vec3& point, double time) { return ridden(obstacle, peak_.time, point, time); },
             [&](double time, const Vec3& place) { return obstacle.velocity_after(time, place); });
         const bool is_held = !scene_.pins.empty() || scene_.obstacles.size() > 1;
         add(way, is_near ? distance_to_pins() : half_, is_held, obstacle.name(), is_near);
@@ -118,20 +129,23 @@ class Motions {
     void add_pin(std::size_t i)
     {
         const Pin& pin = scene_.pins[i];
-        const RigidMotion& motion =
-            pin.follows ? scene_.obstacles[static_cast<std::size_t>(*pin.follows)].motion() : pin.motion;
+        const MovingObstacle* followed =
+            pin.follows ? &scene_.obstacles[static_cast<std::size_t>(*pin.follows)] : nullptr;
         const double end = std::min(peak_.time, pin.release);
-        if (!motion.is_moving() || !(end > pin.start)) return;
+        const bool is_moving = followed ? followed->is_moving() : pin.motion.is_moving();
+        if (!is_moving || !(end > pin.start)) return;
         std::vector<Vec3> points;
         for (const int v : vertices_in_box(config_.cloth, pin.material))
             points.push_back(config_.cloth.world[static_cast<std::size_t>(v)]);
         const Way way = measure_way(
-            sample_times(motion, end), points,
+            sample_times(followed ? followed->jumps() : pin.motion.jumps(), end), points,
             [&](const Vec3& point, double time) {
-                return pin_placement(scene_, pin, std::max(time, pin.start))(point);
+                const SurfacePlace on = pin_surface(scene_, pin, 0.0, point);
+                return pin_placement(scene_, pin, on, std::max(time, pin.start))(point);
             },
             [&](double time, const Vec3& place) -> Vec3 {
-                return time < pin.start ? Vec3(Vec3::Zero()) : pin_velocity(scene_, pin, time, place);
+                if (time < pin.start) return Vec3::Zero();
+                return pin_velocity(scene_, pin, pin_surface(scene_, pin, time, place), time, place);
             });
         const bool is_near = distance_to_box(pin) <= kNear * edge_;
         // Where two pins hold the cloth, their distance tells more (strain_causes).

@@ -20,6 +20,22 @@
 namespace arris {
 namespace {
 
+/// Whether a pin's vertex rides on an element of the obstacle that the pin follows, or on none.
+bool is_on_surface(const PinAnchor& anchor, const Scene& scene)
+{
+    const SurfacePlace& on = anchor.on;
+    const std::optional<int>& follows = scene.pins[anchor.pin].follows;
+    if (on.element < 0) return on.element == -1;
+    if (!follows) return false;
+    const Obstacle& shape = scene.obstacles[static_cast<std::size_t>(*follows)].shape();
+    const std::size_t count = on.kind == SurfaceKind::Triangle ? shape.mesh().faces.size()
+                              : on.kind == SurfaceKind::Edge   ? shape.topology().edges.size()
+                                                               : shape.mesh().points.size();
+    const int points = static_cast<int>(shape.mesh().points.size());
+    return on.element < static_cast<int>(count) && on.points[0] >= 0 &&
+           std::all_of(on.points.begin(), on.points.end(), [&](int p) { return p >= -1 && p < points; });
+}
+
 /// Checks indices of a checkpoint, which is untrusted, against the scene.
 void check_references(const std::string& directory, const State& state, const Scene& scene)
 {
@@ -27,8 +43,9 @@ void check_references(const std::string& directory, const State& state, const Sc
         return index >= 0 && index < static_cast<std::int64_t>(count);
     };
     const bool has_pins =
-        std::all_of(state.anchors.begin(), state.anchors.end(),
-                    [&](const PinAnchor& anchor) { return is_sound(anchor.pin, scene.pins.size()); });
+        std::all_of(state.anchors.begin(), state.anchors.end(), [&](const PinAnchor& anchor) {
+            return is_sound(anchor.pin, scene.pins.size()) && is_on_surface(anchor, scene);
+        });
     const auto is_there = [&](const ActiveContact& contact) {
         if (contact.obstacle == kClothItself) return true;
         if (!is_sound(contact.obstacle, scene.obstacles.size())) return false;

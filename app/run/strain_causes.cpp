@@ -122,12 +122,13 @@ std::vector<HeldVertex> held_at(const RunConfig& config, const Pin& pin, double 
     std::vector<HeldVertex> held;
     const bool holds_all = pin.held[0] && pin.held[1] && pin.held[2];
     if (!holds_all || !pin.holds(0.0, time)) return held;
-    const Placement way = pin_placement(config.scene, pin, time);
     const std::vector<int> vertices = vertices_in_box(config.cloth, pin.material);
     const std::size_t stride = 1 + vertices.size() / kMost;
     for (std::size_t k = 0; k < vertices.size(); k += stride) {
         const auto v = static_cast<std::size_t>(vertices[k]);
-        held.push_back({way(config.cloth.world[v]), config.cloth.material[v]});
+        const Vec3& placed = config.cloth.world[v];
+        const SurfacePlace on = pin_surface(config.scene, pin, 0.0, placed);
+        held.push_back({pin_placement(config.scene, pin, on, time)(placed), config.cloth.material[v]});
     }
     return held;
 }

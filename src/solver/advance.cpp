@@ -6,6 +6,7 @@
 
 #include "solver/material_flow.h"
 #include "solver/model/time_integration.h"
+#include "solver/motion_parts.h"
 #include "solver/step.h"
 #include "solver/step_friction.h"
 
@@ -16,8 +17,9 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
 {
     constexpr int kStartParts = 3;
     const PlannedStep planned = {state.time, end};
-    int shrink = 1;                                               // factor by which parts have become shorter
-    int parts = find_flow_parts(scene, state, planned.length());  // parts left until `end`
+    int shrink = 1;  // factor by which parts have become shorter
+    int parts = std::max(find_flow_parts(scene, state, planned.length()),  // left until `end`
+                         find_motion_parts(scene, state, planned.length()));
     StepPart part = StepPart::Ordinary;
     if (settings.integrator == Integrator::Bdf2 && !has_past(state, planned.length()) && parts == 1) {
         part = StepPart::Opening;

@@ -86,12 +86,15 @@ std::optional<PinMeeting> find_nearest_pins(const RunConfig& config)
     const std::vector<Pin>& pins = config.scene.pins;
     std::vector<PinCentre> centres;
     for (const Pin& pin : pins) centres.push_back(find_centre(config.cloth, pin));
+    std::vector<SurfacePlace> on;
+    for (std::size_t p = 0; p < pins.size(); ++p)
+        on.push_back(pin_surface(config.scene, pins[p], 0.0, centres[p].world));
     std::optional<PinMeeting> nearest;
     for (int k = 0; k <= kSamples; ++k) {
         const double time = config.duration * k / kSamples;
         std::vector<Vec3> places;
         for (std::size_t p = 0; p < pins.size(); ++p)
-            places.push_back(pin_placement(config.scene, pins[p], time)(centres[p].world));
+            places.push_back(pin_placement(config.scene, pins[p], on[p], time)(centres[p].world));
         for (std::size_t p = 0; p < pins.size(); ++p)
             for (std::size_t q = 0; q < p; ++q) {
                 const double apart = (centres[p].material - centres[q].material).norm();

@@ -16,7 +16,8 @@ struct MovingObstacle::Posed {
     std::vector<Vec3> velocities;  ///< of the points, m/s
 };
 
-/// The poses asked for last: of a step its two ends and the step's before it, and of a part of it.
+/// The poses asked for last: of the start of the last step, both ends of this one, time 0 from which pins
+/// ride, and of a part.
 class MovingObstacle::Poses {
   public:
     template <class Make>
@@ -35,7 +36,7 @@ class MovingObstacle::Poses {
     }
 
   private:
-    static constexpr std::size_t kMost = 5;
+    static constexpr std::size_t kMost = 6;
     std::mutex mutex_;
     std::vector<std::shared_ptr<const Posed>> latest_;  ///< the latest asked for first
 };
@@ -79,16 +80,23 @@ MovingObstacle::MovingObstacle(std::string name, ObstacleMesh mesh, const Placem
 {
 }
 
+std::vector<Vec3> MovingObstacle::deform(double time, std::vector<Vec3>& velocities) const
+{
+    std::vector<Vec3> points;
+    deformation_->find(time, points, velocities);
+    const Placement frame = motion_.at(time) * placement_;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        points[p] = frame(points[p]);
+        velocities[p] = frame.rotation * velocities[p] + motion_.velocity_after(time, points[p]);
+    }
+    return points;
+}
+
 std::shared_ptr<const MovingObstacle::Posed> MovingObstacle::posed_at(double time) const
 {
     return poses_->find(time, [&] {
-        std::vector<Vec3> points, velocities;
-        deformation_->find(time, points, velocities);
-        const Placement frame = motion_.at(time) * placement_;
-        for (std::size_t p = 0; p < points.size(); ++p) {
-            points[p] = frame(points[p]);
-            velocities[p] = frame.rotation * velocities[p] + motion_.velocity_after(time, points[p]);
-        }
+        std::vector<Vec3> velocities;
+        std::vector<Vec3> points = deform(time, velocities);
         return std::make_shared<const Posed>(
             Posed{time, Obstacle(*shape_, std::move(points)), std::move(velocities)});
     });
@@ -122,10 +130,10 @@ Vec3 MovingObstacle::velocity_after(double time, const Vec3& place, const Surfac
 
 std::vector<Vec3> MovingObstacle::points_at(double time) const
 {
-    const ObstaclePose pose = at(time);
-    std::vector<Vec3> points = pose->mesh().points;
-    if (!deformation_)
-        for (Vec3& point : points) point = pose.placement(point);
+    std::vector<Vec3> points, velocities;
+    if (deformation_) return deform(time, velocities);
+    const Placement frame = at(time).placement;
+    for (const Vec3& point : shape_->mesh().points) points.push_back(frame(point));
     return points;
 }
 

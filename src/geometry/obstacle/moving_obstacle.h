@@ -62,6 +62,7 @@ class MovingObstacle {
     struct Posed;
     class Poses;
     std::shared_ptr<const Posed> posed_at(double time) const;
+    std::vector<Vec3> deform(double time, std::vector<Vec3>& velocities) const;  ///< in the world
 
     std::string name_;
     std::shared_ptr<const Obstacle> shape_;

@@ -15,15 +15,23 @@ std::pair<std::uint32_t, std::uint32_t> key_of(const PinAnchor& anchor)
     return {anchor.pin, anchor.vertex_id};
 }
 
-/// Origin of a vertex; for one without an anchor, its current place moved back with the pin.
-Vec3 find_origin(const State& state, std::uint32_t pin, int vertex, const Placement& now)
+/// An anchor that takes hold of a vertex where it is at `time`.
+PinAnchor take_hold(const Scene& scene, std::uint32_t pin, std::uint32_t vertex_id, double time,
+                    const Vec3& place)
+{
+    const SurfacePlace on = pin_surface(scene, scene.pins[pin], time, place);
+    return {pin, vertex_id, pin_placement(scene, scene.pins[pin], on, time).inverse(place), on};
+}
+
+/// The anchor of a vertex; for one without an anchor, its current place moved back with the pin.
+PinAnchor find_anchor(const Scene& scene, const State& state, std::uint32_t pin, int vertex)
 {
     const std::pair<std::uint32_t, std::uint32_t> key(pin, state.ids[vertex]);
     const auto anchor =
         std::lower_bound(state.anchors.begin(), state.anchors.end(), key,
                          [](const PinAnchor& a, const auto& wanted) { return key_of(a) < wanted; });
-    if (anchor != state.anchors.end() && key_of(*anchor) == key) return anchor->origin;
-    return now.inverse(state.mesh.world[vertex]);
+    if (anchor != state.anchors.end() && key_of(*anchor) == key) return *anchor;
+    return take_hold(scene, pin, state.ids[vertex], state.time, state.mesh.world[vertex]);
 }
 
 /// Vertices in the pin's box, and those that it has taken hold of; ascending.
@@ -73,14 +81,14 @@ std::vector<PinTarget> find_pin_targets(const Scene& scene, const State& state, 
     for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
         const Pin& pin = scene.pins[p];
         if (!pin.holds(state.time, end)) continue;
-        const Placement now = pin_placement(scene, pin, state.time), then = pin_placement(scene, pin, end);
         for (const int v : find_held(pin, p, state)) {
             if (slot[v] < 0) {
                 slot[v] = static_cast<int>(held.size());
                 held.push_back({v, {false, false, false}, Vec3::Zero()});
             }
             held[slot[v]].pin = static_cast<int>(p);
-            const Vec3 target = then(find_origin(state, p, v, now));
+            const PinAnchor anchor = find_anchor(scene, state, p, v);
+            const Vec3 target = pin_placement(scene, pin, anchor.on, end)(anchor.origin);
             for (int d = 0; d < 3; ++d) {
                 if (!pin.held[d]) continue;
                 held[slot[v]].held[d] = true;
@@ -107,11 +115,11 @@ void attach_pins(const Scene& scene, State& state)
     for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
         const Pin& pin = scene.pins[p];
         if (!pin.holds(0.0, 0.0)) continue;
-        const Placement place = pin_placement(scene, pin, 0.0);
         for (const int v : vertices_in_box(state.mesh, pin.material)) {
-            state.anchors.push_back({p, state.ids[v], placed[v]});
-            const Vec3 target = place(placed[v]);
-            const Vec3 moving = pin_velocity(scene, pin, 0.0, target);
+            const SurfacePlace on = pin_surface(scene, pin, 0.0, placed[v]);
+            state.anchors.push_back({p, state.ids[v], placed[v], on});
+            const Vec3 target = pin_placement(scene, pin, on, 0.0)(placed[v]);
+            const Vec3 moving = pin_velocity(scene, pin, on, 0.0, target);
             for (int d = 0; d < 3; ++d) {
                 if (!pin.held[d]) continue;
                 state.mesh.world[v][d] = target[d];
@@ -127,17 +135,16 @@ void update_anchors(const Scene& scene, double begin, State& state)
     const std::vector<std::uint32_t> freed = find_freed(scene, begin, state);
     std::erase_if(state.anchors,
                   [&](const PinAnchor& anchor) { return scene.pins[anchor.pin].release <= state.time; });
-    const auto origin_now = [&](std::uint32_t pin, int vertex) {
-        return pin_placement(scene, scene.pins[pin], state.time).inverse(state.mesh.world[vertex]);
+    const auto hold_now = [&](std::uint32_t pin, int vertex) {
+        return take_hold(scene, pin, state.ids[vertex], state.time, state.mesh.world[vertex]);
     };
     for (PinAnchor& anchor : state.anchors)
         if (std::binary_search(freed.begin(), freed.end(), anchor.vertex_id))
-            anchor.origin = origin_now(anchor.pin, state.index_of(anchor.vertex_id));
+            anchor = hold_now(anchor.pin, state.index_of(anchor.vertex_id));
     for (std::uint32_t p = 0; p < scene.pins.size(); ++p) {
         const Pin& pin = scene.pins[p];
         if (!(begin < pin.start) || !pin.holds(state.time, state.time)) continue;
-        for (const int v : find_to_hold(state.mesh, pin.material))
-            state.anchors.push_back({p, state.ids[v], origin_now(p, v)});
+        for (const int v : find_to_hold(state.mesh, pin.material)) state.anchors.push_back(hold_now(p, v));
     }
     std::sort(state.anchors.begin(), state.anchors.end(),
               [](const PinAnchor& a, const PinAnchor& b) { return key_of(a) < key_of(b); });

@@ -6,7 +6,8 @@
 // A pin moves what it holds like points of a rigid body with placement P(t): x(t) = P(t) origin. From time 0,
 // the origin is the initial place of a vertex, which P(0) may move. Later, a pin takes hold of a vertex where
 // it is: origin = P(start)^-1 x(start). Where a pin is released, the other pins that hold its vertices take
-// hold of them anew, so that no vertex jumps.
+// hold of them anew, so that no vertex jumps. On an obstacle that deforms each vertex has a placement of its
+// own, that of the surface below it.
 #pragma once
 
 #include <array>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/sort_unique.h"
 
@@ -16,17 +17,27 @@ bool has_features(const Scene& scene)
     });
 }
 
-Placement pin_placement(const Scene& scene, const Pin& pin, double time)
+SurfacePlace pin_surface(const Scene& scene, const Pin& pin, double time, const Vec3& place)
+{
+    if (!pin.follows || !scene.obstacles[*pin.follows].is_deforming()) return {};
+    const ObstaclePose pose = scene.obstacles[*pin.follows].at(time);
+    const auto on = find_nearest(pose, place, std::numeric_limits<double>::infinity());
+    return on ? *on : SurfacePlace();
+}
+
+Placement pin_placement(const Scene& scene, const Pin& pin, const SurfacePlace& on, double time)
 {
     if (!pin.follows) return pin.motion.at(time);
     const MovingObstacle& obstacle = scene.obstacles[*pin.follows];
+    if (on.element >= 0) return obstacle.way(0.0, time, on);
     return obstacle.at(time).placement * obstacle.at(0.0).placement.inverse();
 }
 
-Vec3 pin_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place)
+Vec3 pin_velocity(const Scene& scene, const Pin& pin, const SurfacePlace& on, double time, const Vec3& place)
 {
-    return pin.follows ? scene.obstacles[*pin.follows].velocity_after(time, place)
-                       : pin.motion.velocity_after(time, place);
+    if (!pin.follows) return pin.motion.velocity_after(time, place);
+    const MovingObstacle& obstacle = scene.obstacles[*pin.follows];
+    return on.element >= 0 ? obstacle.velocity_after(time, place, on) : obstacle.velocity_after(time, place);
 }
 
 std::vector<double> input_jumps(const Scene& scene)

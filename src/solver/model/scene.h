@@ -66,11 +66,16 @@ struct Scene {
 /// Whether any obstacle has a sharp edge, corner, wire or point.
 bool has_features(const Scene& scene);
 
-/// Maps the origin (PinAnchor) of something that `pin` holds to its place at `time` (s).
-Placement pin_placement(const Scene& scene, const Pin& pin, double time);
+/// Where something that `pin` holds at `place` at `time` (s) rides on the obstacle that the pin follows;
+/// nowhere (element -1) where that is rigid, or where there is none.
+SurfacePlace pin_surface(const Scene& scene, const Pin& pin, double time, const Vec3& place);
+
+/// Maps the origin (PinAnchor) of something that `pin` holds, and that rides at a place of a surface, to its
+/// place at `time` (s).
+Placement pin_placement(const Scene& scene, const Pin& pin, const SurfacePlace& on, double time);
 
 /// Velocity (m/s) just after `time` of something that `pin` holds at `place`.
-Vec3 pin_velocity(const Scene& scene, const Pin& pin, double time, const Vec3& place);
+Vec3 pin_velocity(const Scene& scene, const Pin& pin, const SurfacePlace& on, double time, const Vec3& place);
 
 /// Times after 0 at which the input jumps (motion starts or stops, keyframe, pin, pull): ascending, unique.
 /// Steps end on them, and the step after one is implicit Euler.

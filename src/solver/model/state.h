@@ -9,6 +9,7 @@
 
 #include "geometry/cloth/cloth_mesh.h"
 #include "geometry/contact/obstacle_contact.h"
+#include "geometry/obstacle/surface_ride.h"
 #include "solver/model/feature_id.h"
 
 namespace arris {
@@ -62,7 +63,8 @@ struct EolVertex {
 struct PinAnchor {
     std::uint32_t pin;  ///< index in the scene
     std::uint32_t vertex_id;
-    Vec3 origin;  ///< m; x(0) where the pin holds from time 0
+    Vec3 origin;           ///< m; x(0) where the pin holds from time 0
+    SurfacePlace on = {};  ///< of the obstacle that the pin follows, where that deforms
 };
 
 /// An edge of the mesh that remeshing has tried to split or merge, and that was refused.

@@ -217,7 +217,7 @@ TEST(SceneObstacles, APinFollowsByName)
     EXPECT_EQ(config.as_run["pin"][0]["follow"], "rod");
     for (const char* absent : {"velocity", "angular_velocity", "pivot", "keyframes"})
         EXPECT_FALSE(config.as_run["pin"][0].contains(absent)) << absent;
-    const Placement half_way = pin_placement(config.scene, config.scene.pins[0], 0.5);
+    const Placement half_way = pin_placement(config.scene, config.scene.pins[0], {}, 0.5);
     EXPECT_NEAR((half_way(Vec3(0, 1, 0)) - Vec3(0, 1, 0.5)).norm(), 0.0, kRoundOff);
 }
 
