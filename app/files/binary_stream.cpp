@@ -7,20 +7,18 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "app/files/atomic_file.h"
 #include "app/text/printable.h"
 #include "geometry/input_error.h"
 
 namespace arris {
-namespace {
 
 std::uint32_t checksum(std::string_view bytes)
 {
     return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
-
-}  // namespace
 
 void BinaryWriter::text(std::string_view value)
 {
@@ -72,7 +70,7 @@ void write_sealed(const std::string& path, const FileKind& kind, const std::stri
     write_atomically(path, std::string(kind.magic) + file.bytes());
 }
 
-std::string read_sealed(const std::string& path, const FileKind& kind)
+SealedFile read_sealed(const std::string& path, const FileKind& kind)
 {
     std::ifstream in(path, std::ios::binary);
     if (!in || !std::filesystem::is_regular_file(path))
@@ -81,14 +79,14 @@ std::string read_sealed(const std::string& path, const FileKind& kind)
     if (bytes.empty()) throw InputError(fmt::format("{}: is empty: it {}", printable(path), kind.other));
     if (!bytes.starts_with(kind.magic)) throw InputError(fmt::format("{}: {}", printable(path), kind.other));
     BinaryReader file(std::string_view(bytes).substr(kind.magic.size()), path);
-    const std::string version = file.text();
-    if (version != kind.version)
+    std::string version = file.text();
+    if (version != kind.version && (kind.earlier_version.empty() || version != kind.earlier_version))
         file.fail(fmt::format("was written by version {}; this is version {}", printable(version, 40),
                               kind.version));
     std::string body = file.text();
     if (file.number<std::uint32_t>() != checksum(body)) file.fail("is damaged: its checksum differs");
     if (!file.is_at_end()) file.fail("is damaged: it is longer than its counts say");
-    return body;
+    return {std::move(version), std::move(body)};
 }
 
 }  // namespace arris

@@ -79,20 +79,29 @@ class BinaryReader {
     std::string path_;
 };
 
+/// CRC-32.
+std::uint32_t checksum(std::string_view bytes);
+
 /// Identification of a kind of binary file of this program, with its error messages.
 struct FileKind {
-    std::string_view magic;    ///< its first bytes
-    std::string_view version;  ///< a file of another version is refused
-    std::string_view missing;  ///< "there is no checkpoint to resume from"
-    std::string_view other;    ///< "is not a checkpoint of arris"
+    std::string_view magic;                 ///< its first bytes
+    std::string_view version;               ///< the version written; others are refused
+    std::string_view missing;               ///< "there is no checkpoint to resume from"
+    std::string_view other;                 ///< "is not a checkpoint of arris"
+    std::string_view earlier_version = {};  ///< one more version that is read
 };
 
 /// Writes magic, version, body and CRC-32 of the body, atomically. Throws std::system_error naming the path
 /// if writing fails.
 void write_sealed(const std::string& path, const FileKind& kind, const std::string& body);
 
-/// Returns the body of a file of write_sealed. Throws InputError naming the file if it is missing, of another
+struct SealedFile {
+    std::string version;
+    std::string body;
+};
+
+/// Reads a file of write_sealed. Throws InputError naming the file if it is missing, of another
 /// kind or version, or damaged.
-std::string read_sealed(const std::string& path, const FileKind& kind);
+SealedFile read_sealed(const std::string& path, const FileKind& kind);
 
 }  // namespace arris

@@ -265,7 +265,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
 
 Checkpoint read_checkpoint(const std::string& path)
 {
-    const std::string body = read_sealed(path, kKind);
+    const std::string body = read_sealed(path, kKind).body;
     BinaryReader in(body, path);
     Checkpoint checkpoint;
     checkpoint.source.path = in.text();

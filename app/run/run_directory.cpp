@@ -35,6 +35,19 @@ namespace fs = std::filesystem;
 constexpr std::array kRunFiles = {"steps.csv",  "probes.csv", "report.json", "report.html", "viewer.html",
                                   "cloth.usda", "cloth.pvd",  "checkpoint",  "obstacles"};
 
+/// Names of the files of a run in `dir`, besides the folder of frames. Inaccessible ones are left out.
+std::vector<std::string> find_run_files(const std::string& dir)
+{
+    std::vector<std::string> names;
+    std::error_code error;
+    for (const char* name : kRunFiles)
+        if (fs::exists(fs::path(dir) / name, error)) names.emplace_back(name);
+    for (fs::directory_iterator entry(dir, error), end; !error && entry != end; entry.increment(error))
+        if (const std::string name = entry->path().filename().string(); is_poses_file(name))
+            names.push_back(name);
+    return names;
+}
+
 std::vector<std::string> probe_names(const RunConfig& config)
 {
     std::vector<std::string> names;
@@ -96,7 +109,7 @@ std::set<std::string> stored_names(const std::string& dir)
 void remove_run(const std::string& dir)
 {
     remove_frames(dir, 0, stored_names(dir));
-    for (const char* name : kRunFiles) {
+    for (const std::string& name : find_run_files(dir)) {
         std::error_code error;
         fs::remove(fs::path(dir) / name, error);
         if (error)
@@ -108,9 +121,8 @@ void remove_run(const std::string& dir)
 /// A file in `dir` that a run would replace, relative to `dir`; empty if there is none.
 std::string find_run_file(const std::string& dir)
 {
+    if (const std::vector<std::string> names = find_run_files(dir); !names.empty()) return names.front();
     std::error_code error;  // an inaccessible file is reported where it is used
-    for (const char* name : kRunFiles)
-        if (fs::exists(fs::path(dir) / name, error)) return name;
     for (fs::directory_iterator entry(frames_directory(dir), error), end; !error && entry != end;
          entry.increment(error)) {
         const std::string file = entry->path().filename().string();

@@ -251,8 +251,8 @@ std::vector<ObstacleRecord> record_obstacles(const RunConfig& config)
     std::vector<ObstacleRecord> records;
     for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
         const MovingObstacle& obstacle = config.scene.obstacles[i];
-        records.push_back(
-            {obstacle.name(), obstacle.shape().mesh(), config.obstacle_placements[i], obstacle.motion()});
+        records.push_back({obstacle.name(), obstacle.shape().mesh(), config.obstacle_placements[i],
+                           obstacle.motion(), obstacle.deformation()});
     }
     return records;
 }

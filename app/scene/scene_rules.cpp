@@ -157,6 +157,12 @@ void settle_shape(const SceneDocument& document, const std::string& path, Json& 
         obstacle.erase("up");
     }
     if (shape != "wire") obstacle.erase("closed");
+    if (shape != "file" && obstacle.contains("deform"))
+        document.fail(fmt::format("{}.deform", path), fmt::format("contradicts {}.{}", path, shape),
+                      "a deforming obstacle whose shape is a file");
+    // The limbs of a body have sides that turn by more than 14 degrees, and are not sharp.
+    if (obstacle["feature_angle"].is_null())
+        obstacle["feature_angle"] = obstacle.contains("deform") ? 45.0 : 14.0;
 }
 
 void settle_obstacle_motion(const SceneDocument& document, const std::string& path, Json& obstacle)

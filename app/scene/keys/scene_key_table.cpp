@@ -197,7 +197,9 @@ std::vector<SceneKey> make_scene_keys()
         number("remesh.aspect", "", {0.0, 0.8, true}, "0.2",
                "Smallest height of a face relative to its longest edge; thinner faces are opened."),
 
-        tables("obstacle", "A rigid obstacle; its shape is one of `file`, `box`, `points`, `wire`, `teeth`."),
+        tables("obstacle",
+               "An obstacle, rigid unless it has `deform`; its shape is one of `file`, `box`, `points`, "
+               "`wire`, `teeth`."),
         text("obstacle[].name", KeyType::Name, {}, "(obstacle0, obstacle1, …)",
              "Name of the obstacle and of its exported frames; unique among obstacles and probes, not "
              "`cloth`."),
@@ -205,6 +207,23 @@ std::vector<SceneKey> make_scene_keys()
              "OBJ, STL, PLY, glTF/GLB, COLLADA, FBX, 3MF or 3DS mesh."),
         choice("obstacle[].units", kUnits, "(what the file declares, else m)", "Unit of the file."),
         choice("obstacle[].up", kAxes, "(what the file declares, else z)", "Upward axis of the file."),
+        table(
+            "obstacle[].deform", "",
+            "Positions of the file's vertices in time, in the units and axes of `file`, which is OBJ or PLY "
+            "and gives faces and the vertices' order. Before the first and after the last sample the mesh "
+            "is held. Placement and motion act on top."),
+        text("obstacle[].deform.file", KeyType::Path, kPath, kRequired,
+             "MDD or PC2 file, or OBJ files with a number in their names: `body_%04d.obj`, `body_%d.obj`."),
+        number("obstacle[].deform.frames_per_second", "1/s", kPositive, "(the times of MDD, else 24)",
+               "Frames per second. Samples are a frame apart, in PC2 as many as the file says."),
+        number("obstacle[].deform.start", "s", kAnyNumber, "0.0", "Time of the first sample used."),
+        number("obstacle[].deform.speed", "", kPositive, "1.0", "Speed of the replay."),
+        integer("obstacle[].deform.first", {0.0, 1e9}, "(the first)",
+                "First sample used, counted from 0; of OBJ files the number in the name."),
+        integer("obstacle[].deform.last", {0.0, 1e9}, "(the last)", "Last sample used."),
+        choice("obstacle[].deform.interpolation", "cubic|linear", R"("cubic")",
+               "Motion between samples. With `linear` the velocity jumps at each sample, and a step ends "
+               "there."),
         numbers("obstacle[].box", 3, "m", kSize, "", "Side lengths of a box that is centred on its origin."),
         points("obstacle[].points", 1, "Nails: lone points."),
         points("obstacle[].wire", 2, "Wire: a polyline through these points."),
@@ -227,7 +246,7 @@ std::vector<SceneKey> make_scene_keys()
         number("obstacle[].rotate.degrees", "degrees", kAnyNumber, kRequired,
                "Angle of the rotation, right-handed."),
         number("obstacle[].scale", "", kPositive, "1.0", "Scale of the obstacle about its origin."),
-        number("obstacle[].feature_angle", "degrees", {0.0, 180.0, true}, "14.0",
+        number("obstacle[].feature_angle", "degrees", {0.0, 180.0, true}, "(14, with `deform` 45)",
                "A convex edge is sharp if the normals of its two faces differ by more than this angle (plus "
                "0.01 degrees). By default the sides of a cylinder of up to 25 sides are sharp. A smaller "
                "angle makes "

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "geometry/obstacle/deformation.h"
 #include "geometry/obstacle/obstacle_mesh.h"
 #include "geometry/rigid_motion.h"
 
@@ -16,19 +19,36 @@ struct ObstacleRecord {
     ObstacleMesh mesh;    ///< in the obstacle's frame, repaired and scaled
     Placement placement;  ///< of the obstacle's frame, before `motion`
     RigidMotion motion;
+    std::shared_ptr<const Deformation> deformation = nullptr;  ///< in the obstacle's frame; null if rigid
 
     /// Maps the obstacle's frame to the world at `time` (s).
     Placement at(double time) const { return motion.at(time) * placement; }
+
+    /// World places (m) of the mesh's points at `time` (s).
+    std::vector<Vec3> world_points(double time) const;
+
+    /// Whether its points are at other places at other times.
+    bool is_moving() const;
 };
 
 /// <run_dir>/obstacles
 std::string obstacles_file(const std::string& run_dir);
 
-/// Writes the file when a run starts, atomically. Throws std::system_error naming the path if that fails.
+/// <run_dir>/obstacle_<name>.poses: the poses of a deforming obstacle
+std::string poses_file(const std::string& run_dir, const std::string& name);
+
+/// Whether a file in a run's folder has a name of poses_file.
+bool is_poses_file(std::string_view name);
+
+/// Bytes that the poses of a deformation take in a run's folder. It must be a PointCache of a PoseFile.
+std::uint64_t count_pose_bytes(const Deformation& deformation);
+
+/// Writes the file when a run starts, and one of poses for each deforming obstacle, atomically. A deformation
+/// must be a PointCache of a PoseFile. Throws std::system_error naming the path if that fails.
 void write_obstacles(const std::string& run_dir, const std::vector<ObstacleRecord>& obstacles);
 
-/// Reads the file of write_obstacles; empty if the file does not exist, as for a run without obstacles. The
-/// file is untrusted: throws InputError naming it if it is of another kind or format, damaged, or holds an
+/// Reads the files of write_obstacles; empty if the file does not exist, as for a run without obstacles. The
+/// files are untrusted: throws InputError naming it if it is of another kind or format, damaged, or holds an
 /// invalid obstacle. Lengths are checked before memory is allocated.
 std::vector<ObstacleRecord> read_obstacles(const std::string& run_dir);
 

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "app/scene/parts/obstacle_records.h"
+
 namespace arris {
 namespace {
 
@@ -105,6 +107,8 @@ void add_obstacles(const std::vector<MovingObstacle>& obstacles, SceneEstimate& 
             static_cast<double>(mesh.faces.size() + mesh.segments.size() + mesh.lone_points.size());
         estimate.obstacle_elements += elements;
         if (obstacle.is_moving()) estimate.moving_elements += elements;
+        if (obstacle.deformation())
+            estimate.pose_bytes += static_cast<double>(count_pose_bytes(*obstacle.deformation()));
     }
 }
 
@@ -128,7 +132,7 @@ void estimate_bytes(const std::vector<std::string>& formats, SceneEstimate& esti
     for (const FrameBytes& size : kFormatBytes)
         if (std::find(formats.begin(), formats.end(), size.format) != formats.end())
             estimate.disk_bytes += frame_bytes(size);
-    estimate.disk_bytes += kStoredElementBytes * estimate.obstacle_elements;
+    estimate.disk_bytes += kStoredElementBytes * estimate.obstacle_elements + estimate.pose_bytes;
     if (std::find(formats.begin(), formats.end(), "obj") != formats.end())
         estimate.disk_bytes += kObjElementBytes * (estimate.obstacle_elements - estimate.moving_elements +
                                                    estimate.frames * estimate.moving_elements);

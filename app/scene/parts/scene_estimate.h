@@ -21,6 +21,7 @@ struct SceneEstimate {
     double frames = 0.0;
     double obstacle_elements = 0.0;  ///< triangles, wire segments and points of all obstacles
     double moving_elements = 0.0;    ///< elements of moving obstacles
+    double pose_bytes = 0.0;         ///< of the files of deforming obstacles' poses
     double memory_bytes = 0.0;
     double disk_bytes = 0.0;
 };

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/scene/keys/scene_json.h"
+#include "app/scene/parts/scene_deformation.h"
 #include "app/scene/parts/scene_estimate.h"
 #include "app/text/counted.h"
 #include "app/text/printable.h"
@@ -49,7 +50,7 @@ std::vector<Vec3> to_points(const Json& values)
     return points;
 }
 
-ObstacleMesh read_mesh(const SceneDocument& document, const LoadOptions& options, const std::string& key,
+ObstacleFile read_mesh(const SceneDocument& document, const LoadOptions& options, const std::string& key,
                        const Json& obstacle, RunConfig& config)
 {
     const std::filesystem::path file(obstacle["file"].get<std::string>());
@@ -64,7 +65,7 @@ ObstacleMesh read_mesh(const SceneDocument& document, const LoadOptions& options
         config.warnings.push_back(fmt::format("{}: {}", document.describe(key), warning));
     for (const std::string& note : read.notes)
         config.notes.push_back(fmt::format("{}: {}", document.describe(key), note));
-    return std::move(read.mesh);
+    return read;
 }
 
 ObstacleMesh to_teeth(const Json& teeth)
@@ -81,16 +82,21 @@ std::string shape_of(const Json& obstacle)
     return "teeth";
 }
 
-ObstacleMesh make_mesh(const SceneDocument& document, const LoadOptions& options, const std::string& key,
+ObstacleFile make_mesh(const SceneDocument& document, const LoadOptions& options, const std::string& key,
                        const Json& obstacle, RunConfig& config)
 {
     try {
         if (obstacle.contains("file")) return read_mesh(document, options, key, obstacle, config);
-        if (obstacle.contains("box")) return make_box(to_vec3(obstacle["box"]));
-        if (obstacle.contains("points")) return make_points(to_points(obstacle["points"]));
-        if (obstacle.contains("wire"))
-            return make_wire(to_points(obstacle["wire"]), obstacle["closed"].get<bool>());
-        return to_teeth(obstacle["teeth"]);
+        ObstacleFile made;
+        if (obstacle.contains("box"))
+            made.mesh = make_box(to_vec3(obstacle["box"]));
+        else if (obstacle.contains("points"))
+            made.mesh = make_points(to_points(obstacle["points"]));
+        else if (obstacle.contains("wire"))
+            made.mesh = make_wire(to_points(obstacle["wire"]), obstacle["closed"].get<bool>());
+        else
+            made.mesh = to_teeth(obstacle["teeth"]);
+        return made;
     } catch (const InputError& error) {
         document.fail(key, error.what());
     }
@@ -112,9 +118,9 @@ void scale_mesh(const SceneDocument& document, const std::string& path, const st
         document.fail(key, fmt::format("makes the obstacle invalid: {}", defect));
 }
 
-/// The mesh that the run has stored for the `index`-th obstacle, `plan`.
-ObstacleMesh stored_mesh(const SceneDocument& document, const LoadOptions& options, std::size_t index,
-                         const ObstaclePlan& plan)
+/// What the run has stored for the `index`-th obstacle, `plan`.
+const ObstacleRecord& stored_record(const SceneDocument& document, const LoadOptions& options,
+                                    std::size_t index, const ObstaclePlan& plan)
 {
     const std::vector<ObstacleRecord>& stored = *options.obstacles;
     if (stored.empty())  // a run with obstacles has always stored them
@@ -126,7 +132,7 @@ ObstacleMesh stored_mesh(const SceneDocument& document, const LoadOptions& optio
         document.fail(fmt::format("obstacle.{}", index),
                       fmt::format("{} is not among the obstacles that the run stored in {}", plan.name,
                                   printable(options.obstacles_file)));
-    return stored[index].mesh;
+    return stored[index];
 }
 
 void check_sizes(const SceneDocument& document, const RunConfig& config)
@@ -203,15 +209,26 @@ void load_obstacles(const SceneDocument& document, const LoadOptions& options,
         const std::string key = fmt::format("{}.{}", path, shape_of(json));
         check_turn(document, path, json, config.settings.step, plans[i].motion);
         ObstacleMesh mesh;
+        std::shared_ptr<const Deformation> deformation;
         if (options.obstacles) {
-            mesh = stored_mesh(document, options, i, plans[i]);
+            const ObstacleRecord& stored = stored_record(document, options, i, plans[i]);
+            mesh = stored.mesh;
+            deformation = stored.deformation;
+            if (json.contains("deform") != (deformation != nullptr))
+                document.fail(path + ".deform",
+                              fmt::format("contradicts {}, in which the run stored its obstacles",
+                                          printable(options.obstacles_file)));
         } else {
-            mesh = make_mesh(document, options, key, json, config);
+            ObstacleFile made = make_mesh(document, options, key, json, config);
+            mesh = std::move(made.mesh);
             scale_mesh(document, path, key, to_double(json["scale"]), mesh);
+            if (json.contains("deform"))
+                deformation = load_deformation(document, i, mesh, made.origins, config);
         }
         config.obstacle_placements.push_back(plans[i].placement);
         config.scene.obstacles.emplace_back(plans[i].name, std::move(mesh), plans[i].placement,
-                                            std::move(plans[i].motion), plans[i].feature_angle);
+                                            std::move(plans[i].motion), plans[i].feature_angle,
+                                            std::move(deformation));
     }
     if (!plans.empty()) check_sizes(document, config);
 }

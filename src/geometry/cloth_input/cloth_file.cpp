@@ -22,6 +22,7 @@
 #include "geometry/input_limits.h"
 #include "geometry/mesh_text.h"
 #include "geometry/polygon.h"
+#include "geometry/up_axis.h"
 
 namespace arris {
 namespace {
@@ -84,11 +85,8 @@ class ClothReader {
 
     Mat3 turn_up(char up) const
     {
-        Mat3 turn = Mat3::Identity();
-        if (up == 'y') turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-        if (up == 'x') turn << 0, 0, -1, 0, 1, 0, 1, 0, 0;
         if (up != 'x' && up != 'y' && up != 'z') refuse(fmt::format("up '{}' must be x, y or z", up));
-        return turn;
+        return turn_to_z(up);
     }
 
     void require_regular_obj() const

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/obstacle/obstacle_mesh.h"
+#include "geometry/obstacle_input/repair/vertex_origins.h"
 
 namespace arris {
 
@@ -20,6 +21,7 @@ struct ObstacleFileRequest {
 
 struct ObstacleFile {
     ObstacleMesh mesh;                  ///< m, +z up; passes `validate`
+    VertexOrigins origins;              ///< of its points among the file's vertices
     std::vector<std::string> warnings;  ///< one sentence for each kind of repair, without the file's name
     std::vector<std::string> notes;     ///< one sentence for each legitimate finding worth knowing
 };

@@ -31,6 +31,8 @@
 #include "geometry/obstacle_input/repair/face_cutter.h"
 #include "geometry/obstacle_input/repair/soup_repair.h"
 #include "geometry/obstacle_input/repair/soup_weld.h"
+#include "geometry/obstacle_input/repair/vertex_origins.h"
+#include "geometry/up_axis.h"
 
 // The importer gets the reader of one format, no post-processing, and a file system of one folder. Its own
 // checks, its joining of vertices (within 1e-5, whatever the unit), its triangulation (which depends on a
@@ -98,10 +100,16 @@ class ObstacleImporter {
             warnings_.push_back(std::move(warning));
         warn_where_far();
         // Readers of all other formats give each face its own points, even where the file shares them.
-        if (extension_ != "stl" && extension_ != "ply") join_equal_points(soup_);
+        std::vector<int> joined;
+        if (extension_ != "stl" && extension_ != "ply") joined = join_equal_points(soup_).names;
         RepairedSoup repaired = repair_soup(std::move(soup_));
+        VertexOrigins origins;
+        if (extension_ == "obj") repaired.welded = compose_names(std::move(joined), repaired.welded);
+        if (extension_ == "obj" || extension_ == "ply")
+            origins = find_vertex_origins(repaired.welded, repaired.origins, repaired.tolerance);
         warnings_.insert(warnings_.end(), repaired.warnings.begin(), repaired.warnings.end());
-        return {std::move(repaired.mesh), std::move(warnings_), std::move(repaired.notes)};
+        return {std::move(repaired.mesh), std::move(origins), std::move(warnings_),
+                std::move(repaired.notes)};
     }
 
   private:
@@ -333,10 +341,7 @@ class ObstacleImporter {
     {
         if (soup_.faces.empty() && soup_.segments.empty() && soup_.lone_points.empty())
             throw InputError("no faces, lines or points");
-        Mat3 turn = Mat3::Identity();
-        const char up = up_.value_or(declared_up_);
-        if (up == 'y') turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-        if (up == 'x') turn << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+        const Mat3 turn = turn_to_z(up_.value_or(declared_up_));
         const double unit = unit_.value_or(declared_unit_);
         for (Vec3& p : soup_.points) p = turn * (unit * p);
     }

@@ -2,6 +2,7 @@
 #include "geometry/obstacle_input/obstacle_reply.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -14,7 +15,7 @@
 namespace arris {
 namespace {
 
-constexpr std::string_view kMeshMark = "arris-obstacle-1";
+constexpr std::string_view kMeshMark = "arris-obstacle-2";
 constexpr std::string_view kRefusalMark = "arris-refusal--1";
 constexpr std::size_t kMostLines = 1000;
 
@@ -101,6 +102,32 @@ class ReplyReader {
     std::string_view rest_;
 };
 
+template <class Number>
+Number take_one(ReplyReader& reader)
+{
+    std::vector<Number> one;
+    reader.take(one);
+    if (one.size() != 1) ReplyReader::refuse();
+    return one.front();
+}
+
+void take_origins(ReplyReader& reader, ObstacleFile& file)
+{
+    VertexOrigins& origins = file.origins;
+    reader.take(origins.of_points);
+    reader.take(origins.joined);
+    origins.vertex_count = take_one<int>(reader);
+    origins.tolerance = take_one<double>(reader);
+    const auto is_vertex = [&](int v) { return v >= 0 && v < origins.vertex_count; };
+    bool is_sound = origins.vertex_count >= 0 && origins.tolerance >= 0.0 &&
+                    std::isfinite(origins.tolerance) &&
+                    origins.of_points.size() == (origins.vertex_count > 0 ? file.mesh.points.size() : 0);
+    for (const int v : origins.of_points) is_sound = is_sound && (v == -1 || is_vertex(v));
+    for (const auto& [kept, other] : origins.joined)
+        is_sound = is_sound && is_vertex(kept) && is_vertex(other);
+    if (!is_sound) ReplyReader::refuse();
+}
+
 }  // namespace
 
 std::string encode_reply(const ObstacleFile& file)
@@ -110,6 +137,10 @@ std::string encode_reply(const ObstacleFile& file)
     append(bytes, file.mesh.faces);
     append(bytes, file.mesh.segments);
     append(bytes, file.mesh.lone_points);
+    append(bytes, file.origins.of_points);
+    append(bytes, file.origins.joined);
+    append(bytes, std::vector<int>{file.origins.vertex_count});
+    append(bytes, std::vector<double>{file.origins.tolerance});
     append_lines(bytes, file.warnings);
     append_lines(bytes, file.notes);
     return bytes;
@@ -132,6 +163,7 @@ ObstacleFile decode_reply(std::string_view bytes)
     reader.take(file.mesh.faces);
     reader.take(file.mesh.segments);
     reader.take(file.mesh.lone_points);
+    take_origins(reader, file);
     file.warnings = reader.take_lines();
     file.notes = reader.take_lines();
     reader.require_end();

@@ -160,7 +160,7 @@ InputKind sealed_kind(const std::string& name, const std::string& file, const Fi
     const auto write = [kind](const std::string& path, const std::string& body) {
         write_sealed(path, kind, body);
     };
-    return {name, file, read_sealed(sound, kind), write, std::move(read)};
+    return {name, file, read_sealed(sound, kind).body, write, std::move(read)};
 }
 
 /// Files that a run writes: a state with EOL vertices, contacts and pins, and moving obstacles.

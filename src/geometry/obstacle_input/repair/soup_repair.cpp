@@ -76,7 +76,8 @@ class SoupRepairer {
     RepairedSoup repair()
     {
         require_sound(soup_);
-        tell(weld(soup_));
+        WeldCounts welded = weld(soup_);
+        tell(welded);
         drop_stray_flat_faces();
         if (!soup_.faces.empty()) {
             build_surface();
@@ -90,7 +91,8 @@ class SoupRepairer {
         if (mesh_.faces.empty() && mesh_.segments.empty() && mesh_.lone_points.empty())
             throw InputError("nothing is left of it: " +
                              (warnings_.empty() ? "no faces, lines or points" : warnings_.front()));
-        return {std::move(mesh_), std::move(warnings_), std::move(notes_)};
+        return {std::move(mesh_), std::move(welded.names), std::move(origins_),
+                welded.tolerance, std::move(warnings_),    std::move(notes_)};
     }
 
   private:
@@ -297,6 +299,7 @@ class SoupRepairer {
             if (name[p] < 0) {
                 name[p] = static_cast<int>(mesh_.points.size());
                 mesh_.points.push_back(soup_.points[p]);
+                origins_.push_back(p);
             }
             return name[p];
         };
@@ -311,7 +314,7 @@ class SoupRepairer {
     SurfaceMesh surface_;
     SurfaceMesh::Property_map<SurfaceMesh::Vertex_index, int> origin_;  // index in the soup
     ObstacleMesh mesh_;
-    std::vector<int> origins_;  // indices in the soup of the faces' points; -1 for a new point
+    std::vector<int> origins_;  // indices in the welded soup of the points; -1 for a new point
     int flat_faces_ = 0;
     int split_ = 0;
     std::vector<std::string> warnings_;

@@ -11,6 +11,9 @@ namespace arris {
 /// An obstacle that passes `validate`.
 struct RepairedSoup {
     ObstacleMesh mesh;
+    std::vector<int> welded;   ///< name of each of the soup's points, equal for joined ones; -1 if unused
+    std::vector<int> origins;  ///< name that each of the mesh's points comes from; -1 for a new point
+    double tolerance = 0.0;    ///< m: joined points were no farther apart
     std::vector<std::string> warnings;  ///< one sentence for each kind of repair, with its count
     std::vector<std::string> notes;     ///< findings that are legitimate but worth knowing ("open: 4 border
                                         ///< edges, ...")

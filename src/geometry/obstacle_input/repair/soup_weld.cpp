@@ -9,7 +9,9 @@
 #include <limits>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
 
+#include "geometry/obstacle_input/repair/vertex_origins.h"
 #include "geometry/tolerances.h"
 
 namespace arris {
@@ -91,7 +93,8 @@ std::vector<char> used_points(const ObstacleMesh& soup)
     return is_used;
 }
 
-void drop_unused_points(ObstacleMesh& soup)
+// Returns the index that each point has afterwards; -1 for those dropped.
+std::vector<int> drop_unused_points(ObstacleMesh& soup)
 {
     const std::vector<char> is_used = used_points(soup);
     std::vector<int> name(soup.points.size(), -1);
@@ -103,6 +106,7 @@ void drop_unused_points(ObstacleMesh& soup)
         }
     soup.points.resize(kept);
     rename(soup, name);
+    return name;
 }
 
 // Marks the points of borders, wires and lone points.
@@ -129,24 +133,25 @@ std::vector<char> loose_points(const ObstacleMesh& soup)
     return is_loose;
 }
 
-int join_near(ObstacleMesh& soup, double& tolerance)
+JoinedPoints join_near(ObstacleMesh& soup, double& tolerance)
 {
+    JoinedPoints joined;
+    joined.names.resize(soup.points.size());
+    std::iota(joined.names.begin(), joined.names.end(), 0);
     Eigen::AlignedBox3d bounds;
     for (const Vec3& p : soup.points) bounds.extend(p);
-    if (bounds.isEmpty()) return 0;
+    if (bounds.isEmpty()) return joined;
     tolerance = kSinglePrecision * bounds.diagonal().stableNorm();
     // All points coincide, or cell numbers would overflow: no points are near but unequal.
-    if (!(tolerance > std::numeric_limits<double>::min())) return 0;
+    if (!(tolerance > std::numeric_limits<double>::min())) return joined;
     WeldGrid grid(bounds.min(), tolerance);
     const std::vector<char> is_loose = loose_points(soup);
     const int count = static_cast<int>(soup.points.size());
-    std::vector<int> name(soup.points.size());
-    int joined = 0;
     for (int p = 0; p < count; ++p) {
-        name[p] = is_loose[p] != 0 ? grid.find_or_add(soup.points, p) : p;
-        if (name[p] != p) ++joined;
+        if (is_loose[p] != 0) joined.names[p] = grid.find_or_add(soup.points, p);
+        if (joined.names[p] != p) ++joined.count;
     }
-    if (joined > 0) rename(soup, name);
+    if (joined.count > 0) rename(soup, joined.names);
     return joined;
 }
 
@@ -174,9 +179,10 @@ int drop_duplicates(std::vector<Element>& elements)
 
 }  // namespace
 
-int join_equal_points(ObstacleMesh& soup)
+JoinedPoints join_equal_points(ObstacleMesh& soup)
 {
-    drop_unused_points(soup);
+    JoinedPoints joined;
+    joined.names = drop_unused_points(soup);
     std::vector<int> order(soup.points.size());
     std::iota(order.begin(), order.end(), 0);
     const auto before = [&](int i, int j) {
@@ -189,22 +195,24 @@ int join_equal_points(ObstacleMesh& soup)
     };
     std::sort(order.begin(), order.end(), before);
     std::vector<int> name(soup.points.size());
-    int joined = 0;
     for (std::size_t k = 0; k < order.size(); ++k) {
         const bool is_equal = k > 0 && soup.points[order[k]] == soup.points[order[k - 1]];
         name[order[k]] = is_equal ? name[order[k - 1]] : order[k];
-        if (is_equal) ++joined;
+        if (is_equal) ++joined.count;
     }
     rename(soup, name);
-    drop_unused_points(soup);
+    joined.names = compose_names(std::move(joined.names), name);
+    joined.names = compose_names(std::move(joined.names), drop_unused_points(soup));
     return joined;
 }
 
 WeldCounts weld(ObstacleMesh& soup)
 {
     WeldCounts counts;
-    counts.equal_points = join_equal_points(soup);
-    counts.near_points = join_near(soup, counts.tolerance);
+    const JoinedPoints equal = join_equal_points(soup);
+    const JoinedPoints near = join_near(soup, counts.tolerance);
+    counts.equal_points = equal.count;
+    counts.near_points = near.count;
 
     const auto is_collapsed = [](const Face& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; };
     counts.collapsed_faces = static_cast<int>(std::erase_if(soup.faces, is_collapsed));
@@ -214,7 +222,7 @@ WeldCounts weld(ObstacleMesh& soup)
     counts.duplicate_faces = drop_duplicates(soup.faces);
     counts.duplicate_segments = drop_duplicates(soup.segments);
     counts.duplicate_lone_points = drop_duplicates(soup.lone_points);
-    drop_unused_points(soup);
+    counts.names = compose_names(compose_names(equal.names, near.names), drop_unused_points(soup));
     return counts;
 }
 

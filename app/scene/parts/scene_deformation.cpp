@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/parts/scene_deformation.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "app/files/pose_file.h"
+#include "app/scene/keys/scene_json.h"
+#include "app/text/counted.h"
+#include "geometry/input_error.h"
+#include "geometry/obstacle_input/deform/mesh_poses.h"
+#include "geometry/obstacle_input/deform/vertex_cache.h"
+
+namespace arris {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// m: nothing near cloth moves as far within a frame; a file whose vertices change their order does.
+constexpr double kFarMove = 1.0;
+
+std::optional<int> to_sample(const Json& value)
+{
+    return value.is_null() ? std::nullopt : std::optional<int>(value.get<int>());
+}
+
+VertexCacheRequest to_request(const SceneDocument& document, const Json& deform, int vertex_count)
+{
+    VertexCacheRequest request;
+    const std::filesystem::path file(deform["file"].get<std::string>());
+    request.path = (std::filesystem::path(document.path()).parent_path() / file).string();
+    if (!deform["frames_per_second"].is_null())
+        request.frames_per_second = to_double(deform["frames_per_second"]);
+    request.first = to_sample(deform["first"]);
+    request.last = to_sample(deform["last"]);
+    request.vertex_count = vertex_count;
+    return request;
+}
+
+/// OBJ and PLY files declare neither unit nor axis.
+FileFrame to_frame(const Json& obstacle)
+{
+    FileFrame frame;
+    if (!obstacle["units"].is_null()) frame.metres_per_unit = metres_of(obstacle["units"].get<std::string>());
+    if (!obstacle["up"].is_null()) frame.up = obstacle["up"].get<std::string>()[0];
+    frame.scale = to_double(obstacle["scale"]);
+    return frame;
+}
+
+/// Times of the samples in the scene.
+std::vector<double> to_scene_times(const std::vector<double>& times, const Json& deform)
+{
+    const double start = to_double(deform["start"]), speed = to_double(deform["speed"]);
+    std::vector<double> scaled;
+    for (const double time : times) scaled.push_back(start + time / speed);
+    return scaled;
+}
+
+void tell(const SceneDocument& document, const std::string& key, const VertexCache& cache,
+          const PoseFileHead& head, const PoseSurvey& survey, double speed, RunConfig& config)
+{
+    const std::string where = document.describe(key);
+    if (survey.most_collapsed > 0)
+        config.warnings.push_back(fmt::format(
+            "{}: {} ({}): they have no side there, and sharp edges beside them are not found", where,
+            counted(static_cast<std::size_t>(survey.most_collapsed), "face has no area",
+                    "faces have no area"),
+            cache.describe(survey.collapsed_at)));
+    if (survey.greatest_move > kFarMove)
+        config.warnings.push_back(fmt::format(
+            "{}: vertex {} moves {:.3g} m from one sample to the next ({}): has the order of the "
+            "vertices changed?",
+            where, survey.moved_vertex + 1, survey.greatest_move, cache.describe(survey.moved_at)));
+    const double step = config.settings.step;
+    for (std::size_t k = 1; k < head.times.size(); ++k)
+        if (const double apart = head.times[k] - head.times[k - 1]; apart < step * (1.0 - 1e-9)) {
+            config.warnings.push_back(
+                fmt::format("{}: samples are {:.3g} s apart, less than time.step, {:g} s: steps pass over "
+                            "samples",
+                            where, apart, step));
+            break;
+        }
+    config.notes.push_back(fmt::format("{}: {} of {} from {:g} s to {:g} s, the fastest vertex at {:.3g} m/s",
+                                       where, counted(head.times.size(), "sample", "samples"),
+                                       counted(head.point_count, "point", "points"), head.times.front(),
+                                       head.times.back(), speed * survey.greatest_speed));
+}
+
+}  // namespace
+
+std::shared_ptr<const Deformation> load_deformation(const SceneDocument& document, std::size_t index,
+                                                    const ObstacleMesh& mesh, const VertexOrigins& origins,
+                                                    RunConfig& config)
+{
+    const Json& obstacle = config.as_run["obstacle"][index];
+    const std::string path = fmt::format("obstacle.{}", index);
+    const Json& deform = obstacle["deform"];
+    const std::string key = path + ".deform.file";
+    if (origins.vertex_count == 0)
+        document.fail(path + ".file",
+                      "has vertices without an order of their own, and the obstacle has `deform`",
+                      "OBJ or PLY");
+    try {
+        const std::unique_ptr<VertexCache> cache =
+            open_vertex_cache(to_request(document, deform, origins.vertex_count));
+        PoseFileHead head;
+        head.times = to_scene_times(cache->times(), deform);
+        head.point_count = mesh.points.size();
+        head.is_single = cache->is_single();
+        head.interpolation =
+            deform["interpolation"] == "linear" ? PoseInterpolation::Linear : PoseInterpolation::Cubic;
+        PoseFileWriter writer(head);
+        MeshPoses poses(*cache, mesh, origins, to_frame(obstacle));
+        std::vector<Vec3> points;
+        for (std::size_t k = 0; k < head.times.size(); ++k) {
+            poses.read_next(points);
+            writer.add(points);
+        }
+        tell(document, key, *cache, head, poses.survey(), to_double(deform["speed"]), config);
+        return std::make_shared<PointCache>(writer.finish(), head.interpolation);
+    } catch (const InputError& error) {
+        document.fail(key, error.what());
+    }
+}
+
+}  // namespace arris

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/obstacle_input/deform/mesh_poses.h"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+#include "geometry/input_error.h"
+#include "geometry/input_limits.h"
+#include "geometry/tolerances.h"
+#include "geometry/up_axis.h"
+
+namespace arris {
+namespace {
+
+// Edges of an animated body seldom double. Edges of a wrong order, or of centimetres taken for metres, differ
+// far more. Raising it accepts worse mistakes.
+constexpr double kMostStretch = 3.0;
+
+/// Whether the face is lower than the rounding of a file, relative to its longest edge.
+bool is_collapsed(const Vec3& a, const Vec3& b, const Vec3& c)
+{
+    const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    return !((b - a).cross(c - a).norm() > kSinglePrecision * longest);
+}
+
+}  // namespace
+
+MeshPoses::MeshPoses(VertexCache& cache, const ObstacleMesh& mesh, const VertexOrigins& origins,
+                     const FileFrame& frame)
+    : cache_(cache), mesh_(mesh), origins_(origins), frame_(frame), turn_(turn_to_z(frame.up))
+{
+    const auto made = std::count(origins.of_points.begin(), origins.of_points.end(), -1);
+    if (made > 0)
+        throw InputError(
+            fmt::format("{} of its points come from the mesh's repair, not from a vertex of the "
+                        "file; allowed: a mesh whose faces have areas",
+                        made));
+}
+
+void MeshPoses::refuse(const std::string& why) const
+{
+    throw InputError(cache_.describe(next_) + ", " + why);
+}
+
+// As the importer places the mesh, and the scene's scale then enlarges it.
+Vec3 MeshPoses::place(int vertex) const
+{
+    const Vec3& p = vertices_[static_cast<std::size_t>(vertex)];
+    const Vec3 placed = frame_.scale * Vec3(turn_ * (frame_.metres_per_unit * p));
+    if (!(placed.cwiseAbs().maxCoeff() <= kLargestCoordinate))
+        refuse(fmt::format("vertex {} ({:g}, {:g}, {:g}): allowed: finite and within {:g} m of the origin",
+                           vertex + 1, p.x(), p.y(), p.z(), kLargestCoordinate));
+    return placed;
+}
+
+void MeshPoses::read_next(std::vector<Vec3>& points)
+{
+    cache_.read(next_, vertices_);
+    points.resize(origins_.of_points.size());
+    for (std::size_t p = 0; p < points.size(); ++p) points[p] = place(origins_.of_points[p]);
+    require_joined();
+    if (next_ == 0) require_similar(points);
+    measure(points);
+    last_ = points;
+    ++next_;
+}
+
+void MeshPoses::require_joined() const
+{
+    const double tolerance = frame_.scale * origins_.tolerance;
+    for (const auto& [kept, other] : origins_.joined) {
+        const double gap = (place(other) - place(kept)).norm();
+        if (!(gap <= tolerance))
+            refuse(fmt::format(
+                "vertices {} and {} are {:.3g} m apart, but are one point of the mesh, where they "
+                "coincide; allowed: at most {:.2g} m",
+                kept + 1, other + 1, gap, tolerance));
+    }
+}
+
+void MeshPoses::require_similar(const std::vector<Vec3>& points) const
+{
+    std::vector<double> ratios;
+    const auto add = [&](int a, int b) {
+        const double length = (mesh_.points[b] - mesh_.points[a]).norm();
+        if (length > 0.0) ratios.push_back((points[b] - points[a]).norm() / length);
+    };
+    for (const auto& [a, b, c] : mesh_.faces) {
+        add(a, b);
+        add(b, c);
+        add(c, a);
+    }
+    for (const auto& [a, b] : mesh_.segments) add(a, b);
+    if (ratios.empty()) return;
+    // The ratio itself for the message; the factor, up or down, for the decision.
+    const auto median = [](std::vector<double>& values) {
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    };
+    const double ratio = median(ratios);
+    for (double& r : ratios) r = r < 1.0 ? 1.0 / r : r;
+    if (median(ratios) <= kMostStretch) return;
+    refuse(fmt::format(
+        "its edges are {:.3g} times as long as the mesh's in the median: another unit, or another "
+        "order of the vertices; allowed: a factor of at most {:g}",
+        ratio, kMostStretch));
+}
+
+void MeshPoses::measure(const std::vector<Vec3>& points)
+{
+    int collapsed = 0;
+    for (const auto& [a, b, c] : mesh_.faces)
+        if (is_collapsed(points[a], points[b], points[c])) ++collapsed;
+    if (collapsed > survey_.most_collapsed) {
+        survey_.most_collapsed = collapsed;
+        survey_.collapsed_at = next_;
+    }
+    if (next_ == 0) return;
+    double greatest = 0.0;
+    std::size_t point = 0;
+    for (std::size_t p = 0; p < points.size(); ++p)
+        if (const double move = (points[p] - last_[p]).norm(); move > greatest) {
+            greatest = move;
+            point = p;
+        }
+    const double duration = cache_.times()[next_] - cache_.times()[next_ - 1];
+    survey_.greatest_speed = std::max(survey_.greatest_speed, greatest / duration);
+    if (greatest > survey_.greatest_move) {
+        survey_.greatest_move = greatest;
+        survey_.moved_at = next_;
+        survey_.moved_vertex = origins_.of_points[point];
+    }
+}
+
+}  // namespace arris

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/obstacle_input/deform/vertex_cache.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "geometry/input_error.h"
+#include "geometry/mesh_text.h"
+#include "geometry/obstacle_input/deform/obj_sequence.h"
+#include "geometry/obstacle_input/deform/point_file.h"
+
+namespace arris {
+
+std::unique_ptr<VertexCache> open_vertex_cache(const VertexCacheRequest& request)
+{
+    const std::string extension = to_lower(std::filesystem::path(request.path).extension().string());
+    if (extension == ".mdd") return open_mdd(request);
+    if (extension == ".pc2") return open_pc2(request);
+    if (extension == ".obj") return open_obj_sequence(request);
+    throw InputError(
+        fmt::format("{}: unknown format '{}' of positions in time; allowed: .mdd, .pc2, or .obj with %d in "
+                    "place of a number",
+                    request.path, one_line(extension)));
+}
+
+}  // namespace arris
