@@ -37,8 +37,7 @@ double arc_of_deforming(const MovingObstacle& obstacle, const State& state, doub
     const std::vector<Vec3>& begin = pose->mesh().points;
     const std::vector<Vec3> middle = obstacle.points_at(state.time + 0.5 * dt),
                             end = obstacle.points_at(state.time + dt);
-    double way = 0.0;
-    for (std::size_t p = 0; p < begin.size(); ++p) way = std::max(way, (end[p] - begin[p]).norm());
+    double way = longest_way(begin, end);
     for (const Vec3& v : state.velocity) way = std::max(way, dt * v.norm());
     const Box3 near = grown(box_of(state.mesh.world), 2.0 * way);
     if (!near.intersects(pose->bounds())) return 0.0;

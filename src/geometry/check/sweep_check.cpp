@@ -81,7 +81,7 @@ class GroupSearch {
           sides_(sides),
           begin_(sides ? sides->cloth : motion.begin),
           points_at_begin_((sides ? sides->obstacle : obstacle).mesh().points),
-          way_(longest_way(points_at_begin_, obstacle.mesh().points)),
+          way_(sides ? longest_way(points_at_begin_, obstacle.mesh().points) : 0.0),
           boxes_(boxes),
           owned_(owned)
     {
@@ -307,14 +307,6 @@ class GroupSearch {
         const auto [a, b] = segment(points_at_begin_, edge);
         const auto [p, q] = segment(obstacle_.mesh().points, edge);
         return {a, b, p, q};
-    }
-
-    static double longest_way(const std::vector<Vec3>& begin, const std::vector<Vec3>& end)
-    {
-        double longest = 0.0;
-        for (std::size_t p = 0; &begin != &end && p < end.size(); ++p)
-            longest = std::max(longest, (end[p] - begin[p]).norm());
-        return longest;
     }
 
     const Obstacle& obstacle_;

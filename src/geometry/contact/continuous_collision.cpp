@@ -338,12 +338,6 @@ std::optional<ClothSweepHit> sweep_cloth_edges(const std::array<Vec3, 4>& begin,
 }
 
 std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
-                                          const std::array<Vec3, 3>& triangle, double distance)
-{
-    return sweep_vertex_face(begin, end, triangle, triangle, distance);
-}
-
-std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
                                           const std::array<Vec3, 3>& triangle_begin,
                                           const std::array<Vec3, 3>& triangle_end, double distance)
 {
@@ -358,12 +352,6 @@ std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
 }
 
 std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const std::array<Vec3, 2>& end,
-                                        const std::array<Vec3, 2>& segment, double distance)
-{
-    return sweep_edge_edge(begin, end, segment, segment, distance);
-}
-
-std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const std::array<Vec3, 2>& end,
                                         const std::array<Vec3, 2>& segment_begin,
                                         const std::array<Vec3, 2>& segment_end, double distance)
 {
@@ -374,12 +362,6 @@ std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const 
     if (!hit) return std::nullopt;
     const std::array<double, 4>& w = hit->weights;
     return SweepHit{hit->time, {w[0], w[1], 0.0}, {-w[2], -w[3], 0.0}, at(a, b, -w[3]), hit->normal};
-}
-
-std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin, const std::array<Vec3, 3>& end,
-                                         const Vec3& point, double distance)
-{
-    return sweep_face_point(begin, end, point, point, distance);
 }
 
 std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin, const std::array<Vec3, 3>& end,

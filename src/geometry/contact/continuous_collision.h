@@ -34,23 +34,34 @@ struct SweepHit {
 
 /// A vertex and a triangle.
 std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
-                                          const std::array<Vec3, 3>& triangle, double distance);
-std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
                                           const std::array<Vec3, 3>& triangle_begin,
                                           const std::array<Vec3, 3>& triangle_end, double distance);
+inline std::optional<SweepHit> sweep_vertex_face(const Vec3& begin, const Vec3& end,
+                                                 const std::array<Vec3, 3>& triangle, double distance)
+{
+    return sweep_vertex_face(begin, end, triangle, triangle, distance);
+}
 
 /// A cloth edge and a segment.
 std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const std::array<Vec3, 2>& end,
-                                        const std::array<Vec3, 2>& segment, double distance);
-std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin, const std::array<Vec3, 2>& end,
                                         const std::array<Vec3, 2>& segment_begin,
                                         const std::array<Vec3, 2>& segment_end, double distance);
+inline std::optional<SweepHit> sweep_edge_edge(const std::array<Vec3, 2>& begin,
+                                               const std::array<Vec3, 2>& end,
+                                               const std::array<Vec3, 2>& segment, double distance)
+{
+    return sweep_edge_edge(begin, end, segment, segment, distance);
+}
 
 /// A cloth triangle and a point.
 std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin, const std::array<Vec3, 3>& end,
-                                         const Vec3& point, double distance);
-std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin, const std::array<Vec3, 3>& end,
                                          const Vec3& point_begin, const Vec3& point_end, double distance);
+inline std::optional<SweepHit> sweep_face_point(const std::array<Vec3, 3>& begin,
+                                                const std::array<Vec3, 3>& end, const Vec3& point,
+                                                double distance)
+{
+    return sweep_face_point(begin, end, point, point, distance);
+}
 
 /// The first touch of two moving elements of the cloth. `begin` and `end` hold the corners of both.
 struct ClothSweepHit {

@@ -79,7 +79,8 @@ void visit_around(const ObstacleTopology& topology, int point, const UseFace& us
 
 Mat3 turn_of(const Obstacle& from, const Obstacle& to, const SurfacePlace& on)
 {
-    if (on.kind == SurfaceKind::Triangle) return turn_between(of_face(from, on.element), of_face(to, on.element));
+    if (on.kind == SurfaceKind::Triangle)
+        return turn_between(of_face(from, on.element), of_face(to, on.element));
     if (on.kind == SurfaceKind::Edge) return turn_between(of_edge(from, on.element), of_edge(to, on.element));
     Mat3 sum = Mat3::Zero();
     visit_around(
@@ -186,7 +187,8 @@ void take_face(const Obstacle& obstacle, int face, Nearest& nearest)
         closest_on_triangle(nearest.place, {points[corners[0]], points[corners[1]], points[corners[2]]},
                             obstacle.topology().face_normals[face]);
     if (found.corner >= 0) return nearest.take(found.point, at_point(corners[found.corner]));
-    if (found.edge < 0) return nearest.take(found.point, {SurfaceKind::Triangle, face, corners, found.weights});
+    if (found.edge < 0)
+        return nearest.take(found.point, {SurfaceKind::Triangle, face, corners, found.weights});
     const int i = found.edge, j = (i + 1) % 3;
     nearest.take(found.point,
                  on_edge(obstacle.topology().face_edges[face][i], corners[i], corners[j], found.weights[j]));
@@ -242,6 +244,13 @@ Placement find_way(const Obstacle& from, const Obstacle& to, const SurfacePlace&
 {
     const Mat3 turn = turn_of(from, to, on);
     return {turn, on.at(to.mesh().points) - turn * on.at(from.mesh().points)};
+}
+
+double longest_way(const std::vector<Vec3>& begin, const std::vector<Vec3>& end)
+{
+    double longest = 0.0;
+    for (std::size_t p = 0; p < end.size(); ++p) longest = std::max(longest, (end[p] - begin[p]).norm());
+    return longest;
 }
 
 Vec3 riding_velocity(const Obstacle& pose, const std::vector<Vec3>& velocities, const SurfacePlace& on,

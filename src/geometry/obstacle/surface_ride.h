@@ -43,4 +43,7 @@ Placement find_way(const Obstacle& from, const Obstacle& to, const SurfacePlace&
 Vec3 riding_velocity(const Obstacle& pose, const std::vector<Vec3>& velocities, const SurfacePlace& on,
                      const Vec3& place);
 
+/// Greatest distance, m, of a point from its other place.
+double longest_way(const std::vector<Vec3>& begin, const std::vector<Vec3>& end);
+
 }  // namespace arris

@@ -100,13 +100,6 @@ double longest_edge(const std::vector<Vec3>& world, const std::vector<MeshEdge>&
     return longest;
 }
 
-double longest_way(const std::vector<Vec3>& begin, const std::vector<Vec3>& end)
-{
-    double longest = 0.0;
-    for (std::size_t p = 0; p < end.size(); ++p) longest = std::max(longest, (end[p] - begin[p]).norm());
-    return longest;
-}
-
 /// Lets the cloth near an obstacle that deforms ride on it: each vertex with the nearest place of the
 /// surface. So gaps above faces stay, and the search for contacts, which knows the obstacle at the step's end
 /// only, finds what rests or slides there. What the search misses the check after the solve finds. `cell`:

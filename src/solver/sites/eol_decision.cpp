@@ -239,7 +239,7 @@ std::optional<ConstraintCause> EolAdmission::find_fold_cause(const FeatureSite& 
     const std::optional<double> way = find_free_fold(site);
     if (!way) return std::nullopt;
     const bool is_between = site.contact < 0;  // fills a gap, and does not press itself
-    if (is_between || is_along_face(scene_.obstacles[site.on.obstacle].shape(), site))
+    if (is_between || is_along_face(scene_.obstacles[site.on.obstacle].at(state_.time), site))
         return ConstraintCause::FlatBehind;
     // Traces nearer than a cell cannot be distinguished.
     return *way < target_length(scene_, state_, site.material) ? std::optional(ConstraintCause::BesideEol)

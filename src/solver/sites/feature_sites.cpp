@@ -60,7 +60,7 @@ class SiteFinder {
     std::optional<FeatureSite> on_edge(int a, int b, const ActiveContact& contact) const
     {
         const int feature = feature_of_edge(obstacle_->features(), contact.element);
-        if (feature < 0) return std::nullopt;
+        if (feature < 0 || !obstacle_->features().edges[feature].is_awake) return std::nullopt;
         if (const std::optional<FeatureSite> bend = on_bend(a, b, feature, contact.normal)) return bend;
         return crossings_.find_pressed(a, b, feature, contact.normal);
     }
@@ -71,6 +71,7 @@ class SiteFinder {
             return at_bend(*bend, v, contact.normal);
         const int corner = corner_at(obstacle_->features(), contact.element);
         if (v[2] < 0) return std::nullopt;
+        if (corner >= 0 && !obstacle_->features().corners[corner].is_awake) return std::nullopt;
         if (corner < 0) return at_rim_bend(contact.element, v, contact.normal);
         const Vec3 &a = crossings_.positions()[v[0]], &b = crossings_.positions()[v[1]],
                    &c = crossings_.positions()[v[2]];
@@ -94,7 +95,9 @@ class SiteFinder {
         const ObstacleTopology& topology = obstacle_->topology();
         for (int k = 0; k < topology.edge_count_at(point); ++k) {
             const int feature = feature_of_edge(obstacle_->features(), topology.edge_at(point, k));
-            if (feature < 0 || obstacle_->features().edges[feature].kind != FeatureKind::Convex) continue;
+            if (feature < 0) continue;
+            const FeatureEdge& edge = obstacle_->features().edges[feature];
+            if (edge.kind != FeatureKind::Convex || !edge.is_awake) continue;
             const auto frame =
                 find_edge_frame(obstacle_, feature, p, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
             const double height = up.dot(face[0] - p) / up.dot(frame->outward);
