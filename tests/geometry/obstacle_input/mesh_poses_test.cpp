@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "geometry/input_error.h"
@@ -100,7 +101,8 @@ TEST(MeshPoses, APlaceMustBeFiniteAndNear)
     const Square square;
     EXPECT_EQ(square.refusal({Square::vertices(), with(3, {kNan, 1, 0})}),
               "m.pc2: sample 1, vertex 4 (nan, 1, 0): allowed: finite and within 1e+06 m of the origin");
-    EXPECT_THAT(square.refusal({with(3, {1.1e6, 1, 0})}), HasSubstr("sample 0, vertex 4"));
+    for (const Vec3& wrong : {Vec3(1.1e6, 1, 0), Vec3(0, kNan, 1), Vec3(0, 1, kNan), Vec3(-INFINITY, 0, 0)})
+        EXPECT_THAT(square.refusal({with(3, wrong)}), HasSubstr("sample 0, vertex 4"));
     EXPECT_THAT(square.refusal({with(5, {kNan, 1, 0})}), HasSubstr("vertex 6"));
 }
 
