@@ -184,7 +184,7 @@ void PoseFile::read(std::size_t sample, std::vector<Vec3>& points) const
         decode<double>(bytes_.data(), points);
     for (const Vec3& point : points)
         // A place at the bound may be rounded up.
-        if (!(point.cwiseAbs().maxCoeff() <= 1.001 * kLargestCoordinate))
+        if (!point.allFinite() || point.cwiseAbs().maxCoeff() > 1.001 * kLargestCoordinate)
             fail(fmt::format("is damaged: sample {} has a place beyond {:g} m", sample, kLargestCoordinate));
 }
 

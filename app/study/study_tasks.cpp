@@ -10,6 +10,7 @@
 #include "app/study/fingerprint.h"
 #include "app/study/run_outcome.h"
 #include "app/text/version.h"
+#include "geometry/obstacle_input/deform/vertex_cache.h"
 
 namespace arris {
 namespace {
@@ -21,16 +22,24 @@ std::string program_path()
     return fs::read_symlink("/proc/self/exe").string();
 }
 
-/// Files that a scene names: the cloth's and the obstacles'.
-std::vector<std::string> named_files(const nlohmann::ordered_json& scene)
+/// Files that a scene in `folder` names: the cloth's, the obstacles', and those of their motion.
+std::vector<std::string> named_files(const nlohmann::ordered_json& scene, const fs::path& folder)
 {
     std::vector<std::string> files;
-    if (scene["cloth"].contains("file") && scene["cloth"]["file"].is_string())
-        files.push_back(scene["cloth"]["file"].get<std::string>());
+    const auto path_in = [&](const nlohmann::ordered_json& table) {
+        const bool is_named = table.contains("file") && table["file"].is_string();
+        return is_named ? (folder / table["file"].get<std::string>()).string() : std::string();
+    };
+    const auto add = [&](const std::string& path) {
+        if (!path.empty()) files.push_back(path);
+    };
+    add(path_in(scene["cloth"]));
     if (scene.contains("obstacle"))
-        for (const auto& obstacle : scene["obstacle"])
-            if (obstacle.contains("file") && obstacle["file"].is_string())
-                files.push_back(obstacle["file"].get<std::string>());
+        for (const auto& obstacle : scene["obstacle"]) {
+            add(path_in(obstacle));
+            if (!obstacle.contains("deform")) continue;
+            for (const std::string& path : list_cache_files(path_in(obstacle["deform"]))) add(path);
+        }
     return files;
 }
 
@@ -64,8 +73,8 @@ std::vector<Task> make_tasks(const Study& study, const std::vector<StudyRun>& ru
     for (const StudyRun& run : runs) {
         const std::vector<std::string> overrides = list_overrides(study, run);
         std::vector<std::string> deciding = {version, text};
-        for (const std::string& file : named_files(run.scene))
-            deciding.push_back(files.of((fs::path(scene).parent_path() / file).string()));
+        for (const std::string& file : named_files(run.scene, fs::path(scene).parent_path()))
+            deciding.push_back(files.of(file));
         deciding.insert(deciding.end(), overrides.begin(), overrides.end());
         for (const std::string& name : task_names(run.name, study.repeats)) {
             Task task{name, {program, "run", scene, "-o", folder.run_directory(name)}, fingerprint(deciding)};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace arris {
 
@@ -28,27 +29,63 @@ std::vector<double*> event_times(Scene& scene, const std::vector<RigidMotion*>& 
     return times;
 }
 
+/// Moves a time to another one that it nearly coincides with.
+class Snap {
+  public:
+    explicit Snap(const RunConfig& config)
+        : tolerance_(1e-9 * config.settings.step), fps_(config.output.frames_per_second)
+    {
+    }
+
+    void to(double other, double& time) const
+    {
+        if (std::abs(time - other) <= tolerance_) time = other;
+    }
+    void to_frame(double& time) const
+    {
+        if (fps_ > 0.0) to(std::round(time * fps_) / fps_, time);
+    }
+
+  private:
+    double tolerance_;
+    double fps_;
+};
+
 }  // namespace
 
 void merge_events(RunConfig& config, const std::vector<RigidMotion*>& motions)
 {
-    const double tolerance = 1e-9 * config.settings.step;
-    const double fps = config.output.frames_per_second;
-    const auto snap = [&](double& time, double to) {
-        if (std::abs(time - to) <= tolerance) time = to;
-    };
-    const auto snap_to_frame = [&](double& time) {
-        if (fps > 0.0) snap(time, std::round(time * fps) / fps);
-    };
-
-    snap_to_frame(config.duration);
+    const Snap snap(config);
+    snap.to_frame(config.duration);
     std::vector<double*> times = event_times(config.scene, motions);
     for (double* time : times) {
-        snap_to_frame(*time);
-        snap(*time, config.duration);
+        snap.to_frame(*time);
+        snap.to(config.duration, *time);
     }
     std::sort(times.begin(), times.end(), [](const double* a, const double* b) { return *a < *b; });
-    for (std::size_t k = 1; k < times.size(); ++k) snap(*times[k], *times[k - 1]);
+    for (std::size_t k = 1; k < times.size(); ++k) snap.to(*times[k - 1], *times[k]);
+}
+
+void merge_with_events(const RunConfig& config, const std::vector<RigidMotion>& plans,
+                       std::vector<double>& times)
+{
+    const Snap snap(config);
+    std::vector<double> events = input_jumps(config.scene);
+    events.push_back(config.duration);
+    for (const RigidMotion& motion : plans) {
+        const std::vector<double> jumps = motion.jumps();
+        events.insert(events.end(), jumps.begin(), jumps.end());
+    }
+    std::sort(events.begin(), events.end());
+    for (std::size_t k = 0; k < times.size(); ++k) {
+        double time = times[k];
+        snap.to_frame(time);
+        const auto next = std::lower_bound(events.begin(), events.end(), time);
+        if (next != events.end()) snap.to(*next, time);
+        if (next != events.begin()) snap.to(*std::prev(next), time);
+        // Samples stay apart.
+        if (k == 0 || time > times[k - 1]) times[k] = time;
+    }
 }
 
 }  // namespace arris

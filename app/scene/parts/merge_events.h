@@ -13,4 +13,9 @@ namespace arris {
 /// the scene.
 void merge_events(RunConfig& config, const std::vector<RigidMotion*>& motions = {});
 
+/// Merges ascending times of an obstacle's samples with the events that they nearly coincide with, after
+/// merge_events. `plans`: motions of obstacles that are not yet in the scene.
+void merge_with_events(const RunConfig& config, const std::vector<RigidMotion>& plans,
+                       std::vector<double>& times);
+
 }  // namespace arris

@@ -8,6 +8,7 @@
 
 #include "app/files/pose_file.h"
 #include "app/scene/keys/scene_json.h"
+#include "app/scene/parts/merge_events.h"
 #include "app/text/counted.h"
 #include "geometry/input_error.h"
 #include "geometry/obstacle_input/deform/mesh_poses.h"
@@ -91,28 +92,30 @@ void tell(const SceneDocument& document, const std::string& key, const VertexCac
 }  // namespace
 
 std::shared_ptr<const Deformation> load_deformation(const SceneDocument& document, std::size_t index,
-                                                    const ObstacleMesh& mesh, const VertexOrigins& origins,
+                                                    const ObstacleFile& mesh,
+                                                    const std::vector<RigidMotion>& motions,
                                                     RunConfig& config)
 {
     const Json& obstacle = config.as_run["obstacle"][index];
     const std::string path = fmt::format("obstacle.{}", index);
     const Json& deform = obstacle["deform"];
     const std::string key = path + ".deform.file";
-    if (origins.vertex_count == 0)
+    if (mesh.origins.vertex_count == 0)
         document.fail(path + ".file",
                       "has vertices without an order of their own, and the obstacle has `deform`",
                       "OBJ or PLY");
     try {
         const std::unique_ptr<VertexCache> cache =
-            open_vertex_cache(to_request(document, deform, origins.vertex_count));
+            open_vertex_cache(to_request(document, deform, mesh.origins.vertex_count));
         PoseFileHead head;
         head.times = to_scene_times(cache->times(), deform);
-        head.point_count = mesh.points.size();
+        merge_with_events(config, motions, head.times);
+        head.point_count = mesh.mesh.points.size();
         head.is_single = cache->is_single();
         head.interpolation =
             deform["interpolation"] == "linear" ? PoseInterpolation::Linear : PoseInterpolation::Cubic;
         PoseFileWriter writer(head);
-        MeshPoses poses(*cache, mesh, origins, to_frame(obstacle));
+        MeshPoses poses(*cache, mesh.mesh, mesh.origins, to_frame(obstacle));
         std::vector<Vec3> points;
         for (std::size_t k = 0; k < head.times.size(); ++k) {
             poses.read_next(points);

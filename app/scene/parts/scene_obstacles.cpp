@@ -203,6 +203,8 @@ void check_turn(const SceneDocument& document, const std::string& path, const Js
 void load_obstacles(const SceneDocument& document, const LoadOptions& options,
                     std::vector<ObstaclePlan> plans, RunConfig& config)
 {
+    std::vector<RigidMotion> motions;
+    for (const ObstaclePlan& plan : plans) motions.push_back(plan.motion);
     for (std::size_t i = 0; i < plans.size(); ++i) {
         const Json& json = config.as_run["obstacle"][i];
         const std::string path = fmt::format("obstacle.{}", i);
@@ -220,10 +222,9 @@ void load_obstacles(const SceneDocument& document, const LoadOptions& options,
                                           printable(options.obstacles_file)));
         } else {
             ObstacleFile made = make_mesh(document, options, key, json, config);
+            scale_mesh(document, path, key, to_double(json["scale"]), made.mesh);
+            if (json.contains("deform")) deformation = load_deformation(document, i, made, motions, config);
             mesh = std::move(made.mesh);
-            scale_mesh(document, path, key, to_double(json["scale"]), mesh);
-            if (json.contains("deform"))
-                deformation = load_deformation(document, i, mesh, made.origins, config);
         }
         config.obstacle_placements.push_back(plans[i].placement);
         config.scene.obstacles.emplace_back(plans[i].name, std::move(mesh), plans[i].placement,

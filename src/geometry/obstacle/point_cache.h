@@ -26,7 +26,7 @@ enum class PoseInterpolation { Cubic, Linear };
 
 /// A motion through the poses of a source. Cubic: Hermite polynomials whose velocities at the samples are
 /// those of the parabola through three of them (Catmull and Rom's for even times), and zero at the first and
-/// the last. So no velocity jumps; the error is of order 3 in the samples' distance, 4 where they are even.
+/// the last. So no velocity jumps; the error is of order 3 in the time between samples.
 /// Linear: the velocity jumps at each sample.
 ///
 /// Keeps the samples of two neighbouring intervals in memory. `find` throws what the source's `read` throws.

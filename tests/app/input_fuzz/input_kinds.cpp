@@ -9,6 +9,7 @@
 
 #include "app/files/binary_stream.h"
 #include "app/files/frame.h"
+#include "app/files/pose_file.h"
 #include "app/run/checkpoint.h"
 #include "app/scene/parts/obstacle_records.h"
 #include "app/scene/parts/run_config.h"
@@ -17,9 +18,12 @@
 #include "geometry/cloth/mesh_topology.h"
 #include "geometry/cloth_input/cloth_file.h"
 #include "geometry/obstacle/obstacle_topology.h"
+#include "geometry/obstacle/point_cache.h"
+#include "geometry/obstacle_input/deform/vertex_cache.h"
 #include "geometry/obstacle_input/obstacle_file.h"
 #include "solver/step.h"
 #include "tests/app/example_frame.h"
+#include "tests/geometry/cache_files.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/geometry/sample_obstacles.h"
 
@@ -92,6 +96,11 @@ closed = true
 [[obstacle]]
 points = [[0, 0, -0.2]]
 scale = 2.0
+[[obstacle]]
+name = "body"
+file = "body.obj"
+translate = [0, 0, -3]
+deform = { file = "body.pc2", frames_per_second = 20, start = 0.1, speed = 1.5, first = 0, last = 2, interpolation = "linear" }
 [[probe]]
 name = "tip"
 material = [0.4, 0.1]
@@ -177,10 +186,71 @@ void write_run_files(const RunConfig& config, const std::string& folder)
     write_frame(folder + "/frame.ply", make_example_frame());
 }
 
+const cache_files::Samples kBodySamples = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                           {{0, 0, 0}, {1, 0, 1}, {0, 1, 0}, {0, 0, 1}},
+                                           {{0, 0, 0}, {2, 0, 1}, {0, 1, 0}, {0, 0, 2}}};
+constexpr const char* kBody = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+/// Reads `samples` of a cache of the body.
+std::string read_cache(const std::string& path)
+{
+    VertexCacheRequest request;
+    request.path = path;
+    request.vertex_count = 4;
+    const auto cache = open_vertex_cache(request);
+    std::vector<Vec3> vertices;
+    for (std::size_t k = 0; k < cache->times().size(); ++k) {
+        if (k > 0 && !(cache->times()[k] > cache->times()[k - 1])) return "its times do not ascend";
+        cache->read(k, vertices);
+        if (vertices.size() != 4) return "it has another number of vertices";
+    }
+    return {};
+}
+
+std::vector<InputKind> list_cache_kinds()
+{
+    const auto read_sequence = [](const std::string& path) {
+        return read_cache((std::filesystem::path(path).parent_path() / "pose_%02d.obj").string());
+    };
+    return {{"MDD", "body.mdd", cache_files::mdd(kBodySamples, {0.0F, 0.04F, 0.1F}), write_plain, read_cache},
+            {"PC2", "changed.pc2", cache_files::pc2(kBodySamples, 1.0), write_plain, read_cache},
+            {"OBJ sequence", "pose_07.obj", kBody, write_plain, read_sequence}};
+}
+
+/// Poses of a run's folder: places are finite wherever they are asked for.
+std::string read_poses(const std::string& path)
+{
+    const PointCache cache(PoseFile::open(path), PoseInterpolation::Cubic);
+    std::vector<Vec3> points, velocities;
+    for (const double time : {-1.0, 0.1, 0.12, 0.16, 1e9}) {
+        cache.find(time, points, velocities);
+        for (const Vec3& point : points)
+            if (!point.allFinite()) return "a place is not finite";
+    }
+    return {};
+}
+
+/// The head of a file of poses is changed, and gets its checksum.
+InputKind poses_kind(const std::string& sound)
+{
+    const std::string whole = read_plain(sound);
+    const std::string before = std::string("ARRIS poses\n") + std::string("\7\0\0\0\0\0\0\0poses 1", 15);
+    BinaryReader in(std::string_view(whole).substr(before.size()), sound);
+    const std::string head = in.text();
+    const std::string samples = whole.substr(before.size() + 8 + head.size() + 4);
+    const auto write = [before, samples](const std::string& path, const std::string& changed) {
+        BinaryWriter out;
+        out.text(changed);
+        out.number(checksum(changed));
+        write_plain(path, before + out.bytes() + samples);
+    };
+    return {"head of poses", "changed.poses", head, write, read_poses};
+}
+
 std::vector<InputKind> list_run_kinds(const std::string& folder)
 {
     constexpr FileKind kCheckpoint = {"ARRIS checkpoint\n", kCheckpointVersion, "", ""};
-    constexpr FileKind kObstacles = {"ARRIS obstacles\n", "obstacles 1", "", ""};
+    constexpr FileKind kObstacles = {"ARRIS obstacles\n", "obstacles 2", "", ""};
     const auto read_state = [](const std::string& path) {
         return validate(read_checkpoint(path).state.mesh);
     };
@@ -199,6 +269,8 @@ std::vector<InputKind> list_run_kinds(const std::string& folder)
     return {sealed_kind("checkpoint", "checkpoint", kCheckpoint, checkpoint, read_state),
             {"checkpoint file", "checkpoint", read_plain(checkpoint), write_plain, read_state},
             sealed_kind("obstacles", "obstacles", kObstacles, obstacles_file(folder), read_records),
+            {"poses", "changed.poses", read_plain(poses_file(folder, "body")), write_plain, read_poses},
+            poses_kind(poses_file(folder, "body")),
             {"frame", "frame.ply", read_plain(folder + "/frame.ply"), write_plain, read_cloth_frame}};
 }
 
@@ -218,6 +290,9 @@ std::vector<InputKind> list_input_kinds(const std::vector<std::string>& importer
         return validate(load(path, importer).cloth);
     };
     kinds.push_back({"scene", "scene.toml", kScene, write_plain, read_scene});
+    write_plain(folder + "/body.obj", kBody);
+    write_plain(folder + "/body.pc2", cache_files::pc2(kBodySamples, 1.0));
+    for (InputKind& kind : list_cache_kinds()) kinds.push_back(std::move(kind));
     write_plain(folder + "/scene.toml", kScene);
     write_run_files(load(folder + "/scene.toml", importer), folder);
     for (InputKind& kind : list_run_kinds(folder)) kinds.push_back(std::move(kind));

@@ -105,7 +105,7 @@ const std::vector<WrongScene> kWrongScenes = {
      {},
      "s.toml:7: obstacle.0.velocity = [1, 0, 0]: unknown key, did you mean motion.velocity?; allowed: name, "
      "file, "
-     "units, up, box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, "
+     "units, up, deform, box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, "
      "keyframes, "
      "friction"},
     {"MotionOfTheScene",
@@ -123,7 +123,7 @@ const std::vector<WrongScene> kWrongScenes = {
      "their "
      "own; cloth.material.thickness is the distance that the cloth keeps from them; allowed: name, file, "
      "units, up, "
-     "box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, keyframes, "
+     "deform, box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, keyframes, "
      "friction"},
     {"StudyForAScene",
      "scene = \"strip.toml\"\n" + kBase,
@@ -669,7 +669,8 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + kNail + "positon = [0, 0, 0]\n",
      {},
      "s.toml:7: obstacle.0.positon = [0, 0, 0]: unknown key; allowed: name, file, units, "
-     "up, box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, keyframes, "
+     "up, deform, box, points, wire, closed, teeth, translate, rotate, scale, feature_angle, motion, "
+     "keyframes, "
      "friction"},
     {"ObstacleName",
      kBase + kNail + "name = \"the table\"\n",

@@ -49,7 +49,7 @@ Vec3 MeshPoses::place(int vertex) const
 {
     const Vec3& p = vertices_[static_cast<std::size_t>(vertex)];
     const Vec3 placed = frame_.scale * Vec3(turn_ * (frame_.metres_per_unit * p));
-    if (!(placed.cwiseAbs().maxCoeff() <= kLargestCoordinate))
+    if (!placed.allFinite() || placed.cwiseAbs().maxCoeff() > kLargestCoordinate)
         refuse(fmt::format("vertex {} ({:g}, {:g}, {:g}): allowed: finite and within {:g} m of the origin",
                            vertex + 1, p.x(), p.y(), p.z(), kLargestCoordinate));
     return placed;

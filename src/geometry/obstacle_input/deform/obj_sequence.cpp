@@ -52,39 +52,33 @@ struct NamePattern {
     }
 };
 
-NamePattern parse_pattern(const std::string& path)
+std::optional<NamePattern> find_pattern(const std::string& name)
 {
-    const std::string name = fs::path(path).filename().string();
-    const auto refuse_pattern = [&] {
-        refuse(
-            path,
-            "names no sequence of OBJ files; allowed: one %d, or %04d for four digits, in the file's name");
-    };
     const std::size_t percent = name.find('%');
     const std::size_t letter = percent == std::string::npos ? percent : name.find('d', percent);
-    if (letter == std::string::npos || name.find('%', percent + 1) != std::string::npos) refuse_pattern();
+    if (letter == std::string::npos || name.find('%', percent + 1) != std::string::npos) return std::nullopt;
     const std::string_view width = std::string_view(name).substr(percent + 1, letter - percent - 1);
     NamePattern pattern{name.substr(0, percent), name.substr(letter + 1)};
     if (width.empty()) return pattern;
-    if (width.size() != 2 || width[0] != '0' || width[1] < '1' || width[1] > '9') refuse_pattern();
+    if (width.size() != 2 || width[0] != '0' || width[1] < '1' || width[1] > '9') return std::nullopt;
     pattern.width = width[1] - '0';
     return pattern;
 }
 
-/// The numbers of the files that the pattern names, ascending.
-std::vector<int> find_numbers(const std::string& path, const fs::path& folder, const NamePattern& pattern,
-                              const VertexCacheRequest& request)
+fs::path folder_of(const std::string& path)
+{
+    const fs::path parent = fs::path(path).parent_path();
+    return parent.empty() ? fs::path(".") : parent;
+}
+
+/// The numbers of the files that the pattern names, ascending, and why the folder cannot be read, if so.
+std::vector<int> find_numbers(const fs::path& folder, const NamePattern& pattern, std::error_code& error)
 {
     std::vector<int> numbers;
-    std::error_code error;
     fs::directory_iterator entry(folder, error);
-    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-        const std::optional<int> number = pattern.parse(entry->path().filename().string());
-        if (number && *number >= request.first.value_or(0) &&
-            *number <= request.last.value_or(std::numeric_limits<int>::max()))
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error))
+        if (const std::optional<int> number = pattern.parse(entry->path().filename().string()))
             numbers.push_back(*number);
-    }
-    if (error) refuse(path, error.message());
     std::sort(numbers.begin(), numbers.end());
     return numbers;
 }
@@ -154,19 +148,39 @@ class ObjSequence : public VertexCache {
 
 }  // namespace
 
+std::vector<std::string> list_obj_sequence(const std::string& path)
+{
+    const std::optional<NamePattern> pattern = find_pattern(fs::path(path).filename().string());
+    if (!pattern) return {path};
+    std::error_code ignored;
+    std::vector<std::string> files;
+    for (const int number : find_numbers(folder_of(path), *pattern, ignored))
+        files.push_back((folder_of(path) / pattern->name(number)).string());
+    return files;
+}
+
 std::unique_ptr<VertexCache> open_obj_sequence(const VertexCacheRequest& request)
 {
-    const NamePattern pattern = parse_pattern(request.path);
-    const fs::path parent = fs::path(request.path).parent_path();
-    const fs::path folder = parent.empty() ? fs::path(".") : parent;
+    const std::optional<NamePattern> pattern = find_pattern(fs::path(request.path).filename().string());
+    if (!pattern)
+        refuse(
+            request.path,
+            "names no sequence of OBJ files; allowed: one %d, or %04d for four digits, in the file's name");
     if (request.first && request.last && *request.last < *request.first)
         refuse(request.path, fmt::format("last = {} is before first = {}", *request.last, *request.first));
-    const std::vector<int> numbers = find_numbers(request.path, folder, pattern, request);
-    require_all(request.path, pattern, numbers, request);
+    const fs::path folder = folder_of(request.path);
+    std::error_code error;
+    std::vector<int> numbers = find_numbers(folder, *pattern, error);
+    if (error) refuse(request.path, error.message());
+    std::erase_if(numbers, [&](int number) {
+        return number < request.first.value_or(0) ||
+               number > request.last.value_or(std::numeric_limits<int>::max());
+    });
+    require_all(request.path, *pattern, numbers, request);
     std::vector<double> times;
     for (std::size_t k = 0; k < numbers.size(); ++k)
         times.push_back(static_cast<double>(k) / request.frames_per_second.value_or(kDefaultRate));
-    return std::make_unique<ObjSequence>(folder, pattern, numbers.front(), request.vertex_count,
+    return std::make_unique<ObjSequence>(folder, *pattern, numbers.front(), request.vertex_count,
                                          std::move(times));
 }
 

@@ -12,9 +12,23 @@
 
 namespace arris {
 
+namespace {
+
+std::string extension_of(const std::string& path)
+{
+    return to_lower(std::filesystem::path(path).extension().string());
+}
+
+}  // namespace
+
+std::vector<std::string> list_cache_files(const std::string& path)
+{
+    return extension_of(path) == ".obj" ? list_obj_sequence(path) : std::vector<std::string>{path};
+}
+
 std::unique_ptr<VertexCache> open_vertex_cache(const VertexCacheRequest& request)
 {
-    const std::string extension = to_lower(std::filesystem::path(request.path).extension().string());
+    const std::string extension = extension_of(request.path);
     if (extension == ".mdd") return open_mdd(request);
     if (extension == ".pc2") return open_pc2(request);
     if (extension == ".obj") return open_obj_sequence(request);

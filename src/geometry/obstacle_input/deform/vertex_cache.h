@@ -58,4 +58,7 @@ class VertexCache {
 /// that do not ascend; for a sequence with gaps; for `first` and `last` beyond its samples.
 std::unique_ptr<VertexCache> open_vertex_cache(const VertexCacheRequest& request);
 
+/// The files that a path of a request names: itself, or those of the sequence that exist, by number.
+std::vector<std::string> list_cache_files(const std::string& path);
+
 }  // namespace arris

@@ -6,6 +6,8 @@
 
 #include <limits>
 
+#include "app/files/binary_stream.h"
+#include "app/files/pose_file.h"
 #include "geometry/input_error.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "tests/app/error_of.h"
@@ -117,6 +119,73 @@ TEST(ObstacleRecords, OneThatNeverMovesHasOneFrame)
     EXPECT_EQ(count_obstacle_frames(records[1], 24), 24U);
     EXPECT_EQ(count_obstacle_frames(records[2], 24), 1U);
     EXPECT_EQ(count_obstacle_frames(records[2], 0), 0U);
+}
+
+/// A box that grows from 1 to 3 m within a second, in an obstacle's frame.
+ObstacleRecord growing_box()
+{
+    ObstacleRecord record{"body", make_box({1.0, 1.0, 1.0}), {}, {}};
+    PoseFileWriter writer({{0.0, 1.0}, record.mesh.points.size(), true, PoseInterpolation::Linear});
+    writer.add(record.mesh.points);
+    std::vector<Vec3> grown = record.mesh.points;
+    for (Vec3& point : grown) point *= 3.0;
+    writer.add(grown);
+    record.deformation = std::make_shared<PointCache>(writer.finish(), PoseInterpolation::Linear);
+    record.placement = {rotation_about(Vec3::UnitZ(), 90.0), {0.0, 0.0, 1.0}};
+    return record;
+}
+
+TEST(ObstacleRecords, DeformingOnesHaveTheirPosesInAFileBeside)
+{
+    const TemporaryDirectory dir;
+    std::vector<ObstacleRecord> records = make_records();
+    records.push_back(growing_box());
+    write_obstacles(dir.path(), records);
+    EXPECT_TRUE(std::filesystem::exists(dir / "obstacle_body.poses"));
+    EXPECT_EQ(dir.entry_count(), 2U);
+    const std::vector<ObstacleRecord> read = read_obstacles(dir.path());
+    EXPECT_EQ(read[0].deformation, nullptr);
+    ASSERT_NE(read[3].deformation, nullptr);
+    EXPECT_EQ(read[3].deformation->sample_times(), (std::vector<double>{0.0, 1.0}));
+    EXPECT_EQ(read[3].deformation->jumps(), std::vector<double>{1.0});
+    for (const double time : {-1.0, 0.3, 1.0})
+        EXPECT_EQ(read[3].world_points(time), records[3].world_points(time));
+
+    const Vec3 corner = read[3].mesh.points[0];
+    EXPECT_LT(
+        (read[3].world_points(0.5)[0] - Vec3(-2 * corner.y(), 2 * corner.x(), 2 * corner.z() + 1)).norm(),
+        1e-15);
+    EXPECT_EQ(count_obstacle_frames(read[3], 24), 24U);
+    EXPECT_EQ(read[2].world_points(7.0), records[2].mesh.points);
+}
+
+TEST(ObstacleRecords, PosesOfAnotherMeshOrNoneAreInputErrors)
+{
+    const TemporaryDirectory dir;
+    write_obstacles(dir.path(), {growing_box()});
+    PoseFileWriter writer({{0.0}, 3, false, PoseInterpolation::Cubic});
+    writer.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    writer.finish()->copy_to(dir / "obstacle_body.poses");
+    EXPECT_THAT(refusal(dir),
+                HasSubstr("obstacle_body.poses: is damaged: it has 3 points where the obstacle has 8"));
+    std::filesystem::remove(dir / "obstacle_body.poses");
+    EXPECT_THAT(refusal(dir), HasSubstr("obstacle_body.poses: is missing"));
+}
+
+TEST(ObstacleRecords, AFileOfTheEarlierVersionIsRead)
+{
+    const TemporaryDirectory dir;
+    constexpr FileKind kNow{"ARRIS obstacles\n", "obstacles 2", "", ""},
+        kEarlier{"ARRIS obstacles\n", "obstacles 1", "", ""};
+    const ObstacleRecord nails = make_records()[2];
+    write_obstacles(dir.path(), {nails});
+    std::string body = read_sealed(obstacles_file(dir.path()), kNow).body;
+    body.pop_back();  // version 1 ends a record with its motion
+    write_sealed(obstacles_file(dir.path()), kEarlier, body);
+    const std::vector<ObstacleRecord> read = read_obstacles(dir.path());
+    ASSERT_EQ(read.size(), 1U);
+    EXPECT_EQ(read[0].mesh.points, nails.mesh.points);
+    EXPECT_EQ(read[0].deformation, nullptr);
 }
 
 }  // namespace

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/parts/scene_deformation.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/scene/scene_load.h"
+#include "geometry/input_error.h"
+#include "geometry/obstacle/point_cache.h"
+#include "tests/app/error_of.h"
+#include "tests/app/program.h"
+#include "tests/app/temporary_directory.h"
+#include "tests/geometry/cache_files.h"
+
+namespace arris {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// A tetrahedron in centimetres, y up, with an unused vertex in front.
+constexpr const char* kBody =
+    "v 99 99 99\nv 0 0 0\nv 0 0 100\nv 100 0 0\nv 0 100 0\nf 2 3 4\nf 2 5 3\nf 2 4 5\nf 3 5 4\n";
+
+cache_files::Samples body_samples()
+{
+    cache_files::Samples samples;
+    for (const double x : {0.0, 2.0, 4.0, 6.0})
+        samples.push_back({{0, 0, 0}, {x, 0, 0}, {x, 0, 100}, {x + 100, 0, 0}, {x, 100, 0}});
+    return samples;
+}
+
+struct SceneFolder {
+    TemporaryDirectory dir;
+
+    SceneFolder()
+    {
+        write_bytes(dir / "body.obj", kBody);
+        write_bytes(dir / "body.pc2", cache_files::pc2(body_samples(), 1.0));
+    }
+
+    RunConfig load(const std::string& deform, const std::string& keys = "",
+                   const std::string& file = "body.obj") const
+    {
+        write_bytes(
+            dir / "s.toml",
+            fmt::format("duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [1, 1]\ntranslate = [0, 0, 9]\n"
+                        "[[obstacle]]\nfile = \"{}\"\ndeform = {{ {} }}\nunits = \"cm\"\nup = \"y\"\n{}",
+                        file, deform, keys));
+        return load_scene(read_scene_source(dir / "s.toml", {}), with_program());
+    }
+    std::string refusal(const std::string& deform, const std::string& keys = "",
+                        const std::string& file = "body.obj") const
+    {
+        const std::string error = error_of([&] { load(deform, keys, file); });
+        EXPECT_EQ(error.find('\n'), std::string::npos);
+        return error;
+    }
+};
+
+const PointCache& cache_of(const RunConfig& config)
+{
+    return dynamic_cast<const PointCache&>(*config.scene.obstacles[0].deformation());
+}
+
+Vec3 place(const RunConfig& config, double time, std::size_t point)
+{
+    std::vector<Vec3> points, velocities;
+    cache_of(config).find(time, points, velocities);
+    return points.at(point);
+}
+
+TEST(SceneDeformation, FollowsTheMeshThroughUnitAxisAndScale)
+{
+    const SceneFolder folder;
+    const RunConfig config = folder.load("file = \"body.pc2\"", "scale = 2\ntranslate = [0, 0, 5]\n");
+    const std::vector<Vec3>& mesh = config.scene.obstacles[0].shape().mesh().points;
+    ASSERT_EQ(mesh.size(), 4U);
+    for (std::size_t p = 0; p < mesh.size(); ++p) {
+        EXPECT_LT((place(config, 0.0, p) - mesh[p]).norm(), 1e-6);
+        EXPECT_LT((place(config, 9.0, p) - mesh[p] - Vec3(0.12, 0, 0)).norm(), 1e-6);
+    }
+    EXPECT_EQ(cache_of(config).sample_times().back(), 3.0 / 24.0);
+    EXPECT_THAT(config.notes, Contains(AllOf(HasSubstr("4 samples of 4 points from 0 s to 0.125 s"),
+                                             HasSubstr("fastest vertex at 0.96 m/s"))));
+    EXPECT_EQ(record_obstacles(config)[0].deformation, config.scene.obstacles[0].deformation());
+}
+
+TEST(SceneDeformation, KeysChooseTimesAndSamples)
+{
+    const SceneFolder folder;
+    const auto times = [&](const std::string& keys) {
+        return cache_of(folder.load("file = \"body.pc2\", frames_per_second = 10" + keys)).sample_times();
+    };
+    EXPECT_THAT(times(""), ElementsAre(0.0, 0.1, 0.2, 0.3));
+    EXPECT_THAT(times(", start = 0.5, speed = 2"), ElementsAre(0.5, 0.55, 0.6, 0.65));
+    EXPECT_THAT(times(", start = -0.125"), ElementsAre(-0.125, 0.1 - 0.125, 0.2 - 0.125, 0.3 - 0.125));
+    EXPECT_THAT(times(", first = 1, last = 2"), ElementsAre(0.0, 0.1));
+    EXPECT_THAT(times(", first = 3"), ElementsAre(0.0));
+    EXPECT_THAT(cache_of(folder.load("file = \"body.pc2\"")).jumps(), IsEmpty());
+    const RunConfig linear = folder.load("file = \"body.pc2\", interpolation = \"linear\"");
+    EXPECT_EQ(cache_of(linear).jumps().size(), 3U);
+    EXPECT_NEAR(place(folder.load("file = \"body.pc2\", first = 2"), 0.0, 0).x(), 0.04, 1e-7);
+}
+
+TEST(SceneDeformation, SamplesThatNearlyMeetAFrameOrAnEventAreThere)
+{
+    const SceneFolder folder;
+    const RunConfig config = folder.load("file = \"body.pc2\", frames_per_second = 10, start = 0.1",
+                                         "[output]\nframes_per_second = 10\n");
+    EXPECT_NE(0.1 + 2.0 / 10.0, 0.3) << "no case to test";
+    EXPECT_THAT(cache_of(config).sample_times(), ElementsAre(0.1, 0.2, 0.3, 0.4));
+}
+
+TEST(SceneDeformation, SharpEdgesBeginAt45Degrees)
+{
+    const SceneFolder folder;
+    EXPECT_EQ(folder.load("file = \"body.pc2\"").as_run["obstacle"][0]["feature_angle"], 45.0);
+    EXPECT_EQ(
+        folder.load("file = \"body.pc2\"", "feature_angle = 20\n").as_run["obstacle"][0]["feature_angle"],
+        20.0);
+    EXPECT_EQ(folder.load("file = \"body.pc2\"", "[[obstacle]]\nbox = [1, 1, 1]\n")
+                  .as_run["obstacle"][1]["feature_angle"],
+              14.0);
+}
+
+TEST(SceneDeformation, ErrorsNameKeyFileAndSample)
+{
+    const SceneFolder folder;
+    const std::string& dir = folder.dir.path();
+    EXPECT_THAT(folder.refusal("file = \"no.pc2\""),
+                AllOf(HasSubstr("s.toml:8: obstacle.0.deform.file = \"no.pc2\": "),
+                      HasSubstr(dir + "/no.pc2: no such file")));
+    EXPECT_THAT(folder.refusal("file = \"body.pc2\", last = 4"),
+                HasSubstr("has no sample 4; allowed: 0 to 3"));
+    EXPECT_THAT(folder.refusal("start = 1"), HasSubstr("obstacle.0.deform.file: is required"));
+    EXPECT_THAT(folder.refusal("file = \"body.pc2\", speed = 0"), HasSubstr("allowed: a number > 0"));
+    EXPECT_THAT(folder.refusal("file = \"body.pc2\", first = -1"), HasSubstr("allowed: "));
+    EXPECT_THAT(folder.refusal("file = \"body.pc2\", rate = 3"), HasSubstr("unknown key"));
+
+    cache_files::Samples samples = body_samples();
+    samples[2][3].x() = 1e9;
+    write_bytes(folder.dir / "far.pc2", cache_files::pc2(samples, 1.0));
+    EXPECT_THAT(folder.refusal("file = \"far.pc2\""),
+                HasSubstr(dir + "/far.pc2: sample 2, vertex 4 (1e+09, 0, 0)"));
+
+    std::vector<Vec3>& first = samples[0];
+    for (Vec3& p : first) p *= 0.01;
+    write_bytes(folder.dir / "metres.pc2", cache_files::pc2(samples, 1.0));
+    EXPECT_THAT(folder.refusal("file = \"metres.pc2\""), HasSubstr("its edges are 0.01 times as long"));
+}
+
+TEST(SceneDeformation, NeedsAFileWhoseVerticesHaveAnOrder)
+{
+    const SceneFolder folder;
+    write_bytes(folder.dir / "body.stl",
+                "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+                "endfacet\nendsolid a\n");
+    EXPECT_THAT(folder.refusal("file = \"body.pc2\"", "", "body.stl"),
+                AllOf(HasSubstr("obstacle.0.file"), HasSubstr("allowed: OBJ or PLY")));
+    write_bytes(folder.dir / "box.toml",
+                "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [1, 1]\n[[obstacle]]\nbox = [1, 1, 1]\n"
+                "deform = { file = \"body.pc2\" }\n");
+    EXPECT_THAT(error_of([&] { load_scene(read_scene_source(folder.dir / "box.toml", {}), with_program()); }),
+                AllOf(HasSubstr("box.toml:7: obstacle.0.deform"), HasSubstr("contradicts obstacle.0.box")));
+}
+
+TEST(SceneDeformation, WarnsOfCollapsedFacesFarMovesAndShortSamples)
+{
+    const SceneFolder folder;
+    cache_files::Samples samples = body_samples();
+    samples[1][4] = {2, 0, 50};    // on an edge
+    samples[3][2] = {6, 0, -100};  // 2 m away
+    write_bytes(folder.dir / "odd.pc2", cache_files::pc2(samples, 1.0));
+    EXPECT_THAT(folder.load("file = \"odd.pc2\"").warnings,
+                AllOf(Contains(AllOf(HasSubstr("obstacle.0.deform.file"), HasSubstr("has no area"),
+                                     HasSubstr("sample 1"))),
+                      Contains(AllOf(HasSubstr("vertex 3 moves 2 m"), HasSubstr("sample 3")))));
+    EXPECT_THAT(folder.load("file = \"body.pc2\", frames_per_second = 1000").warnings,
+                Contains(HasSubstr("samples are 0.001 s apart, less than time.step, 0.005 s")));
+}
+
+TEST(SceneDeformation, AResumedSceneTakesThePosesOfTheRun)
+{
+    const SceneFolder folder;
+    const RunConfig first = folder.load("file = \"body.pc2\"");
+    const TemporaryDirectory& dir = folder.dir;
+    write_obstacles(dir.path(), record_obstacles(first));
+    std::filesystem::remove(dir / "body.pc2");
+    std::filesystem::remove(dir / "body.obj");
+    const std::vector<ObstacleRecord> records = read_obstacles(dir.path());
+    LoadOptions options;
+    options.cloth = &first.cloth;
+    options.obstacles = &records;
+    const RunConfig again = load_scene(read_scene_source(dir / "s.toml", {}), options);
+    for (const double t : {0.0, 0.03, 0.07, 1.0})
+        for (std::size_t p = 0; p < 4; ++p) EXPECT_EQ(place(again, t, p), place(first, t, p));
+
+    std::vector<ObstacleRecord> rigid = records;
+    rigid[0].deformation = nullptr;
+    options.obstacles = &rigid;
+    EXPECT_THAT(error_of([&] { load_scene(read_scene_source(dir / "s.toml", {}), options); }),
+                HasSubstr("obstacle.0.deform"));
+}
+
+}  // namespace
+}  // namespace arris
