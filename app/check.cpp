@@ -159,6 +159,17 @@ std::string motion_in_words(const RigidMotion& motion)
     return std::isfinite(motion.stop) ? words + fmt::format(" to {:g} s", motion.stop) : words + " on";
 }
 
+std::string motion_in_words(const MovingObstacle& obstacle)
+{
+    const std::string motion = motion_in_words(obstacle.motion());
+    if (!obstacle.is_deforming()) return motion;
+    const std::vector<double>& times = obstacle.deformation()->sample_times();
+    const std::string words = times.size() == 1
+                                  ? "one pose"
+                                  : fmt::format("deforms from {:g} s to {:g} s", times.front(), times.back());
+    return obstacle.motion().is_moving() ? words + "; " + motion : words;
+}
+
 /// Whether EOL vertices can lie on a wire.
 bool has_eol_wires(const Scene& scene)
 {
@@ -181,7 +192,7 @@ void describe_obstacles(const RunConfig& config, const EdgeLengths& edges, Lines
                                     sizes.x(), sizes.y(), sizes.z(), in_words(Vec3(bounds.min())),
                                     in_words(Vec3(bounds.max()))));
         lines.push_back("  " + features_in_words(obstacle.shape(), edges.mean));
-        lines.push_back("  " + motion_in_words(obstacle.motion()));
+        lines.push_back("  " + motion_in_words(obstacle));
     }
     if (has_eol_wires(config.scene))
         lines.push_back(

@@ -16,10 +16,13 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
                                   Workspace& work, const AcceptPart& accept)
 {
     constexpr int kStartParts = 3;
+    constexpr double kRounding = 1e-9;
     const PlannedStep planned = {state.time, end};
     int shrink = 1;  // factor by which parts have become shorter
-    int parts = std::max(find_flow_parts(scene, state, planned.length()),  // left until `end`
-                         find_motion_parts(scene, state, planned.length()));
+    const int of_motion = find_motion_parts(scene, state, planned.length());
+    int parts = std::max(find_flow_parts(scene, state, planned.length()), of_motion);  // left until `end`
+    // A part that the obstacles' motion asks for is no halved step.
+    const double whole = of_motion == 1 ? planned.length() : (1.0 - kRounding) * planned.length() / of_motion;
     StepPart part = StepPart::Ordinary;
     if (settings.integrator == Integrator::Bdf2 && !has_past(state, planned.length()) && parts == 1) {
         part = StepPart::Opening;
@@ -43,11 +46,16 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
                 shrink /= 2;
                 parts /= 2;
             }
-            if (!accept(report, report.part == StepPart::Ordinary && report.dt < planned.length()))
-                return std::nullopt;
+            if (!accept(report, report.part == StepPart::Ordinary && report.dt < whole)) return std::nullopt;
             continue;
         }
         failed.add_cost(report);
+        fprintf(stderr,
+                "fail t=%.6f dt=%.6f status=%d solves=%d fact=%d vertex=%d at %g %g %g obst=%d part=%d "
+                "res=%g\n",
+                state.time, part_end - state.time, (int)report.status, report.solves, report.factorisations,
+                (int)report.place.vertex, report.place.world.x(), report.place.world.y(),
+                report.place.world.z(), (int)report.infeasible.vertex, parts, report.kkt_residual);
         switch (work.retry.choose_next({report.status, attempt, work.prediction.has_history, is_shortest})) {
             case NextAttempt::WholeWithoutEol:
                 parts = std::max(parts / shrink, 1);

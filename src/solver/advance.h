@@ -13,7 +13,8 @@
 namespace arris {
 
 /// Called for each accepted part of a step. The report's costs include the failed attempts before that part.
-/// `is_halved`: an ordinary part, shorter than the planned step. Returning false stops `advance`.
+/// `is_halved`: an ordinary part, shorter than the planned step, or than the parts that obstacles ask for.
+/// Returning false stops `advance`.
 using AcceptPart = std::function<bool(const StepReport& report, bool is_halved)>;
 
 /// Advances `state` to `end` (s): in one step, or in equal parts where material flows too fast for one

@@ -215,5 +215,85 @@ TEST(DeformingObstacle, SphereThatSwellsLiftsItsCloth)
     EXPECT_TRUE(find_penetrations(run.scene, run.state).empty());
 }
 
+/// A roof whose ridge gets sharper and blunter than `feature_angle` under a cloth: the trace on it appears
+/// once and stays.
+TEST(DeformingObstacle, TraceOnAnEdgeThatSharpensDoesNotFlicker)
+{
+    constexpr double kWave = 2.0 * M_PI;  // 1/s: swings from 20 to 70 degrees and back, from 45 on
+    const auto slope = [](double time) { return (22.5 + 12.5 * std::sin(kWave * time)) * M_PI / 180.0; };
+    const ObstacleMesh roof = {
+        {{-0.3, -0.3, 0}, {0, -0.3, 0}, {0.3, -0.3, 0}, {-0.3, 0.3, 0}, {0, 0.3, 0}, {0.3, 0.3, 0}},
+        {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}},
+        {},
+        {}};
+    const auto fold = [&](const Vec3& rest, double time) {
+        return Vec3(rest.x() * std::cos(slope(time)), rest.y(), -std::abs(rest.x()) * std::sin(slope(time)));
+    };
+    const auto velocity = [&](const Vec3& rest, double time) {
+        const double rate = 12.5 * M_PI / 180.0 * kWave * std::cos(kWave * time);
+        return Vec3(-rate * rest.x() * std::sin(slope(time)), 0.0,
+                    -rate * std::abs(rest.x()) * std::cos(slope(time)));
+    };
+    Scene scene = make_scene();
+    scene.friction = Friction{{0.5}};
+    const auto deformation = std::make_shared<FormulaDeformation>(
+        roof.points, fold, velocity, std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0});
+    scene.obstacles.push_back(MovingObstacle("roof", roof, {}, {}, 45.0, deformation));
+    ClothMesh mesh = make_sheet({0.3, 0.2}, {9, 6}, GridPattern::Cross);
+    lay(mesh, Vec3(-0.16, -0.11, kThickness));
+    scene.eol = make_initial_target(mesh);
+    ClothRun run(std::move(scene), std::move(mesh));
+    int appeared = 0, disappeared = 0;
+    std::size_t before = 0;
+    run.advance(2.0, 0.005, [&](const StepReport&) {
+        const std::size_t now = run.state.eol.size();
+        appeared += before == 0 && now > 0;
+        disappeared += before > 0 && now == 0;
+        before = now;
+    });
+    EXPECT_EQ(appeared, 1);
+    EXPECT_EQ(disappeared, 0);
+    EXPECT_GE(before, 5u);
+    EXPECT_TRUE(find_penetrations(run.scene, run.state).empty());
+}
+
+/// A drum that turns by 30 degrees a step beside cloth at rest, 1.4 thicknesses away: steps in parts do not
+/// take the arcs of its points for chords that would reach the cloth.
+TEST(FastObstacle, DoesNotTouchClothBesideIt)
+{
+    constexpr double kRadius = 0.1, kStep = 0.005;
+    constexpr int kSides = 360;
+    ObstacleMesh drum;
+    for (const double y : {-0.2, 0.2})
+        for (int i = 0; i < kSides; ++i) {
+            const double angle = 2.0 * M_PI * i / kSides;
+            drum.points.push_back(Vec3(kRadius * std::cos(angle), y, kRadius * std::sin(angle)));
+        }
+    for (int i = 0; i < kSides; ++i) {
+        const int j = (i + 1) % kSides;
+        drum.faces.push_back({i, kSides + i, kSides + j});
+        drum.faces.push_back({i, kSides + j, j});
+    }
+    RigidMotion motion;
+    motion.angular_velocity = Vec3(0.0, M_PI / 6.0 / kStep, 0.0);
+    const auto place = [&](const Vec3& rest, double time) { return motion.at(time)(rest); };
+    const auto velocity = [&](const Vec3& rest, double time) {
+        return motion.velocity_after(time, motion.at(time)(rest));
+    };
+    for (const bool is_deforming : {false, true}) {
+        Scene scene = make_scene();
+        scene.gravity.reset();
+        scene.obstacles.push_back(is_deforming ? make_deforming(drum, place, velocity)
+                                               : MovingObstacle("drum", drum, {}, motion, 30.0));
+        ClothMesh mesh = make_sheet({0.1, 0.1}, {4, 4}, GridPattern::Cross);
+        lay(mesh, Vec3(-0.05, -0.05, kRadius + 1.4 * kThickness));
+        const std::vector<Vec3> placed = mesh.world;
+        ClothRun run(std::move(scene), std::move(mesh));
+        run.advance(0.1, kStep);
+        for (std::size_t v = 0; v < placed.size(); ++v)
+            EXPECT_LT((run.state.mesh.world[v] - placed[v]).norm(), 1e-12) << is_deforming;
+    }
+}
+
 }  // namespace
 }  // namespace arris

@@ -20,6 +20,7 @@
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "solver/contact/audit.h"
 #include "solver/contact/clearance.h"
+#include "solver/motion_parts.h"
 #include "solver/step.h"
 
 namespace arris {
@@ -187,17 +188,17 @@ std::vector<ObstaclePlan> plan_obstacles(const Json& scene)
     return plans;
 }
 
-/// Limits the rotation per step: contact search uses an obstacle's placement only at the ends of a step, and
-/// a faster rotation could miss cloth in between.
+/// Limits the rotation per step to what `find_motion_parts` can divide into quarter turns: contact search
+/// uses an obstacle's placement only at the ends of a part.
 void check_turn(const SceneDocument& document, const std::string& path, const Json& json, double step,
                 const RigidMotion& motion)
 {
-    constexpr double kMostTurn = std::numbers::pi / 2.0;
+    constexpr double kMostTurn = kMostMotionParts * std::numbers::pi / 2.0;
     const double turn = motion.fastest_turn() * step;
     if (!(turn > kMostTurn * (1.0 + 1e-9))) return;
     document.fail(path + (json.contains("keyframes") ? ".keyframes" : ".motion"),
                   fmt::format("rotates by {:.3g} rad in a step of {} s", turn, step),
-                  "at most a quarter turn (1.57 rad) per step; a shorter time.step allows faster rotation");
+                  "at most 16 turns (101 rad) per step; a shorter time.step allows faster rotation");
 }
 
 void load_obstacles(const SceneDocument& document, const LoadOptions& options,

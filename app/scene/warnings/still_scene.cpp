@@ -26,6 +26,12 @@ bool acts_between(double begin, double end, const RigidMotion& motion)
     return motion.is_moving() && is_in_time;
 }
 
+bool deforms_between(double begin, double end, const Deformation& deformation)
+{
+    const std::vector<double>& times = deformation.sample_times();
+    return times.size() > 1 && times.front() < end && times.back() > begin;
+}
+
 bool has_load(const RunConfig& config)
 {
     const Scene& scene = config.scene;
@@ -41,10 +47,12 @@ bool has_moving_bodies(const RunConfig& config)
 {
     const std::vector<Pin>& pins = config.scene.pins;
     const std::vector<MovingObstacle>& obstacles = config.scene.obstacles;
-    return std::any_of(obstacles.begin(), obstacles.end(),
-                       [&](const MovingObstacle& body) {
-                           return acts_between(0.0, config.duration, body.motion());
-                       }) ||
+    return std::any_of(
+               obstacles.begin(), obstacles.end(),
+               [&](const MovingObstacle& body) {
+                   return acts_between(0.0, config.duration, body.motion()) ||
+                          (body.is_deforming() && deforms_between(0.0, config.duration, *body.deformation()));
+               }) ||
            std::any_of(pins.begin(), pins.end(), [&](const Pin& pin) {
                return acts_between(pin.start, std::min(config.duration, pin.release), pin.motion);
            });

@@ -90,7 +90,8 @@ std::vector<UnderCloth> find_under_cloth(const RunConfig& config)
         under.is_around_corner = beyond == 2;
         if (!is_under) continue;
         under.steepest = find_steepest(pose->mesh(), pose.placement.rotation, under.up);
-        under.is_moving_along = moves_along(obstacle.motion(), under.up, config.duration);
+        under.is_moving_along =
+            obstacle.is_deforming() || moves_along(obstacle.motion(), under.up, config.duration);
         found.push_back(std::move(under));
     }
     return found;

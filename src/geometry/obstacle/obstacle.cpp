@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
 #include "geometry/cgal.h"
+#include "geometry/closest_point.h"
 #include "geometry/sort_unique.h"
 
 namespace arris {
@@ -189,6 +191,32 @@ void Obstacle::find_corners(const Box3& box, std::vector<int>& found) const
     for (auto at = begin; at < end; ++at)
         if (box.contains(points[*at])) found.push_back(*at);
     std::sort(found.begin(), found.end());
+}
+
+int Obstacle::find_nearest_face(const Vec3& place, double most) const
+{
+    int nearest = -1;
+    double least = most;
+    if (!trees_->faces.empty()) {
+        // A hint that is no nearer than `most` comes back where no face is.
+        const Kernel::Point_3 query = arris::to_cgal(place);
+        const Kernel::Point_3 far(place.x() + most, place.y(), place.z());
+        const auto found = trees_->faces.closest_point_and_primitive(query, {far, trees_->triangles.cend()});
+        if (found.second != trees_->triangles.cend()) {
+            nearest = static_cast<int>(found.second - trees_->triangles.cbegin());
+            least = std::sqrt(CGAL::squared_distance(query, found.first));
+        }
+    }
+    for (const int f : trees_->flat)
+        for (int i = 0; i < 3; ++i) {
+            const Face& corners = mesh_.faces[f];
+            const Vec3 &a = mesh_.points[corners[i]], &b = mesh_.points[corners[(i + 1) % 3]];
+            const double distance = (place - a - closest_on_segment(place, a, b) * (b - a)).norm();
+            if (!(distance < least)) continue;
+            least = distance;
+            nearest = f;
+        }
+    return nearest;
 }
 
 void Obstacle::find_faces_touching(const Vec3& a, const Vec3& b, const Vec3& c, std::vector<int>& found) const

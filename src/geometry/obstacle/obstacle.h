@@ -40,6 +40,9 @@ class Obstacle {
     void find_corners(const Box3& box, std::vector<int>& found) const;        ///< indices in
                                                                               ///< features().corners
 
+    /// The face nearest to a place (any of several equally near), of those nearer than `most` (m); else -1.
+    int find_nearest_face(const Vec3& place, double most) const;
+
     /// Faces that intersect the closed triangle (a, b, c) or segment (a, b), by exact predicates; ascending.
     void find_faces_touching(const Vec3& a, const Vec3& b, const Vec3& c, std::vector<int>& found) const;
     void find_faces_touching(const Vec3& a, const Vec3& b, std::vector<int>& found) const;

@@ -184,13 +184,12 @@ std::vector<int> find_fans(const ObstacleMesh& mesh, const ObstacleTopology& top
 /// Marks the apexes of cones: points where the angles of a closed fan of faces sum to much less than 360
 /// degrees. A pit in a solid, reflex on the whole, is not marked.
 void mark_apexes(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes,
-                 std::vector<char>& is_corner)
+                 const std::vector<int>& fan_of, std::vector<char>& is_corner)
 {
     struct Fan {
         double angle = 0.0, turn = 0.0;
         bool is_open = false;
     };
-    const std::vector<int> fan_of = find_fans(mesh, topology);
     std::vector<Fan> fans(fan_of.size());
     for (int e = 0; e < topology.surface_edge_count; ++e) {
         const auto [f, g] = topology.edges[e].faces;
@@ -291,9 +290,9 @@ std::vector<Vec3> normals_around(const ObstacleTopology& topology, const FacePla
 /// Marks the nodes of a pose, other points stay as they are.
 void mark_nodes(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes,
                 const std::vector<FeatureEdge>& edges, const std::vector<EdgesAt>& at,
-                std::vector<char>& is_corner)
+                const std::vector<int>& fan_of, std::vector<char>& is_corner)
 {
-    mark_apexes(mesh, topology, planes, is_corner);
+    mark_apexes(mesh, topology, planes, fan_of, is_corner);
     for (int p = 0; p < static_cast<int>(mesh.points.size()); ++p)
         if (is_node(mesh, topology, edges, at[p], p)) is_corner[p] = 1;
 }
@@ -341,10 +340,11 @@ ObstacleFeatures find_features_of_poses(const ObstacleMesh& mesh, const Obstacle
     features.patch = find_patches(mesh, topology, planes, diagonal);
 
     const std::vector<EdgesAt> at = gather_at_points(topology, features.edges, mesh.points.size());
+    const std::vector<int> fan_of = find_fans(mesh, topology);
     std::vector<char> is_corner(mesh.points.size(), 0);
     for (const int p : mesh.lone_points) is_corner[p] = 1;
     visit_poses([&](const ObstacleMesh& pose, const ObstacleTopology& posed) {
-        mark_nodes(pose, posed, planes_of(pose, posed), features.edges, at, is_corner);
+        mark_nodes(pose, posed, planes_of(pose, posed), features.edges, at, fan_of, is_corner);
     });
     features.polylines = chain(mesh, topology, at, is_corner, features.edges);
     for (int p = 0; p < static_cast<int>(mesh.points.size()); ++p)

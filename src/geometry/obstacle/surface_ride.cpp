@@ -194,50 +194,42 @@ void take_face(const Obstacle& obstacle, int face, Nearest& nearest)
                  on_edge(obstacle.topology().face_edges[face][i], corners[i], corners[j], found.weights[j]));
 }
 
-/// Takes the elements nearer than `nearest.least`.
-void take_near(const Obstacle& obstacle, Nearest& nearest)
+void take_wire(const Obstacle& obstacle, int edge, Nearest& nearest)
 {
-    const ObstacleTopology& topology = obstacle.topology();
+    const auto& [a, b] = obstacle.topology().edges[edge].points;
     const std::vector<Vec3>& points = obstacle.mesh().points;
-    const Vec3& place = nearest.place;
-    const Box3 box(place.array() - nearest.least, place.array() + nearest.least);
-    std::vector<int> near;
-    obstacle.find_faces(box, near);
-    for (const int f : near) take_face(obstacle, f, nearest);
-    obstacle.find_feature_edges(box, near);
-    for (const int f : near) {
-        const FeatureEdge& feature = obstacle.features().edges[f];
-        if (feature.kind != FeatureKind::Wire) continue;
-        const auto& [a, b] = topology.edges[feature.edge].points;
-        const double t = closest_on_segment(place, points[a], points[b]);
-        const Vec3 point = points[a] + t * (points[b] - points[a]);
-        if (t > 0.0 && t < 1.0)
-            nearest.take(point, on_edge(feature.edge, a, b, t));
-        else
-            nearest.take(point, at_point(t > 0.0 ? b : a));
-    }
-    obstacle.find_corners(box, near);
-    for (const int c : near) {
-        const int point = obstacle.features().corners[c].point;
-        if (topology.edge_count_at(point) == 0) nearest.take(points[point], at_point(point));
-    }
+    const double t = closest_on_segment(nearest.place, points[a], points[b]);
+    const Vec3 point = points[a] + t * (points[b] - points[a]);
+    nearest.take(point, t > 0.0 && t < 1.0 ? on_edge(edge, a, b, t) : at_point(t > 0.0 ? b : a));
 }
 
 }  // namespace
 
 std::optional<SurfacePlace> find_nearest(const Obstacle& obstacle, const Vec3& place, double most)
 {
-    constexpr double kGrowth = 4.0;
-    const double size = obstacle.bounds().diagonal().norm();
-    const double farthest = size + std::sqrt(obstacle.bounds().squaredExteriorDistance(place));
-    most = std::min(most, 2.0 * farthest + 1.0);  // finds all
-    for (double reach = std::min(most, size / 64.0);; reach = std::min(most, kGrowth * reach)) {
-        if (!(reach > 0.0)) reach = most;
-        Nearest nearest{place, reach};
-        take_near(obstacle, nearest);
-        if (nearest.on.element >= 0) return nearest.on;
-        if (!(reach < most)) return std::nullopt;
+    const double farthest =
+        obstacle.bounds().diagonal().norm() + std::sqrt(obstacle.bounds().squaredExteriorDistance(place));
+    Nearest nearest{place, std::min(most, 2.0 * farthest + 1.0)};
+    if (const int face = obstacle.find_nearest_face(place, nearest.least); face >= 0)
+        take_face(obstacle, face, nearest);
+    const Box3 box(place.array() - nearest.least, place.array() + nearest.least);
+    std::vector<int> near;
+    if (!obstacle.mesh().segments.empty()) {
+        obstacle.find_feature_edges(box, near);
+        for (const int f : near)
+            if (const FeatureEdge& feature = obstacle.features().edges[f]; feature.kind == FeatureKind::Wire)
+                take_wire(obstacle, feature.edge, nearest);
     }
+    if (!obstacle.mesh().lone_points.empty()) {
+        obstacle.find_corners(box, near);
+        for (const int c : near) {
+            const int point = obstacle.features().corners[c].point;
+            if (obstacle.topology().edge_count_at(point) == 0)
+                nearest.take(obstacle.mesh().points[point], at_point(point));
+        }
+    }
+    if (nearest.on.element < 0) return std::nullopt;
+    return nearest.on;
 }
 
 Placement find_way(const Obstacle& from, const Obstacle& to, const SurfacePlace& on)

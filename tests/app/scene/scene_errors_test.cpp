@@ -806,12 +806,12 @@ const std::vector<WrongScene> kWrongScenes = {
      "> "
      "1 (s)"},
     {"ObstacleTurnsTooFarInAStep",
-     kBase + kNail + "motion = { angular_velocity = [0, 0, 320] }\n",
+     kBase + kNail + "motion = { angular_velocity = [0, 0, 21000] }\n",
      {},
-     "s.toml:7: obstacle.0.motion = { angular_velocity = [0, 0, 320] }: rotates by 1.6 rad in a step of "
+     "s.toml:7: obstacle.0.motion = { angular_velocity = [0, 0, 21000] }: rotates by 105 rad in a step of "
      "0.005 "
      "s; "
-     "allowed: at most a quarter turn (1.57 rad) per step; a shorter time.step allows faster rotation"},
+     "allowed: at most 16 turns (101 rad) per step; a shorter time.step allows faster rotation"},
     {"MotionStopsBeforeItStarts",
      kBase + kNail + "motion = { velocity = [1, 0, 0], start = 0.5, stop = 0.25 }\n",
      {},

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The check of cloth and an obstacle that both move: it must say what the check of their relative motion
+// says.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "geometry/check/sweep_check.h"
+#include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth_input/cloth_grid.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "geometry/rigid_motion.h"
+
+namespace arris {
+namespace {
+
+constexpr double kThickness = 1e-3;
+
+/// A box, a wire and a nail in a row, .2 m apart.
+ObstacleMesh make_kinds()
+{
+    ObstacleMesh mesh = make_box({0.1, 0.1, 0.1});
+    const int first = static_cast<int>(mesh.points.size());
+    mesh.points.insert(mesh.points.end(),
+                       {Vec3(0.2, -0.05, 0.0), Vec3(0.22, 0.05, 0.01), Vec3(0.4, 0.0, 0.0)});
+    mesh.segments = {{first, first + 1}};
+    mesh.lone_points = {first + 2};
+    return mesh;
+}
+
+struct Sheet {
+    ClothMesh mesh;
+    MeshTopology topology;
+
+    Sheet()
+    {
+        ClothGrid grid;
+        grid.size = {0.6, 0.3};
+        grid.resolution = {9, 5};
+        mesh = make_cloth_grid(grid);
+        topology = make_topology(mesh.vertex_count(), mesh.faces);
+    }
+    ClothMotion move(const std::vector<Vec3>& begin, const std::vector<Vec3>& end) const
+    {
+        return {&mesh.faces, &topology.edges, begin, end};
+    }
+    std::vector<Vec3> at(const Vec3& corner) const
+    {
+        std::vector<Vec3> places = mesh.world;
+        for (Vec3& x : places) x += corner;
+        return places;
+    }
+};
+
+std::vector<Vec3> moved(std::vector<Vec3> points, const Vec3& way)
+{
+    for (Vec3& p : points) p += way;
+    return points;
+}
+
+TEST(MovingSides, FindWhatTheCheckOfTheRelativeMotionFinds)
+{
+    const Sheet sheet;
+    const Obstacle before(make_kinds(), 30.0);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> part(-1.0, 1.0);
+    int met = 0;
+    for (int trial = 0; trial < 40; ++trial) {
+        const Vec3 drift = 0.3 * Vec3(part(random), part(random), part(random));
+        const Vec3 fall(0.05 * part(random), 0.05 * part(random), -0.08 - 0.1 * std::abs(part(random)));
+        const std::vector<Vec3> begin = sheet.at(Vec3(-0.12, -0.15, 0.07));
+        // The obstacle drifts, and the cloth falls past it while it drifts along.
+        const Obstacle after(before, moved(before.mesh().points, drift));
+        const ClothMotion carried = sheet.move(moved(begin, drift), moved(begin, drift + fall));
+        const SweepReport relative = check_sweep(before, sheet.move(begin, moved(begin, fall)), kThickness);
+        const MovingSides sides = {before, begin};
+        const SweepReport both = check_sweep(after, carried, kThickness, &sides);
+        EXPECT_EQ(both.crossings, relative.crossings);
+        EXPECT_EQ(both.intersections, relative.intersections);
+        EXPECT_EQ(both.faces, relative.faces);
+        ASSERT_EQ(both.violations.size(), relative.violations.size());
+        for (std::size_t k = 0; k < both.violations.size(); ++k) {
+            const ObstacleContact &a = both.violations[k], &b = relative.violations[k];
+            EXPECT_EQ(a.kind, b.kind);
+            EXPECT_EQ(a.vertices, b.vertices);
+            EXPECT_EQ(a.element, b.element);
+            EXPECT_LT((a.normal - b.normal).norm(), 1e-9);
+            EXPECT_LT((a.point - drift - b.point).norm(), 1e-9);
+            EXPECT_NEAR(a.least_gap, b.least_gap, 1e-12);
+        }
+        met += relative.crossings > 0;
+    }
+    EXPECT_GT(met, 30);
+}
+
+TEST(MovingSides, FindsAnObstacleThatPassesThroughClothAtRest)
+{
+    const Sheet sheet;
+    const Obstacle before(make_kinds(), 30.0);
+    const Obstacle after(before, moved(before.mesh().points, Vec3(0.0, 0.0, 0.3)));
+    const std::vector<Vec3> rest = sheet.at(Vec3(-0.12, -0.15, 0.1));
+    const MovingSides sides = {before, rest};
+    const SweepReport report =
+        check_sweep(after, sheet.move(moved(rest, Vec3(0, 0, 0.3)), rest), kThickness, &sides);
+    EXPECT_FALSE(report.is_clean());
+    EXPECT_GT(report.violations.size(), 4u);
+    for (const ObstacleContact& contact : report.violations) {
+        EXPECT_GT(contact.normal.z(), 0.0);
+        EXPECT_LT(contact.normal.dot(contact.at(rest) - contact.point), contact.least_gap);
+    }
+    // Rides along: nothing is met.
+    const SweepReport riding = check_sweep(
+        after, sheet.move(moved(rest, Vec3(0, 0, 0.3)), moved(rest, Vec3(0, 0, 0.3))), kThickness, &sides);
+    EXPECT_TRUE(riding.is_clean());
+}
+
+/// Cloth that rides on a turning obstacle keeps off: a rigid turn's way by chords is one to one below 180
+/// degrees.
+TEST(MovingSides, RidingOnATurningObstacleMeetsNothing)
+{
+    const Sheet sheet;
+    const Obstacle before(make_kinds(), 30.0);
+    const std::vector<Vec3> begin = sheet.at(Vec3(-0.12, -0.15, 0.051));
+    for (const double degrees : {0.1, 1.0, 10.0, 45.0, 90.0, 150.0}) {
+        const Placement turn{rotation_about(Vec3(0.3, 0.2, 1.0), degrees), Vec3(0.1, 0.2, 0.0)};
+        std::vector<Vec3> points = before.mesh().points, end = begin;
+        for (Vec3& p : points) p = turn(p);
+        for (Vec3& x : end) x = turn(x);
+        const Obstacle after(before, points);
+        const MovingSides sides = {before, begin};
+        EXPECT_TRUE(check_sweep(after, sheet.move(end, end), kThickness, &sides).is_clean()) << degrees;
+    }
+}
+
+}  // namespace
+}  // namespace arris
