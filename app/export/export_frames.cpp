@@ -32,6 +32,15 @@ struct Source {
     double time(std::size_t frame) const { return static_cast<double>(frame) / options.frames_per_second; }
 };
 
+/// Places of an obstacle's points in a file with `up`, at `time`.
+std::vector<Vec3> turned_points(const ObstacleRecord& obstacle, UpAxis up, double time)
+{
+    std::vector<Vec3> points = obstacle.points_at(time);
+    const Placement to_file = turn_to(up) * obstacle.at(time);
+    for (Vec3& point : points) point = to_file(point);
+    return points;
+}
+
 /// Writes each frame's cloth and obstacles by `write` into files of their own.
 template <typename Write>
 void write_each(const Source& run, const char* extension, const Write& write)
@@ -42,7 +51,7 @@ void write_each(const Source& run, const char* extension, const Write& write)
     for (std::size_t i = 0; i < run.frames.count; ++i) write(path(i, "cloth"), run.frames.read(i));
     for (const ObstacleRecord& obstacle : run.obstacles)
         for (std::size_t i = 0; i < count_obstacle_frames(obstacle, run.frames.count); ++i)
-            write(path(i, obstacle.name), obstacle, turn_to(run.options.up) * obstacle.at(run.time(i)));
+            write(path(i, obstacle.name), obstacle, turned_points(obstacle, run.options.up, run.time(i)));
 }
 
 void export_obj(const Source& run)

@@ -5,8 +5,9 @@
 //
 //     header | JSON | fixed arrays | shape of frame 0 | frame 1 - frame 0 | frame 2 - frame 0 | ...
 //
-// Fixed arrays are indices, material coordinates, times, weights and all of the obstacles.
-// At frame i only one of n - 1 weights is not 0. The n (n - 1) weights of the animation are stored sparsely.
+// Fixed arrays are indices, material coordinates, times, weights and the points of rigid obstacles. Behind
+// the cloth's shapes are those of each obstacle that deforms, in the same way. At frame i only one of n - 1
+// weights is not 0. The n (n - 1) weights of the animation are stored sparsely.
 #include "app/export/export_gltf.h"
 
 #include <fmt/format.h>
@@ -16,8 +17,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "app/export/float_value.h"
 #include "app/export/gltf_asset.h"
+#include "app/export/gltf_obstacle.h"
 #include "app/files/atomic_file.h"
 #include "geometry/input_error.h"
 
@@ -25,7 +26,6 @@ namespace arris {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Float4 = std::array<float, 4>;
 
 constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max();  // of a file and of a count
 
@@ -74,38 +74,18 @@ class Shapes {
         Shape shape;
         for (std::size_t v = 0; v < frame.world.size(); ++v) {
             shape.positions.push_back(
-                to_floats(i, v, i == 0 ? frame.world[v] : frame.world[v] - first_.world[v]));
-            shape.normals.push_back(to_floats(i, v, i == 0 ? normals[v] : normals[v] - normals_[v]));
+                to_float3(path_, i, v, i == 0 ? frame.world[v] : frame.world[v] - first_.world[v]));
+            shape.normals.push_back(to_float3(path_, i, v, i == 0 ? normals[v] : normals[v] - normals_[v]));
         }
         return shape;
     }
 
   private:
-    Float3 to_floats(std::size_t i, std::size_t v, const Vec3& value) const
-    {
-        Float3 floats;
-        for (int k = 0; k < 3; ++k) floats[k] = float_value(path_, i, v, value[k]);
-        return floats;
-    }
-
     const std::string& path_;
     const FrameSource& frames_;
     Frame first_;
     std::vector<Vec3> normals_;
 };
-
-std::string_view bytes_of(const std::vector<Float3>& values)
-{
-    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Float3)};
-}
-
-std::vector<std::uint32_t> to_indices(const auto& cells)
-{
-    std::vector<std::uint32_t> indices;
-    for (const auto& cell : cells)
-        for (const int v : cell) indices.push_back(static_cast<std::uint32_t>(v));
-    return indices;
-}
 
 /// Describes the shapes of all frames, which are streamed behind the fixed arrays; returns the cloth's mesh.
 std::size_t add_cloth_mesh(GltfAsset& asset, const Shapes& shapes, std::size_t frame_count,
@@ -117,48 +97,24 @@ std::size_t add_cloth_mesh(GltfAsset& asset, const Shapes& shapes, std::size_t f
     const std::size_t indices = asset.add("SCALAR", kGltfUnsigned, to_indices(first.faces), kGltfIndexArray);
     const std::size_t uvs = asset.add("VEC2", kGltfFloat, uv, kGltfVertexArray);
 
-    const std::size_t shape_bytes = first.world.size() * sizeof(Float3);
-    const std::size_t view = asset.append("bufferViews", {{"buffer", 0}, {"byteStride", sizeof(Float3)}});
-    Json targets = Json::array(), names = Json::array(), attributes;
-    for (std::size_t i = 0; i < frame_count; ++i) {
-        Json attribute;
-        for (const char* name : {"POSITION", "NORMAL"}) {
-            attribute[name] = asset.append("accessors", {{"bufferView", view},
-                                                         {"byteOffset", asset.streamed},
-                                                         {"componentType", kGltfFloat},
-                                                         {"count", first.world.size()},
-                                                         {"type", "VEC3"}});
-            asset.streamed += shape_bytes;
-        }
-        asset.set_bounds(attribute["POSITION"], find_gltf_bounds(shapes.read(i).positions));
-        if (i == 0) {
-            attributes = attribute;
-            continue;
-        }
-        targets.push_back(attribute);
-        names.push_back(fmt::format("frame {}", i));
-    }
-    asset.json["bufferViews"][view]["byteLength"] = asset.streamed;
-    asset.json["bufferViews"][view]["target"] = kGltfVertexArray;
-
-    attributes["TEXCOORD_0"] = uvs;
-    Json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", material}};
-    if (targets.empty()) return asset.append("meshes", {{"name", "cloth"}, {"primitives", {primitive}}});
-    primitive["targets"] = std::move(targets);
-    return asset.append("meshes", {{"name", "cloth"},
-                                   {"primitives", {primitive}},
-                                   {"weights", std::vector<double>(frame_count - 1, 0.0)},
-                                   {"extras", {{"targetNames", names}}}});
+    asset.begin_streamed();
+    GltfShapes described = asset.add_shapes(frame_count, first.world.size(), {"POSITION", "NORMAL"},
+                                            [&](std::size_t i) { return shapes.read(i).positions; });
+    described.attributes["TEXCOORD_0"] = uvs;
+    const Json primitive = {
+        {"attributes", described.attributes}, {"indices", indices}, {"material", material}};
+    return asset.add_mesh("cloth", Json::array({primitive}), described);
 }
 
-void animate_weights(GltfAsset& asset, std::size_t frame_count, std::size_t times, std::size_t node)
+/// Adds the weights of all targets at the time of each frame.
+std::size_t add_weights(GltfAsset& asset, std::size_t frame_count)
 {
     std::vector<std::uint32_t> places;
     const std::size_t targets = frame_count - 1;
     for (std::size_t i = 1; i < frame_count; ++i)
         places.push_back(static_cast<std::uint32_t>(i * targets + (i - 1)));
     const std::vector<float> ones(targets, 1.0F);
-    const std::size_t weights = asset.append(
+    return asset.append(
         "accessors",
         {{"componentType", kGltfFloat},
          {"count", frame_count * targets},
@@ -167,76 +123,6 @@ void animate_weights(GltfAsset& asset, std::size_t frame_count, std::size_t time
           {{"count", targets},
            {"indices", {{"bufferView", asset.add_view(places, 0)}, {"componentType", kGltfUnsigned}}},
            {"values", {{"bufferView", asset.add_view(ones, 0)}}}}}});
-    asset.add_channel(times, weights, node, "weights");
-}
-
-/// The mesh of an obstacle, in its frame; null if it has no points.
-Json add_obstacle_mesh(GltfAsset& asset, const std::string& path, const ObstacleRecord& obstacle,
-                       std::size_t material)
-{
-    const ObstacleMesh& mesh = obstacle.mesh;
-    if (mesh.points.empty()) return nullptr;
-    std::vector<Float3> points;
-    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-        const auto at = [&](int k) {
-            return float_value(path + ": " + obstacle.name, 0, v, mesh.points[v][k]);
-        };
-        points.push_back({at(0), at(1), at(2)});
-    }
-    const std::size_t positions = asset.add_positions(points);
-    std::vector<std::array<int, 1>> lone_points;
-    for (const int v : mesh.lone_points) lone_points.push_back({v});
-    Json primitives = Json::array();
-    const auto add = [&](int mode, const auto& cells) {
-        if (cells.empty()) return;
-        const std::size_t indices = asset.add("SCALAR", kGltfUnsigned, to_indices(cells), kGltfIndexArray);
-        primitives.push_back({{"attributes", {{"POSITION", positions}}},
-                              {"indices", indices},
-                              {"mode", mode},
-                              {"material", material}});
-    };
-    add(kGltfTriangles, mesh.faces);
-    add(kGltfLines, mesh.segments);
-    add(kGltfPoints, lone_points);
-    if (primitives.empty()) return nullptr;
-    return asset.append("meshes", {{"name", obstacle.name}, {"primitives", primitives}});
-}
-
-Float4 to_floats(const Eigen::Quaterniond& q)
-{
-    return {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
-            static_cast<float>(q.w())};
-}
-
-std::size_t add_obstacle(GltfAsset& asset, const std::string& path, const ObstacleRecord& obstacle,
-                         std::size_t frame_count, double frames_per_second, std::size_t times,
-                         std::size_t material)
-{
-    std::vector<Float3> translations;
-    std::vector<Float4> rotations;
-    Eigen::Quaterniond previous = Eigen::Quaterniond::Identity();
-    for (std::size_t i = 0; i < count_obstacle_frames(obstacle, frame_count); ++i) {
-        const Placement place = obstacle.at(static_cast<double>(i) / frames_per_second);
-        Eigen::Quaterniond turned(place.rotation);
-        turned.normalize();
-        if (turned.dot(previous) < 0.0)
-            turned.coeffs() = -turned.coeffs();  // the same rotation, the shorter arc
-        previous = turned;
-        rotations.push_back(to_floats(turned));
-        Float3 x;
-        for (int k = 0; k < 3; ++k)
-            x[k] = float_value(path + ": " + obstacle.name, i, 0, place.translation[k]);
-        translations.push_back(x);
-    }
-    Json node = {{"name", obstacle.name}, {"translation", translations.at(0)}, {"rotation", rotations.at(0)}};
-    const Json mesh = add_obstacle_mesh(asset, path, obstacle, material);
-    if (!mesh.is_null()) node["mesh"] = mesh;
-    const std::size_t index = asset.append("nodes", node);
-    if (translations.size() > 1) {
-        asset.add_channel(times, asset.add("VEC3", kGltfFloat, translations), index, "translation");
-        asset.add_channel(times, asset.add("VEC4", kGltfFloat, rotations), index, "rotation");
-    }
-    return index;
 }
 
 std::size_t add_times(GltfAsset& asset, std::size_t frame_count, double frames_per_second)
@@ -267,19 +153,21 @@ GltfAsset make_asset(const std::string& path, const Shapes& shapes, std::size_t 
     const std::size_t mesh = add_cloth_mesh(asset, shapes, frame_count, cloth_material);
     const std::size_t cloth = asset.append("nodes", {{"name", "cloth"}, {"mesh", mesh}});
     Json children = {cloth};
-    // An animation of one frame would move nothing.
-    const std::size_t times = frame_count > 1 ? add_times(asset, frame_count, options.frames_per_second) : 0;
-    if (frame_count > 1) animate_weights(asset, frame_count, times, cloth);
+    GltfTimeline timeline{frame_count, options.frames_per_second};
+    if (frame_count > 1) {  // an animation of one frame would move nothing
+        timeline.times = add_times(asset, frame_count, options.frames_per_second);
+        timeline.weights = add_weights(asset, frame_count);
+        asset.add_channel(timeline.times, timeline.weights, cloth, "weights");
+    }
     if (!obstacles.empty()) {
         const std::size_t material = add_material(asset, "obstacles", {0.5, 0.5, 0.5, 1.0});
         for (const ObstacleRecord& obstacle : obstacles)
-            children.push_back(
-                add_obstacle(asset, path, obstacle, frame_count, options.frames_per_second, times, material));
+            children.push_back(add_gltf_obstacle(asset, path, obstacle, timeline, material));
     }
     constexpr double kPi = 3.14159265358979323846;
     const Eigen::Quaterniond z_to_y(Eigen::AngleAxisd(-0.5 * kPi, Vec3::UnitX()));
     const std::size_t root =
-        asset.append("nodes", {{"name", "arris"}, {"rotation", to_floats(z_to_y)}, {"children", children}});
+        asset.append("nodes", {{"name", "arris"}, {"rotation", to_float4(z_to_y)}, {"children", children}});
     Json scene = {{"nodes", {root}}};
     if (!options.title.empty()) scene["name"] = options.title;
     asset.append("scenes", scene);
@@ -299,22 +187,25 @@ void write_gltf(const std::string& path, const FrameSource& frames, const GltfOp
                 const std::vector<ObstacleRecord>& obstacles)
 {
     const Shapes shapes(path, frames);
-    const std::uint64_t shape_bytes = 2 * shapes.first().world.size() * sizeof(Float3);
+    std::uint64_t vertices = shapes.first().world.size(), shape_bytes = 2 * vertices * sizeof(Float3);
+    for (const ObstacleRecord& obstacle : obstacles)
+        if (obstacle.is_deforming()) {
+            vertices += obstacle.mesh.points.size();
+            shape_bytes += obstacle.mesh.points.size() * sizeof(Float3);
+        }
     const auto require_size = [&](std::uint64_t bytes) {
         if (bytes > kMostBytes)
             throw InputError(
                 fmt::format("{}: {} frames of {} vertices make {} bytes; allowed: {} (export fewer frames, "
                             "or a coarser --grid)",
-                            path, frames.count, shapes.first().world.size(), bytes, kMostBytes));
+                            path, frames.count, vertices, bytes, kMostBytes));
     };
     require_size(frames.count * shape_bytes);
     require_size(frames.count * frames.count);  // weights are counted by 32 bits, too
     GltfAsset asset = make_asset(path, shapes, frames.count, options, obstacles);
 
-    // The streamed shapes lie behind the fixed arrays, whose size is known only now.
+    asset.end_streamed();
     const std::uint64_t array_bytes = asset.fixed.size() + asset.streamed;
-    for (Json& view : asset.json["bufferViews"])
-        if (!view.contains("byteOffset")) view["byteOffset"] = asset.fixed.size();
     asset.json["buffers"] = {{{"byteLength", array_bytes}}};
     std::string text = asset.json.dump(-1, ' ', false, Json::error_handler_t::replace);
     text.resize((text.size() + 3) / 4 * 4, ' ');
@@ -338,6 +229,8 @@ void write_gltf(const std::string& path, const FrameSource& frames, const GltfOp
         file.write(bytes_of(shape.positions));
         file.write(bytes_of(shape.normals));
     }
+    for (const ObstacleRecord& obstacle : obstacles)
+        write_gltf_poses(file, path, obstacle, {frames.count, options.frames_per_second});
     file.commit();
 }
 

@@ -20,7 +20,8 @@ struct GltfOptions {
 /// positions, normals and material coordinates. Frame i > 0 is morph target i - 1, with differences of
 /// positions and normals. The animation gives weight 1 to one target at the time of each frame, and weights
 /// are linear in between. Each obstacle is a node; one that moves has a translation and rotation at the time
-/// of each frame, by the shorter arc. Frames are read twice, one at a time. Throws InputError for an invalid
+/// of each frame, by the shorter arc, and one that deforms has morph targets with differences of positions.
+/// Frames are read twice, one at a time. Throws InputError for an invalid
 /// frame, another mesh, or a file above 4 GiB; std::system_error if writing fails.
 void write_gltf(const std::string& path, const FrameSource& frames, const GltfOptions& options,
                 const std::vector<ObstacleRecord>& obstacles = {});

@@ -28,17 +28,15 @@ void write_obj(const std::string& path, const Frame& frame, UpAxis up)
     write_atomically(path, {text.data(), text.size()});
 }
 
-void write_obj(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement, UpAxis up)
+void write_obj(const std::string& path, const ObstacleRecord& obstacle, const std::vector<Vec3>& points,
+               UpAxis up)
 {
     fmt::memory_buffer text;
     const auto out = std::back_inserter(text);
     const ObstacleMesh& mesh = obstacle.mesh;
     fmt::format_to(out, "# Arris: m, {} is up; l: wires; p: lone points\no {}\n", to_string(up),
                    obstacle.name);
-    for (const Vec3& point : mesh.points) {
-        const Vec3 x = placement(point);
-        fmt::format_to(out, "v {} {} {}\n", x[0], x[1], x[2]);
-    }
+    for (const Vec3& x : points) fmt::format_to(out, "v {} {} {}\n", x[0], x[1], x[2]);
     for (const auto& [a, b, c] : mesh.faces) fmt::format_to(out, "f {} {} {}\n", a + 1, b + 1, c + 1);
     for (const auto& [a, b] : mesh.segments) fmt::format_to(out, "l {} {}\n", a + 1, b + 1);
     for (const int point : mesh.lone_points) fmt::format_to(out, "p {}\n", point + 1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/export/up_axis.h"
 #include "app/files/frame.h"
@@ -15,9 +16,9 @@ namespace arris {
 /// which the positions have been turned. Throws std::system_error naming the path if writing fails.
 void write_obj(const std::string& path, const Frame& frame, UpAxis up);
 
-/// Writes an obstacle whose frame has the given placement in the file: `v` world positions in metres, `f`
-/// triangles, `l` segments of wires, `p` lone points. Otherwise as for the cloth.
-void write_obj(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement,
+/// Writes an obstacle whose points are at `points` (m), turned to `up`: these as `v`, `f` triangles, `l`
+/// segments of wires, `p` lone points. Otherwise as for the cloth.
+void write_obj(const std::string& path, const ObstacleRecord& obstacle, const std::vector<Vec3>& points,
                UpAxis up);
 
 }  // namespace arris

@@ -17,11 +17,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <iterator>
 #include <string_view>
 
+#include "app/export/usd_obstacle.h"
+#include "app/export/usd_text.h"
 #include "app/files/atomic_file.h"
 
 namespace arris {
@@ -72,48 +73,6 @@ std::string quote(const std::string& text)
     return quoted + "\"";
 }
 
-void put(fmt::memory_buffer& out, std::string_view text)
-{
-    out.append(text);
-}
-
-void put(fmt::memory_buffer& out, int value)
-{
-    fmt::format_to(std::back_inserter(out), "{}", value);
-}
-
-void put(fmt::memory_buffer& out, double value)
-{
-    fmt::format_to(std::back_inserter(out), "{}", value);
-}
-
-void put(fmt::memory_buffer& out, const Face& face)
-{
-    fmt::format_to(std::back_inserter(out), "{}, {}, {}", face[0], face[1], face[2]);
-}
-
-template <class Vector>
-void put(fmt::memory_buffer& out, const Vector& vector)
-{
-    for (Eigen::Index i = 0; i < vector.size(); ++i) {
-        put(out, std::string_view(i == 0 ? "(" : ", "));
-        put(out, vector[i]);
-    }
-    put(out, std::string_view(")"));
-}
-
-template <class Items>
-void put_array(fmt::memory_buffer& out, const Items& items)
-{
-    std::string_view separator = "[";
-    for (const auto& item : items) {
-        put(out, separator);
-        put(out, item);
-        separator = ", ";
-    }
-    put(out, std::string_view(items.empty() ? "[]" : "]"));
-}
-
 void put_face_counts(fmt::memory_buffer& out, const Frame& frame)
 {
     put_array(out, std::vector<int>(frame.faces.size(), 3));
@@ -128,13 +87,7 @@ void put_faces(fmt::memory_buffer& out, const Frame& frame)
 
 void put_extent(fmt::memory_buffer& out, const Frame& frame)
 {
-    Vec3 least = Vec3::Zero(), greatest = Vec3::Zero();
-    if (!frame.world.empty()) least = greatest = frame.world.front();
-    for (const Vec3& x : frame.world) {
-        least = least.cwiseMin(x);
-        greatest = greatest.cwiseMax(x);
-    }
-    put_array(out, std::array{least, greatest});
+    put_bounds(out, frame.world);
 }
 
 // Each EOL edge is a crease of its own. Sharpness 10 is infinite in USD.
@@ -264,109 +217,6 @@ std::string stage_header(std::size_t frame_count, const UsdOptions& options)
         options.frames_per_second);
 }
 
-// ---- obstacles
-
-constexpr double kDrawnWidth = 0.002;  // m, of wires and points
-
-/// USD multiplies row vectors from the left, so the matrix is transposed.
-void put(fmt::memory_buffer& out, const Placement& placement)
-{
-    for (int column = 0; column < 3; ++column) {
-        const Vec3 axis = placement.rotation.col(column);
-        fmt::format_to(std::back_inserter(out), "{}({}, {}, {}, 0)", column == 0 ? "( " : ", ", axis[0],
-                       axis[1], axis[2]);
-    }
-    const Vec3& t = placement.translation;
-    fmt::format_to(std::back_inserter(out), ", ({}, {}, {}, 1) )", t[0], t[1], t[2]);
-}
-
-template <class Items>
-void put_line(fmt::memory_buffer& out, std::string_view declaration, const Items& items)
-{
-    put(out, declaration);
-    put_array(out, items);
-    put(out, std::string_view("\n"));
-}
-
-/// Writes a prim's points and their bounding box.
-void put_points(fmt::memory_buffer& out, const std::vector<Vec3>& points)
-{
-    Vec3 least = points.front(), greatest = least;
-    for (const Vec3& point : points) {
-        least = least.cwiseMin(point);
-        greatest = greatest.cwiseMax(point);
-    }
-    put_line(out, "        point3f[] points = ", points);
-    put_line(out, "        float3[] extent = ", std::array{least, greatest});
-}
-
-void put_surface(fmt::memory_buffer& out, const ObstacleMesh& mesh)
-{
-    put(out, std::string_view("    def Mesh \"surface\"\n    {\n"
-                              "        uniform token subdivisionScheme = \"none\"\n"
-                              "        uniform token orientation = \"rightHanded\"\n"
-                              "        uniform bool doubleSided = 1\n"));
-    put_line(out, "        int[] faceVertexCounts = ", std::vector<int>(mesh.faces.size(), 3));
-    put_line(out, "        int[] faceVertexIndices = ", mesh.faces);
-    put_points(out, mesh.points);
-    put(out, std::string_view("    }\n"));
-}
-
-void put_widths(fmt::memory_buffer& out)
-{
-    fmt::format_to(std::back_inserter(out),
-                   "        float[] widths = [{}] (\n            interpolation = \"constant\"\n        )\n",
-                   kDrawnWidth);
-}
-
-void put_wires(fmt::memory_buffer& out, const ObstacleMesh& mesh)
-{
-    std::vector<Vec3> ends;
-    for (const auto& [a, b] : mesh.segments)
-        for (const int point : {a, b}) ends.push_back(mesh.points[static_cast<std::size_t>(point)]);
-    put(out, std::string_view("    def BasisCurves \"wires\"\n    {\n"
-                              "        uniform token type = \"linear\"\n"));
-    put_line(out, "        int[] curveVertexCounts = ", std::vector<int>(mesh.segments.size(), 2));
-    put_points(out, ends);
-    put_widths(out);
-    put(out, std::string_view("    }\n"));
-}
-
-void put_lone_points(fmt::memory_buffer& out, const ObstacleMesh& mesh)
-{
-    std::vector<Vec3> places;
-    for (const int point : mesh.lone_points) places.push_back(mesh.points[static_cast<std::size_t>(point)]);
-    put(out, std::string_view("    def Points \"points\"\n    {\n"));
-    put_points(out, places);
-    put_widths(out);
-    put(out, std::string_view("    }\n"));
-}
-
-void write_obstacle(AtomicFile& file, const ObstacleRecord& obstacle, std::size_t frame_count,
-                    double frames_per_second)
-{
-    const auto write = [&](const fmt::memory_buffer& text) { file.write({text.data(), text.size()}); };
-    file.write(fmt::format("\ndef Xform \"{}\"\n{{\n    matrix4d xformOp:transform", obstacle.name));
-    const bool is_moving = obstacle.motion.is_moving() && frame_count > 1;
-    file.write(is_moving ? ".timeSamples = {\n" : " = ");
-    for (std::size_t i = 0; i < (is_moving ? frame_count : 1); ++i) {
-        fmt::memory_buffer text;
-        if (is_moving) fmt::format_to(std::back_inserter(text), "        {}: ", i);
-        put(text, obstacle.at(static_cast<double>(i) / frames_per_second));
-        put(text, std::string_view(is_moving ? ",\n" : "\n"));
-        write(text);
-    }
-    file.write(is_moving ? "    }\n" : "");
-    file.write("    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n");
-
-    fmt::memory_buffer text;
-    if (!obstacle.mesh.faces.empty()) put_surface(text, obstacle.mesh);
-    if (!obstacle.mesh.segments.empty()) put_wires(text, obstacle.mesh);
-    if (!obstacle.mesh.lone_points.empty()) put_lone_points(text, obstacle.mesh);
-    write(text);
-    file.write("}\n");
-}
-
 }  // namespace
 
 void write_usd(const std::string& path, const FrameSource& frames, const UsdOptions& options,
@@ -380,7 +230,7 @@ void write_usd(const std::string& path, const FrameSource& frames, const UsdOpti
     file.write("}\n");
     if (!obstacles.empty()) file.write("\ndef Scope \"obstacles\"\n{\n");
     for (const ObstacleRecord& obstacle : obstacles)
-        write_obstacle(file, obstacle, frames.count, options.frames_per_second);
+        write_usd_obstacle(file, obstacle, frames.count, options.frames_per_second);
     file.write(obstacles.empty() ? "}\n" : "}\n}\n");
     file.commit();
 }

@@ -27,8 +27,9 @@ struct UsdOptions {
 ///
 /// Each obstacle is an Xform /arris/obstacles/<name>. Its xformOp:transform is sampled at every time code if
 /// the obstacle moves; between samples USD interpolates matrices linearly, which is not rigid. Below are, as
-/// needed, a Mesh "surface", linear BasisCurves "wires" and Points "points", in the obstacle's frame. Wires
-/// and points are 2 mm wide, since USD has no lines without a width.
+/// needed, a Mesh "surface", linear BasisCurves "wires" and Points "points", in the obstacle's frame. Where
+/// the obstacle deforms, their points, velocities and extent are sampled at every time code. Wires and points
+/// are 2 mm wide, since USD has no lines without a width.
 void write_usd(const std::string& path, const FrameSource& frames, const UsdOptions& options,
                const std::vector<ObstacleRecord>& obstacles = {});
 

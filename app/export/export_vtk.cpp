@@ -156,18 +156,15 @@ void write_vtp(const std::string& path, const Frame& frame)
     write_text(path, text);
 }
 
-void write_vtp(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement)
+void write_vtp(const std::string& path, const ObstacleRecord& obstacle, const std::vector<Vec3>& points)
 {
     const ObstacleMesh& mesh = obstacle.mesh;
-    VtpText text{piece(mesh.points.size(), mesh.lone_points.size(), mesh.segments.size(), mesh.faces.size()),
-                 {}};
-    std::vector<Vec3> places;
-    for (const Vec3& point : mesh.points) places.push_back(placement(point));
+    VtpText text{piece(points.size(), mesh.lone_points.size(), mesh.segments.size(), mesh.faces.size()), {}};
     std::vector<std::array<int, 1>> verts;
     for (const int point : mesh.lone_points) verts.push_back({point});
     std::vector<std::array<int, 2>> lines;
     for (const auto& [a, b] : mesh.segments) lines.push_back({a, b});
-    add_points(text, places);
+    add_points(text, points);
     add_cells(text, "Verts", verts);
     add_cells(text, "Lines", lines);
     add_cells(text, "Polys", mesh.faces);

@@ -16,9 +16,9 @@ namespace arris {
 /// std::system_error naming the path if writing fails.
 void write_vtp(const std::string& path, const Frame& frame);
 
-/// Writes an obstacle whose frame has the given placement in the world: verts are lone points, lines are
-/// segments of wires, polys are faces. Otherwise as for the cloth.
-void write_vtp(const std::string& path, const ObstacleRecord& obstacle, const Placement& placement);
+/// Writes an obstacle whose points are at `points` (m): verts are lone points, lines are segments of wires,
+/// polys are faces. Otherwise as for the cloth.
+void write_vtp(const std::string& path, const ObstacleRecord& obstacle, const std::vector<Vec3>& points);
 
 /// Writes a ParaView collection, atomically: part 0 is the cloth, part k the k-th obstacle, at `frame_count`
 /// times, one every 1 / `frames_per_second` seconds. Files are those in <run_dir>/frames; a still obstacle

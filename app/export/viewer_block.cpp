@@ -4,11 +4,14 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string_view>
 
 namespace arris {
 namespace {
+
+constexpr double kLevels = 65535.0;  // steps of a 16-bit number
 
 /// Zigzag code of a signed difference: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
 std::uint32_t zigzag(std::int32_t difference)
@@ -37,6 +40,33 @@ void append_planes(const std::vector<std::uint16_t>& numbers, Bytes& out)
             out.push_back(static_cast<std::uint8_t>((number - previous) >> shift));
             previous = number;
         }
+    }
+}
+
+ViewerBox find_box(const std::vector<Vec3>& points)
+{
+    ViewerBox box{points.front(), points.front()};
+    for (const Vec3& point : points) {
+        box.least = box.least.cwiseMin(point);
+        box.greatest = box.greatest.cwiseMax(point);
+    }
+    return box;
+}
+
+std::uint16_t to_level(double value, double least, double range)
+{
+    if (!(range > 0.0)) return 0;
+    return static_cast<std::uint16_t>(std::lround(std::clamp((value - least) / range, 0.0, 1.0) * kLevels));
+}
+
+void append_points(const std::vector<Vec3>& points, const ViewerBox& box, Bytes& out)
+{
+    const Vec3 size = box.size();
+    std::vector<std::uint16_t> levels;
+    for (int axis = 0; axis < 3; ++axis) {
+        levels.clear();
+        for (const Vec3& x : points) levels.push_back(to_level(x[axis], box.least[axis], size[axis]));
+        append_planes(levels, out);
     }
 }
 

@@ -8,6 +8,7 @@
 //     topology   vertices of every face | vertices of every EOL edge | EOL vertices on corners and points |
 //                u v of every vertex
 //     mesh       per obstacle: x y z of every point | points of every face, wire segment | lone points
+//     pose       per frame and obstacle that deforms: x y z of every point, which its mesh then lacks
 //
 // A topology is stored where it changes. Only EOL vertices move in the material, so a frame needs no other u
 // v. Numbers are stored as differences to their predecessor, first all high bytes, then all low bytes:
@@ -16,7 +17,6 @@
 #include "app/export/viewer_html.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -29,6 +29,7 @@
 
 #include "app/export/viewer_block.h"
 #include "app/export/viewer_meta.h"
+#include "app/export/viewer_obstacles.h"
 #include "app/files/atomic_file.h"
 #include "app/files/frame.h"
 #include "app/files/frame_files.h"
@@ -41,25 +42,17 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::string_view kDataMarker = "<!-- ARRIS-DATA -->";
-constexpr double kLevels = 65535.0;      // steps of a 16-bit number
 constexpr double kSpeedLevels = 255.0;   // steps of a speed, which only a colour shows
 constexpr double kLargestNumber = 1e18;  // the page squares numbers in single precision, up to 3e38
 constexpr double kTypicalQuantile =
     0.99;  // of a frame's strains, so that a few thin faces do not determine the colour range
-
-/// Quantises `value` to 65536 levels from `least` to `least + range`; 0 if `range` is 0.
-std::uint16_t quantised(double value, double least, double range)
-{
-    if (!(range > 0.0)) return 0;
-    return static_cast<std::uint16_t>(std::lround(std::clamp((value - least) / range, 0.0, 1.0) * kLevels));
-}
 
 /// Appends u, then v of the points.
 void append_material(const std::vector<Vec2>& points, const Vec2& least, const Vec2& size, Bytes& out)
 {
     for (int axis = 0; axis < 2; ++axis) {
         std::vector<std::uint16_t> numbers;
-        for (const Vec2& point : points) numbers.push_back(quantised(point[axis], least[axis], size[axis]));
+        for (const Vec2& point : points) numbers.push_back(to_level(point[axis], least[axis], size[axis]));
         append_planes(numbers, out);
     }
 }
@@ -70,42 +63,6 @@ Bytes packed_topology(const ViewerTopology& topology)
     append_indices(topology.faces, topology.eol_edges, topology.eol_corners, raw);
     append_material(topology.material, topology.least, topology.size, raw);
     return deflated(raw);
-}
-
-ViewerMeshBlock make_mesh_block(const ObstacleRecord& obstacle)
-{
-    const ObstacleMesh& mesh = obstacle.mesh;
-    Vec3 least = mesh.points.front(), greatest = least;
-    for (const Vec3& point : mesh.points) {
-        least = least.cwiseMin(point);
-        greatest = greatest.cwiseMax(point);
-    }
-    ViewerMeshBlock block{&obstacle, (least + greatest) / 2.0, greatest - least, {}};
-    Bytes raw;
-    std::vector<std::uint32_t> numbers;
-    for (int axis = 0; axis < 3; ++axis)
-        for (const Vec3& point : mesh.points)
-            numbers.push_back(
-                std::bit_cast<std::uint32_t>(static_cast<float>(point[axis] - block.centre[axis])));
-    append_planes(numbers, raw);
-    append_indices(mesh.faces, mesh.segments, mesh.lone_points, raw);
-    block.data = deflated(raw);
-    return block;
-}
-
-/// Stores the obstacles that fit into half of `most_bytes`, in their order.
-void store_meshes(const std::vector<ObstacleRecord>& obstacles, std::size_t most_bytes, ViewerBlocks& blocks)
-{
-    for (const ObstacleRecord& obstacle : obstacles) {
-        ViewerMeshBlock block = make_mesh_block(obstacle);
-        if (blocks.mesh_bytes + block.data.size() > most_bytes / 2) {
-            blocks.left_out.push_back(obstacle.name);
-            continue;
-        }
-        blocks.mesh_bytes += block.data.size();
-        blocks.meshes.push_back(std::move(block));
-    }
-    blocks.bytes = blocks.mesh_bytes;
 }
 
 /// Speeds as shares of the frame's greatest one, one byte each, as differences.
@@ -124,16 +81,10 @@ Bytes packed_frame(const Frame& frame, const ViewerTopology& topology, const Vie
 {
     Bytes raw;
     raw.reserve(6 * frame.world.size() + 2 * frame.faces.size() + frame.world.size() / 8 + 1);
+    append_points(frame.world, block.box, raw);
     std::vector<std::uint16_t> numbers;
-    for (int axis = 0; axis < 3; ++axis) {
-        numbers.clear();
-        for (const Vec3& x : frame.world)
-            numbers.push_back(quantised(x[axis], block.least[axis], block.size[axis]));
-        append_planes(numbers, raw);
-    }
-    numbers.clear();
     for (const double strain : frame.strain)
-        numbers.push_back(quantised(strain, block.least_strain, block.strain_range));
+        numbers.push_back(to_level(strain, block.least_strain, block.strain_range));
     append_planes(numbers, raw);
 
     const std::size_t bits = raw.size();
@@ -181,13 +132,7 @@ ViewerTopology topology_of(const Frame& frame)
 ViewerFrameBlock make_frame_block(const Frame& frame, std::int64_t index, const ViewerTopology& topology,
                                   int id)
 {
-    ViewerFrameBlock block{index, id, frame.world[0], frame.world[0], 0.0, 0.0, 0.0, {}};
-    Vec3 greatest = frame.world[0];
-    for (const Vec3& x : frame.world) {
-        block.least = block.least.cwiseMin(x);
-        greatest = greatest.cwiseMax(x);
-    }
-    block.size = greatest - block.least;
+    ViewerFrameBlock block{index, id, find_box(frame.world), 0.0, 0.0, 0.0, {}, {}};
     const auto [least, most] = std::minmax_element(frame.strain.begin(), frame.strain.end());
     block.least_strain = *least;
     block.strain_range = *most - *least;
@@ -223,7 +168,7 @@ void thin(std::int64_t last, ViewerBlocks& blocks)
     blocks.bytes = blocks.mesh_bytes;
     for (const ViewerFrameBlock& frame : blocks.frames) {
         used.insert(frame.topology);
-        blocks.bytes += frame.data.size();
+        blocks.bytes += frame.byte_count();
     }
     std::erase_if(blocks.topologies, [&](const auto& entry) { return !used.contains(entry.first); });
     for (const auto& [id, topology] : blocks.topologies) blocks.bytes += topology.data.size();
@@ -243,10 +188,12 @@ void store_topology(const Frame& frame, ViewerTopology& current, ViewerBlocks& b
     current = std::move(topology);
 }
 
-void store_frame(const Frame& frame, std::int64_t index, const ViewerTopology& topology, ViewerBlocks& blocks)
+void store_frame(const Frame& frame, std::int64_t index, double time, const ViewerTopology& topology,
+                 ViewerBlocks& blocks)
 {
     ViewerFrameBlock block = make_frame_block(frame, index, topology, blocks.newest_topology);
-    blocks.bytes += block.data.size();
+    block.poses = make_pose_blocks(blocks.meshes, time);
+    blocks.bytes += block.byte_count();
     blocks.least_strain = std::min(blocks.least_strain, block.least_strain);
     blocks.greatest_strain = std::max(blocks.greatest_strain, block.least_strain + block.strain_range);
     blocks.typical_strain = std::max(blocks.typical_strain, typical(frame.strain));
@@ -270,7 +217,7 @@ void check_magnitudes(const Frame& frame, const std::string& path)
 }
 
 /// Reads the run's frames one by one.
-ViewerBlocks pack_run(const std::string& run_directory, std::size_t most_bytes,
+ViewerBlocks pack_run(const std::string& run_directory, const ViewerOptions& options,
                       const std::vector<ObstacleRecord>& obstacles)
 {
     const std::int64_t last = count_frames(run_directory) - 1;
@@ -278,7 +225,10 @@ ViewerBlocks pack_run(const std::string& run_directory, std::size_t most_bytes,
         throw InputError(frames_directory(run_directory) + ": has no frames (cloth_00000.ply, ...)");
 
     ViewerBlocks blocks;
-    store_meshes(obstacles, most_bytes, blocks);
+    const auto time = [&](std::int64_t index) {
+        return static_cast<double>(index) / options.frames_per_second;
+    };
+    store_meshes(obstacles, options.most_bytes, time(last), blocks);
     ViewerTopology topology;
     for (std::int64_t index = 0; index <= last; ++index) {
         if (index % blocks.stride != 0 && index != last) continue;
@@ -286,8 +236,8 @@ ViewerBlocks pack_run(const std::string& run_directory, std::size_t most_bytes,
         const Frame frame = read_frame(path);
         check_magnitudes(frame, path);
         store_topology(frame, topology, blocks);
-        store_frame(frame, index, topology, blocks);
-        while (blocks.bytes > most_bytes && blocks.stride <= last) thin(last, blocks);
+        store_frame(frame, index, time(index), topology, blocks);
+        while (blocks.bytes > options.most_bytes && blocks.stride <= last) thin(last, blocks);
     }
     return blocks;
 }
@@ -318,8 +268,12 @@ void write_page(const ViewerBlocks& blocks, const ViewerOptions& options, Atomic
         write_data("arris-topology-" + std::to_string(id), topology.data, file);
     for (std::size_t i = 0; i < blocks.meshes.size(); ++i)
         write_data("arris-mesh-" + std::to_string(i), blocks.meshes[i].data, file);
-    for (const ViewerFrameBlock& frame : blocks.frames)
-        write_data("arris-frame-" + std::to_string(frame.index), frame.data, file);
+    for (const ViewerFrameBlock& frame : blocks.frames) {
+        const std::string index = std::to_string(frame.index);
+        write_data("arris-frame-" + index, frame.data, file);
+        for (const auto& [mesh, pose] : frame.poses)
+            write_data("arris-pose-" + std::to_string(mesh) + "-" + index, pose.data, file);
+    }
     file.write(page.substr(marker + kDataMarker.size()));
 }
 
@@ -330,7 +284,7 @@ void write_viewer(const std::string& run_directory, const ViewerOptions& options
 {
     if (!(options.frames_per_second > 0.0) || !std::isfinite(options.frames_per_second))
         throw InputError(run_directory + ": a viewer needs frames_per_second above 0");
-    const ViewerBlocks blocks = pack_run(run_directory, options.most_bytes, obstacles);
+    const ViewerBlocks blocks = pack_run(run_directory, options, obstacles);
 
     AtomicFile file(run_directory + "/viewer.html");
     write_page(blocks, options, file);

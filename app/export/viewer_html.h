@@ -24,8 +24,9 @@ struct ViewerOptions {
 /// to 1/65535 of the frame's range, speeds to 1/255 of the frame's greatest.
 ///
 /// Meshes of `obstacles` are stored once, in single precision relative to their centre; a moving obstacle has
-/// a placement for each frame. They take at most half of `most_bytes`. The page lists the names of obstacles
-/// that do not fit.
+/// a placement for each frame. An obstacle that deforms has points for each frame, quantised like positions;
+/// they count as part of the frame. Meshes, with the points of the first and the last frame, take at most
+/// half of `most_bytes`. The page lists the names of obstacles that do not fit.
 ///
 /// The page is replaced atomically. Throws InputError naming the file if there is no frame, a frame is
 /// missing before a later one, or a frame cannot be read; std::system_error naming the path if writing fails.

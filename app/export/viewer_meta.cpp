@@ -24,11 +24,18 @@ ordered_json placement_json(const ViewerMeshBlock& mesh, double time)
     return rows;
 }
 
-/// The obstacles. A moving obstacle has one placement per frame of the page, any other a single one.
+ordered_json box_json(const ViewerBox& box)
+{
+    return {{"least", vector_json(box.least)}, {"size", vector_json(box.size())}};
+}
+
+/// The obstacles. One with a motion has a placement per frame of the page, any other a single one. One that
+/// deforms has the box of its points per frame.
 ordered_json meshes_json(const ViewerBlocks& blocks, double frames_per_second)
 {
     ordered_json result = ordered_json::array();
-    for (const ViewerMeshBlock& mesh : blocks.meshes) {
+    for (std::size_t k = 0; k < blocks.meshes.size(); ++k) {
+        const ViewerMeshBlock& mesh = blocks.meshes[k];
         const ObstacleMesh& shape = mesh.obstacle->mesh;
         ordered_json placements = ordered_json::array();
         for (const ViewerFrameBlock& frame : blocks.frames) {
@@ -42,15 +49,25 @@ ordered_json meshes_json(const ViewerBlocks& blocks, double frames_per_second)
                           {"lone_points", shape.lone_points.size()},
                           {"size", vector_json(mesh.size)},
                           {"placements", placements}});
+        if (!mesh.obstacle->is_deforming()) continue;
+        ordered_json& poses = result.back()["poses"];
+        for (const ViewerFrameBlock& frame : blocks.frames) poses.push_back(box_json(frame.poses.at(k).box));
     }
     return result;
 }
 
 }  // namespace
 
+std::size_t ViewerFrameBlock::byte_count() const
+{
+    std::size_t bytes = data.size();
+    for (const auto& [mesh, pose] : poses) bytes += pose.data.size();
+    return bytes;
+}
+
 nlohmann::ordered_json viewer_meta(const ViewerBlocks& blocks, const ViewerOptions& options)
 {
-    ordered_json result = {{"format", 2},
+    ordered_json result = {{"format", 3},
                            {"title", options.title},
                            {"frames_per_second", options.frames_per_second},
                            {"run_frames", blocks.frames.back().index + 1},
@@ -73,8 +90,8 @@ nlohmann::ordered_json viewer_meta(const ViewerBlocks& blocks, const ViewerOptio
     for (const ViewerFrameBlock& frame : blocks.frames)
         result["frames"].push_back({{"index", frame.index},
                                     {"topology", frame.topology},
-                                    {"least", vector_json(frame.least)},
-                                    {"size", vector_json(frame.size)},
+                                    {"least", vector_json(frame.box.least)},
+                                    {"size", vector_json(frame.box.size())},
                                     {"strain", {frame.least_strain, frame.strain_range}},
                                     {"speed", frame.most_speed}});
     result["meshes"] = meshes_json(blocks, options.frames_per_second);

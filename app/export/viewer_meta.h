@@ -36,20 +36,30 @@ struct ViewerTopologyBlock {
     Bytes data;
 };
 
-/// The mesh of an obstacle, in the obstacle's frame relative to `centre`.
+/// The mesh of an obstacle, in the obstacle's frame relative to `centre`. Without points if it deforms.
 struct ViewerMeshBlock {
     const ObstacleRecord* obstacle;
-    Vec3 centre, size;  // centre and size of the bounding box, m
+    Vec3 centre, size;  // centre and size of the bounding box at time 0, m
+    Bytes data;
+};
+
+/// The points of a deforming obstacle in a frame, relative to the `centre` of its mesh.
+struct ViewerPoseBlock {
+    ViewerBox box;
     Bytes data;
 };
 
 struct ViewerFrameBlock {
     std::int64_t index;
     int topology;
-    Vec3 least, size;  // bounding box, m
+    ViewerBox box;
     double least_strain, strain_range;
     double most_speed;  // m/s
     Bytes data;
+    std::map<std::size_t, ViewerPoseBlock> poses;  // by the number of the mesh
+
+    /// Of the compressed data.
+    std::size_t byte_count() const;
 };
 
 /// The blocks of the page. Frames are left out to keep their total size below a limit.

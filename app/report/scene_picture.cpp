@@ -76,9 +76,11 @@ Projection project(const Frame& cloth, const std::vector<ObstacleRecord>& obstac
     for (const Vec3& x : cloth.world) shown.add(seen.cloth.emplace_back(axes * x));
     all = shown;
     for (const ObstacleRecord& obstacle : obstacles) {
-        const Placement place = obstacle.at(time);
-        std::vector<Vec3>& here = seen.obstacles.emplace_back();
-        for (const Vec3& p : obstacle.mesh.points) all.add(here.emplace_back(axes * place(p)));
+        std::vector<Vec3>& here = seen.obstacles.emplace_back(obstacle.world_points(time));
+        for (Vec3& p : here) {
+            p = axes * p;
+            all.add(p);
+        }
     }
     const Vec2 around = Vec2::Constant(kAround * (shown.max - shown.min).maxCoeff());
     shown.min = all.min.cwiseMax(shown.min - around);

@@ -13,7 +13,7 @@ import { makeRun } from "./support.mjs";
 const kAxe = new URL("../../viewer/node_modules/axe-core/axe.min.js", import.meta.url);
 const kSizes = [[1280, 800], [844, 390], [390, 844], [320, 568]];
 const kRounding = 0.51; // pixels
-const run = makeRun("layout", { title: "A cloth with a rather long title over a table", frames: 40, cells: 20, hasObstacles: true });
+const run = makeRun("layout", { title: "A cloth with a rather long title over a table", frames: 40, cells: 20, obstacles: "obstacles" });
 const browser = new Browser();
 after(() => browser.close());
 

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles]]: writes a run without a simulation, for trying and
-// testing the viewer. A square cloth waves and folds over a sharp edge that moves along the cloth, so EOL
-// edges and mesh change with time. With `obstacles` there are a table at rest, a wire that turns, and nails
-// that rise.
+// make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles|deforming]]: writes a run without a simulation, for
+// trying and testing the viewer. A square cloth waves and folds over a sharp edge that moves along the cloth,
+// so EOL edges and mesh change with time. With `obstacles` there are a table at rest, a wire that turns, and
+// nails that rise. With `deforming` there is a pole that bends.
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/export/viewer_html.h"
 #include "app/files/frame.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
+#include "tests/formula_deformation.h"
 
 namespace arris {
 namespace {
@@ -91,8 +95,29 @@ std::vector<ObstacleRecord> make_obstacles()
     return {table, wire, nails};
 }
 
+/// A pole, 1 m high, whose top moves by 0.5 m a second against x, and a wire and a nail at its top.
+std::vector<ObstacleRecord> make_deforming()
+{
+    ObstacleMesh mesh = make_box({0.1, 0.1, 1.0});
+    const int top = static_cast<int>(mesh.points.size());
+    for (const Vec3& point : {Vec3(0.0, 0.0, 0.5), Vec3(0.0, 0.4, 0.5), Vec3(0.0, -0.4, 0.5)})
+        mesh.points.push_back(point);
+    mesh.segments = {{top, top + 1}};
+    mesh.lone_points = {top + 2};
+    auto bends = std::make_shared<FormulaDeformation>(
+        mesh.points,
+        [](const Vec3& rest, double time) {
+            return Vec3(rest - Vec3(0.5 * time * (rest.z() + 0.5), 0.0, 0.0));
+        },
+        [](const Vec3& rest, double) { return Vec3(-0.5 * (rest.z() + 0.5), 0.0, 0.0); },
+        std::vector<double>{0.0, 100.0});
+    ObstacleRecord pole{"pole", std::move(mesh), {}, {}, std::move(bends)};
+    pole.placement.translation = {-0.3, 0.5, 0.5};
+    return {pole};
+}
+
 void make_run(const std::string& directory, int frames, int cells, const ViewerOptions& options,
-              bool has_obstacles)
+              const std::vector<ObstacleRecord>& obstacles)
 {
     std::filesystem::create_directories(directory + "/frames");
     for (int number = 0; number < frames; ++number) {
@@ -100,7 +125,7 @@ void make_run(const std::string& directory, int frames, int cells, const ViewerO
         digits.insert(0, 5 - digits.size(), '0');
         write_frame(directory + "/frames/cloth_" + digits + ".ply", make_frame(number, frames, cells));
     }
-    write_viewer(directory, options, has_obstacles ? make_obstacles() : std::vector<ObstacleRecord>());
+    write_viewer(directory, options, obstacles);
 }
 
 }  // namespace
@@ -109,13 +134,17 @@ void make_run(const std::string& directory, int frames, int cells, const ViewerO
 int main(int argc, char** argv)
 {
     if (argc < 5 || argc > 7) {
-        std::fputs("usage: make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles]]\n", stderr);
+        std::fputs("usage: make_run DIR TITLE FRAMES CELLS [MOST_BYTES [obstacles|deforming]]\n", stderr);
         return 2;
     }
     try {
         arris::ViewerOptions options{argv[2], arris::kFramesPerSecond};
         if (argc >= 6) options.most_bytes = std::stoul(argv[5]);
-        arris::make_run(argv[1], std::stoi(argv[3]), std::stoi(argv[4]), options, argc == 7);
+        std::vector<arris::ObstacleRecord> obstacles;
+        if (argc == 7)
+            obstacles =
+                std::string(argv[6]) == "deforming" ? arris::make_deforming() : arris::make_obstacles();
+        arris::make_run(argv[1], std::stoi(argv[3]), std::stoi(argv[4]), options, obstacles);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "make_run: %s\n", error.what());
         return 1;

@@ -137,7 +137,7 @@ test("a run with EOL edges begins with a checkerboard fixed to the material, any
 });
 
 test("switches hide EOL edges and obstacles, views turn the camera", async () => {
-  const crowded = makeRun("switches", { frames: 10, hasObstacles: true });
+  const crowded = makeRun("switches", { frames: 10, obstacles: "obstacles" });
   const page = await open("play=0&frame=9&ui=0&colour=none", join(crowded, "viewer.html"));
   await page.until(shows(9));
   const [magenta, grey] = await shares(page, [kMagenta, kGrey]);
@@ -274,7 +274,7 @@ const kGrey = "r > g && g > b && r < 1.12 * b && r > 60 && r < 200"; // an obsta
 const kDark = "r < 95 && r > b && r < 1.6 * b"; // its wires and dots
 
 test("obstacles are drawn where the frame has them", async () => {
-  const crowded = makeRun("crowded", { frames: 25, hasObstacles: true });
+  const crowded = makeRun("crowded", { frames: 25, obstacles: "obstacles" });
   const page = await open("play=0&frame=0&ui=0", join(crowded, "viewer.html"));
   await page.until(shows(0));
   const [blue, grey, dark] = await shares(page, [kBlue, kGrey, kDark]);
@@ -292,8 +292,30 @@ test("obstacles are drawn where the frame has them", async () => {
   await bare.close();
 });
 
+test("an obstacle that deforms is drawn as the frame has it, and not where its points are damaged", async () => {
+  const bending = pageOf(makeRun("bending", { frames: 25, obstacles: "deforming" }));
+  const path = writePage("bending_page", bending.replace('id="arris-pose-0-12"', 'id="other"'));
+  const view = "play=0&ui=0&azimuth=-90&elevation=0&box=-1,0,0,0.4,1,1.4";
+  const page = await open(`frame=0&${view}`, path);
+  await page.until(shows(0));
+  const first = await page.screenshot();
+  const [grey] = await shares(page, [kGrey]);
+  assert.ok(grey > 0.005, `${grey}`);
+  await page.evaluate(`location.hash = "frame=24&${view}"`);
+  await page.until(shows(24));
+  assert.ok((await shares(page, [kGrey]))[0] > 0.005);
+  assert.notDeepEqual(await page.screenshot(), first);
+  await page.evaluate(`location.hash = "frame=12&${view}"`);
+  await page.until(shows(12));
+  assert.match(await page.evaluate(kMessage), /^Frame 12 cannot be shown: the points of the obstacle pole/);
+  await page.evaluate(`location.hash = "frame=0&${view}"`);
+  await page.until(shows(0));
+  assert.deepEqual(await page.screenshot(), first);
+  await page.close();
+});
+
 test("a damaged obstacle is named, and all else is shown", async () => {
-  const crowded = pageOf(makeRun("damaged", { frames: 5, hasObstacles: true }));
+  const crowded = pageOf(makeRun("damaged", { frames: 5, obstacles: "obstacles" }));
   const path = writePage("damaged_page", crowded.replace('id="arris-mesh-0"', 'id="other"'));
   const page = await open("play=0&frame=0", path);
   await page.until(shows(0));
@@ -315,7 +337,7 @@ test("a thinned run says so", async () => {
 const kBroken = {
   "its template alone": () => readFileSync(kTemplate, "utf8"),
   "a page cut off within its list": () => html.slice(0, html.indexOf('id="arris-meta"') + 300),
-  "a list that is no JSON": () => html.replace('"format":2', '"format":'),
+  "a list that is no JSON": () => html.replace('"format":3', '"format":'),
 };
 for (const [name, make] of Object.entries(kBroken)) {
   test(`${name} gives a message, not a blank page`, async () => {

@@ -75,7 +75,7 @@ test("normals are shared within the cloth and split along EOL edges", () => {
 const kBreaks = {
   "no meta": (text) => text.replace('id="arris-meta"', 'id="other"'),
   "meta cut off": (text) => text.replace('"run_frames"', ""),
-  "another format": (text) => text.replace('"format":2', '"format":1'),
+  "another format": (text) => text.replace('"format":3', '"format":1'),
   "no frames": (text) => text.replace(/"frames":\[.*\]\}<\/script>/, '"frames":[]}</script>'),
   "a box that is no number": (text) => text.replace(/"least":\[[^\]]*\]/, '"least":[0,0,null]'),
   "a mesh that is not listed": (text) => text.replace('"topology":0', '"topology":77'),
@@ -121,7 +121,7 @@ for (const [name, damage] of Object.entries(kFrameBreaks)) {
   });
 }
 
-const obstaclesPage = pageOf(makeRun("obstacles", { frames: 25, cells: 6, hasObstacles: true }));
+const obstaclesPage = pageOf(makeRun("obstacles", { frames: 25, cells: 6, obstacles: "obstacles" }));
 
 test("obstacles are where make_run puts them", async () => {
   const reader = open(obstaclesPage);
@@ -156,6 +156,39 @@ test("obstacles are where make_run puts them", async () => {
   const nails = await reader.loadMesh(2);
   assert.deepEqual([...nails.lonePoints], [0, 1]);
   assertNear(pointsAt(2, nails, 12)[1][2], 0.5);
+});
+
+const deformingPage = pageOf(makeRun("deforming", { frames: 25, cells: 6, obstacles: "deforming" }));
+
+test("an obstacle that deforms has its points in each frame", async () => {
+  const reader = open(deformingPage);
+  const [pole] = reader.meshes;
+  assert.deepEqual([pole.name, pole.placements.length, pole.poses.length], ["pole", 1, 25]);
+  const { faces, segments, lonePoints } = await reader.loadMesh(0);
+  assert.deepEqual([faces.length, [...segments], [...lonePoints]], [36, [8, 9], [10]]);
+  for (const position of [0, 24]) {
+    const [points] = (await reader.load(position)).poses;
+    const m = reader.placement(pole, position);
+    const x = (p) => reader.origin[0] + m[3] + points[3 * p];
+    const top = -0.3 - 0.5 * (position / 24);
+    assert.ok(Math.abs(x(8) - top) < 1e-4, `${x(8)}, not ${top}`);
+  }
+});
+
+test("view and light contain what an obstacle that deforms reaches", () => {
+  const reader = open(deformingPage);
+  const left = ({ least }) => least[0];
+  const assertNear = (value, truth) => assert.ok(Math.abs(value - truth) < 1e-4, `${value}, not ${truth}`);
+  assertNear(left(reader.litBox(0)), -0.35);
+  assertNear(left(reader.litBox(24)), -0.85);
+  assertNear(left(reader.surroundings), -0.85);
+});
+
+test("damaged points of an obstacle are refused with their frame and name, and other frames are shown", async () => {
+  const reader = open(deformingPage.replace('id="arris-pose-0-3"', 'id="other"'));
+  await assert.rejects(reader.load(3), (error) =>
+    error instanceof BrokenData && /^Frame 3 cannot be shown: the points of the obstacle pole/.test(error.message));
+  await reader.load(4);
 });
 
 test("a view shows the cloth and what is near of the obstacles", () => {
@@ -244,6 +277,16 @@ test("a box is read from two opposite corners", () => {
     assert.equal(boxOf(text), undefined, `${text}`);
 });
 
+test("a list of obstacles with a box of points too few or damaged is refused in words", () => {
+  for (const damage of [
+    (text) => text.replace(/"poses":\[\{[^}]*\},/, '"poses":['),
+    (text) => text.replace(/"poses":\[\{"least":\[[^,]*,/, '"poses":[{"least":['),
+  ]) {
+    assert.notEqual(damage(deformingPage), deformingPage);
+    assert.throws(() => open(damage(deformingPage)), /obstacles is damaged/);
+  }
+});
+
 const kMeshBreaks = {
   "a placement that is none": (text) => text.replace(/"placements":\[\[[^,]*,/, '"placements":[[null,'),
   "too few placements": (text) => text.replace(/("name":"wire".*?"placements":\[)\[[^\]]*\],/, "$1"),
@@ -270,7 +313,7 @@ test("a damaged obstacle is refused by name, and the others are shown", async ()
 });
 
 test("obstacles too large for a page are named, and do not cost the cloth its frames", () => {
-  const reader = open(pageOf(makeRun("small", { frames: 5, cells: 6, hasObstacles: true, mostBytes: 120 })));
+  const reader = open(pageOf(makeRun("small", { frames: 5, cells: 6, obstacles: "obstacles", mostBytes: 120 })));
   assert.ok(reader.leftOut.includes("table"), reader.leftOut.join());
   assert.equal(reader.frames.at(-1).index, 4);
 });

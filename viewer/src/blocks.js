@@ -41,12 +41,32 @@ export async function readBlock(document, id, length) {
 }
 
 /** Decodes 16-bit numbers stored as differences, with all high bytes before all low bytes. */
-export function unpack16(bytes, offset, count, result) {
+function unpack16(bytes, offset, count, result) {
   let value = 0;
   for (let i = 0; i < count; ++i) {
     value = (value + ((bytes[offset + i] << 8) | bytes[offset + count + i])) & 0xffff;
     result[i] = value;
   }
+}
+
+const kLevels = 65535;
+
+/** Decodes `values.length` levels as values of their range. */
+export function unpackLevels(bytes, offset, least, size, values) {
+  const levels = new Uint16Array(values.length);
+  unpack16(bytes, offset, levels.length, levels);
+  for (let i = 0; i < levels.length; ++i) values[i] = least + (size / kLevels) * levels[i];
+}
+
+/** Decodes x of all points, y, z: levels in the box { least, size }. */
+export function unpackPoints(bytes, { least, size }, count) {
+  const positions = new Float32Array(3 * count);
+  const values = new Float32Array(count);
+  for (let axis = 0; axis < 3; ++axis) {
+    unpackLevels(bytes, 2 * count * axis, least[axis], size[axis], values);
+    for (let p = 0; p < count; ++p) positions[3 * p + axis] = values[p];
+  }
+  return positions;
 }
 
 /** Decodes bytes stored as differences, times `scale`. */

@@ -108,7 +108,7 @@ class Viewer {
   #showFrame(position, frame) {
     this.#shown = position;
     this.#cloth.show(frame);
-    this.#obstacles.show(position);
+    this.#obstacles.show(position, frame.poses);
     this.#stage.follow(this.#run.drift(position));
     this.#stage.aimShadow(this.#run.litBox(position));
     showMoment(this.#run, position);

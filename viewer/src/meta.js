@@ -4,18 +4,24 @@
 
 import { BrokenData, require } from "./blocks.js";
 
-const kFormat = 2;
+const kFormat = 3;
 
 const isCount = (value) => Number.isSafeInteger(value) && value >= 0;
 const isNumbers = (value, count) =>
   Array.isArray(value) && value.length === count && value.every((number) => Number.isFinite(number));
 
-/** Checks an obstacle's entry: one placement if it never moves, otherwise one for each frame. */
+const isBox = (box) => isNumbers(box?.least, 3) && isNumbers(box.size, 3);
+
+/**
+ * Checks an obstacle's entry: one placement if it has no motion, otherwise one for each frame; if it deforms, the box
+ * of its points for each frame.
+ */
 function isMesh(mesh, frameCount) {
   return typeof mesh?.name === "string" && isCount(mesh.points) && mesh.points > 0 && isCount(mesh.faces) &&
     isCount(mesh.segments) && isCount(mesh.lone_points) && isNumbers(mesh.size, 3) && Array.isArray(mesh.placements) &&
     (mesh.placements.length === 1 || mesh.placements.length === frameCount) &&
-    mesh.placements.every((placement) => isNumbers(placement, 12));
+    mesh.placements.every((placement) => isNumbers(placement, 12)) && (mesh.poses === undefined ||
+      (Array.isArray(mesh.poses) && mesh.poses.length === frameCount && mesh.poses.every(isBox)));
 }
 
 /** Returns what the element holds; throws BrokenData if that is not a list of frames. */
@@ -43,7 +49,7 @@ export function readMeta(document) {
   const known = new Set(meta.topologies.map((topology) => topology.id));
   for (const frame of meta.frames)
     require(isCount(frame.index) && known.has(frame.topology) &&
-            isNumbers(frame.least, 3) && isNumbers(frame.size, 3) && isNumbers(frame.strain, 2) && Number.isFinite(frame.speed),
+            isBox(frame) && isNumbers(frame.strain, 2) && Number.isFinite(frame.speed),
     "The list of frames is damaged.");
   meta.meshes ??= [];
   meta.left_out ??= [];

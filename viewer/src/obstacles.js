@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The obstacles as three.js objects: solids with flat faces, wires as lines, lone points as dots. Their geometry is
-// made once; a frame only places the objects.
+// made once; a frame only places the objects, and moves the points of those that deform.
 
 import { BufferAttribute, BufferGeometry, DoubleSide, Group, Mesh, MeshStandardMaterial, Points } from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
@@ -18,7 +18,7 @@ function gather(positions, points) {
 export class Obstacles {
   group = new Group();
   #run;
-  #placed = []; // { mesh, object }
+  #placed = []; // { index, object, move }; `move` takes the points of one that deforms
   // Pushed back by some thousandths of the distance to the camera: faces of the cloth that cut a little into a round
   // obstacle, and cloth lying 1 mm above, stay whole at every angle.
   #solid = new MeshStandardMaterial({
@@ -44,43 +44,61 @@ export class Obstacles {
   async load() {
     const results = await Promise.allSettled(this.#run.meshes.map((_, index) => this.#run.loadMesh(index)));
     results.forEach(({ value }, index) => {
-      if (value) this.#add(this.#run.meshes[index], value);
+      if (value) this.#add(index, value);
     });
     const failed = results.find(({ status }) => status === "rejected");
     if (failed) throw failed.reason;
   }
 
-  /** Places all obstacles as in the `position`-th frame. */
-  show(position) {
-    for (const { mesh, object } of this.#placed) {
+  /** Shows all obstacles as in the `position`-th frame. Without its `poses` none that deforms is shown. */
+  show(position, poses) {
+    for (const { index, object, move } of this.#placed) {
+      const mesh = this.#run.meshes[index];
       object.matrix.set(...this.#run.placement(mesh, position), 0, 0, 0, 1);
       object.matrixWorldNeedsUpdate = true;
+      if (!mesh.poses) continue;
+      object.visible = poses !== undefined;
+      if (poses) move(poses[index]);
     }
   }
 
-  #add(mesh, { positions, faces, segments, lonePoints }) {
+  #add(index, { positions, faces, segments, lonePoints }) {
     const object = new Group();
     object.matrixAutoUpdate = false;
+    const moves = [];
+    const add = (child, setPoints) => {
+      child.frustumCulled = false;
+      object.add(child);
+      moves.push(setPoints);
+      setPoints(positions);
+    };
     if (faces.length > 0) {
-      const geometry = new BufferGeometry();
-      geometry.setAttribute("position", new BufferAttribute(positions, 3));
-      geometry.setIndex(new BufferAttribute(faces, 1));
-      const solid = new Mesh(geometry, this.#solid);
+      const solid = new Mesh(new BufferGeometry(), this.#solid);
+      solid.geometry.setAttribute("position", new BufferAttribute(new Float32Array(positions.length), 3));
+      solid.geometry.setIndex(new BufferAttribute(faces, 1));
       solid.castShadow = solid.receiveShadow = true;
-      object.add(solid);
+      add(solid, (points) => {
+        const { position } = solid.geometry.attributes;
+        position.array.set(points);
+        position.needsUpdate = true;
+      });
     }
     if (segments.length > 0) {
-      const geometry = new LineSegmentsGeometry();
-      geometry.setPositions(gather(positions, segments));
-      object.add(new LineSegments2(geometry, this.#wire));
+      const lines = new LineSegments2(new LineSegmentsGeometry(), this.#wire);
+      add(lines, (points) => {
+        lines.geometry.dispose();
+        lines.geometry = new LineSegmentsGeometry().setPositions(gather(points, segments));
+      });
     }
     if (lonePoints.length > 0) {
-      const geometry = new BufferGeometry();
-      geometry.setAttribute("position", new BufferAttribute(gather(positions, lonePoints), 3));
-      object.add(new Points(geometry, this.#dot));
+      const dots = new Points(new BufferGeometry(), this.#dot);
+      add(dots, (points) => {
+        dots.geometry.dispose();
+        dots.geometry = new BufferGeometry();
+        dots.geometry.setAttribute("position", new BufferAttribute(gather(points, lonePoints), 3));
+      });
     }
-    for (const child of object.children) child.frustumCulled = false;
-    this.#placed.push({ mesh, object });
+    this.#placed.push({ index, object, move: (points) => moves.forEach((setPoints) => setPoints(points)) });
     this.group.add(object);
   }
 }

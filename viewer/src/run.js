@@ -2,12 +2,13 @@
 // The run inside the page: a JSON element that lists the frames, and one element for each block of data. Blocks are
 // decoded on demand (blocks.js) and cached. The layout is described in ../README.md.
 
-import { BrokenData, readBlock, require, unpack16, unpack32, unpack8, unpackIndices } from "./blocks.js";
+import {
+  BrokenData, readBlock, require, unpack32, unpack8, unpackIndices, unpackLevels, unpackPoints,
+} from "./blocks.js";
 import { clipped, diagonal, grown, joined } from "./boxes.js";
 import { readMeta } from "./meta.js";
 
 const kCacheBytes = 64e6;
-const kLevels = 65535;
 const kNear = 0.2; // margin around the cloth within which obstacles are shown, over the box's diagonal
 const kWhole = 1.5; // diagonal of an obstacle that a view contains whole, over that of the cloth's boxes
 const kLit = 4; // the same of an obstacle whose whole shadow is drawn
@@ -71,10 +72,10 @@ export function normalGroups(faces, edges, vertexCount) {
 
 /** Writes the material coordinates u v of the listed `vertices`, m, relative to the least ones of the mesh. */
 function unpackMaterial(bytes, offset, { size }, vertices, material) {
-  const levels = new Uint16Array(vertices.length);
+  const values = new Float32Array(vertices.length);
   for (let axis = 0; axis < 2; ++axis) {
-    unpack16(bytes, offset + 2 * axis * vertices.length, vertices.length, levels);
-    vertices.forEach((vertex, i) => (material[2 * vertex + axis] = (size[axis] / kLevels) * levels[i]));
+    unpackLevels(bytes, offset + 2 * axis * vertices.length, 0, size[axis], values);
+    vertices.forEach((vertex, i) => (material[2 * vertex + axis] = values[i]));
   }
 }
 
@@ -131,9 +132,11 @@ export class Run {
   /** The bounding box { least, size } of an obstacle in the `position`-th frame. */
   #meshBox(mesh, position) {
     const placement = mesh.placements[mesh.placements.length === 1 ? 0 : position];
-    const half = [0, 1, 2].map((row) =>
-      mesh.size.reduce((sum, size, column) => sum + (Math.abs(placement[4 * row + column]) * size) / 2, 0));
-    return { least: half.map((value, row) => placement[4 * row + 3] - value), size: half.map((value) => 2 * value) };
+    const { least, size } = mesh.poses?.[position] ?? { least: mesh.size.map((value) => -value / 2), size: mesh.size };
+    const rows = [0, 1, 2].map((row) => placement.slice(4 * row, 4 * row + 4));
+    const half = rows.map((row) => size.reduce((sum, value, axis) => sum + (Math.abs(row[axis]) * value) / 2, 0));
+    const middle = rows.map((row) => least.reduce((sum, value, axis) => sum + row[axis] * (value + size[axis] / 2), row[3]));
+    return { least: half.map((value, axis) => middle[axis] - value), size: half.map((value) => 2 * value) };
   }
 
   /** The last frame in which the cloth's box is within `reach` of an obstacle's box; -1 if there is none. */
@@ -242,17 +245,21 @@ export class Run {
     return placement;
   }
 
-  /** An obstacle's points about the middle of its box, its faces, segments and lone points. BrokenData has its name. */
+  /**
+   * An obstacle's points about the middle of its box, its faces, segments and lone points. One that deforms has its
+   * points in the frames (load). BrokenData has its name.
+   */
   async loadMesh(index) {
-    const { name, points, faces, segments, lone_points: lonePoints } = this.meshes[index];
+    const { name, points, faces, segments, lone_points: lonePoints, poses } = this.meshes[index];
     try {
       const indexCount = 3 * faces + 2 * segments + lonePoints;
-      const bytes = await readBlock(this.#document, `arris-mesh-${index}`, 4 * (3 * points + indexCount));
-      const axes = new Float32Array(unpack32(bytes, 3 * points).buffer);
+      const stored = poses ? 0 : points;
+      const bytes = await readBlock(this.#document, `arris-mesh-${index}`, 4 * (3 * stored + indexCount));
+      const axes = new Float32Array(unpack32(bytes, 3 * stored).buffer);
       const positions = new Float32Array(3 * points);
-      for (let p = 0; p < points; ++p)
+      for (let p = 0; p < stored; ++p)
         for (let axis = 0; axis < 3; ++axis) positions[3 * p + axis] = axes[axis * points + p];
-      const indices = unpackIndices(bytes.subarray(12 * points), indexCount);
+      const indices = unpackIndices(bytes.subarray(12 * stored), indexCount);
       require(indices.every((point) => point < points), "it names points that do not exist");
       return {
         name, positions, faces: indices.subarray(0, 3 * faces),
@@ -321,27 +328,33 @@ export class Run {
     const bytes = await readBlock(this.#document, `arris-frame-${entry.index}`, 
       7 * n + 2 * m + ((n + 7) >> 3) + 4 * topology.moving.length);
 
-    const positions = new Float32Array(3 * n);
-    const levels = new Uint16Array(Math.max(n, m));
-    for (let axis = 0; axis < 3; ++axis) {
-      unpack16(bytes, 2 * n * axis, n, levels);
-      const least = entry.least[axis] - this.origin[axis];
-      const step = entry.size[axis] / kLevels;
-      for (let v = 0; v < n; ++v) positions[3 * v + axis] = least + step * levels[v];
-    }
+    const least = entry.least.map((value, axis) => value - this.origin[axis]);
+    const positions = unpackPoints(bytes, { least, size: entry.size }, n);
     const strain = new Float32Array(m);
-    unpack16(bytes, 6 * n, m, levels);
-    for (let f = 0; f < m; ++f) strain[f] = entry.strain[0] + (entry.strain[1] / kLevels) * levels[f];
+    unpackLevels(bytes, 6 * n, entry.strain[0], entry.strain[1], strain);
     let at = 6 * n + 2 * m;
     const contact = bytes.slice(at, (at += (n + 7) >> 3));
     const material = topology.material.slice();
     unpackMaterial(bytes, at, topology, topology.moving, material);
     const speed = unpack8(bytes, at + 4 * topology.moving.length, n, entry.speed / 255);
 
-    const frame = { topology, positions, strain, contact, material, speed };
-    const arrays = [positions, strain, contact, material, speed];
+    const poses = await Promise.all(this.meshes.map((_, index) => this.#decodePose(index, position)));
+    const frame = { topology, positions, strain, contact, material, speed, poses };
+    const arrays = [positions, strain, contact, material, speed, ...poses.filter((pose) => pose)];
     this.#cache.set(`f${position}`, frame, arrays.reduce((sum, { byteLength }) => sum + byteLength, 0));
     return frame;
+  }
+
+  /** Points of an obstacle about the point that its placement maps; null if it does not deform. */
+  async #decodePose(index, position) {
+    const { name, points, poses } = this.meshes[index];
+    if (!poses) return null;
+    try {
+      const id = `arris-pose-${index}-${this.frames[position].index}`;
+      return unpackPoints(await readBlock(this.#document, id, 6 * points), poses[position], points);
+    } catch (error) {
+      throw new BrokenData(`the points of the obstacle ${name} are damaged: ${error.message}`);
+    }
   }
 
   async #topology(id) {

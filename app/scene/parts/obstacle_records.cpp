@@ -140,18 +140,20 @@ std::shared_ptr<const Deformation> open_poses(const std::string& run_dir, const 
 
 }  // namespace
 
-std::vector<Vec3> ObstacleRecord::world_points(double time) const
+std::vector<Vec3> ObstacleRecord::points_at(double time) const
 {
-    std::vector<Vec3> points = mesh.points, velocities;
-    if (deformation) deformation->find(time, points, velocities);
-    const Placement to_world = at(time);
-    for (Vec3& point : points) point = to_world(point);
+    if (!deformation) return mesh.points;
+    std::vector<Vec3> points, velocities;
+    deformation->find(time, points, velocities);
     return points;
 }
 
-bool ObstacleRecord::is_moving() const
+std::vector<Vec3> ObstacleRecord::world_points(double time) const
 {
-    return motion.is_moving() || (deformation && deformation->sample_times().size() > 1);
+    std::vector<Vec3> points = points_at(time);
+    const Placement to_world = at(time);
+    for (Vec3& point : points) point = to_world(point);
+    return points;
 }
 
 std::string obstacles_file(const std::string& run_dir)

@@ -24,11 +24,17 @@ struct ObstacleRecord {
     /// Maps the obstacle's frame to the world at `time` (s).
     Placement at(double time) const { return motion.at(time) * placement; }
 
+    /// Places (m) of the mesh's points in the obstacle's frame at `time` (s).
+    std::vector<Vec3> points_at(double time) const;
+
     /// World places (m) of the mesh's points at `time` (s).
     std::vector<Vec3> world_points(double time) const;
 
-    /// Whether its points are at other places at other times.
-    bool is_moving() const;
+    /// Whether its points are at other places in its frame at other times.
+    bool is_deforming() const { return deformation && deformation->sample_times().size() > 1; }
+
+    /// Whether its points are at other places in the world at other times.
+    bool is_moving() const { return motion.is_moving() || is_deforming(); }
 };
 
 /// <run_dir>/obstacles

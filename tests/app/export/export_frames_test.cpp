@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "app/files/frame_files.h"
+#include "app/files/pose_file.h"
 #include "app/report/report.h"
 #include "geometry/input_error.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
@@ -56,6 +57,44 @@ TEST(ExportFrames, MakesEveryFormatFromTheRunsReport)
         EXPECT_TRUE(std::filesystem::exists(dir / file)) << file;
     EXPECT_THAT(read_bytes(dir / "cloth.usda"), HasSubstr("timeCodesPerSecond = 12.5\n"));
     EXPECT_EQ(dir.entry_count(), 1U + 3U + 3U + 3U + 3U + 1U);
+}
+
+TEST(ExportFrames, MovesThePointsOfAnObstacleThatDeforms)
+{
+    const TemporaryDirectory dir;
+    write_run(dir, 3, kScene);
+    ObstacleRecord body{"body", make_box({1.0, 2.0, 0.5}), {}, {}};
+    body.placement.translation = {0.0, 0.0, 3.0};
+    // Twice as long at frame 2.
+    PoseFileWriter writer({{0.0, 2.0 / 12.5}, body.mesh.points.size(), false, PoseInterpolation::Linear});
+    std::vector<Vec3> points = body.mesh.points;
+    writer.add(points);
+    for (Vec3& point : points) point.x() *= 2.0;
+    writer.add(points);
+    body.deformation = std::make_shared<PointCache>(writer.finish(), PoseInterpolation::Linear);
+    write_obstacles(dir.path(), {body});
+
+    ExportOptions options = read_export_options(dir.path());
+    export_frames(dir.path(), {"obj", "vtk", "usd", "gltf", "viewer"}, options);
+    const auto first_point = [&](int frame) {
+        const std::string text = read_bytes(frame_file(dir.path(), frame, "obj", "body"));
+        const std::size_t at = text.find("\nv ") + 3;
+        std::istringstream in(text.substr(at, text.find('\n', at) - at));
+        Vec3 point;
+        in >> point[0] >> point[1] >> point[2];
+        return point;
+    };
+    for (int frame = 0; frame < 3; ++frame) {
+        const Vec3& rest = body.mesh.points[0];
+        const Vec3 expected(rest.x() * (1.0 + 0.5 * frame), rest.y(), rest.z() + 3.0);
+        EXPECT_NEAR((first_point(frame) - expected).norm(), 0.0, 1e-15) << frame;
+    }
+    EXPECT_NE(read_bytes(frame_file(dir.path(), 2, "vtp", "body")),
+              read_bytes(frame_file(dir.path(), 1, "vtp", "body")));
+    options.up = UpAxis::Y;
+    options.is_overwriting = true;
+    export_frames(dir.path(), {"obj"}, options);
+    EXPECT_NEAR((first_point(2) - turn_to(UpAxis::Y)(body.world_points(2.0 / 12.5)[0])).norm(), 0.0, 1e-15);
 }
 
 TEST(ExportFrames, RefusesUnknownFormatsBeforeItWritesAny)

@@ -11,7 +11,9 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "geometry/obstacle_input/obstacle_shapes.h"
 #include "tests/app/error_of.h"
+#include "tests/app/stretching_obstacle.h"
 #include "tests/app/temporary_directory.h"
 
 namespace arris {
@@ -117,6 +119,46 @@ TEST(ExportGltf, ObstaclesMoveOnlyIfTheyDoInTheRun)
         moved.push_back(json["nodes"][channel["target"]["node"].get<int>()]["name"].get<std::string>() + " " +
                         channel["target"]["path"].get<std::string>());
     EXPECT_THAT(moved, ::testing::ElementsAre("cloth weights", "moving translation", "moving rotation"));
+}
+
+TEST(ExportGltf, AnObstacleThatDeformsHasTargetsBehindTheCloths)
+{
+    const TemporaryDirectory dir;
+    ObstacleRecord body = make_stretching("body", make_box({1.0, 2.0, 0.5}));
+    body.mesh.segments = {{0, 7}};
+    write_gltf(dir / "a.glb", make_rising(3), {"", 2.0}, {body});
+    const std::string bytes = read_bytes(dir / "a.glb");
+    const nlohmann::json json = json_of(bytes);
+    std::vector<std::string> moved;
+    for (const nlohmann::json& channel : json["animations"][0]["channels"])
+        moved.push_back(json["nodes"][channel["target"]["node"].get<int>()]["name"].get<std::string>() + " " +
+                        channel["target"]["path"].get<std::string>());
+    EXPECT_THAT(moved, ::testing::ElementsAre("cloth weights", "body weights"));
+    EXPECT_EQ(json["meshes"][1]["weights"].size(), 2U);
+    const nlohmann::json& primitives = json["meshes"][1]["primitives"];
+    ASSERT_EQ(primitives.size(), 2U);
+    EXPECT_EQ(primitives[0]["targets"], primitives[1]["targets"]);
+    ASSERT_EQ(primitives[0]["targets"].size(), 2U);
+
+    // Frames 1 and 2 are at 0.5 and 1 s.
+    for (const std::size_t frame : {1U, 2U}) {
+        const nlohmann::json& accessor =
+            json["accessors"][primitives[0]["targets"][frame - 1]["POSITION"].get<int>()];
+        ASSERT_EQ(accessor["count"], 8);
+        const nlohmann::json& view = json["bufferViews"][accessor["bufferView"].get<int>()];
+        const std::size_t at = 20 + number_at(bytes, 12) + 8 + view["byteOffset"].get<std::size_t>() +
+                               accessor["byteOffset"].get<std::size_t>();
+        ASSERT_LE(at + 8 * sizeof(std::array<float, 3>), bytes.size());
+        for (std::size_t p = 0; p < 8; ++p) {
+            std::array<float, 3> way;
+            std::memcpy(way.data(), bytes.data() + at + p * sizeof way, sizeof way);
+            const double x = 0.5 * static_cast<double>(frame) * body.mesh.points[p].x();
+            EXPECT_EQ(way, (std::array<float, 3>{static_cast<float>(x), 0.0F, 0.0F})) << frame << " " << p;
+        }
+    }
+    EXPECT_EQ(json["bufferViews"][json["accessors"][0]["bufferView"].get<int>()]["buffer"], 0);
+    EXPECT_EQ(json["buffers"][0]["byteLength"].get<std::size_t>() + 20 + number_at(bytes, 12) + 8,
+              bytes.size());
 }
 
 TEST(ExportGltf, RefusesAnotherMeshAndTooManyFrames)

@@ -86,7 +86,7 @@ TEST(ExportObj, HasNoLinesWithoutEolEdges)
     EXPECT_TRUE(lines_of(export_text(Frame{}), "v").empty());
 }
 
-TEST(ExportObj, WritesObstaclesWhereTheyArePlaced)
+TEST(ExportObj, WritesObstaclesWhereTheirPointsAre)
 {
     const TemporaryDirectory dir;
     ObstacleRecord thing{"thing", {}, {}, {}};
@@ -94,7 +94,8 @@ TEST(ExportObj, WritesObstaclesWhereTheyArePlaced)
     thing.mesh.faces = {{0, 1, 2}};
     thing.mesh.segments = {{2, 3}};
     thing.mesh.lone_points = {3};
-    write_obj(dir / "thing.obj", thing, {rotation_about(Vec3::UnitZ(), 90.0), {0.0, 0.0, 2.0}}, UpAxis::Z);
+    write_obj(dir / "thing.obj", thing,
+              {{0.0, 0.0, 2.0}, {0.0, 1.0, 2.0}, {-1.0, 0.0, 2.0}, {-0.2, 0.1, 2.0 + 1.0 / 3.0}}, UpAxis::Z);
     EXPECT_EQ(read_bytes(dir / "thing.obj"),
               "# Arris: m, z is up; l: wires; p: lone points\no thing\n"
               "v 0 0 2\nv 0 1 2\nv -1 0 2\nv -0.2 0.1 2.3333333333333335\n"

@@ -10,6 +10,7 @@
 #include "geometry/input_error.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "tests/app/example_frame.h"
+#include "tests/app/stretching_obstacle.h"
 #include "tests/app/temporary_directory.h"
 #include "tests/app/usda_parser.h"
 
@@ -313,6 +314,50 @@ TEST(ExportUsd, PlacesObstaclesByATransformThatIsSampledWhereTheyMove)
     EXPECT_EQ(third.children[0].attributes.at("points").value.at(0).numbers(),
               (std::vector<double>{0, 0, 0, 0, 0, 7}));
     EXPECT_EQ(third.children[0].attributes.at("widths").metadata.at("interpolation").text, "constant");
+    for (const UsdaPrim& obstacle : obstacles)
+        EXPECT_FALSE(obstacle.children[0].attributes.contains("velocities")) << obstacle.name;
+}
+
+TEST(ExportUsd, SamplesPointsAndVelocitiesOfObstaclesThatDeform)
+{
+    ObstacleRecord body = make_stretching("body", make_box({1.0, 2.0, 0.5}));
+    body.placement.translation = {0.0, 0.0, 3.0};
+    ObstacleRecord rope =
+        make_stretching("rope", make_wire({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 1.0, 0.0}}, false));
+    ObstacleRecord nails = make_stretching("nails", make_points({{1.0, 0.0, 0.0}, {2.0, 0.0, 7.0}}));
+
+    const TemporaryDirectory dir;
+    const auto frames = write_frames(dir, {make_moved_frame(0), make_moved_frame(1), make_moved_frame(2)});
+    write_usd(dir / "cloth.usda", source_of(frames), {"A title", 2.0}, {body, rope, nails});
+    const UsdaParser usd(read_bytes(dir / "cloth.usda"));
+    const std::vector<UsdaPrim>& obstacles = usd.others.at(0).children;
+    ASSERT_EQ(obstacles.size(), 3U);
+    EXPECT_TRUE(obstacles[0].attributes.at("xformOp:transform").samples.empty());
+
+    const UsdaPrim& surface = obstacles[0].children.at(0);
+    for (const char* name : {"points", "velocities", "extent"})
+        EXPECT_THAT(times(surface.attributes.at(name)), ElementsAre(0, 1, 2)) << name;
+    std::vector<Vec3> points, velocities;
+    body.deformation->find(1.0, points, velocities);  // time code 2 at two frames a second
+    expect_same(surface.attributes.at("points").samples.at(2), points);
+    expect_same(surface.attributes.at("velocities").samples.at(2), velocities);
+    EXPECT_EQ(surface.attributes.at("extent").samples.at(2).numbers(),
+              (std::vector<double>{-1, -1, -0.25, 1, 1, 0.25}));
+    EXPECT_TRUE(surface.attributes.at("faceVertexIndices").samples.empty());
+
+    const UsdaPrim& wires = obstacles[1].children.at(0);
+    EXPECT_EQ(wires.attributes.at("points").samples.at(1).numbers(),
+              (std::vector<double>{0, 0, 0, 1.5, 0, 0, 1.5, 0, 0, 3, 1, 0}));
+    EXPECT_EQ(wires.attributes.at("velocities").samples.at(1).numbers(),
+              (std::vector<double>{0, 0, 0, 1, 0, 0, 1, 0, 0, 2, 0, 0}));
+    EXPECT_EQ(obstacles[2].children.at(0).attributes.at("points").samples.at(2).numbers(),
+              (std::vector<double>{2, 0, 0, 4, 0, 7}));
+
+    write_usd(dir / "one.usda", source_of({frames[0]}), {"A title", 2.0}, {body});
+    const UsdaParser one(read_bytes(dir / "one.usda"));
+    const UsdaAttribute& still = one.others.at(0).children.at(0).children.at(0).attributes.at("points");
+    EXPECT_TRUE(still.samples.empty());
+    expect_same(still.value.at(0), body.mesh.points);
 }
 
 }  // namespace

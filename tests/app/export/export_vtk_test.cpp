@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/app/example_frame.h"
+#include "tests/app/stretching_obstacle.h"
 #include "tests/app/temporary_directory.h"
 
 namespace arris {
@@ -41,6 +42,8 @@ TEST(ExportVtk, CollectionNamesStillObstaclesOnce)
     EXPECT_THAT(text,
                 HasSubstr("timestep=\"0.5\" part=\"2\" name=\"moving\" file=\"frames/moving_00002.vtp\""));
     EXPECT_THAT(text, Not(HasSubstr("still_00002")));
+    write_pvd(dir / "cloth.pvd", {make_stretching("body", {})}, 3, 4.0);
+    EXPECT_THAT(read_bytes(dir / "cloth.pvd"), HasSubstr("file=\"frames/body_00002.vtp\""));
 }
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include "app/files/frame.h"
 #include "geometry/input_error.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
+#include "tests/app/stretching_obstacle.h"
 
 namespace arris {
 namespace {
@@ -265,7 +266,7 @@ TEST_F(ViewerHtml, HoldsEveryFrameToHalfALevelOfItsBox)
     write_viewer(run_, {"strip", 25.0});
 
     const json all = meta(page());
-    EXPECT_EQ(all["format"], 2);
+    EXPECT_EQ(all["format"], 3);
     EXPECT_EQ(all["title"], "strip");
     EXPECT_EQ(all["frames_per_second"], 25.0);
     EXPECT_EQ(all["run_frames"], 5);
@@ -445,6 +446,93 @@ TEST_F(ViewerHtml, LeavesObstaclesOutThatTakeMoreThanHalfThePage)
     ASSERT_EQ(all["meshes"].size(), 1U);
     EXPECT_EQ(all["meshes"][0]["name"], "box");
     EXPECT_EQ(all["frames"].size(), 3U);
+}
+
+/// Points of the k-th obstacle, which deforms without motion, where the page has them at a frame of its list.
+std::vector<Vec3> pose_points(const std::string& page, std::size_t k, std::size_t position)
+{
+    const json all = meta(page);
+    const json& mesh = all["meshes"].at(k);
+    const json &rows = mesh["placements"].at(0), &box = mesh["poses"].at(position);
+    const std::size_t n = mesh["points"];
+    const auto bytes = unpacked(
+        page, fmt::format("arris-pose-{}-{}", k, all["frames"].at(position)["index"].get<int>()), 6 * n);
+    std::vector<Vec3> points(n);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto numbers = levels(bytes, 2 * n * axis, n);
+        for (std::size_t p = 0; p < n; ++p)
+            points[p][static_cast<Eigen::Index>(axis)] =
+                box["least"][axis].get<double>() + box["size"][axis].get<double>() * numbers[p] / 65535.0 +
+                rows[4 * axis + 3].get<double>();
+    }
+    return points;
+}
+
+TEST_F(ViewerHtml, HoldsThePointsOfObstaclesThatDeformInEveryFrame)
+{
+    for (int i = 0; i < 5; ++i) write_frame(frame_path(i), make_strip(3, 7U));
+    ObstacleRecord body = make_stretching("body", make_box({1.0, 2.0, 0.5}));
+    body.placement.translation = {100.0, 0.5, -2.0};
+    const ObstacleRecord table{"table", make_box({1.0, 2.0, 0.5}), {}, {}};
+    write_viewer(run_, {"obstacles", 1.0}, {table, body});
+
+    const std::string written = page();
+    const json all = meta(written);
+    ASSERT_EQ(all["meshes"].size(), 2U);
+    EXPECT_FALSE(all["meshes"][0].contains("poses"));
+    EXPECT_EQ(all["meshes"][1]["poses"].size(), 5U);
+    EXPECT_EQ(all["meshes"][1]["placements"].size(), 1U);
+    unpacked(written, "arris-mesh-1", 4 * 3 * 12);  // faces, but no points
+    for (const std::size_t position : {0U, 3U, 4U}) {
+        const std::vector<Vec3> points = pose_points(written, 1, position);
+        ASSERT_EQ(points.size(), 8U);
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            const Vec3 own = stretched(body.mesh.points[p], static_cast<double>(position));
+            EXPECT_NEAR((points[p] - body.placement(own)).norm(), 0.0, 5.0 / 65535.0) << position;
+        }
+    }
+}
+
+/// An obstacle whose points hardly compress.
+ObstacleRecord make_noisy(int count)
+{
+    std::vector<Vec3> points;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-0.5, 0.5);
+    for (int i = 0; i < count; ++i) points.emplace_back(unit(random), unit(random), unit(random));
+    return make_stretching("body", make_points(points));
+}
+
+TEST_F(ViewerHtml, LeavesFramesOutWhereThePointsOfObstaclesTakeTooMuch)
+{
+    for (int i = 0; i < 17; ++i) write_frame(frame_path(i), make_strip(3, 7U));
+    // A frame's points take 6 kB.
+    ViewerOptions options{"crowded", 24.0};
+    const auto data_bytes = [&] {
+        const std::string written = page();
+        std::size_t bytes = 0;
+        for (std::size_t at = 0;
+             (at = written.find("<script type=\"text/plain\"", at)) != std::string::npos;) {
+            at = written.find('>', at) + 1;
+            bytes += (written.find('<', at) - at) / 4 * 3;
+        }
+        return bytes;
+    };
+    for (const auto& [most, stride] : {std::pair(200'000, 1), {70'000, 2}, {40'000, 4}}) {
+        options.most_bytes = static_cast<std::size_t>(most);
+        write_viewer(run_, options, {make_noisy(1000)});
+        const json all = meta(page());
+        EXPECT_EQ(all["stride"], stride);
+        EXPECT_FALSE(all.contains("left_out"));
+        EXPECT_EQ(all["meshes"][0]["poses"].size(), all["frames"].size());
+        EXPECT_LE(data_bytes(),
+                  static_cast<std::size_t>(most) + 200);  // base64 rounds each block up by 2 bytes
+    }
+    // Two frames' points do not fit into half the page.
+    options.most_bytes = 20'000;
+    write_viewer(run_, options, {make_noisy(1000)});
+    EXPECT_EQ(meta(page())["left_out"], json({"body"}));
+    EXPECT_EQ(meta(page())["stride"], 1);
 }
 
 TEST_F(ViewerHtml, TakesTitlesAsDataWhateverTheyHold)

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/app/stretching_obstacle.h"
+
 namespace arris {
 namespace {
 
@@ -73,6 +75,17 @@ TEST(ScenePicture, MovesObstaclesAndDrawsWiresAndNails)
     EXPECT_NE(draw_scene(cloth, {wire}, 0.0), still);
     EXPECT_EQ(draw_scene(cloth, {moving}, 0.0), still);
     EXPECT_NE(draw_scene(cloth, {moving}, 1.0), still);
+}
+
+TEST(ScenePicture, DrawsAnObstacleThatDeformsAsItIsAtTheTime)
+{
+    const ObstacleRecord body = make_stretching("body", sheet(0.5, 0.1).mesh);
+    ObstacleRecord wide = body;
+    for (Vec3& p : wide.mesh.points) p = stretched(p, 2.0);
+    wide.deformation = nullptr;
+    const Frame cloth = square(2.0, 0.0);
+    EXPECT_EQ(draw_scene(cloth, {body}, 2.0), draw_scene(cloth, {wide}, 0.0));
+    EXPECT_NE(draw_scene(cloth, {body}, 2.0), draw_scene(cloth, {body}, 0.0));
 }
 
 }  // namespace

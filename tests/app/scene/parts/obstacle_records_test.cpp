@@ -11,6 +11,7 @@
 #include "geometry/input_error.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "tests/app/error_of.h"
+#include "tests/app/stretching_obstacle.h"
 #include "tests/app/temporary_directory.h"
 
 namespace arris {
@@ -186,6 +187,28 @@ TEST(ObstacleRecords, AFileOfTheEarlierVersionIsRead)
     ASSERT_EQ(read.size(), 1U);
     EXPECT_EQ(read[0].mesh.points, nails.mesh.points);
     EXPECT_EQ(read[0].deformation, nullptr);
+}
+
+TEST(ObstacleRecords, OneThatDeformsMovesInItsPlacement)
+{
+    ObstacleRecord record = make_stretching("body", make_box({1.0, 2.0, 0.5}));
+    record.placement = {rotation_about(Vec3::UnitZ(), 90.0), {0.0, 0.0, 3.0}};
+    const std::vector<Vec3> own = record.points_at(2.0), world = record.world_points(2.0);
+    for (std::size_t p = 0; p < own.size(); ++p) {
+        EXPECT_EQ(own[p], stretched(record.mesh.points[p], 2.0));
+        EXPECT_EQ(world[p], record.placement(own[p]));
+    }
+    EXPECT_EQ(count_obstacle_frames(record, 24), 24U);
+}
+
+TEST(ObstacleRecords, OneOfASinglePoseNeverMoves)
+{
+    ObstacleRecord record = make_stretching("body", make_box({1.0, 2.0, 0.5}));
+    record.deformation = std::make_shared<FormulaDeformation>(
+        record.mesh.points, [](const Vec3& rest, double) { return Vec3(2.0 * rest); },
+        [](const Vec3&, double) { return Vec3(0.0, 0.0, 0.0); });
+    EXPECT_EQ(count_obstacle_frames(record, 24), 1U);
+    EXPECT_EQ(record.world_points(0.0)[0], 2.0 * record.mesh.points[0]);
 }
 
 }  // namespace
