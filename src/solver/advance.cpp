@@ -50,12 +50,6 @@ std::optional<StepReport> advance(const Scene& scene, const Settings& settings, 
             continue;
         }
         failed.add_cost(report);
-        fprintf(stderr,
-                "fail t=%.6f dt=%.6f status=%d solves=%d fact=%d vertex=%d at %g %g %g obst=%d part=%d "
-                "res=%g\n",
-                state.time, part_end - state.time, (int)report.status, report.solves, report.factorisations,
-                (int)report.place.vertex, report.place.world.x(), report.place.world.y(),
-                report.place.world.z(), (int)report.infeasible.vertex, parts, report.kkt_residual);
         switch (work.retry.choose_next({report.status, attempt, work.prediction.has_history, is_shortest})) {
             case NextAttempt::WholeWithoutEol:
                 parts = std::max(parts / shrink, 1);
