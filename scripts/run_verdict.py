@@ -108,7 +108,7 @@ def is_moving(thing):
     """Whether a pin or obstacle of a scene moves."""
     motion = thing.get("motion", thing)
     placements = [(key.get("translate"), key.get("rotate")) for key in thing.get("keyframes", [])]
-    return any(any(motion.get(key, ())) for key in ("velocity", "angular_velocity")) or \
+    return "deform" in thing or any(any(motion.get(key, ())) for key in ("velocity", "angular_velocity")) or \
         any(p != placements[0] for p in placements)
 
 

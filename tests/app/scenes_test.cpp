@@ -45,8 +45,7 @@ bool is_driven(const Scene& scene)
 {
     const auto is_moving = [](const auto& of) { return of.is_moving(); };
     return scene.wind || !scene.pulls.empty() ||
-           std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
-                       [&](const MovingObstacle& obstacle) { return is_moving(obstacle.motion()); }) ||
+           std::any_of(scene.obstacles.begin(), scene.obstacles.end(), is_moving) ||
            std::any_of(scene.pins.begin(), scene.pins.end(),
                        [&](const Pin& pin) { return is_moving(pin.motion); });
 }
