@@ -51,7 +51,7 @@ Way measure_way(const std::vector<double>& times, const std::vector<Vec3>& point
     return way;
 }
 
-/// Where what rides on an obstacle, and is at `place` (world) at time `from`, is at `to`.
+/// Place at time `to` of something that rides on an obstacle and is at `place` (world) at time `from`.
 Vec3 ridden(const MovingObstacle& obstacle, double from, const Vec3& place, double to)
 {
     const ObstaclePose pose = obstacle.at(from);

@@ -30,7 +30,8 @@ Box3 grown(const Box3& box, double by)
     return Box3(box.min().array() - by, box.max().array() + by);
 }
 
-/// Of the points of faces, wires and nails that the cloth may meet during `dt`.
+/// Greatest distance (m) of arc and chord during `dt`, of the points of faces, wires and nails that the cloth
+/// may meet.
 double arc_of_deforming(const MovingObstacle& obstacle, const State& state, double dt)
 {
     const ObstaclePose pose = obstacle.at(state.time);
@@ -57,7 +58,8 @@ double arc_of_deforming(const MovingObstacle& obstacle, const State& state, doub
     return most;
 }
 
-/// Of places that ride with the cloth's vertices on a rigid obstacle, where they are near it.
+/// Greatest distance (m) of arc and chord during `dt`, of the cloth's vertices near the obstacle if they rode
+/// on it.
 double arc_of_rigid(const MovingObstacle& obstacle, const State& state, double dt)
 {
     const ObstaclePose begin = obstacle.at(state.time);

@@ -287,7 +287,7 @@ std::vector<Vec3> normals_around(const ObstacleTopology& topology, const FacePla
     return normals;
 }
 
-/// Marks the nodes of a pose, other points stay as they are.
+/// Marks the nodes of a pose; other points stay as they are.
 void mark_nodes(const ObstacleMesh& mesh, const ObstacleTopology& topology, const FacePlanes& planes,
                 const std::vector<FeatureEdge>& edges, const std::vector<EdgesAt>& at,
                 const std::vector<int>& fan_of, std::vector<char>& is_corner)
@@ -314,43 +314,53 @@ std::vector<Vec3> normals_in_pose(const ObstacleTopology& topology, int point)
     return normals;
 }
 
-}  // namespace
-
-ObstacleFeatures find_features(const ObstacleMesh& mesh, const ObstacleTopology& topology,
-                               double feature_angle)
+/// Features of a mesh with these planes, of what is sharp in one of the poses that `visit` visits twice:
+/// visit(use) calls use(pose, its topology, its planes).
+template <class Visit>
+ObstacleFeatures find_features_in(const ObstacleMesh& mesh, const ObstacleTopology& topology,
+                                  const FacePlanes& planes, double feature_angle, const Visit& visit)
 {
-    return find_features_of_poses(mesh, topology, feature_angle,
-                                  [&](const PoseVisitor& use) { use(mesh, topology); });
-}
-
-ObstacleFeatures find_features_of_poses(const ObstacleMesh& mesh, const ObstacleTopology& topology,
-                                        double feature_angle, const VisitPoses& visit_poses)
-{
-    const double diagonal = diagonal_of(mesh);
-    const auto planes_of = [&](const ObstacleMesh& pose, const ObstacleTopology& posed) {
-        return find_planes(pose, posed, diagonal_of(pose));
-    };
     std::vector<char> is_marked(topology.edges.size(), 0);
-    visit_poses([&](const ObstacleMesh& pose, const ObstacleTopology& posed) {
-        mark_sharp(pose, posed, planes_of(pose, posed), feature_angle, is_marked);
+    visit([&](const ObstacleMesh& pose, const ObstacleTopology& posed, const FacePlanes& of_pose) {
+        mark_sharp(pose, posed, of_pose, feature_angle, is_marked);
     });
-    const FacePlanes planes = planes_of(mesh, topology);
     ObstacleFeatures features;
     features.edges = make_feature_edges(topology, planes, is_marked);
-    features.patch = find_patches(mesh, topology, planes, diagonal);
+    features.patch = find_patches(mesh, topology, planes, diagonal_of(mesh));
 
     const std::vector<EdgesAt> at = gather_at_points(topology, features.edges, mesh.points.size());
     const std::vector<int> fan_of = find_fans(mesh, topology);
     std::vector<char> is_corner(mesh.points.size(), 0);
     for (const int p : mesh.lone_points) is_corner[p] = 1;
-    visit_poses([&](const ObstacleMesh& pose, const ObstacleTopology& posed) {
-        mark_nodes(pose, posed, planes_of(pose, posed), features.edges, at, fan_of, is_corner);
+    visit([&](const ObstacleMesh& pose, const ObstacleTopology& posed, const FacePlanes& of_pose) {
+        mark_nodes(pose, posed, of_pose, features.edges, at, fan_of, is_corner);
     });
     features.polylines = chain(mesh, topology, at, is_corner, features.edges);
     for (int p = 0; p < static_cast<int>(mesh.points.size()); ++p)
         if (is_corner[p])
             features.corners.push_back({p, normals_around(topology, planes, features.patch, p)});
     return features;
+}
+
+}  // namespace
+
+ObstacleFeatures find_features(const ObstacleMesh& mesh, const ObstacleTopology& topology,
+                               double feature_angle)
+{
+    const FacePlanes planes = find_planes(mesh, topology, diagonal_of(mesh));
+    return find_features_in(mesh, topology, planes, feature_angle,
+                            [&](const auto& use) { use(mesh, topology, planes); });
+}
+
+ObstacleFeatures find_features_of_poses(const ObstacleMesh& mesh, const ObstacleTopology& topology,
+                                        double feature_angle, const VisitPoses& visit_poses)
+{
+    const FacePlanes planes = find_planes(mesh, topology, diagonal_of(mesh));
+    return find_features_in(mesh, topology, planes, feature_angle, [&](const auto& use) {
+        visit_poses([&](const ObstacleMesh& pose, const ObstacleTopology& posed) {
+            use(pose, posed, find_planes(pose, posed, diagonal_of(pose)));
+        });
+    });
 }
 
 void pose_features(const ObstacleMesh& mesh, const ObstacleTopology& topology, double feature_angle,

@@ -107,7 +107,8 @@ double longest_edge(const std::vector<Vec3>& world, const std::vector<MeshEdge>&
 void ride(double end, double cell, Carrier& carrier)
 {
     const MovingObstacle& obstacle = *carrier.moving;
-    const ObstaclePose from = obstacle.at(carrier.time), to = obstacle.at(end);
+    const ObstaclePose from = obstacle.at(carrier.time), to = obstacle.at(end),
+                       earlier = obstacle.at(carrier.previous_time);
     const double reach = 2.0 * (cell + longest_way(from->mesh().points, to->mesh().points));
     const std::vector<Vec3> world = carrier.motion.begin;  // the frame is the world
     carrier.rides.resize(world.size());
@@ -117,8 +118,8 @@ void ride(double end, double cell, Carrier& carrier)
         if (from->bounds().squaredExteriorDistance(place) > reach * reach) return;
         const std::optional<SurfacePlace> on = find_nearest(from, place, reach);
         if (!on) return;
-        const Placement way = obstacle.way(carrier.time, end, *on);
-        const Vec3 before = obstacle.way(carrier.time, carrier.previous_time, *on)(place);
+        const Placement way = find_way(from, to, *on);
+        const Vec3 before = find_way(from, earlier, *on)(place);
         carrier.motion.begin[v] = way(place);
         carrier.rides[v] = {place, before, way.rotation,
                             obstacle.velocity_after(carrier.time, place, *on) -

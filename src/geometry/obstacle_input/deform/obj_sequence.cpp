@@ -23,8 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDefaultRate = 24.0;  // frames a second
-
 [[noreturn]] void refuse(const std::string& path, const std::string& why)
 {
     throw InputError(path + ": " + why);
@@ -179,7 +177,7 @@ std::unique_ptr<VertexCache> open_obj_sequence(const VertexCacheRequest& request
     require_all(request.path, *pattern, numbers, request);
     std::vector<double> times;
     for (std::size_t k = 0; k < numbers.size(); ++k)
-        times.push_back(static_cast<double>(k) / request.frames_per_second.value_or(kDefaultRate));
+        times.push_back(static_cast<double>(k) / request.frames_per_second.value_or(kDefaultFramesPerSecond));
     return std::make_unique<ObjSequence>(folder, *pattern, numbers.front(), request.vertex_count,
                                          std::move(times));
 }

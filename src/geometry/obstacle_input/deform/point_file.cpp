@@ -26,7 +26,6 @@ namespace arris {
 namespace {
 
 constexpr std::uint64_t kVertexBytes = 3 * sizeof(float);
-constexpr double kDefaultRate = 24.0;  // frames a second
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why)
 {
@@ -247,7 +246,8 @@ std::unique_ptr<VertexCache> open_pc2(const VertexCacheRequest& request)
     const SampleRange range = find_range(request.path, request, layout);
     std::vector<double> times;
     for (std::size_t k = 0; k < range.count; ++k)
-        times.push_back(static_cast<double>(k) * frames / request.frames_per_second.value_or(kDefaultRate));
+        times.push_back(static_cast<double>(k) * frames /
+                        request.frames_per_second.value_or(kDefaultFramesPerSecond));
     return std::make_unique<PointFile>(std::move(file), layout, range, std::move(times));
 }
 

@@ -11,6 +11,9 @@
 
 namespace arris {
 
+/// Samples a second where neither file nor scene says.
+inline constexpr double kDefaultFramesPerSecond = 24.0;
+
 struct VertexCacheRequest {
     std::string path;  ///< .mdd, .pc2, or a name with %d or %04d in place of a number, which ends in .obj
     std::optional<double> frames_per_second;  ///< default: times of an MDD file, else 24 frames a second
