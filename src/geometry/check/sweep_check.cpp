@@ -73,15 +73,14 @@ struct Near {
 class GroupSearch {
   public:
     GroupSearch(const Obstacle& obstacle, const ClothMotion& motion, double thickness,
-                const MovingSides* sides, const std::vector<Box3>& boxes,
-                const std::vector<OwnedElements>& owned)
+                const std::vector<Box3>& boxes, const std::vector<OwnedElements>& owned)
         : obstacle_(obstacle),
           motion_(motion),
           thickness_(thickness),
-          sides_(sides),
-          begin_(sides ? sides->cloth : motion.begin),
-          points_at_begin_((sides ? sides->obstacle : obstacle).mesh().points),
-          way_(sides ? longest_way(points_at_begin_, obstacle.mesh().points) : 0.0),
+          sides_(motion.sides.get()),
+          begin_(sides_ ? sides_->cloth : motion.begin),
+          points_at_begin_((sides_ ? *sides_->obstacle : obstacle).mesh().points),
+          way_(sides_ ? longest_way(points_at_begin_, obstacle.mesh().points) : 0.0),
           boxes_(boxes),
           owned_(owned)
     {
@@ -239,7 +238,7 @@ class GroupSearch {
         const ClothPoint point{vertices, hit.weights};
         Meeting meeting{kind, cloth_element, obstacle_element, hit, point.at(begin_), 0.0};
         if (sides_) {
-            const Placement way = find_way(sides_->obstacle, obstacle_, place_of(meeting));
+            const Placement way = find_way(*sides_->obstacle, obstacle_, place_of(meeting));
             meeting.begin = way(meeting.begin);
             meeting.hit.normal = way.rotation * hit.normal;
         }
@@ -372,21 +371,20 @@ SweepReport summarize(const ClothMotion& motion, const std::vector<FaceFinding>&
 
 }  // namespace
 
-SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, double thickness,
-                        const MovingSides* sides)
+SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, double thickness)
 {
     assert(motion.begin.size() == motion.end.size());
     const std::vector<Box3> boxes =
-        sweep_boxes(*motion.faces, sides ? sides->cloth : motion.begin, motion.end);
+        sweep_boxes(*motion.faces, motion.sides ? motion.sides->cloth : motion.begin, motion.end);
     Box3 cloth;
     for (const Box3& box : boxes) cloth.extend(box);
     Box3 met = obstacle.bounds();
-    if (sides) met.extend(sides->obstacle.bounds());
+    if (motion.sides) met.extend(motion.sides->obstacle->bounds());
     if (!cloth.intersects(met)) return {};
 
     const std::vector<OwnedElements> owned =
         assign_owners(static_cast<int>(motion.begin.size()), *motion.faces, *motion.edges);
-    const GroupSearch search(obstacle, motion, thickness, sides, boxes, owned);
+    const GroupSearch search(obstacle, motion, thickness, boxes, owned);
     return summarize(motion, collect_in_groups<FaceFinding>(boxes, search));
 }
 

@@ -28,21 +28,13 @@ struct SweepReport {
     bool is_clean() const { return faces.empty(); }
 };
 
-/// Where an obstacle that deforms and the cloth begin, in the world. The motion's own `begin` is then where
-/// the cloth would be at the end if it rode on the obstacle; planes follow from it.
-struct MovingSides {
-    const Obstacle& obstacle;
-    const std::vector<Vec3>& cloth;
-};
-
 /// Checks the cloth's motion from `motion.begin` (free) to `motion.end` against every face, edge, wire and
-/// point of the obstacle. With `sides` both move linearly: from there to the obstacle and to `motion.end`. No
-/// touch is missed. Elements that pass within 1e-11 of the size of a cloth face's swept box, and began
-/// farther off, may count as touching. Positions must be finite.
+/// point of the obstacle. With `motion.sides` both move linearly: from there to the obstacle and to
+/// `motion.end`. No touch is missed. Elements that pass within 1e-11 of the size of a cloth face's swept box,
+/// and began farther off, may count as touching. Positions must be finite.
 ///
 /// Parallel; independent of the number of threads. Cloth far from the obstacle costs only its boxes; near it,
 /// neighbouring cloth faces share one query.
-SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, double thickness,
-                        const MovingSides* sides = nullptr);
+SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, double thickness);
 
 }  // namespace arris

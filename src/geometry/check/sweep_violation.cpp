@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "geometry/contact/contact_begin.h"
+
 namespace arris {
 namespace {
 
@@ -82,7 +84,8 @@ std::optional<ObstacleContact> make_edge_violation(const Obstacle& obstacle, con
     const auto found = make_edge_contact(obstacle, motion, motion.end, {cloth.a, cloth.b}, edge, thickness);
     // The begin determines the side, however nearly the cloth moved along the edge: the hit's own normal may
     // point inside.
-    const auto contact = found ? as_violation(meeting, *found, found->at(motion.begin), 0.0) : std::nullopt;
+    const auto began = [&] { return begin_from_edge(obstacle, motion, {cloth.a, cloth.b}, edge); };
+    const auto contact = found ? as_violation(meeting, *found, found->at(began()), 0.0) : std::nullopt;
     return contact ? contact : by_hit(meeting, hit);
 }
 
@@ -100,7 +103,9 @@ std::optional<ObstacleContact> make_face_violation(const Obstacle& obstacle, con
                           touch_distance(obstacle, thickness)};
     const auto found = make_face_contact(obstacle, motion, motion.end, cloth_face, point, thickness);
     const auto contact =
-        found ? as_violation(meeting, *found, found->at(motion.begin), kAlongPlane) : std::nullopt;
+        found
+            ? as_violation(meeting, *found, found->at(begin_from_point(obstacle, motion, point)), kAlongPlane)
+            : std::nullopt;
     return contact ? contact : by_hit(meeting, hit);
 }
 

@@ -46,13 +46,13 @@ namespace {
 
 /// Distance at the step's begin between the cloth's element and the obstacle's element. The contact's cloth
 /// point alone may have been far away then: on cloth that slides over an edge it arrives along the cloth.
-double distance_between_elements(const Obstacle& obstacle, const ClothMotion& motion,
+double distance_between_elements(const Obstacle& obstacle, const ContactBegin& begin,
                                  const ObstacleContact& contact)
 {
     if (contact.vertices[1] < 0) return std::numeric_limits<double>::infinity();
     std::array<Vec3, 3> cloth;
     for (int i = 0; i < 3; ++i)
-        cloth[i] = motion.begin[contact.vertices[i] < 0 ? contact.vertices[0] : contact.vertices[i]];
+        cloth[i] = begin[contact.vertices[i] < 0 ? contact.vertices[0] : contact.vertices[i]];
     const auto from = [&](const Vec3& place) { return (place - contact.point).norm(); };
     if (contact.kind == ContactKind::Edge) {
         const std::vector<Vec3>& points = obstacle.mesh().points;
@@ -70,21 +70,21 @@ double distance_between_elements(const Obstacle& obstacle, const ClothMotion& mo
 
 }  // namespace
 
-ObstacleContact make_contact(const Obstacle& obstacle, const ClothMotion& motion, ContactKind kind,
-                             const ClothPoint& cloth_point, int element, const Vec3& normal,
+ObstacleContact make_contact(const Obstacle& obstacle, const ClothMotion& motion, const ContactBegin& begin,
+                             ContactKind kind, const ClothPoint& cloth_point, int element, const Vec3& normal,
                              const Vec3& point, double thickness)
 {
-    const Vec3 begin = cloth_point.at(motion.begin);
-    const double before = normal.dot(begin - point);
+    const Vec3 began = cloth_point.at(begin);
+    const double before = normal.dot(began - point);
     const double after = normal.dot(cloth_point.at(motion.end) - point);
     ObstacleContact contact =
         make_contact(kind, cloth_point, element, normal, point, std::min(thickness, before));
     // Cloth that slides along a curved surface approaches this plane from below. Allow it to keep its present
     // distance from the surface.
     if (contact.least_gap < std::min(thickness, after)) {
-        const double farthest = std::min(thickness, distance_between_elements(obstacle, motion, contact));
+        const double farthest = std::min(thickness, distance_between_elements(obstacle, begin, contact));
         contact.least_gap =
-            std::max(contact.least_gap, std::min(after, distance_to(obstacle, begin, farthest)));
+            std::max(contact.least_gap, std::min(after, distance_to(obstacle, began, farthest)));
     }
     return contact;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "geometry/contact/contact_begin.h"
 #include "geometry/contact/obstacle_contact.h"
 
 namespace arris {
@@ -43,8 +44,8 @@ ObstacleContact make_contact(ContactKind kind, const ClothPoint& cloth_point, in
 
 /// As above, for contacts found before the solve. `least_gap` follows from where the cloth's point began and
 /// from where its free motion ends.
-ObstacleContact make_contact(const Obstacle& obstacle, const ClothMotion& motion, ContactKind kind,
-                             const ClothPoint& cloth_point, int element, const Vec3& normal,
+ObstacleContact make_contact(const Obstacle& obstacle, const ClothMotion& motion, const ContactBegin& begin,
+                             ContactKind kind, const ClothPoint& cloth_point, int element, const Vec3& normal,
                              const Vec3& point, double thickness);
 
 }  // namespace arris

@@ -30,6 +30,7 @@ using Segment = std::array<Vec3, 2>;
 struct EdgePair {
     std::array<int, 2> vertices;
     int element;
+    ContactBegin begins;
     Segment begin, reference, segment;
     double thickness;
 };
@@ -44,9 +45,11 @@ EdgePair make_pair(const Obstacle& obstacle, const ClothMotion& motion, const st
 {
     const std::array<int, 2>& ends = obstacle.topology().edges[element].points;
     const std::vector<Vec3>& points = obstacle.mesh().points;
+    const ContactBegin begin = begin_from_edge(obstacle, motion, v, element);
     return {v,
             element,
-            {motion.begin[v[0]], motion.begin[v[1]]},
+            begin,
+            {begin[v[0]], begin[v[1]]},
             {reference[v[0]], reference[v[1]]},
             {points[ends[0]], points[ends[1]]},
             thickness};
@@ -154,8 +157,8 @@ std::optional<ObstacleContact> contact_of(const Obstacle& obstacle, const ClothM
 {
     if (!(normal.squaredNorm() > 0.0)) return std::nullopt;
     const ClothPoint cloth_point{{pair.vertices[0], pair.vertices[1], -1}, {1.0 - s, s, 0.0}};
-    return make_contact(obstacle, motion, ContactKind::Edge, cloth_point, pair.element, normal, point,
-                        pair.thickness);
+    return make_contact(obstacle, motion, pair.begins, ContactKind::Edge, cloth_point, pair.element, normal,
+                        point, pair.thickness);
 }
 
 bool is_inside(double s)

@@ -33,11 +33,13 @@ struct CornerPair {
     Face vertices;
     int element;
     Vec3 point;
+    ContactBegin begin;
     double thickness;
     double touch;  // distance that counts as a touch
 };
 
-Triangle triangle_of(const std::vector<Vec3>& positions, const Face& face)
+template <class Field>
+Triangle triangle_of(const Field& positions, const Face& face)
 {
     return {positions[face[0]], positions[face[1]], positions[face[2]]};
 }
@@ -49,12 +51,15 @@ Vec3 normal_of(const Triangle& t)
 }
 
 // Corners of one face at fraction `time` of the way from begin to `reference`.
-Triangle triangle_at(const ClothMotion& motion, const std::vector<Vec3>& reference, int face, double time)
+Triangle triangle_at(const CornerPair& pair, const ClothMotion& motion, const std::vector<Vec3>& reference,
+                     int face, double time)
 {
     const Face& vertices = (*motion.faces)[face];
     Triangle now;
-    for (int i = 0; i < 3; ++i)
-        now[i] = motion.begin[vertices[i]] + time * (reference[vertices[i]] - motion.begin[vertices[i]]);
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 begin = pair.begin[vertices[i]];
+        now[i] = begin + time * (reference[vertices[i]] - begin);
+    }
     return now;
 }
 
@@ -83,14 +88,13 @@ int edge_of(const Face& face, const MeshEdge& edge)
 // Orients `normal` to the side from which the cloth came, as for contacts of edges. Where the way of the
 // cloth's point does not decide, the side of the face on which the corner was at begin does. Zero where that
 // does not decide either.
-Vec3 towards_begin(const CornerPair& pair, const ClothMotion& motion, const ClothPoint& cloth_point,
-                   const Vec3& normal)
+Vec3 towards_begin(const CornerPair& pair, const ClothPoint& cloth_point, const Vec3& normal)
 {
-    const Vec3 way = cloth_point.at(motion.begin) - pair.point;
+    const Vec3 way = cloth_point.at(pair.begin) - pair.point;
     const double along = normal.dot(way);
     if (way.norm() > pair.touch && std::abs(along) > kLevel * way.norm())
         return along > 0.0 ? normal : Vec3(-normal);
-    const Triangle begin = triangle_of(motion.begin, pair.vertices);
+    const Triangle begin = triangle_of(pair.begin, pair.vertices);
     const Vec3 begin_normal = normal_of(begin);
     const Vec3 between = closest_on_triangle(pair.point, begin, begin_normal).point - pair.point;
     const double height = begin_normal.dot(between);
@@ -103,21 +107,21 @@ Vec3 towards_begin(const CornerPair& pair, const ClothMotion& motion, const Clot
 Vec3 normal_on_edge(const CornerPair& pair, const ClothMotion& motion, const std::vector<Vec3>& reference,
                     const MeshEdge& edge, const ClothPoint& cloth_point, double time)
 {
-    const Triangle now = triangle_at(motion, reference, pair.face, time);
+    const Triangle now = triangle_at(pair, motion, reference, pair.face, time);
     const Vec3 normal = normal_of(now);
     if (edge.face_right >= 0) {
         const int other = edge.face_left == pair.face ? edge.face_right : edge.face_left;
-        const Vec3 sum = normal + normal_of(triangle_at(motion, reference, other, time));
+        const Vec3 sum = normal + normal_of(triangle_at(pair, motion, reference, other, time));
         const bool is_folded_flat = !(sum.norm() > kLevel);
-        return towards_begin(pair, motion, cloth_point, is_folded_flat ? normal : Vec3(sum.normalized()));
+        return towards_begin(pair, cloth_point, is_folded_flat ? normal : Vec3(sum.normalized()));
     }
     const int i = edge_of(pair.vertices, edge);
     const Vec3 along = (now[(i + 1) % 3] - now[i]).stableNormalized();
-    const Vec3 way = cloth_point.at(motion.begin) - pair.point;
+    const Vec3 way = cloth_point.at(pair.begin) - pair.point;
     const Vec3 across = way - along.dot(way) * along;
-    if (!(across.norm() > pair.touch)) return towards_begin(pair, motion, cloth_point, normal);
+    if (!(across.norm() > pair.touch)) return towards_begin(pair, cloth_point, normal);
     if (into_triangle(now, normal, i).dot(across) >= 0.0) return across.normalized();
-    return towards_begin(pair, motion, cloth_point, normal);
+    return towards_begin(pair, cloth_point, normal);
 }
 
 // The cloth's point with these weights on a face; on edge `edge` the third vertex is left out.
@@ -148,8 +152,8 @@ std::optional<ObstacleContact> contact_of(const Obstacle& obstacle, const ClothM
                                           const Vec3& normal)
 {
     if (!(normal.squaredNorm() > 0.0)) return std::nullopt;
-    return make_contact(obstacle, motion, ContactKind::Triangle, cloth_point, pair.element, normal,
-                        pair.point, pair.thickness);
+    return make_contact(obstacle, motion, pair.begin, ContactKind::Triangle, cloth_point, pair.element,
+                        normal, pair.point, pair.thickness);
 }
 
 std::optional<ObstacleContact> contact_of_touch(const Obstacle& obstacle, const ClothMotion& motion,
@@ -160,14 +164,14 @@ std::optional<ObstacleContact> contact_of_touch(const Obstacle& obstacle, const 
     const int least = static_cast<int>(std::min_element(weights.begin(), weights.end()) - weights.begin());
     const int edge = weights[least] < kEndWeight ? (least + 1) % 3 : -1;
     const ClothPoint cloth_point = cloth_point_on(pair, weights, edge);
-    const Vec3 face_normal = normal_of(triangle_at(motion, reference, pair.face, time));
+    const Vec3 face_normal = normal_of(triangle_at(pair, motion, reference, pair.face, time));
     Vec3 normal =
-        edge < 0 ? towards_begin(pair, motion, cloth_point, face_normal)
+        edge < 0 ? towards_begin(pair, cloth_point, face_normal)
                  : normal_on_edge(pair, motion, reference, cloth_edge(pair, motion, edge), cloth_point, time);
     // The cloth's own plane may lead into the solid, if part of the cloth has sunk into the solid already.
     if (!normal.isZero(0.0) && !is_in_point_cone(obstacle, pair.element, normal)) {
         const Vec3 outside =
-            face_normal_towards(obstacle, pair.element, cloth_point.at(motion.begin) - pair.point);
+            face_normal_towards(obstacle, pair.element, cloth_point.at(pair.begin) - pair.point);
         if (!outside.isZero(0.0)) normal = outside;
     }
     return contact_of(obstacle, motion, pair, cloth_point, normal);
@@ -207,21 +211,25 @@ std::optional<ObstacleContact> contact_at_rest(const Obstacle& obstacle, const C
         if (!has_direction) normal = normal_on_edge(pair, motion, reference, edge, cloth_point, 1.0);
     } else {
         normal = has_direction ? Vec3(face_normal.dot(to_cloth) > 0.0 ? face_normal : Vec3(-face_normal))
-                               : towards_begin(pair, motion, cloth_point, face_normal);
+                               : towards_begin(pair, cloth_point, face_normal);
     }
     if (!is_in_point_cone(obstacle, pair.element, normal)) return std::nullopt;
     // Reject a plane behind which the cloth began: it would pull the cloth through to where its free motion
     // ends.
-    if (!(normal.dot(cloth_point.at(motion.begin) - pair.point) >= -pair.touch)) return std::nullopt;
+    if (!(normal.dot(cloth_point.at(pair.begin) - pair.point) >= -pair.touch)) return std::nullopt;
     return contact_of(obstacle, motion, pair, cloth_point, normal);
 }
 
 CornerPair make_pair(const Obstacle& obstacle, const ClothMotion& motion, int face, int element,
                      double thickness)
 {
-    return {face,      (*motion.faces)[face],
-            element,   obstacle.mesh().points[element],
-            thickness, touch_distance(obstacle, thickness)};
+    return {face,
+            (*motion.faces)[face],
+            element,
+            obstacle.mesh().points[element],
+            begin_from_point(obstacle, motion, element),
+            thickness,
+            touch_distance(obstacle, thickness)};
 }
 
 struct TimedContact {
@@ -233,7 +241,7 @@ std::optional<TimedContact> find_pair_contact(const Obstacle& obstacle, const Cl
                                               const std::vector<Vec3>& reference, const CornerPair& pair)
 {
     const std::optional<SweepHit> hit =
-        sweep_face_point(triangle_of(motion.begin, pair.vertices), triangle_of(reference, pair.vertices),
+        sweep_face_point(triangle_of(pair.begin, pair.vertices), triangle_of(reference, pair.vertices),
                          pair.point, pair.touch);
     const std::optional<ObstacleContact> contact =
         hit ? contact_of_touch(obstacle, motion, reference, pair, hit->time, hit->weights)

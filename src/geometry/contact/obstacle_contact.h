@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,12 @@
 
 namespace arris {
 
+/// Where an obstacle that deforms and the cloth begin a step, in the world.
+struct MovingSides {
+    std::shared_ptr<const Obstacle> obstacle;
+    std::vector<Vec3> cloth;
+};
+
 /// Motion of the cloth during a step, in an obstacle's frame; one entry per vertex.
 struct ClothMotion {
     const std::vector<Face>* faces = nullptr;
@@ -18,6 +25,9 @@ struct ClothMotion {
     std::vector<Vec3> begin;  ///< positions at the step's start, free of the obstacle
     /// Before the solve: where the cloth would be without obstacles. After the solve: where it went.
     std::vector<Vec3> end;
+    /// Null on a rigid obstacle. Else the frame is the world, and `begin` is where the cloth would be at the
+    /// end if each vertex rode with the place of the obstacle nearest to it (see ContactBegin).
+    std::shared_ptr<const MovingSides> sides = nullptr;
 };
 
 enum class ContactKind { Vertex, Edge, Triangle };  ///< element of the cloth
@@ -27,7 +37,8 @@ struct ClothPoint {
     std::array<int, 3> vertices;    ///< -1 where there are fewer
     std::array<double, 3> weights;  ///< >= 0, sum 1
 
-    Vec3 at(const std::vector<Vec3>& field) const
+    template <class Field>
+    Vec3 at(const Field& field) const
     {
         Vec3 sum = Vec3::Zero();
         for (int i = 0; i < 3; ++i)

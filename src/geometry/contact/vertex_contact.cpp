@@ -241,7 +241,7 @@ std::vector<ObstacleContact> find_vertex_contacts(const Obstacle& obstacle, cons
             std::stable_sort(chosen.begin(), chosen.end(),
                              [](const Minimum& a, const Minimum& b) { return a.element < b.element; });
             for (const Minimum& m : chosen)
-                contacts.push_back(make_contact(obstacle, motion, ContactKind::Vertex,
+                contacts.push_back(make_contact(obstacle, motion, ContactBegin(motion), ContactKind::Vertex,
                                                 {{v, -1, -1}, {1.0, 0.0, 0.0}}, m.element, m.normal, m.point,
                                                 thickness));
         }

@@ -110,7 +110,9 @@ void ride(double end, double cell, Carrier& carrier)
     const ObstaclePose from = obstacle.at(carrier.time), to = obstacle.at(end),
                        earlier = obstacle.at(carrier.previous_time);
     const double reach = 2.0 * (cell + longest_way(from->mesh().points, to->mesh().points));
-    const std::vector<Vec3> world = carrier.motion.begin;  // the frame is the world
+    const auto sides = std::make_shared<const MovingSides>(MovingSides{from.shape, carrier.motion.begin});
+    const std::vector<Vec3>& world = sides->cloth;  // the obstacle's frame is the world
+    carrier.motion.sides = sides;
     carrier.rides.resize(world.size());
     tbb::parallel_for(std::size_t{0}, world.size(), [&](std::size_t v) {
         const Vec3& place = world[v];
@@ -204,7 +206,7 @@ Carriers move_obstacles(const Scene& scene, const State& state, const std::vecto
         carrier.obstacle = pose.shape;
         carrier.end = pose.placement;
         carrier.motion = {&state.mesh.faces, &edges, to_local(carrier.begin, state.mesh.world),
-                          to_local(carrier.end, free_end)};
+                          to_local(carrier.end, free_end), nullptr};
         if (obstacle.is_deforming()) ride(end, longest_edge(state.mesh.world, edges), carrier);
         carriers.obstacles.push_back(std::move(carrier));
     }

@@ -65,15 +65,6 @@ class Shares {
     VertexFaces faces_at_;
 };
 
-/// The frame of a rigid obstacle shows the cloth's way past it; where the obstacle deforms both move.
-SweepReport check_way(const Carrier& carrier, double thickness, const State& state)
-{
-    if (carrier.rides.empty()) return check_sweep(*carrier.obstacle, carrier.motion, thickness);
-    const ObstaclePose begin = carrier.moving->at(carrier.time);
-    const MovingSides sides = {begin, state.mesh.world};
-    return check_sweep(*carrier.obstacle, carrier.motion, thickness, &sides);
-}
-
 }  // namespace
 
 void restore_stand_off(const std::vector<Contact>& contacts, const Carriers& carriers,
@@ -112,7 +103,7 @@ Violations check_proposal(const Scene& scene, const State& state, const SelfSurf
     for (int o = 0; o < static_cast<int>(carriers.obstacles.size()); ++o) {
         Carrier& carrier = carriers.obstacles[o];
         carrier.motion.end = to_local(carrier.end, proposal.world);
-        SweepReport report = check_way(carrier, thickness, state);
+        SweepReport report = check_sweep(*carrier.obstacle, carrier.motion, thickness);
         for (const ObstacleContact& found : report.violations)
             violations.contacts.push_back(place_contact(found, o, thickness, carriers, prediction));
         violations.crossings += report.crossings;

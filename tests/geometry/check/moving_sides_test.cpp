@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <random>
 
 #include "geometry/check/sweep_check.h"
@@ -45,6 +46,13 @@ struct Sheet {
     {
         return {&mesh.faces, &topology.edges, begin, end};
     }
+    /// The cloth and the obstacle move; `carried` is the cloth's begin, carried by the obstacle.
+    ClothMotion move_both(const std::shared_ptr<const Obstacle>& before, const std::vector<Vec3>& begin,
+                          const std::vector<Vec3>& carried, const std::vector<Vec3>& end) const
+    {
+        return {&mesh.faces, &topology.edges, carried, end,
+                std::make_shared<const MovingSides>(MovingSides{before, begin})};
+    }
     std::vector<Vec3> at(const Vec3& corner) const
     {
         std::vector<Vec3> places = mesh.world;
@@ -62,7 +70,7 @@ std::vector<Vec3> moved(std::vector<Vec3> points, const Vec3& way)
 TEST(MovingSides, FindWhatTheCheckOfTheRelativeMotionFinds)
 {
     const Sheet sheet;
-    const Obstacle before(make_kinds(), 30.0);
+    const auto before = std::make_shared<const Obstacle>(make_kinds(), 30.0);
     std::mt19937 random(11);
     std::uniform_real_distribution<double> part(-1.0, 1.0);
     int met = 0, planes = 0, same = 0;
@@ -71,11 +79,11 @@ TEST(MovingSides, FindWhatTheCheckOfTheRelativeMotionFinds)
         const Vec3 fall(0.05 * part(random), 0.05 * part(random), -0.08 - 0.1 * std::abs(part(random)));
         const std::vector<Vec3> begin = sheet.at(Vec3(-0.12, -0.15, 0.07));
         // The obstacle drifts, and the cloth falls past it while it drifts along.
-        const Obstacle after(before, moved(before.mesh().points, drift));
-        const ClothMotion carried = sheet.move(moved(begin, drift), moved(begin, drift + fall));
-        const SweepReport relative = check_sweep(before, sheet.move(begin, moved(begin, fall)), kThickness);
-        const MovingSides sides = {before, begin};
-        const SweepReport both = check_sweep(after, carried, kThickness, &sides);
+        const Obstacle after(*before, moved(before->mesh().points, drift));
+        const ClothMotion carried =
+            sheet.move_both(before, begin, moved(begin, drift), moved(begin, drift + fall));
+        const SweepReport relative = check_sweep(*before, sheet.move(begin, moved(begin, fall)), kThickness);
+        const SweepReport both = check_sweep(after, carried, kThickness);
         EXPECT_EQ(both.crossings, relative.crossings);
         EXPECT_EQ(both.intersections, relative.intersections);
         EXPECT_EQ(both.faces, relative.faces);
@@ -101,12 +109,11 @@ TEST(MovingSides, FindWhatTheCheckOfTheRelativeMotionFinds)
 TEST(MovingSides, FindsAnObstacleThatPassesThroughClothAtRest)
 {
     const Sheet sheet;
-    const Obstacle before(make_kinds(), 30.0);
-    const Obstacle after(before, moved(before.mesh().points, Vec3(0.0, 0.0, 0.3)));
+    const auto before = std::make_shared<const Obstacle>(make_kinds(), 30.0);
+    const Obstacle after(*before, moved(before->mesh().points, Vec3(0.0, 0.0, 0.3)));
     const std::vector<Vec3> rest = sheet.at(Vec3(-0.12, -0.15, 0.1));
-    const MovingSides sides = {before, rest};
-    const SweepReport report =
-        check_sweep(after, sheet.move(moved(rest, Vec3(0, 0, 0.3)), rest), kThickness, &sides);
+    const std::vector<Vec3> risen = moved(rest, Vec3(0.0, 0.0, 0.3));
+    const SweepReport report = check_sweep(after, sheet.move_both(before, rest, risen, rest), kThickness);
     EXPECT_FALSE(report.is_clean());
     EXPECT_GT(report.violations.size(), 4u);
     for (const ObstacleContact& contact : report.violations) {
@@ -114,8 +121,7 @@ TEST(MovingSides, FindsAnObstacleThatPassesThroughClothAtRest)
         EXPECT_LT(contact.normal.dot(contact.at(rest) - contact.point), contact.least_gap);
     }
     // Rides along: nothing is met.
-    const SweepReport riding = check_sweep(
-        after, sheet.move(moved(rest, Vec3(0, 0, 0.3)), moved(rest, Vec3(0, 0, 0.3))), kThickness, &sides);
+    const SweepReport riding = check_sweep(after, sheet.move_both(before, rest, risen, risen), kThickness);
     EXPECT_TRUE(riding.is_clean());
 }
 
@@ -124,18 +130,49 @@ TEST(MovingSides, FindsAnObstacleThatPassesThroughClothAtRest)
 TEST(MovingSides, RidingOnATurningObstacleMeetsNothing)
 {
     const Sheet sheet;
-    const Obstacle before(make_kinds(), 30.0);
+    const auto before = std::make_shared<const Obstacle>(make_kinds(), 30.0);
     const std::vector<Vec3> begin = sheet.at(Vec3(-0.12, -0.15, 0.051));
     for (const double degrees : {0.1, 1.0, 10.0, 45.0, 90.0, 150.0}) {
         const Placement turn{rotation_about(Vec3(0.3, 0.2, 1.0), degrees), Vec3(0.1, 0.2, 0.0)};
-        std::vector<Vec3> points = before.mesh().points, end = begin;
+        std::vector<Vec3> points = before->mesh().points, end = begin;
         for (Vec3& p : points) p = turn(p);
         for (Vec3& x : end) x = turn(x);
-        const Obstacle after(before, points);
-        const MovingSides sides = {before, begin};
-        EXPECT_TRUE(check_sweep(after, sheet.move(end, end), kThickness, &sides).is_clean()) << degrees;
+        const Obstacle after(*before, points);
+        EXPECT_TRUE(check_sweep(after, sheet.move_both(before, begin, end, end), kThickness).is_clean())
+            << degrees;
     }
 }
 
 }  // namespace
+/// A sheet that folds to a ridge under a cloth edge, whose ends ride down on both sides of the ridge while
+/// the edge itself stays above: planes hold it up, though its carried ends are below.
+TEST(MovingSides, AnEdgeStaysOnItsSideOfASheetThatFolds)
+{
+    const ObstacleMesh folded = {
+        {{0, -1, 0}, {0, 1, 0}, {-1, 0, -0.2}, {1, 0, -0.2}}, {{0, 1, 2}, {1, 0, 3}}, {}, {}};
+    const Obstacle after(folded, 5.0);
+    const auto before = std::make_shared<const Obstacle>(
+        after, std::vector<Vec3>{{0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}});
+    const std::vector<Face> faces = {{0, 1, 2}};
+    const std::vector<MeshEdge> edges = make_topology(3, faces).edges;
+    const auto cloth = [](double z) {
+        return std::vector<Vec3>{{-0.5, 0.1, z}, {0.5, 0.1, z}, {0.0, 0.1, 0.5}};
+    };
+    const std::vector<Vec3> begin = cloth(1e-4), carried = cloth(-0.1);
+    for (const double end : {1e-5, -1e-3, -0.05}) {
+        const ClothMotion motion = {&faces, &edges, carried, cloth(end),
+                                    std::make_shared<const MovingSides>(MovingSides{before, begin})};
+        std::vector<ObstacleContact> planes = check_sweep(after, motion, kThickness).violations;
+        EXPECT_EQ(planes.empty(), end > 0.0);
+        const auto found = find_edge_contacts(after, motion, motion.end, kThickness);
+        EXPECT_EQ(found.size(), 1u);
+        planes.insert(planes.end(), found.begin(), found.end());
+        for (const ObstacleContact& plane : planes) {
+            EXPECT_GT(plane.normal.z(), 0.9);
+            EXPECT_GT(plane.least_gap, 0.0);
+            EXPECT_LE(plane.least_gap, 1e-4 * (1.0 + 1e-9));
+        }
+    }
+}
+
 }  // namespace arris
