@@ -224,6 +224,10 @@ std::vector<SceneKey> make_scene_keys()
         choice("obstacle[].deform.interpolation", "cubic|linear", R"("cubic")",
                "Motion between samples. With `linear` the velocity jumps at each sample, and a step ends "
                "there."),
+        number("obstacle[].deform.slit", "m", kPositive, "(none)",
+               "Room made for cloth between parts of the body that come together or cross, such as arm and "
+               "trunk: their skin retreats until they are this far apart, at least 2.5 times the cloth's "
+               "thickness."),
         numbers("obstacle[].box", 3, "m", kSize, "", "Side lengths of a box that is centred on its origin."),
         points("obstacle[].points", 1, "Nails: lone points."),
         points("obstacle[].wire", 2, "Wire: a polyline through these points."),

@@ -12,7 +12,10 @@
 #include "app/text/counted.h"
 #include "geometry/input_error.h"
 #include "geometry/obstacle_input/deform/mesh_poses.h"
+#include "geometry/obstacle_input/deform/slit.h"
+#include "geometry/obstacle_input/deform/slit_samples.h"
 #include "geometry/obstacle_input/deform/vertex_cache.h"
+#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -21,6 +24,9 @@ using Json = nlohmann::ordered_json;
 
 // m: nothing near cloth moves as far within a frame; a file whose vertices change their order does.
 constexpr double kFarMove = 1.0;
+
+// The distances that two sides of a cloth keep, and a half for its folds.
+constexpr double kSlitThicknesses = 2.5;
 
 std::optional<int> to_sample(const Json& value)
 {
@@ -89,6 +95,71 @@ void tell(const SceneDocument& document, const std::string& key, const VertexCac
                                        head.times.back(), speed * survey.greatest_speed));
 }
 
+/// The same samples with a slit between parts of the body.
+std::shared_ptr<const PoseFile> with_slit(const SceneDocument& document, const std::string& key,
+                                          const VertexCache& cache, const PoseFile& samples,
+                                          const ObstacleMesh& mesh, double width, RunConfig& config)
+{
+    const double least = kSlitThicknesses * config.scene.material.thickness;
+    if (width < least)
+        config.warnings.push_back(
+            fmt::format("{}: {:g} m has no room for cloth; use {:g} m or more, {:g} "
+                        "times the cloth's thickness",
+                        document.describe(key), width, least, kSlitThicknesses));
+    PoseFileWriter writer(samples.head());
+    const SlitSurvey survey =
+        make_slit(samples, mesh, width, [&](const std::vector<Vec3>& points) { writer.add(points); });
+    config.notes.push_back(survey.samples == 0
+                               ? fmt::format("{}: no parts come together", document.describe(key))
+                               : fmt::format("{}: the skin retreats in {} of {}, by at most {:.3g} m ({})",
+                                             document.describe(key), survey.samples,
+                                             counted(samples.times().size(), "sample", "samples"),
+                                             survey.greatest_retreat, cache.describe(survey.greatest_at)));
+    return writer.finish();
+}
+
+/// "0.4 s to 1.2 s, 2 s": the times of the samples that are set. At most three spans.
+std::string describe_times(const std::vector<double>& times, const std::vector<char>& is_set)
+{
+    constexpr int kMostSpans = 3;
+    std::string text;
+    int spans = 0;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+        if (is_set[k] == 0 || (k > 0 && is_set[k - 1] != 0)) continue;
+        if (spans++ == kMostSpans) return text + ", …";
+        std::size_t last = k;
+        while (last + 1 < times.size() && is_set[last + 1] != 0) ++last;
+        text += fmt::format("{}{:.4g} s", text.empty() ? "" : ", ", times[k]);
+        if (last > k) text += fmt::format(" to {:.4g} s", times[last]);
+    }
+    return text;
+}
+
+void tell_crossings(const SceneDocument& document, const std::string& key, const VertexCache& cache,
+                    const PoseFile& samples, const ObstacleMesh& mesh, RunConfig& config)
+{
+    std::vector<char> crosses(samples.times().size(), 0);
+    std::size_t most = 0, most_at = 0;
+    std::vector<Vec3> points;
+    for (std::size_t k = 0; k < crosses.size(); ++k) {
+        samples.read(k, points);
+        std::vector<int> crossing;
+        for (const std::array<int, 2>& pair : find_crossing_faces(mesh, points))
+            crossing.insert(crossing.end(), pair.begin(), pair.end());
+        sort_unique(crossing);
+        crosses[k] = crossing.empty() ? 0 : 1;
+        if (crossing.size() <= most) continue;
+        most = crossing.size();
+        most_at = k;
+    }
+    if (most == 0) return;
+    config.warnings.push_back(fmt::format(
+        "{}: up to {} other faces of the mesh ({}), at {}: there is no place for cloth between such parts; "
+        "`slit` makes one",
+        document.describe(key), counted(most, "face crosses", "faces cross"), cache.describe(most_at),
+        describe_times(samples.times(), crosses)));
+}
+
 }  // namespace
 
 std::shared_ptr<const Deformation> load_deformation(const SceneDocument& document, std::size_t index,
@@ -122,7 +193,12 @@ std::shared_ptr<const Deformation> load_deformation(const SceneDocument& documen
             writer.add(points);
         }
         tell(document, key, *cache, head, poses.survey(), to_double(deform["speed"]), config);
-        return std::make_shared<PointCache>(writer.finish(), head.interpolation);
+        std::shared_ptr<const PoseFile> samples = writer.finish();
+        if (!deform["slit"].is_null())
+            samples = with_slit(document, path + ".deform.slit", *cache, *samples, mesh.mesh,
+                                to_double(deform["slit"]), config);
+        tell_crossings(document, key, *cache, *samples, mesh.mesh, config);
+        return std::make_shared<PointCache>(samples, head.interpolation);
     } catch (const InputError& error) {
         document.fail(key, error.what());
     }
