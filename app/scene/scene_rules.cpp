@@ -10,6 +10,7 @@
 #include "app/scene/keys/scene_keys.h"
 #include "app/scene/parts/scene_cloth.h"
 #include "app/text/printable.h"
+#include "geometry/obstacle_input/deform/vertex_cache.h"
 #include "physics/elements/material.h"
 
 namespace arris {
@@ -139,6 +140,13 @@ void check_pin_times(const SceneDocument& document, const std::string& path, con
                   fmt::format("a number > {} (s)", start));
 }
 
+/// Requires for keys of one format a file of that format.
+void check_deform(const SceneDocument& document, const std::string& path, const Json& deform)
+{
+    if (!deform["prim"].is_null() && !is_usd_file(deform["file"].get<std::string>()))
+        document.fail(path + ".prim", fmt::format("contradicts {}.file", path), "no prim, or a USD file");
+}
+
 /// Requires exactly one shape, and removes the keys that only other shapes have.
 void settle_shape(const SceneDocument& document, const std::string& path, Json& obstacle)
 {
@@ -160,6 +168,7 @@ void settle_shape(const SceneDocument& document, const std::string& path, Json& 
     if (shape != "file" && obstacle.contains("deform"))
         document.fail(fmt::format("{}.deform", path), fmt::format("contradicts {}.{}", path, shape),
                       "a deforming obstacle whose shape is a file");
+    if (obstacle.contains("deform")) check_deform(document, path + ".deform", obstacle["deform"]);
     // The limbs of a body have sides that turn by more than 14 degrees, and are not sharp.
     if (obstacle["feature_angle"].is_null())
         obstacle["feature_angle"] = obstacle.contains("deform") ? 45.0 : 14.0;

@@ -37,15 +37,18 @@ VertexCacheRequest to_request(const SceneDocument& document, const Json& deform,
     request.first = to_sample(deform["first"]);
     request.last = to_sample(deform["last"]);
     request.vertex_count = vertex_count;
+    if (!deform["prim"].is_null()) request.prim = deform["prim"].get<std::string>();
     return request;
 }
 
-/// OBJ and PLY files declare neither unit nor axis.
-FileFrame to_frame(const Json& obstacle)
+/// OBJ and PLY files declare neither unit nor axis; a cache that does may have others than the mesh's file.
+FileFrame to_frame(const Json& obstacle, const DeclaredFrame& declared)
 {
     FileFrame frame;
     if (!obstacle["units"].is_null()) frame.metres_per_unit = metres_of(obstacle["units"].get<std::string>());
     if (!obstacle["up"].is_null()) frame.up = obstacle["up"].get<std::string>()[0];
+    frame.metres_per_unit = declared.metres_per_unit.value_or(frame.metres_per_unit);
+    frame.up = declared.up.value_or(frame.up);
     frame.scale = to_double(obstacle["scale"]);
     return frame;
 }
@@ -115,7 +118,7 @@ std::shared_ptr<const Deformation> load_deformation(const SceneDocument& documen
         head.interpolation =
             deform["interpolation"] == "linear" ? PoseInterpolation::Linear : PoseInterpolation::Cubic;
         PoseFileWriter writer(head);
-        MeshPoses poses(*cache, mesh.mesh, mesh.origins, to_frame(obstacle));
+        MeshPoses poses(*cache, mesh.mesh, mesh.origins, to_frame(obstacle, cache->declared()));
         std::vector<Vec3> points;
         for (std::size_t k = 0; k < head.times.size(); ++k) {
             poses.read_next(points);

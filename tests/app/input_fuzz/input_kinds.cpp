@@ -191,6 +191,37 @@ const cache_files::Samples kBodySamples = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0,
                                            {{0, 0, 0}, {2, 0, 1}, {0, 1, 0}, {0, 0, 2}}};
 constexpr const char* kBody = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
+constexpr const char* kUsd = R"(#usda 1.0
+(
+    defaultPrim = "root"
+    metersPerUnit = 0.01
+    timeCodesPerSecond = 25
+    upAxis = "Y"
+)
+def Xform "root" (
+    kind = "component"
+)
+{
+    double3 xformOp:translate.timeSamples = {
+        0: (0, 0, 1),
+        2.5: (1, 0, 1),
+    }
+    float3 xformOp:rotateXYZ = (10, 20, 30)
+    quatf xformOp:orient = (0.5, 0.5, 0.5, 0.5)
+    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:rotateXYZ", "!invert!xformOp:orient"]
+    def Mesh "body"
+    {
+        int[] faceVertexCounts = [3, 3, 3, 3]
+        point3f[] points.timeSamples = {
+            1: [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)],
+            2: [(0, 0, 0), (1, 0, 1), (0, 1, 0), (0, 0, 1)], # text
+        }
+        matrix4d xformOp:transform = ( (1, 0, 0, 0), (0, 2, 0, 0), (0, 0, 3, 0), (4, 5, 6, 1) )
+        uniform token[] xformOpOrder = ["xformOp:transform"]
+    }
+}
+)";
+
 /// Reads `samples` of a cache of the body.
 std::string read_cache(const std::string& path)
 {
@@ -214,6 +245,7 @@ std::vector<InputKind> list_cache_kinds()
     };
     return {{"MDD", "body.mdd", cache_files::mdd(kBodySamples, {0.0F, 0.04F, 0.1F}), write_plain, read_cache},
             {"PC2", "changed.pc2", cache_files::pc2(kBodySamples, 1.0), write_plain, read_cache},
+            {"USD", "changed.usda", kUsd, write_plain, read_cache},
             {"OBJ sequence", "pose_07.obj", kBody, write_plain, read_sequence}};
 }
 

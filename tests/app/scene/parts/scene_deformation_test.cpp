@@ -154,6 +154,41 @@ TEST(SceneDeformation, ErrorsNameKeyFileAndSample)
     EXPECT_THAT(folder.refusal("file = \"metres.pc2\""), HasSubstr("its edges are 0.01 times as long"));
 }
 
+TEST(SceneDeformation, AUsdTextHasItsOwnUnitAndAxis)
+{
+    // body.obj is in centimetres, y up.
+    const SceneFolder folder;
+    const auto write = [&](const std::string& head, double unit) {
+        std::string text = "#usda 1.0\n(" + head + ")\ndef Mesh \"body\" { point3d[] points.timeSamples = {";
+        for (const char* code : {"0", "24"}) {
+            text += fmt::format("{}: [(0, 0, 0)", code);
+            for (Vec3 p : {Vec3(0, 0, 0), Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)}) {
+                if (unit < 1.0) p = Vec3(p.x(), p.z(), -p.y());
+                text += fmt::format(", ({}, {}, {})", p.x() / unit, p.y() / unit, p.z() / unit);
+            }
+            text += "], ";
+        }
+        write_bytes(folder.dir / "body.usda", text + "} }");
+    };
+    const auto expect_mesh = [&] {
+        const RunConfig config = folder.load("file = \"body.usda\", prim = \"/body\"", "scale = 2\n");
+        const std::vector<Vec3>& mesh = config.scene.obstacles[0].shape().mesh().points;
+        ASSERT_EQ(mesh.size(), 4U);
+        for (std::size_t p = 0; p < 4; ++p) EXPECT_LT((place(config, 0.0, p) - mesh[p]).norm(), 1e-12);
+        EXPECT_EQ(cache_of(config).sample_times().back(), 1.0);
+    };
+    write("metersPerUnit = 1\nupAxis = \"Z\"", 1.0);
+    expect_mesh();
+    write("doc = 'nothing declared'", 0.01);
+    expect_mesh();
+
+    EXPECT_THAT(folder.refusal("file = \"body.pc2\", prim = \"/body\""),
+                AllOf(HasSubstr("obstacle.0.deform.prim = \"/body\": contradicts obstacle.0.deform.file"),
+                      HasSubstr("allowed: no prim, or a USD file")));
+    EXPECT_THAT(folder.refusal("file = \"body.usda\", prim = \"/root\""),
+                AllOf(HasSubstr("obstacle.0.deform.file"), HasSubstr("has no Mesh /root; allowed: /body")));
+}
+
 TEST(SceneDeformation, NeedsAFileWhoseVerticesHaveAnOrder)
 {
     const SceneFolder folder;
