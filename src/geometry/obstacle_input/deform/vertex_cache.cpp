@@ -7,6 +7,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
+#include "geometry/obstacle_input/deform/gltf_cache.h"
 #include "geometry/obstacle_input/deform/obj_sequence.h"
 #include "geometry/obstacle_input/deform/point_file.h"
 #include "geometry/obstacle_input/deform/usda_cache.h"
@@ -26,6 +27,12 @@ bool is_usd_file(const std::string& path)
 {
     const std::string extension = extension_of(path);
     return extension == ".usda" || extension == ".usd" || extension == ".usdc" || extension == ".usdz";
+}
+
+bool is_gltf_file(const std::string& path)
+{
+    const std::string extension = extension_of(path);
+    return extension == ".gltf" || extension == ".glb";
 }
 
 std::vector<std::string> list_cache_files(const std::string& path)
@@ -52,10 +59,11 @@ std::unique_ptr<VertexCache> open_vertex_cache(const VertexCacheRequest& request
     if (extension == ".pc2") return open_pc2(request);
     if (extension == ".obj") return open_obj_sequence(request);
     if (is_usd_file(request.path)) return open_usda(request);
-    throw InputError(
-        fmt::format("{}: unknown format '{}' of positions in time; allowed: .mdd, .pc2, .usda, or .obj with "
-                    "%d in place of a number",
-                    request.path, one_line(extension)));
+    if (is_gltf_file(request.path)) return open_gltf(request);
+    throw InputError(fmt::format(
+        "{}: unknown format '{}' of positions in time; allowed: .mdd, .pc2, .usda, .gltf, .glb, or .obj with "
+        "%d in place of a number",
+        request.path, one_line(extension)));
 }
 
 }  // namespace arris

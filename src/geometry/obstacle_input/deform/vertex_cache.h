@@ -15,13 +15,15 @@ namespace arris {
 inline constexpr double kDefaultFramesPerSecond = 24.0;
 
 struct VertexCacheRequest {
-    /// .mdd, .pc2, .usda (.usd), or a name with %d or %04d in place of a number, which ends in .obj
+    /// .mdd, .pc2, .usda (.usd), .gltf, .glb, or a name with %d or %04d in place of a number, which ends in
+    /// .obj
     std::string path;
     /// Default: times of an MDD file, time codes a second of a USD text, else 24 frames a second
     std::optional<double> frames_per_second;
-    std::optional<int> first, last;   ///< samples used; default: all
-    int vertex_count = 0;             ///< of the mesh that they move
-    std::optional<std::string> prim;  ///< path of the Mesh in a USD text; default: the only one
+    std::optional<int> first, last;        ///< samples used; default: all
+    int vertex_count = 0;                  ///< of the mesh that they move
+    std::optional<std::string> prim;       ///< path of the Mesh in a USD text; default: the only one
+    std::optional<std::string> animation;  ///< name of that of a glTF file; default: the only one
 };
 
 /// Samples used of a file's.
@@ -78,15 +80,18 @@ class VertexCache {
 /// frames from sample to sample), sequences of OBJ files, of which the vertices are read, and USD texts: the
 /// points of one Mesh, placed as it and the prims above it are. Samples count from 0; those of a sequence are
 /// its files' numbers, those of a USD text all time codes of points and placements. Counts are compared with
-/// the file's length before anything is allocated, and at most two samples are in memory at a time.
+/// the file's length before anything is allocated, and at most two samples are in memory at a time. glTF
+/// files are held in memory: their animation is sampled from its first to its last key, and moves the
+/// vertices that their import finds (GltfFigure).
 ///
 /// Throws InputError, one line that begins with the path: for a file that is missing, not regular, of another
 /// format, too short or too long; without samples; with another number of vertices than the mesh; with times
 /// that do not ascend; for a sequence with gaps; for `first` and `last` beyond its samples.
 std::unique_ptr<VertexCache> open_vertex_cache(const VertexCacheRequest& request);
 
-/// Whether the path's extension is one of USD, text or binary.
+/// Whether the path's extension is one of USD, text or binary; whether it is one of glTF.
 bool is_usd_file(const std::string& path);
+bool is_gltf_file(const std::string& path);
 
 /// The files that a path of a request names: itself, or those of the sequence that exist, by number.
 std::vector<std::string> list_cache_files(const std::string& path);
