@@ -10,6 +10,7 @@
 #include "app/scene/keys/scene_keys.h"
 #include "app/scene/parts/scene_cloth.h"
 #include "app/text/printable.h"
+#include "geometry/obstacle_input/deform/vertex_cache.h"
 #include "physics/elements/material.h"
 
 namespace arris {
@@ -139,6 +140,25 @@ void check_pin_times(const SceneDocument& document, const std::string& path, con
                   fmt::format("a number > {} (s)", start));
 }
 
+/// Requires a file of positions in time; glTF moves itself, and nothing else.
+void settle_deform(const SceneDocument& document, const std::string& path, const Json& mesh, Json& deform)
+{
+    const bool is_gltf = is_gltf_file(mesh.get<std::string>());
+    const std::string key = path + ".file";
+    if (deform["file"].is_null() && !is_gltf)
+        document.fail(key, "is required and missing", "a file of positions in time, or a glTF obstacle");
+    if (deform["file"].is_null()) deform["file"] = mesh;
+    const std::string file = deform["file"].get<std::string>();
+    if ((is_gltf || is_gltf_file(file)) && deform["file"] != mesh)
+        document.fail(key, "contradicts the obstacle's file",
+                      "a glTF file that moves itself, or another format for both");
+    if (!deform["prim"].is_null() && !is_usd_file(file))
+        document.fail(path + ".prim", fmt::format("contradicts {}", key), "no prim, or a USD file");
+    if (!deform["animation"].is_null() && !is_gltf)
+        document.fail(path + ".animation", fmt::format("contradicts {}", key),
+                      "no animation, or a glTF file");
+}
+
 /// Requires exactly one shape, and removes the keys that only other shapes have.
 void settle_shape(const SceneDocument& document, const std::string& path, Json& obstacle)
 {
@@ -160,6 +180,8 @@ void settle_shape(const SceneDocument& document, const std::string& path, Json& 
     if (shape != "file" && obstacle.contains("deform"))
         document.fail(fmt::format("{}.deform", path), fmt::format("contradicts {}.{}", path, shape),
                       "a deforming obstacle whose shape is a file");
+    if (obstacle.contains("deform"))
+        settle_deform(document, path + ".deform", obstacle["file"], obstacle["deform"]);
     // The limbs of a body have sides that turn by more than 14 degrees, and are not sharp.
     if (obstacle["feature_angle"].is_null())
         obstacle["feature_angle"] = obstacle.contains("deform") ? 45.0 : 14.0;

@@ -210,12 +210,22 @@ std::vector<SceneKey> make_scene_keys()
         table(
             "obstacle[].deform", "",
             "Positions of the file's vertices in time, in the units and axes of `file`, which is OBJ or PLY "
-            "and gives faces and the vertices' order. Before the first and after the last sample the mesh "
-            "is held. Placement and motion act on top."),
-        text("obstacle[].deform.file", KeyType::Path, kPath, kRequired,
-             "MDD or PC2 file, or OBJ files with a number in their names: `body_%04d.obj`, `body_%d.obj`."),
-        number("obstacle[].deform.frames_per_second", "1/s", kPositive, "(the times of MDD, else 24)",
-               "Frames per second. Samples are a frame apart, in PC2 as many as the file says."),
+            "and gives faces and the vertices' order; or the animation of a glTF `file`. Before the first "
+            "and "
+            "after the last sample the mesh is held. Placement and motion act on top."),
+        text("obstacle[].deform.file", KeyType::Path, kPath, "(the obstacle's own glTF file)",
+             "MDD, PC2 or USD text (.usda) file, or OBJ files with a number in their names: `body_%04d.obj`, "
+             "`body_%d.obj`. Required unless `file` is glTF, which its own animation moves."),
+        text("obstacle[].deform.prim", KeyType::Text, kPath,
+             "(the only Mesh with samples of points, else the only one)",
+             "Path of the Mesh in a USD file, such as `/root/body`."),
+        text("obstacle[].deform.animation", KeyType::Text, kTitle, "(the only one)",
+             "Name of the animation in a glTF file."),
+        number(
+            "obstacle[].deform.frames_per_second", "1/s", kPositive,
+            "(times of MDD, time codes per second of USD, else 24)",
+            "Frames per second. Samples are a frame apart, in PC2 as many as the file says; in USD a frame "
+            "is a time code. A glTF animation is sampled at each frame from its first to its last key."),
         number("obstacle[].deform.start", "s", kAnyNumber, "0.0", "Time of the first sample used."),
         number("obstacle[].deform.speed", "", kPositive, "1.0", "Speed of the replay."),
         integer("obstacle[].deform.first", {0.0, 1e9}, "(the first)",

@@ -43,15 +43,21 @@ VertexCacheRequest to_request(const SceneDocument& document, const Json& deform,
     request.first = to_sample(deform["first"]);
     request.last = to_sample(deform["last"]);
     request.vertex_count = vertex_count;
+    if (!deform["prim"].is_null()) request.prim = deform["prim"].get<std::string>();
+    if (!deform["animation"].is_null()) request.animation = deform["animation"].get<std::string>();
     return request;
 }
 
-/// OBJ and PLY files declare neither unit nor axis.
-FileFrame to_frame(const Json& obstacle)
+/// `units` and `up` are those of the obstacle's file. Another file may declare its own, as USD does.
+FileFrame to_frame(const Json& obstacle, const DeclaredFrame& declared)
 {
+    const bool is_own = obstacle["deform"]["file"] == obstacle["file"];
+    const bool has_unit = !obstacle["units"].is_null(), has_up = !obstacle["up"].is_null();
     FileFrame frame;
-    if (!obstacle["units"].is_null()) frame.metres_per_unit = metres_of(obstacle["units"].get<std::string>());
-    if (!obstacle["up"].is_null()) frame.up = obstacle["up"].get<std::string>()[0];
+    if (has_unit) frame.metres_per_unit = metres_of(obstacle["units"].get<std::string>());
+    if (has_up) frame.up = obstacle["up"].get<std::string>()[0];
+    if (declared.metres_per_unit && !(is_own && has_unit)) frame.metres_per_unit = *declared.metres_per_unit;
+    if (declared.up && !(is_own && has_up)) frame.up = *declared.up;
     frame.scale = to_double(obstacle["scale"]);
     return frame;
 }
@@ -174,7 +180,7 @@ std::shared_ptr<const Deformation> load_deformation(const SceneDocument& documen
     if (mesh.origins.vertex_count == 0)
         document.fail(path + ".file",
                       "has vertices without an order of their own, and the obstacle has `deform`",
-                      "OBJ or PLY");
+                      "OBJ, PLY or glTF");
     try {
         const std::unique_ptr<VertexCache> cache =
             open_vertex_cache(to_request(document, deform, mesh.origins.vertex_count));
@@ -186,7 +192,7 @@ std::shared_ptr<const Deformation> load_deformation(const SceneDocument& documen
         head.interpolation =
             deform["interpolation"] == "linear" ? PoseInterpolation::Linear : PoseInterpolation::Cubic;
         PoseFileWriter writer(head);
-        MeshPoses poses(*cache, mesh.mesh, mesh.origins, to_frame(obstacle));
+        MeshPoses poses(*cache, mesh.mesh, mesh.origins, to_frame(obstacle, cache->declared()));
         std::vector<Vec3> points;
         for (std::size_t k = 0; k < head.times.size(); ++k) {
             poses.read_next(points);

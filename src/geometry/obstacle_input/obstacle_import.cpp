@@ -21,13 +21,13 @@
 #include "geometry/mesh_text.h"
 #include "geometry/obstacle_input/formats/dae_check.h"
 #include "geometry/obstacle_input/formats/format_reader.h"
-#include "geometry/obstacle_input/formats/gltf_file.h"
 #include "geometry/obstacle_input/formats/import_log.h"
 #include "geometry/obstacle_input/formats/mesh_file_check.h"
 #include "geometry/obstacle_input/formats/mesh_file_limits.h"
 #include "geometry/obstacle_input/formats/mesh_folder_io.h"
 #include "geometry/obstacle_input/formats/plain_mesh.h"
 #include "geometry/obstacle_input/formats/three_mf_file.h"
+#include "geometry/obstacle_input/gltf/gltf_file.h"
 #include "geometry/obstacle_input/repair/face_cutter.h"
 #include "geometry/obstacle_input/repair/soup_repair.h"
 #include "geometry/obstacle_input/repair/soup_weld.h"
@@ -104,8 +104,10 @@ class ObstacleImporter {
         if (extension_ != "stl" && extension_ != "ply") joined = join_equal_points(soup_).names;
         RepairedSoup repaired = repair_soup(std::move(soup_));
         VertexOrigins origins;
-        if (extension_ == "obj") repaired.welded = compose_names(std::move(joined), repaired.welded);
-        if (extension_ == "obj" || extension_ == "ply")
+        const bool is_gltf = extension_ == "gltf" || extension_ == "glb";
+        if (extension_ == "obj" || is_gltf)
+            repaired.welded = compose_names(std::move(joined), repaired.welded);
+        if (extension_ == "obj" || extension_ == "ply" || is_gltf)
             origins = find_vertex_origins(repaired.welded, repaired.origins, repaired.tolerance);
         warnings_.insert(warnings_.end(), repaired.warnings.begin(), repaired.warnings.end());
         return {std::move(repaired.mesh), std::move(origins), std::move(warnings_),
@@ -170,6 +172,13 @@ class ObstacleImporter {
         GltfFile file = prepare_gltf(extension_ == "glb", std::move(bytes), folder());
         warnings_.insert(warnings_.end(), file.warnings.begin(), file.warnings.end());
         load(file.is_binary ? "mesh.glb" : "mesh.gltf", file.bytes);
+        if (file.vertices.empty()) return;
+        if (file.vertices.size() != soup_.points.size())
+            throw InputError(
+                fmt::format("the import library finds {} vertices, but its skinned or morphed meshes "
+                            "have {}",
+                            soup_.points.size(), file.vertices.size()));
+        soup_.points = std::move(file.vertices);
     }
 
     std::filesystem::path folder() const

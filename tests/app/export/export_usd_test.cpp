@@ -8,7 +8,9 @@
 #include <cstring>
 
 #include "geometry/input_error.h"
+#include "geometry/obstacle_input/deform/vertex_cache.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
+#include "tests/app/error_of.h"
 #include "tests/app/example_frame.h"
 #include "tests/app/stretching_obstacle.h"
 #include "tests/app/temporary_directory.h"
@@ -18,6 +20,7 @@ namespace arris {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 std::vector<std::string> write_frames(const TemporaryDirectory& dir, const std::vector<Frame>& frames)
 {
@@ -316,6 +319,32 @@ TEST(ExportUsd, PlacesObstaclesByATransformThatIsSampledWhereTheyMove)
     EXPECT_EQ(third.children[0].attributes.at("widths").metadata.at("interpolation").text, "constant");
     for (const UsdaPrim& obstacle : obstacles)
         EXPECT_FALSE(obstacle.children[0].attributes.contains("velocities")) << obstacle.name;
+}
+
+TEST(ExportUsd, ADeformingObstacleMovesAnObstacleAgain)
+{
+    ObstacleRecord body = make_stretching("body", make_box({1.0, 2.0, 0.5}));
+    body.placement.translation = {0.0, 0.0, 3.0};
+    const TemporaryDirectory dir;
+    const auto frames = write_frames(dir, {make_moved_frame(0), make_moved_frame(1), make_moved_frame(2)});
+    write_usd(dir / "cloth.usda", source_of(frames), {"A title", 2.0}, {body});
+
+    VertexCacheRequest request;
+    request.path = dir / "cloth.usda";
+    request.vertex_count = 8;
+    EXPECT_THAT(error_of([&] { open_vertex_cache(request); }),
+                HasSubstr("allowed: /arris/cloth, /arris/obstacles/body/surface"));
+    request.prim = "/arris/obstacles/body/surface";
+    const auto cache = open_vertex_cache(request);
+    EXPECT_THAT(cache->times(), ElementsAre(0.0, 0.5, 1.0));
+    EXPECT_EQ(cache->declared().up, 'z');
+    std::vector<Vec3> vertices, points, velocities;
+    for (std::size_t k = 0; k < 3; ++k) {
+        cache->read(k, vertices);
+        body.deformation->find(cache->times()[k], points, velocities);
+        for (std::size_t v = 0; v < 8; ++v)
+            EXPECT_LT((vertices.at(v) - points[v] - Vec3(0, 0, 3)).norm(), 1e-6);
+    }
 }
 
 TEST(ExportUsd, SamplesPointsAndVelocitiesOfObstaclesThatDeform)

@@ -24,6 +24,7 @@
 #include "solver/step.h"
 #include "tests/app/example_frame.h"
 #include "tests/geometry/cache_files.h"
+#include "tests/geometry/gltf_builder.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/geometry/sample_obstacles.h"
 
@@ -131,6 +132,29 @@ InputKind mesh_kind(const std::string& name, const std::string& file, const std:
     return {name, file, seed, write_plain, read};
 }
 
+/// A skin, morph targets that are sparse, and every kind of sampler.
+GltfBuilder make_moving_gltf()
+{
+    GltfBuilder file = make_bent_tetrahedron();
+    const std::size_t places = file.add_view(std::vector<std::uint8_t>{1});
+    const std::size_t values = file.add_view(std::vector<float>{4, 0, 0});
+    const std::size_t target =
+        file.add("accessors", {{"componentType", 5126},
+                               {"count", 4},
+                               {"type", "VEC3"},
+                               {"sparse",
+                                {{"count", 1},
+                                 {"indices", {{"bufferView", places}, {"componentType", 5121}}},
+                                 {"values", {{"bufferView", values}}}}}});
+    nlohmann::json& mesh = file.json["meshes"][0];
+    mesh["primitives"][0]["targets"] = {{{"POSITION", target}}};
+    mesh["weights"] = {0.5};
+    file.animate(2, "weights", {0, 1, 3}, {0, 1, 0}, "STEP");
+    file.animate(0, "translation", {1, 2}, {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 1, 1, 1},
+                 "CUBICSPLINE");
+    return file;
+}
+
 std::vector<InputKind> list_mesh_kinds(const std::vector<std::string>& importer, const std::string& folder)
 {
     using namespace mesh_files;
@@ -149,6 +173,7 @@ std::vector<InputKind> list_mesh_kinds(const std::vector<std::string>& importer,
     add("big-endian PLY", "mesh.ply", binary_ply(mesh, true));
     add("glTF", "mesh.gltf", gltf_json(mesh, "buffer.bin"));
     add("GLB", "mesh.glb", glb(mesh));
+    add("posed GLB", "posed.glb", make_moving_gltf().glb());
     add("COLLADA", "mesh.dae",
         dae(polygons, "<unit name=\"centimeter\" meter=\"0.01\"/><up_axis>Y_UP</up_axis>"));
     add("FBX", "mesh.fbx", fbx(polygons, 1, 100.0));
@@ -191,6 +216,37 @@ const cache_files::Samples kBodySamples = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0,
                                            {{0, 0, 0}, {2, 0, 1}, {0, 1, 0}, {0, 0, 2}}};
 constexpr const char* kBody = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
+constexpr const char* kUsd = R"(#usda 1.0
+(
+    defaultPrim = "root"
+    metersPerUnit = 0.01
+    timeCodesPerSecond = 25
+    upAxis = "Y"
+)
+def Xform "root" (
+    kind = "component"
+)
+{
+    double3 xformOp:translate.timeSamples = {
+        0: (0, 0, 1),
+        2.5: (1, 0, 1),
+    }
+    float3 xformOp:rotateXYZ = (10, 20, 30)
+    quatf xformOp:orient = (0.5, 0.5, 0.5, 0.5)
+    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:rotateXYZ", "!invert!xformOp:orient"]
+    def Mesh "body"
+    {
+        int[] faceVertexCounts = [3, 3, 3, 3]
+        point3f[] points.timeSamples = {
+            1: [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)],
+            2: [(0, 0, 0), (1, 0, 1), (0, 1, 0), (0, 0, 1)], # text
+        }
+        matrix4d xformOp:transform = ( (1, 0, 0, 0), (0, 2, 0, 0), (0, 0, 3, 0), (4, 5, 6, 1) )
+        uniform token[] xformOpOrder = ["xformOp:transform"]
+    }
+}
+)";
+
 /// Reads `samples` of a cache of the body.
 std::string read_cache(const std::string& path)
 {
@@ -214,6 +270,8 @@ std::vector<InputKind> list_cache_kinds()
     };
     return {{"MDD", "body.mdd", cache_files::mdd(kBodySamples, {0.0F, 0.04F, 0.1F}), write_plain, read_cache},
             {"PC2", "changed.pc2", cache_files::pc2(kBodySamples, 1.0), write_plain, read_cache},
+            {"glTF animation", "moving.glb", make_moving_gltf().glb(), write_plain, read_cache},
+            {"USD", "changed.usda", kUsd, write_plain, read_cache},
             {"OBJ sequence", "pose_07.obj", kBody, write_plain, read_sequence}};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/formats/gltf_file.h"
+#include "geometry/obstacle_input/gltf/gltf_file.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -219,10 +219,7 @@ TEST(GltfFile, WhatTheImporterWouldMissIsRefused)
         {"hidden node", R"({"nodes":[{"mesh":0,"extensions":{"KHR_node_visibility":{"visible":false}}}]})",
          "node 0 is hidden"},
         {"morphed node", R"({"nodes":[{"mesh":0,"weights":[0,0.5]}]})",
-         "node 0 morphs its mesh (weight 0.5)"},
-        {"morphed mesh",
-         R"({"meshes":[{"weights":[1],"primitives":[{"attributes":{"POSITION":0},"indices":1,"targets":[{"POSITION":0}]}]}]})",
-         "node 0 morphs its mesh (weight 1)"},
+         "node 0 or its mesh: its weights is [0,0.5]; allowed: 0 finite numbers"},
         {"mode", R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":7}]}]})",
          "its mode is 7; allowed: 0 to 6"},
         {"no positions", R"({"meshes":[{"primitives":[{"attributes":{"NORMAL":0},"indices":1}]}]})",
@@ -238,7 +235,7 @@ TEST(GltfFile, WhatTheImporterWouldMissIsRefused)
         {"integers beyond their buffer",
          R"({"accessors":[{"bufferView":0,"componentType":5123,"count":99,"type":"VEC3"},
                                                           {"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}]})",
-         "accessor 0: its positions reach beyond the end"},
+         "its positions: its accessor 0 reaches beyond the end of its buffer"},
         {"wrong types", R"({"meshes":[{"primitives":[3]}]})", "has no positions"},
         {"VEC2", R"({"accessors":[{"bufferView":0,"componentType":5126,"count":8,"type":"VEC2"},
                                   {"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}]})",
@@ -333,7 +330,7 @@ TEST(GltfFile, ReferencesArePercentEncoded)
     std::filesystem::remove_all(folder);
 }
 
-TEST(GltfFile, SkinsAndUnknownExtensionsAreToldOf)
+TEST(GltfFile, UnknownExtensionsAreToldOf)
 {
     json file = brick_json();
     file["nodes"][0]["extensions"]["ACME_bent"] = json::object();
@@ -393,6 +390,16 @@ TEST(GltfFile, DracoMeshesAreRead)
                                                              {"attributes", {{"POSITION", 0}}}};
     file["extensionsUsed"] = file["extensionsRequired"] = {"KHR_draco_mesh_compression"};
     expect_brick(imported("a.gltf", file.dump()), 1.0, kSingle);
+
+    // Its skins and morph targets are compressed, too.
+    json skinned = file;
+    skinned["skins"] = {{{"joints", {0}}}};
+    skinned["nodes"][0]["skin"] = 0;
+    const ObstacleFile found = imported("a.gltf", skinned.dump());
+    expect_brick(found, 1.0, kSingle);
+    EXPECT_THAT(found.warnings, ElementsAre(HasSubstr("node 0 has a skin, which is not applied")));
+    file["nodes"][0]["weights"] = {0.5};
+    EXPECT_THAT(import_error("a.gltf", file.dump()), HasSubstr("node 0 morphs its mesh (weight 0.5)"));
 }
 
 // Four points of a square, drawn in every way, with and without indices.

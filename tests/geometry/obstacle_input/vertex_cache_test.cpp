@@ -234,7 +234,7 @@ TEST(VertexCache, OtherFilesAndCountsAreRefused)
     EXPECT_NE(Written("a.mdd", "").refusal(), "");
     EXPECT_NE(Written("a.pc2", "").refusal(), "");
     EXPECT_THAT(Written("a.pc2", std::string(100, 'x')).refusal(), HasSubstr("is not a PC2 file"));
-    EXPECT_THAT(Written("a.abc", "").refusal(), HasSubstr("allowed: .mdd, .pc2, or .obj"));
+    EXPECT_THAT(Written("a.abc", "").refusal(), HasSubstr("allowed: .mdd, .pc2, .usda, .gltf, .glb, or .obj"));
     EXPECT_THAT(Written("a.mdd", mdd({}, {})).refusal(), HasSubstr("holds 0 samples; allowed: at least 1"));
 
     Written file("a.mdd", mdd(kSamples, {0.0F, 1.0F, 2.0F}));

@@ -5,14 +5,10 @@
 //                          sample (float); samples (int32); places
 #include "geometry/obstacle_input/deform/point_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -21,6 +17,7 @@
 #include <utility>
 
 #include "geometry/input_error.h"
+#include "geometry/obstacle_input/formats/input_file.h"
 
 namespace arris {
 namespace {
@@ -31,47 +28,6 @@ constexpr std::uint64_t kVertexBytes = 3 * sizeof(float);
 {
     throw InputError(path + ": " + why);
 }
-
-/// A regular file that is read in pieces.
-class InputFile {
-  public:
-    explicit InputFile(std::string path) : path_(std::move(path))
-    {
-        // Without O_NONBLOCK a pipe without a writer would block.
-        descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-        if (descriptor_ < 0) refuse(path_, errno == ENOENT ? "no such file" : std::strerror(errno));
-        struct stat status {};
-        if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
-            ::close(descriptor_);
-            refuse(path_, "not a regular file");
-        }
-        size_ = static_cast<std::uint64_t>(status.st_size);
-    }
-    ~InputFile() { ::close(descriptor_); }
-    InputFile(const InputFile&) = delete;
-    InputFile& operator=(const InputFile&) = delete;
-
-    const std::string& path() const { return path_; }
-    std::uint64_t size() const { return size_; }
-
-    void read(std::uint64_t offset, char* bytes, std::size_t count) const
-    {
-        while (count > 0) {
-            const ssize_t got = ::pread(descriptor_, bytes, count, static_cast<off_t>(offset));
-            if (got < 0 && errno == EINTR) continue;
-            if (got < 0) refuse(path_, std::strerror(errno));
-            if (got == 0) refuse(path_, "has become shorter while it is read");
-            bytes += got;
-            offset += static_cast<std::uint64_t>(got);
-            count -= static_cast<std::size_t>(got);
-        }
-    }
-
-  private:
-    std::string path_;
-    int descriptor_ = -1;
-    std::uint64_t size_ = 0;
-};
 
 template <class Number>
 Number decode(const char* bytes, std::endian order)
@@ -113,22 +69,13 @@ void require_fit(const InputFile& file, const Layout& layout)
                                     is_short ? "truncated or damaged" : "damaged, or of another format"));
 }
 
-struct SampleRange {
-    std::size_t first = 0, count = 0;
-};
-
-SampleRange find_range(const std::string& path, const VertexCacheRequest& request, const Layout& layout)
+void require_vertices(const Layout& layout, const VertexCacheRequest& request)
 {
     if (layout.vertices != request.vertex_count)
-        refuse(path, fmt::format("has {} vertices in each sample; allowed: {}, the number of vertices in the "
-                                 "obstacle's file",
-                                 layout.vertices, request.vertex_count));
-    const int end = layout.samples - 1;
-    const int first = request.first.value_or(0), last = request.last.value_or(end);
-    if (first > end || last > end)
-        refuse(path, fmt::format("has no sample {}; allowed: 0 to {}", first > end ? first : last, end));
-    if (last < first) refuse(path, fmt::format("last = {} is before first = {}", last, first));
-    return {static_cast<std::size_t>(first), static_cast<std::size_t>(last - first) + 1};
+        refuse(request.path,
+               fmt::format("has {} vertices in each sample; allowed: {}, the number of vertices in the "
+                           "obstacle's file",
+                           layout.vertices, request.vertex_count));
 }
 
 /// Replaces times by multiples of one over a whole number of frames a second where single precision does not
@@ -214,7 +161,8 @@ std::unique_ptr<VertexCache> open_mdd(const VertexCacheRequest& request)
     layout.samples = decode<std::int32_t>(&head[0], layout.order);
     layout.vertices = decode<std::int32_t>(&head[4], layout.order);
     require_fit(*file, layout);
-    const SampleRange range = find_range(request.path, request, layout);
+    require_vertices(layout, request);
+    const SampleRange range = find_sample_range(request, static_cast<std::size_t>(layout.samples));
     std::vector<double> times;
     if (request.frames_per_second)
         for (std::size_t k = 0; k < range.count; ++k)
@@ -243,7 +191,8 @@ std::unique_ptr<VertexCache> open_pc2(const VertexCacheRequest& request)
         refuse(request.path,
                fmt::format("has {} frames from sample to sample; allowed: a number > 0", frames));
     require_fit(*file, layout);
-    const SampleRange range = find_range(request.path, request, layout);
+    require_vertices(layout, request);
+    const SampleRange range = find_sample_range(request, static_cast<std::size_t>(layout.samples));
     std::vector<double> times;
     for (std::size_t k = 0; k < range.count; ++k)
         times.push_back(static_cast<double>(k) * frames /

@@ -9,7 +9,6 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/formats/gltf_document.h"
 
 namespace arris {
 namespace {
@@ -21,27 +20,6 @@ Number number_at(std::string_view bytes, std::size_t offset)
     Number number;
     std::memcpy(&number, bytes.data() + offset, sizeof number);
     return number;
-}
-
-void check_glb(std::string_view bytes)
-{
-    if (bytes.size() < kGlbHeader || !bytes.starts_with("glTF")) throw InputError("not a GLB file");
-    if (const auto version = number_at<std::uint32_t>(bytes, 4); version != 2)
-        throw InputError(fmt::format("glTF version {}; allowed: 2", version));
-    const auto length = number_at<std::uint32_t>(bytes, 8);
-    if (length > bytes.size())
-        throw InputError(
-            fmt::format("truncated: its header says {} bytes, but the file has {}", length, bytes.size()));
-    bytes = bytes.substr(0, length);  // bytes after the declared length are ignored
-    for (std::size_t at = kGlbHeader; at < bytes.size();) {
-        if (bytes.size() - at < kGlbChunkHeader)
-            throw InputError(fmt::format("truncated: a chunk's header at byte {}", at));
-        const auto chunk = number_at<std::uint32_t>(bytes, at);
-        if (chunk > bytes.size() - at - kGlbChunkHeader)
-            throw InputError(fmt::format("truncated: the chunk at byte {} says {} bytes, but {} are left", at,
-                                         chunk, bytes.size() - at - kGlbChunkHeader));
-        at += kGlbChunkHeader + chunk;
-    }
 }
 
 constexpr std::size_t k3dsChunkHeader = 6;
@@ -81,7 +59,6 @@ std::string without_marks(const std::string& extension, std::string bytes)
 void check_mesh_bytes(const std::string& extension, std::string_view bytes)
 {
     if (bytes.empty()) throw InputError("empty");
-    if (extension == "glb") check_glb(bytes);
     if (extension == "3ds") check_3ds(bytes);
     if (extension == "gltf") require_start(bytes, "{", "a glTF");
     if (extension == "dae") require_start(bytes, "<", "a COLLADA");

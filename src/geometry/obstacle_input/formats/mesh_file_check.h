@@ -16,7 +16,7 @@ std::string without_marks(const std::string& extension, std::string bytes);
 
 /// Compares the declarations in a mesh file with its bytes, before the import library trusts them. Rejects
 /// counts and lengths beyond the file's end, truncation, and content of another format. For formats that are
-/// checked elsewhere (OBJ, STL, PLY, COLLADA, glTF's JSON, 3MF) only the first bytes are looked at, if any.
+/// checked elsewhere (OBJ, STL, PLY, COLLADA, glTF, 3MF) only the first bytes are looked at, if any.
 /// Throws InputError, a sentence without the file's name.
 void check_mesh_bytes(const std::string& extension, std::string_view bytes);
 

@@ -9,7 +9,7 @@ namespace arris {
 /// Where the points of a repaired mesh come from. Vertices of the file count from 0.
 struct VertexOrigins {
     /// Vertices that the file has, used by an element or not; 0 for a format whose vertices have no order of
-    /// their own (all but OBJ and PLY).
+    /// their own (all but OBJ, PLY, and glTF for its own animation).
     int vertex_count = 0;
     std::vector<int> of_points;              ///< vertex of each point, the first where several are joined;
                                              ///< -1 for a point that the repair has made

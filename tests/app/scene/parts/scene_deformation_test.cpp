@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "app/scene/scene_load.h"
 #include "geometry/input_error.h"
 #include "geometry/obstacle/point_cache.h"
@@ -12,6 +14,7 @@
 #include "tests/app/program.h"
 #include "tests/app/temporary_directory.h"
 #include "tests/geometry/cache_files.h"
+#include "tests/geometry/gltf_builder.h"
 
 namespace arris {
 namespace {
@@ -154,6 +157,83 @@ TEST(SceneDeformation, ErrorsNameKeyFileAndSample)
     EXPECT_THAT(folder.refusal("file = \"metres.pc2\""), HasSubstr("its edges are 0.01 times as long"));
 }
 
+TEST(SceneDeformation, AUsdTextHasItsOwnUnitAndAxis)
+{
+    // body.obj is in centimetres, y up.
+    const SceneFolder folder;
+    const auto write = [&](const std::string& head, double unit) {
+        std::string text = "#usda 1.0\n(" + head + ")\ndef Mesh \"body\" { point3d[] points.timeSamples = {";
+        for (const char* code : {"0", "24"}) {
+            text += fmt::format("{}: [(0, 0, 0)", code);
+            for (Vec3 p : {Vec3(0, 0, 0), Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)}) {
+                if (unit < 1.0) p = Vec3(p.x(), p.z(), -p.y());
+                text += fmt::format(", ({}, {}, {})", p.x() / unit, p.y() / unit, p.z() / unit);
+            }
+            text += "], ";
+        }
+        write_bytes(folder.dir / "body.usda", text + "} }");
+    };
+    const auto expect_mesh = [&] {
+        const RunConfig config = folder.load("file = \"body.usda\", prim = \"/body\"", "scale = 2\n");
+        const std::vector<Vec3>& mesh = config.scene.obstacles[0].shape().mesh().points;
+        ASSERT_EQ(mesh.size(), 4U);
+        for (std::size_t p = 0; p < 4; ++p) EXPECT_LT((place(config, 0.0, p) - mesh[p]).norm(), 1e-12);
+        EXPECT_EQ(cache_of(config).sample_times().back(), 1.0);
+    };
+    write("metersPerUnit = 1\nupAxis = \"Z\"", 1.0);
+    expect_mesh();
+    write("doc = 'nothing declared'", 0.01);
+    expect_mesh();
+
+    EXPECT_THAT(folder.refusal("file = \"body.pc2\", prim = \"/body\""),
+                AllOf(HasSubstr("obstacle.0.deform.prim = \"/body\": contradicts obstacle.0.deform.file"),
+                      HasSubstr("allowed: no prim, or a USD file")));
+    EXPECT_THAT(folder.refusal("file = \"body.usda\", prim = \"/root\""),
+                AllOf(HasSubstr("obstacle.0.deform.file"), HasSubstr("has no Mesh /root; allowed: /body")));
+}
+
+TEST(SceneDeformation, AGltfFileMovesItself)
+{
+    const SceneFolder folder;
+    write_bytes(folder.dir / "bent.glb", make_bent_tetrahedron().glb());
+    const auto load = [&](const std::string& keys) {
+        write_bytes(folder.dir / "g.toml",
+                    "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [1, 1]\ntranslate = [0, 0, 9]\n"
+                    "[[obstacle]]\nfile = \"bent.glb\"\n" +
+                        keys);
+        return load_scene(read_scene_source(folder.dir / "g.toml", {}), with_program());
+    };
+    for (const char* keys : {"deform = {}\n", "deform = { file = \"bent.glb\", animation = \"walk\" }\n"}) {
+        const RunConfig config = load(keys);
+        EXPECT_EQ(cache_of(config).sample_times().size(), 25U);
+        const std::vector<Vec3>& mesh = config.scene.obstacles[0].shape().mesh().points;
+        ASSERT_EQ(mesh.size(), 4U);
+        for (std::size_t p = 0; p < 4; ++p) EXPECT_LT((place(config, 0.0, p) - mesh[p]).norm(), 1e-6);
+        // z up: the tip at (2, 0, 0) turns about the file's z axis to (1, 1, 0).
+        const auto tip = std::find_if(mesh.begin(), mesh.end(),
+                                      [](const Vec3& p) { return (p - Vec3(2, 0, 0)).norm() < 1e-6; });
+        ASSERT_NE(tip, mesh.end());
+        EXPECT_LT((place(config, 1.0, static_cast<std::size_t>(tip - mesh.begin())) - Vec3(1, 0, 1)).norm(),
+                  1e-6);
+    }
+    // Unit and axis of the scene hold for the mesh and for its motion.
+    const RunConfig other = load("deform = {}\nunits = \"cm\"\nup = \"z\"\n");
+    const std::vector<Vec3>& mesh = other.scene.obstacles[0].shape().mesh().points;
+    for (std::size_t p = 0; p < 4; ++p) EXPECT_LT((place(other, 0.0, p) - mesh[p]).norm(), 1e-8);
+    EXPECT_NEAR(mesh[1].norm(), 0.02, 1e-8);
+
+    const auto refusal = [&](const std::string& keys) { return error_of([&] { load(keys); }); };
+    EXPECT_THAT(refusal("deform = { animation = \"run\" }\n"),
+                AllOf(HasSubstr("bent.glb: it has no animation \"run\"; allowed: \"walk\"")));
+    EXPECT_THAT(refusal("deform = { file = \"body.pc2\" }\n"),
+                AllOf(HasSubstr("obstacle.0.deform.file"), HasSubstr("contradicts the obstacle's file"),
+                      HasSubstr("allowed: a glTF file that moves itself")));
+    EXPECT_THAT(refusal("deform = { prim = \"/a\" }\n"), HasSubstr("allowed: no prim, or a USD file"));
+    EXPECT_THAT(folder.refusal("file = \"bent.glb\""), HasSubstr("contradicts the obstacle's file"));
+    EXPECT_THAT(folder.refusal("file = \"body.pc2\", animation = \"walk\""),
+                HasSubstr("allowed: no animation, or a glTF file"));
+}
+
 TEST(SceneDeformation, NeedsAFileWhoseVerticesHaveAnOrder)
 {
     const SceneFolder folder;
@@ -161,7 +241,7 @@ TEST(SceneDeformation, NeedsAFileWhoseVerticesHaveAnOrder)
                 "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
                 "endfacet\nendsolid a\n");
     EXPECT_THAT(folder.refusal("file = \"body.pc2\"", "", "body.stl"),
-                AllOf(HasSubstr("obstacle.0.file"), HasSubstr("allowed: OBJ or PLY")));
+                AllOf(HasSubstr("obstacle.0.file"), HasSubstr("allowed: OBJ, PLY or glTF")));
     write_bytes(folder.dir / "box.toml",
                 "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [1, 1]\n[[obstacle]]\nbox = [1, 1, 1]\n"
                 "deform = { file = \"body.pc2\" }\n");

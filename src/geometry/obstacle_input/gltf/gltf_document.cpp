@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/formats/gltf_document.h"
+#include "geometry/obstacle_input/gltf/gltf_document.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +13,10 @@
 namespace arris {
 namespace {
 
+// Bytes of a GLB file before its first chunk, and of a chunk before its content.
+constexpr std::size_t kGlbHeader = 12;
+constexpr std::size_t kGlbChunkHeader = 8;
+
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a;
 constexpr std::uint32_t kBinaryChunk = 0x004e4942;
 
@@ -21,6 +25,27 @@ std::uint32_t number_at(std::string_view bytes, std::size_t offset)
     std::uint32_t number = 0;
     std::memcpy(&number, bytes.data() + offset, sizeof number);
     return number;
+}
+
+void check_glb(std::string_view bytes)
+{
+    if (bytes.size() < kGlbHeader || !bytes.starts_with("glTF")) throw InputError("not a GLB file");
+    if (const auto version = number_at(bytes, 4); version != 2)
+        throw InputError(fmt::format("glTF version {}; allowed: 2", version));
+    const auto length = number_at(bytes, 8);
+    if (length > bytes.size())
+        throw InputError(
+            fmt::format("truncated: its header says {} bytes, but the file has {}", length, bytes.size()));
+    bytes = bytes.substr(0, length);  // bytes after the declared length are ignored
+    for (std::size_t at = kGlbHeader; at < bytes.size();) {
+        if (bytes.size() - at < kGlbChunkHeader)
+            throw InputError(fmt::format("truncated: a chunk's header at byte {}", at));
+        const auto chunk = number_at(bytes, at);
+        if (chunk > bytes.size() - at - kGlbChunkHeader)
+            throw InputError(fmt::format("truncated: the chunk at byte {} says {} bytes, but {} are left", at,
+                                         chunk, bytes.size() - at - kGlbChunkHeader));
+        at += kGlbChunkHeader + chunk;
+    }
 }
 
 void append(std::string& bytes, std::uint32_t number)
@@ -59,6 +84,7 @@ nlohmann::json parse(std::string_view text)
 GltfDocument read_gltf(bool is_binary, std::string_view bytes)
 {
     if (!is_binary) return {parse(bytes), {}};
+    check_glb(bytes);
     GltfDocument document;
     bytes = bytes.substr(0, number_at(bytes, 8));
     for (std::size_t at = kGlbHeader; at < bytes.size(); at += kGlbChunkHeader + number_at(bytes, at)) {

@@ -15,10 +15,10 @@ namespace arris {
 ///    compressed form only (EXT_meshopt_compression);
 ///  - positions and indices without data, or of another type than theirs, or with a stride shorter than an
 ///    element; unknown kinds of primitives;
-///  - shown nodes whose morph targets have weights that are not zero, or whose placement is not well formed
-///    (see check_gltf_placement).
+///  - shown nodes whose placement is not well formed (see check_gltf_placement); in a file with compressed
+///    meshes those whose morph targets have weights that are not zero.
 ///
-/// Returns warnings about skins, which are not applied, and about unknown extensions that may change shapes.
+/// Returns warnings about unknown extensions that may change shapes, and about skins that are not applied.
 std::vector<std::string> check_gltf(const nlohmann::json& json);
 
 }  // namespace arris

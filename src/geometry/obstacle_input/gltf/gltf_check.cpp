@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/formats/gltf_check.h"
+#include "geometry/obstacle_input/gltf/gltf_check.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,9 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/formats/gltf_document.h"
-#include "geometry/obstacle_input/formats/gltf_nodes.h"
+#include "geometry/obstacle_input/gltf/gltf_document.h"
+#include "geometry/obstacle_input/gltf/gltf_figure.h"
+#include "geometry/obstacle_input/gltf/gltf_nodes.h"
 
 namespace arris {
 namespace {
@@ -63,7 +64,7 @@ std::string quote(const json& value)
 
 class GltfCheck {
   public:
-    explicit GltfCheck(const json& file) : file_(file) {}
+    explicit GltfCheck(const json& file) : file_(file), is_packed_(is_packed_gltf(file)) {}
 
     std::vector<std::string> run()
     {
@@ -129,25 +130,29 @@ class GltfCheck {
             throw InputError(what +
                              " is hidden (KHR_node_visibility), which is not read; allowed: visible nodes");
         check_gltf_placement(node, what);
-        check_weights(node, what);
-        if (!gltf_member(node, "skin").is_null() && !gltf_member(node, "mesh").is_null())
-            warnings_.push_back(
-                what + " has a skin, which is not applied: its mesh keeps the pose in which it is stored");
+        if (is_packed_) check_packed(node, what);
         note_unknown(node, what);
     }
 
-    // Morph targets move vertices by the weights of the node, or else of its mesh.
-    void check_weights(const json& node, const std::string& what) const
+    // Skins and morph targets are not read in a file with compressed meshes. Targets move vertices by the
+    // weights of the node, or else of its mesh.
+    void check_packed(const json& node, const std::string& what)
     {
         const json& mesh = gltf_member(node, "mesh");
         if (mesh.is_null()) return;
+        if (!gltf_member(node, "skin").is_null())
+            warnings_.push_back(
+                what +
+                " has a skin, which is not applied in a file with compressed meshes: its mesh "
+                "keeps the pose in which it is stored");
         const json& own = gltf_member(node, "weights");
         for (const json& weight :
              own.is_null() ? gltf_member(gltf_element(file_, "meshes", mesh), "weights") : own)
             if (weight != 0)
                 throw InputError(
-                    fmt::format("{} morphs its mesh (weight {}), which is not read; allowed: weights 0", what,
-                                quote(weight)));
+                    fmt::format("{} morphs its mesh (weight {}), which is not read in a file with "
+                                "compressed meshes; allowed: weights 0",
+                                what, quote(weight)));
     }
 
     void check_mesh(const json& mesh, const std::string& what)
@@ -234,6 +239,7 @@ class GltfCheck {
     }
 
     const json& file_;
+    bool is_packed_;
     std::set<std::string> unknown_;
     std::vector<std::string> warnings_;
 };

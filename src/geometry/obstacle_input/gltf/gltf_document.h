@@ -9,18 +9,14 @@
 // For .cpp files of this folder only: the JSON library is slow to compile.
 namespace arris {
 
-/// Bytes of a GLB file before its first chunk, and of a chunk before its content.
-inline constexpr std::size_t kGlbHeader = 12;
-inline constexpr std::size_t kGlbChunkHeader = 8;
-
 /// The JSON of a glTF 2 file, and its binary chunk (empty if the file has none).
 struct GltfDocument {
     nlohmann::json json;
     std::string chunk;
 };
 
-/// Takes a .gltf file, or a .glb file whose chunk lengths check_mesh_bytes has checked, apart. Throws
-/// InputError, without the file's name, for JSON that is not well formed or nests deeper than 200 levels.
+/// Takes a .gltf or .glb file apart. Throws InputError, without the file's name, for chunks that reach beyond
+/// the file's end, and for JSON that is not well formed or nests deeper than 200 levels.
 GltfDocument read_gltf(bool is_binary, std::string_view bytes);
 
 /// The bytes of a .glb file.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/obstacle_input/formats/gltf_nodes.h"
+#include "geometry/obstacle_input/gltf/gltf_nodes.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "geometry/input_error.h"
 #include "geometry/mesh_text.h"
-#include "geometry/obstacle_input/formats/gltf_document.h"
+#include "geometry/obstacle_input/gltf/gltf_document.h"
 #include "geometry/tolerances.h"
 
 namespace arris {
@@ -21,23 +21,6 @@ std::optional<std::size_t> index_of(const json& value, const json& elements)
 {
     if (!value.is_number_unsigned() || value.get<std::size_t>() >= elements.size()) return std::nullopt;
     return value.get<std::size_t>();
-}
-
-// The numbers of a member; none if the node does not have it.
-std::vector<double> numbers_of(const json& node, const char* name, std::size_t count, const std::string& what)
-{
-    const json& value = gltf_member(node, name);
-    if (value.is_null()) return {};
-    bool is_right = value.is_array() && value.size() == count;
-    std::vector<double> numbers;
-    for (std::size_t k = 0; is_right && k < count; ++k) {
-        is_right = value[k].is_number() && std::isfinite(value[k].get<double>());
-        if (is_right) numbers.push_back(value[k].get<double>());
-    }
-    if (!is_right)
-        throw InputError(fmt::format("{}: its {} is {}; allowed: {} finite numbers", what, name,
-                                     one_line(excerpt(value.dump())), count));
-    return numbers;
 }
 
 }  // namespace
@@ -61,12 +44,29 @@ std::set<std::size_t> shown_gltf_nodes(const json& file)
     return shown;
 }
 
+std::vector<double> gltf_numbers(const json& node, const char* name, std::size_t count,
+                                 const std::string& what)
+{
+    const json& value = gltf_member(node, name);
+    if (value.is_null()) return {};
+    bool is_right = value.is_array() && value.size() == count;
+    std::vector<double> numbers;
+    for (std::size_t k = 0; is_right && k < count; ++k) {
+        is_right = value[k].is_number() && std::isfinite(value[k].get<double>());
+        if (is_right) numbers.push_back(value[k].get<double>());
+    }
+    if (!is_right)
+        throw InputError(fmt::format("{}: its {} is {}; allowed: {} finite numbers", what, name,
+                                     one_line(excerpt(value.dump())), count));
+    return numbers;
+}
+
 void check_gltf_placement(const json& node, const std::string& what)
 {
-    const std::vector<double> matrix = numbers_of(node, "matrix", 16, what);
-    const std::vector<double> rotation = numbers_of(node, "rotation", 4, what);
-    numbers_of(node, "translation", 3, what);
-    numbers_of(node, "scale", 3, what);
+    const std::vector<double> matrix = gltf_numbers(node, "matrix", 16, what);
+    const std::vector<double> rotation = gltf_numbers(node, "rotation", 4, what);
+    gltf_numbers(node, "translation", 3, what);
+    gltf_numbers(node, "scale", 3, what);
     if (!matrix.empty()) {
         // Columns follow each other.
         const double wrong =

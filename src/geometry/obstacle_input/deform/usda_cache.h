@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "geometry/obstacle_input/deform/vertex_cache.h"
+
+namespace arris {
+
+/// open_vertex_cache for USD texts.
+std::unique_ptr<VertexCache> open_usda(const VertexCacheRequest& request);
+
+}  // namespace arris
