@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/velocity_solve/constraint_rows.h"
+
 namespace arris {
 namespace {
 
@@ -85,6 +87,15 @@ NotFinite find_in_solve(const State& state, const Workspace& work)
     for (Eigen::Index row = 0; row < work.problem.lower.size(); ++row)
         if (!(work.problem.lower[row] < std::numeric_limits<double>::infinity()))
             return at_row("bound of the velocity", row);
+    const auto at_contact = [&](const char* what, const Contact& contact) {
+        return NotFinite{what, id_of(state, contact.vertices[0]), contact.obstacle, -1};
+    };
+    for (const Contact& contact : work.contacts)
+        if (contact.row >= 0 && !is_well_formed(work.problem.rows[contact.row]))
+            return at_contact("contact's constraint", contact);
+    for (std::size_t r = 0; r < work.slip_contacts.size(); ++r)
+        if (!is_well_formed(work.problem.friction[r]))
+            return at_contact("friction", work.contacts[work.slip_contacts[r].contact]);
     return {"velocity", -1, -1, -1};
 }
 

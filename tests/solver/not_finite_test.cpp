@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 
@@ -132,6 +133,35 @@ TEST_F(NotFiniteStep, NamesTheVertexWhereForcesAreLinearised)
     const NotFinite found = find_after(0, [](Workspace& w) { w.expansion.world[kVertex].z() = kNan; });
     EXPECT_THAT(found.what, testing::AnyOf(testing::StrEq("force"), testing::StrEq("stiffness")));
     EXPECT_GE(found.vertex, 0);
+}
+
+// As above, of a sound step.
+TEST_F(NotFiniteStep, NamesTheVertexAndObstacleOfAConstraint)
+{
+    ConstraintRow row;
+    row.coordinate[0] = 3 * kVertex;
+    row.coefficient[0] = 1.0;
+    row.count = 1;
+    Contact& contact = work.contacts.back();
+    contact.row = static_cast<int>(work.problem.rows.size());
+    work.problem.rows.push_back(row);
+    expect(find_not_finite(CheckedStage::Solve, state, work), "velocity", -1);
+    work.problem.rows.back().coefficient[0] = kNan;
+    const NotFinite found = find_not_finite(CheckedStage::Solve, state, work);
+    expect(found, "contact's constraint", contact.vertices[0]);
+    EXPECT_EQ(found.obstacle, 0);
+}
+
+TEST_F(NotFiniteStep, NamesTheVertexAndObstacleOfFriction)
+{
+    scene.friction = Friction{{0.3}};
+    const auto active = std::find_if(state.active.begin(), state.active.end(),
+                                     [](const ActiveContact& a) { return a.vertex_ids[0] == kVertex; });
+    ASSERT_NE(active, state.active.end());
+    active->friction.force.x() = kNan;
+    const NotFinite found = find();
+    expect(found, "friction", kVertex);
+    EXPECT_EQ(found.obstacle, 0);
 }
 
 TEST_F(NotFiniteStep, NamesTheVertexOfTheProposal)

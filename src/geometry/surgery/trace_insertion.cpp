@@ -75,13 +75,17 @@ bool may_stay(const ClothSurgery& surgery, const MeshTarget& target, VertexId v,
     return is_behind(surgery, v, X, way) || (apart > kLeastApart * target.length(X) && apart > way.norm());
 }
 
-// Whether a split is too near to an end, so that the new faces would stay thin.
+// Whether a split is too near to an end, so that the new faces would stay thin. They open where the trace
+// leaves the end behind, if at the end of its way it is no longer too near.
 bool is_crowded(const ClothSurgery& surgery, VertexId a, VertexId b, double s, const Vec2& way)
 {
-    const Vec2 X = surgery.material(a) + s * (surgery.material(b) - surgery.material(a));
+    const Vec2 edge = surgery.material(b) - surgery.material(a), X = surgery.material(a) + s * edge;
+    const auto opens = [&](VertexId v) {
+        return is_behind(surgery, v, X, way) &&
+               (X + way - surgery.material(v)).norm() > kSplitFromEnd * edge.norm();
+    };
     const auto least = [&](VertexId v) {
-        return surgery.role(v) != TraceRole::Free || is_behind(surgery, v, X, way) ? kTraceFraction
-                                                                                   : kSplitFromEnd;
+        return surgery.role(v) != TraceRole::Free || opens(v) ? kTraceFraction : kSplitFromEnd;
     };
     return s < least(a) || 1.0 - s < least(b);
 }

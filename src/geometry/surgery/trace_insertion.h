@@ -26,11 +26,12 @@ struct TraceVertex {
 /// is, and keeps its role if it is a Node. A border vertex within 1e-9 of the target length is used where it
 /// is. Refused with
 ///  - Fixed: the vertex there is a corner.
-///  - Quality: an end that cannot move is nearer than 5 % of the edge, or 0.1 % if it is on another trace.
+///  - Quality: an end that cannot move is nearer than 5 % of the edge; or 0.1 % if it is on another trace, or
+///    if at the end of its way the trace has left that end behind by 5 % of the edge.
 ///  - Trace: the edge itself belongs to another feature.
 ///  - Guard: the guard does not let an end move there, as where cloth is folded beside its feature.
-/// The edge is split instead of Guard in two cases. The trace is about to move away from that end, which may
-/// then be as near as 0.1 % of the edge; or the end is farther than both a tenth of the target length and the
+/// The edge is split instead of Guard, unless that would be refused with Quality, in two cases. The trace is
+/// about to move away from that end; or the end is farther than both a tenth of the target length and the
 /// trace's way.
 TraceInsertion insert_edge_crossing(ClothSurgery& surgery, const MeshTarget& target, VertexId a, VertexId b,
                                     double s, const TraceVertex& made);

@@ -128,6 +128,10 @@ struct Contact : ClothPoints {
     bool is_squeezed() const { return stiffness > 0.0; }
     bool is_fold_plane() const { return is_vertex() && element == kFoldPlaneElement; }
     bool is_vertex() const { return vertices[1] < 0; }  ///< a single vertex, at an obstacle
+
+    /// Vertices that a part of the cloth can have here; of two parts, the first one. The second one has the
+    /// others.
+    int first_count() const { return kind == ContactKind::Vertex ? 1 : kind == ContactKind::Edge ? 2 : 3; }
     bool was_active() const { return last_multiplier > 0.0; }
 };
 

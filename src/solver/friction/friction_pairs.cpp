@@ -31,7 +31,7 @@ void add_entry(int coordinate, double coefficient, ConstraintRow& row)
 /// that vertex's side: a part of the cloth touches with one vertex, edge or face.
 Mat32 deformation_at(const SlippingCloth& cloth, const Contact& contact, int i)
 {
-    const int split = !contact.is_with_itself() ? 4 : contact.is_vertex() ? 1 : 2;
+    const int split = contact.first_count();
     const int first = i < split ? 0 : split, last = i < split ? split : 4;
     std::vector<int> faces;
     for (const int f : cloth.stars.faces[contact.vertices[i]]) {

@@ -35,14 +35,6 @@ constexpr double kLeastSpeed = 1e-6;
 /// waves.
 constexpr int kSpeedSteps = 4;
 
-bool is_well_formed(const ConstraintRow& row)
-{
-    if (!(row.lower < std::numeric_limits<double>::infinity())) return false;
-    for (int k = 0; k < row.count; ++k)
-        if (!std::isfinite(row.coefficient[k])) return false;
-    return true;
-}
-
 double largest_coefficient(const ConstraintRow& row)
 {
     double largest = 0.0;
@@ -111,8 +103,6 @@ void add_pair(const VelocityProblem& problem, const Eigen::VectorXd& diagonal, c
     std::array<ScaledRow, 2> rows;
     double scale = 0.0, mobility = 0.0;
     for (int d = 0; d < 2; ++d) {
-        result.is_finite =
-            result.is_finite && is_well_formed(pair.slip[d]) && std::isfinite(pair.slip[d].lower);
         rows[d].entries = movable_entries(problem, pair.slip[d]);
         for (const auto& [coordinate, value] : rows[d].entries) scale = std::max(scale, std::abs(value));
     }
@@ -136,11 +126,26 @@ void add_pair(const VelocityProblem& problem, const Eigen::VectorXd& diagonal, c
     }
     result.budgets.push_back(can_move ? pair.budget * scale : 0.0);
     result.masses.push_back(pair.mass * scale * scale);
-    result.is_finite =
-        result.is_finite && std::isfinite(1.0 / rows[0].compliance) && std::isfinite(pair.budget);
+    result.is_finite = result.is_finite && is_well_formed(pair) && std::isfinite(1.0 / rows[0].compliance);
 }
 
 }  // namespace
+
+bool is_well_formed(const ConstraintRow& row)
+{
+    if (!(row.lower < std::numeric_limits<double>::infinity())) return false;
+    for (int k = 0; k < row.count; ++k)
+        if (!std::isfinite(row.coefficient[k])) return false;
+    return true;
+}
+
+bool is_well_formed(const FrictionPair& pair)
+{
+    const auto is_slip = [](const ConstraintRow& row) {
+        return is_well_formed(row) && std::isfinite(row.lower) && std::isfinite(row.expected);
+    };
+    return is_slip(pair.slip[0]) && is_slip(pair.slip[1]) && std::isfinite(pair.budget);
+}
 
 ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed)
 {

@@ -43,6 +43,10 @@ struct ConstraintRows {
     int slip_count() const { return 2 * pair_count(); }  ///< index of the problem's first row
 };
 
+/// Whether coefficients are finite, and the bound, too, or -infinity; of a pair, whether all its numbers are.
+bool is_well_formed(const ConstraintRow& row);
+bool is_well_formed(const FrictionPair& pair);
+
 /// `free_speed` is `estimate_free_speed` of this problem; unused without rows. Coefficients below round-off
 /// of the row's largest one, fixed coordinates included, count as 0.
 ConstraintRows scale_rows(const VelocityProblem& problem, double free_speed);

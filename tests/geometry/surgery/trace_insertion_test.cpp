@@ -139,7 +139,7 @@ TEST(InsertEdgeCrossing, BesideAVertexThatTheGuardKeepsSplitsWhereTheTraceDoesNo
         return made.verdict;
     };
     for (const double s : {0.2, 0.04, 0.002}) {
-        EXPECT_EQ(insert_with({0.0, 1e-9}, s), Verdict::Done) << s;
+        EXPECT_EQ(insert_with({0.0, 0.1}, s), Verdict::Done) << s;
         EXPECT_EQ(insert_with({5.0, 1.0}, s), Verdict::Done) << s;
         EXPECT_EQ(insert_with({0.0, -1.0}, s), Verdict::Guard) << s;
         EXPECT_EQ(insert_with({kNan, 0.0}, s), Verdict::Guard) << s;
@@ -153,6 +153,28 @@ TEST(InsertEdgeCrossing, BesideAVertexThatTheGuardKeepsSplitsWhereTheTraceDoesNo
     EXPECT_EQ(insert_with({0.0, -0.21 * cell}, 0.2), Verdict::Guard);
     EXPECT_EQ(insert_with({0.0, 0.0}, 0.12), Verdict::Done);
     EXPECT_EQ(insert_with({0.0, 0.0}, 0.11), Verdict::Guard);
+    // One behind the trace may be nearer, but not where the trace is still so near at the end of its way.
+    EXPECT_EQ(insert_with({0.0, 1e-9}, 0.06), Verdict::Done);
+    EXPECT_EQ(insert_with({0.0, 0.02 * cell}, 0.04), Verdict::Done);
+    EXPECT_EQ(insert_with({0.0, 1e-9}, 0.04), Verdict::Quality);
+}
+
+TEST(InsertEdgeCrossing, BesideABorderVertexSplitsWhereTheTraceSoonLeavesRoom)
+{
+    // The trace crosses an edge 0.4 % from its end on the border. That end cannot move to the trace, and no
+    // clean-up can open the faces between them while the trace is near.
+    const SurgeryCloth cloth = square_cloth(8);
+    const double cell = 0.125, s = 0.004;
+    const auto insert_with = [&](const Vec2& way) {
+        ClothSurgery surgery = cloth.surgery();
+        const VertexId v = nearest_vertex(surgery, {0.0, 0.5}), inner = nearest_vertex(surgery, {0.125, 0.5});
+        return insert_edge_crossing(surgery, target_of(cloth), v, inner, s, {TraceRole::OnTrace, 1, way})
+            .verdict;
+    };
+    EXPECT_EQ(insert_with({0.05 * cell, 0.0}), Verdict::Done);
+    EXPECT_EQ(insert_with({0.04 * cell, 0.0}), Verdict::Quality);
+    EXPECT_EQ(insert_with({1e-9, 0.0}), Verdict::Quality) << "not decided by the sign of round-off";
+    EXPECT_EQ(insert_with({-0.05 * cell, 0.0}), Verdict::Quality);
 }
 
 TEST(InsertEdgeCrossing, RefusesWhatIsNoCrossing)
