@@ -141,29 +141,37 @@ std::string describe_times(const std::vector<double>& times, const std::vector<c
     return text;
 }
 
+std::size_t count_crossing_faces(const ObstacleMesh& mesh, const std::vector<Vec3>& points)
+{
+    std::vector<int> crossing;
+    for (const std::array<int, 2>& pair : find_crossing_faces(mesh, points))
+        crossing.insert(crossing.end(), pair.begin(), pair.end());
+    sort_unique(crossing);
+    return crossing.size();
+}
+
+/// Many bodies are made of pieces that cross, such as boots over legs: only what the motion adds is told.
 void tell_crossings(const SceneDocument& document, const std::string& key, const VertexCache& cache,
                     const PoseFile& samples, const ObstacleMesh& mesh, RunConfig& config)
 {
+    const std::size_t own = count_crossing_faces(mesh, mesh.points);
     std::vector<char> crosses(samples.times().size(), 0);
-    std::size_t most = 0, most_at = 0;
+    std::size_t most = own, most_at = 0;
     std::vector<Vec3> points;
     for (std::size_t k = 0; k < crosses.size(); ++k) {
         samples.read(k, points);
-        std::vector<int> crossing;
-        for (const std::array<int, 2>& pair : find_crossing_faces(mesh, points))
-            crossing.insert(crossing.end(), pair.begin(), pair.end());
-        sort_unique(crossing);
-        crosses[k] = crossing.empty() ? 0 : 1;
-        if (crossing.size() <= most) continue;
-        most = crossing.size();
+        const std::size_t now = count_crossing_faces(mesh, points);
+        crosses[k] = now > own ? 1 : 0;
+        if (now <= most) continue;
+        most = now;
         most_at = k;
     }
-    if (most == 0) return;
+    if (most == own) return;
     config.warnings.push_back(fmt::format(
-        "{}: up to {} other faces of the mesh ({}), at {}: there is no place for cloth between such parts; "
-        "`slit` makes one",
+        "{}: up to {} other faces of the mesh ({}){}, at {}: cloth between such parts has no place; `slit` "
+        "makes one",
         document.describe(key), counted(most, "face crosses", "faces cross"), cache.describe(most_at),
-        describe_times(samples.times(), crosses)));
+        own > 0 ? fmt::format(", {} in its own pose", own) : "", describe_times(samples.times(), crosses)));
 }
 
 }  // namespace
