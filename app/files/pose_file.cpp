@@ -29,6 +29,8 @@ namespace {
 
 constexpr std::string_view kMagic = "ARRIS poses\n";
 constexpr std::string_view kVersion = "poses 1";
+// s. Velocities between samples within these bounds are finite.
+constexpr double kLatest = 1e12, kShortest = 1e-12;
 constexpr std::size_t kCopyBytes = std::size_t{1} << 20;
 constexpr std::uint64_t kChecksumBytes = sizeof(std::uint32_t);
 
@@ -144,8 +146,8 @@ void PoseFile::read_head()
 
     bool is_sound = head.is_at_end() && !head_.times.empty() && head_.point_count > 0;
     for (std::size_t k = 0; k < head_.times.size(); ++k)
-        is_sound =
-            is_sound && std::isfinite(head_.times[k]) && (k == 0 || head_.times[k] > head_.times[k - 1]);
+        is_sound = is_sound && std::abs(head_.times[k]) <= kLatest &&
+                   (k == 0 || head_.times[k] - head_.times[k - 1] >= kShortest);
     if (!is_sound) fail("is damaged: its times are invalid");
     // Divides, as products of counts may overflow.
     const std::uint64_t each = (total - head_bytes_) / head_.times.size();

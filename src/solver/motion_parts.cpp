@@ -10,7 +10,6 @@ namespace arris {
 
 namespace {
 
-constexpr double kMostOfThickness = 0.25;
 constexpr double kMostTurn = std::numbers::pi / 2.0;
 
 double distance_of_chord(const Vec3& begin, const Vec3& middle, const Vec3& end)
@@ -86,7 +85,7 @@ int find_parts(const MovingObstacle& obstacle, double thickness, const State& st
     const double arc = obstacle.is_deforming() ? arc_of_deforming(obstacle, state, part)
                                                : arc_of_rigid(obstacle, state, part);
     // In a half of the time the distance is a quarter.
-    for (double left = arc; parts < kMostMotionParts && left > kMostOfThickness * thickness; left /= 4.0)
+    for (double left = arc; parts < kMostMotionParts && left > kMostChordShare * thickness; left /= 4.0)
         parts *= 2;
     return parts;
 }

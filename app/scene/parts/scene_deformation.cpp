@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -16,6 +17,7 @@
 #include "geometry/obstacle_input/deform/slit_samples.h"
 #include "geometry/obstacle_input/deform/vertex_cache.h"
 #include "geometry/sort_unique.h"
+#include "solver/motion_parts.h"
 
 namespace arris {
 namespace {
@@ -95,6 +97,13 @@ void tell(const SceneDocument& document, const std::string& key, const VertexCac
                             where, apart, step));
             break;
         }
+    const double chord = survey.greatest_acceleration * std::pow(speed * step, 2) / 8.0;
+    if (head.interpolation == PoseInterpolation::Cubic &&
+        chord > kMostChordShare * config.scene.material.thickness)
+        config.warnings.push_back(fmt::format(
+            "{}: a vertex leaves its straight way by {:.2g} m within a step ({}); above a quarter "
+            "of the cloth's thickness, {:g} m, steps near the cloth are made in parts",
+            where, chord, cache.describe(survey.accelerated_at), config.scene.material.thickness));
     config.notes.push_back(fmt::format("{}: {} of {} from {:g} s to {:g} s, the fastest vertex at {:.3g} m/s",
                                        where, counted(head.times.size(), "sample", "samples"),
                                        counted(head.point_count, "point", "points"), head.times.front(),

@@ -121,6 +121,8 @@ TEST(PoseFile, SoundChecksumsDoNotMakeSoundValues)
     PoseFileHead wrong = head();
     wrong.times[1] = -0.5;
     EXPECT_THAT(refusal(wrong, kSamples), HasSubstr("times are invalid"));
+    wrong.times[1] = std::nextafter(wrong.times[0], 1.0);
+    EXPECT_THAT(refusal(wrong, kSamples), HasSubstr("times are invalid"));
     wrong.times[1] = kNan;
     EXPECT_THAT(refusal(wrong, kSamples), HasSubstr("times are invalid"));
     for (const double c : {kNan, std::numeric_limits<double>::infinity(), 2e6}) {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <utility>
 
 #include "geometry/input_error.h"
 #include "geometry/input_limits.h"
@@ -63,7 +64,7 @@ void MeshPoses::read_next(std::vector<Vec3>& points)
     require_joined();
     if (next_ == 0) require_similar(points);
     measure(points);
-    last_ = points;
+    second_last_ = std::exchange(last_, points);
     ++next_;
 }
 
@@ -132,6 +133,15 @@ void MeshPoses::measure(const std::vector<Vec3>& points)
         survey_.greatest_move = greatest;
         survey_.moved_at = next_;
         survey_.moved_vertex = origins_.of_points[point];
+    }
+    if (next_ == 1) return;
+    const double before = cache_.times()[next_ - 1] - cache_.times()[next_ - 2];
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const Vec3 gained = (points[p] - last_[p]) / duration - (last_[p] - second_last_[p]) / before;
+        const double acceleration = 2.0 * gained.norm() / (duration + before);
+        if (!(acceleration > survey_.greatest_acceleration)) continue;
+        survey_.greatest_acceleration = acceleration;
+        survey_.accelerated_at = next_ - 1;
     }
 }
 

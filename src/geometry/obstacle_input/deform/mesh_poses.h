@@ -21,12 +21,14 @@ struct FileFrame {
 
 /// Measurements of all poses, for words about them.
 struct PoseSurvey {
-    int most_collapsed = 0;        ///< most faces without area in one pose
-    std::size_t collapsed_at = 0;  ///< that sample
-    double greatest_move = 0.0;    ///< m, of a point from one sample to the next
-    std::size_t moved_at = 0;      ///< the later of the two samples
-    int moved_vertex = 0;          ///< vertex of the file, from 0
-    double greatest_speed = 0.0;   ///< moves over the cache's own times, m/s
+    int most_collapsed = 0;              ///< most faces without area in one pose
+    std::size_t collapsed_at = 0;        ///< that sample
+    double greatest_move = 0.0;          ///< m, of a point from one sample to the next
+    std::size_t moved_at = 0;            ///< the later of the two samples
+    int moved_vertex = 0;                ///< vertex of the file, from 0
+    double greatest_speed = 0.0;         ///< moves over the cache's own times, m/s
+    double greatest_acceleration = 0.0;  ///< likewise, m/s^2, from three samples
+    std::size_t accelerated_at = 0;      ///< the middle one
 };
 
 /// Makes poses of an obstacle's mesh from the places of its file's vertices, sample by sample, and checks
@@ -61,8 +63,8 @@ class MeshPoses {
     FileFrame frame_;
     Mat3 turn_;
     std::size_t next_ = 0;
-    std::vector<Vec3> vertices_;  // of the file, in its coordinates
-    std::vector<Vec3> last_;      // points of the sample before
+    std::vector<Vec3> vertices_;            // of the file, in its coordinates
+    std::vector<Vec3> last_, second_last_;  // points of the two samples before
     PoseSurvey survey_;
 };
 

@@ -155,8 +155,7 @@ bool SlitFinder::is_one_part(const std::vector<Vec3>& points, int point, const F
         if (std::find(face.begin(), face.end(), p) != face.end()) return true;
         if (!seen.insert(p).second) continue;
         for (const int q : neighbours_[p])
-            if (const double there = distance + length(p, q); there <= most)
-                open.push({there, q});
+            if (const double there = distance + length(p, q); there <= most) open.push({there, q});
     }
     return false;
 }

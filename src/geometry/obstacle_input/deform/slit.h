@@ -46,7 +46,7 @@ class SlitFinder {
     double width_;
     std::vector<std::vector<int>> around_;      ///< neighbours of each point, over edges of faces
     std::vector<std::vector<int>> neighbours_;  ///< and across faces near in the mesh's own pose
-    std::vector<char> is_buried_;  ///< points inside another part in the mesh's own pose
+    std::vector<char> is_buried_;               ///< points inside another part in the mesh's own pose
 };
 
 }  // namespace arris

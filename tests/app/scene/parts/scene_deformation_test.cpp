@@ -13,6 +13,7 @@
 #include "tests/app/error_of.h"
 #include "tests/app/program.h"
 #include "tests/app/temporary_directory.h"
+#include "tests/elbow_body.h"
 #include "tests/geometry/cache_files.h"
 #include "tests/geometry/gltf_builder.h"
 
@@ -24,6 +25,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 // A tetrahedron in centimetres, y up, with an unused vertex in front.
 constexpr const char* kBody =
@@ -155,6 +157,80 @@ TEST(SceneDeformation, ErrorsNameKeyFileAndSample)
     for (Vec3& p : first) p *= 0.01;
     write_bytes(folder.dir / "metres.pc2", cache_files::pc2(samples, 1.0));
     EXPECT_THAT(folder.refusal("file = \"metres.pc2\""), HasSubstr("its edges are 0.01 times as long"));
+}
+
+/// An elbow that closes until its legs overlap by 4 mm, in sample 3 of 6.
+struct ElbowFolder : SceneFolder {
+    ElbowBody body;
+
+    ElbowFolder()
+    {
+        body.gap = -0.004;
+        body.cell = 0.015;
+        const ObstacleMesh mesh = body.make();
+        std::string text;
+        for (const Vec3& p : mesh.points) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
+        for (const auto& [a, b, c] : mesh.faces) text += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
+        write_bytes(dir / "elbow.obj", text);
+        cache_files::Samples samples;
+        for (const double angle : {0.0, 1.5, 2.5, M_PI, 2.5, 1.5})
+            samples.push_back(body.bend(mesh.points, angle));
+        write_bytes(dir / "elbow.pc2", cache_files::pc2(samples, 1.0));
+    }
+    RunConfig load(const std::string& keys) const
+    {
+        write_bytes(dir / "s.toml",
+                    "duration = 1\n[cloth]\nsize = [1, 1]\nresolution = [1, 1]\ntranslate = [0, 0, 9]\n"
+                    "[[obstacle]]\nfile = \"elbow.obj\"\ndeform = { file = \"elbow.pc2\"" +
+                        keys + " }\n");
+        return load_scene(read_scene_source(dir / "s.toml", {}), with_program());
+    }
+};
+
+TEST(SceneDeformation, FacesThatCrossAreToldWithTheirTimes)
+{
+    const RunConfig config = ElbowFolder().load(", frames_per_second = 10");
+    EXPECT_THAT(config.warnings, Contains(AllOf(HasSubstr("obstacle.0.deform.file"), HasSubstr("faces cross"),
+                                                HasSubstr("elbow.pc2: sample 3), at 0.3 s: "))));
+}
+
+TEST(SceneDeformation, ASlitPartsTheLegsOfAnElbow)
+{
+    const ElbowFolder folder;
+    const RunConfig config = folder.load(", frames_per_second = 10, slit = 0.005");
+    EXPECT_THAT(
+        config.notes,
+        Contains(AllOf(HasSubstr("obstacle.0.deform.slit = 0.005: the skin retreats in 6 of 6 samples"),
+                       HasSubstr("elbow.pc2: sample"))));
+    // The middles of the legs, 13 cm from the bend's two ends
+    const std::vector<Vec3>& own = config.scene.obstacles[0].shape().mesh().points;
+    double gap = 0.0;
+    std::vector<Vec3> points, velocities;
+    cache_of(config).find(0.3, points, velocities);
+    const double far = folder.body.bend_length() + 0.1;
+    const auto nearest = [&](const Vec3& rest) {
+        return points[std::min_element(own.begin(), own.end(),
+                                       [&](const Vec3& a, const Vec3& b) {
+                                           return (a - rest).norm() < (b - rest).norm();
+                                       }) -
+                      own.begin()];
+    };
+    gap = (nearest({far, 0.0, 0.03}) - nearest({-0.1, 0.0, 0.03})).z();
+    EXPECT_GT(gap, 0.0045);
+    EXPECT_LT(gap, 0.009);
+
+    EXPECT_THAT(folder.load(", frames_per_second = 10, slit = 0.001").warnings,
+                Contains(AllOf(HasSubstr("obstacle.0.deform.slit"), HasSubstr("use 0.0025 m or more"))));
+    EXPECT_THAT(error_of([&] { folder.load(", slit = 0"); }), HasSubstr("allowed: a number > 0"));
+}
+
+TEST(SceneDeformation, ArcsWithinAStepAreToldOf)
+{
+    const ElbowFolder folder;
+    const auto arcs = Contains(HasSubstr("leaves its straight way by"));
+    EXPECT_THAT(folder.load(", frames_per_second = 200").warnings, arcs);
+    EXPECT_THAT(folder.load(", frames_per_second = 10").warnings, Not(arcs));
+    EXPECT_THAT(folder.load(", frames_per_second = 200, interpolation = \"linear\"").warnings, Not(arcs));
 }
 
 TEST(SceneDeformation, AUsdTextHasItsOwnUnitAndAxis)
