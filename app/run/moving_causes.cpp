@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "geometry/cloth/material_box.h"
@@ -56,7 +55,7 @@ Vec3 ridden(const MovingObstacle& obstacle, double from, const Vec3& place, doub
 {
     const ObstaclePose pose = obstacle.at(from);
     if (!obstacle.is_deforming()) return obstacle.at(to).placement(pose.placement.inverse(place));
-    const auto on = find_nearest(pose, place, std::numeric_limits<double>::infinity());
+    const auto on = find_nearest(pose, place);
     return on ? obstacle.way(from, to, *on)(place) : place;
 }
 

@@ -113,6 +113,8 @@ std::string explain_infeasible(const Infeasible& infeasible, const Scene& scene,
     } else if (first >= 0) {
         where = name(first);
         why = "two parts of this obstacle leave it no room";
+        if (scene.obstacles[static_cast<std::size_t>(first)].is_deforming())
+            why += " (`deform.slit` makes some between parts of a body that come together)";
     }
     if (infeasible.pin >= 0 && first >= 0)
         why = fmt::format(

@@ -30,6 +30,10 @@ constexpr double kFarMove = 1.0;
 // The distances that two sides of a cloth keep, and a half for its folds.
 constexpr double kSlitThicknesses = 2.5;
 
+// Of the mesh's size: a wider slit would be a part of the body itself, and each point would have to look at
+// thousands of faces.
+constexpr double kSlitShare = 0.02;
+
 std::optional<int> to_sample(const Json& value)
 {
     return value.is_null() ? std::nullopt : std::optional<int>(value.get<int>());
@@ -93,7 +97,7 @@ void tell(const SceneDocument& document, const std::string& key, const VertexCac
         if (const double apart = head.times[k] - head.times[k - 1]; apart < step * (1.0 - 1e-9)) {
             config.warnings.push_back(
                 fmt::format("{}: samples are {:.3g} s apart, less than time.step, {:g} s: steps pass over "
-                            "samples",
+                            "samples; lower frames_per_second or time.step",
                             where, apart, step));
             break;
         }
@@ -115,6 +119,11 @@ std::shared_ptr<const PoseFile> with_slit(const SceneDocument& document, const s
                                           const VertexCache& cache, const PoseFile& samples,
                                           const ObstacleMesh& mesh, double width, RunConfig& config)
 {
+    Box3 box;
+    for (const Vec3& point : mesh.points) box.extend(point);
+    if (const double most = kSlitShare * box.diagonal().norm(); width > most)
+        document.fail(key, "is too wide for this mesh",
+                      fmt::format("at most {:.3g} m, a fiftieth of the mesh's size", most));
     const double least = kSlitThicknesses * config.scene.material.thickness;
     if (width < least)
         config.warnings.push_back(
@@ -161,7 +170,7 @@ std::size_t count_crossing_faces(const ObstacleMesh& mesh, const std::vector<Vec
 
 /// Many bodies are made of pieces that cross, such as boots over legs: only what the motion adds is told.
 void tell_crossings(const SceneDocument& document, const std::string& key, const VertexCache& cache,
-                    const PoseFile& samples, const ObstacleMesh& mesh, RunConfig& config)
+                    const PoseFile& samples, const ObstacleMesh& mesh, bool has_slit, RunConfig& config)
 {
     const std::size_t own = count_crossing_faces(mesh, mesh.points);
     std::vector<char> crosses(samples.times().size(), 0);
@@ -177,10 +186,11 @@ void tell_crossings(const SceneDocument& document, const std::string& key, const
     }
     if (most == own) return;
     config.warnings.push_back(fmt::format(
-        "{}: up to {} other faces of the mesh ({}){}, at {}: cloth between such parts has no place; `slit` "
-        "makes one",
+        "{}: up to {} other faces of the mesh ({}){}, at {}: cloth between such parts has no place; {}",
         document.describe(key), counted(most, "face crosses", "faces cross"), cache.describe(most_at),
-        own > 0 ? fmt::format(", {} in its own pose", own) : "", describe_times(samples.times(), crosses)));
+        own > 0 ? fmt::format(", {} in its own pose", own) : "", describe_times(samples.times(), crosses),
+        has_slit ? "they overlap too deeply for this `slit`: part them in the animation"
+                 : "`slit` makes one"));
 }
 
 }  // namespace
@@ -220,7 +230,7 @@ std::shared_ptr<const Deformation> load_deformation(const SceneDocument& documen
         if (!deform["slit"].is_null())
             samples = with_slit(document, path + ".deform.slit", *cache, *samples, mesh.mesh,
                                 to_double(deform["slit"]), config);
-        tell_crossings(document, key, *cache, *samples, mesh.mesh, config);
+        tell_crossings(document, key, *cache, *samples, mesh.mesh, !deform["slit"].is_null(), config);
         return std::make_shared<PointCache>(samples, head.interpolation);
     } catch (const InputError& error) {
         document.fail(key, error.what());

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -106,14 +105,14 @@ ObstaclePose MovingObstacle::at(double time) const
 {
     if (!deformation_) return {shape_, motion_.at(time) * placement_};
     const std::shared_ptr<const Posed> posed = posed_at(time);
-    return {{posed, &posed->shape}, Placement()};
+    return {{posed, &posed->shape}, Placement(), {posed, &posed->velocities}};
 }
 
 Vec3 MovingObstacle::velocity_after(double time, const Vec3& place) const
 {
     if (!deformation_) return motion_.velocity_after(time, place);
     const std::shared_ptr<const Posed> posed = posed_at(time);
-    const auto on = find_nearest(posed->shape, place, std::numeric_limits<double>::infinity());
+    const auto on = find_nearest(posed->shape, place);
     return on ? riding_velocity(posed->shape, posed->velocities, *on, place) : Vec3(Vec3::Zero());
 }
 

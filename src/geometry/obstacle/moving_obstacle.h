@@ -17,6 +17,7 @@ namespace arris {
 struct ObstaclePose {
     std::shared_ptr<const Obstacle> shape;
     Placement placement;
+    std::shared_ptr<const std::vector<Vec3>> velocities = nullptr;  ///< m/s, of points that deform; else null
 
     operator const Obstacle&() const { return *shape; }
     const Obstacle* operator->() const { return shape.get(); }

@@ -269,14 +269,9 @@ std::vector<int> find_patches(const ObstacleMesh& mesh, const ObstacleTopology& 
 std::vector<Vec3> normals_around(const ObstacleTopology& topology, const FacePlanes& planes,
                                  const std::vector<int>& patch, int point)
 {
-    std::vector<int> faces;
-    for (int k = 0; k < topology.edge_count_at(point); ++k)
-        for (const int f : topology.edges[topology.edge_at(point, k)].faces)
-            if (f >= 0) faces.push_back(f);
-    std::sort(faces.begin(), faces.end());
     std::vector<int> seen;
     std::vector<Vec3> normals;
-    for (const int f : faces) {
+    for (const int f : topology.faces_at(point)) {
         const Vec3& normal = planes.normals[f];
         if (std::find(seen.begin(), seen.end(), patch[f]) != seen.end()) continue;
         seen.push_back(patch[f]);
@@ -302,15 +297,13 @@ std::vector<Vec3> normals_in_pose(const ObstacleTopology& topology, int point)
 {
     constexpr double kDistinct = 0.087;  // of unit normals: 5 degrees
     std::vector<Vec3> normals;
-    for (int k = 0; k < topology.edge_count_at(point); ++k)
-        for (const int f : topology.edges[topology.edge_at(point, k)].faces) {
-            if (f < 0) continue;
-            const Vec3& normal = topology.face_normals[f];
-            if (!normal.isZero(0.0) && std::none_of(normals.begin(), normals.end(), [&](const Vec3& n) {
-                    return (n - normal).norm() <= kDistinct;
-                }))
-                normals.push_back(normal);
-        }
+    for (const int f : topology.faces_at(point)) {
+        const Vec3& normal = topology.face_normals[f];
+        if (!normal.isZero(0.0) && std::none_of(normals.begin(), normals.end(), [&](const Vec3& n) {
+                return (n - normal).norm() <= kDistinct;
+            }))
+            normals.push_back(normal);
+    }
     return normals;
 }
 

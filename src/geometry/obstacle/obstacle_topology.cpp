@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "geometry/cgal.h"
+#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -116,6 +117,16 @@ std::string find_degenerate(const ObstacleMesh& mesh)
 }
 
 }  // namespace
+
+std::vector<int> ObstacleTopology::faces_at(int point) const
+{
+    std::vector<int> faces;
+    for (int k = 0; k < edge_count_at(point); ++k)
+        for (const int f : edges[edge_at(point, k)].faces)
+            if (f >= 0) faces.push_back(f);
+    sort_unique(faces);
+    return faces;
+}
 
 ObstacleTopology make_topology(const ObstacleMesh& mesh)
 {

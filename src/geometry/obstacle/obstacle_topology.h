@@ -31,6 +31,8 @@ struct ObstacleTopology {
     int edge_at(int point, int k) const { return point_edges[first_edge[point] + k]; }
     int edge_count_at(int point) const { return first_edge[point + 1] - first_edge[point]; }
 
+    std::vector<int> faces_at(int point) const;  ///< ascending, once each
+
     /// The face across edge i of `face`; -1 on a border.
     int neighbour(int face, int i) const
     {

@@ -60,21 +60,14 @@ Mat3 nearest_rotation(const Mat3& sum)
     return svd.matrixU() * flip * svd.matrixV().transpose();
 }
 
-/// Visits the faces at a point, once each, and its wires: use_face(face), use_wire(edge).
+/// Visits the wires at a point, and the faces: use_face(face), use_wire(edge).
 template <class UseFace, class UseWire>
 void visit_around(const ObstacleTopology& topology, int point, const UseFace& use_face,
                   const UseWire& use_wire)
 {
-    std::vector<int> faces;
-    for (int k = 0; k < topology.edge_count_at(point); ++k) {
-        const int edge = topology.edge_at(point, k);
-        const auto& [f, g] = topology.edges[edge].faces;
-        if (f < 0) use_wire(edge);
-        for (const int face : {f, g})
-            if (face >= 0 && std::find(faces.begin(), faces.end(), face) == faces.end())
-                faces.push_back(face);
-    }
-    for (const int face : faces) use_face(face);
+    for (int k = 0; k < topology.edge_count_at(point); ++k)
+        if (const int edge = topology.edge_at(point, k); topology.edges[edge].faces[0] < 0) use_wire(edge);
+    for (const int face : topology.faces_at(point)) use_face(face);
 }
 
 Mat3 turn_of(const Obstacle& from, const Obstacle& to, const SurfacePlace& on)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -31,7 +32,8 @@ struct SurfacePlace {
 
 /// The place of the obstacle's surface, wires and lone points that is nearest to `place` (in the obstacle's
 /// frame). Returns nothing where nothing is nearer than `most`, m.
-std::optional<SurfacePlace> find_nearest(const Obstacle& obstacle, const Vec3& place, double most);
+std::optional<SurfacePlace> find_nearest(const Obstacle& obstacle, const Vec3& place,
+                                         double most = std::numeric_limits<double>::infinity());
 
 /// The way from one pose to another of what rides at a place. A face turns with its normal and its first
 /// side; an edge with itself and halfway between its faces; a wire by the least rotation; a point with what

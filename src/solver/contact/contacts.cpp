@@ -124,8 +124,8 @@ void ride(double end, double cell, Carrier& carrier)
         const Vec3 before = find_way(from, earlier, *on)(place);
         carrier.motion.begin[v] = way(place);
         carrier.rides[v] = {place, before, way.rotation,
-                            obstacle.velocity_after(carrier.time, place, *on) -
-                                obstacle.velocity_after(carrier.previous_time, before, *on)};
+                            riding_velocity(from, *from.velocities, *on, place) -
+                                riding_velocity(earlier, *earlier.velocities, *on, before)};
     });
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "geometry/sort_unique.h"
 
@@ -21,7 +20,7 @@ SurfacePlace pin_surface(const Scene& scene, const Pin& pin, double time, const 
 {
     if (!pin.follows || !scene.obstacles[*pin.follows].is_deforming()) return {};
     const ObstaclePose pose = scene.obstacles[*pin.follows].at(time);
-    const auto on = find_nearest(pose, place, std::numeric_limits<double>::infinity());
+    const auto on = find_nearest(pose, place);
     return on ? *on : SurfacePlace();
 }
 

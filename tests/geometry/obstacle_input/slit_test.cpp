@@ -64,6 +64,21 @@ TEST(Slit, LegsOfAnElbowComeApartByItsWidth)
     }
 }
 
+/// Bent by 192 degrees, the legs are deep inside each other: no way out is tried at the cost of the legs.
+TEST(Slit, RetreatsByNoMoreThanPartsOverlap)
+{
+    ElbowBody body;
+    body.gap = -0.012;
+    const ObstacleMesh mesh = body.make();
+    const double overlap = 0.012 + 2.0 * body.leg * std::sin(12.0 * M_PI / 180.0);
+    for (const double degrees : {183.0, 192.0}) {
+        const SlitFinder finder(mesh, kWidth);
+        const double most = greatest(finder.find_retreat(body.bend(mesh.points, degrees * M_PI / 180.0)));
+        EXPECT_GT(most, 0.5 * (0.012 + kWidth)) << degrees;
+        EXPECT_LT(most, std::min(0.5 * body.thick, 0.5 * (overlap + kWidth)) + kWidth) << degrees;
+    }
+}
+
 TEST(Slit, AStraightOrOpenElbowStays)
 {
     const ElbowBody body;

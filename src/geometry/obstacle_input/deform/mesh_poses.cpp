@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "geometry/input_error.h"
@@ -24,6 +25,19 @@ bool is_collapsed(const Vec3& a, const Vec3& b, const Vec3& c)
 {
     const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     return !((b - a).cross(c - a).norm() > kSinglePrecision * longest);
+}
+
+/// Whether each side of a face is a side of one other face.
+bool is_closed(const std::vector<Face>& faces)
+{
+    std::vector<std::array<int, 2>> sides;
+    for (const auto& [a, b, c] : faces)
+        for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+            sides.push_back({std::min(p, q), std::max(p, q)});
+    std::sort(sides.begin(), sides.end());
+    for (std::size_t i = 0; i < sides.size(); i += 2)
+        if (i + 1 == sides.size() || sides[i] != sides[i + 1]) return false;
+    return true;
 }
 
 }  // namespace
@@ -62,7 +76,10 @@ void MeshPoses::read_next(std::vector<Vec3>& points)
     points.resize(origins_.of_points.size());
     for (std::size_t p = 0; p < points.size(); ++p) points[p] = place(origins_.of_points[p]);
     require_joined();
-    if (next_ == 0) require_similar(points);
+    if (next_ == 0) {
+        require_similar(points);
+        require_same_hand(points);
+    }
     measure(points);
     second_last_ = std::exchange(last_, points);
     ++next_;
@@ -108,6 +125,25 @@ void MeshPoses::require_similar(const std::vector<Vec3>& points) const
         "its edges are {:.3g} times as long as the mesh's in the median: another unit, or another "
         "order of the vertices; allowed: a factor of at most {:g}",
         ratio, kMostStretch));
+}
+
+// Cloth would be outside where the body is. A body never turns inside out: its cache was mirrored, or its
+// vertices have another order.
+void MeshPoses::require_same_hand(const std::vector<Vec3>& points) const
+{
+    const auto volume = [&](const std::vector<Vec3>& of) {
+        double sum = 0.0;
+        for (const auto& [a, b, c] : mesh_.faces)
+            sum += (of[a] - of[0]).dot((of[b] - of[0]).cross(of[c] - of[0]));
+        return sum / 6.0;
+    };
+    if (mesh_.faces.empty() || !is_closed(mesh_.faces)) return;
+    const double own = volume(mesh_.points), now = volume(points);
+    if (!(own * now < 0.0)) return;
+    refuse(fmt::format(
+        "the mesh is turned inside out, with a volume of {:.3g} m^3 for {:.3g}: mirrored, other axes, or "
+        "another order of the vertices; allowed: positions in the mesh's own axes and order",
+        now, own));
 }
 
 void MeshPoses::measure(const std::vector<Vec3>& points)

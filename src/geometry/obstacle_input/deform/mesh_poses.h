@@ -43,9 +43,8 @@ class MeshPoses {
     /// Writes the points of the next sample, which `survey` then covers. Throws InputError, one line with
     /// file and sample:
     ///  - for a point that is not finite or beyond 1e6 m, and where vertices joined in the mesh part;
-    ///  - at the first sample, where edges differ from the mesh's by a factor above 3 in the median: the
-    ///  order
-    ///    of the vertices or the unit is another one.
+    ///  - at the first sample, where edges differ from the mesh's by a factor above 3 in the median, or a
+    ///    closed mesh is turned inside out: the order of the vertices, the unit or the axes are other ones.
     void read_next(std::vector<Vec3>& points);
 
     const PoseSurvey& survey() const { return survey_; }
@@ -54,6 +53,7 @@ class MeshPoses {
     Vec3 place(int vertex) const;
     void require_joined() const;
     void require_similar(const std::vector<Vec3>& points) const;
+    void require_same_hand(const std::vector<Vec3>& points) const;
     void measure(const std::vector<Vec3>& points);
     [[noreturn]] void refuse(const std::string& why) const;
 

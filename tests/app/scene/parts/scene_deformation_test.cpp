@@ -222,6 +222,9 @@ TEST(SceneDeformation, ASlitPartsTheLegsOfAnElbow)
     EXPECT_THAT(folder.load(", frames_per_second = 10, slit = 0.001").warnings,
                 Contains(AllOf(HasSubstr("obstacle.0.deform.slit"), HasSubstr("use 0.0025 m or more"))));
     EXPECT_THAT(error_of([&] { folder.load(", slit = 0"); }), HasSubstr("allowed: a number > 0"));
+    EXPECT_THAT(
+        error_of([&] { folder.load(", slit = 0.02"); }),
+        HasSubstr("is too wide for this mesh; allowed: at most 0.0101 m, a fiftieth of the mesh's size"));
 }
 
 TEST(SceneDeformation, ArcsWithinAStepAreToldOf)
@@ -239,10 +242,11 @@ TEST(SceneDeformation, WarnsOfPinsFarFromTheSkin)
     const auto warnings = [&](const char* deform, const char* height) {
         write_bytes(
             folder.dir / "p.toml",
-            fmt::format("duration = 0.1\n[cloth]\nsize = [0.1, 0.1]\nresolution = [1, 1]\n"
-                        "translate = [0, 0, {}]\n[[obstacle]]\nname = \"body\"\nfile = \"body.obj\"\n"
-                        "units = \"cm\"\nup = \"y\"\n{}[[pin]]\nmaterial = [[0, 0], [0, 0]]\nfollow = \"body\"\n",
-                        height, deform));
+            fmt::format(
+                "duration = 0.1\n[cloth]\nsize = [0.1, 0.1]\nresolution = [1, 1]\n"
+                "translate = [0, 0, {}]\n[[obstacle]]\nname = \"body\"\nfile = \"body.obj\"\n"
+                "units = \"cm\"\nup = \"y\"\n{}[[pin]]\nmaterial = [[0, 0], [0, 0]]\nfollow = \"body\"\n",
+                height, deform));
         return load_scene(read_scene_source(folder.dir / "p.toml", {}), with_program()).warnings;
     };
     const char* deform = "deform = { file = \"body.pc2\" }\n";
@@ -251,6 +255,22 @@ TEST(SceneDeformation, WarnsOfPinsFarFromTheSkin)
     EXPECT_THAT(warnings(deform, "1.1"), told);
     EXPECT_THAT(warnings(deform, "1.02"), Not(told));
     EXPECT_THAT(warnings("", "1.1"), Not(told));
+}
+
+TEST(SceneDeformation, ABodyInsideOutIsRefused)
+{
+    const SceneFolder folder;
+    cache_files::Samples mirrored = body_samples(), swapped = body_samples();
+    for (std::vector<Vec3>& sample : mirrored)
+        for (Vec3& p : sample) p.x() = -p.x();
+    for (std::vector<Vec3>& sample : swapped)
+        for (Vec3& p : sample) std::swap(p.y(), p.z());
+    for (const cache_files::Samples& samples : {mirrored, swapped}) {
+        write_bytes(folder.dir / "odd.pc2", cache_files::pc2(samples, 1.0));
+        EXPECT_THAT(
+            folder.refusal("file = \"odd.pc2\""),
+            AllOf(HasSubstr("odd.pc2: sample 0, the mesh is turned inside out"), HasSubstr("allowed: ")));
+    }
 }
 
 TEST(SceneDeformation, AUsdTextHasItsOwnUnitAndAxis)
