@@ -114,16 +114,21 @@ void tell(const SceneDocument& document, const std::string& key, const VertexCac
                                        head.times.back(), speed * survey.greatest_speed));
 }
 
+void check_slit(const SceneDocument& document, const std::string& key, const ObstacleMesh& mesh, double width)
+{
+    Box3 box;
+    for (const Vec3& point : mesh.points) box.extend(point);
+    const double most = kSlitShare * box.diagonal().norm();
+    if (width > most)
+        document.fail(key, "is too wide for this mesh",
+                      fmt::format("at most {:.3g} m, a fiftieth of the mesh's size", most));
+}
+
 /// The same samples with a slit between parts of the body.
 std::shared_ptr<const PoseFile> with_slit(const SceneDocument& document, const std::string& key,
                                           const VertexCache& cache, const PoseFile& samples,
                                           const ObstacleMesh& mesh, double width, RunConfig& config)
 {
-    Box3 box;
-    for (const Vec3& point : mesh.points) box.extend(point);
-    if (const double most = kSlitShare * box.diagonal().norm(); width > most)
-        document.fail(key, "is too wide for this mesh",
-                      fmt::format("at most {:.3g} m, a fiftieth of the mesh's size", most));
     const double least = kSlitThicknesses * config.scene.material.thickness;
     if (width < least)
         config.warnings.push_back(
@@ -208,6 +213,8 @@ std::shared_ptr<const Deformation> load_deformation(const SceneDocument& documen
         document.fail(path + ".file",
                       "has vertices without an order of their own, and the obstacle has `deform`",
                       "OBJ, PLY or glTF");
+    if (!deform["slit"].is_null())
+        check_slit(document, path + ".deform.slit", mesh.mesh, to_double(deform["slit"]));
     try {
         const std::unique_ptr<VertexCache> cache =
             open_vertex_cache(to_request(document, deform, mesh.origins.vertex_count));

@@ -265,19 +265,19 @@ std::vector<double> SlitFinder::find_missing(const std::vector<Vec3>& points,
 std::vector<double> SlitFinder::find_retreat(const std::vector<Vec3>& points) const
 {
     const std::vector<Vec3> normals = find_normals(points);
-    std::vector<double> retreat(points.size(), 0.0), wide = retreat, most = retreat;
+    std::vector<double> retreat(points.size(), 0.0), wide = retreat;
+    double most = 0.0;
     std::vector<int> candidates(points.size());
     std::iota(candidates.begin(), candidates.end(), 0);
     std::erase_if(candidates, [&](int p) { return is_buried_[p] != 0; });
     for (int round = 0; round < kMostRounds; ++round) {
         const std::vector<double> missing = find_missing(apply(points, wide), normals, candidates);
-        if (*std::max_element(missing.begin(), missing.end()) <= kSettled * width_) break;
+        const double greatest = *std::max_element(missing.begin(), missing.end());
+        if (greatest <= kSettled * width_) break;
         // Later rounds make up for normals that are askew. More would hollow out parts that lie deep in each
         // other.
-        if (round == 0)
-            for (std::size_t p = 0; p < points.size(); ++p) most[p] = missing[p] + width_;
-        for (std::size_t p = 0; p < points.size(); ++p)
-            retreat[p] = std::min(retreat[p] + missing[p], most[p]);
+        if (round == 0) most = greatest + width_;
+        for (std::size_t p = 0; p < points.size(); ++p) retreat[p] = std::min(retreat[p] + missing[p], most);
         wide = spread(retreat);
         // Only what moves comes nearer to something or goes away.
         candidates.clear();

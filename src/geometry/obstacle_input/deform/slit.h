@@ -24,7 +24,7 @@ class SlitFinder {
 
     /// For each point, the way (m, >= 0) against its normal in this pose after which other parts are `width`
     /// apart from there, as far as ten rounds of retreat by half of what is missing reach, and at most by
-    /// half of what is missing at first and a width. Fades over three
+    /// a width and half of what is missing anywhere at first. Fades over three
     /// rings of neighbours. Parts that are inside each other are recognised where they are closed.
     std::vector<double> find_retreat(const std::vector<Vec3>& points) const;
 

@@ -224,7 +224,7 @@ TEST(SceneDeformation, ASlitPartsTheLegsOfAnElbow)
     EXPECT_THAT(error_of([&] { folder.load(", slit = 0"); }), HasSubstr("allowed: a number > 0"));
     EXPECT_THAT(
         error_of([&] { folder.load(", slit = 0.02"); }),
-        HasSubstr("is too wide for this mesh; allowed: at most 0.0101 m, a fiftieth of the mesh's size"));
+        HasSubstr("is too wide for this mesh; allowed: at most 0.00991 m, a fiftieth of the mesh's size"));
 }
 
 TEST(SceneDeformation, ArcsWithinAStepAreToldOf)
