@@ -11,11 +11,12 @@
 #include "geometry/obstacle_input/deform/slit_samples.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "tests/elbow_body.h"
+#include "tests/pose_samples.h"
 
 namespace arris {
 namespace {
 
-constexpr double kWidth = 0.005;
+constexpr double kWidth = 0.005, kInterval = 0.04;  // m, s
 
 /// Height of the upper leg's lowest point over the lower leg's highest one, away from the bend; both legs are
 /// straight.
@@ -131,22 +132,6 @@ TEST(Slit, SeparatePiecesComeApart)
     EXPECT_TRUE(find_crossing_faces(mesh, finder.apply(points, finder.find_retreat(points))).empty());
 }
 
-/// Samples in memory.
-class Samples : public PoseSource {
-  public:
-    explicit Samples(std::vector<std::vector<Vec3>> samples) : samples_(std::move(samples))
-    {
-        for (std::size_t k = 0; k < samples_.size(); ++k) times_.push_back(0.04 * static_cast<double>(k));
-    }
-    const std::vector<double>& times() const override { return times_; }
-    std::size_t point_count() const override { return samples_.front().size(); }
-    void read(std::size_t sample, std::vector<Vec3>& points) const override { points = samples_[sample]; }
-
-  private:
-    std::vector<std::vector<Vec3>> samples_;
-    std::vector<double> times_;
-};
-
 TEST(Slit, TheSkinRetreatsBeforeAndReturnsAfter)
 {
     ElbowBody body;
@@ -157,7 +142,7 @@ TEST(Slit, TheSkinRetreatsBeforeAndReturnsAfter)
     constexpr int kClosed = 6, kCount = 14;
     for (int k = 0; k < kCount; ++k) samples.push_back(body.bend(mesh.points, k == kClosed ? M_PI : 2.0));
     std::vector<std::vector<Vec3>> made;
-    const SlitSurvey survey = make_slit(Samples(samples), mesh, kWidth,
+    const SlitSurvey survey = make_slit(PoseSamples(samples, kInterval), mesh, kWidth,
                                         [&](const std::vector<Vec3>& points) { made.push_back(points); });
     ASSERT_EQ(made.size(), samples.size());
     EXPECT_EQ(survey.samples, 9U);
@@ -173,8 +158,10 @@ TEST(Slit, TheSkinRetreatsBeforeAndReturnsAfter)
         last = most;
     }
     // A single sample is its own neighbourhood.
-    EXPECT_EQ(make_slit(Samples({samples[kClosed]}), mesh, kWidth, [](const std::vector<Vec3>&) {}).samples,
-              1U);
+    EXPECT_EQ(
+        make_slit(PoseSamples({samples[kClosed]}, kInterval), mesh, kWidth, [](const std::vector<Vec3>&) {})
+            .samples,
+        1U);
 }
 
 }  // namespace
