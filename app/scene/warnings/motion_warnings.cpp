@@ -8,9 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "app/scene/parts/scene_estimate.h"
 #include "app/text/counted.h"
-#include "geometry/cloth/mesh_topology.h"
 
 namespace arris {
 namespace {
@@ -67,31 +65,6 @@ void check_pin_times(const RunConfig& config, const Pin& pin, const std::string&
         warnings.add(path + ".release", "the run ends before that time");
 }
 
-/// Warns of cloth that a pin holds far above a skin. Each vertex rides on the face below it. Where such faces
-/// turn against each other by an angle, vertices at distance r are strained by angle r over their distance.
-void check_ride(const RunConfig& config, const Pin& pin, const std::string& path, Warnings& warnings)
-{
-    if (!pin.follows || pin.start > 0.0) return;
-    const MovingObstacle& body = config.scene.obstacles[static_cast<std::size_t>(*pin.follows)];
-    if (!body.is_deforming()) return;
-    const double cell =
-        measure_edges(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces)).mean;
-    const ObstaclePose pose = body.at(0.0);
-    double farthest = 0.0;
-    for (const int v : vertices_in_box(config.cloth, pin.material)) {
-        const Vec3& place = config.cloth.world[v];
-        const SurfacePlace on = pin_surface(config.scene, pin, 0.0, place);
-        farthest = std::max(farthest, (place - on.at(pose->mesh().points)).norm());
-    }
-    if (farthest > 0.5 * cell)
-        warnings.note(
-            path + ".follow",
-            fmt::format("holds cloth {:.3g} m from {}, more than half a cell, {:.3g} m: vertices side by "
-                        "side ride on faces that may turn against each other, and strain the cloth; "
-                        "hold it where it is nearer",
-                        farthest, body.name(), 0.5 * cell));
-}
-
 /// Warns of neighbouring keyframes more than 180 degrees apart: slerp takes the shorter arc instead.
 void check_turns(const std::string& key, const nlohmann::ordered_json& keyframes, Warnings& warnings)
 {
@@ -116,7 +89,6 @@ void check_pins(const RunConfig& config, Warnings& warnings)
         const std::string path = fmt::format("pin.{}", i);
         check_pin_motion(config, pin, path, warnings);
         check_pin_times(config, pin, path, warnings);
-        check_ride(config, pin, path, warnings);
 
         std::map<std::size_t, int> shared;
         for (const int v : vertices_in_box(config.cloth, pin.material))

@@ -236,27 +236,6 @@ TEST(SceneDeformation, ArcsWithinAStepAreToldOf)
     EXPECT_THAT(folder.load(", frames_per_second = 200, interpolation = \"linear\"").warnings, Not(arcs));
 }
 
-TEST(SceneDeformation, WarnsOfPinsFarFromTheSkin)
-{
-    const SceneFolder folder;
-    const auto warnings = [&](const char* deform, const char* height) {
-        write_bytes(
-            folder.dir / "p.toml",
-            fmt::format(
-                "duration = 0.1\n[cloth]\nsize = [0.1, 0.1]\nresolution = [1, 1]\n"
-                "translate = [0, 0, {}]\n[[obstacle]]\nname = \"body\"\nfile = \"body.obj\"\n"
-                "units = \"cm\"\nup = \"y\"\n{}[[pin]]\nmaterial = [[0, 0], [0, 0]]\nfollow = \"body\"\n",
-                height, deform));
-        return load_scene(read_scene_source(folder.dir / "p.toml", {}), with_program()).warnings;
-    };
-    const char* deform = "deform = { file = \"body.pc2\" }\n";
-    const auto told =
-        Contains(AllOf(HasSubstr("pin.0.follow"), HasSubstr("m from body, more than half a cell")));
-    EXPECT_THAT(warnings(deform, "1.1"), told);
-    EXPECT_THAT(warnings(deform, "1.02"), Not(told));
-    EXPECT_THAT(warnings("", "1.1"), Not(told));
-}
-
 TEST(SceneDeformation, ABodyInsideOutIsRefused)
 {
     const SceneFolder folder;
