@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Cost of a step, of its assembly and of its velocity solve, for a cloth over a floor. `ratio` is the least
-// time of the runs over the least time of one numeric factorisation of the step's matrix by the best
-// ordering. All times are CPU seconds of one thread. Arguments: the number of vertices along one side, and
-// whether the cloth is falling (hundreds of new contacts a step) or draped (few).
+// time of the runs over the least time of one numeric factorisation of the step's matrix. All times are CPU
+// seconds of one thread. Arguments: the number of vertices along one side, and whether the cloth is falling
+// (hundreds of new contacts a step) or draped (few).
 #include <benchmark/benchmark.h>
 #include <oneapi/tbb/global_control.h>
 
@@ -26,23 +26,20 @@ struct Drop {
     Settings settings;
     State state;
     Workspace work;
-    double factorisation = 0.0;  ///< s, CPU, the best of three orderings
+    double factorisation = 0.0;  ///< s, CPU
 
     void advance() { step(scene, settings, state.time + kStep, state, work); }
 };
 
-double time_factorisation(const LinearSystem& system, const std::vector<char>& is_fixed)
+double time_factorisation(const VelocityProblem& problem)
 {
+    Factorization factorization;
+    factorization.analyse(*problem.matrix, problem.places);
     double least = std::numeric_limits<double>::infinity();
-    for (const VertexOrdering ordering :
-         {VertexOrdering::Metis, VertexOrdering::NestedDissection, VertexOrdering::Amd}) {
-        Factorization factorization(ordering);
-        factorization.analyse(system.matrix());
-        for (int run = 0; run < 4; ++run) {
-            const double start = thread_seconds();
-            benchmark::DoNotOptimize(factorization.factorise(system.matrix(), is_fixed));
-            least = std::min(least, thread_seconds() - start);
-        }
+    for (int run = 0; run < 4; ++run) {
+        const double start = thread_seconds();
+        benchmark::DoNotOptimize(factorization.factorise(*problem.matrix, problem.is_fixed));
+        least = std::min(least, thread_seconds() - start);
     }
     return least;
 }
@@ -96,7 +93,7 @@ Drop& dropped(const benchmark::State& bench)
         drape(static_cast<int>(bench.range(0)), drop);
     else
         let_fall(static_cast<int>(bench.range(0)), drop);
-    drop.factorisation = time_factorisation(drop.work.mesh.system, drop.work.problem.is_fixed);
+    drop.factorisation = time_factorisation(drop.work.problem);
     return drop;
 }
 

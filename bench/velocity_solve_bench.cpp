@@ -13,7 +13,6 @@
 //     *_cold     without a guess of the rows
 //     *_warm     the pressing rows are guessed from a solve with a slightly different b
 //     *_resume   the rows are appended to a problem that has just been solved
-//   factorise    one numeric factorisation and one analysis by each ordering, against the ordering in use
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -184,21 +183,6 @@ void rows(benchmark::State& state, testing::RowPattern pattern, Rows kind)
     state.counters["kkt_residual"] = solution.kkt_residual;
 }
 
-void factorise(benchmark::State& state, VertexOrdering ordering)
-{
-    const RestingCloth& cloth = resting_cloth(static_cast<int>(state.range(0)));
-    Factorization factorization(ordering);
-    const double start = thread_seconds();
-    factorization.analyse(cloth.owned.matrix);
-    const double analysis = thread_seconds() - start;
-    const double least = measure(state, [&] {
-        benchmark::DoNotOptimize(factorization.factorise(cloth.owned.matrix, cloth.owned.problem.is_fixed));
-    });
-    state.counters["ratio"] = least / cloth.factorisation;
-    state.counters["analysis"] = analysis / cloth.factorisation;
-    state.counters["nonzeros"] = factorization.nonzeros();
-}
-
 const std::vector<std::int64_t> kSides = {32, 100, 224};  // about 1, 10 and 50 thousand vertices
 
 void of_every_size(benchmark::internal::Benchmark* benchmark)
@@ -229,9 +213,6 @@ BENCHMARK_CAPTURE(rows, clusters_cold, testing::RowPattern::Clusters, Rows::Cold
 BENCHMARK_CAPTURE(rows, clusters_warm, testing::RowPattern::Clusters, Rows::Warm)->Apply(of_a_thousand);
 BENCHMARK_CAPTURE(rows, equal_cold, testing::RowPattern::NearlyEqual, Rows::Cold)->Apply(of_a_thousand);
 BENCHMARK_CAPTURE(rows, equal_warm, testing::RowPattern::NearlyEqual, Rows::Warm)->Apply(of_a_thousand);
-BENCHMARK_CAPTURE(factorise, metis, VertexOrdering::Metis)->Apply(of_every_size);
-BENCHMARK_CAPTURE(factorise, nested_dissection, VertexOrdering::NestedDissection)->Apply(of_every_size);
-BENCHMARK_CAPTURE(factorise, amd, VertexOrdering::Amd)->Apply(of_every_size);
 
 }  // namespace
 }  // namespace arris

@@ -32,7 +32,6 @@ function(arris_find_library target header library package)
 endfunction()
 
 find_package(Threads REQUIRED)
-arris_find_package(OpenMP "g++ (or libomp-dev for clang)" COMPONENTS CXX)
 arris_find_package(CGAL libcgal-dev 5.5 CONFIG)
 arris_find_package(Boost libboost-dev)
 arris_find_package(assimp libassimp-dev 5.2 CONFIG)

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "geometry/cloth/mesh_quality.h"
-#include "physics/forces/inertia.h"
+#include "solver/energy_balance.h"
 
 namespace arris {
 
@@ -12,17 +12,14 @@ StepRow make_step_row(const RunConfig& config, const State& state, const Workspa
                       const Audit& audited, const StepReport& report)
 {
     const Scene& scene = config.scene;
-    const ClothElements& elements = work.mesh.elements;
-    const Energies energies = compute_energies(elements, work.mesh.terms, state.mesh.world);
-    const CornerVelocities moving =
-        compute_corner_velocities(elements, state.mesh.world, state.velocity, state.material_velocity);
+    const auto [kinetic_energy, energies] = find_energy(scene, state, work);
     StepRow row;
     row.time = state.time;
     row.dt = report.dt;
     row.vertices = state.mesh.vertex_count();
     row.faces = state.mesh.face_count();
     row.contacts = report.contacts;
-    row.kinetic_energy = kinetic_energy(scene.material.density, elements, moving);
+    row.kinetic_energy = kinetic_energy;
     if (scene.gravity) row.gravity_energy = energies.gravity;
     row.stretch_energy = energies.stretch;
     if (scene.material.bending_stiffness > 0.0) row.bending_energy = energies.bending;

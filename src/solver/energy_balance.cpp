@@ -159,6 +159,12 @@ double round_off_energy(const Scene& scene, const State& state, const ClothEleme
     return scene.material.youngs_modulus * area * kLastPlaces * kLastPlaces * far * far / squared_length;
 }
 
+Energies compute_potential_energy(const Workspace& work, const MovingCloth& cloth)
+{
+    return compute_energies(work.eol.empty() ? work.mesh.elements : elements_at(work, cloth.material),
+                            work.mesh.terms, cloth.world);
+}
+
 }  // namespace
 
 ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, const MovingCloth& cloth)
@@ -172,6 +178,17 @@ ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, cons
         compute_corner_velocities(elements, cloth.world, cloth.velocity.world, cloth.velocity.material);
     return {kinetic_energy(density, elements, corners),
             compute_energies(elements, work.mesh.terms, cloth.world)};
+}
+
+ClothEnergy find_energy(const Scene& scene, const State& state, const Workspace& work)
+{
+    const MovingCloth& known = work.energies.known_at;
+    const bool is_known = known.world == state.mesh.world && known.material == state.mesh.material &&
+                          known.velocity.world == state.velocity &&
+                          known.velocity.material == state.material_velocity;
+    if (is_known) return work.energies.known;
+    return compute_cloth_energy(
+        scene, work, {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}});
 }
 
 double compute_driven_work(const State& state, const Workspace& work)
@@ -219,7 +236,7 @@ double find_unforeseen_energy(const Scene& scene, const State& state, const Work
     const ClothVelocity& from = work.expansion;
     const ClothVelocity to = velocity_of(work.proposal);
     const auto potential_at = [&](const ClothVelocity& velocity) {
-        return compute_cloth_energy(scene, work, find_end(work.prediction, velocity)).potential;
+        return compute_potential_energy(work, find_end(work.prediction, velocity));
     };
     const Energies at_expansion = potential_at(from);
     // Oscillating cloth overshoots at v^ and has up to three times its elastic energy there.
@@ -243,15 +260,7 @@ void measure_start_energy(const Scene& scene, const State& state, Workspace& wor
     work.energies.floor = scene.gravity ? kRest * scene.material.density * area *
                                               scene.gravity->acceleration.norm() * std::sqrt(area)
                                         : 0.0;
-    const bool is_known = work.energies.known_at.world == state.mesh.world &&
-                          work.energies.known_at.material == state.mesh.material &&
-                          work.energies.known_at.velocity.world == state.velocity &&
-                          work.energies.known_at.velocity.material == state.material_velocity;
-    work.energies.start =
-        is_known ? work.energies.known
-                 : compute_cloth_energy(
-                       scene, work,
-                       {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}});
+    work.energies.start = find_energy(scene, state, work);
 }
 
 void measure_proposal_energy(const Scene& scene, double dt, Workspace& work)

@@ -33,12 +33,14 @@ namespace arris {
 /// Energy of a cloth that has the workspace's faces. Faces at EOL vertices have the material of `cloth`.
 ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, const MovingCloth& cloth);
 
+/// Energy of the cloth in `state`: that of the last commit where the cloth is unchanged.
+ClothEnergy find_energy(const Scene& scene, const State& state, const Workspace& work);
+
 /// Work, J, that moving pins, moving obstacles, pulls and wind do on the cloth in the step from `state`.
 /// Forces and motion follow from the velocity in `work.solution`. Negative where the cloth drives them.
 double compute_driven_work(const State& state, const Workspace& work);
 
-/// Sets `work.energies.start`, the energy at the step's start. Reuses the energy of the last commit where the
-/// cloth is unchanged.
+/// Sets `work.energies.start`, the energy at the step's start.
 void measure_start_energy(const Scene& scene, const State& state, Workspace& work);
 
 /// Sets `work.energies.solved` and `work.energies.proposed` for the proposal in `work`, after `dt` (s).

@@ -95,6 +95,9 @@ void solve_velocity(const Rounds& round, bool does_resume)
     StepReport& report = round.report;
     work.problem.matrix = &work.mesh.system.matrix();
     work.problem.rhs = &work.mesh.system.rhs();
+    // Contacts of the cloth with itself couple what is far away in the material.
+    const bool has_places = work.mesh.system.coupled().empty() && !work.mesh.elimination_places.empty();
+    work.problem.places = has_places ? &work.mesh.elimination_places : nullptr;
     work.problem.most_work =
         (round.attempt == Attempt::Last ? kMostWorkOfLast : kMostWorkOfAttempt) - report.solve_work;
     work.problem.is_repeat = report.solves > 0;

@@ -159,7 +159,11 @@ Eigen::SparseMatrix<double> lower_blocks(const Eigen::MatrixXd& matrix)
     const int size = static_cast<int>(matrix.rows());
     Entries entries;
     for (int j = 0; j < size; ++j)
-        for (int i = 3 * (j / 3); i < size; ++i) entries.emplace_back(i, j, i < j ? 1e30 : matrix(i, j));
+        for (int i = 3 * (j / 3); i < size; ++i) {
+            const int row = 3 * (i / 3), column = 3 * (j / 3);
+            if (row == column || !matrix.block<3, 3>(row, column).isZero(0.0))
+                entries.emplace_back(i, j, i < j ? 1e30 : matrix(i, j));
+        }
     Eigen::SparseMatrix<double> sparse(size, size);
     sparse.setFromTriplets(entries.begin(), entries.end());
     return sparse;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/contact/contact_batches.h"
+#include "geometry/batches.h"
 #include "geometry/obstacle/obstacle.h"
 
 namespace arris {

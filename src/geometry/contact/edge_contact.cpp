@@ -14,7 +14,7 @@
 #include <optional>
 
 #include "geometry/closest_point.h"
-#include "geometry/contact/contact_batches.h"
+#include "geometry/batches.h"
 #include "geometry/contact/contact_plane.h"
 #include "geometry/contact/continuous_collision.h"
 #include "geometry/contact/obstacle_contact.h"

@@ -11,7 +11,7 @@
 
 #include "geometry/box_tree.h"
 #include "geometry/closest_point.h"
-#include "geometry/contact/contact_batches.h"
+#include "geometry/batches.h"
 #include "geometry/contact/contact_plane.h"
 #include "geometry/contact/continuous_collision.h"
 #include "geometry/contact/obstacle_contact.h"

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/contact/contact_batches.h"
+#include "geometry/batches.h"
 #include "geometry/contact/obstacle_contact.h"
 #include "geometry/tolerances.h"
 

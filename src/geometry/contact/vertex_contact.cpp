@@ -13,8 +13,8 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/batches.h"
 #include "geometry/closest_point.h"
-#include "geometry/contact/contact_batches.h"
 #include "geometry/contact/contact_plane.h"
 #include "geometry/contact/obstacle_contact.h"
 #include "geometry/obstacle/normal_cone.h"
@@ -32,6 +32,15 @@ struct Minimum {
     int element;
     bool is_vague = false;  // too near to have a direction of its own; `normal` is a guess
 };
+
+// Sorts few elements, equal ones in their order; std::stable_sort would allocate even for one.
+template <class Key>
+void sort_by(std::vector<Minimum>& minima, const Key& key)
+{
+    for (std::size_t k = 1; k < minima.size(); ++k)
+        for (std::size_t j = k; j > 0 && key(minima[j]) < key(minima[j - 1]); --j)
+            std::swap(minima[j], minima[j - 1]);
+}
 
 bool contains(const std::vector<int>& sorted_or_not, int wanted)
 {
@@ -70,8 +79,7 @@ class MinimaFinder {
         if (has_wires_) visit_wires(box);
         if (has_lone_points_) visit_lone_points(box);
         drop_vague();
-        std::stable_sort(minima_.begin(), minima_.end(),
-                         [](const Minimum& a, const Minimum& b) { return a.distance < b.distance; });
+        sort_by(minima_, [](const Minimum& m) { return m.distance; });
         return minima_;
     }
 
@@ -238,8 +246,7 @@ std::vector<ObstacleContact> find_vertex_contacts(const Obstacle& obstacle, cons
                 choose(finder.find(reference[v], motion.begin[v], std::min(reach, longest)), chosen);
                 if (reach >= longest) break;
             }
-            std::stable_sort(chosen.begin(), chosen.end(),
-                             [](const Minimum& a, const Minimum& b) { return a.element < b.element; });
+            sort_by(chosen, [](const Minimum& m) { return m.element; });
             for (const Minimum& m : chosen)
                 contacts.push_back(make_contact(obstacle, motion, ContactBegin(motion), ContactKind::Vertex,
                                                 {{v, -1, -1}, {1.0, 0.0, 0.0}}, m.element, m.normal, m.point,

@@ -6,7 +6,7 @@
 
 #include "geometry/box_tree.h"
 #include "geometry/cgal.h"
-#include "geometry/contact/contact_batches.h"
+#include "geometry/batches.h"
 
 namespace arris {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/forces/energies.h"
 
+#include "geometry/batches.h"
 #include "physics/forces/membrane.h"
 
 namespace arris {
@@ -36,24 +37,35 @@ Vec3 impulse_on(int i, const FaceSystem& system, const FaceElement& face, const 
 
 }  // namespace
 
+Energies& Energies::operator+=(const Energies& other)
+{
+    gravity += other.gravity;
+    stretch += other.stretch;
+    bending += other.bending;
+    return *this;
+}
+
 Energies compute_energies(const ClothElements& elements, const Terms& terms,
                           const std::vector<Vec3>& position)
 {
-    Energies energies;
-    for (const FaceElement& element : elements.faces) {
-        const FaceState face(element, position);
-        for (const auto& term : terms.faces)
+    const auto add = [](const auto& element_terms, const auto& state, Energies& sum) {
+        for (const auto& term : element_terms)
             if (const EnergyKind kind = term->energy_kind(); kind != EnergyKind::None)
-                energy_of(energies, kind) += term->energy(face);
-    }
+                energy_of(sum, kind) += term->energy(state);
+    };
+    Energies energies =
+        sum_in_batches<Energies>(static_cast<int>(elements.faces.size()), [&](int first, int last) {
+            Energies sum;
+            for (int f = first; f < last; ++f) add(terms.faces, FaceState(elements.faces[f], position), sum);
+            return sum;
+        });
     if (terms.hinges.empty()) return energies;
     const HingeStates hinges(elements, terms, position);
-    for (std::size_t h = 0; h < elements.hinges.size(); ++h) {
-        const HingeState hinge = hinges[h];
-        for (const auto& term : terms.hinges)
-            if (const EnergyKind kind = term->energy_kind(); kind != EnergyKind::None)
-                energy_of(energies, kind) += term->energy(hinge);
-    }
+    energies += sum_in_batches<Energies>(static_cast<int>(elements.hinges.size()), [&](int first, int last) {
+        Energies sum;
+        for (int h = first; h < last; ++h) add(terms.hinges, hinges[h], sum);
+        return sum;
+    });
     return energies;
 }
 
@@ -84,15 +96,15 @@ FaceReadings compute_face_readings(const ClothElements& elements, const Terms& t
                                    const std::vector<Vec3>& position)
 {
     FaceReadings readings;
-    readings.strain.reserve(elements.faces.size());
+    readings.strain.resize(elements.faces.size());
     readings.stretch_energy.assign(elements.faces.size(), 0.0);
     readings.bending_energy.assign(elements.faces.size(), 0.0);
-    for (std::size_t f = 0; f < elements.faces.size(); ++f) {
+    for_each_in_batches(static_cast<int>(elements.faces.size()), [&](int f) {
         const FaceState face(elements.faces[f], position);
-        readings.strain.push_back(principal_stretches(face.F)[0] - 1.0);
+        readings.strain[f] = principal_stretches(face.F)[0] - 1.0;
         for (const auto& term : terms.faces)
             if (term->energy_kind() == EnergyKind::Stretch) readings.stretch_energy[f] += term->energy(face);
-    }
+    });
     if (terms.hinges.empty()) return readings;
     const HingeStates hinges(elements, terms, position);
     for (std::size_t h = 0; h < elements.hinges.size(); ++h)

@@ -13,6 +13,7 @@ struct Energies {
 
     double elastic() const { return stretch + bending; }
     double sum() const { return gravity + stretch + bending; }
+    Energies& operator+=(const Energies& other);
 };
 
 Energies compute_energies(const ClothElements& elements, const Terms& terms,

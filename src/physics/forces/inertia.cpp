@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/batches.h"
+
 namespace arris {
 
 void Inertia::add(const FaceState& face, FaceSystem& system) const
@@ -18,16 +20,21 @@ namespace {
 template <typename VelocityOf>
 double sum_kinetic_energy(double density, const ClothElements& elements, const VelocityOf& velocity_of)
 {
-    double energy = 0.0;
-    for (std::size_t f = 0; f < elements.faces.size(); ++f) {
-        // 1/2 sum m_ij v_i . v_j = rho A / 24 (sum |v_i|^2 + |sum v_i|^2)
-        const Vec3& a = velocity_of(f, 0);
-        const Vec3& b = velocity_of(f, 1);
-        const Vec3& c = velocity_of(f, 2);
-        energy += density * elements.faces[f].area / 24.0 *
-                  (a.squaredNorm() + b.squaredNorm() + c.squaredNorm() + (a + b + c).squaredNorm());
-    }
-    return energy;
+    return sum_in_batches<double>(
+        static_cast<int>(elements.faces.size()),
+        [&](int first, int last) {
+            double energy = 0.0;
+            for (int f = first; f < last; ++f) {
+                // 1/2 sum m_ij v_i . v_j = rho A / 24 (sum |v_i|^2 + |sum v_i|^2)
+                const Vec3& a = velocity_of(f, 0);
+                const Vec3& b = velocity_of(f, 1);
+                const Vec3& c = velocity_of(f, 2);
+                energy += density * elements.faces[f].area / 24.0 *
+                          (a.squaredNorm() + b.squaredNorm() + c.squaredNorm() + (a + b + c).squaredNorm());
+            }
+            return energy;
+        },
+        kCheapBatch);
 }
 
 template <typename VelocityOf>
@@ -109,13 +116,16 @@ CornerVelocities compute_corner_velocities(const ClothElements& elements, const 
                                            const std::vector<Vec2>& material_velocity)
 {
     CornerVelocities corners(elements.faces.size());
-    for (std::size_t f = 0; f < corners.size(); ++f) {
-        const FaceState face(elements.faces[f], position);
-        for (int i = 0; i < 3; ++i) {
-            const int v = face.element.vertices[i];
-            corners[f][i] = velocity[v] - face.F * material_velocity[v];
-        }
-    }
+    for_each_in_batches(
+        static_cast<int>(corners.size()),
+        [&](int f) {
+            const FaceState face(elements.faces[f], position);
+            for (int i = 0; i < 3; ++i) {
+                const int v = face.element.vertices[i];
+                corners[f][i] = velocity[v] - face.F * material_velocity[v];
+            }
+        },
+        kCheapBatch);
     return corners;
 }
 

@@ -23,6 +23,7 @@ struct MeshCache {
     LinearSystem system;
     std::vector<Face> faces_of_elements;  ///< of the mesh `elements` was made for
     std::vector<Vec2> material_of_elements;
+    std::vector<Vec2> elimination_places;  ///< m, of the vertices: the solver's order of unknowns
     std::vector<Vec2> stretches;           ///< principal stretches of the faces at `world_of_stretches`
     std::vector<Vec3> world_of_stretches;  ///< empty where `stretches` are not those of `elements`
 

@@ -32,6 +32,33 @@ void prepare_stars(const State& state, MeshCache& cache)
     cache.faces_of_stars = state.mesh.faces;
 }
 
+/// Places by which the solver orders its unknowns: in the material, but for EOL vertices. Material flows
+/// through those, and the order is to last as long as the mesh: they have the mean place of their other
+/// neighbours. None where the mesh stays: METIS orders it once, and on some meshes fills a fifth less.
+void place_for_elimination(const Scene& scene, const State& state, MeshCache& cache)
+{
+    std::vector<Vec2>& place = cache.elimination_places;
+    place.clear();
+    if (!scene.eol && !scene.remesh) return;
+    place = state.mesh.material;
+    if (state.eol.empty()) return;
+    std::vector<char> is_placed(place.size(), 1);
+    for (const EolVertex& eol : state.eol) is_placed[state.index_of(eol.vertex_id)] = 0;
+    for (const EolVertex& eol : state.eol) {
+        const int v = state.index_of(eol.vertex_id);
+        Vec2 sum = Vec2::Zero();
+        int count = 0;
+        for (const int f : cache.stars.faces[v])
+            for (const int w : state.mesh.faces[f])
+                if (is_placed[w]) {
+                    sum += place[w];
+                    ++count;
+                }
+        place[v] = count > 0 ? Vec2(sum / count) : Vec2::Zero();
+        is_placed[v] = 1;
+    }
+}
+
 /// What this scene's effects need hinges for.
 HingeUse find_hinge_use(const Scene& scene, const Terms& terms)
 {
@@ -315,6 +342,7 @@ bool update_mesh_cache(const Scene& scene, const State& state, MeshCache& cache)
     if (cache.terms.faces.empty())
         cache.terms = make_terms(scene.material, scene.gravity, scene.wind, scene.pulls);
     const bool has_new_elements = prepare_elements(scene, state, cache);
+    place_for_elimination(scene, state, cache);
     if (scene.self_contact && cache.self_surface.faces != state.mesh.faces)
         cache.self_surface = SelfSurface(state.mesh.vertex_count(), state.mesh.faces, cache.stars.topology);
     if (!scene.eol) return has_new_elements;  // without folds on features there are no creases

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/velocity_solve/factorization.h"
 
+#include <cblas.h>
 #include <cholmod.h>
-#include <omp.h>
-#include <openblas_config.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
-#include <cstring>
 #include <new>
+#include <optional>
 #include <stdexcept>
+
+#include "solver/velocity_solve/front.h"
+#include "solver/velocity_solve/symbolic_factor.h"
 
 extern "C" void openblas_set_num_threads(int);
 
@@ -17,66 +20,6 @@ namespace arris {
 namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
-
-/// A's lower triangle in elimination order, with the destination of each entry of A.
-struct PermutedMatrix {
-    std::vector<int> start, row;
-    std::vector<double> value;
-    std::vector<int> destination;  ///< one per entry of A; -1 above the diagonal
-};
-
-/// Columns are not sorted: the supernodal factorisation scatters them.
-PermutedMatrix permute_pattern(const Matrix& matrix, const std::vector<int>& position)
-{
-    const int size = static_cast<int>(matrix.cols());
-    PermutedMatrix permuted;
-    permuted.start.assign(static_cast<std::size_t>(size) + 1, 0);
-    permuted.destination.assign(static_cast<std::size_t>(matrix.nonZeros()), -1);
-    const int *outer = matrix.outerIndexPtr(), *inner = matrix.innerIndexPtr();
-    for (int column = 0; column < size; ++column)
-        for (int k = outer[column]; k < outer[column + 1]; ++k)
-            if (inner[k] >= column) ++permuted.start[std::min(position[inner[k]], position[column]) + 1];
-    for (int column = 0; column < size; ++column) permuted.start[column + 1] += permuted.start[column];
-
-    std::vector<int> next(permuted.start.begin(), permuted.start.end() - 1);
-    permuted.row.resize(static_cast<std::size_t>(permuted.start.back()));
-    permuted.value.resize(permuted.row.size());
-    for (int column = 0; column < size; ++column)
-        for (int k = outer[column]; k < outer[column + 1]; ++k) {
-            if (inner[k] < column) continue;
-            const auto [low, high] = std::minmax(position[inner[k]], position[column]);
-            permuted.destination[k] = next[low]++;
-            permuted.row[permuted.destination[k]] = high;
-        }
-    return permuted;
-}
-
-cholmod_sparse lower_triangle(int size, const int* start, const int* row, double* value)
-{
-    cholmod_sparse sparse = {};
-    sparse.nrow = sparse.ncol = static_cast<std::size_t>(size);
-    sparse.nzmax = static_cast<std::size_t>(start[size]);
-    sparse.p = const_cast<int*>(start);
-    sparse.i = const_cast<int*>(row);
-    sparse.x = value;
-    sparse.stype = -1;
-    sparse.itype = CHOLMOD_INT;
-    sparse.xtype = value ? CHOLMOD_REAL : CHOLMOD_PATTERN;
-    sparse.dtype = CHOLMOD_DOUBLE;
-    sparse.packed = 1;
-    return sparse;
-}
-
-cholmod_dense column_vector(std::size_t rows, double* values)
-{
-    cholmod_dense dense = {};
-    dense.nrow = dense.d = dense.nzmax = rows;
-    dense.ncol = 1;
-    dense.x = values;
-    dense.xtype = CHOLMOD_REAL;
-    dense.dtype = CHOLMOD_DOUBLE;
-    return dense;
-}
 
 void throw_if_it_does_not_fit(const cholmod_common& common)
 {
@@ -87,15 +30,15 @@ void throw_if_it_does_not_fit(const cholmod_common& common)
 }  // namespace
 
 struct Factorization::Impl {
-    VertexOrdering ordering;
     cholmod_common common = {};
-    cholmod_factor* factor = nullptr;
-    std::vector<int> outer, inner;  ///< pattern that was analysed last
-    std::vector<int> position, supernode_of;
-    PermutedMatrix permuted;
-    Eigen::VectorXd extra;  ///< CHOLMOD's workspace for the rows below a supernode
+    VertexGraph graph;        ///< pattern that was analysed last
+    std::vector<Vec2> place;  ///< with which it was analysed; empty where there were none
+    std::optional<SymbolicFactor> symbolic;
+    std::vector<double> values;                  ///< L
+    std::vector<double> updates;                 ///< update matrices of a factorisation
+    mutable std::vector<double> update_vectors;  ///< as the tree's rows: updates of a forward solve
 
-    explicit Impl(VertexOrdering chosen) : ordering(chosen)
+    Impl()
     {
         openblas_set_num_threads(1);
         cholmod_start(&common);
@@ -103,150 +46,201 @@ struct Factorization::Impl {
         common.supernodal = CHOLMOD_SUPERNODAL;
         common.nmethods = 1;
         common.method[0].ordering = CHOLMOD_GIVEN;
-        common.quick_return_if_not_posdef = 1;
+        // CHOLMOD merges supernodes of up to so many columns, and a column of its graph is a vertex, three
+        // here.
+        for (std::size_t& columns : common.nrelax) columns = (columns + 2) / 3;
     }
-    ~Impl()
-    {
-        cholmod_free_factor(&factor, &common);
-        cholmod_finish(&common);
-    }
+    ~Impl() { cholmod_finish(&common); }
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    const int* array(void* from) const { return static_cast<const int*>(from); }
-    bool has_pattern(const Matrix& matrix) const;
     void analyse(const Matrix& matrix);
-    void scatter(const Matrix& matrix, const std::vector<char>& is_pinned);
+    Front front(int supernode);
+    void add_matrix(int supernode, const Matrix& matrix, const std::vector<char>& is_pinned);
+    void add_children(int supernode);
+    void solve_forward(int supernode, double* x) const;
+    void solve_backward(int supernode, double* x) const;
+    double solve_flops() const;
 };
-
-bool Factorization::Impl::has_pattern(const Matrix& matrix) const
-{
-    return factor != nullptr &&
-           std::equal(outer.begin(), outer.end(), matrix.outerIndexPtr(),
-                      matrix.outerIndexPtr() + matrix.cols() + 1) &&
-           std::equal(inner.begin(), inner.end(), matrix.innerIndexPtr(),
-                      matrix.innerIndexPtr() + matrix.nonZeros());
-}
 
 void Factorization::Impl::analyse(const Matrix& matrix)
 {
-    cholmod_free_factor(&factor, &common);
-    const int size = static_cast<int>(matrix.cols());
-    std::vector<int> order = order_unknowns(matrix, ordering, common);
-    cholmod_sparse pattern = lower_triangle(size, matrix.outerIndexPtr(), matrix.innerIndexPtr(), nullptr);
-    factor = cholmod_analyze_p(&pattern, order.data(), nullptr, 0, &common);
+    symbolic.reset();
+    graph = VertexGraph(matrix);
+    std::vector<int> order = place.empty() ? order_by_metis(graph, common) : dissect(graph, place);
+    cholmod_sparse pattern = graph.pattern();
+    cholmod_factor* factor = cholmod_analyze_p(&pattern, order.data(), nullptr, 0, &common);
     throw_if_it_does_not_fit(common);
-
-    // CHOLMOD applies a postorder of the elimination tree to the given order: the order of the factor counts.
-    const int* final_order = array(factor->Perm);
-    position.resize(static_cast<std::size_t>(size));
-    for (int k = 0; k < size; ++k) position[final_order[k]] = k;
-    supernode_of.resize(static_cast<std::size_t>(size));
-    for (int s = 0; s < static_cast<int>(factor->nsuper); ++s)
-        for (int k = array(factor->super)[s]; k < array(factor->super)[s + 1]; ++k) supernode_of[k] = s;
-    permuted = permute_pattern(matrix, position);
-    extra.resize(static_cast<Eigen::Index>(std::max<std::size_t>(factor->maxesize, 1)));
-    outer.assign(matrix.outerIndexPtr(), matrix.outerIndexPtr() + size + 1);
-    inner.assign(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
+    symbolic.emplace(matrix, graph, *factor);
+    cholmod_free_factor(&factor, &common);
+    values.resize(static_cast<std::size_t>(symbolic->tree.first_value.back()));
+    updates.resize(symbolic->updates.size);
+    update_vectors.resize(symbolic->tree.rows.size());
 }
 
-void Factorization::Impl::scatter(const Matrix& matrix, const std::vector<char>& is_pinned)
+Front Factorization::Impl::front(int s)
 {
-    const double* value = matrix.valuePtr();
-    for (int column = 0; column < static_cast<int>(matrix.cols()); ++column)
-        for (int k = outer[column]; k < outer[column + 1]; ++k) {
-            const int row = inner[k], destination = permuted.destination[k];
-            if (destination < 0) continue;
-            const bool is_pin = is_pinned[row] || is_pinned[column];
-            if (row == column)  // any positive diagonal of a pinned coordinate will do
-                permuted.value[destination] = is_pin && !(value[k] > 0.0) ? 1.0 : value[k];
-            else
-                permuted.value[destination] = is_pin ? 0.0 : value[k];
-        }
+    const EliminationTree& tree = symbolic->tree;
+    return {tree.columns(s), tree.row_count(s), values.data() + tree.first_value[s],
+            updates.data() + symbolic->updates.first[s]};
 }
 
-Factorization::Factorization(VertexOrdering ordering) : impl_(std::make_unique<Impl>(ordering)) {}
+/// Sets the supernode's front to its blocks of A, with pins.
+void Factorization::Impl::add_matrix(int s, const Matrix& matrix, const std::vector<char>& is_pinned)
+{
+    const Front own = front(s);
+    std::fill_n(own.factor, static_cast<std::ptrdiff_t>(own.columns) * own.row_count, 0.0);
+    for (int column = own.columns; column < own.row_count; ++column)
+        std::fill(own.column(column) + column, own.column(column) + own.row_count, 0.0);
+    for (int k = symbolic->first_block[s]; k < symbolic->first_block[s + 1]; ++k) {
+        const MatrixBlock& block = symbolic->blocks[k];
+        const char *row_pins = &is_pinned[3 * block.row], *column_pins = &is_pinned[3 * block.column];
+        const double* from = matrix.valuePtr() + block.source;
+        double* to = values.data() + block.target;
+        const int down = block.is_turned ? own.row_count : 1, along = block.is_turned ? 1 : own.row_count;
+        const bool is_diagonal = block.row == block.column;
+        for (int c = 0; c < 3; ++c, from += block.stride)
+            for (int r = is_diagonal ? c : 0; r < 3; ++r) {
+                double value = from[r];
+                if (row_pins[r] || column_pins[c])  // any positive diagonal of a pinned coordinate will do
+                    value = !is_diagonal || r != c ? 0.0 : value > 0.0 ? value : 1.0;
+                to[r * down + c * along] = value;
+            }
+    }
+}
+
+/// Adds the updates of the supernode's children, in the children's order whatever threads do.
+void Factorization::Impl::add_children(int s)
+{
+    const EliminationTree& tree = symbolic->tree;
+    const Front own = front(s);
+    for (int k = tree.first_child[s]; k < tree.first_child[s + 1]; ++k) {
+        const int child = tree.children[k], size = tree.below(child);
+        const int* row_places = tree.place.data() + tree.first_row[child] + tree.columns(child);
+        const double* update = updates.data() + symbolic->updates.first[child];
+        for (int column = 0; column < size; ++column, update += size) {
+            double* target = own.column(row_places[column]);
+            for (int row = column; row < size; ++row) target[row_places[row]] += update[row];
+        }
+    }
+}
+
+/// The supernode's part of x = L^-1 x, and what it subtracts from the rows below.
+void Factorization::Impl::solve_forward(int s, double* x) const
+{
+    const EliminationTree& tree = symbolic->tree;
+    const int columns = tree.columns(s), count = tree.row_count(s);
+    const double* block = values.data() + tree.first_value[s];
+    double *own = x + tree.first_column[s], *below = update_vectors.data() + tree.first_row[s] + columns;
+    std::fill_n(below, count - columns, 0.0);
+    for (int k = tree.first_child[s]; k < tree.first_child[s + 1]; ++k) {
+        const int child = tree.children[k];
+        for (int r = tree.first_row[child] + tree.columns(child); r < tree.first_row[child + 1]; ++r) {
+            const int at = tree.place[r];
+            (at < columns ? own[at] : below[at - columns]) += update_vectors[r];
+        }
+    }
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, columns, block, count, own, 1);
+    if (count > columns)
+        cblas_dgemv(CblasColMajor, CblasNoTrans, count - columns, columns, -1.0, block + columns, count, own,
+                    1, 1.0, below, 1);
+}
+
+/// The supernode's part of x = L^-T x.
+void Factorization::Impl::solve_backward(int s, double* x) const
+{
+    const EliminationTree& tree = symbolic->tree;
+    const int columns = tree.columns(s), count = tree.row_count(s);
+    const double* block = values.data() + tree.first_value[s];
+    double *own = x + tree.first_column[s], *below = update_vectors.data() + tree.first_row[s] + columns;
+    const int* rows = tree.rows.data() + tree.first_row[s] + columns;
+    for (int r = 0; r < count - columns; ++r) below[r] = x[rows[r]];
+    if (count > columns)
+        cblas_dgemv(CblasColMajor, CblasTrans, count - columns, columns, -1.0, block + columns, count, below,
+                    1, 1.0, own, 1);
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, columns, block, count, own, 1);
+}
+
+/// Of one triangular solve, which waits for memory: as long as so many flops take.
+double Factorization::Impl::solve_flops() const
+{
+    return 16.0 * static_cast<double>(values.size());
+}
+
+Factorization::Factorization() : impl_(std::make_unique<Impl>()) {}
 Factorization::~Factorization() = default;
 Factorization::Factorization(Factorization&&) noexcept = default;
 Factorization& Factorization::operator=(Factorization&&) noexcept = default;
 
-void Factorization::analyse(const Matrix& matrix)
+void Factorization::analyse(const Matrix& matrix, const std::vector<Vec2>* place)
 {
     assert(matrix.isCompressed() && "the pattern is read from the compressed arrays");
-    if (!impl_->has_pattern(matrix)) impl_->analyse(matrix);
+    const bool is_same_place = place ? impl_->place == *place : impl_->place.empty();
+    if (impl_->symbolic && is_same_place && impl_->graph.is_of(matrix)) return;
+    impl_->place = place ? *place : std::vector<Vec2>();
+    impl_->analyse(matrix);
 }
 
 bool Factorization::factorise(const Matrix& matrix, const std::vector<char>& is_pinned)
 {
-    assert(impl_->has_pattern(matrix) && "analyse comes first");
-    impl_->scatter(matrix, is_pinned);
-    PermutedMatrix& permuted = impl_->permuted;
-    cholmod_sparse lower = lower_triangle(static_cast<int>(matrix.cols()), permuted.start.data(),
-                                          permuted.row.data(), permuted.value.data());
-    double shift[2] = {0.0, 0.0};
-    // CHOLMOD starts four OpenMP threads in loops too short for them; waking the threads took half of the
-    // time.
-    omp_set_max_active_levels(0);
-    cholmod_super_numeric(&lower, nullptr, shift, impl_->factor, &impl_->common);
-    throw_if_it_does_not_fit(impl_->common);
-    return impl_->common.status == CHOLMOD_OK && impl_->factor->minor == impl_->factor->n;
+    assert(impl_->graph.is_of(matrix) && "analyse comes first");
+    std::atomic<bool> is_definite = true;
+    impl_->symbolic->walk.up(impl_->symbolic->flops, [&](int s) {
+        if (!is_definite) return;
+        impl_->add_matrix(s, matrix, is_pinned);
+        impl_->add_children(s);
+        if (!eliminate(impl_->front(s))) is_definite = false;
+    });
+    return is_definite;
 }
 
 Eigen::VectorXd Factorization::solve_forward(const Eigen::VectorXd& rhs) const
 {
+    const std::vector<int>& position = impl_->symbolic->position;
     Eigen::VectorXd forward(rhs.size());
-    for (int i = 0; i < rhs.size(); ++i) forward[impl_->position[i]] = rhs[i];
-    cholmod_dense x = column_vector(impl_->factor->n, forward.data());
-    cholmod_dense extra = column_vector(static_cast<std::size_t>(impl_->extra.size()), impl_->extra.data());
-    cholmod_super_lsolve(impl_->factor, &x, &extra, &impl_->common);
+    for (int i = 0; i < rhs.size(); ++i) forward[position[i]] = rhs[i];
+    impl_->symbolic->walk.up(impl_->solve_flops(), [&](int s) { impl_->solve_forward(s, forward.data()); });
     return forward;
 }
 
 Eigen::VectorXd Factorization::solve_backward(const Eigen::VectorXd& forward) const
 {
+    const std::vector<int>& position = impl_->symbolic->position;
     Eigen::VectorXd permuted = forward, solution(forward.size());
-    cholmod_dense x = column_vector(impl_->factor->n, permuted.data());
-    cholmod_dense extra = column_vector(static_cast<std::size_t>(impl_->extra.size()), impl_->extra.data());
-    cholmod_super_ltsolve(impl_->factor, &x, &extra, &impl_->common);
-    for (int i = 0; i < forward.size(); ++i) solution[i] = permuted[impl_->position[i]];
+    impl_->symbolic->walk.down(impl_->solve_flops(),
+                               [&](int s) { impl_->solve_backward(s, permuted.data()); });
+    for (int i = 0; i < forward.size(); ++i) solution[i] = permuted[position[i]];
     return solution;
 }
 
 const std::vector<int>& Factorization::position() const
 {
-    return impl_->position;
+    return impl_->symbolic->position;
 }
-int Factorization::supernode_count() const
+const EliminationTree& Factorization::tree() const
 {
-    return static_cast<int>(impl_->factor->nsuper);
+    return impl_->symbolic->tree;
 }
-int Factorization::supernode_of(int position) const
+Supernode Factorization::supernode(int s) const
 {
-    return impl_->supernode_of[position];
+    const EliminationTree& tree = impl_->symbolic->tree;
+    return {tree.first_column[s], tree.columns(s), tree.rows.data() + tree.first_row[s], tree.row_count(s),
+            impl_->values.data() + tree.first_value[s]};
 }
+
 double Factorization::nonzeros() const
 {
-    return static_cast<double>(impl_->factor->xsize);
+    return static_cast<double>(impl_->values.size());
 }
 
 double Factorization::flops() const
 {
-    return impl_->common.fl;
+    return impl_->symbolic->flops;
 }
 
-Supernode Factorization::supernode(int index) const
+double Factorization::critical_flops() const
 {
-    const cholmod_factor& factor = *impl_->factor;
-    const int* first = impl_->array(factor.super) + index;
-    const int* rows = impl_->array(factor.pi) + index;
-    return {first[0], first[1] - first[0], impl_->array(factor.s) + rows[0], rows[1] - rows[0],
-            static_cast<const double*>(factor.x) + impl_->array(factor.px)[index]};
-}
-
-int Factorization::parent(int index) const
-{
-    const Supernode block = supernode(index);
-    return block.row_count > block.columns ? impl_->supernode_of[block.rows[block.columns]] : -1;
+    return impl_->symbolic->walk.critical_flops();
 }
 
 }  // namespace arris

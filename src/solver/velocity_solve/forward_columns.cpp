@@ -4,6 +4,10 @@
 #include <cblas.h>
 
 #include <algorithm>
+#include <array>
+
+#include "geometry/batches.h"
+#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -13,101 +17,119 @@ constexpr int kPanelWidth = 16;
 
 }  // namespace
 
-ForwardColumns::ForwardColumns(const Factorization& factorization)
-    : factorization_(&factorization),
-      rows_(factorization.position().size() * kPanelWidth, 0.0),
-      is_on_path_(static_cast<std::size_t>(factorization.supernode_count()), 0)
-{
-}
-
 void ForwardColumns::append(const std::vector<SparseVector>& columns)
 {
-    const int count = static_cast<int>(columns.size());
+    const int count = static_cast<int>(columns.size()), old = static_cast<int>(panels_.size());
     gram_.conservativeResize(size_ + count, size_ + count);
     for (int first = 0; first < count; first += kPanelWidth)
-        append_panel(columns.data() + first, std::min(kPanelWidth, count - first));
+        panels_.push_back({size_ + first, std::min(kPanelWidth, count - first), {}, {}, {}});
+    const int all = static_cast<int>(panels_.size());
+    for_each_batch(all - old, 1, [&](int p, int, int) {
+        const SparseVector* own = columns.data() + static_cast<std::ptrdiff_t>(p) * kPanelWidth;
+        find_path(own, panels_[old + p]);
+        solve(own, panels_[old + p]);
+    });
+    for (int p = old; p < all; ++p) flops_ += flops_of(panels_[p]);
+    // The new panels with every panel before them, and with themselves.
+    std::vector<std::array<int, 2>> pairs;
+    for (int p = old; p < all; ++p)
+        for (int q = 0; q <= p; ++q) pairs.push_back({p, q});
+    flops_ += sum_in_batches<double>(
+        static_cast<int>(pairs.size()),
+        [&](int k, int) { return set_gram(panels_[pairs[k][0]], panels_[pairs[k][1]]); }, 1);
+    size_ += count;
 }
 
-std::vector<int> ForwardColumns::path_of(const SparseVector* columns, int width)
+/// The supernodes from the columns' unknowns to the root.
+void ForwardColumns::find_path(const SparseVector* columns, Panel& panel) const
 {
-    std::vector<int> path;
-    for (int c = 0; c < width; ++c)
-        for (const auto& [unknown, value] : columns[c]) {
-            int s = factorization_->supernode_of(factorization_->position()[unknown]);
-            for (; s >= 0 && !is_on_path_[s]; s = factorization_->parent(s)) {
-                is_on_path_[s] = 1;
-                path.push_back(s);
-            }
-        }
-    for (const int s : path) is_on_path_[s] = 0;
-    std::sort(path.begin(), path.end());
-    return path;
-}
-
-void ForwardColumns::append_panel(const SparseVector* columns, int width)
-{
-    Panel panel = {size_, width, path_of(columns, width), {}, {}};
-    for (int c = 0; c < width; ++c)
+    const EliminationTree& tree = factorization_->tree();
+    for (int c = 0; c < panel.width; ++c)
         for (const auto& [unknown, value] : columns[c])
-            rows_[static_cast<std::size_t>(factorization_->position()[unknown]) * width + c] += value;
-    solve(panel);
-    panels_.push_back(std::move(panel));
-    extend_gram(panels_.back());
-    size_ += width;
+            panel.path.push_back(tree.supernode_of[factorization_->position()[unknown]]);
+    sort_unique(panel.path);
+    std::vector<int> above;
+    for (int s : panel.path)
+        for (s = tree.parent[s]; s >= 0; s = tree.parent[s]) above.push_back(s);
+    panel.path.insert(panel.path.end(), above.begin(), above.end());
+    sort_unique(panel.path);
 }
 
 /// Row-major rows are column-major transposed: X^T (width x columns) L11^T = B^T, then B2^T -= X^T L21^T.
-void ForwardColumns::solve(Panel& panel)
+/// What a supernode subtracts from the rows below it goes to its parent.
+void ForwardColumns::solve(const SparseVector* columns, Panel& panel) const
 {
-    const int width = panel.width;
+    const EliminationTree& tree = factorization_->tree();
+    const std::size_t width = static_cast<std::size_t>(panel.width);
+    const auto index_of = [&](int s) {
+        return std::lower_bound(panel.path.begin(), panel.path.end(), s) - panel.path.begin();
+    };
+    std::size_t size = 0, size_below = 0;
+    std::vector<std::size_t> below_offset;
     for (const int s : panel.path) {
-        const Supernode block = factorization_->supernode(s);
-        double* x = rows_.data() + static_cast<std::size_t>(block.first) * width;
-        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, width, block.columns,
-                    1.0, block.values, block.row_count, x, width);
-        const std::size_t entries = static_cast<std::size_t>(block.columns) * width;
-        panel.offset.push_back(panel.values.size());
-        panel.values.insert(panel.values.end(), x, x + entries);
-
-        const int below = block.row_count - block.columns;
-        flops_ += static_cast<double>(width) * block.columns * (block.columns + 2.0 * below);
-        if (below > 0) {
-            update_.resize(std::max(update_.size(), static_cast<std::size_t>(below) * width));
-            cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, width, below, block.columns, 1.0, x, width,
-                        block.values + block.columns, block.row_count, 0.0, update_.data(), width);
-            for (int r = 0; r < below; ++r) {
-                double* target =
-                    rows_.data() + static_cast<std::size_t>(block.rows[block.columns + r]) * width;
-                const double* update = update_.data() + static_cast<std::size_t>(r) * width;
-                for (int c = 0; c < width; ++c) target[c] -= update[c];
-            }
+        panel.offset.push_back(size);
+        below_offset.push_back(size_below);
+        size += width * static_cast<std::size_t>(tree.columns(s));
+        size_below += width * static_cast<std::size_t>(tree.below(s));
+    }
+    panel.values.assign(size, 0.0);
+    std::vector<double> below(size_below, 0.0);
+    for (std::size_t c = 0; c < width; ++c)
+        for (const auto& [unknown, value] : columns[c]) {
+            const int position = factorization_->position()[unknown], s = tree.supernode_of[position];
+            panel.values[panel.offset[index_of(s)] + width * (position - tree.first_column[s]) + c] += value;
         }
-        std::fill(x, x + entries, 0.0);
+    for (std::size_t k = 0; k < panel.path.size(); ++k) {
+        const Supernode block = factorization_->supernode(panel.path[k]);
+        double *x = panel.values.data() + panel.offset[k], *update = below.data() + below_offset[k];
+        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, panel.width,
+                    block.columns, 1.0, block.values, block.row_count, x, panel.width);
+        const int rows = block.row_count - block.columns;
+        if (rows == 0) continue;
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, panel.width, rows, block.columns, -1.0, x,
+                    panel.width, block.values + block.columns, block.row_count, 1.0, update, panel.width);
+        const int parent = tree.parent[panel.path[k]], columns_above = tree.columns(parent);
+        const auto above = index_of(parent);
+        const int* place = tree.place.data() + tree.first_row[panel.path[k]] + block.columns;
+        for (int r = 0; r < rows; ++r, update += width) {
+            double* target = place[r] < columns_above
+                                 ? panel.values.data() + panel.offset[above] + width * place[r]
+                                 : below.data() + below_offset[above] + width * (place[r] - columns_above);
+            for (std::size_t c = 0; c < width; ++c) target[c] += update[c];
+        }
     }
 }
 
-/// Products of the new panel with every panel, on the blocks that both contain.
-void ForwardColumns::extend_gram(const Panel& panel)
+double ForwardColumns::flops_of(const Panel& panel) const
 {
-    for (const Panel& other : panels_) {
-        Eigen::MatrixXd product = Eigen::MatrixXd::Zero(panel.width, other.width);
-        for (std::size_t i = 0, j = 0; i < panel.path.size() && j < other.path.size();) {
-            if (panel.path[i] < other.path[j]) {
-                ++i;
-            } else if (panel.path[i] > other.path[j]) {
-                ++j;
-            } else {
-                const int columns = factorization_->supernode(panel.path[i]).columns;
-                flops_ += 2.0 * panel.width * other.width * columns;
-                cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, panel.width, other.width, columns, 1.0,
-                            panel.values.data() + panel.offset[i++], panel.width,
-                            other.values.data() + other.offset[j++], other.width, 1.0, product.data(),
-                            panel.width);
-            }
+    const EliminationTree& tree = factorization_->tree();
+    double flops = 0.0;
+    for (const int s : panel.path)
+        flops += static_cast<double>(panel.width) * tree.columns(s) * (tree.columns(s) + 2.0 * tree.below(s));
+    return flops;
+}
+
+/// The product of two panels, on the blocks that both contain. Returns its flops.
+double ForwardColumns::set_gram(const Panel& a, const Panel& b)
+{
+    Eigen::MatrixXd product = Eigen::MatrixXd::Zero(a.width, b.width);
+    double flops = 0.0;
+    for (std::size_t i = 0, j = 0; i < a.path.size() && j < b.path.size();) {
+        if (a.path[i] < b.path[j]) {
+            ++i;
+        } else if (a.path[i] > b.path[j]) {
+            ++j;
+        } else {
+            const int columns = factorization_->tree().columns(a.path[i]);
+            flops += 2.0 * a.width * b.width * columns;
+            cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, a.width, b.width, columns, 1.0,
+                        a.values.data() + a.offset[i++], a.width, b.values.data() + b.offset[j++], b.width,
+                        1.0, product.data(), a.width);
         }
-        gram_.block(panel.first, other.first, panel.width, other.width) = product;
-        gram_.block(other.first, panel.first, other.width, panel.width) = product.transpose();
     }
+    gram_.block(a.first, b.first, a.width, b.width) = product;
+    gram_.block(b.first, a.first, b.width, a.width) = product.transpose();
+    return flops;
 }
 
 Eigen::VectorXd ForwardColumns::dot(const Eigen::VectorXd& forward) const

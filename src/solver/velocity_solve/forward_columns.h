@@ -14,11 +14,11 @@ using SparseVector = std::vector<std::pair<int, double>>;
 
 /// The growing matrix G = L^-1 P C of forward-solved sparse columns, and its Gram matrix G^T G. A column is
 /// non-zero only on the path from its unknowns to the root of the elimination tree. Only the blocks on that
-/// path are computed and kept, in panels of neighbouring columns. Refers to `factorization`, which must not
-/// change.
+/// path are computed and kept, in panels of neighbouring columns; several panels at a time. Refers to
+/// `factorization`, which must not change.
 class ForwardColumns {
   public:
-    explicit ForwardColumns(const Factorization& factorization);
+    explicit ForwardColumns(const Factorization& factorization) : factorization_(&factorization) {}
 
     /// Appends columns in the given order; the cost is least where neighbours in elimination order are
     /// adjacent.
@@ -38,19 +38,16 @@ class ForwardColumns {
         std::vector<std::size_t> offset;
         std::vector<double> values;
     };
-    std::vector<int> path_of(const SparseVector* columns, int width);
-    void append_panel(const SparseVector* columns, int width);
-    void solve(Panel& panel);
-    void extend_gram(const Panel& panel);
+    void find_path(const SparseVector* columns, Panel& panel) const;
+    void solve(const SparseVector* columns, Panel& panel) const;
+    double flops_of(const Panel& panel) const;
+    double set_gram(const Panel& a, const Panel& b);
 
     const Factorization* factorization_;
     int size_ = 0;
     double flops_ = 0.0;
     std::vector<Panel> panels_;
     Eigen::MatrixXd gram_;
-    std::vector<double> rows_;      ///< unknowns x width, row-major: the panel in work; zero between panels
-    std::vector<double> update_;    ///< width x rows below the triangle
-    std::vector<char> is_on_path_;  ///< by supernode
 };
 
 }  // namespace arris

@@ -104,15 +104,29 @@ void Members::add_released(int first, const std::vector<int>& place, std::vector
         if (released >= first && !base_->is_pinned(other))
             columns[released - first].emplace_back(other, value);
     };
-    for (int column = 0; column < matrix.cols(); ++column)
-        for (Matrix::InnerIterator entry(matrix, column); entry; ++entry) {
-            const int row = static_cast<int>(entry.row());
-            if (row < column) continue;
-            const int k = place[row], l = place[column];
-            if (k >= 0 && l >= 0) direct_(k, l) = direct_(l, k) = entry.value();
-            if (k >= 0) enter_column(k, column, entry.value());
-            if (l >= 0) enter_column(l, row, entry.value());
+    const auto has_place = [&](int vertex) {
+        return place[vertex] >= 0 || place[vertex + 1] >= 0 || place[vertex + 2] >= 0;
+    };
+    const int *outer = matrix.outerIndexPtr(), *inner = matrix.innerIndexPtr();
+    for (int vertex = 0; vertex < static_cast<int>(matrix.cols()); vertex += 3) {
+        const bool is_wanted = has_place(vertex);
+        const int height = outer[vertex + 1] - outer[vertex];
+        for (int k = 0; k < height; k += 3) {  // whole blocks
+            if (!is_wanted && !has_place(inner[outer[vertex] + k])) continue;
+            for (int column = vertex; column < vertex + 3; ++column)
+                for (int entry = outer[column] + k; entry < outer[column] + k + 3; ++entry) {
+                    const int row = inner[entry];
+                    if (row < column) continue;
+                    const double value = matrix.valuePtr()[entry];
+                    const int released_row = place[row], released_column = place[column];
+                    if (released_row >= 0 && released_column >= 0)
+                        direct_(released_row, released_column) = direct_(released_column, released_row) =
+                            value;
+                    if (released_row >= 0) enter_column(released_row, column, value);
+                    if (released_column >= 0) enter_column(released_column, row, value);
+                }
         }
+    }
 }
 
 bool Members::condense()

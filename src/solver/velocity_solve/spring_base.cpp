@@ -10,7 +10,6 @@ SpringBase::SpringBase(const VelocityProblem& problem, const ConstraintRows& con
     : problem_(&problem),
       constraints_(&constraints),
       factorization_(&factorization),
-      matrix_(*problem.matrix),
       is_pinned_(problem.is_fixed)
 {
     for (int p = 0; p < constraints.pair_count(); ++p) {
@@ -58,7 +57,7 @@ void SpringBase::enter(const ScaledRow& row, int column, Spring& spring) const
 /// The three columns of a vertex have the same rows, in whole blocks: one search a block.
 void SpringBase::find_blocks(Spring& spring) const
 {
-    const int *outer = matrix_.outerIndexPtr(), *inner = matrix_.innerIndexPtr();
+    const int *outer = problem_->matrix->outerIndexPtr(), *inner = problem_->matrix->innerIndexPtr();
     if (!spring.has_room) return;
     for (int i = 0, k = 0; i < spring.vertex_count; ++i)
         for (int j = 0; j <= i; ++j, ++k) {
@@ -75,6 +74,8 @@ void SpringBase::find_blocks(Spring& spring) const
 
 void SpringBase::add(const Spring& spring, const Eigen::Matrix2d& stiffness)
 {
+    if (!has_springs_) matrix_ = *problem_->matrix;
+    has_springs_ = true;
     const int* outer = matrix_.outerIndexPtr();
     for (int i = 0, k = 0; i < spring.vertex_count; ++i) {
         const Eigen::Matrix<double, 3, 2> force = spring.direction[i] * stiffness;
@@ -90,8 +91,7 @@ void SpringBase::add(const Spring& spring, const Eigen::Matrix2d& stiffness)
 
 bool SpringBase::factorise(const ContactState& wanted)
 {
-    const Eigen::SparseMatrix<double>& A = *problem_->matrix;
-    std::copy(A.valuePtr(), A.valuePtr() + A.nonZeros(), matrix_.valuePtr());
+    has_springs_ = false;
     state_ = wanted;
     const int first = constraints_->slip_count();
     for (std::size_t k = 0; k < rows_.size(); ++k) {
@@ -108,7 +108,7 @@ bool SpringBase::factorise(const ContactState& wanted)
     }
     for (std::size_t i = 0; i < is_pinned_.size(); ++i)
         is_pinned_[i] = state_.is_active[i] || problem_->is_fixed[i];
-    return factorization_->factorise(matrix_, is_pinned_);
+    return factorization_->factorise(matrix(), is_pinned_);
 }
 
 Eigen::VectorXd SpringBase::solve_forward(Eigen::VectorXd rhs) const

@@ -36,7 +36,8 @@ class SpringBase {
     /// What the factor holds: `wanted`, as far as there is room.
     const ContactState& state() const { return state_; }
     bool is_pinned(int coordinate) const { return is_pinned_[coordinate]; }
-    const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }  ///< A'
+    /// A'.
+    const Eigen::SparseMatrix<double>& matrix() const { return has_springs_ ? matrix_ : *problem_->matrix; }
     const Factorization& factorization() const { return *factorization_; }
 
     Eigen::VectorXd solve_forward(Eigen::VectorXd rhs) const;  ///< L^-1 P rhs, with 0 at pinned coordinates
@@ -62,7 +63,8 @@ class SpringBase {
     const ConstraintRows* constraints_;
     Factorization* factorization_;
     std::vector<Spring> pairs_, rows_;  ///< by friction pair; by row of the problem
-    Eigen::SparseMatrix<double> matrix_;
+    bool has_springs_ = false;
+    Eigen::SparseMatrix<double> matrix_;  ///< A', where it has springs
     ContactState state_;
     std::vector<char> is_pinned_;
 };

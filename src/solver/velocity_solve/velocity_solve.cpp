@@ -91,7 +91,7 @@ VelocitySolution VelocitySolver::solve(const VelocityProblem& problem, const Set
         solution.infeasible_rows = cache_->constraints.impossible;  // nothing can move
         solution.status = solution.infeasible_rows.empty() ? SolveStatus::Certified : SolveStatus::Infeasible;
     } else {
-        cache_->factorization.analyse(*problem.matrix);
+        cache_->factorization.analyse(*problem.matrix, problem.places);
         cache_->newton.emplace(problem, cache_->constraints, cache_->factorization, settings);
         const bool is_repeat = problem.is_repeat && last;
         solution = cache_->keep(is_repeat ? cache_->newton->run_from(*last) : cache_->newton->run());

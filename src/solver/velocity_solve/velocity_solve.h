@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "geometry/vectors.h"
 #include "solver/model/settings.h"
 
 namespace arris {
@@ -42,12 +43,13 @@ struct VelocitySolution;
 /// fixed, and rows. Strictly convex for given budgets (Tresca's friction), which the solve moves until they
 /// agree with `law`. Three unknowns a vertex.
 struct VelocityProblem {
-    const Eigen::SparseMatrix<double>* matrix =
-        nullptr;                           ///< A, SPD: lower triangle, and whole 3x3 diagonal blocks
-    const Eigen::VectorXd* rhs = nullptr;  ///< b
-    Eigen::VectorXd lower;                 ///< -infinity where there is no bound
-    std::vector<char> is_fixed;            ///< pinned: u = 0, whatever the bound
-    std::vector<int> guess;                ///< coordinates expected active, ascending (warm start)
+    const Eigen::SparseMatrix<double>* matrix = nullptr;  ///< A, SPD: whole 3x3 blocks of the lower triangle
+    const Eigen::VectorXd* rhs = nullptr;                 ///< b
+    /// Of the vertices in a plane, nearly: unknowns are then ordered by dissecting it, else by METIS.
+    const std::vector<Vec2>* places = nullptr;
+    Eigen::VectorXd lower;       ///< -infinity where there is no bound
+    std::vector<char> is_fixed;  ///< pinned: u = 0, whatever the bound
+    std::vector<int> guess;      ///< coordinates expected active, ascending (warm start)
     std::vector<ConstraintRow> rows;
     std::vector<int> row_guess;  ///< rows expected active, ascending
     std::vector<FrictionPair> friction;

@@ -48,11 +48,13 @@ TEST(Crease, ClothMovesUpBetweenPlatesThatClose)
 {
     constexpr std::size_t kSteps = 217;  // of the default length, with the start's part
     constexpr std::size_t kMoreSteps = 20;
+    // Friction above the tangent of half the crease's angle would lock the cloth there: how many steps it
+    // then takes is chance.
     const TemporaryDirectory folder;
     for (const CreaseCase& one :
          {CreaseCase{60.0, 6, 0.0}, CreaseCase{70.0, 9, 0.2}, CreaseCase{78.0, 12, 0.0, true},
-          CreaseCase{80.0, 6, 0.0, true}, CreaseCase{82.0, 9, 0.2}, CreaseCase{84.0, 12, 0.0},
-          CreaseCase{86.0, 6, 0.2}}) {
+          CreaseCase{80.0, 6, 0.0, true}, CreaseCase{82.0, 9, 0.1}, CreaseCase{84.0, 12, 0.0},
+          CreaseCase{86.0, 6, 0.05}}) {
         SCOPED_TRACE(fmt::format("{} degrees, {} cells, friction {}", one.slope, one.cells, one.friction));
         write_bytes(folder / "scene.toml", scene_of(one));
         Program program(folder, {"run", folder / "scene.toml", "-o", folder / "out", "--overwrite", "--quiet",

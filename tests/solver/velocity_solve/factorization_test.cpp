@@ -2,9 +2,11 @@
 #include "solver/velocity_solve/factorization.h"
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 
 #include <Eigen/Cholesky>
 #include <numeric>
+#include <optional>
 #include <random>
 
 #include "tests/solver/cloth_system.h"
@@ -28,6 +30,14 @@ std::vector<char> pin_every(int stride, Eigen::Index size)
     if (stride > 0)
         for (std::size_t i = 0; i < is_pinned.size(); i += static_cast<std::size_t>(stride)) is_pinned[i] = 1;
     return is_pinned;
+}
+
+/// 1 for each coordinate that is free.
+Eigen::VectorXd free_of(const std::vector<char>& is_pinned)
+{
+    Eigen::VectorXd free(static_cast<Eigen::Index>(is_pinned.size()));
+    for (int i = 0; i < free.size(); ++i) free[i] = is_pinned[i] ? 0.0 : 1.0;
+    return free;
 }
 
 /// The matrix with the rows and columns of pinned coordinates replaced by those of the identity.
@@ -54,13 +64,28 @@ void expect_solves(const Factorization& factorization, const Eigen::SparseMatrix
     EXPECT_LE((solution - expected).norm(), kSolved * expected.norm());
 }
 
-class EveryOrdering : public ::testing::TestWithParam<VertexOrdering> {};
+/// Whether vertices have places in a plane, or METIS orders.
+class EveryOrdering : public ::testing::TestWithParam<bool> {
+  protected:
+    void analyse(int side)
+    {
+        testing::ClothShape shape;
+        shape.side = side;
+        shape.stretch = 10.0;
+        const testing::ClothSystem cloth = testing::make_cloth_system(shape);
+        matrix = cloth.matrix;
+        std::vector<Vec2> place;
+        for (const Vec3& x : cloth.position) place.push_back(x.head<2>());
+        factorization.analyse(matrix, GetParam() ? &place : nullptr);
+    }
+
+    Eigen::SparseMatrix<double> matrix;
+    Factorization factorization;
+};
 
 TEST_P(EveryOrdering, SolvesWithAnyPinsOnOneAnalysis)
 {
-    const Eigen::SparseMatrix<double> matrix = cloth_matrix(9);
-    Factorization factorization(GetParam());
-    factorization.analyse(matrix);
+    analyse(9);
     for (const int stride : {0, 1, 2, 3, 7}) {
         const std::vector<char> is_pinned = pin_every(stride, matrix.rows());
         ASSERT_TRUE(factorization.factorise(matrix, is_pinned));
@@ -71,9 +96,7 @@ TEST_P(EveryOrdering, SolvesWithAnyPinsOnOneAnalysis)
 TEST_P(EveryOrdering, EliminatesEveryUnknownOnce)
 {
     for (const int side : {1, 2, 9}) {
-        const Eigen::SparseMatrix<double> matrix = cloth_matrix(side);
-        Factorization factorization(GetParam());
-        factorization.analyse(matrix);
+        analyse(side);
         std::vector<int> position = factorization.position(), expected(position.size());
         std::sort(position.begin(), position.end());
         std::iota(expected.begin(), expected.end(), 0);
@@ -81,17 +104,55 @@ TEST_P(EveryOrdering, EliminatesEveryUnknownOnce)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Factorization, EveryOrdering,
-                         ::testing::Values(VertexOrdering::Metis, VertexOrdering::NestedDissection,
-                                           VertexOrdering::Amd));
+/// Large enough for several threads, and for fronts in tiles.
+TEST_P(EveryOrdering, IsTheSameWithAnyNumberOfThreads)
+{
+    analyse(60);
+    const EliminationTree& tree = factorization.tree();
+    int largest = 0;
+    for (int s = 0; s < tree.size(); ++s) largest = std::max(largest, tree.row_count(s));
+    EXPECT_GT(largest, 250);
+    const std::vector<char> is_pinned = pin_every(5, matrix.rows());
+    Eigen::VectorXd rhs = Eigen::VectorXd::LinSpaced(matrix.rows(), -1.0, 2.0);
+    std::optional<Eigen::VectorXd> first;
+    for (const std::size_t threads : {1, 2, 4}) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        for (int run = 0; run < 3; ++run) {
+            ASSERT_TRUE(factorization.factorise(matrix, is_pinned));
+            const Eigen::VectorXd solution = factorization.solve_backward(factorization.solve_forward(rhs));
+            if (!first) {
+                first = solution;
+                Eigen::VectorXd residual =
+                    matrix.selfadjointView<Eigen::Lower>() * solution.cwiseProduct(free_of(is_pinned)) - rhs;
+                EXPECT_LE(residual.cwiseProduct(free_of(is_pinned)).norm(), 1e-10 * rhs.norm());
+            }
+            EXPECT_EQ(solution, *first);
+        }
+    }
+}
+
+/// Values that are no numbers, or the wrong ones, end a factorisation by several threads, too.
+TEST_P(EveryOrdering, OfManyVerticesSaysWhereItIsNotPositiveDefinite)
+{
+    analyse(60);
+    for (const int at : {0, 5000, static_cast<int>(matrix.rows()) - 1}) {
+        const double value = matrix.coeff(at, at);
+        matrix.coeffRef(at, at) = -value;
+        EXPECT_FALSE(factorization.factorise(matrix, pin_every(0, matrix.rows())));
+        matrix.coeffRef(at, at) = value;
+        EXPECT_TRUE(factorization.factorise(matrix, pin_every(0, matrix.rows())));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Factorization, EveryOrdering, ::testing::Bool());
 
 TEST(Factorization, SeesThatThePatternChanged)
 {
-    // Both lower triangles have equally many entries in each column, so only the row indices differ.
+    // Both lower triangles have equally many blocks in each column, so only their rows differ.
     Eigen::MatrixXd a = Eigen::MatrixXd::Identity(12, 12), b = a;
     a(3, 0) = 0.5;
     b(6, 0) = 0.5;
-    const Eigen::SparseMatrix<double> first = a.sparseView(), second = b.sparseView();
+    const Eigen::SparseMatrix<double> first = testing::lower_blocks(a), second = testing::lower_blocks(b);
     Factorization factorization;
     for (const auto* matrix : {&first, &second, &first}) {
         factorization.analyse(*matrix);

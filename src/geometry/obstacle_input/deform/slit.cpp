@@ -10,7 +10,7 @@
 
 #include "geometry/check/penetration.h"
 #include "geometry/closest_point.h"
-#include "geometry/contact/contact_batches.h"
+#include "geometry/batches.h"
 #include "geometry/self_contact/self_intersection.h"
 #include "geometry/sort_unique.h"
 
