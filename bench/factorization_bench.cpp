@@ -3,7 +3,7 @@
 // The numeric factorisation of a cloth's matrix against CHOLMOD's with the same METIS order, on one thread
 // and on more. Wall times, so the machine must be idle. The first argument is the number of vertices along
 // one side, the second the number of threads. `ratio` is the least time over CHOLMOD's least time.
-//   cholmod      cholmod_super_numeric, the reference
+//   cholmod      cholmod_super_numeric with METIS's order of the vertices, the reference
 //   factorise    with METIS's order, or by dissection in the plane
 //     critical   share of the flops that no number of threads makes at the same time
 //   solve        forward and backward
@@ -13,11 +13,11 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <limits>
 #include <map>
 
 #include "solver/velocity_solve/factorization.h"
+#include "solver/velocity_solve/vertex_ordering.h"
 #include "tests/solver/cloth_system.h"
 
 namespace arris {
@@ -50,42 +50,55 @@ double measure(benchmark::State& state, const Work& work)
     return least;
 }
 
-/// CHOLMOD's supernodal factorisation of a lower triangle.
+/// CHOLMOD's supernodal factorisation, of METIS's order of the vertices.
 class Cholmod {
   public:
     explicit Cholmod(const Eigen::SparseMatrix<double>& matrix)
-        : lower_(matrix.triangularView<Eigen::Lower>())
     {
         cholmod_start(&common_);
         common_.supernodal = CHOLMOD_SUPERNODAL;
         common_.nmethods = 1;
-        common_.method[0].ordering = CHOLMOD_METIS;
-        sparse_.nrow = sparse_.ncol = static_cast<std::size_t>(lower_.cols());
-        sparse_.nzmax = static_cast<std::size_t>(lower_.nonZeros());
-        sparse_.p = lower_.outerIndexPtr();
-        sparse_.i = lower_.innerIndexPtr();
-        sparse_.x = lower_.valuePtr();
-        sparse_.stype = -1;
-        sparse_.itype = CHOLMOD_INT;
-        sparse_.xtype = CHOLMOD_REAL;
-        sparse_.dtype = CHOLMOD_DOUBLE;
-        sparse_.sorted = sparse_.packed = 1;
-        factor_ = cholmod_analyze(&sparse_, &common_);
+        common_.method[0].ordering = CHOLMOD_GIVEN;
+        VertexGraph graph(matrix);
+        std::vector<int> order;
+        for (const int vertex : order_by_metis(graph, common_))
+            for (int axis = 0; axis < 3; ++axis) order.push_back(3 * vertex + axis);
+        Eigen::SparseMatrix<double> lower = matrix.triangularView<Eigen::Lower>();
+        cholmod_sparse sparse = {};
+        sparse.nrow = sparse.ncol = static_cast<std::size_t>(lower.cols());
+        sparse.nzmax = static_cast<std::size_t>(lower.nonZeros());
+        sparse.p = lower.outerIndexPtr();
+        sparse.i = lower.innerIndexPtr();
+        sparse.x = lower.valuePtr();
+        sparse.stype = -1;
+        sparse.itype = CHOLMOD_INT;
+        sparse.xtype = CHOLMOD_REAL;
+        sparse.dtype = CHOLMOD_DOUBLE;
+        sparse.sorted = sparse.packed = 1;
+        factor_ = cholmod_analyze_p(&sparse, order.data(), nullptr, 0, &common_);
+        cholmod_sparse* upper =
+            cholmod_ptranspose(&sparse, 1, static_cast<int*>(factor_->Perm), nullptr, 0, &common_);
+        permuted_ = cholmod_transpose(upper, 1, &common_);
+        cholmod_free_sparse(&upper, &common_);
     }
     ~Cholmod()
     {
+        cholmod_free_sparse(&permuted_, &common_);
         cholmod_free_factor(&factor_, &common_);
         cholmod_finish(&common_);
     }
     Cholmod(const Cholmod&) = delete;
     Cholmod& operator=(const Cholmod&) = delete;
 
-    void factorise() { cholmod_factorize(&sparse_, factor_, &common_); }
+    void factorise()
+    {
+        double shift[2] = {0.0, 0.0};
+        cholmod_super_numeric(permuted_, nullptr, shift, factor_, &common_);
+    }
 
   private:
-    Eigen::SparseMatrix<double> lower_;
     cholmod_common common_ = {};
-    cholmod_sparse sparse_ = {};
+    cholmod_sparse* permuted_ = nullptr;  ///< lower triangle
     cholmod_factor* factor_ = nullptr;
 };
 
@@ -193,10 +206,4 @@ BENCHMARK_CAPTURE(analyse, place, Order::Place)->Apply(of_every_size);
 }  // namespace
 }  // namespace arris
 
-int main(int argc, char** argv)
-{
-    setenv("OMP_NUM_THREADS", "1", 1);  // CHOLMOD's own loops
-    benchmark::Initialize(&argc, argv);
-    benchmark::RunSpecifiedBenchmarks();
-    return 0;
-}
+BENCHMARK_MAIN();

@@ -161,8 +161,8 @@ double round_off_energy(const Scene& scene, const State& state, const ClothEleme
 
 Energies compute_potential_energy(const Workspace& work, const MovingCloth& cloth)
 {
-    return compute_energies(work.eol.empty() ? work.mesh.elements : elements_at(work, cloth.material),
-                            work.mesh.terms, cloth.world);
+    if (work.eol.empty()) return compute_energies(work.mesh.elements, work.mesh.terms, cloth.world);
+    return compute_energies(elements_at(work, cloth.material), work.mesh.terms, cloth.world);
 }
 
 }  // namespace

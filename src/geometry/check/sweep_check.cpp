@@ -376,16 +376,17 @@ SweepReport check_sweep(const Obstacle& obstacle, const ClothMotion& motion, dou
     assert(motion.begin.size() == motion.end.size());
     const std::vector<Box3> boxes =
         sweep_boxes(*motion.faces, motion.sides ? motion.sides->cloth : motion.begin, motion.end);
-    Box3 cloth;
-    for (const Box3& box : boxes) cloth.extend(box);
     Box3 met = obstacle.bounds();
     if (motion.sides) met.extend(motion.sides->obstacle->bounds());
-    if (!cloth.intersects(met)) return {};
+    std::vector<int> faces;  // that may meet it
+    for (std::size_t f = 0; f < boxes.size(); ++f)
+        if (boxes[f].intersects(met)) faces.push_back(static_cast<int>(f));
+    if (faces.empty()) return {};
 
     const std::vector<OwnedElements> owned =
         assign_owners(static_cast<int>(motion.begin.size()), *motion.faces, *motion.edges);
     const GroupSearch search(obstacle, motion, thickness, boxes, owned);
-    return summarize(motion, collect_in_groups<FaceFinding>(boxes, search));
+    return summarize(motion, collect_in_groups<FaceFinding>(boxes, std::move(faces), search));
 }
 
 }  // namespace arris

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/box_tree.h"
@@ -81,7 +83,9 @@ std::vector<Result> collect_near_pairs(const SelfSurface& surface, const SelfMot
             }
         }
     };
-    return collect_in_groups<Result>(boxes, search);
+    std::vector<int> all(boxes.size());
+    std::iota(all.begin(), all.end(), 0);
+    return collect_in_groups<Result>(boxes, std::move(all), search);
 }
 
 }  // namespace arris

@@ -29,6 +29,7 @@ struct EliminationTree {
     int columns(int node) const { return first_column[node + 1] - first_column[node]; }
     int row_count(int node) const { return first_row[node + 1] - first_row[node]; }
     int below(int node) const { return row_count(node) - columns(node); }
+    std::ptrdiff_t value_count() const { return first_value.back(); }
     double flops(int node) const;  ///< of the supernode's partial factorisation
     double flops() const;          ///< of all
 };

@@ -27,6 +27,14 @@ void throw_if_it_does_not_fit(const cholmod_common& common)
     if (common.status < 0) throw std::length_error("the factor is too large");
 }
 
+/// Entries are not kept. A mesh that changes needs a little more at one time and a little less at another.
+void make_room(std::size_t size, std::vector<double>& buffer)
+{
+    if (buffer.size() >= size) return;
+    buffer = {};
+    buffer.resize(size + size / 8);
+}
+
 }  // namespace
 
 struct Factorization::Impl {
@@ -34,6 +42,7 @@ struct Factorization::Impl {
     VertexGraph graph;        ///< pattern that was analysed last
     std::vector<Vec2> place;  ///< with which it was analysed; empty where there were none
     std::optional<SymbolicFactor> symbolic;
+    // At least as large as they need be: they grow only.
     std::vector<double> values;                  ///< L
     std::vector<double> updates;                 ///< update matrices of a factorisation
     mutable std::vector<double> update_vectors;  ///< as the tree's rows: updates of a forward solve
@@ -73,9 +82,9 @@ void Factorization::Impl::analyse(const Matrix& matrix)
     throw_if_it_does_not_fit(common);
     symbolic.emplace(matrix, graph, *factor);
     cholmod_free_factor(&factor, &common);
-    values.resize(static_cast<std::size_t>(symbolic->tree.first_value.back()));
-    updates.resize(symbolic->updates.size);
-    update_vectors.resize(symbolic->tree.rows.size());
+    make_room(static_cast<std::size_t>(symbolic->tree.value_count()), values);
+    make_room(symbolic->updates.size, updates);
+    make_room(symbolic->tree.rows.size(), update_vectors);
 }
 
 Front Factorization::Impl::front(int s)
@@ -164,7 +173,7 @@ void Factorization::Impl::solve_backward(int s, double* x) const
 /// Of one triangular solve, which waits for memory: as long as so many flops take.
 double Factorization::Impl::solve_flops() const
 {
-    return 16.0 * static_cast<double>(values.size());
+    return 16.0 * static_cast<double>(symbolic->tree.value_count());
 }
 
 Factorization::Factorization() : impl_(std::make_unique<Impl>()) {}
@@ -230,7 +239,7 @@ Supernode Factorization::supernode(int s) const
 
 double Factorization::nonzeros() const
 {
-    return static_cast<double>(impl_->values.size());
+    return static_cast<double>(impl_->symbolic->tree.value_count());
 }
 
 double Factorization::flops() const

@@ -32,7 +32,8 @@ double stationarity(const VelocityProblem& problem, const ConstraintRows& constr
                     const Eigen::VectorXd& velocity, const Eigen::VectorXd& multipliers,
                     const Eigen::VectorXd& row_multipliers)
 {
-    const SymmetricProduct product = symmetric_product_with_magnitude(*problem.matrix, velocity);
+    const Eigen::VectorXd product = symmetric_product(*problem.matrix, velocity),
+                          round_off = product_of_magnitudes(*problem.matrix, velocity);
     const Eigen::VectorXd& rhs = *problem.rhs;
     Eigen::VectorXd force = multipliers, magnitude = multipliers.cwiseAbs();
     for (std::size_t k = 0; k < constraints.rows.size(); ++k)
@@ -45,8 +46,8 @@ double stationarity(const VelocityProblem& problem, const ConstraintRows& constr
     double result = 0.0;
     for (int i = 0; i < velocity.size(); ++i) {
         if (problem.is_fixed[i]) continue;
-        const double error = std::abs(product.value[i] - rhs[i] - force[i]);
-        const double scale = product.magnitude[i] + std::abs(rhs[i]) + magnitude[i];
+        const double error = std::abs(product[i] - rhs[i] - force[i]);
+        const double scale = round_off[i] + std::abs(rhs[i]) + magnitude[i];
         result = worse(result, relative(error, scale));
     }
     return result;

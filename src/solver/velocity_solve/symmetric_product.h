@@ -5,14 +5,11 @@
 
 namespace arris {
 
-/// `value` = A x and `magnitude` = |A| |x|, the scale of the round-off in `value`.
-struct SymmetricProduct {
-    Eigen::VectorXd value, magnitude;
-};
-
-/// A is the symmetric matrix whose lower triangle `matrix` holds; entries above the diagonal are ignored.
+/// A x, where `matrix` holds the lower triangle of the symmetric A in whole 3x3 blocks; entries above the
+/// diagonal are ignored.
 Eigen::VectorXd symmetric_product(const Eigen::SparseMatrix<double>& matrix, const Eigen::VectorXd& x);
-SymmetricProduct symmetric_product_with_magnitude(const Eigen::SparseMatrix<double>& matrix,
-                                                  const Eigen::VectorXd& x);
+
+/// |A| |x|, the scale of the round-off in A x.
+Eigen::VectorXd product_of_magnitudes(const Eigen::SparseMatrix<double>& matrix, const Eigen::VectorXd& x);
 
 }  // namespace arris
