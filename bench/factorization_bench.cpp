@@ -20,6 +20,8 @@
 #include "solver/velocity_solve/vertex_ordering.h"
 #include "tests/solver/cloth_system.h"
 
+extern "C" void openblas_set_num_threads(int);
+
 namespace arris {
 namespace {
 
@@ -55,6 +57,7 @@ class Cholmod {
   public:
     explicit Cholmod(const Eigen::SparseMatrix<double>& matrix)
     {
+        openblas_set_num_threads(1);  // its own threads make this five times as slow
         cholmod_start(&common_);
         common_.supernodal = CHOLMOD_SUPERNODAL;
         common_.nmethods = 1;

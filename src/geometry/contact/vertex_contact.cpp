@@ -33,10 +33,17 @@ struct Minimum {
     bool is_vague = false;  // too near to have a direction of its own; `normal` is a guess
 };
 
-// Sorts few elements, equal ones in their order; std::stable_sort would allocate even for one.
+// Sorts, equal elements in their order. They are nearly always few, and std::stable_sort allocates even for
+// one.
 template <class Key>
 void sort_by(std::vector<Minimum>& minima, const Key& key)
 {
+    constexpr std::size_t kFew = 16;
+    if (minima.size() > kFew) {
+        std::stable_sort(minima.begin(), minima.end(),
+                         [&](const Minimum& a, const Minimum& b) { return key(a) < key(b); });
+        return;
+    }
     for (std::size_t k = 1; k < minima.size(); ++k)
         for (std::size_t j = k; j > 0 && key(minima[j]) < key(minima[j - 1]); --j)
             std::swap(minima[j], minima[j - 1]);

@@ -31,7 +31,7 @@ void throw_if_it_does_not_fit(const cholmod_common& common)
 void make_room(std::size_t size, std::vector<double>& buffer)
 {
     if (buffer.size() >= size) return;
-    buffer = {};
+    std::vector<double>().swap(buffer);
     buffer.resize(size + size / 8);
 }
 
@@ -72,19 +72,26 @@ struct Factorization::Impl {
     double solve_flops() const;
 };
 
+/// Where anything throws, nothing counts as analysed.
 void Factorization::Impl::analyse(const Matrix& matrix)
 {
     symbolic.reset();
     graph = VertexGraph(matrix);
     std::vector<int> order = place.empty() ? order_by_metis(graph, common) : dissect(graph, place);
     cholmod_sparse pattern = graph.pattern();
-    cholmod_factor* factor = cholmod_analyze_p(&pattern, order.data(), nullptr, 0, &common);
+    const auto free_factor = [this](cholmod_factor* factor) { cholmod_free_factor(&factor, &common); };
+    const std::unique_ptr<cholmod_factor, decltype(free_factor)> of_vertices(
+        cholmod_analyze_p(&pattern, order.data(), nullptr, 0, &common), free_factor);
     throw_if_it_does_not_fit(common);
-    symbolic.emplace(matrix, graph, *factor);
-    cholmod_free_factor(&factor, &common);
-    make_room(static_cast<std::size_t>(symbolic->tree.value_count()), values);
-    make_room(symbolic->updates.size, updates);
-    make_room(symbolic->tree.rows.size(), update_vectors);
+    symbolic.emplace(matrix, graph, *of_vertices);
+    try {
+        make_room(static_cast<std::size_t>(symbolic->tree.value_count()), values);
+        make_room(symbolic->updates.size, updates);
+        make_room(symbolic->tree.rows.size(), update_vectors);
+    } catch (...) {
+        symbolic.reset();
+        throw;
+    }
 }
 
 Front Factorization::Impl::front(int s)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/velocity_solve/symmetric_product.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <vector>
@@ -30,22 +31,21 @@ void for_each_block(const Matrix& matrix, int first, int last, const Visit& visi
     }
 }
 
-/// The columns of so many vertices are summed by one thread, a third of a millisecond.
-constexpr int kColumns = 3000;
-
 /// The sum of what `add(first, last, sum)` adds for the columns of each batch of vertices. Batches of columns
-/// share rows: each has a sum of its own.
+/// share rows: each has a sum of its own, so there are few.
 template <class Add>
 Eigen::VectorXd sum_columns(const Matrix& matrix, const Add& add)
 {
-    const int vertices = static_cast<int>(matrix.cols()) / 3;
-    std::vector<Eigen::VectorXd> sums(static_cast<std::size_t>((vertices + kColumns - 1) / kColumns));
-    for_each_batch(vertices, kColumns, [&](int first, int last, int batch) {
+    constexpr int kMostBatches = 8, kLeastSize = 3000;  // vertices, a third of a millisecond
+    const int vertices = static_cast<int>(matrix.cols()) / 3,
+              size = std::max(kLeastSize, (vertices + kMostBatches - 1) / kMostBatches);
+    std::vector<Eigen::VectorXd> sums(static_cast<std::size_t>((vertices + size - 1) / size));
+    for_each_batch(vertices, size, [&](int first, int last, int batch) {
         sums[batch] = Eigen::VectorXd::Zero(matrix.cols());
         add(first, last, sums[batch].data());
     });
     if (sums.empty()) return Eigen::VectorXd();
-    for_each_batch(3 * vertices, 3 * kColumns, [&](int first, int last, int) {
+    for_each_batch(3 * vertices, 3 * size, [&](int first, int last, int) {
         for (std::size_t k = 1; k < sums.size(); ++k)
             sums[0].segment(first, last - first) += sums[k].segment(first, last - first);
     });

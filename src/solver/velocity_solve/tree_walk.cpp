@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/velocity_solve/tree_walk.h"
 
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_group.h>
 
 #include <algorithm>
@@ -17,6 +18,13 @@ constexpr double kLargestShare = 1.0 / 64.0, kLeastFlops = 1e6;
 
 /// Flops from which threads are woken, half a millisecond.
 constexpr double kWorthThreads = 1e7;
+
+/// One thread alone goes in order: then updates are still in the cache when they are needed.
+bool is_for_one_thread(double flops)
+{
+    using Control = tbb::global_control;
+    return flops < kWorthThreads || Control::active_value(Control::max_allowed_parallelism) == 1;
+}
 
 }  // namespace
 
@@ -46,12 +54,11 @@ TreeWalk::TreeWalk(const EliminationTree& tree)
         else
             subtrees_.push_back(s);
     }
-    std::stable_sort(subtrees_.begin(), subtrees_.end(), [&](int a, int b) { return flops[a] > flops[b]; });
 }
 
 void TreeWalk::up(double flops, const Visit& visit) const
 {
-    if (flops < kWorthThreads) {
+    if (is_for_one_thread(flops)) {
         for (int s = 0; s < tree_.size(); ++s) visit(s);
         return;
     }
@@ -61,6 +68,8 @@ void TreeWalk::up(double flops, const Visit& visit) const
     const auto climb = [&](int s) {
         for (; s >= 0 && --waits_for_[s] == 0; s = tree_.parent[s]) visit(s);
     };
+    // A thread takes its own last task first, another one's first task first: so each goes through its part
+    // of the tree in order, from either end.
     tbb::task_group tasks;
     for (const int root : subtrees_)
         tasks.run([&, root] {
@@ -72,7 +81,7 @@ void TreeWalk::up(double flops, const Visit& visit) const
 
 void TreeWalk::down(double flops, const Visit& visit) const
 {
-    if (flops < kWorthThreads) {
+    if (is_for_one_thread(flops)) {
         for (int s = tree_.size() - 1; s >= 0; --s) visit(s);
         return;
     }

@@ -237,6 +237,7 @@ std::vector<int> order_by_metis(VertexGraph& graph, cholmod_common& common)
 
 std::vector<int> dissect(const VertexGraph& graph, const std::vector<Vec2>& place)
 {
+    assert(std::all_of(place.begin(), place.end(), [](const Vec2& at) { return at.allFinite(); }));
     return Dissection(graph, place).order();
 }
 

@@ -5,6 +5,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <Eigen/Cholesky>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -131,7 +132,7 @@ TEST_P(EveryOrdering, IsTheSameWithAnyNumberOfThreads)
     }
 }
 
-/// Values that are no numbers, or the wrong ones, end a factorisation by several threads, too.
+/// Wherever it fails, a factorisation by several threads ends.
 TEST_P(EveryOrdering, OfManyVerticesSaysWhereItIsNotPositiveDefinite)
 {
     analyse(60);
@@ -142,6 +143,16 @@ TEST_P(EveryOrdering, OfManyVerticesSaysWhereItIsNotPositiveDefinite)
         matrix.coeffRef(at, at) = value;
         EXPECT_TRUE(factorization.factorise(matrix, pin_every(0, matrix.rows())));
     }
+}
+
+/// BLAS does not tell a NaN from a number: whoever uses the result does.
+TEST_P(EveryOrdering, EndsWithValuesThatAreNoNumbers)
+{
+    analyse(60);
+    matrix.coeffRef(5000, 5000) = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<char> is_pinned = pin_every(0, matrix.rows());
+    if (!factorization.factorise(matrix, is_pinned)) return;
+    EXPECT_FALSE(factorization.solve_forward(Eigen::VectorXd::Ones(matrix.rows())).allFinite());
 }
 
 INSTANTIATE_TEST_SUITE_P(Factorization, EveryOrdering, ::testing::Bool());

@@ -92,13 +92,17 @@ TEST_P(EveryTree, IsVisitedUpAndDownOnceEach)
         ASSERT_EQ(static_cast<int>(order.size()), tree.size());
         std::vector<int> place = places_of();
         for (int s = 0; s < tree.size(); ++s)
-            if (tree.parent[s] >= 0) { EXPECT_LT(place[s], place[tree.parent[s]]); }
+            if (tree.parent[s] >= 0) {
+                EXPECT_LT(place[s], place[tree.parent[s]]);
+            }
         order.clear();
         walk.down(flops, note);
         ASSERT_EQ(static_cast<int>(order.size()), tree.size());
         place = places_of();
         for (int s = 0; s < tree.size(); ++s)
-            if (tree.parent[s] >= 0) { EXPECT_GT(place[s], place[tree.parent[s]]); }
+            if (tree.parent[s] >= 0) {
+                EXPECT_GT(place[s], place[tree.parent[s]]);
+            }
     }
 }
 
@@ -110,6 +114,26 @@ TEST_P(EveryTree, TakesLessSpaceThanAllUpdates)
     EXPECT_LE(places.size, all);
     EXPECT_GT(walk.critical_flops(), 0.0);
     EXPECT_LE(walk.critical_flops(), tree.flops());
+}
+
+/// A supernode with very many children: the cost must not be quadratic, or this takes minutes.
+TEST(UpdatePlaces, OfAStarAreFoundInNoTime)
+{
+    const int leaves = 200000;
+    EliminationTree tree;
+    for (int s = 0; s <= leaves; ++s) {
+        tree.first_column.push_back(3 * s);
+        tree.first_row.push_back(static_cast<int>(tree.rows.size()));
+        tree.rows.resize(tree.rows.size() + (s < leaves ? 6 : 3));
+        tree.parent.push_back(s < leaves ? leaves : -1);
+        tree.first_child.push_back(0);
+        if (s < leaves) tree.children.push_back(s);
+    }
+    tree.first_column.push_back(3 * leaves + 3);
+    tree.first_row.push_back(static_cast<int>(tree.rows.size()));
+    tree.first_child.push_back(leaves);
+    const TreeWalk walk(tree);
+    EXPECT_GE(UpdatePlaces(tree, walk).size, 9U * leaves);
 }
 
 INSTANTIATE_TEST_SUITE_P(UpdatePlaces, EveryTree, ::testing::Range(0u, 12u));
