@@ -5,14 +5,14 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
 #include <vector>
 
 namespace arris {
 
-/// Elements whose work takes some tens of microseconds at least: a hundred times what a task costs.
+/// Elements of a batch, where each takes some tenths of a microsecond: a batch is to cost far more than a
+/// task.
 constexpr int kBatch = 128;
-/// Of elements whose work takes a tenth of a microsecond or less.
+/// The size for elements whose work takes a tenth of a microsecond or less.
 constexpr int kCheapBatch = 1024;
 
 /// Calls `visit(first, last, batch)` for each batch [first, last) of `count` elements, in parallel. One batch

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/check/penetration.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <numeric>
 #include <optional>
 
+#include "geometry/batches.h"
 #include "geometry/cgal.h"
 #include "geometry/check/deepest_point.h"
 #include "geometry/obstacle/obstacle_touch.h"
@@ -34,11 +33,10 @@ std::vector<Touch> find_touching(const Obstacle& obstacle, const std::vector<Vec
                                  const std::vector<Face>& faces)
 {
     std::vector<Touch> touches(faces.size(), Touch::Nothing);
-    constexpr int kGrain = 256;  // faces; most of them are far away and cheap
-    const tbb::blocked_range<int> all(0, static_cast<int>(faces.size()), kGrain);
-    tbb::parallel_for(all, [&](const tbb::blocked_range<int>& part) {
+    constexpr int kSize = 256;  // faces; most of them are far away and cheap
+    for_each_batch(static_cast<int>(faces.size()), kSize, [&](int first, int last, int) {
         ObstacleTouch touch;
-        for (int f = part.begin(); f < part.end(); ++f) {
+        for (int f = first; f < last; ++f) {
             find_touches(obstacle, corners_of(positions, faces[f]), touch);
             if (!touch.is_any()) continue;
             const bool is_in_solid = std::any_of(touch.faces.begin(), touch.faces.end(),

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/system/linear_system.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cassert>
 #include <numeric>
 #include <utility>
 
+#include "geometry/batches.h"
 #include "physics/elements/eulerian_element.h"
 #include "physics/elements/momentum_flux.h"
 
@@ -22,17 +21,9 @@ void for_each_by_color(const ElementColors& colors, std::size_t count, const Vis
 {
     if (colors.start.empty())
         for (std::size_t e = 0; e < count; ++e) visit(static_cast<int>(e));
-    constexpr int kGrain = 128;  // a few tens of microseconds: far above the cost of a task
-    const auto visit_part = [&](const tbb::blocked_range<int>& part) {
-        for (int i = part.begin(); i < part.end(); ++i) visit(colors.order[i]);
-    };
-    for (std::size_t k = 0; k + 1 < colors.start.size(); ++k) {
-        const tbb::blocked_range<int> range(colors.start[k], colors.start[k + 1], kGrain);
-        if (range.is_divisible())
-            tbb::parallel_for(range, visit_part);
-        else
-            visit_part(range);
-    }
+    for (std::size_t k = 0; k + 1 < colors.start.size(); ++k)
+        for_each_in_batches(colors.start[k + 1] - colors.start[k],
+                            [&](int i) { visit(colors.order[colors.start[k] + i]); });
 }
 
 /// Reduces an element to the coordinates of its vertices if any corner has a basis of its own.

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/contact/contacts.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <tuple>
 
+#include "geometry/batches.h"
 #include "geometry/self_contact/self_contact_search.h"
 
 namespace arris {
@@ -114,7 +113,7 @@ void ride(double end, double cell, Carrier& carrier)
     const std::vector<Vec3>& world = sides->cloth;  // the obstacle's frame is the world
     carrier.motion.sides = sides;
     carrier.rides.resize(world.size());
-    tbb::parallel_for(std::size_t{0}, world.size(), [&](std::size_t v) {
+    for_each_in_batches(static_cast<int>(world.size()), [&](int v) {
         const Vec3& place = world[v];
         carrier.rides[v] = {place, place, Mat3::Identity(), Vec3::Zero()};
         if (from->bounds().squaredExteriorDistance(place) > reach * reach) return;

@@ -22,7 +22,7 @@ struct EliminationTree {
     std::vector<int> children;                ///< ascending
 
     EliminationTree() = default;
-    /// Of the supernodal symbolic factor of a graph of vertices, with three unknowns each.
+    /// From CHOLMOD's supernodal symbolic factor of a graph of vertices, with three unknowns each.
     explicit EliminationTree(const cholmod_factor_struct& symbolic);
 
     int size() const { return static_cast<int>(parent.size()); }

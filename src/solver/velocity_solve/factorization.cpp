@@ -177,7 +177,7 @@ void Factorization::Impl::solve_backward(int s, double* x) const
     cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, columns, block, count, own, 1);
 }
 
-/// Of one triangular solve, which waits for memory: as long as so many flops take.
+/// Flops that take as long as one triangular solve, which waits for memory.
 double Factorization::Impl::solve_flops() const
 {
     return 16.0 * static_cast<double>(symbolic->tree.value_count());

@@ -17,7 +17,8 @@ struct VertexGraph {
     std::vector<int> neighbour;    ///< of vertex v: those w >= v, v included
 
     VertexGraph() = default;
-    /// Of a matrix 3n x 3n whose lower triangle consists of whole 3x3 blocks, those on the diagonal included.
+    /// From a matrix 3n x 3n whose lower triangle consists of whole 3x3 blocks, those on the diagonal
+    /// included.
     explicit VertexGraph(const Eigen::SparseMatrix<double>& matrix);
 
     bool is_of(const Eigen::SparseMatrix<double>& matrix) const;
@@ -30,9 +31,10 @@ struct VertexGraph {
 /// graph alone. Throws std::bad_alloc or std::length_error where the graph does not fit.
 std::vector<int> order_by_metis(VertexGraph& graph, cholmod_common_struct& common);
 
-/// The same by nested dissection in the plane (George 1973): parts are cut near the median along one of four
-/// directions, where the separator is smallest, and the separator is eliminated last. A function of graph and
-/// places alone, several times faster than METIS. `place`: of each vertex, such as its material coordinates.
+/// An elimination order by nested dissection in the plane (George 1973): parts are cut near the median along
+/// one of four directions, where the separator is smallest, and the separator is eliminated last. A function
+/// of graph and places alone, several times faster than METIS. `place`: of each vertex, such as its material
+/// coordinates.
 std::vector<int> dissect(const VertexGraph& graph, const std::vector<Vec2>& place);
 
 }  // namespace arris
