@@ -25,8 +25,9 @@ struct RefinedSolution {
 std::optional<RefinedSolution> solve_refined(const Eigen::MatrixXd& A, const Eigen::MatrixXd& shifted,
                                              const Eigen::VectorXd& b);
 
-/// X with A X = B by LAPACK's Gaussian elimination with pivots, which on dense problems of a few hundred
-/// unknowns is several times as fast as Eigen's. Not finite where A is singular.
+/// X with A X = B by Gaussian elimination with pivots, the same for any number of threads. On dense problems
+/// of a few hundred unknowns LAPACK's panels are several times as fast as Eigen's. Not finite where A is
+/// singular.
 Eigen::MatrixXd solve_dense(Eigen::MatrixXd A, Eigen::MatrixXd B);
 
 }  // namespace arris

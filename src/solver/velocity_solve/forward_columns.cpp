@@ -135,25 +135,36 @@ double ForwardColumns::set_gram(const Panel& a, const Panel& b)
 Eigen::VectorXd ForwardColumns::dot(const Eigen::VectorXd& forward) const
 {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(size_);
-    for (const Panel& panel : panels_)
-        for (std::size_t k = 0; k < panel.path.size(); ++k) {
-            const Supernode block = factorization_->supernode(panel.path[k]);
-            cblas_dgemv(CblasColMajor, CblasNoTrans, panel.width, block.columns, 1.0,
-                        panel.values.data() + panel.offset[k], panel.width, forward.data() + block.first, 1,
-                        1.0, result.data() + panel.first, 1);
-        }
+    for_each_in_batches(
+        static_cast<int>(panels_.size()),
+        [&](int p) {
+            const Panel& panel = panels_[p];
+            for (std::size_t k = 0; k < panel.path.size(); ++k) {
+                const Supernode block = factorization_->supernode(panel.path[k]);
+                cblas_dgemv(CblasColMajor, CblasNoTrans, panel.width, block.columns, 1.0,
+                            panel.values.data() + panel.offset[k], panel.width, forward.data() + block.first,
+                            1, 1.0, result.data() + panel.first, 1);
+            }
+        },
+        4);
     return result;
 }
 
+/// Each task has some supernodes, and there takes the panels in order.
 void ForwardColumns::accumulate(const Eigen::VectorXd& coefficients, Eigen::VectorXd& forward) const
 {
-    for (const Panel& panel : panels_)
-        for (std::size_t k = 0; k < panel.path.size(); ++k) {
-            const Supernode block = factorization_->supernode(panel.path[k]);
-            cblas_dgemv(CblasColMajor, CblasTrans, panel.width, block.columns, 1.0,
-                        panel.values.data() + panel.offset[k], panel.width, coefficients.data() + panel.first,
-                        1, 1.0, forward.data() + block.first, 1);
+    constexpr int kSupernodes = 8;
+    for_each_batch(factorization_->tree().size(), kSupernodes, [&](int first, int last, int) {
+        for (const Panel& panel : panels_) {
+            const auto begin = std::lower_bound(panel.path.begin(), panel.path.end(), first);
+            for (auto at = begin; at != panel.path.end() && *at < last; ++at) {
+                const Supernode block = factorization_->supernode(*at);
+                cblas_dgemv(CblasColMajor, CblasTrans, panel.width, block.columns, 1.0,
+                            panel.values.data() + panel.offset[at - panel.path.begin()], panel.width,
+                            coefficients.data() + panel.first, 1, 1.0, forward.data() + block.first, 1);
+            }
         }
+    });
 }
 
 }  // namespace arris

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/batches.h"
 #include "solver/velocity_solve/dense_solve.h"
 #include "solver/velocity_solve/line_search.h"
 #include "solver/velocity_solve/slip_law.h"
@@ -206,7 +207,7 @@ bool MemberNewton::take_step(bool does_search)
     const VectorXd moved = S * step;
     MatrixXd matrix(count, count);
     VectorXd rhs(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
+    for_each_in_batches(static_cast<int>(count), [&](int i) {
         const int a = differing_[i], b = partner_[a];
         const double own = slopes_(a, 0), other = slopes_(a, 1);
         rhs[i] = error_[a] - own * moved[a] - other * moved[b];
@@ -217,7 +218,7 @@ bool MemberNewton::take_step(bool does_search)
         const double scale = 1.0 / matrix.row(i).lpNorm<Eigen::Infinity>();
         matrix.row(i) *= scale;
         rhs[i] *= scale;
-    }
+    });
     if (count > 0) step(differing_) = solve_dense(std::move(matrix), rhs).col(0);
     if (!step.allFinite()) return false;
     const VectorXd way = S * step;
