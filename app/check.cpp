@@ -27,10 +27,13 @@ std::string in_words(const Vec3& v)
     return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x(), v.y(), v.z());
 }
 
-std::string in_words(const MaterialBox& box)
+/// A box in the plane of all pieces, in the coordinates of its own.
+std::string in_words(const Scene& scene, const MaterialBox& box)
 {
-    return fmt::format("[[{:.6g}, {:.6g}], [{:.6g}, {:.6g}]]", box.min.x(), box.min.y(), box.max.x(),
-                       box.max.y());
+    const PiecePlace& piece = scene.pieces[static_cast<std::size_t>(scene.materials.piece_at(box.min))];
+    const Vec2 min = piece.from_plane(box.min), max = piece.from_plane(box.max);
+    return fmt::format("[[{:.6g}, {:.6g}], [{:.6g}, {:.6g}]]{}", min.x(), min.y(), max.x(), max.y(),
+                       piece.name.empty() ? "" : " of " + piece.name);
 }
 
 template <typename Point>
@@ -47,25 +50,37 @@ std::string extent(const std::vector<Point>& points)
     return words + " m";
 }
 
-void describe_cloth(const RunConfig& config, const EdgeLengths& edges, Lines& lines)
+void describe_material(const Material& material, const std::string& name, Lines& lines)
 {
-    const ClothMesh& cloth = config.cloth;
-    const Material& material = config.scene.material;
+    lines.push_back(fmt::format(
+        "  {}: density {:g} kg/m^2, membrane {:g} N/m, Poisson ratio {:g}, bending {:g} J, damping {:g} s, "
+        "thickness {:g} m",
+        name, material.density, material.youngs_modulus, material.poisson_ratio, material.bending_stiffness,
+        material.damping, material.thickness));
+}
+
+void describe_piece(const RunConfig& config, std::size_t i, Lines& lines)
+{
+    const ClothMesh cloth = extract_piece(config, i);
+    const Material& material = config.scene.materials[static_cast<int>(i)];
+    const nlohmann::ordered_json& json = *piece_tables(config.as_run)[i];
+    const EdgeLengths edges = measure_edges(cloth, make_topology(cloth.vertex_count(), cloth.faces));
     const double area = material_area(cloth);
-    lines.push_back(fmt::format("cloth: {} of material, {:.6g} m^2, {:.4g} kg; {}, {}",
-                                extent(cloth.material), area, material.density * area,
-                                counted(cloth.vertex_count(), "vertex", "vertices"),
+    const std::string& name = config.pieces[i].name;
+    lines.push_back(fmt::format("cloth{}: {} of material, {:.6g} m^2, {:.4g} kg; {}, {}",
+                                name.empty() ? "" : " " + name, extent(cloth.material), area,
+                                material.density * area, counted(cloth.vertex_count(), "vertex", "vertices"),
                                 counted(cloth.face_count(), "face", "faces")));
     lines.push_back(
         fmt::format("  mesh edges: mean {:.4g} m, from {:.4g} to {:.4g} m; least angle {:.3g} degrees",
                     edges.mean, edges.least, edges.greatest, least_material_angle(cloth)));
     lines.push_back(fmt::format("  initial extent: {}", extent(cloth.world)));
-    lines.push_back(fmt::format(
-        "  {}: density {:g} kg/m^2, membrane {:g} N/m, Poisson ratio {:g}, bending {:g} J, damping {:g} s, "
-        "thickness {:g} m",
-        config.as_run["cloth"]["material"]["preset"].get<std::string>(), material.density,
-        material.youngs_modulus, material.poisson_ratio, material.bending_stiffness, material.damping,
-        material.thickness));
+    const std::string preset = json["material"]["preset"].get<std::string>();
+    describe_material(material,
+                      json.contains("fabric")
+                          ? fmt::format("fabric {} ({})", json["fabric"].get<std::string>(), preset)
+                          : preset,
+                      lines);
 }
 
 void describe_effects(const RunConfig& config, Lines& lines)
@@ -216,18 +231,18 @@ void describe_meetings(const RunConfig& config, Lines& lines)
         lines.push_back(
             fmt::format("pin.{}: {} in {}, {}{}{}", i,
                         counted(vertices_in_box(config.cloth, pin.material).size(), "vertex", "vertices"),
-                        in_words(pin.material), pin_motion(scene, pin), from, until));
+                        in_words(scene, pin.material), pin_motion(scene, pin), from, until));
     }
     for (std::size_t i = 0; i < scene.pulls.size(); ++i) {
         const Pull& pull = scene.pulls[i];
         lines.push_back(
             fmt::format("pull.{}: {} N on {} of {}", i, in_words(pull.force),
                         counted(spread_over_box(config.cloth, pull.material).size(), "vertex", "vertices"),
-                        in_words(pull.material)));
+                        in_words(scene, pull.material)));
     }
     for (const Probe& probe : config.probes)
-        lines.push_back(fmt::format("probe {}: material point [{:.6g}, {:.6g}], in face {}", probe.name,
-                                    probe.material.x(), probe.material.y(),
+        lines.push_back(fmt::format("probe {}: material point {}, in face {}", probe.name,
+                                    material_in_words(config.scene, probe.material, 6),
                                     locate(config.cloth, probe.material).face));
 }
 
@@ -265,7 +280,7 @@ std::vector<std::string> describe_scene(const RunConfig& config)
     Lines lines = {fmt::format("title: {}", config.title)};
     const EdgeLengths edges =
         measure_edges(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces));
-    describe_cloth(config, edges, lines);
+    for (std::size_t i = 0; i < config.pieces.size(); ++i) describe_piece(config, i, lines);
     describe_obstacles(config, edges, lines);
     describe_effects(config, lines);
     describe_meetings(config, lines);

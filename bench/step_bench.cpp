@@ -86,7 +86,7 @@ Drop& dropped(const benchmark::State& bench)
     const auto found = made.find(key);
     if (found != made.end()) return found->second;
     Drop& drop = made[key];
-    drop.scene.material = {0.15, 500.0, 0.3, 1e-5, 0.0, 1e-3};
+    drop.scene.materials[0] = {0.15, 500.0, 0.3, 1e-5, 0.0, 1e-3};
     drop.scene.gravity = Gravity{};
     drop.scene.obstacles.push_back(make_floor());
     if (bench.range(1) == Draped)

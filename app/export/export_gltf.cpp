@@ -93,7 +93,8 @@ std::size_t add_cloth_mesh(GltfAsset& asset, const Shapes& shapes, std::size_t f
 {
     const Frame& first = shapes.first();
     std::vector<std::array<float, 2>> uv;
-    for (const Vec2& X : first.material) uv.push_back({static_cast<float>(X[0]), static_cast<float>(X[1])});
+    for (const Vec2& X : first.own_material())
+        uv.push_back({static_cast<float>(X[0]), static_cast<float>(X[1])});
     const std::size_t indices = asset.add("SCALAR", kGltfUnsigned, to_indices(first.faces), kGltfIndexArray);
     const std::size_t uvs = asset.add("VEC2", kGltfFloat, uv, kGltfVertexArray);
 

@@ -183,7 +183,8 @@ std::vector<Attribute> attributes(std::size_t frame_count, const Changes& change
          [](auto& out, const Frame& frame) { put_array(out, frame.vertex_velocity); }},
         {"float3[] extent", every, put_extent},
         {"texCoord2f[] primvars:st", changes.is_material_moving ? every : first,
-         [](auto& out, const Frame& frame) { put_array(out, frame.material); }, "interpolation = \"vertex\""},
+         [](auto& out, const Frame& frame) { put_array(out, frame.own_material()); },
+         "interpolation = \"vertex\""},
     };
     if (!changes.has_eol_edges) return list;
     list.push_back({"int[] creaseIndices", samples_at(changes.creases), put_creases});
@@ -217,6 +218,25 @@ std::string stage_header(std::size_t frame_count, const UsdOptions& options)
         options.frames_per_second);
 }
 
+/// A GeomSubset of faces for each of several pieces.
+void write_pieces(AtomicFile& file, const FrameSource& frames, const Changes& changes)
+{
+    if (frames.count == 0) return;
+    const std::vector<PiecePlace> pieces = frames.read(0).pieces;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        file.write(
+            fmt::format("def GeomSubset \"{}\"\n{{\n"
+                        "    uniform token elementType = \"face\"\n"
+                        "    uniform token familyName = \"piece\"\n",
+                        pieces[p].name));
+        write_attribute(file, frames,
+                        {"int[] indices", samples_at(changes.faces), [&](auto& out, const Frame& frame) {
+                             put_array(out, frame.faces_of(static_cast<int>(p)));
+                         }});
+        file.write("}\n");
+    }
+}
+
 }  // namespace
 
 void write_usd(const std::string& path, const FrameSource& frames, const UsdOptions& options,
@@ -227,6 +247,7 @@ void write_usd(const std::string& path, const FrameSource& frames, const UsdOpti
     file.write(stage_header(frames.count, options));
     for (const Attribute& attribute : attributes(frames.count, changes))
         write_attribute(file, frames, attribute);
+    write_pieces(file, frames, changes);
     file.write("}\n");
     if (!obstacles.empty()) file.write("\ndef Scope \"obstacles\"\n{\n");
     for (const ObstacleRecord& obstacle : obstacles)

@@ -188,6 +188,7 @@ void sample_vertices(const Sampling& sampling, const Frame& frame, const FramePo
 void sample_faces(const Sampling& sampling, const Frame& frame, const FramePoints& points, Frame& result)
 {
     result.faces = sampling.mesh.faces;
+    result.pieces = sampling.mesh.pieces;
     for (const Face& face : result.faces) {
         const int f = points.face_at(centroid(sampling.mesh.material, face));
         const double share =
@@ -218,7 +219,7 @@ GridSize parse_grid(const std::string& text)
 ConstantMesh make_constant_mesh(const Frame& first, const std::optional<GridSize>& grid)
 {
     if (grid) return make_grid(require_rectangle(first), *grid);
-    return {first.material, first.faces, first.ids};
+    return {first.material, first.faces, first.ids, first.pieces};
 }
 
 FrameSource resampled_frames(const FrameSource& frames, const ConstantMesh& mesh)

@@ -21,6 +21,7 @@ struct ConstantMesh {
     std::vector<Vec2> material;      ///< m
     std::vector<Face> faces;         ///< counter-clockwise
     std::vector<std::uint32_t> ids;  ///< of vertices; of a grid, numbers that no frame need have
+    std::vector<PiecePlace> pieces;  ///< of several pieces
 };
 
 /// The mesh of the first frame, EOL vertices included; with `grid`, a grid over the first frame's rectangle

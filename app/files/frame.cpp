@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <charconv>
@@ -11,8 +12,12 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "app/files/atomic_file.h"
+#include "app/text/printable.h"
 #include "geometry/input_error.h"
 
 namespace arris {
@@ -23,23 +28,27 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::uint64_t kVertexBytes = 11 * 8 + 4 + 1 + 1;
 constexpr std::uint64_t kFaceBytes = 1 + 3 * 4 + 3 * 8;
-constexpr std::uint64_t kEdgeBytes = 2 * 4;
-constexpr std::size_t kMaxHeaderBytes = 2048;
+constexpr std::uint64_t kEdgeBytes = 2 * 4, kPieceBytes = 4;
+constexpr std::size_t kMaxHeaderBytes = 2048 + 128 * kMaxPieces;
 
 struct Counts {
     std::uint64_t vertices = 0, faces = 0, edges = 0;
 
-    std::uint64_t body_bytes() const
+    std::uint64_t body_bytes(bool has_pieces) const
     {
-        return vertices * kVertexBytes + faces * kFaceBytes + edges * kEdgeBytes;
+        return vertices * kVertexBytes + faces * (kFaceBytes + (has_pieces ? kPieceBytes : 0)) +
+               edges * kEdgeBytes;
     }
 };
 
 // The only definition of the header: the reader compares the file with it.
-std::string header(const Counts& counts)
+std::string header(const Counts& counts, const std::vector<PiecePlace>& pieces)
 {
     std::string text = "ply\nformat binary_little_endian 1.0\n";
     text += "comment Arris frame: m, m/s, J; v: of the vertex, w: of the material there\n";
+    if (!pieces.empty()) text += "comment pieces: name, shift of u, u where it begins\n";
+    for (const PiecePlace& piece : pieces)
+        text += fmt::format("comment piece {} {} {}\n", piece.name, piece.shift, piece.begin);
     text += fmt::format("element vertex {}\n", counts.vertices);
     for (const char* name : {"x", "y", "z", "u", "v", "vx", "vy", "vz", "wx", "wy", "wz"})
         text += fmt::format("property double {}\n", name);
@@ -47,6 +56,7 @@ std::string header(const Counts& counts)
     text += fmt::format("element face {}\n", counts.faces);
     text += "property list uchar int vertex_indices\n";
     text += "property double strain\nproperty double stretch_energy\nproperty double bending_energy\n";
+    if (!pieces.empty()) text += "property int piece\n";
     text += fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n", counts.edges);
     return text + "end_header\n";
 }
@@ -81,6 +91,7 @@ void put_face(std::string& bytes, const Frame& frame, std::size_t i)
     put(bytes, frame.strain[i]);
     put(bytes, frame.stretch_energy[i]);
     put(bytes, frame.bending_energy[i]);
+    if (!frame.pieces.empty()) put(bytes, std::int32_t{frame.piece_of(frame.faces[i])});
 }
 
 [[maybe_unused]] bool has_matching_sizes(const Frame& frame)
@@ -167,6 +178,8 @@ void take_face(BodyReader& reader, std::size_t i, Frame& frame)
     frame.strain[i] = reader.take_finite("face", i);
     frame.stretch_energy[i] = reader.take_finite("face", i);
     frame.bending_energy[i] = reader.take_finite("face", i);
+    if (!frame.pieces.empty() && reader.take<std::int32_t>() != frame.piece_of(face))
+        reader.fail("face", i, "is not where its piece is");
 }
 
 void take_edge(BodyReader& reader, std::size_t i, Frame& frame)
@@ -203,32 +216,66 @@ std::uint64_t find_count(const std::string& path, const std::string& text, const
     return count;
 }
 
-// Returns the counts and leaves the stream at the body. Accepts only the header of write_frame.
-Counts read_header(const std::string& path, std::istream& in)
+/// The pieces that the comments name.
+std::vector<PiecePlace> find_pieces(const std::string& path, const std::string& text)
+{
+    std::vector<PiecePlace> pieces;
+    const std::string key = "\ncomment piece ";
+    for (std::size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + 1)) {
+        std::istringstream line(text.substr(at + key.size(), text.find('\n', at + 1) - at - key.size()));
+        std::string shift, begin;
+        PiecePlace piece;
+        line >> piece.name >> shift >> begin;
+        const auto read = [&](const std::string& word, double& value) {
+            return std::from_chars(word.data(), word.data() + word.size(), value).ec == std::errc();
+        };
+        const bool is_first = pieces.empty();
+        if (!read(shift, piece.shift) || !read(begin, piece.begin) || !std::isfinite(piece.shift) ||
+            is_first == std::isfinite(piece.begin) || (!is_first && !(piece.begin > pieces.back().begin)))
+            throw InputError(fmt::format("{}: is not a frame: its piece {} has no place", path,
+                                         printable(piece.name, 64)));
+        pieces.push_back(piece);
+    }
+    return pieces;
+}
+
+struct Header {
+    Counts counts;
+    std::vector<PiecePlace> pieces;
+    std::size_t bytes;
+};
+
+// Leaves the stream at the body. Accepts only the header of write_frame.
+Header read_header(const std::string& path, std::istream& in)
 {
     std::string text(kMaxHeaderBytes, '\0');
     in.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(in.gcount()));
     if (!text.starts_with("ply\n"))
         throw InputError(path + ": is not a frame: it does not begin with \"ply\"");
+    constexpr std::string_view kEnd = "\nend_header\n";
+    text.resize(std::min(text.size(), text.find(kEnd)));  // what looks like a header in the body is none
     const Counts counts = {find_count(path, text, "vertex"), find_count(path, text, "face"),
                            find_count(path, text, "edge")};
-    const std::string expected = header(counts);
+    const std::vector<PiecePlace> pieces = find_pieces(path, text);
+    const std::string expected = header(counts, pieces);
+    text += kEnd;
     if (!text.starts_with(expected))
         throw InputError(path + ": is not a frame: its header differs from that of `arris run`");
     in.clear();
     in.seekg(static_cast<std::streamoff>(expected.size()));
-    return counts;
+    return {counts, pieces, expected.size()};
 }
 
-std::string read_body(const std::string& path, std::istream& in, const Counts& counts,
-                      std::uint64_t file_bytes)
+std::string read_body(const std::string& path, std::istream& in, const Header& read, std::uint64_t file_bytes)
 {
-    const std::uint64_t promised = header(counts).size() + counts.body_bytes();
+    const Counts& counts = read.counts;
+    const std::uint64_t body_bytes = counts.body_bytes(!read.pieces.empty()),
+                        promised = read.bytes + body_bytes;
     if (promised != file_bytes)
         throw InputError(
             fmt::format("{}: has {} bytes, but its header implies {}", path, file_bytes, promised));
-    std::string body(counts.body_bytes(), '\0');
+    std::string body(body_bytes, '\0');
     in.read(body.data(), static_cast<std::streamsize>(body.size()));
     if (in.gcount() != static_cast<std::streamsize>(body.size())) throw InputError(path + ": cannot be read");
     return body;
@@ -236,12 +283,44 @@ std::string read_body(const std::string& path, std::istream& in, const Counts& c
 
 }  // namespace
 
+namespace {
+
+int piece_at(const std::vector<PiecePlace>& pieces, const Vec2& X)
+{
+    const auto after = std::upper_bound(pieces.begin(), pieces.end(), X.x(),
+                                        [](double u, const PiecePlace& piece) { return u < piece.begin; });
+    return std::max(0, static_cast<int>(after - pieces.begin()) - 1);
+}
+
+}  // namespace
+
+int Frame::piece_of(const Face& face) const
+{
+    return piece_at(pieces, material[face[0]]);
+}
+
+std::vector<Vec2> Frame::own_material() const
+{
+    std::vector<Vec2> own = material;
+    if (!pieces.empty())
+        for (Vec2& X : own) X = pieces[piece_at(pieces, X)].from_plane(X);
+    return own;
+}
+
+std::vector<int> Frame::faces_of(int piece) const
+{
+    std::vector<int> found;
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        if (piece_of(faces[f]) == piece) found.push_back(static_cast<int>(f));
+    return found;
+}
+
 void write_frame(const std::string& path, const Frame& frame)
 {
     assert(has_matching_sizes(frame) && "a frame's arrays have one entry per vertex or per face");
     const Counts counts = {frame.world.size(), frame.faces.size(), frame.eol_edges.size()};
-    std::string bytes = header(counts);
-    bytes.reserve(bytes.size() + counts.body_bytes());
+    std::string bytes = header(counts, frame.pieces);
+    bytes.reserve(bytes.size() + counts.body_bytes(!frame.pieces.empty()));
     for (std::size_t i = 0; i < counts.vertices; ++i) put_vertex(bytes, frame, i);
     for (std::size_t i = 0; i < counts.faces; ++i) put_face(bytes, frame, i);
     for (const auto& edge : frame.eol_edges)
@@ -258,9 +337,11 @@ Frame read_frame(const std::string& path)
     std::ifstream in(path, std::ios::binary);
     if (error || !in) throw InputError(path + ": cannot be opened");
 
-    const Counts counts = read_header(path, in);
-    const std::string body = read_body(path, in, counts, file_bytes);
+    Header read = read_header(path, in);
+    const Counts& counts = read.counts;
+    const std::string body = read_body(path, in, read, file_bytes);
     Frame frame;
+    frame.pieces = std::move(read.pieces);
     resize(frame, counts);
     BodyReader reader(path, body);
     for (std::size_t i = 0; i < counts.vertices; ++i) take_vertex(reader, i, frame);

@@ -108,6 +108,24 @@ ContactFriction read_friction(BinaryReader& in)
     return friction;
 }
 
+constexpr std::size_t kPieceBytes = sizeof(std::uint64_t) + 3 * sizeof(double) + 2 * sizeof(std::int32_t);
+
+void write_piece(BinaryWriter& out, const ClothPiece& piece)
+{
+    out.text(piece.name);
+    for (const double value : {piece.shift, piece.begin, piece.end}) out.number(value);
+    for (const int count : {piece.vertices, piece.faces}) out.number(static_cast<std::int32_t>(count));
+}
+
+ClothPiece read_piece(BinaryReader& in)
+{
+    ClothPiece piece;
+    piece.name = in.text();
+    for (double* value : {&piece.shift, &piece.begin, &piece.end}) *value = in.number<double>();
+    for (int* count : {&piece.vertices, &piece.faces}) *count = in.number<std::int32_t>();
+    return piece;
+}
+
 void write_state(BinaryWriter& out, const State& state)
 {
     out.number(state.time);
@@ -251,6 +269,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint)
     body.list(checkpoint.source.overrides, [&](const std::string& item) { body.text(item); });
     body.list(checkpoint.warnings, [&](const std::string& item) { body.text(item); });
     body.text(checkpoint.kernel);
+    body.list(checkpoint.pieces, [&](const ClothPiece& piece) { write_piece(body, piece); });
     write_state(body, checkpoint.state);
     body.number(checkpoint.position.begin);
     body.number(checkpoint.position.done);
@@ -273,6 +292,7 @@ Checkpoint read_checkpoint(const std::string& path)
     checkpoint.source.overrides = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
     checkpoint.warnings = in.list<std::string>(sizeof(std::uint64_t), [&] { return in.text(); });
     checkpoint.kernel = in.text();
+    checkpoint.pieces = in.list<ClothPiece>(kPieceBytes, [&] { return read_piece(in); });
     checkpoint.state = read_state(in);
     checkpoint.position.begin = in.number<double>();
     checkpoint.position.done = in.number<std::int64_t>();

@@ -29,6 +29,7 @@ struct Checkpoint : RunProgress {
     SceneSource source;
     std::vector<std::string> warnings;  ///< from loading the scene and from resuming
     std::string kernel;                 ///< BLAS kernel of the last step
+    std::vector<ClothPiece> pieces;     ///< their names, places and sizes
 };
 
 /// Replaces the file atomically. Throws std::system_error naming the path if writing fails.

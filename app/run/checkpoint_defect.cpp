@@ -128,6 +128,15 @@ std::string find_defect(const Checkpoint& checkpoint)
         checkpoint.position.done < 0 || checkpoint.frames < 0 || checkpoint.rows < 1 ||
         checkpoint.strain.plane_rows < 0 || state.crossings < 0)
         return "a time or a count is invalid";
+    for (std::size_t i = 0; i < checkpoint.pieces.size(); ++i) {
+        const ClothPiece& piece = checkpoint.pieces[i];
+        const bool is_first = i == 0, is_last = i + 1 == checkpoint.pieces.size();
+        if (!std::isfinite(piece.shift) || std::isfinite(piece.begin) == is_first ||
+            std::isfinite(piece.end) == is_last || !(piece.begin < piece.end) ||
+            (!is_last && piece.end != checkpoint.pieces[i + 1].begin) || piece.vertices < 0 ||
+            piece.faces < 0)
+            return fmt::format("piece {} has no place", i);
+    }
     const FrictionPeak& friction = checkpoint.friction;
     if (!std::isfinite(friction.residual) || !std::isfinite(friction.time) || !friction.world.allFinite() ||
         friction.rows < 0)

@@ -92,7 +92,9 @@ class Motions {
         : config_(config), scene_(config.scene), peak_(peak), edge_(edge)
     {
         Eigen::AlignedBox2d box;
-        for (const Vec2& X : config.cloth.material) box.extend(X);
+        const int piece = config.scene.materials.piece_at(peak.material);
+        for (const Vec2& X : config.cloth.material)
+            if (config.scene.materials.piece_at(X) == piece) box.extend(X);
         half_ = 0.5 * box.sizes().minCoeff();
     }
 
@@ -100,7 +102,8 @@ class Motions {
     {
         for (std::size_t i = 0; i < scene_.obstacles.size(); ++i) add_obstacle(i);
         for (std::size_t i = 0; i < scene_.pins.size(); ++i) add_pin(i);
-        const double speed = config_.cloth_velocity.norm();
+        double speed = 0.0;
+        for (const Vec3& velocity : config_.cloth_velocity) speed = std::max(speed, velocity.norm());
         if (speed > 0.0 && !(scene_.obstacles.empty() && scene_.pins.empty()))
             add({0.0, speed}, half_, false, "the cloth (cloth.velocity)", false);
         return greatest_;
@@ -113,7 +116,7 @@ class Motions {
         if (!obstacle.is_moving()) return;
         const ObstaclePose pose = obstacle.at(peak_.time);
         const Vec3 at_peak = pose.placement.inverse(peak_.world);
-        const double reach = scene_.material.thickness + kNear * edge_;
+        const double reach = scene_.materials.thickness() + kNear * edge_;
         const bool is_near = distance_to(pose, at_peak, 2.0 * reach) <= reach;
         std::vector<Vec3> points = is_near ? std::vector<Vec3>{at_peak} : corners_of(pose->bounds());
         for (Vec3& point : points) point = pose.placement(point);
@@ -171,7 +174,7 @@ class Motions {
     void add(const Way& way, double distance, bool is_held, const std::string& name, bool is_near)
     {
         constexpr double kCounts = 0.05;  // strain for which a remedy is told
-        const double by_speed = strain_of_impact(scene_.material, way.speed);
+        const double by_speed = strain_of_impact(scene_.materials.at(peak_.material), way.speed);
         const double by_way = is_held ? strain_of_way(way.length, distance) : 0.0;
         const double strain = std::max(by_speed, by_way);
         if (is_near < greatest_.is_near || (is_near == greatest_.is_near && !(strain > greatest_.strain)))

@@ -115,6 +115,8 @@ RunConfig load_resumed(const std::string& directory, const std::optional<double>
     const ClothMesh first = read_first_cloth(directory, checkpoint.state);
     LoadOptions options;
     options.cloth = &first;
+    options.pieces = &checkpoint.pieces;
+    options.pieces_file = printable(checkpoint_file(directory));
     options.obstacles = &obstacles;
     options.obstacles_file = obstacles_file(directory);
     RunConfig config = load_scene(checkpoint.source, options);

@@ -87,14 +87,17 @@ void write_outputs(Run& run, const StepReport& report, Stopwatch& watch, bool is
     row.step = run.at.rows;
     row.is_halved = is_halved;
     MeshCache& mesh = run.work.mesh;
-    const ClothStrain strain = measure_cloth_strain(run.config.scene.material, find_stretches(state, mesh),
+    const ClothStrain strain = measure_cloth_strain(run.config.scene.materials, find_stretches(state, mesh),
                                                     state.mesh, mesh.stars.faces);
     row.max_strain = strain.greatest();
     note_strain(state, strain, run.at.strain);
     note_friction(report, state.time, run.at.friction);
     if (const std::int64_t index = run.timeline.frame_at(state.time); index >= 0) {
-        run.files.write_frame(index, make_frame(run.config.scene.obstacles, state, run.work.mesh.elements,
-                                                run.work.mesh.terms));
+        Frame frame =
+            make_frame(run.config.scene.obstacles, state, run.work.mesh.elements, run.work.mesh.terms);
+        const std::vector<ClothPiece>& pieces = run.config.pieces;
+        if (pieces.size() > 1) frame.pieces.assign(pieces.begin(), pieces.end());
+        run.files.write_frame(index, frame);
         run.at.frames = index + 1;
     }
     run.files.append_probes(state.time, sample_probes(run.config.probes, state));
@@ -315,6 +318,7 @@ RunStatus run(const RunRequest& request)
 
     start.warnings = config.warnings;
     start.kernel = blas_kernel();
+    start.pieces = config.pieces;
     start.state = make_state(config.scene, config.cloth, config.cloth_velocity);
     Run run(config, std::move(files), std::move(start));
     StepReport initial;

@@ -7,25 +7,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/scene/parts/cloth_pieces.h"
 #include "app/text/counted.h"
 
 namespace arris {
 namespace {
 
-std::string name_vertex(std::int64_t id, const Vec3& x, const Vec2& X)
+std::string name_vertex(const Scene& scene, std::int64_t id, const Vec3& x, const Vec2& X)
 {
-    return fmt::format("vertex {}, at [{:.6g}, {:.6g}, {:.6g}] (m, material [{:.6g}, {:.6g}]),", id, x.x(),
-                       x.y(), x.z(), X.x(), X.y());
+    return fmt::format("vertex {}, at [{:.6g}, {:.6g}, {:.6g}] (m, material {}),", id, x.x(), x.y(), x.z(),
+                       material_in_words(scene, X, 6));
 }
 
 /// Describes a vertex by id and place. A vertex that the failed step inserted has only its id.
-std::string name_vertex(const State& state, std::int64_t id)
+std::string name_vertex(const Scene& scene, const State& state, std::int64_t id)
 {
     if (id < 0) return "the cloth";
     const auto at = std::lower_bound(state.ids.begin(), state.ids.end(), id);
     if (at == state.ids.end() || *at != id) return fmt::format("vertex {}", id);
     const auto v = static_cast<std::size_t>(at - state.ids.begin());
-    return name_vertex(id, state.mesh.world[v], state.mesh.material[v]);
+    return name_vertex(scene, id, state.mesh.world[v], state.mesh.material[v]);
 }
 
 std::string name_obstacle(const Scene& scene, int obstacle)
@@ -44,9 +45,9 @@ std::string name_met(const FailurePlace& place, const Scene& scene, const char* 
 }
 
 /// " at vertex 7, at [..] (m, material [..]),", or nothing where no vertex is known.
-std::string name_place(const FailurePlace& place)
+std::string name_place(const Scene& scene, const FailurePlace& place)
 {
-    return place.vertex < 0 ? "" : " at " + name_vertex(place.vertex, place.world, place.material);
+    return place.vertex < 0 ? "" : " at " + name_vertex(scene, place.vertex, place.world, place.material);
 }
 
 /// Says that friction locks the cloth where two faces close on it at too small an angle: each face's force is
@@ -56,8 +57,9 @@ std::string explain_lock(const FailurePlace& place, const Scene& scene)
     constexpr double kDegree = M_PI / 180.0;
     constexpr double kParallel = kDegree;  // such faces drive cloth nowhere, with or without friction
     if (!scene.friction || place.crease[0] < 0 || !(place.crease_angle > kParallel)) return "";
-    const double coefficient = std::min(scene.friction->coefficient(place.crease[0]),
-                                        scene.friction->coefficient(place.crease[1])),
+    const int piece = scene.materials.piece_at(place.material);
+    const double coefficient = std::min(scene.friction->with_obstacle(place.crease[0], piece),
+                                        scene.friction->with_obstacle(place.crease[1], piece)),
                  locked = 2.0 * std::atan(coefficient);
     if (!(place.crease_angle < locked)) return "";
     return fmt::format(
@@ -72,7 +74,7 @@ std::string name_press(const FailurePlace& place, const Scene& scene)
     if (place.vertex < 0) return "";
     const std::string met = name_met(place, scene, "");
     return fmt::format("; {} {}{}{}", met.empty() ? "the stiffest part is" : "the cloth presses hardest at",
-                       name_vertex(place.vertex, place.world, place.material),
+                       name_vertex(scene, place.vertex, place.world, place.material),
                        met.empty() ? "" : fmt::format(" on {}", met), explain_lock(place, scene));
 }
 
@@ -95,7 +97,7 @@ std::string explain_layers(const Infeasible& infeasible, const Scene& scene, con
         why = fmt::format("pin.{} presses it into another layer; change its motion, or release it earlier",
                           infeasible.pin);
     return fmt::format("no velocity keeps {} out of the cloth itself {}: {}",
-                       name_vertex(state, infeasible.vertex), place, why);
+                       name_vertex(scene, state, infeasible.vertex), place, why);
 }
 
 /// Says which pin and obstacles a vertex cannot meet together.
@@ -121,8 +123,8 @@ std::string explain_infeasible(const Infeasible& infeasible, const Scene& scene,
             "pin.{} holds the vertex where {} is; change the motion of one of them, or release "
             "the pin earlier",
             infeasible.pin, name(first));
-    return fmt::format("no velocity keeps {} out of {} {}: {}", name_vertex(state, infeasible.vertex), where,
-                       place, why);
+    return fmt::format("no velocity keeps {} out of {} {}: {}", name_vertex(scene, state, infeasible.vertex),
+                       where, place, why);
 }
 
 /// Says which number is not finite: "the pin's target of vertex 7, at [..], of pin.0", "the placement of
@@ -131,7 +133,7 @@ std::string name_not_finite(const NotFinite& found, const Scene& scene, const St
 {
     if (found.what == nullptr) return "a value";
     std::string name = fmt::format("the {}", found.what);
-    if (found.vertex >= 0) name += " of " + name_vertex(state, found.vertex);
+    if (found.vertex >= 0) name += " of " + name_vertex(scene, state, found.vertex);
     if (found.pin >= 0) name += fmt::format(" of pin.{}", found.pin);
     if (found.obstacle >= 0)
         name += (found.vertex >= 0 ? " with " : " of ") + name_obstacle(scene, found.obstacle);
@@ -152,16 +154,17 @@ RunEnding explain_ending(const StepReport& report, double tolerance, const Scene
             return {RunStatus::NotConverged,
                     fmt::format("material flows over {} faster than the mesh can follow{} {}, even with 64 "
                                 "times smaller steps",
-                                name_met(report.place, scene, "a feature"), name_place(report.place), place)};
+                                name_met(report.place, scene, "a feature"), name_place(scene, report.place),
+                                place)};
         case StepStatus::Infeasible:
             return {RunStatus::Infeasible, explain_infeasible(report.infeasible, scene, state, place) +
                                                explain_lock(report.place, scene)};
         case StepStatus::Penetration:
-            return {
-                RunStatus::Penetration,
-                fmt::format("the cloth cannot be kept out of {}{} {}, even with 64 times smaller steps",
-                            name_met(report.place, scene, "an obstacle"), name_place(report.place), place) +
-                    explain_lock(report.place, scene)};
+            return {RunStatus::Penetration,
+                    fmt::format("the cloth cannot be kept out of {}{} {}, even with 64 times smaller steps",
+                                name_met(report.place, scene, "an obstacle"), name_place(scene, report.place),
+                                place) +
+                        explain_lock(report.place, scene)};
         default:
             if (!std::isfinite(report.kkt_residual) && report.factorisations > 1)
                 return {RunStatus::NotConverged,

@@ -39,6 +39,8 @@ ExportOptions read_export_options(const std::string& run_dir)
         const std::vector<ObstacleRecord> obstacles = read_obstacles(run_dir);
         LoadOptions load;
         load.cloth = &checkpoint.state.mesh;
+        load.pieces = &checkpoint.pieces;
+        load.pieces_file = checkpoint_file(run_dir);
         load.obstacles = &obstacles;
         const RunConfig config = load_scene(checkpoint.source, load);
         return {config.title, config.output.frames_per_second};

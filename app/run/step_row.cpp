@@ -22,7 +22,7 @@ StepRow make_step_row(const RunConfig& config, const State& state, const Workspa
     row.kinetic_energy = kinetic_energy;
     if (scene.gravity) row.gravity_energy = energies.gravity;
     row.stretch_energy = energies.stretch;
-    if (scene.material.bending_stiffness > 0.0) row.bending_energy = energies.bending;
+    if (!work.mesh.terms.hinges.empty()) row.bending_energy = energies.bending;
     if (!scene.obstacles.empty()) {
         row.feature_rows = report.feature_rows;
         if (scene.eol) {

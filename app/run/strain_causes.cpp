@@ -34,42 +34,60 @@ std::string percent(double strain)
 
 // ---- loads: tension per width over the membrane stiffness E
 
-Cause weight_of(const RunConfig& config, double length)
+/// The piece where the strain is.
+struct StrainedPiece {
+    const ClothPiece& piece;
+    const Material& material;
+    ClothMesh mesh;  ///< its first one
+
+    std::string key(const std::string& leaf) const { return piece.material_key + "." + leaf; }
+};
+
+StrainedPiece find_strained_piece(const RunConfig& config, const StrainPeak& peak)
 {
-    const Material& material = config.scene.material;
+    const int i = config.scene.materials.piece_at(peak.material);
+    return {config.pieces[static_cast<std::size_t>(i)], config.scene.materials[i],
+            extract_piece(config, static_cast<std::size_t>(i))};
+}
+
+Cause weight_of(const RunConfig& config, const StrainedPiece& at, double length)
+{
+    const Material& material = at.material;
     const double g = config.scene.gravity ? config.scene.gravity->acceleration.norm() : 0.0;
     return {material.density * g * length / material.youngs_modulus,
             "its weight (density * gravity * length / youngs_modulus)",
-            "lower cloth.material.density, which is in kg/m^2, or raise cloth.material.youngs_modulus"};
+            fmt::format("lower {}, which is in kg/m^2, or raise {}", at.key("density"),
+                        at.key("youngs_modulus"))};
 }
 
-Cause wind_on(const RunConfig& config, double length)
+Cause wind_on(const RunConfig& config, const StrainedPiece& at, double length)
 {
     if (!config.scene.wind) return {};
     const Wind& wind = *config.scene.wind;
     const double speed = wind.velocity.norm() * (1.0 + (wind.gust ? std::abs(wind.gust->amplitude) : 0.0));
     const double pressure = 0.5 * wind.air_density * wind.drag * speed * speed;
-    return {pressure * length / config.scene.material.youngs_modulus,
-            "the wind (pressure * length / youngs_modulus)",
-            "lower wind.velocity, or raise cloth.material.youngs_modulus"};
+    return {pressure * length / at.material.youngs_modulus, "the wind (pressure * length / youngs_modulus)",
+            fmt::format("lower wind.velocity, or raise {}", at.key("youngs_modulus"))};
 }
 
-Cause pull_on(const RunConfig& config, std::size_t i, double width)
+Cause pull_on(const RunConfig& config, const StrainedPiece& at, std::size_t i, double width)
 {
     const double force = config.scene.pulls[i].force.norm();
-    return {force / (width * config.scene.material.youngs_modulus),
+    return {force / (width * at.material.youngs_modulus),
             fmt::format("pull.{} (force / (width * youngs_modulus))", i),
-            fmt::format("lower pull.{}.force, or raise cloth.material.youngs_modulus", i)};
+            fmt::format("lower pull.{}.force, or raise {}", i, at.key("youngs_modulus"))};
 }
 
 /// The greatest of the loads.
-Cause greatest_load(const RunConfig& config)
+Cause greatest_load(const RunConfig& config, const StrainedPiece& at)
 {
     Eigen::AlignedBox2d box;
-    for (const Vec2& X : config.cloth.material) box.extend(X);
+    for (const Vec2& X : at.mesh.material) box.extend(X);
     const double length = box.sizes().maxCoeff(), width = box.sizes().minCoeff();
-    std::vector<Cause> loads = {weight_of(config, length), wind_on(config, length)};
-    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i) loads.push_back(pull_on(config, i, width));
+    std::vector<Cause> loads = {weight_of(config, at, length), wind_on(config, at, length)};
+    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i)
+        if (const double u = config.scene.pulls[i].material.min.x(); u >= at.piece.begin && u < at.piece.end)
+            loads.push_back(pull_on(config, at, i, width));
     return *std::max_element(loads.begin(), loads.end(),
                              [](const Cause& a, const Cause& b) { return a.strain < b.strain; });
 }
@@ -86,23 +104,27 @@ std::string describe_motion(const MovingCause& moving)
 
 // ---- the start
 
-std::optional<Cause> start_of(const RunConfig& config)
+std::optional<Cause> start_of(const RunConfig& config, const StrainedPiece& at)
 {
-    const StrainRange start = measure_strain(config.cloth);
+    const StrainRange start = measure_strain(at.mesh);
     if (!start.is_surprising()) return std::nullopt;
     Cause cause;
     cause.strain = std::max(start.greatest, -start.least);
     cause.what = fmt::format("it starts strained, {}", in_words(start));
-    const auto& cloth = config.as_run["cloth"];
+    const std::string& key = at.piece.key;
+    const auto& cloth =
+        *piece_tables(config.as_run)[static_cast<std::size_t>(&at.piece - config.pieces.data())];
     const double scale = cloth["scale"].get<double>();
     if (std::abs(scale - 1.0) > kCounts) {
-        cause.what += fmt::format(", as cloth.scale = {:g} scales its positions but not its material", scale);
-        cause.remedy = cloth.contains("file")      ? "scale cloth.uv_scale as well"
-                       : cloth.contains("outline") ? "change cloth.outline instead"
-                                                   : "change cloth.size instead";
+        cause.what +=
+            fmt::format(", as {}.scale = {:g} scales its positions but not its material", key, scale);
+        cause.remedy = cloth.contains("file")      ? fmt::format("scale {}.uv_scale as well", key)
+                       : cloth.contains("outline") ? fmt::format("change {}.outline instead", key)
+                                                   : fmt::format("change {}.size instead", key);
     } else {
-        cause.remedy = cloth.contains("file") ? "check the UVs of its file, cloth.uv_scale and cloth.units"
-                                              : "start it farther from obstacles and from the places of pins";
+        cause.remedy = cloth.contains("file")
+                           ? fmt::format("check the UVs of its file, {0}.uv_scale and {0}.units", key)
+                           : "start it farther from obstacles and from the places of pins";
     }
     return cause;
 }
@@ -164,39 +186,40 @@ bool is_next_to_pin(const RunConfig& config, const StrainPeak& peak, double edge
 }
 
 /// The whole weight on the vertices that pins hold, each with one edge of width.
-Cause weight_on_pins(const RunConfig& config, const StrainPeak& peak, double edge)
+Cause weight_on_pins(const RunConfig& config, const StrainedPiece& at, const StrainPeak& peak, double edge)
 {
     std::size_t count = 0;
     for (const Pin& pin : config.scene.pins)
         if (pin.start <= peak.time && pin.holds(pin.start, peak.time))
-            count += vertices_in_box(config.cloth, pin.material).size();
+            count += vertices_in_box(at.mesh, pin.material).size();
     if (count == 0 || !config.scene.gravity || !is_next_to_pin(config, peak, edge)) return {};
-    const Material& material = config.scene.material;
+    const Material& material = at.material;
     const double weight =
-        material.density * material_area(config.cloth) * config.scene.gravity->acceleration.norm();
+        material.density * material_area(at.mesh) * config.scene.gravity->acceleration.norm();
     return {weight / (static_cast<double>(count) * edge * material.youngs_modulus),
             fmt::format("its whole weight on {} stretches it",
                         count == 1 ? "one pinned vertex" : fmt::format("{} pinned vertices", count)),
             "let pins hold a larger part of the cloth"};
 }
 
-double mean_edge(const RunConfig& config)
+double mean_edge(const ClothMesh& mesh)
 {
-    return measure_edges(config.cloth, make_topology(config.cloth.vertex_count(), config.cloth.faces)).mean;
+    return measure_edges(mesh, make_topology(mesh.vertex_count(), mesh.faces)).mean;
 }
 
 }  // namespace
 
 std::string explain_stretch(const RunConfig& config, const StrainPeak& peak)
 {
-    if (const std::optional<Cause> start = start_of(config))
+    const StrainedPiece at = find_strained_piece(config, peak);
+    if (const std::optional<Cause> start = start_of(config, at))
         return fmt::format("{}: {}", start->what, start->remedy);
     if (const Cause pins = pins_at(config, peak.time, 1.0); pins.strain > kCounts)
         return fmt::format("{} are then {} farther apart than the material between them: move them less far",
                            pins.what, percent(pins.strain));
-    const Cause load = greatest_load(config);
-    const double edge = mean_edge(config);
-    const Cause hung = weight_on_pins(config, peak, edge);
+    const Cause load = greatest_load(config, at);
+    const double edge = mean_edge(at.mesh);
+    const Cause hung = weight_on_pins(config, at, peak, edge);
     const MovingCause moving = find_moving_cause(config, peak, edge);
     const bool is_moved = moving.strain > kCounts;
     if (is_moved && moving.is_near && moving.strain > std::max(load.strain, hung.strain))
@@ -212,9 +235,10 @@ std::string explain_stretch(const RunConfig& config, const StrainPeak& peak)
 
 std::string explain_compression(const RunConfig& config, const StrainPeak& peak)
 {
-    if (const std::optional<Cause> start = start_of(config))
+    const StrainedPiece at = find_strained_piece(config, peak);
+    if (const std::optional<Cause> start = start_of(config, at))
         return fmt::format("{}: {}", start->what, start->remedy);
-    const Cause load = greatest_load(config);
+    const Cause load = greatest_load(config, at);
     if (load.strain > kCounts) return describe_load(load);
     if (const Cause pins = pins_at(config, peak.time, -1.0); pins.strain > kCounts)
         return fmt::format(
@@ -226,7 +250,7 @@ std::string explain_compression(const RunConfig& config, const StrainPeak& peak)
             "{} are then {} farther apart than the material between them, and pulled cloth contracts across "
             "the pull: move them less far",
             pins.what, percent(pins.strain));
-    const double edge = mean_edge(config);
+    const double edge = mean_edge(at.mesh);
     const MovingCause moving = find_moving_cause(config, peak, edge);
     if (moving.strain > kCounts && moving.is_near) return describe_motion(moving);
     return fmt::format("a fold needs several edges of the mesh, whose mean edge is {:.2g} m", edge);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "app/run/strain_causes.h"
+#include "app/scene/parts/cloth_pieces.h"
 
 namespace arris {
 namespace {
@@ -46,12 +47,11 @@ void note_lasting(const StrainPeak& found, StrainPeak& last, StrainPeak& peak)
     last = found;
 }
 
-std::string describe(const StrainPeak& peak)
+std::string describe(const Scene& scene, const StrainPeak& peak)
 {
-    return fmt::format(
-        "by {:.3g} % at t = {:.6g} s, at [{:.4g}, {:.4g}, {:.4g}] (m, material [{:.4g}, {:.4g}])",
-        100.0 * std::abs(peak.strain), peak.time, peak.world.x(), peak.world.y(), peak.world.z(),
-        peak.material.x(), peak.material.y());
+    return fmt::format("by {:.3g} % at t = {:.6g} s, at [{:.4g}, {:.4g}, {:.4g}] (m, material {})",
+                       100.0 * std::abs(peak.strain), peak.time, peak.world.x(), peak.world.y(),
+                       peak.world.z(), material_in_words(scene, peak.material, 4));
 }
 
 /// A peak that cloth does not bear.
@@ -93,16 +93,16 @@ std::vector<std::string> warn_of_strain(const StrainPeaks& peaks, const RunConfi
     const bool stays_plane = -peaks.in_plane.strain > kGreatestInPlane;
     std::vector<Finding> found;
     if (peaks.stretch.strain > kGreatestStrain)
-        found.push_back({"stretched " + describe(peaks.stretch),
+        found.push_back({"stretched " + describe(config.scene, peaks.stretch),
                          fmt::format("woven cloth tears before {:g} %", 100.0 * kGreatestStrain),
                          explain_stretch(config, peaks.stretch)});
     if (-peaks.compression.strain > kGreatestStrain &&
         (!stays_plane || is_greater(peaks.compression, peaks.in_plane)))
-        found.push_back({"compressed " + describe(peaks.compression),
+        found.push_back({"compressed " + describe(config.scene, peaks.compression),
                          fmt::format("real cloth folds before {:g} %", 100.0 * kGreatestStrain),
                          explain_compression(config, peaks.compression)});
     if (stays_plane)
-        found.push_back({"compressed " + describe(peaks.in_plane) + " and stayed plane",
+        found.push_back({"compressed " + describe(config.scene, peaks.in_plane) + " and stayed plane",
                          fmt::format("real cloth folds before {:g} %", 100.0 * kGreatestInPlane),
                          explain_compression(config, peaks.in_plane)});
     return join_by_cause(found);

@@ -17,11 +17,14 @@ std::optional<std::string> forecast_long_meshing(const SceneSource& source)
     for (const std::string& assignment : source.overrides) document.set(assignment);
     nlohmann::ordered_json as_run = complete_scene(document);
     apply_scene_rules(document, as_run);
-    const std::optional<SceneEstimate> estimate = estimate_scene_cloth(document, as_run);
-    // A mesh of more vertices is refused without being made.
-    if (!estimate || estimate->vertices < kLong || estimate->vertices > kMaxVertices) return std::nullopt;
-    return fmt::format("making a mesh of about {:.2g} million vertices, by {}", estimate->vertices / 1e6,
-                       cloth_fineness_key(document));
+    for (std::size_t i = 0; i < piece_tables(as_run).size(); ++i) {
+        const std::optional<SceneEstimate> estimate = estimate_piece(document, as_run, i);
+        // A mesh of more vertices is refused without being made.
+        if (!estimate || estimate->vertices < kLong || estimate->vertices > kMaxVertices) continue;
+        return fmt::format("making a mesh of about {:.2g} million vertices, by {}", estimate->vertices / 1e6,
+                           cloth_fineness_key(document, piece_key(as_run, i)));
+    }
+    return std::nullopt;
 }
 
 }  // namespace arris

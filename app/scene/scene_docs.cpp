@@ -198,6 +198,9 @@ Json value_schema(const SceneKey& key)
     constexpr int kAnyCount = std::numeric_limits<int>::max();
     switch (key.type) {
         case KeyType::Table:
+            if (key.may_repeat)
+                return {{"oneOf", Json::array({table_schema(key.name),
+                                               array_schema(table_schema(key.name), 1, kAnyCount)})}};
             return table_schema(key.name);
         case KeyType::Tables:
             return array_schema(table_schema(std::string(key.name) + "[]"), 0, kAnyCount);

@@ -58,10 +58,17 @@ int find_obstacle(const Json& obstacles, const Json& name)
     return index;
 }
 
+/// The piece that a pin, pull or probe names; the only one where it names none.
+const ClothPiece& piece_of(const RunConfig& config, const Json& user)
+{
+    if (!user.contains("piece")) return config.pieces.front();
+    return *std::find_if(config.pieces.begin(), config.pieces.end(),
+                         [&](const ClothPiece& piece) { return piece.name == user["piece"]; });
+}
+
 Pin to_pin(const Json& scene, const Json& json)
 {
     Pin pin;
-    pin.material = to_material_box(json["material"]);
     pin.motion = to_pin_motion(json);
     pin.held = {false, false, false};
     for (const Json& direction : json["directions"]) pin.held[direction.get<std::string>()[0] - 'x'] = true;
@@ -95,21 +102,27 @@ Material to_material(const Json& json)
             to_double(json["compression_modulus"])};
 }
 
-/// Nothing where neither [friction] nor a coefficient of an obstacle or of the layers is given.
+/// Nothing where neither [friction] nor a coefficient of a piece, an obstacle or the layers is given.
 std::optional<Friction> to_friction(const Json& json)
 {
     const bool is_on = json.contains("friction");
     const double common = is_on ? to_double(json["friction"]["coefficient"]) : 0.0;
     Friction friction;
     bool has_own = false;
-    if (json.contains("self_contact")) {
-        const Json& layers = json["self_contact"];
-        has_own = layers.contains("friction");
-        if (has_own) friction.between_layers = to_double(layers["friction"]);
+    for (const Json* piece : piece_tables(json)) {
+        const Json& material = (*piece)["material"];
+        const bool is_own = material.contains("friction");
+        friction.of_pieces.push_back(is_own ? to_double(material["friction"]) : common);
+        has_own = has_own || is_own;
+    }
+    if (json.contains("self_contact") && json["self_contact"].contains("friction")) {
+        friction.between_layers = to_double(json["self_contact"]["friction"]);
+        has_own = true;
     }
     for (const Json& obstacle : json.value("obstacle", Json::array())) {
         const bool is_own = obstacle.contains("friction");
-        friction.coefficients.push_back(is_own ? to_double(obstacle["friction"]) : common);
+        friction.of_obstacles.push_back(is_own ? std::optional(to_double(obstacle["friction"]))
+                                               : std::nullopt);
         has_own = has_own || is_own;
     }
     if (!is_on && !has_own) return std::nullopt;
@@ -119,17 +132,81 @@ std::optional<Friction> to_friction(const Json& json)
 Scene to_scene(const Json& json)
 {
     Scene scene;
-    scene.material = to_material(json["cloth"]["material"]);
+    scene.materials = to_material((*piece_tables(json).front())["material"]);
     if (json.contains("gravity")) scene.gravity = Gravity{to_vec3(json["gravity"]["acceleration"])};
     if (json.contains("wind")) scene.wind = to_wind(json["wind"]);
     for (const Json& pull : json.value("pull", Json::array()))
-        scene.pulls.push_back({to_material_box(pull["material"]), to_vec3(pull["force"]),
-                               to_double(pull["start"]), to_time(pull["stop"])});
+        scene.pulls.push_back({{}, to_vec3(pull["force"]), to_double(pull["start"]), to_time(pull["stop"])});
     for (const Json& pin : json.value("pin", Json::array())) scene.pins.push_back(to_pin(json, pin));
     scene.friction = to_friction(json);
     if (json.contains("self_contact"))
         scene.self_contact = ClothContact{to_double(json["self_contact"]["thickness"])};
     return scene;
+}
+
+/// The pieces as the scene has them. Where they are in the plane follows with their meshes.
+std::vector<ClothPiece> to_pieces(const Json& json)
+{
+    std::vector<ClothPiece> pieces;
+    const std::vector<const Json*> tables = piece_tables(json);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        ClothPiece piece;
+        piece.key = piece_key(json, i);
+        piece.name = tables[i]->value("name", "");
+        piece.material_key = piece.key + ".material";
+        const Json fabrics = json.value("fabric", Json::array());
+        for (std::size_t k = 0; k < fabrics.size(); ++k)
+            if (tables[i]->contains("fabric") && (*tables[i])["fabric"] == fabrics[k]["name"])
+                piece.material_key = fmt::format("fabric.{}", k);
+        pieces.push_back(piece);
+    }
+    return pieces;
+}
+
+/// The cloth of a resumed run.
+void take_cloth(const LoadOptions& options, RunConfig& config)
+{
+    config.cloth = *options.cloth;
+    if (!options.pieces) {
+        config.pieces.front().vertices = config.cloth.vertex_count();
+        config.pieces.front().faces = config.cloth.face_count();
+        return;
+    }
+    if (options.pieces->size() != config.pieces.size())
+        throw InputError(fmt::format("{}: is damaged: it has {} pieces of cloth, and its scene has {}",
+                                     options.pieces_file, options.pieces->size(), config.pieces.size()));
+    for (std::size_t i = 0; i < config.pieces.size(); ++i) {
+        const ClothPiece& stored = (*options.pieces)[i];
+        ClothPiece& piece = config.pieces[i];
+        piece.shift = stored.shift;
+        piece.begin = stored.begin;
+        piece.end = stored.end;
+        piece.vertices = stored.vertices;
+        piece.faces = stored.faces;
+    }
+}
+
+/// What refers to the material of a piece, once the pieces' places are known.
+void place_in_material(const Json& json, RunConfig& config)
+{
+    const std::vector<const Json*> tables = piece_tables(json);
+    for (std::size_t i = 1; i < tables.size(); ++i)
+        config.scene.materials.add(config.pieces[i].begin, to_material((*tables[i])["material"]));
+    config.scene.pieces.assign(config.pieces.begin(), config.pieces.end());
+    for (const Vec2& X : config.cloth.material)
+        config.cloth_velocity.push_back(
+            to_vec3((*tables[static_cast<std::size_t>(config.scene.materials.piece_at(X))])["velocity"]));
+    for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
+        const Json& pin = json["pin"][i];
+        config.scene.pins[i].material = piece_of(config, pin).to_plane(to_material_box(pin["material"]));
+    }
+    for (std::size_t i = 0; i < config.scene.pulls.size(); ++i) {
+        const Json& pull = json["pull"][i];
+        config.scene.pulls[i].material = piece_of(config, pull).to_plane(to_material_box(pull["material"]));
+    }
+    for (const Json& probe : json.value("probe", Json::array()))
+        config.probes.push_back(
+            {probe["name"].get<std::string>(), piece_of(config, probe).to_plane(to_vec2(probe["material"]))});
 }
 
 Settings to_settings(const Json& json)
@@ -174,11 +251,21 @@ void check_length(const SceneDocument& document, const RunConfig& config,
 
 // ---- pins, pulls, probes and obstacles against the cloth
 
-[[noreturn]] void refuse_miss(const SceneDocument& document, const std::string& key, const ClothMesh& cloth,
-                              std::string_view wrong)
+/// The material points of a piece, in its own coordinates.
+std::vector<Vec2> material_of(const RunConfig& config, const ClothPiece& piece)
 {
-    Vec2 least = cloth.material.front(), greatest = least;
-    for (const Vec2& X : cloth.material) {
+    std::vector<Vec2> material;
+    for (const Vec2& X : config.cloth.material)
+        if (X.x() >= piece.begin && X.x() < piece.end) material.push_back(piece.from_plane(X));
+    return material;
+}
+
+[[noreturn]] void refuse_miss(const SceneDocument& document, const std::string& key, const RunConfig& config,
+                              const ClothPiece& piece, std::string_view wrong)
+{
+    const std::vector<Vec2> material = material_of(config, piece);
+    Vec2 least = material.front(), greatest = least;
+    for (const Vec2& X : material) {
         least = least.cwiseMin(X);
         greatest = greatest.cwiseMax(X);
     }
@@ -214,23 +301,38 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
 {
     const ClothMesh& cloth = config.cloth;
     for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
-        const MaterialBox& box = config.scene.pins[i].material;
-        if (!vertices_in_box(cloth, box).empty()) continue;
+        if (!vertices_in_box(cloth, config.scene.pins[i].material).empty()) continue;
+        const Json& pin = config.as_run["pin"][i];
+        const MaterialBox box = to_material_box(pin["material"]);
         const Vec2 middle = 0.5 * (box.min + box.max);
-        const Vec2 nearest = *std::min_element(
-            cloth.material.begin(), cloth.material.end(), [&](const Vec2& a, const Vec2& b) {
+        const std::vector<Vec2> material = material_of(config, piece_of(config, pin));
+        const Vec2 nearest =
+            *std::min_element(material.begin(), material.end(), [&](const Vec2& a, const Vec2& b) {
                 return (a - middle).squaredNorm() < (b - middle).squaredNorm();
             });
-        refuse_miss(document, fmt::format("pin.{}.material", i), cloth,
+        refuse_miss(document, fmt::format("pin.{}.material", i), config, piece_of(config, pin),
                     fmt::format("holds no vertex of the cloth; the nearest is at [{:.6g}, {:.6g}]",
                                 nearest.x(), nearest.y()));
     }
     for (std::size_t i = 0; i < config.scene.pulls.size(); ++i)
         if (spread_over_box(cloth, config.scene.pulls[i].material).empty())
-            refuse_miss(document, fmt::format("pull.{}.material", i), cloth, "contains no cloth");
+            refuse_miss(document, fmt::format("pull.{}.material", i), config,
+                        piece_of(config, config.as_run["pull"][i]), "contains no cloth");
     for (std::size_t i = 0; i < config.probes.size(); ++i)
         if (locate(cloth, config.probes[i].material).face < 0)
-            refuse_miss(document, fmt::format("probe.{}.material", i), cloth, "is not on the cloth");
+            refuse_miss(document, fmt::format("probe.{}.material", i), config,
+                        piece_of(config, config.as_run["probe"][i]), "is not on the cloth");
+}
+
+/// Mean edge length of each piece, m.
+std::vector<double> mean_edges(const RunConfig& config)
+{
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i < config.pieces.size(); ++i) {
+        const ClothMesh mesh = extract_piece(config, i);
+        lengths.push_back(measure_edges(mesh, make_topology(mesh.vertex_count(), mesh.faces)).mean);
+    }
+    return lengths;
 }
 
 /// Checks that the cloth starts clear of the obstacles, and moves it out to its stand-off.
@@ -278,26 +380,36 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     config.settings = to_settings(json);
     config.output.frames_per_second = to_double(json["output"]["frames_per_second"]);
     config.output.formats = json["output"]["formats"].get<std::vector<std::string>>();
-    for (const Json& probe : json.value("probe", Json::array()))
-        config.probes.push_back({probe["name"].get<std::string>(), to_vec2(probe["material"])});
+    config.pieces = to_pieces(json);
 
     std::vector<ObstaclePlan> plans = plan_obstacles(json);
     std::vector<RigidMotion*> motions;
     for (ObstaclePlan& plan : plans) motions.push_back(&plan.motion);
     merge_events(config, motions);
     check_length(document, config, plans);
-    config.cloth = options.cloth ? *options.cloth : make_scene_cloth(document, config);
-    config.cloth_velocity = to_vec3(json["cloth"]["velocity"]);
+    if (options.cloth)
+        take_cloth(options, config);
+    else
+        make_scene_cloth(document, config);
+    place_in_material(json, config);
     check_meetings(document, config);
     load_obstacles(document, options, std::move(plans), config);
     if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))
         config.scene.eol = make_initial_target(config.cloth);
     if (json.contains("remesh")) config.scene.remesh = to_remeshing(document, config);
+    if (config.pieces.size() > 1) {
+        const std::vector<double> lengths = mean_edges(config);
+        if (config.scene.eol) config.scene.eol->mean_lengths = lengths;
+        if (config.scene.remesh) config.scene.remesh->initial.mean_lengths = lengths;
+    }
     const StrainRange placed = measure_strain(config.cloth);
+    std::vector<StrainRange> of_pieces;
+    for (std::size_t i = 0; i < config.pieces.size(); ++i)
+        of_pieces.push_back(measure_strain(extract_piece(config, i)));
     if (!options.cloth) check_start(document, options, placed, config);
     warn_of_first_keyframes(document, config);
 
-    const std::vector<std::string> ineffective = find_ineffective_keys(document, config, placed);
+    const std::vector<std::string> ineffective = find_ineffective_keys(document, config, of_pieces);
     config.warnings.insert(config.warnings.end(), ineffective.begin(), ineffective.end());
     return config;
 }

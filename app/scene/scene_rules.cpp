@@ -3,11 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <initializer_list>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "app/scene/keys/scene_keys.h"
+#include "app/scene/parts/cloth_pieces.h"
 #include "app/scene/parts/scene_cloth.h"
 #include "app/text/printable.h"
 #include "geometry/obstacle_input/deform/vertex_cache.h"
@@ -36,47 +40,131 @@ void fill_material(Json& material)
     fill("bending_stiffness", preset.bending_stiffness);
 }
 
-/// Refuses keys of a cloth's shape that is not the one chosen where they are written; else removes their
+/// Refuses keys of a piece's shape that is not the one chosen where they are written; else removes their
 /// defaults.
-void drop_cloth_keys(const SceneDocument& document, std::initializer_list<const char*> keys,
-                     const std::string& wrong, Json& cloth)
+void drop_cloth_keys(const SceneDocument& document, const std::string& piece,
+                     std::initializer_list<const char*> leaves, const std::string& wrong, Json& cloth)
 {
-    for (const std::string key : keys) {
-        if (document.find("cloth." + key))
-            document.fail("cloth." + key, wrong,
-                          "keys of one shape: a rectangle, cloth.outline or cloth.file");
-        cloth.erase(key);
+    for (const std::string leaf : leaves) {
+        const std::string key = piece + "." + leaf;
+        if (document.find(key))
+            document.fail(key, wrong,
+                          fmt::format("keys of one shape: a rectangle, {0}.outline or {0}.file", piece));
+        cloth.erase(leaf);
     }
 }
 
-void require_cloth_keys(const SceneDocument& document, std::initializer_list<const char*> keys,
-                        const std::string& why)
+void require_cloth_keys(const SceneDocument& document, const std::string& piece,
+                        std::initializer_list<const char*> leaves, const std::string& why)
 {
-    for (const char* key : keys)
-        if (!document.find(key))
-            document.fail(key, "is required and missing, " + why, allowed_values(*find_scene_key(key)));
+    for (const std::string leaf : leaves)
+        if (!document.find(piece + "." + leaf))
+            document.fail(piece + "." + leaf, "is required and missing, " + why,
+                          allowed_values(*find_scene_key("cloth." + leaf)));
 }
 
-/// Requires one shape: a rectangle, cloth.outline or cloth.file. Keys that only refine a file's reading
+/// Requires one shape of a piece: a rectangle, an outline or a file. Keys that only refine a file's reading
 /// remain for a warning.
-void settle_cloth_shape(const SceneDocument& document, Json& cloth)
+void settle_cloth_shape(const SceneDocument& document, const std::string& piece, Json& cloth)
 {
-    const std::string shape = cloth_shape_key(document);
-    if (shape != "cloth.file")
+    const std::string shape = cloth_shape_key(document, piece), outline = piece + ".outline",
+                      file = piece + ".file";
+    if (shape != file)
         for (const char* key : {"units", "up", "uv_scale"}) cloth.erase(key);
-    if (shape == "cloth.size") {
-        drop_cloth_keys(document, {"holes", "edge_length"}, "is written without cloth.outline", cloth);
-        require_cloth_keys(document, {"cloth.size", "cloth.resolution"},
-                           "as there is neither cloth.outline nor cloth.file");
+    if (shape != outline && shape != file) {
+        drop_cloth_keys(document, piece, {"holes", "edge_length"}, "is written without " + outline, cloth);
+        require_cloth_keys(document, piece, {"size", "resolution"},
+                           fmt::format("as there is neither {} nor {}", outline, file));
         return;
     }
-    drop_cloth_keys(document, {"size", "resolution", "pattern", "pattern_angle"}, "contradicts " + shape,
-                    cloth);
-    if (shape == "cloth.outline")
-        require_cloth_keys(document, {"cloth.edge_length"}, "as there is cloth.outline");
+    drop_cloth_keys(document, piece, {"size", "resolution", "pattern", "pattern_angle"},
+                    "contradicts " + shape, cloth);
+    if (shape == outline)
+        require_cloth_keys(document, piece, {"edge_length"}, "as there is " + outline);
     else
-        drop_cloth_keys(document, {"outline", "holes", "edge_length", "folds"}, "contradicts " + shape,
+        drop_cloth_keys(document, piece, {"outline", "holes", "edge_length", "folds"}, "contradicts " + shape,
                         cloth);
+}
+
+/// Names of the tables in an array, as "a, b, c".
+std::string names_in(const Json& tables)
+{
+    std::string names;
+    for (const Json& table : tables) {
+        if (!table.contains("name")) continue;
+        names += (names.empty() ? "" : ", ") + table["name"].get<std::string>();
+    }
+    return names;
+}
+
+/// Gives a piece the material of its fabric, where it names one.
+void settle_fabric(const SceneDocument& document, const std::string& piece, const Json& fabrics, Json& cloth)
+{
+    if (!cloth.contains("fabric")) return fill_material(cloth["material"]);
+    const std::string key = piece + ".fabric";
+    if (document.find(piece + ".material"))
+        document.fail(key, fmt::format("contradicts {}.material", piece), "either a fabric or a material");
+    for (const Json& fabric : fabrics)
+        if (fabric["name"] == cloth["fabric"]) {
+            cloth["material"] = fabric;
+            cloth["material"].erase("name");
+            return;
+        }
+    document.fail(key, "is not a fabric",
+                  fabrics.empty() ? "the name of a [[fabric]]; this scene has none"
+                                  : "the name of a fabric: " + names_in(fabrics));
+}
+
+void settle_fabrics(const SceneDocument& document, Json& fabrics)
+{
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < fabrics.size(); ++i) {
+        fill_material(fabrics[i]);
+        if (!names.insert(fabrics[i]["name"].get<std::string>()).second)
+            document.fail(fmt::format("fabric.{}.name", i), "is already the name of a fabric",
+                          "a name that no other fabric has");
+    }
+}
+
+void settle_pieces(const SceneDocument& document, Json& scene)
+{
+    Json fabrics = scene.value("fabric", Json::array());
+    settle_fabrics(document, fabrics);
+    if (scene.contains("fabric")) scene["fabric"] = fabrics;
+    const std::vector<Json*> tables = piece_tables(scene);
+    if (tables.size() > kMaxPieces)
+        document.fail(piece_key(scene, kMaxPieces), fmt::format("is one of {} pieces", tables.size()),
+                      fmt::format("at most {} pieces", kMaxPieces));
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        const std::string key = piece_key(scene, i);
+        Json& piece = *tables[i];
+        settle_fabric(document, key, fabrics, piece);
+        settle_cloth_shape(document, key, piece);
+        if (!piece["name"].is_null()) continue;
+        if (scene["cloth"].is_array())
+            piece["name"] = fmt::format("piece{}", i);
+        else
+            piece.erase("name");
+    }
+}
+
+/// Requires that a pin, pull or probe names one of several pieces, or the only one if that has a name.
+void check_piece(const SceneDocument& document, const std::string& path, const Json& scene, const Json& user)
+{
+    const std::vector<const Json*> tables = piece_tables(scene);
+    std::string names;
+    for (const Json* piece : tables) {
+        if (!piece->contains("name")) continue;
+        if (user.contains("piece") && user["piece"] == (*piece)["name"]) return;
+        names += (names.empty() ? "" : ", ") + (*piece)["name"].get<std::string>();
+    }
+    const std::string key = path + ".piece";
+    if (user.contains("piece"))
+        document.fail(key, "is not a piece of cloth",
+                      names.empty() ? "none, as [cloth] has no name" : "the name of a piece: " + names);
+    if (tables.size() > 1)
+        document.fail(key, "is required and missing, as there are several pieces of cloth",
+                      "the name of a piece: " + names);
 }
 
 /// `chosen` excludes `others`: refuses them where written, else removes their defaults.
@@ -235,32 +323,47 @@ void check_edge_lengths(const SceneDocument& document, const Json& remesh)
                   fmt::format("two lengths, the second > {} (m)", least));
 }
 
+double greatest_thickness(const Json& scene)
+{
+    double greatest = 0.0;
+    for (const Json* piece : piece_tables(scene))
+        greatest = std::max(greatest, (*piece)["material"]["thickness"].get<double>());
+    return greatest;
+}
+
 /// Contact between layers takes from other tables what its own does not name.
 void fill_self_contact(Json& scene)
 {
     Json& layers = scene["self_contact"];
-    if (!layers.contains("thickness")) layers["thickness"] = scene["cloth"]["material"]["thickness"];
-    if (!layers.contains("friction") && scene.contains("friction"))
+    const std::vector<const Json*> tables = piece_tables(std::as_const(scene));
+    if (!layers.contains("thickness")) layers["thickness"] = greatest_thickness(scene);
+    const bool has_own = std::any_of(tables.begin(), tables.end(), [](const Json* piece) {
+        return (*piece)["material"].contains("friction");
+    });
+    if (!layers.contains("friction") && scene.contains("friction") && !has_own)
         layers["friction"] = scene["friction"]["coefficient"];
 }
 
-/// Requires unique names of obstacles and probes, none of them "cloth".
+/// Requires unique names of pieces, obstacles and probes, none of them "cloth".
 void check_names(const SceneDocument& document, const Json& scene)
 {
     std::map<std::string, std::string> seen = {{"cloth", "the cloth"}};
+    const auto check = [&](const std::string& path, const Json& element) {
+        if (!element.contains("name")) return;
+        const std::string name = element["name"].get<std::string>();
+        const auto [other, is_new] = seen.emplace(name, path);
+        if (is_new) return;
+        const bool is_default = document.find(path + ".name") == nullptr;
+        document.fail(path + ".name",
+                      fmt::format("{}is already the name of {}",
+                                  is_default ? fmt::format("the default {} ", name) : "", other->second),
+                      "a unique name other than cloth");
+    };
+    const std::vector<const Json*> pieces = piece_tables(scene);
+    for (std::size_t i = 0; i < pieces.size(); ++i) check(piece_key(scene, i), *pieces[i]);
     for (const char* table : {"obstacle", "probe"}) {
         const Json elements = scene.value(table, Json::array());
-        for (std::size_t i = 0; i < elements.size(); ++i) {
-            const std::string path = fmt::format("{}.{}", table, i);
-            const std::string name = elements[i]["name"].get<std::string>();
-            const auto [other, is_new] = seen.emplace(name, path);
-            if (is_new) continue;
-            const bool is_default = document.find(path + ".name") == nullptr;
-            document.fail(path + ".name",
-                          fmt::format("{}is already the name of {}",
-                                      is_default ? fmt::format("the default {} ", name) : "", other->second),
-                          "a unique name other than cloth");
-        }
+        for (std::size_t i = 0; i < elements.size(); ++i) check(fmt::format("{}.{}", table, i), elements[i]);
     }
 }
 
@@ -269,8 +372,7 @@ void check_names(const SceneDocument& document, const Json& scene)
 void apply_scene_rules(const SceneDocument& document, Json& scene)
 {
     fill_title(document, scene);
-    fill_material(scene["cloth"]["material"]);
-    settle_cloth_shape(document, scene["cloth"]);
+    settle_pieces(document, scene);
     if (scene.contains("self_contact")) fill_self_contact(scene);
     if (scene.contains("obstacle")) settle_obstacles(document, scene["obstacle"]);
     if (scene.contains("pin"))
@@ -281,6 +383,11 @@ void apply_scene_rules(const SceneDocument& document, Json& scene)
     if (scene.contains("pull"))
         for (std::size_t i = 0; i < scene["pull"].size(); ++i)
             check_pull_times(document, fmt::format("pull.{}", i), scene["pull"][i]);
+    for (const char* table : {"pin", "pull", "probe"}) {
+        const Json users = scene.value(table, Json::array());
+        for (std::size_t i = 0; i < users.size(); ++i)
+            check_piece(document, fmt::format("{}.{}", table, i), scene, users[i]);
+    }
     if (scene.contains("remesh")) check_edge_lengths(document, scene["remesh"]);
     check_names(document, scene);
 }

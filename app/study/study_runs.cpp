@@ -11,6 +11,7 @@
 #include "app/files/csv_table.h"
 #include "app/scene/keys/scene_document.h"
 #include "app/scene/keys/scene_values.h"
+#include "app/scene/parts/cloth_pieces.h"
 #include "app/study/fingerprint.h"
 #include "app/study/time_history.h"
 #include "app/text/printable.h"
@@ -140,9 +141,10 @@ Fineness fineness_of(const StudyRun& run)
 {
     Fineness fineness;
     fineness.least_step = run.scene["time"]["step"].get<double>();
-    const auto& cloth = run.scene["cloth"];
-    if (cloth.contains("resolution") && cloth["resolution"].is_array())
-        fineness.cells = cloth["resolution"][0].get<double>() * cloth["resolution"][1].get<double>();
+    for (const auto* piece : piece_tables(run.scene))
+        if (piece->contains("resolution") && (*piece)["resolution"].is_array())
+            fineness.cells +=
+                (*piece)["resolution"][0].get<double>() * (*piece)["resolution"][1].get<double>();
     return fineness;
 }
 

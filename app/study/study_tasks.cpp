@@ -7,6 +7,7 @@
 #include <map>
 
 #include "app/scene/keys/scene_document.h"
+#include "app/scene/parts/cloth_pieces.h"
 #include "app/study/fingerprint.h"
 #include "app/study/run_outcome.h"
 #include "app/text/version.h"
@@ -33,7 +34,7 @@ std::vector<std::string> named_files(const nlohmann::ordered_json& scene, const 
     const auto add = [&](const std::string& path) {
         if (!path.empty()) files.push_back(path);
     };
-    add(path_in(scene["cloth"]));
+    for (const auto* piece : piece_tables(scene)) add(path_in(*piece));
     if (scene.contains("obstacle"))
         for (const auto& obstacle : scene["obstacle"]) {
             add(path_in(obstacle));

@@ -34,13 +34,13 @@ constexpr double kVariation = 0.5;
 constexpr double kLeastCompression = 1e-3;
 
 /// 1 for each vertex of a compressed face; empty where no face is compressed.
-std::vector<char> mark_compressed(const Material& material, const ClothMesh& mesh,
+std::vector<char> mark_compressed(const Materials& materials, const ClothMesh& mesh,
                                   const std::vector<Vec2>& stretches)
 {
     std::vector<char> is_compressed;
     for (int f = 0; f < mesh.face_count(); ++f) {
-        const double least =
-            principal_tensions(stretches[f], material.youngs_modulus, material.poisson_ratio).minCoeff();
+        const Material& material = materials.at(mesh.material[mesh.faces[f][0]]);
+        const double least = principal_tensions(stretches[f], material).minCoeff();
         if (!(least < -kLeastCompression * material.youngs_modulus)) continue;
         is_compressed.resize(mesh.world.size(), 0);
         for (const int v : mesh.faces[f]) is_compressed[v] = 1;
@@ -135,7 +135,7 @@ void seed_buckling(const Scene& scene, const State& state, MeshCache& mesh,
                    const std::vector<Contact>& contacts, Prediction& prediction)
 {
     const std::vector<char> is_compressed =
-        mark_compressed(scene.material, state.mesh, find_stretches(state, mesh));
+        mark_compressed(scene.materials, state.mesh, find_stretches(state, mesh));
     if (is_compressed.empty()) return;
     const VertexFaces& stars = mesh.stars.faces;
     UnloadedNormals find_normal(scene, state, stars, prediction.gamma, contacts);

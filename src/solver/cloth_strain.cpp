@@ -27,7 +27,7 @@ Vec2 mean_stretches(const std::vector<Vec2>& stretches, const ClothMesh& mesh, c
 
 }  // namespace
 
-ClothStrain measure_cloth_strain(const Material& material, const std::vector<Vec2>& stretches,
+ClothStrain measure_cloth_strain(const Materials& materials, const std::vector<Vec2>& stretches,
                                  const ClothMesh& mesh, const VertexFaces& stars)
 {
     // Height of a star over its longest edge up to which cloth has no folds: cloth that has taken up 1 % of
@@ -43,7 +43,7 @@ ClothStrain measure_cloth_strain(const Material& material, const std::vector<Vec
         if (least < found.compression.strain) found.compression = {least, v};
         if (!(least < found.in_plane.strain)) continue;
         // Cloth that is pulled contracts across the pull without compressive tension.
-        const Vec2 tensions = principal_tensions(around, material.youngs_modulus, material.poisson_ratio);
+        const Vec2 tensions = principal_tensions(around, materials.at(mesh.material[v]));
         if (tensions.minCoeff() < 0.0 && plane.is_plane_around(v)) found.in_plane = {least, v};
     }
     return found;

@@ -6,7 +6,7 @@
 
 #include "geometry/cloth/cloth_mesh.h"
 #include "geometry/cloth/mesh_topology.h"
-#include "physics/elements/material.h"
+#include "physics/elements/materials.h"
 
 namespace arris {
 
@@ -31,7 +31,7 @@ struct ClothStrain {
 
 /// Linear in face count. `stretches` are the principal stretches of the faces of `mesh`, and `stars` the
 /// faces at its vertices.
-ClothStrain measure_cloth_strain(const Material& material, const std::vector<Vec2>& stretches,
+ClothStrain measure_cloth_strain(const Materials& materials, const std::vector<Vec2>& stretches,
                                  const ClothMesh& mesh, const VertexFaces& stars);
 
 }  // namespace arris

@@ -152,11 +152,11 @@ double energy_of_squeezing(const Workspace& work)
 /// Elastic energy, J, of strains due to round-off alone, for positions as far from the origin as the cloth's.
 double round_off_energy(const Scene& scene, const State& state, const ClothElements& elements)
 {
-    const double area = total_area(elements);
     double far = 0.0;
     for (const Vec3& x : state.mesh.world) far = std::max(far, x.cwiseAbs().maxCoeff());
-    const double squared_length = area / static_cast<double>(elements.faces.size());
-    return scene.material.youngs_modulus * area * kLastPlaces * kLastPlaces * far * far / squared_length;
+    const double squared_length = total_area(elements) / static_cast<double>(elements.faces.size());
+    return integrate(&Material::youngs_modulus, scene.materials, elements) * kLastPlaces * kLastPlaces * far *
+           far / squared_length;
 }
 
 Energies compute_potential_energy(const Workspace& work, const MovingCloth& cloth)
@@ -169,14 +169,13 @@ Energies compute_potential_energy(const Workspace& work, const MovingCloth& clot
 
 ClothEnergy compute_cloth_energy(const Scene& scene, const Workspace& work, const MovingCloth& cloth)
 {
-    const double density = scene.material.density;
     if (work.eol.empty())
-        return {kinetic_energy(density, work.mesh.elements, cloth.velocity.world),
+        return {kinetic_energy(scene.materials, work.mesh.elements, cloth.velocity.world),
                 compute_energies(work.mesh.elements, work.mesh.terms, cloth.world)};
     const ClothElements elements = elements_at(work, cloth.material);
     const CornerVelocities corners =
         compute_corner_velocities(elements, cloth.world, cloth.velocity.world, cloth.velocity.material);
-    return {kinetic_energy(density, elements, corners),
+    return {kinetic_energy(scene.materials, elements, corners),
             compute_energies(elements, work.mesh.terms, cloth.world)};
 }
 
@@ -256,10 +255,11 @@ void measure_start_energy(const Scene& scene, const State& state, Workspace& wor
     // In a stack of layers, where other constraints press in each step, all of it moves by up to 2e-8 of its
     // size. Without this share, changes at rest would be compared with themselves.
     constexpr double kRest = 1e-5;
-    const double area = total_area(work.mesh.elements);
-    work.energies.floor = scene.gravity ? kRest * scene.material.density * area *
-                                              scene.gravity->acceleration.norm() * std::sqrt(area)
-                                        : 0.0;
+    const ClothElements& elements = work.mesh.elements;
+    work.energies.floor = scene.gravity
+                              ? kRest * integrate(&Material::density, scene.materials, elements) *
+                                    scene.gravity->acceleration.norm() * std::sqrt(total_area(elements))
+                              : 0.0;
     work.energies.start = find_energy(scene, state, work);
 }
 
@@ -287,7 +287,7 @@ bool does_push_out_strain(const Scene& scene, double dt, const Workspace& work)
     const double cost = after.elastic() - before.elastic();
     const double unseen = kRise * (work.energies.solved.kinetic + before.elastic());
     if (!(cost > unseen)) return false;
-    const double push = kinetic_energy(scene.material.density, work.mesh.elements, push_velocity(work, dt));
+    const double push = kinetic_energy(scene.materials, work.mesh.elements, push_velocity(work, dt));
     return cost > push + unseen;
 }
 

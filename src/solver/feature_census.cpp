@@ -143,7 +143,7 @@ class Census {
         const std::vector<Vec3>& begin = work_.carriers[contact.obstacle].motion.begin;
         const Vec3 &a = begin[contact.vertices[i]], &b = begin[contact.vertices[j]];
         const double s = closest_on_segment(contact.local_point, a, b);
-        return (contact.local_point - a - s * (b - a)).norm() <= kOnFeature * scene_.material.thickness;
+        return (contact.local_point - a - s * (b - a)).norm() <= kOnFeature * scene_.materials.thickness();
     }
 
     /// Whether a contact lies at that vertex of the cloth, by the rule in constraint_cause.h.
@@ -156,15 +156,15 @@ class Census {
                 return true;
             material += contact.weights[i] * state_.mesh.material[contact.vertices[i]];
         }
-        return (material - state_.mesh.material[vertex]).norm() <= kOnFeature * scene_.material.thickness;
+        return (material - state_.mesh.material[vertex]).norm() <= kOnFeature * scene_.materials.thickness();
     }
 
     std::optional<ConstraintCause> find_refusal(int entry) const
     {
         const EolVertex& eol = state_.eol[entry];
         const Carrier& way = work_.carriers[eol.on.obstacle];
-        const EolPlacing placing = place_eol_vertex(*way.obstacle, scene_.material.thickness, state_, entry,
-                                                    work_.mesh.stars, way.motion.begin, way.end);
+        const EolPlacing placing = place_eol_vertex(*way.obstacle, scene_.materials.thickness(), state_,
+                                                    entry, work_.mesh.stars, way.motion.begin, way.end);
         return placing.coordinates ? std::nullopt : std::optional(placing.refusal);
     }
 
@@ -218,7 +218,7 @@ FeatureCensus take_census(const Scene& scene, const State& state, const Workspac
             continue;
         }
         if (contact.is_with_itself() || contact.is_fold_plane() ||
-            !touches_feature(*work.carriers[contact.obstacle].obstacle, contact, scene.material.thickness))
+            !touches_feature(*work.carriers[contact.obstacle].obstacle, contact, scene.materials.thickness()))
             continue;
         ++census.rows;
         if (scene.eol) ++census.by_cause[static_cast<std::size_t>(causes.find_cause(contact))];

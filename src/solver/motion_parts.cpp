@@ -97,7 +97,7 @@ int find_motion_parts(const Scene& scene, const State& state, double dt)
     int parts = 1;
     for (const MovingObstacle& obstacle : scene.obstacles)
         if (obstacle.is_moving())
-            parts = std::max(parts, find_parts(obstacle, scene.material.thickness, state, dt));
+            parts = std::max(parts, find_parts(obstacle, scene.materials.thickness(), state, dt));
     return parts;
 }
 

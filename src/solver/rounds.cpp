@@ -65,7 +65,8 @@ bool assemble(Rounds& round)
     at.begin = state.time;
     at.time = round.end;
     at.gamma = prediction.gamma;
-    at.damping = round.scene.material.damping;
+    at.damping.clear();
+    for (const Material& material : round.scene.materials) at.damping.push_back(material.damping);
     at.v_predicted = prediction.velocity;
     at.v_last = state.velocity;
     round.overrun.clear();

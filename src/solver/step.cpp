@@ -116,13 +116,19 @@ StepReport make_stages(const Scene& scene, const Settings& settings, const Plann
 
 State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity)
 {
+    const std::size_t n = mesh.world.size();
+    return make_state(scene, std::move(mesh), std::vector<Vec3>(n, velocity));
+}
+
+State make_state(const Scene& scene, ClothMesh mesh, std::vector<Vec3> velocity)
+{
     State state;
     state.mesh = std::move(mesh);
     const int n = state.mesh.vertex_count();
     state.ids.resize(n);
     for (int v = 0; v < n; ++v) state.ids[v] = static_cast<std::uint32_t>(v);
     state.next_id = static_cast<std::uint32_t>(n);
-    state.velocity.assign(n, velocity);
+    state.velocity = std::move(velocity);
     state.previous_world.assign(n, Vec3::Zero());
     state.previous_velocity.assign(n, Vec3::Zero());
     state.material_velocity.assign(n, Vec2::Zero());

@@ -14,6 +14,7 @@ namespace arris {
 /// The state at time 0: the cloth lies as in `mesh` and moves at `velocity` (m/s); pinned vertices move with
 /// their pins.
 State make_state(const Scene& scene, ClothMesh mesh, const Vec3& velocity);
+State make_state(const Scene& scene, ClothMesh mesh, std::vector<Vec3> velocity);
 
 /// Makes the part of a planned step from the state's time to `end` (s, after that time). Leaves the state
 /// unchanged unless the report's status is Done. (At time 0, `state.active` may be set even so.) Call

@@ -58,8 +58,8 @@ bool find_contacts(const Scene& scene, const State& state, Workspace& work, Step
                                     work.contacts);
     }
     if (!scene.obstacles.empty() || scene.self_contact) {
-        work.cushion = {scene.material.compression_modulus, lump_masses(1.0, work.mesh.elements)};
-        work.mobility = find_mobility(scene.material.density, work.mesh.elements, work.pin_targets);
+        work.cushion = make_cushion(scene.materials, state.mesh, work.mesh.elements);
+        work.mobility = find_mobility(scene.materials, work.mesh.elements, work.pin_targets);
     }
     const std::optional<int> overconstrained =
         squeeze_contacts(work.cushion, work.carriers, work.prediction, work.contacts).overconstrained;

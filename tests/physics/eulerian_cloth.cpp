@@ -48,7 +48,7 @@ Linearization random_linearization(const ClothMesh& mesh, unsigned seed)
     const double size = 0.01 / std::sqrt(n);
     Linearization at;
     at.time = at.gamma = 0.005;
-    at.damping = 0.01;
+    at.damping = {0.01};
     at.position = mesh.world;
     MaterialFlow flow;
     flow.position = mesh.material;

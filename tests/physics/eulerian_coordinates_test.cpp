@@ -33,12 +33,12 @@ struct Conditions {
 
 Conditions find_conditions(const ClothMesh& mesh, const std::vector<VertexCoordinates>& coordinates)
 {
-    const Terms terms = make_terms({0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3}, {}, {}, {});
+    const Terms terms = make_terms(Material{0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3}, {}, {}, {});
     const SlidingCloth cloth({}, mesh, {});
     Linearization at = cloth.linearize(coordinates, 0.005);
     const Eigen::MatrixXd step = assemble(mesh, terms, at).matrix;
     EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(step).info(), Eigen::Success);
-    const double mass = condition(assemble(mesh, only(std::make_unique<Inertia>(0.05)), at).matrix);
+    const double mass = condition(assemble(mesh, only(std::make_unique<Inertia>(Material{0.05})), at).matrix);
     at = cloth.linearize(std::vector<VertexCoordinates>(mesh.world.size()), 0.005);
     return {mass, condition(step) / condition(assemble(mesh, terms, at).matrix)};
 }

@@ -61,11 +61,14 @@ TEST(EulerianForces, ForcesAreMinusTheGradientsOfTheWholeSheetsEnergy)
             const std::string name = effect;
             Terms terms;
             if (name == "stretch" || name == "all")
-                terms.faces.push_back(std::make_unique<Membrane>(5.0, 0.3));
-            if (name == "bending" || name == "all") terms.hinges.push_back(std::make_unique<Bending>(1e-2));
-            if (name == "plate") terms.hinges.push_back(std::make_unique<PlateBending>(1e-2, 0.3));
+                terms.faces.push_back(std::make_unique<Membrane>(Material{0.0, 5.0, 0.3}));
+            if (name == "bending" || name == "all")
+                terms.hinges.push_back(std::make_unique<Bending>(std::vector<double>{1e-2}));
+            if (name == "plate")
+                terms.hinges.push_back(
+                    std::make_unique<PlateBending>(std::vector<PlateMaterial>{{1e-2, 0.3}}));
             if (name == "gravity" || name == "all")
-                terms.faces.push_back(std::make_unique<GravityForce>(0.15, Gravity{}));
+                terms.faces.push_back(std::make_unique<GravityForce>(Material{0.15}, Gravity{}));
             const MeshTopology topology = make_topology(mesh.vertex_count(), mesh.faces);
             const bool has_gravity = name == "gravity" || name == "all";
             expect_gradient(
@@ -139,7 +142,7 @@ TEST(EulerianForces, InertiaIsThatOfMaterialPointsAsTheyAreSeenToMove)
         flow.v_predicted = flow.v_expansion = flow.v_last = std::vector<Vec2>(3, Vec2::Zero());
         at.flow = flow;
         const double density = 0.3;
-        const Assembled system = assemble(mesh, only(std::make_unique<Inertia>(density)), at);
+        const Assembled system = assemble(mesh, only(std::make_unique<Inertia>(Material{density})), at);
 
         // Position at time t of the material point that is at N at time 0.
         const auto where = [&](const Vec3& N, double t) -> Vec3 {

@@ -173,7 +173,8 @@ double SlidingCloth::total_energy(double density) const
 {
     const CornerVelocities w = compute_corner_velocities(elements, mesh.world, velocity, material_velocity);
     const Energies energies = compute_energies(elements, terms, mesh.world);
-    return kinetic_energy(density, elements, w) + energies.gravity + energies.stretch + energies.bending;
+    return kinetic_energy(Material{density}, elements, w) + energies.gravity + energies.stretch +
+           energies.bending;
 }
 
 void SlidingCloth::advance(double duration, int steps)

@@ -358,7 +358,7 @@ SlidingCloth make_free_sheet(bool is_on_point)
             is_on_point ? on_point(Vec3::UnitZ()) : on_edge(Vec3::UnitY(), Vec3::UnitZ(), Vec2::UnitX());
         return result;
     };
-    return SlidingCloth(make_terms({0.1, 1e3, 0.3, 1e-4, 0.0, 1e-3}, {}, {}, {}), mesh, coordinates);
+    return SlidingCloth(make_terms(Material{0.1, 1e3, 0.3, 1e-4, 0.0, 1e-3}, {}, {}, {}), mesh, coordinates);
 }
 
 /// Gives the sheet's material the velocities `velocity_at`(x).
@@ -407,7 +407,7 @@ double spin_gain(int steps, bool has_convection)
     const auto momentum = [&] {
         const CornerVelocities corners = compute_corner_velocities(cloth.elements, cloth.mesh.world,
                                                                    cloth.velocity, cloth.material_velocity);
-        return angular_momentum(0.1, cloth.elements, cloth.mesh.world, corners).z();
+        return angular_momentum(Material{0.1}, cloth.elements, cloth.mesh.world, corners).z();
     };
     const double before = momentum();
     cloth.advance(0.2, steps);

@@ -63,7 +63,7 @@ struct Sheet {
     explicit Sheet(double stretch = 0.99, const Mat3& turn = kUpright,
                    GridPattern pattern = GridPattern::Cross)
     {
-        scene.material = cotton();
+        scene.materials[0] = cotton();
         ClothMesh mesh = make_sheet(turn, pattern);
         for (std::size_t v = 0; v < mesh.world.size(); ++v)
             mesh.world[v] = turn * Vec3(stretch * mesh.material[v].x(), mesh.material[v].y(), 0.0);
@@ -234,7 +234,7 @@ struct ClothRun {
 
     explicit ClothRun(const RunCase& one) : scene(one.make_scene())
     {
-        scene.material = cotton();
+        scene.materials[0] = cotton();
         settings.integrator = one.integrator;
         state = make_state(scene, make_sheet(one.turn, one.pattern), one.velocity);
         prepare(scene, state, work);
@@ -326,8 +326,8 @@ TEST(BucklingSeed, LetsClothFoldThatIsCompressedInAPlane)
         // Folds of some centimetres. Without folds the greatest compression is 15 % or more.
         EXPECT_GT(run.spread_across(one.turn.col(2)), 0.03);
         const ClothStrain strain =
-            measure_cloth_strain(run.scene.material, find_stretches(run.state, run.work.mesh), run.state.mesh,
-                                 run.work.mesh.stars.faces);
+            measure_cloth_strain(run.scene.materials, find_stretches(run.state, run.work.mesh),
+                                 run.state.mesh, run.work.mesh.stars.faces);
         EXPECT_GT(strain.in_plane.strain, -0.02);
         EXPECT_LT(compute_cloth_energy(run.scene, run.work,
                                        {run.state.mesh.world,

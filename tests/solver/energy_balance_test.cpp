@@ -36,7 +36,7 @@ struct OneStep {
     explicit OneStep(Scene a_scene, const Vec3& at = kEverywhere, double start = 0.0)
         : scene(std::move(a_scene))
     {
-        scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+        scene.materials[0] = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
         settings.integrator = Integrator::ImplicitEuler;
         state = make_state(scene, make_sheet(at), Vec3::Zero());
         state.time = start;
@@ -51,7 +51,7 @@ struct OneStep {
         return find_end(work.prediction, {work.proposal.velocity, work.proposal.material_velocity}).world;
     }
 
-    double mass() const { return scene.material.density * material_area(state.mesh); }
+    double mass() const { return scene.materials[0].density * material_area(state.mesh); }
     void weigh()
     {
         work.proposal.world = end();
@@ -174,7 +174,7 @@ TEST(DrivenWork, OfAFeatureIsThatOfAllThatHoldsTheClothThere)
             }
             state.time = 1.0;
             state.step = 1;  // so that no contact counts as pressing in an earlier step
-            cloth.scene.material.bending_stiffness = 0.0;
+            cloth.scene.materials[0].bending_stiffness = 0.0;
             const State before = state;
             Settings settings;
             settings.integrator = Integrator::ImplicitEuler;

@@ -88,7 +88,7 @@ ClothMesh make_draped(const Drape& shape)
 
 EolCloth::EolCloth(MovingObstacle obstacle, ClothMesh mesh)
 {
-    scene.material = {0.2, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+    scene.materials[0] = {0.2, 50.0, 0.3, 1e-5, 0.0, 1e-3};
     scene.obstacles.push_back(std::move(obstacle));
     scene.eol = uniform_target(0.05, 10.0);
     state = make_state(scene, std::move(mesh), Vec3::Zero());
@@ -124,7 +124,7 @@ ClothStars EolCloth::stars() const
 
 EolPlacing EolCloth::place(int vertex, const Placement& end) const
 {
-    return place_eol_vertex(scene.obstacles[0].shape(), scene.material.thickness, state,
+    return place_eol_vertex(scene.obstacles[0].shape(), scene.materials.thickness(), state,
                             state.eol_entry(state.ids[vertex]), stars(), state.mesh.world, end);
 }
 
@@ -202,18 +202,18 @@ ConformedMesh take(EolCloth& cloth)
 double kinetic_energy_of(const Scene& scene, const State& state)
 {
     const ClothElements elements = elements_of(state.mesh);
-    return kinetic_energy(scene.material.density, elements, corners_of(state, elements));
+    return kinetic_energy(scene.materials, elements, corners_of(state, elements));
 }
 
 Vec3 momentum_of(const Scene& scene, const State& state)
 {
     const ClothElements elements = elements_of(state.mesh);
-    return linear_momentum(scene.material.density, elements, corners_of(state, elements));
+    return linear_momentum(scene.materials, elements, corners_of(state, elements));
 }
 
 double elastic_energy_of(const Scene& scene, const ClothMesh& mesh)
 {
-    const Terms terms = make_terms(scene.material, {}, {}, {});
+    const Terms terms = make_terms(scene.materials, {}, {}, {});
     const Energies energies = compute_energies(elements_of(mesh), terms, mesh.world);
     return energies.stretch + energies.bending;
 }

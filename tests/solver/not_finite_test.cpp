@@ -25,14 +25,14 @@ class NotFiniteStep : public testing::Test {
   protected:
     NotFiniteStep()
     {
-        scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+        scene.materials[0] = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
         scene.gravity = Gravity{};
         scene.obstacles.push_back(make_floor());
         ClothGrid grid;
         grid.resolution = {4, 4};
         grid.pattern = GridPattern::Diagonal;
         ClothMesh mesh = make_cloth_grid(grid);
-        for (Vec3& x : mesh.world) x.z() = scene.material.thickness;
+        for (Vec3& x : mesh.world) x.z() = scene.materials.thickness();
         state = make_state(scene, mesh, Vec3::Zero());
         for (const double end : {0.005, 0.01})
             EXPECT_EQ(step(scene, Settings(), end, state, work).status, StepStatus::Done);

@@ -78,7 +78,7 @@ struct ObstacleRun {
     ObstacleRun(std::vector<MovingObstacle> obstacles, ClothMesh mesh, const Vec3& velocity = Vec3::Zero(),
                 bool has_gravity = true)
     {
-        scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+        scene.materials[0] = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
         if (has_gravity) scene.gravity = Gravity{};
         scene.obstacles = std::move(obstacles);
         state = make_state(scene, std::move(mesh), velocity);
@@ -119,16 +119,13 @@ struct ObstacleRun {
                                      << " at t = " << state.time;
     }
 
-    double kinetic() const
-    {
-        return kinetic_energy(scene.material.density, work.mesh.elements, state.velocity);
-    }
+    double kinetic() const { return kinetic_energy(scene.materials, work.mesh.elements, state.velocity); }
     ClothEnergy energy() const
     {
         return compute_cloth_energy(
             scene, work, {state.mesh.world, state.mesh.material, {state.velocity, state.material_velocity}});
     }
-    double mass() const { return scene.material.density * material_area(state.mesh); }
+    double mass() const { return scene.materials[0].density * material_area(state.mesh); }
     Vec3 centre() const
     {
         Vec3 sum = Vec3::Zero();
@@ -297,7 +294,7 @@ TEST(Crush, PinsDrivenIntoATableAreInfeasibleAndLeaveTheStateAsItWas)
 {
     for (const double youngs_modulus : {50.0, 2e4}) {
         ObstacleRun run({make_floor()}, make_sheet(0.3, 6, {Mat3::Identity(), Vec3(0, 0, 1e-3)}));
-        run.scene.material.youngs_modulus = youngs_modulus;
+        run.scene.materials[0].youngs_modulus = youngs_modulus;
         Pin pin;
         pin.material = {Vec2(0.3, 0.0), Vec2(0.3, 0.3)};
         pin.motion.velocity = Vec3(0, 0, -1.0);
@@ -355,7 +352,7 @@ TEST(MovingObstacle, PulledAwayFromUnderAFoldPushesNoEnergyIn)
     ClothMesh sheet = make_cloth_grid(grid);
     for (Vec3& x : sheet.world) x += Vec3(-0.3, -0.15, 0.004);
     ObstacleRun run({MovingObstacle("table", table, {}, motion, 30.0)}, std::move(sheet));
-    run.scene.material = {0.1, 2e4, 0.3, 1e-6, 0.002, 1e-3};
+    run.scene.materials[0] = {0.1, 2e4, 0.3, 1e-6, 0.002, 1e-3};
     run.scene.eol = make_initial_target(run.state.mesh);
     int most_eol = 0;
     for (int k = 0; k < 60; ++k) {
@@ -383,7 +380,7 @@ class StiffImpact : public testing::TestWithParam<Shock> {
         ObstacleRun run(std::move(obstacles),
                         make_sheet(0.6, resolution, {rotation_about(Vec3::UnitZ(), 20), start}),
                         Vec3(0, 0, -speed));
-        run.scene.material = {0.2, stiffness, 0.3, 1e-4, 0.0, 1e-3};
+        run.scene.materials[0] = {0.2, stiffness, 0.3, 1e-4, 0.0, 1e-3};
         run.settings.integrator = integrator;
         prepare(run.scene, run.state, run.work);
         const double first = run.energy().sum();
@@ -426,7 +423,7 @@ TEST(StiffCloth, JerkedByAPinGainsNoMoreThanThePinDoes)
         for (const double dt : {0.005, 0.02}) {
             // A slack sheet on a floor; one edge is pulled away at 2 m/s, sideways and up, and stopped.
             ObstacleRun run({make_floor()}, make_sheet(0.6, 12, {Mat3::Identity(), Vec3(0, 0, 1e-3)}));
-            run.scene.material = {0.4, 5000.0, 0.3, 1e-4, 0.0, 1e-3};
+            run.scene.materials[0] = {0.4, 5000.0, 0.3, 1e-4, 0.0, 1e-3};
             run.settings.integrator = integrator;
             Pin pin;
             pin.material = {Vec2(0.6, 0.0), Vec2(0.6, 0.6)};
@@ -457,7 +454,7 @@ TEST(StiffCloth, MovedOutToItsStandOffIsNotStrained)
     // thickness are pushed out.
     ObstacleRun run({place(make_box({0.6, 0.6, 0.1}), {0.02, 0.03, -0.05})},
                     make_sheet(0.8, 16, {Mat3::Identity(), Vec3(0, 0, 0.011)}));
-    run.scene.material = {0.2, 1e6, 0.3, 1e-3, 0.0, 1e-3};
+    run.scene.materials[0] = {0.2, 1e6, 0.3, 1e-3, 0.0, 1e-3};
     prepare(run.scene, run.state, run.work);
     const double first = run.energy().sum();
     for (int k = 0; k < 40; ++k) {
@@ -472,7 +469,7 @@ TEST(StiffCloth, ThatOnlyRingsIsLeftAlone)
     // damping.
     for (const double stretch : {0.2, 0.0}) {
         ObstacleRun run({}, make_sheet(0.5, 10, {Mat3::Identity(), Vec3::Zero()}), Vec3::Zero(), false);
-        run.scene.material.bending_stiffness = 1e-3;
+        run.scene.materials[0].bending_stiffness = 1e-3;
         for (Vec3& x : run.state.mesh.world)
             x = Vec3((1.0 + stretch) * x.x(), x.y(), stretch > 0.0 ? 0.0 : 0.3 * x.x() * x.x());
         run.advance_all(300);
@@ -487,7 +484,7 @@ TEST(Pin, FollowsAnObstacle)
     turn.angular_velocity = Vec3(0, 0, 3);
     turn.velocity = Vec3(0.2, 0, 0);
     Scene scene;
-    scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+    scene.materials[0] = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
     scene.obstacles.push_back(place(make_box({0.1, 0.1, 0.1}), {0.3, 0.2, 0.1}, turn));
     Pin pin;
     pin.material = {Vec2(0, 0), Vec2(0, 1)};

@@ -33,10 +33,10 @@ struct Press {
         grid.resolution = {cells, cells};
         grid.pattern = GridPattern::Cross;
         ClothMesh mesh = make_cloth_grid(grid);
-        scene.material = {0.15, 500.0, 0.3, 1e-5, 0.0, kThickness};
-        scene.material.compression_modulus = kModulus;
+        scene.materials[0] = {0.15, 500.0, 0.3, 1e-5, 0.0, kThickness};
+        scene.materials[0].compression_modulus = kModulus;
         scene.friction.emplace();
-        scene.friction->coefficients = {coefficient, coefficient};
+        scene.friction->of_pieces = {coefficient};
         scene.pulls.push_back({.material = {Vec2(0.0, 0.0), Vec2(kSide, kSide)},
                                .force = Vec3(pull, 0.0, 0.0),
                                .start = 2.0 * kClosing});
@@ -113,7 +113,7 @@ double fall_out_of_pinch(double gap, double coefficient, double end, int& steps)
     ClothMesh mesh = make_cloth_grid(grid);
     for (Vec3& x : mesh.world) x = Vec3(x.x() - 0.05, 0.0, x.y() - 0.15);
     Scene scene;
-    scene.material = {0.15, 500.0, 0.3, 1e-5, 0.002, kThickness};
+    scene.materials[0] = {0.15, 500.0, 0.3, 1e-5, 0.002, kThickness};
     scene.gravity = Gravity{};
     if (coefficient > 0.0) scene.friction = Friction{{coefficient, coefficient}};
     Pin pin;
@@ -178,7 +178,7 @@ int close_vee(double degrees, int cells)
     ClothMesh mesh = make_cloth_grid(grid);
     for (Vec3& x : mesh.world) x += Vec3(-0.15, -0.1, 0.095);
     Scene scene;
-    scene.material = {0.15, 500.0, 0.3, 1e-5, 0.003, kThickness};
+    scene.materials[0] = {0.15, 500.0, 0.3, 1e-5, 0.003, kThickness};
     scene.gravity = Gravity{};
     for (const double side : {1.0, -1.0}) {
         RigidMotion motion;

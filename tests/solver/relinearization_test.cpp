@@ -25,7 +25,7 @@ struct Proposed {
         ClothGrid grid;
         grid.size = {0.5, 0.4};
         grid.resolution = {5, 4};
-        scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+        scene.materials[0] = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
         settings.integrator = Integrator::ImplicitEuler;
         state = make_state(scene, make_cloth_grid(grid), Vec3::Zero());
         EXPECT_EQ(step(scene, settings, kStep, state, work).status, StepStatus::Done);

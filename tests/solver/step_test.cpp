@@ -44,7 +44,7 @@ void advance(const Scene& scene, const Settings& settings, double end, State& st
 TEST(Step, FreeFallIsTheParabola)
 {
     Scene scene;
-    scene.material = soft_cloth();
+    scene.materials[0] = soft_cloth();
     scene.gravity = Gravity{};
     for (const Integrator integrator : {Integrator::ImplicitEuler, Integrator::Bdf2}) {
         Settings settings;
@@ -58,7 +58,7 @@ TEST(Step, FreeFallIsTheParabola)
         const double h = settings.step;
         const double lag = integrator == Integrator::Bdf2 ? 9.81 * h * h : 0.5 * 9.81 * h * 0.5;
         EXPECT_LT((state.mesh.world[7] - exact).norm(), 1.01 * lag);
-        const Vec3 momentum = linear_momentum(0.05, work.mesh.elements, state.velocity);
+        const Vec3 momentum = linear_momentum(Material{0.05}, work.mesh.elements, state.velocity);
         EXPECT_LT((momentum - 0.05 * Vec3(1.0, 0.0, 2.0 - 9.81 * 0.5)).norm(), 1e-13);
     }
 }
@@ -67,7 +67,7 @@ TEST(Step, FreeFallIsTheParabola)
 Scene make_draped_scene()
 {
     Scene scene;
-    scene.material = soft_cloth();
+    scene.materials[0] = soft_cloth();
     scene.gravity = Gravity{};
     scene.obstacles.push_back(make_floor());
     Pin pin;
@@ -131,7 +131,7 @@ int calls_left = 0;  // of an interrupt that comes after so many questions
 TEST(Step, InterruptedAnywhereLeavesTheStateAsItWas)
 {
     Scene scene;
-    scene.material = soft_cloth();
+    scene.materials[0] = soft_cloth();
     scene.gravity = Gravity{};
     Settings settings;
     settings.is_interrupted = [] { return calls_left-- <= 0; };
@@ -157,7 +157,7 @@ TEST(Step, InterruptedAnywhereLeavesTheStateAsItWas)
 TEST(Step, PinsAreExactlyWhereTheirMotionSays)
 {
     Scene scene;
-    scene.material = soft_cloth();
+    scene.materials[0] = soft_cloth();
     scene.gravity = Gravity{};
     Pin turning;
     turning.material = {Vec2(0, 0), Vec2(0, 1)};
@@ -194,7 +194,7 @@ TEST(Step, APartlyHeldVertexFollowsItsPlaceAtTimeZero)
     // For held components x(t) = R x(0), independent of the free ones. After 90 degrees about z a point from
     // (1, 0) has x = 0, although y is free.
     Scene scene;
-    scene.material = soft_cloth();
+    scene.materials[0] = soft_cloth();
     scene.gravity = Gravity{Vec3(0, -3, -9.81)};
     Pin pin;
     pin.material = {Vec2(1, 0), Vec2(1, 0)};
@@ -220,7 +220,7 @@ TEST(Step, APartlyHeldVertexFollowsItsPlaceAtTimeZero)
 TEST(Step, KeyframesAtTimeZeroPlaceWhatTheyHold)
 {
     Scene scene;
-    scene.material = soft_cloth();
+    scene.materials[0] = soft_cloth();
     Pin pin;
     pin.material = {Vec2(0, 0), Vec2(0, 1)};
     pin.motion.keyframes = {Keyframe{0.0, Vec3(0.5, 0, 0), Eigen::Quaterniond::Identity()},
@@ -273,7 +273,7 @@ TEST(Step, AVertexHeldSidewaysStillRestsOnATiltedFloor)
     for (int k = 1; k <= 200; ++k) {
         ASSERT_EQ(step(scene, Settings(), 0.005 * k, state, work).status, StepStatus::Done);
         for (const Vec3& x : state.mesh.world)
-            ASSERT_GT(normal.dot(x) + 0.2 - scene.material.thickness, -1e-13);
+            ASSERT_GT(normal.dot(x) + 0.2 - scene.materials.thickness(), -1e-13);
     }
     bool is_held_vertex_in_contact = false;
     for (const int v : vertices_in_box(state.mesh, scene.pins[0].material)) {

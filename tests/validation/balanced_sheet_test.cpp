@@ -44,7 +44,7 @@ ClothRun make_run(const BalancedSheet& sheet)
     const Mat3 upright = rotation_about(Vec3::UnitY(), -90.0);
     for (Vec3& x : mesh.world) x = upright * x + Vec3(-half, -0.5, kThickness - kHanging);
     Scene scene;
-    scene.material = {0.05, sheet.youngs_modulus, 0.01, 1e-5, 0.0, kThickness};
+    scene.materials[0] = {0.05, sheet.youngs_modulus, 0.01, 1e-5, 0.0, kThickness};
     scene.gravity = Gravity{};
     Placement place;
     place.translation = Vec3(0.0, 0.0, -0.5);

@@ -25,12 +25,13 @@ double slide_off(const std::vector<Vec3>& wire, std::array<int, 2> cells)
     ClothMesh mesh = make_sheet(size, cells, GridPattern::Cross);
     lay(mesh, Vec3(-0.4, -0.25, 0.05));
     Scene scene;
-    scene.material = *find_material_preset("silk");
-    scene.material.damping = 0.003;
+    scene.materials[0] = *find_material_preset("silk");
+    scene.materials[0].damping = 0.003;
     scene.gravity = Gravity{};
     scene.obstacles.push_back(MovingObstacle("wire", make_wire(wire, false), {}, {}, 30.0));
     scene.eol = make_initial_target(mesh);
-    const double weight = scene.material.density * size.x() * size.y() * scene.gravity->acceleration.norm();
+    const double weight =
+        scene.materials[0].density * size.x() * size.y() * scene.gravity->acceleration.norm();
     ClothRun run(std::move(scene), std::move(mesh));
     while (run.state.time < kMost && !run.failures.any() &&
            measure_energy(run).potential.gravity > -kBelow * weight)

@@ -13,7 +13,7 @@ Tip settle_cantilever(const ClothMesh& strip, const Material& material, double w
     double width = 0.0;
     for (const Vec2& X : strip.material) width = std::max(width, X.y());
     Scene scene;
-    scene.material = material;
+    scene.materials[0] = material;
     scene.gravity = Gravity{Vec3(0.0, 0.0, -weight / material.density)};
     scene.pins.push_back({{Vec2(1.0, 0.0), Vec2(1.0, width)}, {}, {true, true, true}});
     if (tip_load > 0.0)

@@ -120,7 +120,7 @@ ClothRun make_drum_run(const DrumCase& drum)
     for (int v = 0; v < mesh.vertex_count(); ++v)
         mesh.world[v] = place_on_drum(corners, folds, mesh.material[v]);
     Scene scene;
-    scene.material = {kDensity, kStiffness, 0.0, 1e-7, 0.01, kThickness};
+    scene.materials[0] = {kDensity, kStiffness, 0.0, 1e-7, 0.01, kThickness};
     scene.gravity = Gravity{};
     RigidMotion turning;
     turning.angular_velocity = Vec3(0.0, drum.turning, 0.0);

@@ -34,7 +34,7 @@ void lay(ClothMesh& mesh, const Vec3& corner)
 Scene make_table_scene(const ClothMesh& mesh, const Material& material, const Vec3& size, const Vec3& middle)
 {
     Scene scene;
-    scene.material = material;
+    scene.materials[0] = material;
     scene.gravity = Gravity{};
     Placement place;
     place.translation = middle;

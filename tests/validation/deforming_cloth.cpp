@@ -11,7 +11,7 @@ namespace arris {
 Scene make_deforming_scene(double thickness)
 {
     Scene scene;
-    scene.material = {0.15, 2000.0, 0.3, 1e-5, 0.0, thickness};
+    scene.materials[0] = {0.15, 2000.0, 0.3, 1e-5, 0.0, thickness};
     scene.gravity = Gravity{};
     return scene;
 }

@@ -47,7 +47,7 @@ struct ShearedTable {
         const double most = std::tan(kDegrees * M_PI / 180.0);
         const ObstacleMesh table = make_box({0.8, 1.6, 0.8});
         Scene scene = make_deforming_scene(kThickness);
-        scene.material.bending_stiffness = kLimp;
+        scene.materials[0].bending_stiffness = kLimp;
         scene.obstacles.push_back(make_deforming(
             table,
             [=](const Vec3& rest, double time) {
@@ -102,8 +102,8 @@ EnergyBooks bend_under_strip(double dt, double most)
     for (int k = -20; k <= 20; ++k) points.emplace_back(0.0, k * kSegment, 0.0);
     Scene scene = make_deforming_scene(kThickness);
     scene.gravity.reset();
-    scene.material.youngs_modulus = 200.0;
-    scene.material.bending_stiffness = kLimp;
+    scene.materials[0].youngs_modulus = 200.0;
+    scene.materials[0].bending_stiffness = kLimp;
     scene.obstacles.push_back(make_deforming(make_wire(points, false), place, velocity));
     for (const double end : {0.0, 2.0 * kHalf}) {
         Pin pin;

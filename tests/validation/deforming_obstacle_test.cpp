@@ -73,7 +73,7 @@ TEST(DeformingObstacle, FloorThatStretchesDragsAStrip)
 {
     constexpr double kRate = 1.0, kFriction = 0.3, kWidth = 0.1;
     Scene scene = make_deforming_scene(kThickness);
-    scene.material.youngs_modulus = 2e5;
+    scene.materials[0].youngs_modulus = 2e5;
     scene.friction = Friction{{kFriction}};
     const ObstacleMesh floor = {
         {{-1, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
@@ -113,7 +113,7 @@ TEST(DeformingObstacle, FloorThatBendsKeepsClothThatSticks)
         return Vec3(0.0, 0.0, height(rest.x()) * kWave * std::cos(kWave * time));
     };
     Scene scene = make_deforming_scene(kThickness);
-    scene.material.youngs_modulus = 20.0;  // N/m: stiffer cloth would slip rather than stretch
+    scene.materials[0].youngs_modulus = 20.0;  // N/m: stiffer cloth would slip rather than stretch
     scene.friction = Friction{{0.8}};
     scene.obstacles.push_back(make_deforming(floor, bend, velocity));
     ClothMesh mesh = make_sheet({0.2, 0.2}, {5, 5}, GridPattern::Cross);

@@ -202,7 +202,7 @@ TEST(PinnedColumns, ClampAShareOfACellBehindTheLastOne)
         for (const int cells : {16, 32, 64, 128}) {
             const double dx = 1.0 / cells, G = 0.1, D = pattern.rigidity * kBending;
             Scene scene;
-            scene.material = {1.0, kModulus, 0.0, kBending, 0.0, 1e-3};
+            scene.materials[0] = {1.0, kModulus, 0.0, kBending, 0.0, 1e-3};
             scene.gravity = Gravity{Vec3(0.0, 0.0, -G * D)};
             scene.pins.push_back({{Vec2(0.0, 0.0), Vec2(dx, dx)}, {}, {true, true, true}});
             ClothRun run(scene, make_sheet(Vec2(1.0 + dx, dx), {cells + 1, 1}, pattern.pattern));

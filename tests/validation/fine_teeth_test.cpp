@@ -44,7 +44,7 @@ ClothRun make_run(const Landing& landing)
     const Mat3 tilt = rotation_about(Vec3::UnitY(), landing.tilt);
     for (Vec3& x : mesh.world) x = tilt * x + Vec3(0.0, 0.0, 0.02);
     Scene scene;
-    scene.material = {0.22, landing.youngs_modulus, 0.3, 1e-5, 0.002, landing.thickness};
+    scene.materials[0] = {0.22, landing.youngs_modulus, 0.3, 1e-5, 0.002, landing.thickness};
     scene.gravity = Gravity{};
     const int count = static_cast<int>(0.36 / landing.pitch);
     const double highest = 0.499 * landing.pitch / std::tan(0.5 * landing.tip_degrees * M_PI / 180.0);

@@ -51,7 +51,7 @@ MovingObstacle make_ground(Ground ground, const Vec3& normal)
 Scene make_scene(double angle, bool has_gravity, Ground ground = Ground::Slab)
 {
     Scene scene;
-    scene.material = {0.05, 200.0, 0.3, 1e-4, 0.0, kThickness};
+    scene.materials[0] = {0.05, 200.0, 0.3, 1e-4, 0.0, kThickness};
     if (has_gravity) scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
     scene.obstacles.push_back(make_ground(ground, normal_of(angle)));
     return scene;
@@ -90,7 +90,8 @@ TEST(Incline, AcceleratesByGTimesTheSine)
                 EXPECT_GT(most_contacts, 0.0);
                 const double mass = 0.05 * 0.25;
                 const double speed =
-                    linear_momentum(0.05, run.work.mesh.elements, run.state.velocity).dot(down) / mass;
+                    linear_momentum(Material{0.05}, run.work.mesh.elements, run.state.velocity).dot(down) /
+                    mass;
                 const double error = speed / (kG * std::sin(angle) * t) - 1.0;
                 EXPECT_LT(std::abs(error), 1e-3);
                 if (!is_crumpled) {  // compare the path, too, allowing for the integrator's lag on a parabola
@@ -119,7 +120,9 @@ Impact drop(Integrator integrator, double speed, double phase, bool has_gravity,
     const Vec3 n = normal_of(0.3);
     ClothRun run(scene, place_above(n, (3.0 + phase) * h * speed), -speed * n);
     run.settings.integrator = integrator;
-    const auto energy = [&] { return kinetic_energy(0.05, run.work.mesh.elements, run.state.velocity); };
+    const auto energy = [&] {
+        return kinetic_energy(Material{0.05}, run.work.mesh.elements, run.state.velocity);
+    };
     const double first = energy();
     Impact impact;
     bool has_met = false;
@@ -205,7 +208,7 @@ Shock throw_at_teeth(Integrator integrator, double stiffness, double speed, doub
 {
     const double h = 0.005;
     Scene scene;
-    scene.material = {0.2, stiffness, 0.3, 1e-4, 0.0, kThickness};
+    scene.materials[0] = {0.2, stiffness, 0.3, 1e-4, 0.0, kThickness};
     scene.obstacles.push_back(MovingObstacle("teeth", make_teeth({5, 0.1, 0.06, 0.6, 60.0}), {}, {}, 30.0));
     ClothMesh mesh = make_sheet(Vec2(0.6, 0.4), {18, 12}, GridPattern::Cross);
     for (Vec3& x : mesh.world) x += Vec3(-0.3, -0.2, 0.06 + kThickness + (3.0 + phase) * h * speed);

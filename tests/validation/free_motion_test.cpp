@@ -23,7 +23,7 @@ TEST(FreeFall, LagsTheParabolaByExactlyWhatTheIntegratorDoes)
     // step is twice and the third 1.5 times as long as the step before. These steps raise the error to 9/5 e
     // and 9/4 e. From there (4 e_n - e_(n-1)) / 3 tends to 99/40 e.
     Scene scene;
-    scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+    scene.materials[0] = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
     for (const Integrator integrator : kIntegrators) {
         const double h = 0.005, t = 0.5;
@@ -47,7 +47,7 @@ ClothRun make_crumpled(Integrator integrator, const std::optional<Gravity>& grav
     std::uniform_real_distribution<double> noise(-0.02, 0.02);
     for (Vec3& x : mesh.world) x += Vec3(noise(random), noise(random), noise(random));
     Scene scene;
-    scene.material = {0.05, 500.0, 0.3, 1e-3, 0.0, 1e-3};
+    scene.materials[0] = {0.05, 500.0, 0.3, 1e-3, 0.0, 1e-3};
     scene.gravity = gravity;
     ClothRun run(scene, mesh, Vec3(0.3, -0.2, 0.1));
     run.settings.integrator = integrator;
@@ -58,9 +58,9 @@ TEST(LinearMomentum, IsKeptToRoundOff)
 {
     for (const Integrator integrator : kIntegrators) {
         ClothRun run = make_crumpled(integrator, {});
-        const Vec3 before = linear_momentum(0.05, run.work.mesh.elements, run.state.velocity);
+        const Vec3 before = linear_momentum(Material{0.05}, run.work.mesh.elements, run.state.velocity);
         run.advance(1.0, 0.005);
-        const Vec3 after = linear_momentum(0.05, run.work.mesh.elements, run.state.velocity);
+        const Vec3 after = linear_momentum(Material{0.05}, run.work.mesh.elements, run.state.velocity);
         EXPECT_LT((after - before).norm(), 1e-12 * before.norm());
     }
 }
@@ -69,9 +69,9 @@ TEST(LinearMomentum, GrowsByTheWeight)
 {
     for (const Integrator integrator : kIntegrators) {
         ClothRun run = make_crumpled(integrator, Gravity{Vec3(1.0, 2.0, -kG)});
-        const Vec3 before = linear_momentum(0.05, run.work.mesh.elements, run.state.velocity);
+        const Vec3 before = linear_momentum(Material{0.05}, run.work.mesh.elements, run.state.velocity);
         run.advance(1.0, 0.005);
-        const Vec3 after = linear_momentum(0.05, run.work.mesh.elements, run.state.velocity);
+        const Vec3 after = linear_momentum(Material{0.05}, run.work.mesh.elements, run.state.velocity);
         EXPECT_LT((after - before - 0.05 * Vec3(1.0, 2.0, -kG)).norm(), 1e-12);
     }
 }
@@ -87,7 +87,7 @@ TEST(AngularMomentum, OfASpinningSheetConvergesAtTheIntegratorsOrder)
     for (int k = 0; k < 2; ++k)
         for (const double h : steps[k]) {
             Scene scene;
-            scene.material = {0.05, 200.0, 0.3, 1e-4, 0.0, 1e-3};
+            scene.materials[0] = {0.05, 200.0, 0.3, 1e-4, 0.0, 1e-3};
             ClothMesh mesh = make_sheet(Vec2(0.4, 0.3), {4, 3}, GridPattern::Cross);
             for (Vec3& x : mesh.world) x -= Vec3(0.2, 0.15, 0.0);
             ClothRun run(scene, mesh);
@@ -96,7 +96,7 @@ TEST(AngularMomentum, OfASpinningSheetConvergesAtTheIntegratorsOrder)
             for (std::size_t v = 0; v < mesh.world.size(); ++v)
                 run.state.velocity[v] = spin.cross(mesh.world[v]);
             const auto momentum = [&] {
-                return angular_momentum(0.05, run.work.mesh.elements, run.state.mesh.world,
+                return angular_momentum(Material{0.05}, run.work.mesh.elements, run.state.mesh.world,
                                         run.state.velocity);
             };
             const Vec3 before = momentum();

@@ -32,7 +32,7 @@ ClothRun make_floor_run(double friction, double slope, GridPattern pattern, cons
                         double corner = 0.2)
 {
     Scene scene;
-    scene.material = {0.15, 2000.0, 0.3, 1e-5, 0.0, kThickness};
+    scene.materials[0] = {0.15, 2000.0, 0.3, 1e-5, 0.0, kThickness};
     scene.gravity = Gravity{kG * Vec3(std::sin(slope), 0.0, -std::cos(slope))};
     const MovingObstacle floor = make_floor();
     scene.obstacles.push_back(MovingObstacle("floor", floor.shape().mesh(), {}, motion, 30.0));
@@ -237,7 +237,7 @@ TEST(FrictionAlongAnEdge, SlidesByMuTimesTheTurn)
 ClothRun make_nail_run(double friction, double slope, double direction)
 {
     Scene scene;
-    scene.material = {0.15, 1e4, 0.3, 10.0, 0.002, kThickness};
+    scene.materials[0] = {0.15, 1e4, 0.3, 10.0, 0.002, kThickness};
     const Vec3 level(std::cos(direction), std::sin(direction), 0.0);
     scene.gravity = Gravity{kG * (std::sin(slope) * level - std::cos(slope) * Vec3::UnitZ())};
     scene.obstacles.push_back(MovingObstacle("nail", make_points({Vec3::Zero()}), {}, {}, 30.0));

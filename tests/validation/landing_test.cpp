@@ -34,15 +34,15 @@ struct Landing {
 double land(const Landing& landing, double phase)
 {
     Scene scene;
-    scene.material = {0.15, 2000.0, 0.3, 1e-3, 0.0, kThickness};
-    scene.friction = Friction{{}, landing.friction};
+    scene.materials[0] = {0.15, 2000.0, 0.3, 1e-3, 0.0, kThickness};
+    scene.friction = Friction{{landing.friction}, {}, {}};
     if (landing.gravity > 0.0) scene.gravity = Gravity{{0.0, 0.0, -landing.gravity}};
     ClothMesh cloth = make_sheet({0.2, 0.2}, {3, 3}, GridPattern::Cross);
     const int count = cloth.vertex_count();
     lay(cloth, {0.0, 0.0, kThickness + kDown * landing.step * (4.0 + phase)});
     if (landing.ground == Ground::Floor) {
         scene.obstacles.push_back(make_floor());
-        scene.friction->coefficients = {landing.friction};
+        scene.friction->of_pieces = {landing.friction};
     } else {
         scene.self_contact = ClothContact{kThickness};
         const ClothMesh below = make_sheet({0.5, 0.4}, {5, 4}, GridPattern::Cross);

@@ -22,8 +22,8 @@ ClothRun make_run(int cells)
     for (std::size_t v = 0; v < mesh.world.size(); ++v)
         mesh.world[v] = Vec3(mesh.material[v].x() - 0.3, mesh.material[v].y() - 0.3, 0.02);
     Scene scene;
-    scene.material = *find_material_preset("silk");
-    scene.material.damping = 0.002;
+    scene.materials[0] = *find_material_preset("silk");
+    scene.materials[0].damping = 0.002;
     scene.gravity = Gravity{};
     scene.obstacles.push_back(MovingObstacle(
         "nails", make_points({{-0.15, -0.1, 0.0}, {0.16, -0.09, 0.0}, {0.01, 0.15, 0.0}}), {}, {}, 30.0));

@@ -29,7 +29,7 @@ double pass_box(int cells, double duration)
     const Eigen::Rotation2Dd turn(5.0 * M_PI / 180.0);
     for (Vec3& x : mesh.world) x << turn * Vec2(x.x() - 0.5, x.y() - 0.5), 0.01;
     Scene scene;
-    scene.material = {kDensity, 200.0, 0.01, 1e-5, 0.0, 1e-3};
+    scene.materials[0] = {kDensity, 200.0, 0.01, 1e-5, 0.0, 1e-3};
     scene.gravity = Gravity{};
     RigidMotion passing;
     passing.velocity = Vec3(0.0, -kSpeed, 0.0);

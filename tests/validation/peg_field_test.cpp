@@ -38,7 +38,7 @@ ClothRun make_run(const PegField& field)
     ClothMesh mesh = make_sheet(Vec2(0.2, 0.2), {field.cells, field.cells}, field.pattern);
     lay(mesh, Vec3(-0.1, -0.1, kTop + 0.0011));
     Scene scene;
-    scene.material = kCotton;
+    scene.materials[0] = kCotton;
     scene.gravity = Gravity{};
     for (int i = 0; i < 8; ++i)
         for (int j = 0; j < 5; ++j) {

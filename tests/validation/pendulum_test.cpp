@@ -38,7 +38,8 @@ double exact_period(double amplitude)
 ClothRun make_plate(double amplitude, Integrator integrator, double modulus = 1e4)
 {
     Scene scene;
-    scene.material = {kDensity, modulus, 0.0, 1.0, 0.0, 1e-3};  // bending stiffness 1 J: practically rigid
+    scene.materials[0] = {kDensity, modulus, 0.0,
+                          1.0,      0.0,     1e-3};  // bending stiffness 1 J: practically rigid
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
     scene.pins.push_back({{Vec2(0.0, 0.0), Vec2(0.0, 0.6)}, {}, {true, true, true}});
     ClothMesh mesh = make_sheet(Vec2(kLength, 0.6), {1, 1}, GridPattern::Diagonal);

@@ -108,7 +108,7 @@ TEST(ForcedRemeshing, LeavesAPendulumOfAPlateItsEnergy)
 {
     ClothMesh mesh = make_bent_strip();
     Scene scene;
-    scene.material = strip_material(BendingModel::Plate);
+    scene.materials[0] = strip_material(BendingModel::Plate);
     scene.gravity = Gravity{};
     scene.pins.push_back({{Vec2(0.0, 0.0), Vec2(0.0, kWidth)}, {}, {true, true, true}});
     ClothRun twin(scene, mesh);
@@ -149,7 +149,7 @@ TEST(ForcedRemeshing, KeepsMomentumInFreeFlight)
 {
     ClothMesh mesh = make_bent_strip();
     Scene scene;
-    scene.material = strip_material(BendingModel::Hinge);
+    scene.materials[0] = strip_material(BendingModel::Hinge);
     scene.remesh = remesh_between(mesh, kStripWishes);
     const Vec3 velocity(0.3, -0.2, 0.5);  // m/s
     ClothRun run(std::move(scene), std::move(mesh), velocity);
@@ -173,7 +173,7 @@ TEST(ForcedRemeshing, LeavesAHeavyStripWhereTheElasticaHangs)
     ClothMesh mesh = make_sheet({2.0, kWide}, {32, 3}, GridPattern::Cross);
     lay(mesh, Vec3::Zero());
     Scene scene;
-    scene.material = {1.0, kModulus, 0.0, 1.0, 0.02, 1e-3, BendingModel::Plate};
+    scene.materials[0] = {1.0, kModulus, 0.0, 1.0, 0.02, 1e-3, BendingModel::Plate};
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kWeight)};
     scene.pins.push_back({{Vec2(1.0, 0.0), Vec2(1.0, kWide)}, {}, {true, true, true}});
     scene.remesh = remesh_between(mesh, kLengths);

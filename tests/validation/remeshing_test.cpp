@@ -22,7 +22,7 @@ constexpr double kThickness = 1e-3;  // m
 Scene make_scene(const ClothMesh& mesh, double shortest, double longest)
 {
     Scene scene;
-    scene.material = {0.15, 500.0, 0.3, 1e-4, 0.002, kThickness};
+    scene.materials[0] = {0.15, 500.0, 0.3, 1e-4, 0.002, kThickness};
     Remeshing remesh;
     remesh.shortest = shortest;
     remesh.longest = longest;
@@ -67,7 +67,7 @@ TEST(Remeshing, RefinesClothThatHangsOverABoxAndThenLeavesIt)
     lay(mesh, Vec3(-0.3, -0.3, 1.5 * kThickness));
     Scene scene = make_scene(mesh, 0.03, 0.1);
     scene.gravity = Gravity{};
-    scene.material.damping = 0.01;
+    scene.materials[0].damping = 0.01;
     scene.obstacles.push_back(make_block({0.3, 0.3, 0.6}, {0.0, 0.0, -0.3}));
     scene.eol = make_initial_target(mesh);
     Pin pin;

@@ -45,7 +45,7 @@ TEST(Rest, TakesOneSolveAStepAndStaysThere)
         ClothMesh mesh = make_sheet(rest.size, {10, 8}, GridPattern::Cross);
         lay(mesh, Vec3(-0.5 * rest.size.x(), -0.5 * rest.size.y(), rest.height + kThickness));
         Scene scene;
-        scene.material = {0.2, rest.youngs_modulus, 0.3, rest.bending, 0.01, kThickness};
+        scene.materials[0] = {0.2, rest.youngs_modulus, 0.3, rest.bending, 0.01, kThickness};
         scene.gravity = Gravity{};
         Placement place;
         place.translation = Vec3(0.0, 0.0, rest.height - 0.5 * rest.box.z());

@@ -149,7 +149,7 @@ ClothRun make_rope_run(const RopeCase& rope)
                          rope.height + kThickness - std::abs(along) * std::cos(half)};
     }
     Scene scene;
-    scene.material = {kDensity, rope.stiffness, 0.0, rope.bending, rope.damping, kThickness};
+    scene.materials[0] = {kDensity, rope.stiffness, 0.0, rope.bending, rope.damping, kThickness};
     scene.gravity = Gravity{kG * Vec3(0.0, std::sin(rope.lean), -std::cos(rope.lean))};
     scene.obstacles.push_back(MovingObstacle("wire", make_wire_of(rope), {}, {}, 10.0));
     scene.eol = make_initial_target(mesh);

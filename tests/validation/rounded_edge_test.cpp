@@ -59,7 +59,7 @@ double slide_off(const RoundedEdge& edge, double step, double shift)
     ClothMesh mesh = make_sheet(Vec2(1.0, 0.12), {edge.cells, std::max(2, edge.cells / 10)}, edge.pattern);
     lay(mesh, Vec3(-0.75 + shift, -0.06, 0.0011));
     Scene scene;
-    scene.material = {0.1, edge.youngs_modulus, 0.0, 1e-7, 0.0, 1e-3};
+    scene.materials[0] = {0.1, edge.youngs_modulus, 0.0, 1e-7, 0.0, 1e-3};
     scene.gravity = Gravity{};
     scene.obstacles.push_back(MovingObstacle("table", make_rounded_table(edge), {}, {}, 30.0));
     scene.eol = make_initial_target(mesh);

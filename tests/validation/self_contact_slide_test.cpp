@@ -51,7 +51,7 @@ Loss slide_down(const Slide& slide)
                     above = is_small ? make_sheet({0.1, 0.1}, {3, 3}, slide.pattern)
                                      : make_sheet({0.35, 0.25}, {14, 10}, slide.pattern);
     Scene scene;
-    scene.material = {0.15, 2000.0, 0.3, 0.1, 0.0, kThickness};
+    scene.materials[0] = {0.15, 2000.0, 0.3, 0.1, 0.0, kThickness};
     scene.gravity = Gravity{kG * Vec3(std::sin(slope), 0.0, -std::cos(slope))};
     scene.self_contact = ClothContact{kThickness};
     scene.pins.push_back({.material = {{0.0, 0.0}, {0.6, 0.3}}, .motion = {}});

@@ -51,7 +51,7 @@ TEST(SelfContactAtRest, PilesKeepTheirThicknessAndBecomeStill)
 {
     for (const int sheets : {2, 5}) {
         Scene scene;
-        scene.material = make_material(0.05);
+        scene.materials[0] = make_material(0.05);
         scene.gravity = Gravity{{0.0, 0.0, -kG}};
         scene.obstacles.push_back(make_floor());
         scene.self_contact = ClothContact{kThickness};
@@ -74,7 +74,7 @@ TEST(SelfContactImpact, OfTwoSheetsKeepsMomentumAndDoesNotRebound)
     constexpr double kSpeed = 1.0;
     for (int phase = 0; phase < 20; ++phase) {
         Scene scene;
-        scene.material = make_material();
+        scene.materials[0] = make_material();
         scene.self_contact = ClothContact{kThickness};
         ClothMesh cloth;
         add_piece(make_square(4, GridPattern::Diagonal), Vec3::Zero(), 0.0, cloth);
@@ -104,10 +104,10 @@ TEST(SelfContactFriction, BetweenLayersObeysCoulombsLaw)
     for (const double degrees : {10.0, 25.0}) {
         const double slope = degrees * std::numbers::pi / 180.0;
         Scene scene;
-        scene.material = make_material();
+        scene.materials[0] = make_material();
         scene.gravity = Gravity{kG * Vec3(std::sin(slope), 0.0, -std::cos(slope))};
         scene.self_contact = ClothContact{kThickness};
-        scene.friction = Friction{.coefficients = {}, .between_layers = kFriction};
+        scene.friction = Friction{.of_pieces = {0.0}, .of_obstacles = {}, .between_layers = kFriction};
         scene.pins.push_back({.material = {{0.0, 0.0}, {0.3, 0.3}}, .motion = {}});
         ClothMesh cloth;
         add_piece(make_square(6, GridPattern::Cross), Vec3::Zero(), 0.0, cloth);
@@ -132,11 +132,11 @@ TEST(SelfContactFriction, OfAStackThatLandsTakesFewFactorisations)
                   kMostInTheMean =
                       15;  // with tangents as springs 300 and 22; the most scatters from 60 to 110
     Scene scene;
-    scene.material = make_material();
+    scene.materials[0] = make_material();
     scene.gravity = Gravity{{0.0, 0.0, -kG}};
     scene.obstacles.push_back(make_floor());
     scene.self_contact = ClothContact{kThickness};
-    scene.friction = Friction{.coefficients = {0.3}, .between_layers = 0.3};
+    scene.friction = Friction{.of_pieces = {0.3}, .of_obstacles = {}, .between_layers = {}};
     ClothMesh cloth;
     for (int k = 0; k < kSheets; ++k)
         add_piece(make_square(kCells, GridPattern::Alternating), {0.0, 0.0, 0.01 + 0.005 * k}, 0.0, cloth);
@@ -154,7 +154,7 @@ TEST(SelfContactFriction, OfAStackThatLandsTakesFewFactorisations)
 TEST(SelfContactFold, ClosesToItsThicknessWithoutPassing)
 {
     Scene scene;
-    scene.material = make_material(0.005);
+    scene.materials[0] = make_material(0.005);
     scene.gravity = Gravity{{0.0, 0.0, -kG}};
     scene.obstacles.push_back(make_floor());
     scene.self_contact = ClothContact{kThickness};
@@ -185,7 +185,7 @@ TEST(SelfContactCrumple, NeverCrossesItself)
 {
     for (const double tilt : {88.0, 92.0, 75.0}) {
         Scene scene;
-        scene.material = make_material();
+        scene.materials[0] = make_material();
         scene.gravity = Gravity{{0.0, 0.0, -kG}};
         scene.obstacles.push_back(make_floor());
         scene.self_contact = ClothContact{kThickness};
@@ -208,11 +208,11 @@ TEST(SelfContactCrumple, NeverCrossesItself)
 TEST(SelfContactCrumple, GoesOnFromAStateAlone)
 {
     Scene scene;
-    scene.material = make_material();
+    scene.materials[0] = make_material();
     scene.gravity = Gravity{{0.0, 0.0, -kG}};
     scene.obstacles.push_back(make_floor());
     scene.self_contact = ClothContact{kThickness};
-    scene.friction = Friction{{0.3}, 0.3};
+    scene.friction = Friction{{0.3}, {}, {}};
     ClothMesh mesh = make_sheet({0.3, 0.15}, {14, 7}, GridPattern::Alternating);
     const Mat3 turn = Eigen::AngleAxisd(-1.5, Vec3::UnitY()).toRotationMatrix();
     for (Vec3& x : mesh.world) x = turn * x + Vec3(0.0, 0.0, 0.02);

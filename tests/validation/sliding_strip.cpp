@@ -123,7 +123,7 @@ ClothRun make_strip_run(const StripCase& strip)
 {
     ClothMesh mesh = make_bent_strip(strip);
     Scene scene;
-    scene.material = {kDensity, strip.youngs_modulus, 0.0, strip.bending_stiffness, 0.0, kThickness};
+    scene.materials[0] = {kDensity, strip.youngs_modulus, 0.0, strip.bending_stiffness, 0.0, kThickness};
     scene.gravity =
         Gravity{strip.place.rotation * (kG * Vec3(0.0, std::sin(strip.lean), -std::cos(strip.lean)))};
     RigidMotion motion;

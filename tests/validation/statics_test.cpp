@@ -20,7 +20,7 @@ double relative_elongation(GridPattern pattern, int cells, double modulus)
 {
     const double density = 0.1;
     Scene scene;
-    scene.material = {density, modulus, 0.0, 1e-6, 0.0, 1e-3};
+    scene.materials[0] = {density, modulus, 0.0, 1e-6, 0.0, 1e-3};
     scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
     scene.pins.push_back({{Vec2(0.0, 0.0), Vec2(0.0, 0.5)}, {}, {true, true, true}});
     ClothMesh mesh = make_sheet(Vec2(1.0, 0.5), {cells, cells / 2}, pattern);
@@ -91,7 +91,7 @@ TEST(Catenary, OfANearlyInextensibleStrip)
     std::vector<double> sizes, errors;
     for (const int cells : {8, 16, 32, 64}) {
         Scene scene;
-        scene.material = {0.1, modulus, 0.0, 1e-9, 0.0, 1e-3};
+        scene.materials[0] = {0.1, modulus, 0.0, 1e-9, 0.0, 1e-3};
         scene.gravity = Gravity{Vec3(0.0, 0.0, -kG)};
         const double width = length / cells;
         for (const double u : {0.0, length})

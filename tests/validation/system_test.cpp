@@ -58,7 +58,7 @@ Assembled assemble(const ClothMesh& mesh, const Terms& terms, const Linearizatio
 Eigen::MatrixXd mass_matrix(const ClothMesh& mesh, double density)
 {
     Terms terms;
-    terms.faces.push_back(std::make_unique<Inertia>(density));
+    terms.faces.push_back(std::make_unique<Inertia>(Material{density}));
     return assemble(mesh, terms, at_rest(mesh, 0.01)).matrix;
 }
 
@@ -100,9 +100,9 @@ TEST(Mass, OfARigidRotationIsThePlatesMomentOfInertia)
             EXPECT_NEAR(v.dot(M * v), mass * principal[axis][axis] / 12.0, kRoundOff);
             const ClothElements elements =
                 make_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
-            EXPECT_NEAR(0.5 * v.dot(M * v), kinetic_energy(density, elements, velocity), kRoundOff);
+            EXPECT_NEAR(0.5 * v.dot(M * v), kinetic_energy(Material{density}, elements, velocity), kRoundOff);
             // About the origin L = I omega + m c x (omega x c); the sheet's centre does not move.
-            EXPECT_NEAR(angular_momentum(density, elements, mesh.world, velocity)[axis],
+            EXPECT_NEAR(angular_momentum(Material{density}, elements, mesh.world, velocity)[axis],
                         mass * principal[axis][axis] / 12.0, kRoundOff);
         }
     }
@@ -160,7 +160,7 @@ TEST(AssembledMatrix, IsSymmetricPositiveDefiniteWhateverTheClothLooksLike)
                     for (Vec3& x : mesh.world) x = shape.move(x, random);
                     Material material{0.05, modulus, 0.45, 1e-2, 0.01, 1e-3};
                     Linearization at = at_rest(mesh, dt);
-                    at.damping = material.damping;
+                    at.damping = {material.damping};
                     for (Vec3& v : at.v_last) v = noise(random, 10.0);
                     const Assembled system = assemble(mesh, make_terms(material, Gravity{}, wind, {}), at);
                     ASSERT_TRUE(system.matrix.allFinite() && system.rhs.allFinite());

@@ -60,7 +60,7 @@ ClothRun make_hinge(Integrator integrator)
     mesh.world[3] = Vec3(kFlap * std::cos(kFlapStart), 0.5, kFlap * std::sin(kFlapStart));
     Scene scene;
     const double weight = 3.0 * 1.0 / kFlap;  // 3 |e|^2 / A
-    scene.material = {kDensity, kModulus, 0.0, 2.0 * kStiffness / weight, 0.0, 1e-3};
+    scene.materials[0] = {kDensity, kModulus, 0.0, 2.0 * kStiffness / weight, 0.0, 1e-3};
     scene.pins.push_back({{Vec2(-kFlap, 0.0), Vec2(0.0, 1.0)}, {}, {true, true, true}});
     ClothRun run(scene, mesh);
     run.settings.integrator = integrator;
@@ -160,7 +160,7 @@ ClothRun make_swinging_strip(Integrator integrator)
     Scene scene;
     // The sudden release excites the strip's fastest modes. No step here resolves their phase over 200
     // periods, so they are damped away (a mode of 100 rad/s by 10 % of critical).
-    scene.material = {0.3, 50.0, 0.3, 1e-3, 2e-3, 1e-3};
+    scene.materials[0] = {0.3, 50.0, 0.3, 1e-3, 2e-3, 1e-3};
     scene.gravity = Gravity{};
     scene.pins.push_back({{Vec2(0.0, 0.0), Vec2(0.05, 0.1)}, {}, {true, true, true}});
     ClothRun run(scene, make_sheet(Vec2(0.5, 0.1), {10, 2}, GridPattern::Cross));

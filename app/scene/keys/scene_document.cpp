@@ -216,7 +216,8 @@ class OverrideWalk {
         if (!value_->member(part)) value_->members.emplace_back(std::string(part), made(key->type));
         value_ = value_->member(part);
         name_ = name;
-        is_list_ = key->type == KeyType::Tables;
+        is_list_ =
+            key->type == KeyType::Tables || (key->may_repeat && value_->kind == SceneValue::Kind::Array);
     }
 
     void enter_element(std::string_view part)
@@ -229,7 +230,8 @@ class OverrideWalk {
                             count == 0 ? "0" : fmt::format("0 to {}, where {} appends", count, count));
         if (*index == count) value_->items.push_back(made(KeyType::Table));
         value_ = &value_->items[*index];
-        name_ += "[]";
+        const SceneKey* key = find_scene_key(name_);
+        if (!key || !key->may_repeat) name_ += "[]";
         is_list_ = false;
     }
 

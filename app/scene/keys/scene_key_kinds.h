@@ -33,6 +33,13 @@ inline SceneKey tables(std::string_view name, std::string_view sentence)
     return {.name = name, .type = KeyType::Tables, .sentence = sentence};
 }
 
+/// A table that may also be an array of tables, [[name]], whose elements have the same keys.
+inline SceneKey repeatable(SceneKey key)
+{
+    key.may_repeat = true;
+    return key;
+}
+
 inline SceneKey number(std::string_view name, std::string_view unit, KeyRange range,
                        std::string_view fallback, std::string_view sentence)
 {

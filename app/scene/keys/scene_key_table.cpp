@@ -1,13 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of all keys of a scene file. A new key is added here and nowhere else.
+#include <deque>
+#include <string>
+
 #include "app/scene/keys/scene_key_kinds.h"
 
 namespace arris {
 namespace {
 
+/// Keys of a material, below "cloth.material" or "fabric[]".
+std::vector<SceneKey> material_keys(const std::string& parent)
+{
+    static std::deque<std::string> names;  // keys refer to their names
+    const auto below = [&](const char* leaf) -> std::string_view {
+        return names.emplace_back(parent + "." + leaf);
+    };
+    return {
+        choice(below("preset"), "cotton|silk|wool|denim|leather|rubber", R"("cotton")",
+               "Material preset; each key below overrides one of its values."),
+        number(below("density"), "kg/m^2", {0.0, 1e4, true}, "(the preset's)", "Mass per area."),
+        number(below("youngs_modulus"), "N/m", {0.0, 1e12, true}, "(the preset's)",
+               "Membrane stiffness: tension per width at unit strain."),
+        number(below("poisson_ratio"), "", {0.0, 0.5}, "(the preset's)",
+               "Poisson's ratio: lateral contraction per extension."),
+        number(below("bending_stiffness"), "J", kNotNegative, "(the preset's)",
+               "Bending stiffness K, bending moment per width and curvature; 0 switches bending off."),
+        choice(
+            below("bending_model"), "hinge|plate", R"("hinge")",
+            "Bending model: every hinge for itself, with a rigidity that depends on the mesh (hinge), or a "
+            "plate whose rigidity is K on any mesh (plate)."),
+        number(below("damping"), "s", {0.0, 1e3}, "0.0",
+               "Damping proportional to the elastic stiffness; 0 switches damping off."),
+        number(below("thickness"), "m", {0.0, 1.0, true}, "0.001",
+               "Distance that contacts keep between the cloth's surface and obstacles; of several pieces the "
+               "greatest counts for all."),
+        number(
+            below("compression_modulus"), "Pa", {0.0, 1e12, true}, "1e4",
+            "Pressure with which cloth between obstacles resists, per share of the thickness by which it is "
+            "squeezed."),
+        number(below("friction"), "", {0.0, 100.0}, "",
+               "Coefficient of Coulomb friction of this cloth; without it `friction.coefficient`. That of an "
+               "obstacle overrides it. Between two layers the mean of both counts. Without [friction] this "
+               "key switches friction on for this cloth."),
+    };
+}
+
 std::vector<SceneKey> make_scene_keys()
 {
-    return {
+    std::vector<SceneKey> keys = {
         text("title", KeyType::Text, kTitle, "(the scene file's name)", "Title of the run in reports."),
         number("duration", "s", kPositive, kRequired, "Simulated time."),
 
@@ -19,7 +59,14 @@ std::vector<SceneKey> make_scene_keys()
             "time.integrator", "bdf2|implicit_euler", R"("bdf2")",
             "Integrator: second order (bdf2), or first order with more numerical damping (implicit_euler)."),
 
-        table("cloth", "{}", "The cloth: a rectangle or an outline to be meshed, or a mesh from a file."),
+        repeatable(table(
+            "cloth", "{}",
+            "The cloth: a rectangle or an outline to be meshed, or a mesh from a file. Several `[[cloth]]` "
+            "are pieces of cloth, each with its own place and material.")),
+        text("cloth.name", KeyType::Name, {}, "(of several: piece0, piece1, …)",
+             "Name of the piece; unique among pieces, obstacles and probes, not `cloth`."),
+        text("cloth.fabric", KeyType::Name, {}, "",
+             "Name of a `[[fabric]]`, of which the cloth is made; instead of `[cloth.material]`."),
         numbers("cloth.size", 2, "m", kSize, "",
                 "Sides of the material rectangle, u then v; required without `outline` and `file`."),
         {.name = "cloth.resolution",
@@ -75,33 +122,24 @@ std::vector<SceneKey> make_scene_keys()
         numbers("cloth.velocity", 3, "m/s", kAnyNumber, kOrigin, "Initial velocity of the whole cloth."),
 
         table("cloth.material", "{}", "Material properties of the cloth."),
-        choice("cloth.material.preset", "cotton|silk|wool|denim|leather|rubber", R"("cotton")",
-               "Material preset; each key below overrides one of its values."),
-        number("cloth.material.density", "kg/m^2", {0.0, 1e4, true}, "(the preset's)", "Mass per area."),
-        number("cloth.material.youngs_modulus", "N/m", {0.0, 1e12, true}, "(the preset's)",
-               "Membrane stiffness: tension per width at unit strain."),
-        number("cloth.material.poisson_ratio", "", {0.0, 0.5}, "(the preset's)",
-               "Poisson's ratio: lateral contraction per extension."),
-        number("cloth.material.bending_stiffness", "J", kNotNegative, "(the preset's)",
-               "Bending stiffness K, bending moment per width and curvature; 0 switches bending off."),
-        choice(
-            "cloth.material.bending_model", "hinge|plate", R"("hinge")",
-            "Bending model: every hinge for itself, with a rigidity that depends on the mesh (hinge), or a "
-            "plate whose rigidity is K on any mesh (plate)."),
-        number("cloth.material.damping", "s", {0.0, 1e3}, "0.0",
-               "Damping proportional to the elastic stiffness; 0 switches damping off."),
-        number("cloth.material.thickness", "m", {0.0, 1.0, true}, "0.001",
-               "Distance that contacts keep between the cloth's surface and obstacles."),
-        number(
-            "cloth.material.compression_modulus", "Pa", {0.0, 1e12, true}, "1e4",
-            "Pressure with which cloth between obstacles resists, per share of the thickness by which it is "
-            "squeezed."),
-
+    };
+    const auto append = [&](std::vector<SceneKey> more) {
+        keys.insert(keys.end(), more.begin(), more.end());
+    };
+    append(material_keys("cloth.material"));
+    append({
+        tables("fabric", "A material with a name, of which any number of pieces may be made."),
+        text("fabric[].name", KeyType::Name, {}, kRequired, "Name of the fabric; unique among fabrics."),
+    });
+    append(material_keys("fabric[]"));
+    append({
         tables("pin", "Pins hold or move vertices. Without a pin nothing holds the cloth."),
         box("pin[].material",
             "Box in the material, bounds included. The pin holds the vertices whose material coordinates lie "
             "in the box. About a line of held vertices the cloth turns freely, so a clamped edge needs a box "
             "that holds two rows of vertices."),
+        text("pin[].piece", KeyType::Name, {}, "",
+             "Name of the piece of cloth that the box is of; required where there are several."),
         numbers("pin[].velocity", 3, "m/s", kAnyNumber, kOrigin, "Velocity of the pin from its `start` on."),
         numbers("pin[].angular_velocity", 3, "rad/s", kAnyNumber, kOrigin,
                 "Angular velocity of the pin about `pivot` from its `start` on; its direction is the axis."),
@@ -153,6 +191,8 @@ std::vector<SceneKey> make_scene_keys()
                "A force spread over a box of the material: by area; by length where the box is a line; on "
                "the nearest vertex where the box is a point."),
         box("pull[].material", "Box in the material, bounds included: the part of the cloth that is pulled."),
+        text("pull[].piece", KeyType::Name, {}, "",
+             "Name of the piece of cloth that the box is of; required where there are several."),
         numbers("pull[].force", 3, "N", {-1e9, 1e9}, kRequired, "Total force of the pull."),
         number("pull[].start", "s", kNotNegative, "0.0", "Time at which the force begins."),
         number("pull[].stop", "s", kPositive, kNever, "Time at which the force ends; later than `start`."),
@@ -164,8 +204,7 @@ std::vector<SceneKey> make_scene_keys()
                "own coefficients override it."),
 
         table("self_contact", "",
-              "Switches contact of the cloth with itself on, and of several pieces of one file with each "
-              "other."),
+              "Switches contact of the cloth with itself on, and of several pieces with each other."),
         number("self_contact.thickness", "m", {0.0, 1.0, true}, "",
                "Distance kept between the middle surfaces of two layers; without it the cloth's "
                "`material.thickness`."),
@@ -200,9 +239,10 @@ std::vector<SceneKey> make_scene_keys()
         tables("obstacle",
                "An obstacle, rigid unless it has `deform`; its shape is one of `file`, `box`, `points`, "
                "`wire`, `teeth`."),
-        text("obstacle[].name", KeyType::Name, {}, "(obstacle0, obstacle1, …)",
-             "Name of the obstacle and of its exported frames; unique among obstacles and probes, not "
-             "`cloth`."),
+        text(
+            "obstacle[].name", KeyType::Name, {}, "(obstacle0, obstacle1, …)",
+            "Name of the obstacle and of its exported frames; unique among pieces, obstacles and probes, not "
+            "`cloth`."),
         text("obstacle[].file", KeyType::Path, kPath, "",
              "OBJ, STL, PLY, glTF/GLB, COLLADA, FBX, 3MF or 3DS mesh."),
         choice("obstacle[].units", kUnits, "(what the file declares, else m)", "Unit of the file."),
@@ -293,9 +333,11 @@ std::vector<SceneKey> make_scene_keys()
 
         tables("probe", "A material point whose position and velocity are written to probes.csv."),
         text("probe[].name", KeyType::Name, {}, kRequired,
-             "Name of the probe in the columns of probes.csv; unique among obstacles and probes, not "
+             "Name of the probe in the columns of probes.csv; unique among pieces, obstacles and probes, not "
              "`cloth`."),
         numbers("probe[].material", 2, "m", kAnyNumber, kRequired, "The material point, u and v."),
+        text("probe[].piece", KeyType::Name, {}, "",
+             "Name of the piece of cloth that the point is of; required where there are several."),
 
         table("solver", "{}", "Settings of the solver."),
         number("solver.tolerance", "", {1e-14, 1e-2}, "1e-9",
@@ -309,7 +351,8 @@ std::vector<SceneKey> make_scene_keys()
                "Frames per second of simulated time; 0 writes no frames."),
         choices("output.formats", 0, "obj|usd|viewer|vtk|pc2|mdd|gltf", R"(["viewer"])",
                 "Formats made from the frames. The PLY frames are always written."),
-    };
+    });
+    return keys;
 }
 
 }  // namespace

@@ -102,6 +102,7 @@ std::string allowed_values(const SceneKey& key)
     switch (key.type) {
         case KeyType::Table:
             if (leaf_name(key.name) == "rotate") return "a table, { axis = [0, 0, 1], degrees = 45 }";
+            if (key.may_repeat) return fmt::format("a table, [{0}], or tables, [[{0}]]", key.name);
             return fmt::format("a table, [{}]", header_name(key.name));
         case KeyType::Tables:
             return fmt::format("tables, [[{}]]", key.name);

@@ -51,6 +51,7 @@ struct SceneKey {
     std::string_view fallback = {};
     std::string_view sentence = {};
     std::string_view unbuilt_choices = {};  ///< values not built yet, separated by '|'; "true" for a Boolean
+    bool may_repeat = false;                ///< of a table: may be an array of tables, as well
 };
 
 inline constexpr std::string_view kRequired = "required";

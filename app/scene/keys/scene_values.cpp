@@ -215,8 +215,9 @@ Json complete_table(const SceneDocument& document, const SceneValue* value, std:
 Json complete_tables(const Check& check, const SceneValue& value)
 {
     if (value.kind != Kind::Array) check.fail("is not an array of tables");
-    const std::string element_name = fmt::format("{}[]", check.key.name);
+    const std::string element_name = fmt::format("{}{}", check.key.name, check.key.may_repeat ? "" : "[]");
     Json result = Json::array();
+    if (check.key.may_repeat && value.items.empty()) check.fail("is empty");
     for (std::size_t i = 0; i < value.items.size(); ++i) {
         const std::string path = fmt::format("{}.{}", check.path, i);
         if (value.items[i].kind != Kind::Table) Check{check.document, check.key, path}.fail("is not a table");
@@ -229,6 +230,7 @@ Json complete_value(const Check& check, const SceneValue& value)
 {
     switch (check.key.type) {
         case KeyType::Table:
+            if (check.key.may_repeat && value.kind == Kind::Array) return complete_tables(check, value);
             if (value.kind != Kind::Table) check.fail("is not a table");
             return complete_table(check.document, &value, check.key.name, check.path);
         case KeyType::Tables:

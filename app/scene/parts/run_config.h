@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/scene/parts/cloth_pieces.h"
 #include "app/scene/parts/obstacle_records.h"
 #include "geometry/cloth/cloth_mesh.h"
 #include "solver/model/scene.h"
@@ -14,7 +15,7 @@ namespace arris {
 
 struct Probe {
     std::string name;
-    Vec2 material = Vec2::Zero();
+    Vec2 material = Vec2::Zero();  ///< in the plane of all pieces
 };
 
 struct OutputOptions {
@@ -31,8 +32,9 @@ struct RunConfig {
     OutputOptions output;
     std::vector<Probe> probes;
 
+    std::vector<ClothPiece> pieces;              ///< at least one
     ClothMesh cloth;                             ///< placed and folded, before pins are attached
-    Vec3 cloth_velocity = Vec3::Zero();          ///< m/s, initial
+    std::vector<Vec3> cloth_velocity;            ///< m/s, initial, of each vertex
     std::vector<Placement> obstacle_placements;  ///< of the obstacles' frames, before their motions
     std::vector<std::string> intersections;      ///< of the cloth with obstacles at time 0, one line each
 
@@ -40,6 +42,9 @@ struct RunConfig {
     std::vector<std::string> notes;  ///< on the cloth and on obstacles' files: valid, but worth knowing
     nlohmann::ordered_json as_run;   ///< the scene by key, with every default filled in
 };
+
+/// The first mesh of piece i, with its material in the plane of all pieces.
+ClothMesh extract_piece(const RunConfig& config, std::size_t i);
 
 /// The text of a scene file and its overrides, stored so that a run can be resumed without the file.
 struct SceneSource {
@@ -53,6 +58,8 @@ struct LoadOptions {
     /// For a resumed run: the cloth at time 0 and the meshes of the obstacles, as stored with the run. Checks
     /// and warnings about time 0 are then omitted.
     const ClothMesh* cloth = nullptr;
+    const std::vector<ClothPiece>* pieces = nullptr;  ///< their places and sizes, with `cloth`
+    std::string pieces_file;                          ///< the file that `pieces` comes from
     const std::vector<ObstacleRecord>* obstacles = nullptr;
     std::string obstacles_file;  ///< the file that `obstacles` comes from
 

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "app/scene/keys/scene_json.h"
+#include "app/scene/parts/cloth_pieces.h"
 #include "geometry/cloth_input/cloth_file.h"
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/cloth_input/cloth_outline.h"
@@ -19,9 +21,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void check_size(const SceneDocument& document, const RunConfig& config, SceneEstimate estimate)
+/// A piece of cloth as the scene has it.
+struct PieceSource {
+    const SceneDocument& document;
+    const Json& json;
+    std::string key;  ///< "cloth", or "cloth.1"
+
+    std::string at(const std::string& leaf) const { return key + "." + leaf; }
+};
+
+void check_size(const PieceSource& piece, const RunConfig& config, SceneEstimate estimate)
 {
-    const std::string key = cloth_fineness_key(document);
+    const SceneDocument& document = piece.document;
+    const std::string key = cloth_fineness_key(document, piece.key);
+    estimate.vertices += config.cloth.vertex_count();
+    estimate.faces += config.cloth.face_count();
     if (estimate.vertices > kMaxVertices)
         refuse_estimate(document, key, estimate.vertices, "vertices", kMaxVertices);
     estimate_bytes(config.output.formats, estimate);
@@ -29,14 +43,15 @@ void check_size(const SceneDocument& document, const RunConfig& config, SceneEst
         document.fail(key, excess->wrong, excess->allowed);
 }
 
-/// Runs `build` and reports an InputError of it as an error of `key`.
+/// Runs `build` and reports an InputError of it as an error of the piece's `leaf`.
 template <typename Build>
-auto blame(const SceneDocument& document, const std::string& key, const Build& build)
+auto blame(const PieceSource& piece, const std::string& leaf, const Build& build)
 {
     try {
         return build();
     } catch (const InputError& error) {
-        document.fail(document.find(key) ? key : "cloth", error.what());
+        const std::string key = piece.at(leaf);
+        piece.document.fail(piece.document.find(key) ? key : piece.key, error.what());
     }
 }
 
@@ -65,16 +80,16 @@ ClothGrid to_grid(const Json& cloth)
     return grid;
 }
 
-SceneEstimate estimate_grid(const SceneDocument& document, const ClothGrid& grid)
+SceneEstimate estimate_grid(const PieceSource& piece, const ClothGrid& grid)
 {
-    return to_estimate(blame(document, "cloth.folds", [&] { return estimate_cloth_grid(grid); }));
+    return to_estimate(blame(piece, "folds", [&] { return estimate_cloth_grid(grid); }));
 }
 
-ClothMesh make_rectangle(const SceneDocument& document, const RunConfig& config, const Json& cloth)
+ClothMesh make_rectangle(const PieceSource& piece, const RunConfig& config)
 {
-    const ClothGrid grid = to_grid(cloth);
-    check_size(document, config, estimate_grid(document, grid));
-    return blame(document, "cloth.folds", [&] {
+    const ClothGrid grid = to_grid(piece.json);
+    check_size(piece, config, estimate_grid(piece, grid));
+    return blame(piece, "folds", [&] {
         ClothMesh mesh = make_cloth_grid(grid);
         fold_cloth(grid.folds, mesh);
         return mesh;
@@ -90,14 +105,16 @@ std::vector<Vec2> to_polygon(const Json& json)
     return polygon;
 }
 
-BorderLoops read_border(const SceneDocument& document, const Json& cloth)
+BorderLoops read_border(const PieceSource& piece)
 {
+    const Json& cloth = piece.json;
     std::vector<std::vector<Vec2>> holes;
     for (const Json& hole : cloth.value("holes", Json::array())) holes.push_back(to_polygon(hole));
     BorderLoops border = to_border_loops(to_polygon(cloth["outline"]), holes);
     if (const std::optional<BorderDefect> defect = find_border_defect(border))
-        document.fail(defect->loop == 0 ? "cloth.outline" : fmt::format("cloth.holes.{}", defect->loop - 1),
-                      defect->wrong, defect->allowed);
+        piece.document.fail(
+            piece.at(defect->loop == 0 ? "outline" : fmt::format("holes.{}", defect->loop - 1)),
+            defect->wrong, defect->allowed);
     return border;
 }
 
@@ -118,15 +135,15 @@ Vec2 extent_of(const std::vector<Vec2>& loop)
 /// Refuses an edge length whose mesh is not of the outline's shape, mostly because its unit is wrong; tells
 /// of a mesh that leaves out corners, as a warning where that changes the area by more than rounding off
 /// does.
-void check_coarsening(const SceneDocument& document, const BorderLoops& border, const ClothOutline& outline,
+void check_coarsening(const PieceSource& piece, const BorderLoops& border, const ClothOutline& outline,
                       RunConfig& config)
 {
     constexpr double kWorthWarning = 0.01;  // of the area; a disc divided into 25 sides loses as much
     constexpr double kOtherShape = 0.1;     // of the area; a disc becomes an octagon
     const Vec2 extent = extent_of(border[0]);
     const auto refuse = [&](const std::string& wrong) {
-        document.fail(
-            "cloth.edge_length", wrong,
+        piece.document.fail(
+            piece.at("edge_length"), wrong,
             fmt::format("lengths (m) below the outline's extent of {:.4g} x {:.4g} m, with which its "
                         "area changes by at most {:g} %",
                         extent.x(), extent.y(), 100.0 * kOtherShape));
@@ -142,8 +159,8 @@ void check_coarsening(const SceneDocument& document, const BorderLoops& border, 
                            left_out, 100.0 * change));
     auto& lines = std::abs(change) > kWorthWarning ? config.warnings : config.notes;
     lines.push_back(fmt::format(
-        "{}: {} are left out, as they are finer than cloth.edge_length; this changes the area by {:.2g} %",
-        document.describe("cloth.outline"), left_out, 100.0 * change));
+        "{}: {} are left out, as they are finer than {}; this changes the area by {:.2g} %",
+        piece.document.describe(piece.at("outline")), left_out, piece.at("edge_length"), 100.0 * change));
 }
 
 ClothOutline to_outline(const BorderLoops& border, const Json& cloth)
@@ -155,13 +172,13 @@ ClothOutline to_outline(const BorderLoops& border, const Json& cloth)
     return outline;
 }
 
-ClothMesh make_outlined(const SceneDocument& document, RunConfig& config, const Json& cloth)
+ClothMesh make_outlined(const PieceSource& piece, RunConfig& config)
 {
-    const BorderLoops border = read_border(document, cloth);
-    const ClothOutline outline = to_outline(border, cloth);
-    check_size(document, config, to_estimate(estimate_cloth_outline(outline)));
-    check_coarsening(document, border, outline, config);
-    return blame(document, outline.folds.empty() ? "cloth.outline" : "cloth.folds", [&] {
+    const BorderLoops border = read_border(piece);
+    const ClothOutline outline = to_outline(border, piece.json);
+    check_size(piece, config, to_estimate(estimate_cloth_outline(outline)));
+    check_coarsening(piece, border, outline, config);
+    return blame(piece, outline.folds.empty() ? "outline" : "folds", [&] {
         ClothMesh mesh = make_cloth_outline(outline);
         fold_cloth(outline.folds, mesh);
         return mesh;
@@ -170,70 +187,140 @@ ClothMesh make_outlined(const SceneDocument& document, RunConfig& config, const 
 
 // ---- a file
 
-ClothMesh read_cloth(const SceneDocument& document, RunConfig& config, const Json& cloth)
+ClothMesh read_cloth(const PieceSource& piece, RunConfig& config)
 {
+    const SceneDocument& document = piece.document;
+    const Json& cloth = piece.json;
     const std::filesystem::path name(cloth["file"].get<std::string>());
     const std::string path = (std::filesystem::path(document.path()).parent_path() / name).string();
     const std::string unit = cloth["units"].get<std::string>();
     std::string extension = name.extension().string();
     for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
     if (extension != ".obj")
-        document.fail("cloth.file", "a cloth of this format is not built yet in this version",
+        document.fail(piece.at("file"), "a cloth of this format is not built yet in this version",
                       "an .obj file");
-    ClothFile file = blame(document, "cloth.file", [&] {
+    ClothFile file = blame(piece, "file", [&] {
         return read_cloth_file(path, metres_of(unit), cloth["up"].get<std::string>()[0],
                                cloth["uv_scale"].get<double>());
     });
-    if (document.find("cloth.uv_scale") && !file.has_uv)
-        config.warnings.push_back(document.describe("cloth.uv_scale") +
+    if (document.find(piece.at("uv_scale")) && !file.has_uv)
+        config.warnings.push_back(document.describe(piece.at("uv_scale")) +
                                   ": has no effect: the file has no UVs");
     for (const std::string& warning : file.warnings)
-        config.warnings.push_back(fmt::format("{}: {}", document.describe("cloth.file"), warning));
+        config.warnings.push_back(fmt::format("{}: {}", document.describe(piece.at("file")), warning));
     SceneEstimate estimate;
     estimate.vertices = file.mesh.vertex_count();
-    check_size(document, config, estimate);
+    check_size(piece, config, estimate);
     return std::move(file.mesh);
 }
 
-ClothMesh make_flat_or_folded(const SceneDocument& document, RunConfig& config, const Json& cloth)
+ClothMesh make_flat_or_folded(const PieceSource& piece, RunConfig& config)
 {
-    if (cloth.contains("file")) return read_cloth(document, config, cloth);
-    if (cloth.contains("outline")) return make_outlined(document, config, cloth);
-    return make_rectangle(document, config, cloth);
+    if (piece.json.contains("file")) return read_cloth(piece, config);
+    if (piece.json.contains("outline")) return make_outlined(piece, config);
+    return make_rectangle(piece, config);
+}
+
+/// Makes or reads a piece, folds it and places it in the world.
+ClothMesh make_piece(const PieceSource& source, RunConfig& config)
+{
+    ClothMesh mesh = make_flat_or_folded(source, config);
+    const double scale = to_double(source.json["scale"]);
+    const Placement placement = {to_rotation(source.json["rotate"]), to_vec3(source.json["translate"])};
+    for (Vec3& x : mesh.world) x = placement(scale * x);
+    return mesh;
+}
+
+// ---- several pieces
+
+Eigen::AlignedBox2d material_box(const ClothMesh& mesh)
+{
+    Eigen::AlignedBox2d box;
+    for (const Vec2& X : mesh.material) box.extend(X);
+    return box;
+}
+
+double longest_edge(const ClothMesh& mesh)
+{
+    double longest = 0.0;
+    for (const Face& face : mesh.faces)
+        for (int k = 0; k < 3; ++k)
+            longest = std::max(longest, (mesh.material[face[k]] - mesh.material[face[(k + 1) % 3]]).norm());
+    return longest;
+}
+
+/// Room between neighbouring pieces in the plane of all material: what is near a piece there is its own.
+double room_between(const std::vector<ClothMesh>& meshes)
+{
+    constexpr double kEdges = 8.0, kShare = 0.1;
+    double room = 0.0;
+    for (const ClothMesh& mesh : meshes)
+        room = std::max({room, kEdges * longest_edge(mesh), kShare * material_box(mesh).sizes().x()});
+    return room;
+}
+
+/// Lays the pieces side by side along u, the first one where it is.
+void lay_out(const std::vector<ClothMesh>& meshes, std::vector<ClothPiece>& pieces)
+{
+    const double room = room_between(meshes);
+    double begin = 0.0;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const Eigen::AlignedBox2d box = material_box(meshes[i]);
+        if (i > 0) {
+            pieces[i].shift = begin + 0.5 * room - box.min().x();
+            pieces[i].begin = begin;
+        }
+        begin = box.max().x() + pieces[i].shift + 0.5 * room;
+        if (i + 1 < meshes.size()) pieces[i].end = begin;
+    }
+}
+
+void append(const ClothMesh& mesh, const ClothPiece& piece, ClothMesh& cloth)
+{
+    const int first = cloth.vertex_count();
+    for (const Vec2& X : mesh.material) cloth.material.push_back(piece.to_plane(X));
+    cloth.world.insert(cloth.world.end(), mesh.world.begin(), mesh.world.end());
+    for (const auto& [a, b, c] : mesh.faces) cloth.faces.push_back({a + first, b + first, c + first});
 }
 
 }  // namespace
 
-std::string cloth_shape_key(const SceneDocument& document)
+std::string cloth_shape_key(const SceneDocument& document, const std::string& piece)
 {
-    for (const char* key : {"cloth.file", "cloth.outline"})
-        if (document.find(key)) return key;
-    return "cloth.size";
+    for (const char* leaf : {".file", ".outline"})
+        if (document.find(piece + leaf)) return piece + leaf;
+    return piece + ".size";
 }
 
-std::string cloth_fineness_key(const SceneDocument& document)
+std::string cloth_fineness_key(const SceneDocument& document, const std::string& piece)
 {
-    const std::string shape = cloth_shape_key(document);
-    if (shape == "cloth.file") return shape;
-    return shape == "cloth.outline" ? "cloth.edge_length" : "cloth.resolution";
+    const std::string shape = cloth_shape_key(document, piece);
+    if (shape.ends_with(".file")) return shape;
+    return piece + (shape.ends_with(".outline") ? ".edge_length" : ".resolution");
 }
 
-std::optional<SceneEstimate> estimate_scene_cloth(const SceneDocument& document, const Json& as_run)
+std::optional<SceneEstimate> estimate_piece(const SceneDocument& document, const Json& as_run, std::size_t i)
 {
-    const Json& cloth = as_run["cloth"];
-    if (cloth.contains("file")) return std::nullopt;
-    if (!cloth.contains("outline")) return estimate_grid(document, to_grid(cloth));
-    return to_estimate(estimate_cloth_outline(to_outline(read_border(document, cloth), cloth)));
+    const PieceSource piece = {document, *piece_tables(as_run)[i], piece_key(as_run, i)};
+    if (piece.json.contains("file")) return std::nullopt;
+    if (!piece.json.contains("outline")) return estimate_grid(piece, to_grid(piece.json));
+    return to_estimate(estimate_cloth_outline(to_outline(read_border(piece), piece.json)));
 }
 
-ClothMesh make_scene_cloth(const SceneDocument& document, RunConfig& config)
+void make_scene_cloth(const SceneDocument& document, RunConfig& config)
 {
-    const Json& cloth = config.as_run["cloth"];
-    ClothMesh mesh = make_flat_or_folded(document, config, cloth);
-    const double scale = to_double(cloth["scale"]);
-    const Placement placement = {to_rotation(cloth["rotate"]), to_vec3(cloth["translate"])};
-    for (Vec3& x : mesh.world) x = placement(scale * x);
-    return mesh;
+    const auto tables = piece_tables(std::as_const(config.as_run));
+    std::vector<ClothMesh> meshes;
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        meshes.push_back(make_piece({document, *tables[i], config.pieces[i].key}, config));
+        config.pieces[i].vertices = meshes[i].vertex_count();
+        config.pieces[i].faces = meshes[i].face_count();
+        // The size of the whole is checked with the pieces so far.
+        if (i + 1 < tables.size()) append(meshes[i], {}, config.cloth);
+    }
+    lay_out(meshes, config.pieces);
+    config.cloth = {};
+    for (std::size_t i = 0; i < meshes.size(); ++i) append(meshes[i], config.pieces[i], config.cloth);
 }
 
 }  // namespace arris

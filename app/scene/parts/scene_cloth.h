@@ -10,19 +10,20 @@
 
 namespace arris {
 
-/// The key that names what the cloth is made of: cloth.file, cloth.outline or cloth.size.
-std::string cloth_shape_key(const SceneDocument& document);
+/// The key that names what a piece ("cloth", or "cloth.1") is made of: its file, outline or size.
+std::string cloth_shape_key(const SceneDocument& document, const std::string& piece = "cloth");
 
-/// The key that says how fine the cloth's mesh is: cloth.file, cloth.edge_length or cloth.resolution.
-std::string cloth_fineness_key(const SceneDocument& document);
+/// The key that says how fine a piece's mesh is: its file, edge_length or resolution.
+std::string cloth_fineness_key(const SceneDocument& document, const std::string& piece = "cloth");
 
-/// Estimates the mesh of `as_run["cloth"]`, a rectangle or outline, without making it; none for a file.
+/// Estimates the mesh of piece i of `as_run`, a rectangle or outline, without making it; none for a file.
 /// Throws InputError for a border with a defect or a fold that misses the cloth.
-std::optional<SceneEstimate> estimate_scene_cloth(const SceneDocument& document,
-                                                  const nlohmann::ordered_json& as_run);
+std::optional<SceneEstimate> estimate_piece(const SceneDocument& document,
+                                            const nlohmann::ordered_json& as_run, std::size_t i);
 
-/// Makes or reads the cloth of `config.as_run`, folds it and places it in the world. Adds warnings and notes
-/// to `config`. Throws InputError, also where the run would take more vertices or memory than is allowed.
-ClothMesh make_scene_cloth(const SceneDocument& document, RunConfig& config);
+/// Makes or reads the pieces of cloth of `config.as_run`, folds them, places them in the world and lays their
+/// material out: `config.cloth`, and the rest of `config.pieces`. Adds warnings and notes to `config`. Throws
+/// InputError, also where the run would take more vertices or memory than is allowed.
+void make_scene_cloth(const SceneDocument& document, RunConfig& config);
 
 }  // namespace arris

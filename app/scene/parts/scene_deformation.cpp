@@ -103,11 +103,11 @@ void tell(const SceneDocument& document, const std::string& key, const VertexCac
         }
     const double chord = survey.greatest_acceleration * std::pow(speed * step, 2) / 8.0;
     if (head.interpolation == PoseInterpolation::Cubic &&
-        chord > kMostChordShare * config.scene.material.thickness)
+        chord > kMostChordShare * config.scene.materials.thickness())
         config.warnings.push_back(fmt::format(
             "{}: a vertex leaves its straight way by {:.2g} m within a step ({}); above a quarter "
             "of the cloth's thickness, {:g} m, steps near the cloth are made in parts",
-            where, chord, cache.describe(survey.accelerated_at), config.scene.material.thickness));
+            where, chord, cache.describe(survey.accelerated_at), config.scene.materials.thickness()));
     config.notes.push_back(fmt::format("{}: {} of {} from {:g} s to {:g} s, the fastest vertex at {:.3g} m/s",
                                        where, counted(head.times.size(), "sample", "samples"),
                                        counted(head.point_count, "point", "points"), head.times.front(),
@@ -129,7 +129,7 @@ std::shared_ptr<const PoseFile> with_slit(const SceneDocument& document, const s
                                           const VertexCache& cache, const PoseFile& samples,
                                           const ObstacleMesh& mesh, double width, RunConfig& config)
 {
-    const double least = kSlitThicknesses * config.scene.material.thickness;
+    const double least = kSlitThicknesses * config.scene.materials.thickness();
     if (width < least)
         config.warnings.push_back(
             fmt::format("{}: {:g} m has no room for cloth; use {:g} m or more, {:g} "

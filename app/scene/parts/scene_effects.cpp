@@ -46,13 +46,19 @@ SceneEffect friction_effect(const RunConfig& config)
 {
     const std::optional<Friction>& friction = config.scene.friction;
     if (!friction) return {"friction", false, "no [friction]: the cloth slides freely over obstacles"};
-    const bool do_layers_slip = config.scene.self_contact && friction->between_layers > 0.0;
+    std::set<double> coefficients, of_layers;
+    const int pieces = config.scene.materials.count();
+    for (int p = 0; p < pieces; ++p) {
+        for (int o = 0; o < static_cast<int>(config.scene.obstacles.size()); ++o)
+            coefficients.insert(friction->with_obstacle(o, p));
+        for (int q = 0; q <= p; ++q) of_layers.insert(friction->between(p, q));
+    }
+    const bool do_layers_slip = config.scene.self_contact && *of_layers.rbegin() > 0.0;
     if (config.scene.obstacles.empty() && !do_layers_slip)
         return {"friction", false, "no [[obstacle]] that could rub"};
-    const std::set<double> coefficients(friction->coefficients.begin(), friction->coefficients.end());
     std::vector<std::string> parts;
     for (const double coefficient : coefficients) parts.push_back(fmt::format("{:g}", coefficient));
-    if (do_layers_slip) parts.push_back(fmt::format("{:g} between layers", friction->between_layers));
+    if (do_layers_slip) parts.push_back(fmt::format("{:g} between layers", fmt::join(of_layers, ", ")));
     return {"friction", true, fmt::format("coefficient {}", fmt::join(parts, ", "))};
 }
 
@@ -72,20 +78,27 @@ SceneEffect by_table(const RunConfig& config, const std::string& table, bool is_
     return {table, true, fmt::format("{} {}", config.as_run[table].size(), name)};
 }
 
-SceneEffect by_value(const std::string& name, const std::string& key, double value, std::string_view unit)
+/// An effect that a value of a material switches on; the piece with the greatest one tells.
+SceneEffect by_material(const RunConfig& config, const std::string& name, const char* key,
+                        double Material::*property, std::string_view unit)
 {
-    const bool is_on = value > 0.0;
-    return {name, is_on, fmt::format("{} is {:g} {}", key, value, unit)};
+    std::size_t greatest = 0;
+    for (std::size_t p = 1; p < config.pieces.size(); ++p)
+        if (config.scene.materials[static_cast<int>(p)].*property >
+            config.scene.materials[static_cast<int>(greatest)].*property)
+            greatest = p;
+    const double value = config.scene.materials[static_cast<int>(greatest)].*property;
+    return {name, value > 0.0,
+            fmt::format("{}.{} is {:g} {}", config.pieces[greatest].material_key, key, value, unit)};
 }
 
 }  // namespace
 
 std::vector<SceneEffect> list_effects(const RunConfig& config)
 {
-    const Material& material = config.scene.material;
     return {
-        by_value("bending", "cloth.material.bending_stiffness", material.bending_stiffness, "J"),
-        by_value("damping", "cloth.material.damping", material.damping, "s"),
+        by_material(config, "bending", "bending_stiffness", &Material::bending_stiffness, "J"),
+        by_material(config, "damping", "damping", &Material::damping, "s"),
         by_table(config, "gravity", false),
         by_table(config, "wind", false),
         by_table(config, "pull", true),

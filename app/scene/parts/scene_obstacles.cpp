@@ -157,7 +157,10 @@ void check_sizes(const SceneDocument& document, const RunConfig& config)
 std::string remedy(const RunConfig& config, std::size_t i, bool is_enclosed)
 {
     const auto is_from_file = [](const nlohmann::ordered_json& json) { return json.contains("file"); };
-    const bool has_units = is_from_file(config.as_run["obstacle"][i]) || is_from_file(config.as_run["cloth"]);
+    const std::vector<const nlohmann::ordered_json*> pieces = piece_tables(config.as_run);
+    const bool has_units =
+        is_from_file(config.as_run["obstacle"][i]) ||
+        std::any_of(pieces.begin(), pieces.end(), [&](const auto* piece) { return is_from_file(*piece); });
     return fmt::format(
         "{}move the cloth or the obstacle ('translate') until they are at least {:g} m apart, the cloth's "
         "thickness{}",
@@ -166,7 +169,7 @@ std::string remedy(const RunConfig& config, std::size_t i, bool is_enclosed)
               "look; for a room around the cloth, leave out a face, or give the walls an inner and an "
               "outer surface; else "
             : "",
-        config.scene.material.thickness,
+        config.scene.materials.thickness(),
         has_units ? "; a file that is not in metres with z up needs 'units' or 'up'" : "");
 }
 
@@ -274,7 +277,7 @@ void keep_stand_off(const StrainRange& placed, RunConfig& config)
 {
     const int moved = clear_stand_off(config.scene, config.cloth);
     if (moved == 0) return;
-    const double thickness = config.scene.material.thickness;
+    const double thickness = config.scene.materials.thickness();
     std::string line = fmt::format(
         "the cloth starts nearer to obstacles than its thickness, {:g} m: {} moved out to that distance",
         thickness, counted(moved, "vertex is", "vertices are"));

@@ -151,7 +151,8 @@ void find_oversights(const RunConfig& config, std::vector<MissingEffect>& missin
     if (!scene.gravity && !scene.obstacles.empty())
         add(missing, "gravity",
             "there are obstacles, but the cloth does not fall: [gravity] is what makes it fall");
-    if (!(scene.material.bending_stiffness > 0.0))
+    if (std::none_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& material) { return material.bending_stiffness > 0.0; }))
         add(missing, "bending",
             "the cloth folds without resistance, so its folds are as sharp and as small as its cells: "
             "cloth.material.bending_stiffness is what resists");

@@ -60,7 +60,8 @@ bool only_falls(const RunConfig& config)
 {
     const Scene& scene = config.scene;
     return scene.gravity && scene.pins.empty() && scene.pulls.empty() && !scene.wind &&
-           !(config.cloth_velocity.norm() > 0.0) &&
+           std::all_of(config.cloth_velocity.begin(), config.cloth_velocity.end(),
+                       [](const Vec3& velocity) { return velocity.isZero(0.0); }) &&
            std::none_of(scene.obstacles.begin(), scene.obstacles.end(),
                         [](const MovingObstacle& obstacle) { return obstacle.is_moving(); });
 }
@@ -90,7 +91,7 @@ void check_reach(const RunConfig& config, Warnings& warnings)
     const Box3 cloth = box_around(config.cloth.world);
     const double size = material_size(config.cloth.material);
     const double spread =
-        config.scene.material.thickness + kSpread * size + std::max(0.0, size - cloth.diagonal().norm());
+        config.scene.materials.thickness() + kSpread * size + std::max(0.0, size - cloth.diagonal().norm());
     const Vec3 reach = 0.5 * cloth.sizes() + Vec3::Constant(spread);
     const Vec3 way = 0.5 * config.duration * config.duration * config.scene.gravity->acceleration;
     std::vector<std::string> names;

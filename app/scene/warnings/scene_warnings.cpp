@@ -24,53 +24,91 @@
 namespace arris {
 namespace {
 
-void check_cloth(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
-{
-    if (!warnings.is_written("cloth.file")) {
-        warnings.add("cloth.units", "the cloth is not from a file");
-        warnings.add("cloth.up", "the cloth is not from a file");
-        warnings.add("cloth.uv_scale", "the cloth is not from a file");
-    }
-    if (config.as_run["cloth"].value("pattern", "") == "unstructured")
-        warnings.add("cloth.pattern_angle", "an unstructured mesh has no direction");
+/// A piece of cloth, with its first mesh.
+struct Piece {
+    const ClothPiece& place;
+    const nlohmann::ordered_json& json;
+    const Material& material;
+    ClothMesh mesh;
 
-    const Material& material = config.scene.material;
+    std::string key(const std::string& leaf) const { return place.key + "." + leaf; }
+    std::string material_key(const std::string& leaf) const { return place.material_key + "." + leaf; }
+};
+
+std::vector<Piece> list_pieces(const RunConfig& config)
+{
+    const std::vector<const nlohmann::ordered_json*> tables = piece_tables(config.as_run);
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < tables.size(); ++i)
+        pieces.push_back({config.pieces[i], *tables[i], config.scene.materials[static_cast<int>(i)],
+                          extract_piece(config, i)});
+    return pieces;
+}
+
+void check_material(const RunConfig& config, const Piece& piece, Warnings& warnings)
+{
+    const Material& material = piece.material;
     constexpr std::array kPresetKeys = {"density", "youngs_modulus", "poisson_ratio", "bending_stiffness"};
     const bool overrides_all = std::all_of(kPresetKeys.begin(), kPresetKeys.end(), [&](const char* key) {
-        return warnings.is_written(std::string("cloth.material.") + key);
+        return warnings.is_written(piece.material_key(key));
     });
-    if (overrides_all) warnings.add("cloth.material.preset", "keys override all values of the preset");
+    if (overrides_all) warnings.add(piece.material_key("preset"), "keys override all values of the preset");
     constexpr double kStiffest = 1e6;  // N/m: ten times what sailcloth has
-    if (material.youngs_modulus > kStiffest && warnings.is_written("cloth.material.youngs_modulus"))
-        warnings.note("cloth.material.youngs_modulus",
+    const std::string stiffness = piece.material_key("youngs_modulus"),
+                      density = piece.material_key("density"),
+                      bending = piece.material_key("bending_stiffness");
+    if (material.youngs_modulus > kStiffest && warnings.is_written(stiffness))
+        warnings.note(stiffness,
                       "exceeds that of any cloth: the unit is N/m, a modulus in Pa times the cloth's "
                       "physical thickness in m");
     constexpr double kHeaviest = 3.0;  // kg/m^2: three times what thick leather has
-    if (material.density > kHeaviest && warnings.is_written("cloth.material.density"))
-        warnings.note("cloth.material.density",
-                      "exceeds that of any cloth: the unit is kg/m^2, and 150 g/m^2 are 0.15");
-    if (material.bending_stiffness > 0.0 && topology.hinges.empty())
-        warnings.add("cloth.material.bending_stiffness", "no two faces of the cloth share an edge");
+    if (material.density > kHeaviest && warnings.is_written(density))
+        warnings.note(density, "exceeds that of any cloth: the unit is kg/m^2, and 150 g/m^2 are 0.15");
+    if (material.bending_stiffness > 0.0 &&
+        make_topology(piece.mesh.vertex_count(), piece.mesh.faces).hinges.empty())
+        warnings.add(bending, "no two faces of the cloth share an edge");
     const bool keeps_layers = config.scene.self_contact && !warnings.is_written("self_contact.thickness");
     if (config.scene.obstacles.empty() && !keeps_layers)
-        warnings.add("cloth.material.thickness", "the scene has no obstacle");
+        warnings.add(piece.material_key("thickness"), "the scene has no obstacle");
+}
+
+void check_piece(const RunConfig& config, const Piece& piece, Warnings& warnings)
+{
+    if (!warnings.is_written(piece.key("file")))
+        for (const char* leaf : {"units", "up", "uv_scale"})
+            warnings.add(piece.key(leaf), "the cloth is not from a file");
+    if (piece.json.value("pattern", "") == "unstructured")
+        warnings.add(piece.key("pattern_angle"), "an unstructured mesh has no direction");
+    check_material(config, piece, warnings);
+}
+
+/// Warns of fabrics that no piece is made of.
+void check_fabrics(const RunConfig& config, Warnings& warnings)
+{
+    for (std::size_t k = 0; k < config.as_run.value("fabric", nlohmann::ordered_json::array()).size(); ++k) {
+        const std::string key = fmt::format("fabric.{}", k);
+        if (std::none_of(config.pieces.begin(), config.pieces.end(),
+                         [&](const ClothPiece& piece) { return piece.material_key == key; }))
+            warnings.add(key, "no piece of cloth is made of it");
+    }
 }
 
 /// Warns of a cloth of implausible size, mostly because the unit is wrong.
-void check_cloth_size(const RunConfig& config, Warnings& warnings)
+void check_cloth_size(const Piece& piece, Warnings& warnings)
 {
     constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m, longer side
     Eigen::AlignedBox2d material;
-    for (const Vec2& X : config.cloth.material) material.extend(X);
+    for (const Vec2& X : piece.mesh.material) material.extend(X);
     const Vec2 sides = material.sizes();
     if (sides.maxCoeff() >= kSmallest && sides.maxCoeff() <= kLargest) return;
-    const char* key = warnings.is_written("cloth.outline") ? "cloth.outline" : "cloth.size";
-    const char* advice = "sizes are in metres";
-    if (warnings.is_written("cloth.units")) {
-        key = "cloth.units";
-        advice = "check this unit; it is that of positions, while cloth.uv_scale is that of UVs";
-    } else if (warnings.is_written("cloth.file")) {
-        key = "cloth.file";
+    std::string key = piece.key(warnings.is_written(piece.key("outline")) ? "outline" : "size");
+    std::string advice = "sizes are in metres";
+    if (warnings.is_written(piece.key("units"))) {
+        key = piece.key("units");
+        advice = fmt::format("check this unit; it is that of positions, while {} is that of UVs",
+                             piece.key("uv_scale"));
+    } else if (warnings.is_written(piece.key("file"))) {
+        key = piece.key("file");
         advice =
             "a file that is not in metres needs 'units', such as \"mm\", for positions, and 'uv_scale' for "
             "UVs";
@@ -169,29 +207,29 @@ double mean_stretch(const ClothMesh& cloth)
 }
 
 /// Warns of a cloth that starts strongly strained, mostly because its UVs are not in metres.
-void check_strain(const RunConfig& config, const StrainRange& placed, Warnings& warnings)
+void check_strain(const Piece& piece, const StrainRange& placed, Warnings& warnings)
 {
     if (!placed.is_surprising()) return;
-    const bool is_scaled = warnings.is_written("cloth.scale");
-    const bool is_from_file = config.as_run["cloth"].contains("file");
+    const bool is_scaled = warnings.is_written(piece.key("scale"));
     std::string remedy;
-    if (is_from_file)
-        remedy = fmt::format("; scale the UVs in the file to metres, or set cloth.uv_scale (near {:.3g})",
-                             config.as_run["cloth"]["uv_scale"].get<double>() * mean_stretch(config.cloth));
+    if (piece.json.contains("file"))
+        remedy = fmt::format("; scale the UVs in the file to metres, or set {} (near {:.3g})",
+                             piece.key("uv_scale"),
+                             piece.json["uv_scale"].get<double>() * mean_stretch(piece.mesh));
     else if (is_scaled)
         remedy = "; change 'size' instead of 'scale'";
-    warnings.note(is_scaled ? "cloth.scale" : "cloth",
+    warnings.note(is_scaled ? piece.key("scale") : piece.place.key,
                   fmt::format("{} strained, {}: material coordinates are in metres, and the "
                               "cloth will contract or expand to their size{}",
                               is_scaled ? "starts the cloth" : "starts", in_words(placed), remedy));
 }
 
 /// Warns of thin faces. Mesh surgery refuses operations that leave thin faces, so few EOL vertices fit in.
-void check_angles(const RunConfig& config, Warnings& warnings)
+void check_angles(const RunConfig& config, const Piece& piece, Warnings& warnings)
 {
     constexpr double kThin = 5.0;  // degrees
     if (!config.scene.eol) return;
-    const ClothMesh& cloth = config.cloth;
+    const ClothMesh& cloth = piece.mesh;
     int thin = 0, thinnest = 0;
     double least = kThin;
     for (int f = 0; f < cloth.face_count(); ++f) {
@@ -201,13 +239,13 @@ void check_angles(const RunConfig& config, Warnings& warnings)
         if (angle < least) std::tie(least, thinnest) = std::pair(angle, f);
     }
     if (thin == 0) return;
-    const bool is_from_file = warnings.is_written("cloth.file");
-    const bool is_outline = warnings.is_written("cloth.outline");
-    const Vec2& X = cloth.material[cloth.faces[thinnest][0]];
+    const bool is_from_file = warnings.is_written(piece.key("file"));
+    const bool is_outline = warnings.is_written(piece.key("outline"));
+    const Vec2 X = piece.place.from_plane(cloth.material[cloth.faces[thinnest][0]]);
     warnings.note(
-        is_from_file ? "cloth.file"
-        : is_outline ? "cloth.outline"
-                     : "cloth.resolution",
+        piece.key(is_from_file ? "file"
+                  : is_outline ? "outline"
+                               : "resolution"),
         fmt::format(
             "{} of {} an angle below {:g} degrees, the least {:.2g} degrees at [{:.6g}, {:.6g}] "
             "(material): EOL vertices can hardly be placed in such thin faces; {}",
@@ -220,14 +258,14 @@ void check_angles(const RunConfig& config, Warnings& warnings)
 }
 
 /// Warns of a thickness above the mean edge, mostly because the unit is wrong.
-void check_thickness(const RunConfig& config, const MeshTopology& topology, Warnings& warnings)
+void check_thickness(const RunConfig& config, const Piece& piece, Warnings& warnings)
 {
     if (config.scene.obstacles.empty()) return;
-    const double cell = measure_edges(config.cloth, topology).mean;
-    const double thickness = config.scene.material.thickness;
-    if (thickness > cell)
+    const ClothMesh& mesh = piece.mesh;
+    const double cell = measure_edges(mesh, make_topology(mesh.vertex_count(), mesh.faces)).mean;
+    if (piece.material.thickness > cell)
         warnings.note(
-            "cloth.material.thickness",
+            piece.material_key("thickness"),
             fmt::format("exceeds the mean edge of the cloth's mesh, {:.3g} m: the thickness is the distance "
                         "kept from obstacles, in metres, and should be well below that edge",
                         cell));
@@ -238,13 +276,19 @@ void check_thickness(const RunConfig& config, const MeshTopology& topology, Warn
 void check_bends(const RunConfig& config, Warnings& warnings)
 {
     if (!resolves_bends(config.scene, config.cloth)) return;
-    const std::string stiffness = "cloth.material.bending_stiffness", preset = "cloth.material.preset";
-    const double bending_stiffness = config.scene.material.bending_stiffness;
+    std::size_t softest = 0;
+    for (std::size_t i = 1; i < config.pieces.size(); ++i)
+        if (config.scene.materials[static_cast<int>(i)].bending_stiffness <
+            config.scene.materials[static_cast<int>(softest)].bending_stiffness)
+            softest = i;
+    const std::string stiffness = config.pieces[softest].material_key + ".bending_stiffness",
+                      preset = config.pieces[softest].material_key + ".preset";
+    const double bending_stiffness = config.scene.materials[static_cast<int>(softest)].bending_stiffness;
     const std::string what = fmt::format(
         "the mean edge of {:.3g} m resolves the bend of cloth with a bending stiffness of {:.3g} J over a "
         "sharp feature: without EOL vertices (eol.enabled = false) the cloth slides as well, at less cost; "
         "see docs/accuracy.md, Stiff bends",
-        config.scene.eol->mean_length, bending_stiffness);
+        config.scene.eol->mean_lengths[softest], bending_stiffness);
     if (warnings.is_written(stiffness))
         warnings.note(stiffness, what);
     else if (warnings.is_written(preset))
@@ -283,22 +327,27 @@ void check_remeshing(const RunConfig& config, Warnings& warnings)
 }  // namespace
 
 std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config,
-                                               const StrainRange& placed)
+                                               const std::vector<StrainRange>& placed)
 {
     Warnings warnings(document);
     const MeshTopology topology = make_topology(config.cloth.vertex_count(), config.cloth.faces);
+    const std::vector<Piece> pieces = list_pieces(config);
+    const auto check_pieces = [&](const auto& check) {
+        for (const Piece& piece : pieces) check(piece);
+    };
     check_time(config, warnings);
-    check_cloth(config, topology, warnings);
-    check_cloth_size(config, warnings);
-    check_angles(config, warnings);
+    check_pieces([&](const Piece& piece) { check_piece(config, piece, warnings); });
+    check_fabrics(config, warnings);
+    check_pieces([&](const Piece& piece) { check_cloth_size(piece, warnings); });
+    check_pieces([&](const Piece& piece) { check_angles(config, piece, warnings); });
     check_pins(config, warnings);
     check_wind(config, warnings);
     check_pulls(config, warnings);
     check_obstacles(config, warnings);
     check_placement(config, warnings);
     check_turns(config, warnings);
-    check_strain(config, placed, warnings);
-    check_thickness(config, topology, warnings);
+    for (std::size_t i = 0; i < pieces.size(); ++i) check_strain(pieces[i], placed[i], warnings);
+    check_pieces([&](const Piece& piece) { check_thickness(config, piece, warnings); });
     check_layers(config, topology, warnings);
     check_bends(config, warnings);
     check_stillness(config, topology, warnings);

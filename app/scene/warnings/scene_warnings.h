@@ -11,9 +11,9 @@
 namespace arris {
 
 /// Warnings, one line each: written keys that are valid but have no effect in this scene, and keys with a
-/// surprising effect. `placed`: strain of the cloth as the scene places it, before it is moved out to its
+/// surprising effect. `placed`: strain of each piece as the scene places it, before it is moved out to its
 /// stand-off.
 std::vector<std::string> find_ineffective_keys(const SceneDocument& document, const RunConfig& config,
-                                               const StrainRange& placed);
+                                               const std::vector<StrainRange>& placed);
 
 }  // namespace arris

@@ -80,7 +80,9 @@ bool is_relaxed(const ClothMesh& cloth, const MeshTopology& topology)
 
 bool stays_still(const RunConfig& config, const MeshTopology& topology)
 {
-    if (has_load(config) || has_moving_bodies(config) || is_nonzero(config.cloth_velocity)) return false;
+    if (has_load(config) || has_moving_bodies(config) ||
+        std::any_of(config.cloth_velocity.begin(), config.cloth_velocity.end(), is_nonzero))
+        return false;
     // Pins may move the cloth from its placement at time 0.
     const ClothMesh start = make_state(config.scene, config.cloth, config.cloth_velocity).mesh;
     return is_relaxed(start, topology);

@@ -5,8 +5,9 @@ namespace arris {
 
 MeshTarget uniform_target(double length, double least_angle)
 {
-    return {[length](const Vec2&) { return length; }, [least_angle](const Vec2&) { return least_angle; },
-            length};
+    return {[length](const Vec2&) { return length; },
+            [least_angle](const Vec2&) { return least_angle; },
+            {length}};
 }
 
 }  // namespace arris

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <vector>
 
 #include "geometry/vectors.h"
 
@@ -12,7 +13,7 @@ namespace arris {
 struct MeshTarget {
     std::function<double(const Vec2&)> length;       ///< of edges, m
     std::function<double(const Vec2&)> least_angle;  ///< least angle allowed in faces, degrees
-    double mean_length = 0.0;                        ///< mean edge length of the whole mesh, m
+    std::vector<double> mean_lengths = {0.0};        ///< mean edge length, m, of each piece of cloth
     /// Bounds: shortest <= `length` <= longest, `least_angle` <= most_angle. They save most calls of the
     /// functions.
     double shortest = 0.0, longest = std::numeric_limits<double>::infinity(), most_angle = 180.0;

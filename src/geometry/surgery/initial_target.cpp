@@ -176,7 +176,7 @@ MeshTarget make_initial_target(const ClothMesh& initial, double most_angle)
     const auto mesh = std::make_shared<const InitialMesh>(initial, most_angle);
     return {[mesh](const Vec2& X) { return mesh->length(X); },
             [mesh](const Vec2& X) { return mesh->angle(X); },
-            mesh->mean_length(),
+            {mesh->mean_length()},
             mesh->shortest(),
             mesh->longest(),
             most_angle};

@@ -54,7 +54,7 @@ ElementColors color_elements(int vertex_count, const std::vector<Element>& eleme
 
 }  // namespace
 
-FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face)
+FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face, int piece)
 {
     const Vec2& a = material[face[0]];
     const Vec2& b = material[face[1]];
@@ -66,7 +66,7 @@ FaceElement make_face_element(const std::vector<Vec2>& material, const Face& fac
     const auto gradient = [&](const Vec2& from, const Vec2& to) -> Vec2 {
         return Vec2(from.y() - to.y(), to.x() - from.x()) / doubled;
     };
-    return {face, 0.5 * doubled, {gradient(b, c), gradient(c, a), gradient(a, b)}};
+    return {face, 0.5 * doubled, {gradient(b, c), gradient(c, a), gradient(a, b)}, piece};
 }
 
 double compute_hinge_weight(const std::vector<Vec2>& material, const HingeElement& hinge, double area_c,
@@ -102,27 +102,32 @@ std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& mate
     return gradients;
 }
 
-ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology, HingeUse use)
+ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology, HingeUse use,
+                            const Materials& materials)
 {
     ClothElements elements;
     elements.vertex_count = mesh.vertex_count();
     elements.hinge_use = use;
     elements.faces.reserve(mesh.faces.size());
-    for (const Face& face : mesh.faces) elements.faces.push_back(make_face_element(mesh.material, face));
+    for (const Face& face : mesh.faces)
+        elements.faces.push_back(
+            make_face_element(mesh.material, face, materials.piece_at(mesh.material[face[0]])));
     if (use == HingeUse::None) return elements;
     elements.hinges.reserve(topology.hinges.size());
     for (const Hinge& hinge : topology.hinges) {
         HingeElement made{{hinge.a, hinge.b, hinge.c, hinge.d}, {hinge.face_c, hinge.face_d}};
         made.weight = compute_hinge_weight(mesh.material, made, elements.faces[hinge.face_c].area,
                                            elements.faces[hinge.face_d].area);
+        made.piece = elements.faces[hinge.face_c].piece;
         elements.hinges.push_back(made);
     }
     return elements;
 }
 
-ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology, HingeUse use)
+ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology, HingeUse use,
+                            const Materials& materials)
 {
-    ClothElements elements = list_elements(mesh, topology, use);
+    ClothElements elements = list_elements(mesh, topology, use, materials);
     elements.face_colors = color_elements(elements.vertex_count, elements.faces);
     if (use == HingeUse::Terms)
         elements.hinge_colors = color_elements(elements.vertex_count, elements.hinges);
@@ -132,19 +137,55 @@ ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology,
 void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, ClothElements& elements)
 {
     for (FaceElement& face : elements.faces)
-        if (has_moved(is_moved, face.vertices)) face = make_face_element(mesh.material, face.vertices);
+        if (has_moved(is_moved, face.vertices))
+            face = make_face_element(mesh.material, face.vertices, face.piece);
     for (HingeElement& hinge : elements.hinges)
         if (has_moved(is_moved, hinge.vertices))
             hinge.weight = compute_hinge_weight(mesh.material, hinge, elements.faces[hinge.faces[0]].area,
                                                 elements.faces[hinge.faces[1]].area);
 }
 
-std::vector<double> lump_masses(double density, const ClothElements& elements)
+namespace {
+
+/// A third of each face's `density(face)` times its area, at each of its corners.
+template <class Density>
+std::vector<double> lump(const ClothElements& elements, const Density& density)
 {
-    std::vector<double> mass(static_cast<std::size_t>(elements.vertex_count), 0.0);
+    std::vector<double> sums(static_cast<std::size_t>(elements.vertex_count), 0.0);
     for (const FaceElement& face : elements.faces)
-        for (const int v : face.vertices) mass[v] += density * face.area / 3.0;
-    return mass;
+        for (const int v : face.vertices) sums[v] += density(face) * face.area / 3.0;
+    return sums;
+}
+
+}  // namespace
+
+std::vector<double> piece_areas(const Materials& materials, const ClothMesh& mesh)
+{
+    std::vector<double> areas(static_cast<std::size_t>(materials.count()), 0.0);
+    for (const auto& [a, b, c] : mesh.faces)
+        areas[materials.piece_at(mesh.material[a])] +=
+            twice_area(mesh.material[a], mesh.material[b], mesh.material[c]);
+    for (double& area : areas) area *= 0.5;
+    return areas;
+}
+
+double integrate(double Material::*property, const Materials& materials, const ClothElements& elements)
+{
+    std::vector<double> areas(static_cast<std::size_t>(materials.count()), 0.0);
+    for (const FaceElement& face : elements.faces) areas[face.piece] += face.area;
+    double sum = 0.0;
+    for (int p = 0; p < materials.count(); ++p) sum += materials[p].*property * areas[p];
+    return sum;
+}
+
+std::vector<double> lump_areas(const ClothElements& elements)
+{
+    return lump(elements, [](const FaceElement&) { return 1.0; });
+}
+
+std::vector<double> lump_masses(const Materials& materials, const ClothElements& elements)
+{
+    return lump(elements, [&](const FaceElement& face) { return materials[face.piece].density; });
 }
 
 }  // namespace arris

@@ -6,6 +6,7 @@
 
 #include "geometry/cloth/cloth_mesh.h"
 #include "geometry/cloth/mesh_topology.h"
+#include "physics/elements/materials.h"
 
 namespace arris {
 
@@ -15,6 +16,7 @@ struct FaceElement {
     Face vertices;
     double area = 0.0;  ///< m^2, in the material
     std::array<Vec2, 3> gradients;
+    int piece = 0;  ///< of the cloth: whose material it has
 };
 
 /// Two faces (a, b, c), (b, a, d) that share the edge (a, b). `weight` = 3 |e|^2 / A, with e the edge and A
@@ -24,6 +26,7 @@ struct HingeElement {
     std::array<int, 2> faces;
     double weight = 0.0;
     double crease_width = 0.0;  ///< m; 0 if the hinge is no crease (physics/forces/bending.h)
+    int piece = 0;              ///< of both faces
 
     bool is_crease() const { return crease_width > 0.0; }
 };
@@ -55,21 +58,30 @@ struct ClothElements {
 /// Elements without colours, which suffice for energies and for assembling a few elements one after the
 /// other. Linear in face count. Material orientations must be positive (`validate` checks this).
 ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology,
-                            HingeUse use = HingeUse::Terms);
+                            HingeUse use = HingeUse::Terms, const Materials& materials = {});
 
 /// Elements with colours. Hinges are listed if `use` is not None, and get colours if it is Terms.
 ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology,
-                            HingeUse use = HingeUse::Terms);
+                            HingeUse use = HingeUse::Terms, const Materials& materials = {});
 
 /// Recomputes the elements at vertices with `is_moved` (one entry per vertex) from the mesh's material
 /// coordinates. The result is bitwise that of `make_elements`. Faces, and so colours, must be unchanged.
 void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, ClothElements& elements);
 
-/// Mass of each vertex, kg: a third of its faces'. `density` in kg/m^2.
-std::vector<double> lump_masses(double density, const ClothElements& elements);
+/// Material of each vertex, m^2: a third of its faces'.
+std::vector<double> lump_areas(const ClothElements& elements);
+
+/// Material of each piece, m^2.
+std::vector<double> piece_areas(const Materials& materials, const ClothMesh& mesh);
+
+/// Integral over the cloth of a property per area, such as its mass.
+double integrate(double Material::*property, const Materials& materials, const ClothElements& elements);
+
+/// Mass of each vertex, kg: a third of its faces'.
+std::vector<double> lump_masses(const Materials& materials, const ClothElements& elements);
 
 /// Element of the triangle with corners at `material[face[i]]`, m; it must be counter-clockwise.
-FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face);
+FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face, int piece = 0);
 
 /// `weight` of a hinge with vertices at `material`, m, between faces with these areas.
 double compute_hinge_weight(const std::vector<Vec2>& material, const HingeElement& hinge, double area_c,

@@ -21,24 +21,25 @@ Mat32 deformation_rate(const FaceState& face, const ExtrapolatedState& state)
 
 }  // namespace
 
-FaceSystem eulerian_inertia_and_loads(const Face& face, const Terms& terms, const Linearization& at)
+FaceSystem eulerian_inertia_and_loads(const FaceElement& face, const Terms& terms, const Linearization& at)
 {
     const ExtrapolatedState& there = at.flow->extrapolated;
-    const FaceElement element = make_face_element(there.material, face);
+    const FaceElement element = make_face_element(there.material, face.vertices, face.piece);
     const FaceState state(element, there.position);
-    FaceSystem local(at, face, {state.F, state.F, state.F});
+    FaceSystem local(at, face.vertices, face.piece, {state.F, state.F, state.F});
     const Mat32 F_rate = deformation_rate(state, there);
-    for (int i = 0; i < 3; ++i) local.add_convection(i, 2.0 * (F_rate * there.material_velocity[face[i]]));
+    for (int i = 0; i < 3; ++i)
+        local.add_convection(i, 2.0 * (F_rate * there.material_velocity[face.vertices[i]]));
     for (const auto& term : terms.faces)
         if (!term->is_elastic()) term->add(state, local);
     return local;
 }
 
-FaceSystem eulerian_elasticity(const Face& face, const Terms& terms, const Linearization& at)
+FaceSystem eulerian_elasticity(const FaceElement& face, const Terms& terms, const Linearization& at)
 {
-    const FaceElement element = make_face_element(at.flow->position, face);
+    const FaceElement element = make_face_element(at.flow->position, face.vertices, face.piece);
     const FaceState state(element, at.position);
-    FaceSystem local(at, face, {state.F, state.F, state.F});
+    FaceSystem local(at, face.vertices, face.piece, {state.F, state.F, state.F});
     for (const auto& term : terms.faces)
         if (term->is_elastic()) term->add(state, local);
     return local;
@@ -58,7 +59,7 @@ HingeSystem eulerian_hinge(const HingeElement& hinge, const HingeMoment* moment,
     // Vertices a and b belong to both faces, c and d to one each.
     const Mat32 F_c = FaceState(c, at.position).F, F_d = FaceState(d, at.position).F;
     const Mat32 mean = 0.5 * (F_c + F_d);
-    HingeSystem local(at, hinge.vertices, {mean, mean, F_c, F_d});
+    HingeSystem local(at, hinge.vertices, hinge.piece, {mean, mean, F_c, F_d});
     for (const auto& term : terms.hinges) term->add(state, local);
     return local;
 }

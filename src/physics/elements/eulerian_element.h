@@ -20,10 +20,10 @@ bool has_eulerian_vertex(const MaterialFlow& flow, const std::array<int, N>& ver
 }
 
 /// A face's inertia and loads, with the convection term 2 Fdot V.
-FaceSystem eulerian_inertia_and_loads(const Face& face, const Terms& terms, const Linearization& at);
+FaceSystem eulerian_inertia_and_loads(const FaceElement& face, const Terms& terms, const Linearization& at);
 
 /// A face's elastic terms.
-FaceSystem eulerian_elasticity(const Face& face, const Terms& terms, const Linearization& at);
+FaceSystem eulerian_elasticity(const FaceElement& face, const Terms& terms, const Linearization& at);
 
 /// A hinge's terms. F at a corner is the mean over the hinge's faces at that corner. `moment` is that of the
 /// hinge (HingeStates, at.flow).

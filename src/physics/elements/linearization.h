@@ -62,14 +62,14 @@ struct MaterialFlow {
 
 /// Time, state and weights at which a step's forces are linearised. All vectors have one entry per vertex.
 struct Linearization {
-    double time = 0.0;              ///< s, the step's end, at which forces are evaluated
-    double begin = 0.0;             ///< s, the step's start
-    double gamma = 0.0;             ///< s
-    double damping = 0.0;           ///< s, stiffness-proportional
-    std::vector<Vec3> position;     ///< q^, m
-    std::vector<Vec3> v_predicted;  ///< v~, m/s
-    std::vector<Vec3> v_expansion;  ///< v^, m/s
-    std::vector<Vec3> v_last;       ///< v_k, m/s
+    double time = 0.0;                    ///< s, the step's end, at which forces are evaluated
+    double begin = 0.0;                   ///< s, the step's start
+    double gamma = 0.0;                   ///< s
+    std::vector<double> damping = {0.0};  ///< s, stiffness-proportional, of each piece of cloth
+    std::vector<Vec3> position;           ///< q^, m
+    std::vector<Vec3> v_predicted;        ///< v~, m/s
+    std::vector<Vec3> v_expansion;        ///< v^, m/s
+    std::vector<Vec3> v_last;             ///< v_k, m/s
 
     // Coordinates of each vertex: v' = drift + basis u.
     std::vector<Vec3> drift;  ///< m/s

@@ -47,7 +47,7 @@ std::array<Vec3, 2> turned_flow(const Crease& crease, const std::vector<Vec2>& m
 
 }  // namespace
 
-std::vector<CreaseForce> find_momentum_flux(double density, const ClothElements& elements,
+std::vector<CreaseForce> find_momentum_flux(const Materials& materials, const ClothElements& elements,
                                             const Linearization& at)
 {
     std::vector<CreaseForce> found;
@@ -56,16 +56,17 @@ std::vector<CreaseForce> find_momentum_flux(double density, const ClothElements&
         if (!has_eulerian_vertex<2>(*at.flow, {hinge.vertices[0], hinge.vertices[1]})) continue;
         const Crease crease = find_crease(hinge, elements, at.flow->extrapolated);
         const std::array<Vec3, 2> turned = turned_flow(crease, at.flow->extrapolated.material_velocity);
+        const double density = materials[hinge.piece].density;
         found.push_back(
             {crease.vertices, {-density * turned[0], -density * turned[1]}, 0.5 * (crease.F_c + crease.F_d)});
     }
     return found;
 }
 
-void add_momentum_flux(double density, const ClothElements& elements, const Linearization& at,
+void add_momentum_flux(const Materials& materials, const ClothElements& elements, const Linearization& at,
                        Eigen::VectorXd& rhs)
 {
-    for (const CreaseForce& crease : find_momentum_flux(density, elements, at))
+    for (const CreaseForce& crease : find_momentum_flux(materials, elements, at))
         for (int i = 0; i < 2; ++i) {
             const int v = crease.vertices[i];
             const Mat3 G = corner_matrix(crease.F, at.basis[v], at.flow->basis[v]);

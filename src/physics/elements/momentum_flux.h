@@ -29,13 +29,13 @@ struct CreaseForce {
     Mat32 F;                    ///< mean over the crease's two sides
 };
 
-/// Forces with which material that turns at creases resists, at the extrapolated state. `density` is areal,
-/// kg/m^2. Empty where `at.flow` is absent. Visits every hinge once.
-std::vector<CreaseForce> find_momentum_flux(double density, const ClothElements& elements,
+/// Forces with which material that turns at creases resists, at the extrapolated state.
+/// Empty where `at.flow` is absent. Visits every hinge once.
+std::vector<CreaseForce> find_momentum_flux(const Materials& materials, const ClothElements& elements,
                                             const Linearization& at);
 
 /// Adds these forces, in the coordinates of the vertices and times gamma, to `rhs` (3 entries per vertex).
-void add_momentum_flux(double density, const ClothElements& elements, const Linearization& at,
+void add_momentum_flux(const Materials& materials, const ClothElements& elements, const Linearization& at,
                        Eigen::VectorXd& rhs);
 
 }  // namespace arris

@@ -6,15 +6,17 @@
 namespace arris {
 
 template <int N>
-LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& vertices)
-    : time_(at.time), gamma_(at.gamma), stiffness_weight_(at.gamma * at.gamma + at.gamma * at.damping)
+LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& vertices, int piece)
+    : time_(at.time), gamma_(at.gamma)
 {
+    const double damping = at.damping[piece];
+    stiffness_weight_ = at.gamma * at.gamma + at.gamma * damping;
     for (int i = 0; i < N; ++i) {
         const int v = vertices[i];
         const Vec3& drift = at.drift[v];
         v_last_[i] = at.v_last[v];
         mass_rhs_[i] = at.v_predicted[v] - drift;
-        stiffness_rhs_[i] = gamma_ * gamma_ * (at.v_expansion[v] - drift) - gamma_ * at.damping * drift;
+        stiffness_rhs_[i] = gamma_ * gamma_ * (at.v_expansion[v] - drift) - gamma_ * damping * drift;
         viscosity_rhs_[i] = gamma_ * (at.v_last[v] - drift);
         rhs_[i].setZero();
     }
@@ -22,9 +24,9 @@ LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& v
 }
 
 template <int N>
-LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& vertices,
+LocalSystem<N>::LocalSystem(const Linearization& at, const std::array<int, N>& vertices, int piece,
                             const std::array<Mat32, N>& deformation)
-    : LocalSystem(at, vertices)
+    : LocalSystem(at, vertices, piece)
 {
     is_eulerian_ = true;
     deformation_ = deformation;

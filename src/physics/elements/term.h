@@ -21,11 +21,11 @@ namespace arris {
 template <int N>
 class LocalSystem {
   public:
-    /// For an element without flow of material: corner velocities are those of the vertices.
-    LocalSystem(const Linearization& at, const std::array<int, N>& vertices);
+    /// For an element of a piece, without flow of material: corner velocities are those of the vertices.
+    LocalSystem(const Linearization& at, const std::array<int, N>& vertices, int piece = 0);
 
     /// For an element with an EOL vertex; `at.flow` must be present. `deformation` is F at each corner.
-    LocalSystem(const Linearization& at, const std::array<int, N>& vertices,
+    LocalSystem(const Linearization& at, const std::array<int, N>& vertices, int piece,
                 const std::array<Mat32, N>& deformation);
 
     double time() const { return time_; }
@@ -139,7 +139,7 @@ class HingeTerm {
 template <int N, typename State, typename ElementTerms>
 LocalSystem<N> sum_terms(const State& state, const ElementTerms& terms, const Linearization& at)
 {
-    LocalSystem<N> local(at, state.element.vertices);
+    LocalSystem<N> local(at, state.element.vertices, state.element.piece);
     for (const auto& term : terms) term->add(state, local);
     return local;
 }
@@ -165,7 +165,7 @@ struct Terms {
     std::vector<std::unique_ptr<const FaceTerm>> faces;
     std::vector<std::unique_ptr<const HingeTerm>> hinges;
     std::vector<std::unique_ptr<const LoadTerm>> loads;
-    double density = 0.0;  ///< areal, kg/m^2, as used by the inertia in `faces`
+    Materials materials;  ///< as used by the inertia in `faces`
 
     /// The hinge term whose hinges depend on each other; null if there is none.
     const HingeTerm* coupled_hinges() const;

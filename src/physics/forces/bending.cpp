@@ -27,13 +27,17 @@ Response find_response(const HingeElement& hinge, double sigma)
 
 double Bending::energy(const HingeState& hinge) const
 {
+    const double stiffness = stiffness_[hinge.element.piece];
+    if (!(stiffness > 0.0)) return 0.0;
     const std::optional<HingeAngle> angle = find_hinge_angle(hinge.x);
     if (!angle) return 0.0;
-    return stiffness_ * hinge.element.weight * find_response(hinge.element, angle->squared_sine()).energy;
+    return stiffness * hinge.element.weight * find_response(hinge.element, angle->squared_sine()).energy;
 }
 
 void Bending::add(const HingeState& hinge, HingeSystem& system) const
 {
+    const double stiffness = stiffness_[hinge.element.piece];
+    if (!(stiffness > 0.0)) return;
     const std::optional<HingeAngle> angle = find_hinge_angle(hinge.x);
     if (!angle) return;
     const std::array<Vec3, 4> gradient = angle_gradient(*angle, hinge.x);
@@ -42,7 +46,7 @@ void Bending::add(const HingeState& hinge, HingeSystem& system) const
     // (cos(theta/2) / 2)^2. A crease scales both by its slope. The part with a crease's curvature is negative
     // and left out.
     const Response response = find_response(hinge.element, angle->squared_sine());
-    const double scale = stiffness_ * hinge.element.weight * response.slope;
+    const double scale = stiffness * hinge.element.weight * response.slope;
     const double sin_theta = sine_of_angle(*angle, hinge.x);
     const double squared_cos_half = angle->squared_cosine();
     for (int i = 0; i < 4; ++i) {
@@ -53,7 +57,7 @@ void Bending::add(const HingeState& hinge, HingeSystem& system) const
     }
     if (!system.is_eulerian()) return;
     for (int i = 0; i < 4; ++i)
-        system.add_material_force(i, -stiffness_ * response.energy * hinge.weight_gradients->at(i));
+        system.add_material_force(i, -stiffness * response.energy * hinge.weight_gradients->at(i));
 }
 
 }  // namespace arris

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "physics/elements/term.h"
 
 namespace arris {
@@ -24,14 +27,15 @@ namespace arris {
 /// slides, so a fold would do work on them.
 class Bending : public HingeTerm {
   public:
-    explicit Bending(double stiffness) : stiffness_(stiffness) {}
+    /// `stiffness`: K, J, of each piece; 0 where none.
+    explicit Bending(std::vector<double> stiffness) : stiffness_(std::move(stiffness)) {}
 
     EnergyKind energy_kind() const override { return EnergyKind::Bending; }
     double energy(const HingeState& hinge) const override;
     void add(const HingeState& hinge, HingeSystem& system) const override;
 
   private:
-    double stiffness_;  ///< K, J
+    std::vector<double> stiffness_;
 };
 
 }  // namespace arris

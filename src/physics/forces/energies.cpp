@@ -82,7 +82,7 @@ double compute_load_work(const ClothMesh& mesh, const ClothElements& elements, c
     for (const auto& term : terms.faces) {
         if (!term->is_drive()) continue;
         for (const FaceElement& face : elements.faces) {
-            FaceSystem system(at, face.vertices);
+            FaceSystem system(at, face.vertices, face.piece);
             term->add(FaceState(face, at.position), system);
             for (int i = 0; i < 3; ++i)
                 sum +=

@@ -54,7 +54,13 @@ struct PlateFace {
     }
 };
 
-std::vector<PlateFace> list_faces(const PlateMaterial& plate, const ClothElements& elements,
+/// Whether the hinge is one of these plates'.
+bool has_moment(const std::vector<PlateMaterial>& plates, const HingeElement& hinge)
+{
+    return !hinge.is_crease() && plates[hinge.piece].stiffness > 0.0;
+}
+
+std::vector<PlateFace> list_faces(const std::vector<PlateMaterial>& plates, const ClothElements& elements,
                                   const MaterialFlow* flow)
 {
     const std::size_t inner = elements.faces.size();
@@ -63,11 +69,12 @@ std::vector<PlateFace> list_faces(const PlateMaterial& plate, const ClothElement
         const FaceElement& element = f < inner ? elements.faces[f] : elements.rim[f - inner];
         const bool flows = flow != nullptr && has_eulerian_vertex(*flow, element.vertices);
         faces[f].hinges.fill(static_cast<int>(elements.hinges.size()));
-        faces[f].element = flows ? make_face_element(flow->position, element.vertices) : element;
+        faces[f].element =
+            flows ? make_face_element(flow->position, element.vertices, element.piece) : element;
     }
     for (std::size_t h = 0; h < elements.hinges.size(); ++h) {
         const HingeElement& hinge = elements.hinges[h];
-        if (hinge.is_crease()) continue;
+        if (!has_moment(plates, hinge)) continue;
         for (int side = 0; side < 2; ++side) {
             PlateFace& face = faces[hinge.faces[side]];
             const Face& corners = face.element.vertices;
@@ -78,7 +85,9 @@ std::vector<PlateFace> list_faces(const PlateMaterial& plate, const ClothElement
         }
     }
     for (PlateFace& face : faces) {
-        face.compliance = plate_compliance(plate, face.element);
+        face.compliance.setZero();
+        if (face.hinge_count() == 0) continue;
+        face.compliance = plate_compliance(plates[face.element.piece], face.element);
         for (int i = 0; i < 3; ++i)
             if (!face.has_moment[i]) {
                 face.compliance.row(i).setZero();
@@ -203,14 +212,14 @@ double squared_length(const HingeElement& hinge, const std::vector<PlateFace>& f
 
 /// Adds -dV/dX at fixed positions and moments to the hinges with an EOL vertex. V is the sum of y s / L over
 /// hinges, less the faces' energies, of which each hinge of a face takes an equal share.
-void add_material_forces(const PlateMaterial& plate, const ClothElements& elements,
+void add_material_forces(const std::vector<PlateMaterial>& plates, const ClothElements& elements,
                          const std::vector<PlateFace>& faces, const std::vector<double>& y,
                          const std::vector<double>& sine, const MaterialFlow& flow,
                          std::vector<HingeMoment>& moments)
 {
     for (std::size_t h = 0; h < moments.size(); ++h) {
         const HingeElement& hinge = elements.hinges[h];
-        if (hinge.is_crease() || !has_eulerian_vertex(flow, hinge.vertices)) continue;
+        if (!has_moment(plates, hinge) || !has_eulerian_vertex(flow, hinge.vertices)) continue;
         std::array<Vec2, 4>& force = moments[h].material_force;
         const Vec2 e = flow.position[hinge.vertices[1]] - flow.position[hinge.vertices[0]];
         const Vec2 along = y[h] * sine[h] / (e.squaredNorm() * e.norm()) * e;  // d(1/L) = -e . de / L^3
@@ -218,7 +227,8 @@ void add_material_forces(const PlateMaterial& plate, const ClothElements& elemen
         force[1] += along;
         for (const int f : hinge.faces) {
             const PlateFace& face = faces[f];
-            const std::array<Vec2, 3> gradients = plate_energy_gradients(plate, face.element, face.gather(y));
+            const std::array<Vec2, 3> gradients =
+                plate_energy_gradients(plates[face.element.piece], face.element, face.gather(y));
             for (int i = 0; i < 4; ++i)
                 for (int k = 0; k < 3; ++k)
                     if (face.element.vertices[k] == hinge.vertices[i])
@@ -269,15 +279,16 @@ std::array<Vec2, 3> plate_energy_gradients(const PlateMaterial& plate, const Fac
     return by_corner;
 }
 
-std::vector<HingeMoment> find_hinge_moments(const PlateMaterial& plate, const ClothElements& elements,
-                                            const std::vector<Vec3>& position, const MaterialFlow* flow)
+std::vector<HingeMoment> find_hinge_moments(const std::vector<PlateMaterial>& plates,
+                                            const ClothElements& elements, const std::vector<Vec3>& position,
+                                            const MaterialFlow* flow)
 {
     const std::size_t n = elements.hinges.size();
-    const std::vector<PlateFace> faces = list_faces(plate, elements, flow);
+    const std::vector<PlateFace> faces = list_faces(plates, elements, flow);
     std::vector<double> length(n), sine(n, 0.0), q(n + 1, 0.0), compliance(n + 1, 0.0);
     for (std::size_t h = 0; h < n; ++h) {
         const HingeElement& hinge = elements.hinges[h];
-        if (hinge.is_crease()) continue;
+        if (!has_moment(plates, hinge)) continue;
         length[h] = std::sqrt(squared_length(hinge, faces));
         sine[h] = signed_sine(HingeState(hinge, position).x);
         q[h] = sine[h] / length[h];
@@ -289,14 +300,14 @@ std::vector<HingeMoment> find_hinge_moments(const PlateMaterial& plate, const Cl
     }
     std::vector<HingeMoment> moments(n);
     for (std::size_t h = 0; h < n; ++h) {
-        if (elements.hinges[h].is_crease()) continue;
+        if (!has_moment(plates, elements.hinges[h])) continue;
         moments[h].moment = y[h] / length[h];
         // V = y . q - y . B y / 2 is stationary at the solution: its error is of second order in the
         // residual.
         moments[h].energy = 0.5 * y[h] * (q[h] + residual[h]);
         moments[h].stiffness = 1.0 / (compliance[h] * length[h] * length[h]);
     }
-    if (flow != nullptr) add_material_forces(plate, elements, faces, y, sine, *flow, moments);
+    if (flow != nullptr) add_material_forces(plates, elements, faces, y, sine, *flow, moments);
     return moments;
 }
 

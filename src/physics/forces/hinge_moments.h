@@ -33,11 +33,13 @@ struct PlateMaterial {
     double poisson_ratio;  ///< between -1 and 1
 };
 
-/// Moments of all hinges at `position`, one entry per hinge; zero on creases. With `flow`, faces with an EOL
+/// Moments of all hinges at `position`, one entry per hinge; zero on creases and on pieces without stiffness.
+/// `plates`: the material of each piece. With `flow`, faces with an EOL
 /// vertex are those at flow->position. Linear in face count on well-shaped meshes, where the condition of the
 /// equations does not depend on the cells' size. Serial, so independent of the number of threads.
-std::vector<HingeMoment> find_hinge_moments(const PlateMaterial& plate, const ClothElements& elements,
-                                            const std::vector<Vec3>& position, const MaterialFlow* flow);
+std::vector<HingeMoment> find_hinge_moments(const std::vector<PlateMaterial>& plates,
+                                            const ClothElements& elements, const std::vector<Vec3>& position,
+                                            const MaterialFlow* flow);
 
 /// Compliance of a face, 1/J: A M : S(M) = sum_ij y_i y_j (i, j), where y_i = L_i^2 m_i belongs to the edge
 /// opposite corner i.

@@ -9,7 +9,7 @@ namespace arris {
 
 void Inertia::add(const FaceState& face, FaceSystem& system) const
 {
-    const double m = density_ * face.element.area / 12.0;
+    const double m = materials_[face.element.piece].density * face.element.area / 12.0;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j <= i; ++j) system.add_mass(i, j, i == j ? 2.0 * m : m);
 }
@@ -18,7 +18,8 @@ namespace {
 
 /// The sums below take the velocity of a face's corner from velocity_of(f, i).
 template <typename VelocityOf>
-double sum_kinetic_energy(double density, const ClothElements& elements, const VelocityOf& velocity_of)
+double sum_kinetic_energy(const Materials& materials, const ClothElements& elements,
+                          const VelocityOf& velocity_of)
 {
     return sum_in_batches<double>(
         static_cast<int>(elements.faces.size()),
@@ -29,7 +30,7 @@ double sum_kinetic_energy(double density, const ClothElements& elements, const V
                 const Vec3& a = velocity_of(f, 0);
                 const Vec3& b = velocity_of(f, 1);
                 const Vec3& c = velocity_of(f, 2);
-                energy += density * elements.faces[f].area / 24.0 *
+                energy += materials[elements.faces[f].piece].density * elements.faces[f].area / 24.0 *
                           (a.squaredNorm() + b.squaredNorm() + c.squaredNorm() + (a + b + c).squaredNorm());
             }
             return energy;
@@ -38,17 +39,20 @@ double sum_kinetic_energy(double density, const ClothElements& elements, const V
 }
 
 template <typename VelocityOf>
-Vec3 sum_linear_momentum(double density, const ClothElements& elements, const VelocityOf& velocity_of)
+Vec3 sum_linear_momentum(const Materials& materials, const ClothElements& elements,
+                         const VelocityOf& velocity_of)
 {
     Vec3 momentum = Vec3::Zero();
     for (std::size_t f = 0; f < elements.faces.size(); ++f)
-        for (int i = 0; i < 3; ++i) momentum += density * elements.faces[f].area / 3.0 * velocity_of(f, i);
+        for (int i = 0; i < 3; ++i)
+            momentum +=
+                materials[elements.faces[f].piece].density * elements.faces[f].area / 3.0 * velocity_of(f, i);
     return momentum;
 }
 
 template <typename VelocityOf>
-Vec3 sum_angular_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& position,
-                          const VelocityOf& velocity_of)
+Vec3 sum_angular_momentum(const Materials& materials, const ClothElements& elements,
+                          const std::vector<Vec3>& position, const VelocityOf& velocity_of)
 {
     Vec3 momentum = Vec3::Zero();
     for (std::size_t f = 0; f < elements.faces.size(); ++f) {
@@ -62,7 +66,7 @@ Vec3 sum_angular_momentum(double density, const ClothElements& elements, const s
             v_sum += v;
             own += x.cross(v);
         }
-        momentum += density * face.area / 12.0 * (own + x_sum.cross(v_sum));
+        momentum += materials[face.piece].density * face.area / 12.0 * (own + x_sum.cross(v_sum));
     }
     return momentum;
 }
@@ -79,36 +83,40 @@ auto at_corners(const CornerVelocities& velocity)
 
 }  // namespace
 
-double kinetic_energy(double density, const ClothElements& elements, const std::vector<Vec3>& velocity)
-{
-    return sum_kinetic_energy(density, elements, at_vertices(elements, velocity));
-}
-
-double kinetic_energy(double density, const ClothElements& elements, const CornerVelocities& velocity)
-{
-    return sum_kinetic_energy(density, elements, at_corners(velocity));
-}
-
-Vec3 linear_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& velocity)
-{
-    return sum_linear_momentum(density, elements, at_vertices(elements, velocity));
-}
-
-Vec3 linear_momentum(double density, const ClothElements& elements, const CornerVelocities& velocity)
-{
-    return sum_linear_momentum(density, elements, at_corners(velocity));
-}
-
-Vec3 angular_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& position,
+double kinetic_energy(const Materials& materials, const ClothElements& elements,
                       const std::vector<Vec3>& velocity)
 {
-    return sum_angular_momentum(density, elements, position, at_vertices(elements, velocity));
+    return sum_kinetic_energy(materials, elements, at_vertices(elements, velocity));
 }
 
-Vec3 angular_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& position,
+double kinetic_energy(const Materials& materials, const ClothElements& elements,
                       const CornerVelocities& velocity)
 {
-    return sum_angular_momentum(density, elements, position, at_corners(velocity));
+    return sum_kinetic_energy(materials, elements, at_corners(velocity));
+}
+
+Vec3 linear_momentum(const Materials& materials, const ClothElements& elements,
+                     const std::vector<Vec3>& velocity)
+{
+    return sum_linear_momentum(materials, elements, at_vertices(elements, velocity));
+}
+
+Vec3 linear_momentum(const Materials& materials, const ClothElements& elements,
+                     const CornerVelocities& velocity)
+{
+    return sum_linear_momentum(materials, elements, at_corners(velocity));
+}
+
+Vec3 angular_momentum(const Materials& materials, const ClothElements& elements,
+                      const std::vector<Vec3>& position, const std::vector<Vec3>& velocity)
+{
+    return sum_angular_momentum(materials, elements, position, at_vertices(elements, velocity));
+}
+
+Vec3 angular_momentum(const Materials& materials, const ClothElements& elements,
+                      const std::vector<Vec3>& position, const CornerVelocities& velocity)
+{
+    return sum_angular_momentum(materials, elements, position, at_corners(velocity));
 }
 
 CornerVelocities compute_corner_velocities(const ClothElements& elements, const std::vector<Vec3>& position,

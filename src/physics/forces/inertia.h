@@ -12,22 +12,24 @@ namespace arris {
 /// velocities. Corner matrices then reduce it to the coordinates of EOL vertices.
 class Inertia : public FaceTerm {
   public:
-    explicit Inertia(double density) : density_(density) {}
+    explicit Inertia(const Materials& materials) : materials_(materials) {}
     void add(const FaceState& face, FaceSystem& system) const override;
 
   private:
-    double density_;  ///< areal, kg/m^2
+    Materials materials_;
 };
 
 /// Kinetic energy, J, of a cloth whose vertices move with `velocity` (m/s, one entry per vertex).
-double kinetic_energy(double density, const ClothElements& elements, const std::vector<Vec3>& velocity);
+double kinetic_energy(const Materials& materials, const ClothElements& elements,
+                      const std::vector<Vec3>& velocity);
 
 /// Linear momentum, kg m/s.
-Vec3 linear_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& velocity);
+Vec3 linear_momentum(const Materials& materials, const ClothElements& elements,
+                     const std::vector<Vec3>& velocity);
 
 /// Angular momentum about the origin, kg m^2/s.
-Vec3 angular_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& position,
-                      const std::vector<Vec3>& velocity);
+Vec3 angular_momentum(const Materials& materials, const ClothElements& elements,
+                      const std::vector<Vec3>& position, const std::vector<Vec3>& velocity);
 
 /// Velocity of the material at the corners of each face, m/s.
 using CornerVelocities = std::vector<std::array<Vec3, 3>>;
@@ -40,10 +42,12 @@ CornerVelocities compute_corner_velocities(const ClothElements& elements, const 
 
 /// Energy and momenta from corner velocities. Without flow they are bitwise those from the vertices'
 /// velocities.
-double kinetic_energy(double density, const ClothElements& elements, const CornerVelocities& velocity);
-Vec3 linear_momentum(double density, const ClothElements& elements, const CornerVelocities& velocity);
-Vec3 angular_momentum(double density, const ClothElements& elements, const std::vector<Vec3>& position,
+double kinetic_energy(const Materials& materials, const ClothElements& elements,
                       const CornerVelocities& velocity);
+Vec3 linear_momentum(const Materials& materials, const ClothElements& elements,
+                     const CornerVelocities& velocity);
+Vec3 angular_momentum(const Materials& materials, const ClothElements& elements,
+                      const std::vector<Vec3>& position, const CornerVelocities& velocity);
 
 /// One velocity of the material per vertex, m/s. Where material flows (`material_velocity` is not zero) this
 /// is the area-weighted mean over the vertex's corners, as the two sides of a fold differ. Elsewhere it is

@@ -10,9 +10,9 @@
 
 namespace arris {
 
-/// Always inertia and membrane; other terms if their effect is present. A new term takes one file and one
-/// line here.
-Terms make_terms(const Material& material, const std::optional<Gravity>& gravity,
+/// The effects on cloth of these materials. Always inertia and membrane; other terms if their effect is
+/// present. A new term takes one file and one line here.
+Terms make_terms(const Materials& materials, const std::optional<Gravity>& gravity,
                  const std::optional<Wind>& wind, const std::vector<Pull>& pulls);
 
 }  // namespace arris

@@ -9,15 +9,15 @@ namespace arris {
 
 namespace {
 
-/// Lame constants of the sheet in plane stress, N/m.
-struct Moduli {
-    double mu, lambda;
-};
-
-Moduli find_moduli(double youngs_modulus, double poisson_ratio)
+double find_mu(const Material& material)
 {
-    return {youngs_modulus / (2.0 * (1.0 + poisson_ratio)),
-            youngs_modulus * poisson_ratio / (1.0 - poisson_ratio * poisson_ratio)};
+    return material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
+}
+
+double find_lambda(const Material& material)
+{
+    const double nu = material.poisson_ratio;
+    return material.youngs_modulus * nu / (1.0 - nu * nu);
 }
 
 /// Quantities that determine the energy; symbols as in the class comment.
@@ -112,28 +112,29 @@ Mat2 out_of_plane_stiffness(const Mat32& F, const Stretch& s, double mu, double 
 
 }  // namespace
 
-Membrane::Membrane(double youngs_modulus, double poisson_ratio)
-    : mu_(find_moduli(youngs_modulus, poisson_ratio).mu),
-      lambda_(find_moduli(youngs_modulus, poisson_ratio).lambda)
+Membrane::Membrane(const Materials& materials)
 {
+    for (const Material& material : materials) moduli_.push_back({find_mu(material), find_lambda(material)});
 }
 
 double Membrane::energy(const FaceState& face) const
 {
+    const auto& [mu, lambda] = moduli_[face.element.piece];
     const Invariants s = find_invariants(face.F);
     // sum (s_i - 1)^2 = ((S - 2)^2 + (s1 - s2)^2) / 2   no cancellation near rest
     const double shear = 0.5 * (s.S_minus_2 * s.S_minus_2 + s.squared_difference);
-    return face.element.area * (mu_ * shear + 0.5 * lambda_ * s.S_minus_2 * s.S_minus_2);
+    return face.element.area * (mu * shear + 0.5 * lambda * s.S_minus_2 * s.S_minus_2);
 }
 
 void Membrane::add(const FaceState& face, FaceSystem& system) const
 {
+    const auto& [mu, lambda] = moduli_[face.element.piece];
     const Stretch s = decompose(face.F);
     const double area = face.element.area;
     const auto& b = face.element.gradients;
 
     // Force on corner i: -A P b_i.
-    const Mat32 P = 2.0 * mu_ * (face.F - s.R) + lambda_ * s.S_minus_2 * s.R;
+    const Mat32 P = 2.0 * mu * (face.F - s.R) + lambda * s.S_minus_2 * s.R;
     for (int i = 0; i < 3; ++i) system.add_elastic_force(i, -area * (P * b[i]));
     if (system.is_eulerian()) {
         const double V = energy(face);
@@ -143,8 +144,8 @@ void Membrane::add(const FaceState& face, FaceSystem& system) const
 
     // dP in the plane: 2 mu dF + lambda R <R, dF> + k T <T, dF>, T = R [0 -1; 1 0], |T|^2 = 2. The eigenvalue
     // of the twist, 2 mu + 2 k, must not be negative.
-    const double k = s.S > 0.0 ? std::max((lambda_ * s.S_minus_2 - 2.0 * mu_) / s.S, -mu_) : -mu_;
-    const Mat2 W = out_of_plane_stiffness(face.F, s, mu_, lambda_);
+    const double k = s.S > 0.0 ? std::max((lambda * s.S_minus_2 - 2.0 * mu) / s.S, -mu) : -mu;
+    const Mat2 W = out_of_plane_stiffness(face.F, s, mu, lambda);
     const Mat3 normal = s.n * s.n.transpose();
     const Mat3 plane = Mat3::Identity() - normal;
     std::array<Vec3, 3> Rb, Tb;
@@ -156,7 +157,7 @@ void Membrane::add(const FaceState& face, FaceSystem& system) const
         for (int j = 0; j <= i; ++j)
             system.add_stiffness(
                 i, j,
-                area * (2.0 * mu_ * b[i].dot(b[j]) * plane + lambda_ * Rb[i] * Rb[j].transpose() +
+                area * (2.0 * mu * b[i].dot(b[j]) * plane + lambda * Rb[i] * Rb[j].transpose() +
                         k * Tb[i] * Tb[j].transpose() + b[i].dot(W * b[j]) * normal));
 }
 
@@ -176,9 +177,9 @@ std::vector<Vec2> compute_stretches(const ClothElements& elements, const std::ve
     return stretches;
 }
 
-Vec2 principal_tensions(const Vec2& stretches, double youngs_modulus, double poisson_ratio)
+Vec2 principal_tensions(const Vec2& stretches, const Material& material)
 {
-    const auto [mu, lambda] = find_moduli(youngs_modulus, poisson_ratio);
+    const double mu = find_mu(material), lambda = find_lambda(material);
     const Vec2 strains = stretches.array() - 1.0;
     return 2.0 * mu * strains + Vec2::Constant(lambda * strains.sum());
 }

@@ -26,7 +26,7 @@ namespace arris {
 /// -dV/dX_i = F^T (A P b_i) - V b_i. The second term is the energy of the material that enters the face.
 class Membrane : public FaceTerm {
   public:
-    Membrane(double youngs_modulus, double poisson_ratio);
+    explicit Membrane(const Materials& materials);
 
     bool is_elastic() const override { return true; }
     EnergyKind energy_kind() const override { return EnergyKind::Stretch; }
@@ -34,7 +34,12 @@ class Membrane : public FaceTerm {
     void add(const FaceState& face, FaceSystem& system) const override;
 
   private:
-    double mu_, lambda_;  ///< N/m
+    /// Lame constants of the sheet in plane stress, N/m.
+    struct Moduli {
+        double mu, lambda;
+    };
+
+    std::vector<Moduli> moduli_;  ///< by piece
 };
 
 /// Singular values of F, greatest first.
@@ -45,6 +50,6 @@ std::vector<Vec2> compute_stretches(const ClothElements& elements, const std::ve
 
 /// Tensions, N/m, along the principal directions of a face with these principal stretches: dV/ds_i / A.
 /// Negative where the face is compressed. A strip that is compressed by the strain e has -E e.
-Vec2 principal_tensions(const Vec2& stretches, double youngs_modulus, double poisson_ratio);
+Vec2 principal_tensions(const Vec2& stretches, const Material& material);
 
 }  // namespace arris

@@ -2,10 +2,27 @@
 #include "physics/forces/plate_bending.h"
 
 #include <cmath>
+#include <utility>
 
 #include "physics/elements/hinge_angle.h"
 
 namespace arris {
+
+namespace {
+
+std::vector<double> stiffnesses_of(const std::vector<PlateMaterial>& plates)
+{
+    std::vector<double> stiffnesses;
+    for (const PlateMaterial& plate : plates) stiffnesses.push_back(plate.stiffness);
+    return stiffnesses;
+}
+
+}  // namespace
+
+PlateBending::PlateBending(std::vector<PlateMaterial> plates)
+    : plates_(std::move(plates)), crease_(stiffnesses_of(plates_))
+{
+}
 
 double PlateBending::energy(const HingeState& hinge) const
 {

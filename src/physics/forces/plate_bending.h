@@ -21,23 +21,21 @@ namespace arris {
 /// Creases are those of Bending, with the same K.
 class PlateBending : public HingeTerm {
   public:
-    PlateBending(double stiffness, double poisson_ratio)
-        : plate_{stiffness, poisson_ratio}, crease_(stiffness)
-    {
-    }
+    /// `plates`: the material of each piece; its stiffness is 0 where none.
+    explicit PlateBending(std::vector<PlateMaterial> plates);
 
     EnergyKind energy_kind() const override { return EnergyKind::Bending; }
     bool is_coupled() const override { return true; }
     std::vector<HingeMoment> find_moments(const ClothElements& elements, const std::vector<Vec3>& position,
                                           const MaterialFlow* flow) const override
     {
-        return find_hinge_moments(plate_, elements, position, flow);
+        return find_hinge_moments(plates_, elements, position, flow);
     }
     double energy(const HingeState& hinge) const override;
     void add(const HingeState& hinge, HingeSystem& system) const override;
 
   private:
-    PlateMaterial plate_;
+    std::vector<PlateMaterial> plates_;
     Bending crease_;
 };
 

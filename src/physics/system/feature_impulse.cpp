@@ -81,8 +81,8 @@ void add_face(const FaceElement& element, const Terms& terms, const Linearizatio
     const auto put = [&](int v, const Vec3& residual) {
         if (TraceSides* sides = by_vertex.find(v)) sides->impulse[by_vertex.side_of(v, face)] += residual;
     };
-    visit_residual<3>(face, eulerian_inertia_and_loads(face, terms, at), at, u, put);
-    visit_residual<3>(face, eulerian_elasticity(face, terms, at), at, u, put);
+    visit_residual<3>(face, eulerian_inertia_and_loads(element, terms, at), at, u, put);
+    visit_residual<3>(face, eulerian_elasticity(element, terms, at), at, u, put);
     const std::vector<Vec3>& x = at.position;
     const Vec3 normal = (x[face[1]] - x[face[0]]).cross(x[face[2]] - x[face[0]]);
     for (const int v : face)
@@ -135,13 +135,13 @@ std::vector<Vec3> compute_feature_impulses(const ClothMesh& mesh, const ClothEle
     for (const FaceElement& element : elements.faces) {
         const Face& face = element.vertices;
         if (!has_eulerian_vertex(*at.flow, face)) continue;
-        visit_residual<3>(face, eulerian_inertia_and_loads(face, terms, at), at, u, put);
-        visit_residual<3>(face, eulerian_elasticity(face, terms, at), at, u, put);
+        visit_residual<3>(face, eulerian_inertia_and_loads(element, terms, at), at, u, put);
+        visit_residual<3>(face, eulerian_elasticity(element, terms, at), at, u, put);
     }
     visit_eulerian_hinges(elements, terms, at, [&](const HingeElement& hinge, const HingeMoment* moment) {
         visit_residual<4>(hinge.vertices, eulerian_hinge(hinge, moment, elements, terms, at), at, u, put);
     });
-    for (const CreaseForce& crease : find_momentum_flux(terms.density, elements, at))
+    for (const CreaseForce& crease : find_momentum_flux(terms.materials, elements, at))
         for (int i = 0; i < 2; ++i)
             if (at.flow->is_eulerian[crease.vertices[i]])
                 impulse[crease.vertices[i]] -= at.gamma * crease.force[i];
@@ -159,7 +159,7 @@ std::vector<TraceSides> compute_trace_sides(const std::vector<TraceVertex>& vert
     visit_eulerian_hinges(elements, terms, at, [&](const HingeElement& hinge, const HingeMoment* moment) {
         add_hinge(hinge, moment, elements, terms, at, u, by_vertex);
     });
-    for (const CreaseForce& crease : find_momentum_flux(terms.density, elements, at))
+    for (const CreaseForce& crease : find_momentum_flux(terms.materials, elements, at))
         for (int i = 0; i < 2; ++i)
             if (TraceSides* sides = by_vertex.find(crease.vertices[i]))
                 sides->flux += at.gamma * crease.force[i];

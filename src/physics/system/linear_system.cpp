@@ -267,14 +267,14 @@ void LinearSystem::assemble(const ClothMesh& mesh, const ClothElements& elements
     assert((!at.flow || places_.empty()) && "nothing flows where some are held");
     matrix_.coeffs().setZero();
     set_loads(mesh, terms, at);
-    add_momentum_flux(terms.density, elements, at, rhs_);
+    add_momentum_flux(terms.materials, elements, at, rhs_);
     add_elements<3>(
         elements.face_colors, elements.faces, face_blocks_,
         [&](int f) { return FaceState(elements.faces[f], at.position); }, terms.faces, at,
         [&](int f) {
             const Face& face = elements.faces[f].vertices;
-            for (FaceSystem local :
-                 {eulerian_inertia_and_loads(face, terms, at), eulerian_elasticity(face, terms, at)}) {
+            for (FaceSystem local : {eulerian_inertia_and_loads(elements.faces[f], terms, at),
+                                     eulerian_elasticity(elements.faces[f], terms, at)}) {
                 reduce_eulerian<3>(face, at, local);
                 scatter<3>(face, face_blocks_[f].data(), local);
             }

@@ -313,23 +313,25 @@ class NormalEquations {
 
 }  // namespace
 
-double compute_kinetic_energy(double density, const VelocityField& field)
+double compute_kinetic_energy(const Materials& materials, const VelocityField& field)
 {
     double energy = 0.0;
     for (std::size_t t = 0; t < field.triangles.size(); ++t) {
         const std::array<Vec2, 3>& X = field.triangles[t];
-        energy += energy_of(density * area_of(X), field.velocity[t]);
+        energy += energy_of(materials.at(X[0]).density * area_of(X), field.velocity[t]);
     }
     return energy;
 }
 
-std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old, const FitPatch& patch)
+std::optional<VelocityFit> fit_velocity(const Materials& materials, const VelocityField& old,
+                                        const FitPatch& patch)
 {
     NormalEquations equations(patch);
     if (equations.is_empty()) return std::nullopt;
     const OldField old_field(old);
     std::vector<NewFace> faces;
     for (const Face& face : patch.faces) {
+        const double density = materials.at(patch.material[face[0]]).density;
         faces.push_back(make_face(density, patch, face));
         equations.add(face, faces.back(), integrate_old(density, old_field, faces.back().X));
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/vectors.h"
+#include "physics/elements/materials.h"
 
 namespace arris {
 
@@ -17,8 +18,8 @@ struct VelocityField {
     std::vector<std::array<Vec2, 3>> triangles;  ///< X of the corners, m, counter-clockwise
     std::vector<std::array<Vec3, 3>> velocity;   ///< m/s, of the corners
 };
-/// Kinetic energy, J; `density` is areal, kg/m^2.
-double compute_kinetic_energy(double density, const VelocityField& field);
+/// Kinetic energy, J, of cloth of these materials.
+double compute_kinetic_energy(const Materials& materials, const VelocityField& field);
 
 /// The patch after the change. It covers the same part of the material as VelocityField's triangles.
 struct FitPatch {
@@ -41,9 +42,10 @@ struct VelocityFit {
 };
 
 /// Minimises the integral of density / 2 |new - old|^2 over the patch, subject to equal linear momentum.
-/// `density` is areal, kg/m^2. Returns nothing where no vertex is free or the system is singular (a patch
+/// Returns nothing where no vertex is free or the system is singular (a patch
 /// folded so that a vertex's coordinates move no material). Integrals over the overlay of both meshes are
 /// exact. The cost is near linear in face count, plus a sparse factorisation.
-std::optional<VelocityFit> fit_velocity(double density, const VelocityField& old, const FitPatch& patch);
+std::optional<VelocityFit> fit_velocity(const Materials& materials, const VelocityField& old,
+                                        const FitPatch& patch);
 
 }  // namespace arris

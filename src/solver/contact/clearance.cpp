@@ -51,7 +51,7 @@ bool push_out(const ObstacleContact& contact, const Carrier& carrier, double thi
 class FoldsAround {
   public:
     FoldsAround(const Scene& scene, const std::vector<MeshEdge>& edges, int vertex_count)
-        : reach_(kOnFeature * scene.material.thickness), neighbours_(vertex_count)
+        : reach_(kOnFeature * scene.materials.thickness()), neighbours_(vertex_count)
     {
         for (const MeshEdge& edge : edges) {
             neighbours_[edge.a].push_back(edge.b);
@@ -94,7 +94,7 @@ bool push_out_all(const Scene& scene, const std::vector<MeshEdge>& edges, const 
                   ClothMesh& mesh)
 {
     bool is_changed = false;
-    const double thickness = scene.material.thickness;
+    const double thickness = scene.materials.thickness();
     const std::vector<Carrier> carriers = stand_still(scene, mesh, edges);
     for (std::size_t o = 0; o < carriers.size(); ++o) {
         const Obstacle& obstacle = *carriers[o].obstacle;
@@ -113,7 +113,7 @@ bool is_free_way(const Scene& scene, const std::vector<MeshEdge>& edges, const C
     std::vector<Carrier> carriers = stand_still(scene, from, edges);
     for (std::size_t o = 0; o < carriers.size(); ++o) {
         carriers[o].motion.end = to_local(carriers[o].end, to.world);
-        if (!check_sweep(*carriers[o].obstacle, carriers[o].motion, scene.material.thickness).is_clean())
+        if (!check_sweep(*carriers[o].obstacle, carriers[o].motion, scene.materials.thickness()).is_clean())
             return false;
     }
     return true;

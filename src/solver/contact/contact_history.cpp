@@ -108,7 +108,7 @@ void flatten_friction(const Scene& scene, const State& state, const Carriers& ca
             const Vec3 now = contact.at(state.velocity);
             const Vec3 change = now - contact.at(state.previous_velocity);
             const Vec3 gained = gain_of(carriers[contact.obstacle], state, contact);
-            contact.shift(friction_left(scene.friction->coefficient(contact.obstacle), contact.last_friction,
+            contact.shift(friction_left(friction_at(scene, state.mesh, contact), contact.last_friction,
                                         contact.normal.dot(change - gained), prediction.forward,
                                         prediction.forward * change, contact.at(prediction.velocity) - now),
                           mobility, prediction.velocity);

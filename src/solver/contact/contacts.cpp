@@ -60,11 +60,11 @@ class RememberedPairs {
         const Obstacle& obstacle = *carrier.obstacle;
         if (active.kind == ContactKind::Edge)
             return make_edge_contact(obstacle, carrier.motion, carrier.reference, {vertices[0], vertices[1]},
-                                     active.element, scene_.material.thickness);
+                                     active.element, scene_.materials.thickness());
         const int face = find_face(vertices);
         if (face < 0) return std::nullopt;
         return make_face_contact(obstacle, carrier.motion, carrier.reference, face, active.element,
-                                 scene_.material.thickness);
+                                 scene_.materials.thickness());
     }
 
     /// A face with these vertices (an edge may have two); -1 where the mesh no longer has one.
@@ -303,7 +303,7 @@ std::vector<Contact> find_contacts_with_obstacles(const Scene& scene, const Stat
                                                   const Prediction& prediction, Carriers& carriers)
 {
     std::vector<Contact> contacts;
-    const double thickness = scene.material.thickness;
+    const double thickness = scene.materials.thickness();
     for (Carrier& carrier : carriers.obstacles)
         carrier.reference = slide(*carrier.obstacle, carrier.motion, thickness);
     RememberedPairs remembered(scene, state, carriers);
@@ -341,10 +341,18 @@ std::vector<Contact> find_contacts_with_itself(const Scene& scene, const State& 
     return contacts;
 }
 
-std::vector<double> find_mobility(double density, const ClothElements& elements,
+double friction_at(const Scene& scene, const ClothMesh& mesh, const Contact& contact)
+{
+    if (!scene.friction) return 0.0;
+    const int piece = piece_of(scene, mesh, contact.vertices[0]);
+    if (!contact.is_with_itself()) return scene.friction->with_obstacle(contact.obstacle, piece);
+    return scene.friction->between(piece, piece_of(scene, mesh, contact.vertices[contact.first_count()]));
+}
+
+std::vector<double> find_mobility(const Materials& materials, const ClothElements& elements,
                                   const std::vector<PinTarget>& held)
 {
-    std::vector<double> mobility = lump_masses(density, elements);
+    std::vector<double> mobility = lump_masses(materials, elements);
     for (double& value : mobility) value = 1.0 / value;
     for (const PinTarget& vertex : held)
         if (vertex.held[0] && vertex.held[1] && vertex.held[2]) mobility[vertex.vertex] = 0.0;

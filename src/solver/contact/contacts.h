@@ -174,9 +174,12 @@ Contact place_contact(const ObstacleContact& found, int obstacle, double thickne
 Contact place_contact(const SelfContact& found, double thickness, const Carriers& carriers,
                       const Prediction& prediction);
 
+/// Coefficient of friction at a contact of a cloth with this mesh; 0 without friction.
+double friction_at(const Scene& scene, const ClothMesh& mesh, const Contact& contact);
+
 /// 1 / mass of each vertex, 1/kg, with which contacts shift positions and history; 0 at vertices pinned in
 /// all directions, which stay.
-std::vector<double> find_mobility(double density, const ClothElements& elements,
+std::vector<double> find_mobility(const Materials& materials, const ClothElements& elements,
                                   const std::vector<PinTarget>& held);
 
 /// Pressing contacts, for `State::active`; `multiplier` has one entry a contact (N s).

@@ -138,7 +138,7 @@ std::vector<EolCoordinates> add_eol_contacts(const Scene& scene, const State& st
                                              const Prediction& prediction, double turning,
                                              const Carriers& carriers, std::vector<Contact>& contacts)
 {
-    const double thickness = scene.material.thickness;
+    const double thickness = scene.materials.thickness();
     std::vector<EolCoordinates> eol;
     std::vector<int> slot(state.mesh.world.size(), -1);
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {

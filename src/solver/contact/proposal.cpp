@@ -98,7 +98,7 @@ bool Violations::is_clean() const
 Violations check_proposal(const Scene& scene, const State& state, const SelfSurface& surface,
                           const Proposal& proposal, const Prediction& prediction, Carriers& carriers)
 {
-    const double thickness = scene.material.thickness;
+    const double thickness = scene.materials.thickness();
     Violations violations;
     for (int o = 0; o < static_cast<int>(carriers.obstacles.size()); ++o) {
         Carrier& carrier = carriers.obstacles[o];

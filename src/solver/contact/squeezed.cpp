@@ -24,6 +24,14 @@ double area_at(const Cushion& cushion, const Contact& contact)
     return contact.kind == ContactKind::Triangle ? std::min(area, thick * thick) : area;
 }
 
+/// Mean of both layers where the cloth meets itself.
+double modulus_at(const Cushion& cushion, const Contact& contact)
+{
+    const double first = cushion.modulus[contact.vertices[0]];
+    if (!contact.is_with_itself()) return first;
+    return 0.5 * (first + cushion.modulus[contact.vertices[contact.first_count()]]);
+}
+
 double end_distance(const Carrier& carrier, const Contact& contact, const std::vector<Vec3>& world)
 {
     return contact.normal.dot(contact.at(world) - carrier.end(contact.local_point));
@@ -180,10 +188,17 @@ bool squeeze_beside_edges(const Cushion& cushion, const Carriers& carriers, cons
 
 }  // namespace
 
+Cushion make_cushion(const Materials& materials, const ClothMesh& mesh, const ClothElements& elements)
+{
+    Cushion cushion{{}, lump_areas(elements)};
+    for (const Vec2& X : mesh.material) cushion.modulus.push_back(materials.at(X).compression_modulus);
+    return cushion;
+}
+
 bool squeeze(const Cushion& cushion, const Carriers& carriers, const Prediction& prediction, Contact& contact)
 {
     if (contact.is_squeezed() || contact.is_floor) return false;
-    contact.stiffness = cushion.modulus * area_at(cushion, contact) / contact.stand_off;
+    contact.stiffness = modulus_at(cushion, contact) * area_at(cushion, contact) / contact.stand_off;
     contact.least_gap = contact.stand_off;
     update_gap(carriers[contact.obstacle], prediction, contact);
     return true;

@@ -28,9 +28,11 @@ inline constexpr double kLeastThickness = 0.02;
 
 /// The cloth as a cushion between obstacles.
 struct Cushion {
-    double modulus = 0.0;      ///< E, Pa
-    std::vector<double> area;  ///< m^2, by vertex
+    std::vector<double> modulus;  ///< E, Pa, by vertex
+    std::vector<double> area;     ///< m^2, by vertex
 };
+
+Cushion make_cushion(const Materials& materials, const ClothMesh& mesh, const ClothElements& elements);
 
 /// Lets the cloth press as a spring at this contact. False where it does already, or where the contact keeps
 /// the least thickness.

@@ -12,35 +12,48 @@ namespace arris {
 
 namespace {
 
-/// Length sqrt(K / T), m, over which this cloth bends on either side of a feature. Infinite without gravity.
-double find_bend_length(const Scene& scene, const ClothMesh& cloth)
+/// Length sqrt(K / T), m, over which each piece bends on either side of a feature. Infinite without gravity.
+std::vector<double> find_bend_lengths(const Scene& scene, const ClothMesh& cloth)
 {
     const double weight = scene.gravity ? scene.gravity->acceleration.norm() : 0.0;
-    const double tension = scene.material.density * weight * std::sqrt(material_area(cloth));
-    return tension > 0.0 ? std::sqrt(scene.material.bending_stiffness / tension)
-                         : std::numeric_limits<double>::infinity();
+    const std::vector<double> areas = piece_areas(scene.materials, cloth);
+    std::vector<double> lengths;
+    for (int p = 0; p < scene.materials.count(); ++p) {
+        const Material& material = scene.materials[p];
+        const double tension = material.density * weight * std::sqrt(areas[p]);
+        lengths.push_back(tension > 0.0 ? std::sqrt(material.bending_stiffness / tension)
+                                        : std::numeric_limits<double>::infinity());
+    }
+    return lengths;
 }
 
 }  // namespace
 
 bool resolves_bends(const Scene& scene, const ClothMesh& cloth)
 {
-    const double bend = find_bend_length(scene, cloth);
-    return scene.eol && std::isfinite(bend) && bend >= scene.eol->mean_length;
+    if (!scene.eol) return false;
+    const std::vector<double> bends = find_bend_lengths(scene, cloth);
+    return std::equal(bends.begin(), bends.end(), scene.eol->mean_lengths.begin(),
+                      [](double bend, double edge) { return std::isfinite(bend) && bend >= edge; });
 }
 
-double find_crease_width(const Scene& scene, const ClothMesh& cloth)
+std::vector<double> find_crease_widths(const Scene& scene, const ClothMesh& cloth)
 {
     constexpr double kHeight = 0.87;  // height of an equilateral face, in edge lengths
-    if (!scene.eol) return 0.0;
-    const double width = kHeight * scene.eol->mean_length;
-    return 2.0 * find_bend_length(scene, cloth) < width ? width : 0.0;
+    std::vector<double> widths(static_cast<std::size_t>(scene.materials.count()), 0.0);
+    if (!scene.eol) return widths;
+    const std::vector<double> bends = find_bend_lengths(scene, cloth);
+    for (std::size_t p = 0; p < widths.size(); ++p) {
+        const double width = kHeight * scene.eol->mean_lengths[p];
+        if (2.0 * bends[p] < width) widths[p] = width;
+    }
+    return widths;
 }
 
 Creases find_creases(const Scene& scene, const State& state, const ClothStars& stars)
 {
-    Creases creases{find_crease_width(scene, state.mesh), {}};
-    if (creases.width > 0.0)
+    Creases creases{find_crease_widths(scene, state.mesh), {}};
+    if (*std::max_element(creases.widths.begin(), creases.widths.end()) > 0.0)
         for (const auto& [a, b] : find_trace_edges(scene.obstacles, state, stars))
             creases.edges.push_back(
                 {state.index_of(state.eol[a].vertex_id), state.index_of(state.eol[b].vertex_id)});
@@ -55,7 +68,7 @@ bool mark_creases(const Creases& creases, const ClothMesh& mesh, ClothElements& 
         const auto [a, b] = std::minmax(hinge.vertices[0], hinge.vertices[1]);
         const bool is_crease =
             std::binary_search(creases.edges.begin(), creases.edges.end(), std::array{a, b});
-        const double width = is_crease ? creases.width : 0.0;
+        const double width = is_crease ? creases.widths[hinge.piece] : 0.0;
         if (width == hinge.crease_width) continue;
         hinge.crease_width = width;
         is_changed[a] = 1;

@@ -13,19 +13,19 @@ namespace arris {
 
 /// The hinges of a mesh that are creases (physics/forces/bending.h).
 struct Creases {
-    double width = 0.0;                     ///< m; 0 without creases
+    std::vector<double> widths;             ///< m, of each piece; 0 without creases
     std::vector<std::array<int, 2>> edges;  ///< edges of the cloth along features; ends and list ascend
 };
 
-/// Whether the mesh resolves the bend of this cloth at a feature under the tension of its own weight: cells
+/// Whether the mesh resolves the bend of every piece at a feature under the tension of its own weight: cells
 /// are shorter than sqrt(K / T), the length over which the cloth bends. Constraints then let the cloth slide
 /// as well as EOL vertices do. False without gravity, and without a target for the mesh.
 bool resolves_bends(const Scene& scene, const ClothMesh& cloth);
 
-/// Width, m, of the creases of this cloth. Zero without a target for the mesh, and where the cloth's bend
+/// Width, m, of the creases of each piece. Zero without a target for the mesh, and where the cloth's bend
 /// over both sides of a feature is as wide as a crease: the crease would be too soft, and releasing its
 /// vertices would make energy jump.
-double find_crease_width(const Scene& scene, const ClothMesh& cloth);
+std::vector<double> find_crease_widths(const Scene& scene, const ClothMesh& cloth);
 
 /// Creases between EOL vertices. `stars` belong to the state's mesh.
 Creases find_creases(const Scene& scene, const State& state, const ClothStars& stars);

@@ -48,7 +48,7 @@ bool is_flowing(const State& state, int v)
 
 bool has_lost_flow(const Scene& scene, const State& state, const ClothStars& stars)
 {
-    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
+    EolPlacer placer(scene.obstacles, scene.materials.thickness(), state, stars);
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry)
         if (is_flowing(state, state.index_of(state.eol[entry].vertex_id)) && !placer.place(entry).coordinates)
             return true;
@@ -58,7 +58,7 @@ bool has_lost_flow(const Scene& scene, const State& state, const ClothStars& sta
 void settle_flow(const Scene& scene, const State& before, const ClothStars& stars, State& state)
 {
     std::vector<char> is_placed(state.ids.size(), 0);
-    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
+    EolPlacer placer(scene.obstacles, scene.materials.thickness(), state, stars);
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry)
         if (const EolPlacing placing = placer.place(entry); placing.coordinates)
             is_placed[placing.coordinates->vertex] = 1;

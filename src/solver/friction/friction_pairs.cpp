@@ -202,10 +202,10 @@ std::vector<SlipContact> add_friction_pairs(const SlippingCloth& cloth, Velocity
     std::vector<SlipContact> slip_contacts;
     problem.friction.clear();
     if (!cloth.scene.friction || cloth.contacts.empty()) return slip_contacts;
-    const std::vector<double> mass = lump_masses(cloth.scene.material.density, cloth.elements);
+    const std::vector<double> mass = lump_masses(cloth.scene.materials, cloth.elements);
     for (std::size_t c = 0; c < cloth.contacts.size(); ++c) {
         const Contact& contact = cloth.contacts[c];
-        const double coefficient = cloth.scene.friction->coefficient(contact.obstacle);
+        const double coefficient = friction_at(cloth.scene, cloth.state.mesh, contact);
         if (!(coefficient > 0.0) || !can_slip(cloth, contact)) continue;
         SlipContact slipping{static_cast<int>(c), coefficient, {Vec3::UnitX(), Vec3::UnitY()}};
         FrictionPair pair;

@@ -32,8 +32,8 @@ MeshChangeGuard::MeshChangeGuard(const Scene& scene, const State& state, StrainL
                                  std::vector<VertexId> careful_at, RelaxationMemo& relaxations)
     : scene_(scene),
       state_(state),
-      terms_(make_terms(scene.material, scene.gravity, {}, {})),
-      crease_width_(find_crease_width(scene, state.mesh)),
+      terms_(make_terms(scene.materials, scene.gravity, {}, {})),
+      crease_widths_(find_crease_widths(scene, state.mesh)),
       limit_(limit),
       careful_at_(std::move(careful_at)),
       relaxations_(relaxations)
@@ -42,7 +42,7 @@ MeshChangeGuard::MeshChangeGuard(const Scene& scene, const State& state, StrainL
 
 bool MeshChangeGuard::allows(const SurgeryEvent& event)
 {
-    const double thickness = scene_.material.thickness;
+    const double thickness = scene_.materials.thickness();
     if (strains(event)) return false;
     return std::all_of(scene_.obstacles.begin(), scene_.obstacles.end(), [&](const MovingObstacle& obstacle) {
         const ObstaclePose pose = obstacle.at(state_.time);
@@ -55,18 +55,21 @@ double MeshChangeGuard::allowance(const SurgeryEvent& event, double elastic_ener
     // Clearing may raise the energy by this many times as much. Otherwise the trace would be released, and a
     // constraint would hold everything that slides.
     constexpr double kClearing = 10.0;
-    double area = 0.0, squared_speed = 0.0;
+    double mass = 0.0, stiffness = 0.0, squared_speed = 0.0;
     for (const PatchFace& face : event.before) {
-        area += 0.5 * twice_area(face.material[0], face.material[1], face.material[2]);
+        const double area = 0.5 * twice_area(face.material[0], face.material[1], face.material[2]);
+        const Material& material = scene_.materials.at(face.material[0]);
+        mass += material.density * area;
+        stiffness += material.youngs_modulus * area;
         for (const VertexId id : face.vertices)
             if (const int v = state_.index_of(id); v >= 0)
                 squared_speed = std::max(squared_speed, state_.velocity[v].squaredNorm());
     }
     const double motion =
-        0.5 * scene_.material.density * area * squared_speed +
-        weight_over(scene_, area, target_length(scene_, state_, event.before[0].material[0]));
+        0.5 * mass * squared_speed +
+        weight_over(scene_, mass, target_length(scene_, state_, event.before[0].material[0]));
     return (is_clearing_ ? kClearing : 1.0) *
-           (kAllowedStrain * elastic_energy + kAllowedStrain * motion + unseen_energy(scene_, area));
+           (kAllowedStrain * elastic_energy + kAllowedStrain * motion + unseen_energy(stiffness));
 }
 
 bool MeshChangeGuard::strains(const SurgeryEvent& event)
@@ -74,8 +77,8 @@ bool MeshChangeGuard::strains(const SurgeryEvent& event)
     const bool is_split =
         event.operation == SurgeryOperation::SplitEdge || event.operation == SurgeryOperation::SplitFace;
     if (is_split) return false;  // changes only the width of hinges, not the surface
-    const Energies before = find_energies(*surgery_, event, event.before, terms_, crease_width_);
-    const Energies after = find_energies(*surgery_, event, event.after, terms_, crease_width_);
+    const Energies before = find_energies(*surgery_, event, event.before, terms_, crease_widths_);
+    const Energies after = find_energies(*surgery_, event, event.after, terms_, crease_widths_);
     double rise = after.sum() - before.sum();
     if (!(rise > 0.0)) return false;  // the allowance is not needed
     rise -= allowance(event, before.elastic());
@@ -157,7 +160,7 @@ LoosePatch MeshChangeGuard::make_patch(const SurgeryEvent& event) const
 {
     const Neighbourhood around = look_around(event);
     LoosePatch patch;
-    patch.creases.width = crease_width_;
+    patch.creases.widths = crease_widths_;
     std::vector<int> local(around.near.size(), -1);
     const auto add = [&](const PatchFace& face) {
         Face made;

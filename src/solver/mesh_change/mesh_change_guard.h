@@ -62,8 +62,8 @@ class MeshChangeGuard {
 
     const Scene& scene_;
     const State& state_;
-    Terms terms_;          ///< terms that have an energy
-    double crease_width_;  ///< m
+    Terms terms_;                        ///< terms that have an energy
+    std::vector<double> crease_widths_;  ///< m, of each piece
     StrainLimit limit_;
     std::vector<VertexId> careful_at_;
     bool is_clearing_ = false;

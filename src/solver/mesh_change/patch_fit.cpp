@@ -25,7 +25,7 @@ class PatchFitter {
         : scene_(scene),
           before_(before),
           after_(after),
-          placer_(scene.obstacles, scene.material.thickness, after, stars),
+          placer_(scene.obstacles, scene.materials.thickness(), after, stars),
           held_(find_pin_targets(scene, after, after.time)),
           creases_before_(find_creases(scene, before, stars_before)),
           creases_(find_creases(scene, after, stars))
@@ -74,8 +74,9 @@ class PatchFitter {
                 find_patch_energy(scene_, creases_before_, before_.mesh, patch.faces_before);
             const double gain = find_patch_energy(scene_, creases_, after_.mesh, patch.faces) - before;
             if (!(gain > 0.0)) continue;
-            const double kinetic = compute_kinetic_energy(scene_.material.density, fields[i]);
-            const double bound = gain / moving_energy(before, kinetic, area_of(patch), shortest_cell(scene_));
+            const double kinetic = compute_kinetic_energy(scene_.materials, fields[i]);
+            const double bound = gain / moving_energy(before, kinetic, heft_of(after_.mesh, patch.faces),
+                                                      shortest_cell(scene_));
             strained.push_back({i, before, kinetic, bound});
         }
         std::stable_sort(
@@ -124,24 +125,35 @@ class PatchFitter {
         return relax(scene_, creases_, relaxed_, after_) - before;
     }
 
-    double area_of(const ChangedPatch& patch) const
-    {
-        const std::vector<Vec2>& X = after_.mesh.material;
-        double area = 0.0;
-        for (const int f : patch.faces) {
-            const auto& [a, b, c] = after_.mesh.faces[f];
-            area += 0.5 * twice_area(X[a], X[b], X[c]);
+    /// Mass, kg, and Young's modulus times area, N.
+    struct Heft {
+        double mass = 0.0, stiffness = 0.0;
+
+        void add(const Material& material, double area)
+        {
+            mass += material.density * area;
+            stiffness += material.youngs_modulus * area;
         }
-        return area;
+    };
+
+    Heft heft_of(const ClothMesh& mesh, const std::vector<int>& faces) const
+    {
+        const std::vector<Vec2>& X = mesh.material;
+        Heft heft;
+        for (const int f : faces) {
+            const auto& [a, b, c] = mesh.faces[f];
+            heft.add(scene_.materials.at(X[a]), 0.5 * twice_area(X[a], X[b], X[c]));
+        }
+        return heft;
     }
 
     /// Energy that moves a patch, J: its kinetic energy plus the work of its weight when it falls by one
     /// cell's length, or plus its elastic energy (`before`) where nothing has weight. At least what is
     /// invisible.
-    double moving_energy(double before, double kinetic, double area, double cell) const
+    double moving_energy(double before, double kinetic, const Heft& heft, double cell) const
     {
-        const double potential = scene_.gravity ? weight_over(scene_, area, cell) : before;
-        return kinetic + potential + unseen_energy(scene_, area) / kAllowedStrain;
+        const double potential = scene_.gravity ? weight_over(scene_, heft.mass, cell) : before;
+        return kinetic + potential + unseen_energy(heft.stiffness) / kAllowedStrain;
     }
 
     /// Energy that moves the whole cloth, J: its kinetic energy, plus the work of its weight over its mean
@@ -161,8 +173,9 @@ class PatchFitter {
             area += part;
             length += part * target_length(scene_, before_, X);
         }
-        const double kinetic = compute_kinetic_energy(scene_.material.density, field);
-        return std::max(moving_energy(elastic, kinetic, area, length / area), kinetic + elastic);
+        const double kinetic = compute_kinetic_energy(scene_.materials, field);
+        return std::max(moving_energy(elastic, kinetic, heft_of(before_.mesh, faces), length / area),
+                        kinetic + elastic);
     }
 
     std::vector<VertexId> vertices_before(const ChangedPatch& patch) const
@@ -179,9 +192,9 @@ class PatchFitter {
     double strain_of(const ChangedPatch& patch, double gain, const StrainedPatch& strained,
                      double small) const
     {
-        const double area = area_of(patch);
+        const Heft heft = heft_of(after_.mesh, patch.faces);
         const auto strain = [&](double cell) {
-            return gain / moving_energy(strained.energy_before, strained.kinetic, area, cell);
+            return gain / moving_energy(strained.energy_before, strained.kinetic, heft, cell);
         };
         const double bound = strain(shortest_cell(scene_));
         if (!(bound > small)) return bound;
@@ -205,7 +218,7 @@ class PatchFitter {
             const Face& face = after_.mesh.faces[f];
             patch.faces.push_back({local_[face[0]], local_[face[1]], local_[face[2]]});
         }
-        if (const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch))
+        if (const std::optional<VelocityFit> fit = fit_velocity(scene_.materials, old, patch))
             for (std::size_t i = 0; i < changed.vertices.size(); ++i) {
                 after_.velocity[changed.vertices[i]] = fit->velocity[i];
                 after_.material_velocity[changed.vertices[i]] = fit->material_velocity[i];
@@ -237,7 +250,7 @@ class PatchFitter {
                 patch.is_free[i] ? Vec3(Vec3::Zero()) : after_.previous_velocity[changed.vertices[i]];
         const VelocityField old =
             old_field(changed.faces_before, before_.previous_velocity, before_.previous_material_velocity);
-        const std::optional<VelocityFit> fit = fit_velocity(scene_.material.density, old, patch);
+        const std::optional<VelocityFit> fit = fit_velocity(scene_.materials, old, patch);
         if (!fit) return;
         for (std::size_t i = 0; i < changed.vertices.size(); ++i)
             after_.previous_velocity[changed.vertices[i]] = fit->velocity[i];

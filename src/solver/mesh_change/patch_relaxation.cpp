@@ -32,7 +32,7 @@ constexpr int kMostSteps = 8;
 /// Terms that have an energy, and mass.
 Terms make_energy_terms(const Scene& scene)
 {
-    return make_terms(scene.material, scene.gravity, {}, {});
+    return make_terms(scene.materials, scene.gravity, {}, {});
 }
 
 /// Time of each step, s. In all steps together nothing falls by more than about `kAllowedStrain` of a cell.
@@ -41,14 +41,15 @@ double find_step_time(const Scene& scene)
 {
     const double weight = scene.gravity ? scene.gravity->acceleration.norm() : 0.0;
     if (!(weight > 0.0) || !changes_mesh(scene)) return 1.0;
-    return std::min(1.0,
-                    std::sqrt(kAllowedStrain * initial_target(scene).mean_length / (kMostSteps * weight)));
+    const std::vector<double>& lengths = initial_target(scene).mean_lengths;
+    const double least = *std::min_element(lengths.begin(), lengths.end());
+    return std::min(1.0, std::sqrt(kAllowedStrain * least / (kMostSteps * weight)));
 }
 
 /// Creases within a part of the cloth, whose vertex i is `vertices[i]` of the whole.
 Creases find_part(const Creases& creases, const std::vector<int>& vertices)
 {
-    Creases part{creases.width, {}};
+    Creases part{creases.widths, {}};
     if (creases.edges.empty()) return part;
     std::unordered_map<int, int> local;  // only for look-up
     for (std::size_t i = 0; i < vertices.size(); ++i) local[vertices[i]] = static_cast<int>(i);
@@ -142,7 +143,7 @@ class Relaxation {
             const ObstaclePose pose = obstacle.at(time);
             const ClothMotion motion = {&patch_.mesh.faces, &edges_, to_local(pose.placement, begin),
                                         to_local(pose.placement, patch_.mesh.world)};
-            const SweepReport swept = check_sweep(pose, motion, scene_.material.thickness);
+            const SweepReport swept = check_sweep(pose, motion, scene_.materials.thickness());
             met.insert(met.end(), swept.faces.begin(), swept.faces.end());
         }
         return met;
@@ -155,7 +156,7 @@ class Relaxation {
         for (const MovingObstacle& obstacle : scene_.obstacles) {
             const ObstaclePose pose = obstacle.at(time);
             const auto gap_at = [&](const Vec3& place) {
-                return distance_to(pose, pose.placement.inverse(place), scene_.material.thickness);
+                return distance_to(pose, pose.placement.inverse(place), scene_.materials.thickness());
             };
             for (const int v : free_) keep_off(gap_at, begin[v], patch_.mesh.world[v]);
         }
@@ -195,7 +196,7 @@ class Relaxation {
     {
         constexpr int kMostHalvings = 5;
         constexpr double kRounding = 1e-3;
-        if (place == begin || !(gap_at(place) < scene_.material.thickness)) return;
+        if (place == begin || !(gap_at(place) < scene_.materials.thickness())) return;
         const double least = (1.0 - kRounding) * gap_at(begin);
         for (int k = 0; k < kMostHalvings && gap_at(place) < least; ++k) place = 0.5 * (place + begin);
         if (gap_at(place) < least) place = begin;
@@ -363,7 +364,8 @@ bool can_relax_by(const Scene& scene, const LoosePatch& patch, double drop)
 
 Energies find_energies(const Scene& scene, const Creases& creases, const ClothMesh& mesh)
 {
-    ClothElements elements = list_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
+    ClothElements elements =
+        list_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces), HingeUse::Terms, scene.materials);
     mark_creases(creases, mesh, elements);
     return compute_energies(elements, make_energy_terms(scene), mesh.world);
 }

@@ -16,7 +16,7 @@ std::vector<double> make_key(const LoosePatch& patch, double drop)
         key.push_back(patch.is_free[v]);
     }
     for (const Face& face : mesh.faces) key.insert(key.end(), face.begin(), face.end());
-    key.push_back(patch.creases.width);
+    key.insert(key.end(), patch.creases.widths.begin(), patch.creases.widths.end());
     for (const auto& edge : patch.creases.edges) key.insert(key.end(), edge.begin(), edge.end());
     return key;
 }

@@ -83,7 +83,8 @@ bool prepare_elements(const Scene& scene, const State& state, MeshCache& cache)
         cache.material_of_elements = state.mesh.material;
         return false;
     }
-    cache.elements = make_elements(state.mesh, cache.stars.topology, find_hinge_use(scene, cache.terms));
+    cache.elements =
+        make_elements(state.mesh, cache.stars.topology, find_hinge_use(scene, cache.terms), scene.materials);
     cache.system.make_pattern(cache.elements, state.coupled);
     cache.faces_of_elements = state.mesh.faces;
     cache.material_of_elements = state.mesh.material;
@@ -340,7 +341,7 @@ const std::vector<Vec2>& find_stretches(const State& state, MeshCache& cache)
 bool update_mesh_cache(const Scene& scene, const State& state, MeshCache& cache)
 {
     if (cache.terms.faces.empty())
-        cache.terms = make_terms(scene.material, scene.gravity, scene.wind, scene.pulls);
+        cache.terms = make_terms(scene.materials, scene.gravity, scene.wind, scene.pulls);
     const bool has_new_elements = prepare_elements(scene, state, cache);
     place_for_elimination(scene, state, cache);
     if (scene.self_contact && cache.self_surface.faces != state.mesh.faces)

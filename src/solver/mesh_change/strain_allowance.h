@@ -41,18 +41,18 @@ inline constexpr double kMostStrain = 0.5;
 /// again, and has limits for each patch: this one would stop it.
 inline constexpr double kMostClothStrain = 0.01;
 
-/// Elastic energy, J, that is invisible on cloth of `area` (material, m^2): that of a strain of 1e-6.
-/// Unstrained cloth at rest has only round-off.
-inline double unseen_energy(const Scene& scene, double area)
+/// Elastic energy, J, that is invisible on cloth with this stiffness, N: Young's modulus times area. It is
+/// that of a strain of 1e-6. Unstrained cloth at rest has only round-off.
+inline double unseen_energy(double stiffness)
 {
     constexpr double kStrain = 1e-6;
-    return scene.material.youngs_modulus * area * kStrain * kStrain;
+    return stiffness * kStrain * kStrain;
 }
 
-/// Work of gravity, J, on cloth of `area` (material, m^2) that falls by `length` (m).
-inline double weight_over(const Scene& scene, double area, double length)
+/// Work of gravity, J, on cloth of this mass, kg, that falls by `length` (m).
+inline double weight_over(const Scene& scene, double mass, double length)
 {
-    return scene.gravity ? scene.material.density * area * scene.gravity->acceleration.norm() * length : 0.0;
+    return scene.gravity ? mass * scene.gravity->acceleration.norm() * length : 0.0;
 }
 
 }  // namespace arris

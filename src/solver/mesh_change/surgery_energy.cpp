@@ -15,21 +15,22 @@ bool has_tag(const ClothSurgery& surgery, VertexId a, VertexId b)
 /// A few faces, with the hinges between them and to the mesh around.
 class PatchElements {
   public:
-    PatchElements(const ClothSurgery& surgery, const SurgeryEvent& event, const std::vector<PatchFace>& faces)
-        : surgery_(surgery), event_(event)
+    PatchElements(const ClothSurgery& surgery, const SurgeryEvent& event, const std::vector<PatchFace>& faces,
+                  const Materials& materials)
+        : surgery_(surgery), event_(event), materials_(materials)
     {
         for (const PatchFace& face : faces) {
             Face made;
             for (int k = 0; k < 3; ++k) made[k] = add(face.vertices[k], face.material[k], face.world[k]);
-            elements_.faces.push_back(make_face_element(material_, made));
+            elements_.faces.push_back(make_element(made));
         }
     }
 
-    void add_hinges(double crease_width)
+    void add_hinges(const std::vector<double>& crease_widths)
     {
         const int count = static_cast<int>(elements_.faces.size());
         for (int f = 0; f < count; ++f)
-            for (int k = 0; k < 3; ++k) add_hinge(f, k, crease_width);
+            for (int k = 0; k < 3; ++k) add_hinge(f, k, crease_widths[elements_.faces[f].piece]);
     }
 
     Energies energies(const Terms& terms) const { return compute_energies(elements_, terms, world_); }
@@ -45,6 +46,11 @@ class PatchElements {
         return static_cast<int>(ids_.size()) - 1;
     }
 
+    FaceElement make_element(const Face& face) const
+    {
+        return make_face_element(material_, face, materials_.piece_at(material_[face[0]]));
+    }
+
     /// Adds the hinge across edge k of face f; an edge between two of the faces once only.
     void add_hinge(int f, int k, double crease_width)
     {
@@ -57,6 +63,7 @@ class PatchElements {
         HingeElement hinge{{a, b, c, d}, {f, inner >= 0 ? inner : add_rim({b, a, d})}};
         const bool is_crease = crease_width > 0.0 && is_on_trace(surgery_, event_, ids_[a], ids_[b]);
         hinge.crease_width = is_crease ? crease_width : 0.0;
+        hinge.piece = elements_.faces[f].piece;
         const double area_d = 0.5 * twice_area(material_[b], material_[a], material_[d]);
         hinge.weight = compute_hinge_weight(material_, hinge, elements_.faces[f].area, area_d);
         elements_.hinges.push_back(hinge);
@@ -86,7 +93,7 @@ class PatchElements {
             return std::is_permutation(face.begin(), face.end(), listed.vertices.begin());
         });
         const auto index = elements_.faces.size() + static_cast<std::size_t>(found - elements_.rim.begin());
-        if (found == elements_.rim.end()) elements_.rim.push_back(make_face_element(material_, face));
+        if (found == elements_.rim.end()) elements_.rim.push_back(make_element(face));
         return static_cast<int>(index);
     }
 
@@ -99,6 +106,7 @@ class PatchElements {
 
     const ClothSurgery& surgery_;
     const SurgeryEvent& event_;
+    const Materials& materials_;
     std::vector<VertexId> ids_;  // about twelve
     std::vector<Vec2> material_;
     std::vector<Vec3> world_;
@@ -121,10 +129,11 @@ bool is_on_trace(const ClothSurgery& surgery, const SurgeryEvent& event, VertexI
 }
 
 Energies find_energies(const ClothSurgery& surgery, const SurgeryEvent& event,
-                       const std::vector<PatchFace>& faces, const Terms& terms, double crease_width)
+                       const std::vector<PatchFace>& faces, const Terms& terms,
+                       const std::vector<double>& crease_widths)
 {
-    PatchElements patch(surgery, event, faces);
-    if (!terms.hinges.empty()) patch.add_hinges(crease_width);
+    PatchElements patch(surgery, event, faces, terms.materials);
+    if (!terms.hinges.empty()) patch.add_hinges(crease_widths);
     return patch.energies(terms);
 }
 

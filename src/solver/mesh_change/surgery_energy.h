@@ -13,8 +13,9 @@ namespace arris {
 bool is_on_trace(const ClothSurgery& surgery, const SurgeryEvent& event, VertexId a, VertexId b);
 
 /// Energies, J, of `event.before` or `event.after` and of the hinges at their edges, including hinges with
-/// unchanged faces: the energies that the step will find, with creases of `crease_width` (m).
+/// unchanged faces: the energies that the step will find, with creases of these widths (m, of each piece).
 Energies find_energies(const ClothSurgery& surgery, const SurgeryEvent& event,
-                       const std::vector<PatchFace>& faces, const Terms& terms, double crease_width);
+                       const std::vector<PatchFace>& faces, const Terms& terms,
+                       const std::vector<double>& crease_widths);
 
 }  // namespace arris

@@ -8,6 +8,24 @@
 
 namespace arris {
 
+double Friction::with_obstacle(int obstacle, int piece) const
+{
+    const auto o = static_cast<std::size_t>(obstacle);
+    if (o < of_obstacles.size() && of_obstacles[o]) return *of_obstacles[o];
+    return of_pieces[static_cast<std::size_t>(piece)];
+}
+
+double Friction::between(int piece, int other) const
+{
+    return between_layers.value_or(
+        0.5 * (of_pieces[static_cast<std::size_t>(piece)] + of_pieces[static_cast<std::size_t>(other)]));
+}
+
+int piece_of(const Scene& scene, const ClothMesh& mesh, int vertex)
+{
+    return scene.materials.piece_at(mesh.material[vertex]);
+}
+
 bool has_features(const Scene& scene)
 {
     return std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const MovingObstacle& obstacle) {

@@ -8,10 +8,11 @@
 
 #include "geometry/cloth/material_box.h"
 #include "geometry/cloth/mesh_target.h"
+#include "geometry/cloth/piece_place.h"
 #include "geometry/obstacle/moving_obstacle.h"
 #include "geometry/rigid_motion.h"
 #include "physics/elements/effects.h"
-#include "physics/elements/material.h"
+#include "physics/elements/materials.h"
 #include "solver/model/remeshing.h"
 
 namespace arris {
@@ -33,15 +34,15 @@ struct Pin {
 /// Stands for an obstacle's index where the cloth meets itself.
 inline constexpr int kClothItself = -1;
 
-/// Coulomb friction between cloth and obstacles, and between layers of cloth.
+/// Coulomb friction between cloth and obstacles, and between layers of cloth. Coefficients are >= 0.
 struct Friction {
-    std::vector<double> coefficients;  ///< one per obstacle, >= 0
-    double between_layers = 0.0;       ///< with self-contact
+    std::vector<double> of_pieces;  ///< one a piece of cloth
+    std::vector<std::optional<double>>
+        of_obstacles;                      ///< by obstacle, in place of the piece's; may be shorter
+    std::optional<double> between_layers;  ///< in place of the mean of both pieces'
 
-    double coefficient(int obstacle) const  ///< index of an obstacle, or kClothItself
-    {
-        return obstacle == kClothItself ? between_layers : coefficients[static_cast<std::size_t>(obstacle)];
-    }
+    double with_obstacle(int obstacle, int piece) const;
+    double between(int piece, int other) const;
 };
 
 /// Contact of the cloth with itself.
@@ -51,7 +52,8 @@ struct ClothContact {
 
 /// The simulated scene, const while stepping. An absent effect costs nothing.
 struct Scene {
-    Material material;
+    Materials materials;                    ///< of the pieces of cloth
+    std::vector<PiecePlace> pieces = {{}};  ///< the same pieces, for messages
     std::optional<Gravity> gravity;
     std::optional<Wind> wind;
     std::vector<Pull> pulls;
@@ -62,6 +64,9 @@ struct Scene {
     std::optional<MeshTarget> eol;  ///< target of the mesh near features; no EOL vertices without it
     std::optional<Remeshing> remesh;
 };
+
+/// Piece of cloth at a vertex of the mesh.
+int piece_of(const Scene& scene, const ClothMesh& mesh, int vertex);
 
 /// Whether any obstacle has a sharp edge, corner, wire or point.
 bool has_features(const Scene& scene);

@@ -121,8 +121,8 @@ std::vector<Measures> spread(const MaterialGrid& grid, const ClothMesh& mesh,
     return nodes;
 }
 
-/// Edge length, m, that the sums over a box ask for. `present`: the edge length now.
-double find_length(const Scene& scene, const Measures& sum, double present)
+/// Edge length, m, that the sums over a box around X ask for. `present`: the edge length now.
+double find_length(const Scene& scene, const Vec2& X, const Measures& sum, double present)
 {
     const Remeshing& remesh = *scene.remesh;
     double length = remesh.longest;
@@ -135,7 +135,7 @@ double find_length(const Scene& scene, const Measures& sum, double present)
         length = remesh.velocity / gradient;
     if (const double strain = mean[kCompression]; strain > remesh.compression) {
         // A quarter of the wave length at which cloth under this strain buckles: 2 pi sqrt(D / (E strain)).
-        const Material& material = scene.material;
+        const Material& material = scene.materials.at(X);
         const double quarter =
             0.5 * M_PI * std::sqrt(plate_rigidity(material) / (material.youngs_modulus * strain));
         length = std::min(length, std::max(quarter, 0.5 * present));
@@ -246,7 +246,8 @@ std::vector<float> find_wanted_lengths(const Scene& scene, const State& state, c
             const double cell = state.sizing_field[k];
             const int reach = static_cast<int>(std::lround(cell / grid.spacing));
             const Measures sum = sums.over({i - reach, j - reach}, {i + reach, j + reach});
-            wanted[k] = static_cast<float>(kMeanEdge * find_length(scene, sum, cell / kMeanEdge));
+            wanted[k] =
+                static_cast<float>(kMeanEdge * find_length(scene, grid.node(i, j), sum, cell / kMeanEdge));
         }
     limit_slope(grid, kGradation, wanted);
     LeastLengths least(grid);

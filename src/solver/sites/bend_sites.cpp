@@ -126,7 +126,7 @@ class BendFinder {
         const double cell = target_length(scene_, state_, p.material);
         if (!((p.material - q.material).norm() < kLongEdge * cell)) return std::nullopt;
         const WireBend* worst = nullptr;
-        double most = kMissedByChord * scene_.material.thickness;
+        double most = kMissedByChord * scene_.materials.thickness();
         for (const WireBend& bend : bends)
             for (const double along : {bend.along, bend.along + length}) {
                 if (!(along > p.along && along < q.along) || bend.point == p.bend || bend.point == q.bend ||
@@ -145,7 +145,7 @@ class BendFinder {
     std::optional<FeatureSite> nearest_to(const WireBend& bend, const std::array<int, 2>& around) const
     {
         const Vec3& point = obstacle_->mesh().points[static_cast<std::size_t>(bend.point)];
-        double least = kOnFeature * scene_.material.thickness;
+        double least = kOnFeature * scene_.materials.thickness();
         std::optional<FeatureSite> site;
         for (const int f : faces_around(around)) {
             const auto& [a, b, c] = state_.mesh.faces[f];
@@ -186,7 +186,7 @@ bool locks_at_bend(const Scene& scene, const State& state, const Obstacle& obsta
                    const Vec2& material)
 {
     const double half_cell = 0.5 * target_length(scene, state, material);
-    return missed_by_chord(obstacle, bend, half_cell) > kMissedByChord * scene.material.thickness;
+    return missed_by_chord(obstacle, bend, half_cell) > kMissedByChord * scene.materials.thickness();
 }
 
 FeatureSite make_bend_site(const State& state, const ClothStars& stars, std::int32_t o,

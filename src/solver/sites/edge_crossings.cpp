@@ -27,7 +27,7 @@ EdgeCrossings::EdgeCrossings(const Scene& scene, const State& state, const Cloth
       moving_(scene.obstacles[obstacle]),
       obstacle_(scene.obstacles[obstacle].at(state.time)),
       o_(obstacle),
-      thickness_(scene.material.thickness),
+      thickness_(scene.materials.thickness()),
       target_(surgery_target(scene, state)),
       positions_(to_local(obstacle_.placement, state.mesh.world))
 {

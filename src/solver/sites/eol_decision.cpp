@@ -74,7 +74,7 @@ bool is_led_astray(const Scene& scene, const State& state, const EolVertex& eol,
 {
     constexpr double kAlongFace = 0.15;  // sine
     if (eol.on.is_corner() ||
-        !has_left_feature(place - way_off(at.frame, place), place, scene.material.thickness) ||
+        !has_left_feature(place - way_off(at.frame, place), place, scene.materials.thickness()) ||
         !(state.material_velocity[at.vertex].norm() > 0.5 * kFreeFlow))
         return false;
     const ObstaclePose obstacle = scene.obstacles[eol.on.obstacle].at(state.time);
@@ -93,7 +93,7 @@ bool is_on_feature(const Scene& scene, const State& state, const EolVertex& eol,
     const int end = eol.on.is_corner() ? -1 : end_passed(obstacle, eol.on.index, place);
     const Vec2& X = state.mesh.material[state.index_of(eol.vertex_id)];
     return end < 0 || length_past_end(obstacle, eol.on.index, place) <
-                          reach_past_end(obstacle, eol.on.index, end, scene.material.thickness,
+                          reach_past_end(obstacle, eol.on.index, end, scene.materials.thickness(),
                                          target_length(scene, state, X));
 }
 
@@ -205,7 +205,7 @@ bool EolAdmission::is_beside_other(const FeatureSite& site) const
             return false;
         const Vec3 there = place_on_feature(obstacle, e.on.index, trace_.placed(e).place).point;
         const Vec3 here = place_on_feature(obstacle, site.on.index, there).point;
-        return (there - here).norm() < scene_.material.thickness;
+        return (there - here).norm() < scene_.materials.thickness();
     });
 }
 
@@ -216,7 +216,7 @@ bool EolAdmission::has_left(const EolVertex& eol) const
     if (!is_on_convex_edge(obstacle, eol)) return false;
     const Vec3 place = trace_.placed(eol).place;
     return has_left_feature(place_on_feature(obstacle, eol.on.index, place).point, place,
-                            scene_.material.thickness);
+                            scene_.materials.thickness());
 }
 
 /// World position of a site on an edge of the cloth; of its vertex where the site has no edge.
@@ -289,15 +289,15 @@ bool EolAdmission::is_in_plane(const EolVertex& eol) const
     if (eol.on.is_corner()) return true;
     const FeatureEdge& edge = obstacle->features().edges[eol.on.index];
     const Vec3 off = way_across(obstacle, eol.on.index, place);
-    if (edge.kind != FeatureKind::Convex) return off.norm() <= kOnFeature * scene_.material.thickness;
+    if (edge.kind != FeatureKind::Convex) return off.norm() <= kOnFeature * scene_.materials.thickness();
     if (has_left(eol))  // a free fold may be anywhere beyond both faces
         return std::all_of(edge.normals.begin(), edge.normals.end(), [&](const Vec3& normal) {
-            return normal.dot(off) >= -kOffPlane * scene_.material.thickness;
+            return normal.dot(off) >= -kOffPlane * scene_.materials.thickness();
         });
     const std::optional<FeatureFrame> frame =
         find_edge_frame(obstacle, eol.on.index, place, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
     const Vec3 across = frame->tangent.cross(frame->outward);
-    return std::abs(across.dot(place - frame->point)) <= kOffPlane * scene_.material.thickness;
+    return std::abs(across.dot(place - frame->point)) <= kOffPlane * scene_.materials.thickness();
 }
 
 bool EolAdmission::is_on_side(const EolVertex& eol) const
@@ -331,7 +331,7 @@ EolRetention decide_retention(const Scene& scene, const State& state, const Clot
     if (gap > cells * shortest_cell(scene) &&
         gap > cells * target_length(scene, state, state.mesh.material[at.vertex]))
         return EolRetention::None;
-    const bool has_left = gap > kOnFeature * scene.material.thickness;
+    const bool has_left = gap > kOnFeature * scene.materials.thickness();
     if (has_left && is_corner_under_face(scene, state, eol)) return EolRetention::None;
     if (is_folded(state, stars.faces[at.vertex])) return EolRetention::Firm;
     return has_left ? EolRetention::None : EolRetention::Loose;
@@ -366,7 +366,7 @@ void retain_between(const Scene& scene, const State& state, const ClothStars& st
 
 std::vector<EolRelease> find_releases(const Scene& scene, const State& state, const ClothStars& stars)
 {
-    EolPlacer placer(scene.obstacles, scene.material.thickness, state, stars);
+    EolPlacer placer(scene.obstacles, scene.materials.thickness(), state, stars);
     std::vector<EolRetention> retained(state.eol.size(), EolRetention::None);
     std::vector<ConstraintCause> causes(state.eol.size(), ConstraintCause::Released);
     for (int entry = 0; entry < static_cast<int>(state.eol.size()); ++entry) {

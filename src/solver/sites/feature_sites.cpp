@@ -31,7 +31,7 @@ class SiteFinder {
           stars_(stars),
           obstacle_(scene.obstacles[o].at(state.time)),
           o_(o),
-          thickness_(scene.material.thickness),
+          thickness_(scene.materials.thickness()),
           crossings_(scene, state, stars, o)
     {
     }

@@ -47,7 +47,7 @@ double force_on(const State& state, int v)
 /// Growth rate, 1/s, of the pleat that grows fastest; negative where none pays. `strain`: compression.
 double find_growth_rate(const Scene& scene, const State& state, const ClothStars& stars, int v, double strain)
 {
-    const Material& material = scene.material;
+    const Material& material = scene.materials.at(state.mesh.material[v]);
     const double e = std::max(strain, kComputed), area = area_at(state, stars, v);
     const double weight = scene.gravity ? material.density * area * scene.gravity->acceleration.norm() : 0.0;
     const double force = std::max(force_on(state, v), weight);

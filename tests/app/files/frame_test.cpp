@@ -41,6 +41,12 @@ void expect_same_bits(const Frame& a, const Frame& b)
     EXPECT_EQ(bits(a.stretch_energy), bits(b.stretch_energy));
     EXPECT_EQ(bits(a.bending_energy), bits(b.bending_energy));
     EXPECT_EQ(a.eol_edges, b.eol_edges);
+    ASSERT_EQ(a.pieces.size(), b.pieces.size());
+    for (std::size_t p = 0; p < a.pieces.size(); ++p) {
+        EXPECT_EQ(a.pieces[p].name, b.pieces[p].name);
+        EXPECT_EQ(a.pieces[p].shift, b.pieces[p].shift);
+        EXPECT_EQ(a.pieces[p].begin, b.pieces[p].begin);
+    }
 }
 
 /// The error that reading these bytes as a frame gives; empty if none.
@@ -95,6 +101,39 @@ TEST(Frame, ReadsBackBitForBit)
     write_frame(dir / "a.ply", make_example_frame());
     expect_same_bits(read_frame(dir / "a.ply"), make_example_frame());
     EXPECT_EQ(dir.entry_count(), 1U);
+}
+
+/// Two triangles that are a piece each, of which the second one is where u is above 0.5.
+Frame make_two_pieces()
+{
+    Frame frame = make_example_frame();
+    frame.material = {{0, 0}, {0.25, 0}, {1, 0.5}, {2, 0.125}};
+    frame.faces = {{0, 1, 2}, {2, 1, 3}};
+    frame.faces[1] = {2, 3, 1};
+    frame.pieces = {{"front"}, {"back", 0.1, 0.5}};
+    return frame;
+}
+
+TEST(Frame, ReadsBackItsPieces)
+{
+    const TemporaryDirectory dir;
+    write_frame(dir / "a.ply", make_two_pieces());
+    const std::string bytes = read_bytes(dir / "a.ply");
+    EXPECT_THAT(bytes,
+                HasSubstr("comment piece front 0 -inf\ncomment piece back 0.1 0.5\nelement vertex 4\n"));
+    EXPECT_THAT(bytes, HasSubstr("property double bending_energy\nproperty int piece\nelement edge"));
+    const Frame read = read_frame(dir / "a.ply");
+    expect_same_bits(read, make_two_pieces());
+    EXPECT_EQ(read.piece_of(read.faces[0]), 0);
+    EXPECT_EQ(read.piece_of(read.faces[1]), 1);
+    EXPECT_EQ(read.faces_of(1), std::vector<int>{1});
+    EXPECT_EQ(read.own_material(), (std::vector<Vec2>{{0, 0}, {0.25, 0}, {0.9, 0.5}, {1.9, 0.125}}));
+    for (const char* wrong :
+         {"comment piece front 0 -in7", "comment piece front 7 8    ", "comment pie   front 0 -inf"})
+        EXPECT_NE(error_of(replaced(bytes, "comment piece front 0 -inf", wrong)), "") << wrong;
+    EXPECT_NE(error_of(replaced(bytes, "back 0.1 0.5", "back nan 0.5")), "");
+    EXPECT_NE(error_of(replaced(bytes, "back 0.1 0.5", "back 0.1 5.5")), "") << "no face is there";
+    for (std::size_t n = 0; n < bytes.size(); n += 7) EXPECT_NE(error_of(bytes.substr(0, n)), "") << n;
 }
 
 TEST(Frame, ReadsBackWhenEmpty)

@@ -211,7 +211,7 @@ TEST(RunEnding, SaysWhereFrictionLocksClothInACrease)
     for (const StepStatus status : {StepStatus::Infeasible, StepStatus::Penetration}) {
         scene.friction.reset();
         EXPECT_THAT(message_of(status, 40.0), Not(HasSubstr("friction")));
-        scene.friction = Friction{{0.9, 0.6}};
+        scene.friction = Friction{{0.3}, {0.9, 0.6}, {}};
         EXPECT_THAT(
             message_of(status, 40.0),
             HasSubstr("; friction locks it there: with a coefficient of 0.6 cloth does not slip out of a "

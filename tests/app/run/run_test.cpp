@@ -233,6 +233,48 @@ TEST_F(Run, RemeshedItIsTheSameRunResumedAndOnAnyNumberOfThreads)
               read_csv(dir + "/steps.csv").column("remesh_energy"));
 }
 
+TEST_F(Run, WithSeveralPiecesItIsTheSameRunResumedAndOnAnyNumberOfThreads)
+{
+    write_bytes(scene, R"(
+duration = 0.3
+[[cloth]]
+name = "below"
+size = [0.4, 0.4]
+resolution = [8, 8]
+translate = [-0.2, -0.2, 0.02]
+[[cloth]]
+name = "above"
+size = [0.3, 0.3]
+resolution = [5, 5]
+translate = [-0.15, -0.1, 0.05]
+material = { preset = "denim", friction = 0.6 }
+[gravity]
+[friction]
+[self_contact]
+[[pin]]
+piece = "above"
+material = [[0.0, 0.0], [0.0, 0.0]]
+release = 0.2
+[[obstacle]]
+box = [0.25, 0.25, 0.1]
+translate = [0.0, 0.0, -0.05]
+[output]
+formats = ["obj", "usd", "vtk", "gltf"]
+)");
+    const std::string through = run_through("through", {"--threads", "1"});
+    expect_same_run(through, run_through("two", {"--threads", "2"}));
+    const std::string dir = run_through("parts", {"--set", "duration=0.25"});
+    Program resumed(folder, {"resume", dir, "--until", "0.3"});
+    EXPECT_EQ(resumed.wait(), 0) << resumed.err();
+    for (const char* file : {"frames/cloth_00003.ply", "frames/cloth_00007.ply"})
+        EXPECT_TRUE(read_bytes(through + "/" + file) == read_bytes(dir + "/" + file)) << file;
+    const std::string obj = read_bytes(through + "/frames/cloth_00000.obj");
+    EXPECT_NE(obj.find("\ng below\nf "), std::string::npos);
+    EXPECT_NE(obj.find("\ng above\nf "), std::string::npos);
+    const std::string usd = read_bytes(through + "/cloth.usda");
+    EXPECT_NE(usd.find("def GeomSubset \"above\""), std::string::npos);
+}
+
 TEST_F(Run, AStepThatCtrlCCutsOffCountsInTheSeconds)
 {
     const std::string dir = folder / "stopped";

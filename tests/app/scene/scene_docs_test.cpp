@@ -50,6 +50,7 @@ nlohmann::json schema_of(std::string_view name)
         const bool is_list = part.ends_with("[]");
         if (is_list) part.resize(part.size() - 2);
         schema = schema.at("properties").at(part);
+        if (schema.contains("oneOf")) schema = schema.at("oneOf").at(0);  // a table, or an array of them
         if (is_list) schema = schema.at("items");
         name.remove_prefix(std::min(end + 1, name.size()));
     }
@@ -72,6 +73,10 @@ TEST(SceneSchema, StatesTypesRangesAndDefaults)
               nlohmann::json::array({"obj", "usd", "viewer", "vtk", "pc2", "mdd", "gltf"}));
     EXPECT_EQ(schema_of("eol.enabled")["type"], "boolean");
     EXPECT_EQ(schema_of("cloth")["additionalProperties"], false);
+    const nlohmann::json schema = nlohmann::json::parse(scene_schema());
+    const nlohmann::json pieces = schema["properties"]["cloth"]["oneOf"][1];
+    EXPECT_EQ(pieces["items"], schema_of("cloth"));
+    EXPECT_EQ(pieces["minItems"], 1);
     EXPECT_EQ(schema_of("")["required"], nlohmann::json::array({"duration", "cloth"}));
 }
 

@@ -113,7 +113,8 @@ const std::vector<WrongScene> kWrongScenes = {
      {},
      "s.toml:5: motion: unknown key, did you mean [obstacle.motion], below its [[obstacle]]?; allowed: "
      "title, "
-     "duration, time, cloth, pin, gravity, wind, pull, friction, self_contact, eol, remesh, obstacle, probe, "
+     "duration, time, cloth, fabric, pin, gravity, wind, pull, friction, self_contact, eol, remesh, "
+     "obstacle, probe, "
      "solver, "
      "output"},
     {"RadiusOfANail",
@@ -129,7 +130,8 @@ const std::vector<WrongScene> kWrongScenes = {
      "scene = \"strip.toml\"\n" + kBase,
      {},
      "s.toml:1: scene = \"strip.toml\": unknown key: a file with it is a study, which `arris study` runs; "
-     "allowed: title, duration, time, cloth, pin, gravity, wind, pull, friction, self_contact, eol, remesh, "
+     "allowed: title, duration, time, cloth, fabric, pin, gravity, wind, pull, friction, self_contact, eol, "
+     "remesh, "
      "obstacle, probe, solver, output"},
     {"DuplicateKey", "duration = 1\nduration = 2\n", {}, "s.toml:2: is not TOML: "},
     {"UnclosedHeader", "[cloth\n", {}, "s.toml:1: is not TOML: "},
@@ -148,23 +150,26 @@ const std::vector<WrongScene> kWrongScenes = {
      "durration = 1\n" + kCloth,
      {},
      "s.toml:1: durration = 1: unknown key, did you mean duration?; allowed: title, duration, time, cloth, "
-     "pin, gravity, wind, pull, friction, self_contact, eol, remesh, obstacle, probe, solver, output"},
+     "fabric, pin, gravity, wind, pull, friction, self_contact, eol, remesh, obstacle, probe, solver, "
+     "output"},
     {"UnknownTable",
      kBase + "[gravitation]\n",
      {},
-     "s.toml:5: gravitation: unknown key; allowed: title, duration, time, cloth, pin, gravity, wind, pull, "
+     "s.toml:5: gravitation: unknown key; allowed: title, duration, time, cloth, fabric, pin, gravity, wind, "
+     "pull, "
      "friction, self_contact, eol, remesh, obstacle, probe, solver, output"},
     {"UnknownKeyOfTable",
      kBase + "[cloth.material]\nbending_stifness = 1\n",
      {},
      "s.toml:6: cloth.material.bending_stifness = 1: unknown key, did you mean bending_stiffness?; allowed: "
      "preset, density, youngs_modulus, poisson_ratio, bending_stiffness, bending_model, damping, thickness, "
-     "compression_modulus"},
+     "compression_modulus, friction"},
     {"KeyOfAnotherTable",
      kBase + "step = 0.01\n",
      {},
-     "s.toml:5: cloth.step = 0.01: unknown key, did you mean time.step?; allowed: size, resolution, pattern, "
-     "pattern_angle, outline, holes, edge_length, folds, file, units, up, uv_scale, translate, rotate, "
+     "s.toml:5: cloth.step = 0.01: unknown key, did you mean time.step?; allowed: name, fabric, size, "
+     "resolution, pattern, pattern_angle, outline, holes, edge_length, folds, file, units, up, uv_scale, "
+     "translate, rotate, "
      "scale, velocity, material"},
     {"UnknownFarFromAll",
      kBase + "[solver]\nzzzzzzzz = 1\n",
@@ -173,8 +178,8 @@ const std::vector<WrongScene> kWrongScenes = {
     {"UnknownKeyWithControlCharacter",
      kBase + "\"a\\nb\" = 1\n",
      {},
-     "s.toml:5: cloth.a\\nb = 1: unknown key; allowed: size, resolution, pattern, pattern_angle, outline, "
-     "holes, edge_length, folds, "
+     "s.toml:5: cloth.a\\nb = 1: unknown key; allowed: name, fabric, size, resolution, pattern, "
+     "pattern_angle, outline, holes, edge_length, folds, "
      "file, units, up, uv_scale, translate, rotate, scale, velocity, material"},
     {"UnknownInInlineTable",
      kBase + "rotate = { axis = [0, 0, 1], degree = 10 }\n",
@@ -184,7 +189,7 @@ const std::vector<WrongScene> kWrongScenes = {
      kBase + "[[probe]]\nname = \"a\"\nmaterial = [0, 0]\n[[probe]]\nname = \"b\"\nmaterial = [0, 0]\ncolour "
              "= 1\n",
      {},
-     "s.toml:11: probe.1.colour = 1: unknown key; allowed: name, material"},
+     "s.toml:11: probe.1.colour = 1: unknown key; allowed: name, material, piece"},
     {"TextForNumber",
      "duration = \"1\"\n" + kCloth,
      {},

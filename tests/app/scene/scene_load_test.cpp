@@ -114,9 +114,9 @@ TEST(SceneLoad, TakesEveryKeyToItsPlace)
     EXPECT_EQ(config.settings.step, 0.01);
     EXPECT_EQ(config.settings.integrator, Integrator::ImplicitEuler);
     EXPECT_EQ(config.settings.tolerance, 1e-8);
-    EXPECT_EQ(config.cloth_velocity, Vec3(0.1, 0.2, 0.3));
+    EXPECT_EQ(config.cloth_velocity, std::vector<Vec3>(config.cloth.world.size(), Vec3(0.1, 0.2, 0.3)));
 
-    const Material& material = config.scene.material;
+    const Material& material = config.scene.materials[0];
     EXPECT_EQ(material.density, 0.16);
     EXPECT_EQ(material.youngs_modulus, 600.0);
     EXPECT_EQ(material.poisson_ratio, 0.2);
@@ -230,9 +230,9 @@ TEST(SceneLoad, SimulatesWhatAsRunSays)
     EXPECT_EQ(config.settings.step, 0.005);
     EXPECT_EQ(config.settings.tolerance, 1e-9);
     EXPECT_EQ(config.settings.integrator, Integrator::Bdf2);
-    EXPECT_EQ(config.scene.material.density, 0.15);
-    EXPECT_EQ(config.scene.material.youngs_modulus, 500.0);
-    EXPECT_EQ(config.scene.material.thickness, 1e-3);
+    EXPECT_EQ(config.scene.materials[0].density, 0.15);
+    EXPECT_EQ(config.scene.materials[0].youngs_modulus, 500.0);
+    EXPECT_EQ(config.scene.materials.thickness(), 1e-3);
     EXPECT_EQ(config.scene.gravity->acceleration, Vec3(0.0, 0.0, -9.81));
     EXPECT_EQ(config.output.frames_per_second, 24.0);
     EXPECT_EQ(config.cloth.vertex_count(), 13);
@@ -274,10 +274,10 @@ TEST(SceneLoad, OverridesThePresetKeyByKey)
 {
     const RunConfig config = load(kBase + "[cloth.material]\npreset = \"denim\"\ndensity = 0.3\n");
     const Material denim = find_material_preset("denim").value();
-    EXPECT_EQ(config.scene.material.density, 0.3);
-    EXPECT_EQ(config.scene.material.youngs_modulus, denim.youngs_modulus);
-    EXPECT_EQ(config.scene.material.bending_stiffness, denim.bending_stiffness);
-    EXPECT_EQ(config.scene.material.bending_model, BendingModel::Hinge);
+    EXPECT_EQ(config.scene.materials[0].density, 0.3);
+    EXPECT_EQ(config.scene.materials[0].youngs_modulus, denim.youngs_modulus);
+    EXPECT_EQ(config.scene.materials[0].bending_stiffness, denim.bending_stiffness);
+    EXPECT_EQ(config.scene.materials[0].bending_model, BendingModel::Hinge);
     EXPECT_EQ(config.as_run["cloth"]["material"]["youngs_modulus"], denim.youngs_modulus);
 }
 

@@ -66,7 +66,7 @@ TEST(EulerianElement, InertiaIsTheReportsElementMatrixReduced)
                         density * element.area / 12.0 * (i == j ? 2.0 : 1.0) * block;
         }
         const Eigen::MatrixXd P = reduction(at);
-        const Assembled system = assemble(mesh, only(std::make_unique<Inertia>(density)), at);
+        const Assembled system = assemble(mesh, only(std::make_unique<Inertia>(Material{density})), at);
         const Eigen::MatrixXd reduced = P.transpose() * M * P;
         EXPECT_LT((system.matrix - reduced).norm(), kRoundOff * reduced.norm());
 
@@ -128,7 +128,7 @@ TEST(EulerianElement, LoadsAndViscosityActOnTheMaterialWhereItIsExtrapolatedTo)
     wind.velocity = Vec3(3.0, 1.0, -4.0);
     std::vector<std::unique_ptr<const FaceTerm>> loads;
     loads.push_back(std::make_unique<WindForce>(wind));
-    loads.push_back(std::make_unique<GravityForce>(0.15, Gravity{}));
+    loads.push_back(std::make_unique<GravityForce>(Material{0.15}, Gravity{}));
     loads.push_back(std::make_unique<Drag>());
     for (auto& term : loads) {
         // Only Lagrangian faces are evaluated at q^; here every face has an EOL corner.
@@ -146,15 +146,16 @@ TEST(EulerianElement, ElasticStiffnessIsThatOfTheCornersAtTheExpansionPoint)
 {
     const ClothMesh mesh = crumpled_sheet({4, 3}, GridPattern::Diagonal, 5);
     const Linearization at = random_linearization(mesh, 6);
-    const Assembled expected = sum_by_corners(mesh, Membrane(500.0, 0.3), at, at.position, at.flow->position);
-    const Assembled system = assemble(mesh, only(std::make_unique<Membrane>(500.0, 0.3)), at);
+    const Assembled expected =
+        sum_by_corners(mesh, Membrane(Material{0.0, 500.0, 0.3}), at, at.position, at.flow->position);
+    const Assembled system = assemble(mesh, only(std::make_unique<Membrane>(Material{0.0, 500.0, 0.3})), at);
     EXPECT_LT((system.matrix - expected.matrix).norm(), kRoundOff * expected.matrix.norm());
 
     // The right-hand side also contains the energy that flows into the faces: -gamma E^T sum V b_i.
     Eigen::VectorXd rhs = expected.rhs;
     for (const Face& face : mesh.faces) {
         const FaceElement element = make_face_element(at.flow->position, face);
-        const double V = Membrane(500.0, 0.3).energy(FaceState(element, at.position));
+        const double V = Membrane(Material{0.0, 500.0, 0.3}).energy(FaceState(element, at.position));
         for (int i = 0; i < 3; ++i)
             rhs.segment<3>(3 * face[i]) -=
                 at.gamma * V * (at.flow->basis[face[i]].transpose() * element.gradients[i]);
@@ -177,7 +178,7 @@ TEST(EulerianElement, HingeStiffnessIsThatOfTheMeanCornersAtTheExpansionPoint)
     flow.basis[2] = flow.basis[3];
     const double K = 0.1;
     Terms terms;
-    terms.hinges.push_back(std::make_unique<Bending>(K));
+    terms.hinges.push_back(std::make_unique<Bending>(std::vector<double>{K}));
     const Assembled system = assemble(mesh, terms, at);
 
     const ClothElements elements = [&] {
@@ -192,7 +193,7 @@ TEST(EulerianElement, HingeStiffnessIsThatOfTheMeanCornersAtTheExpansionPoint)
     Linearization plain = at;
     plain.flow.reset();
     HingeSystem local(plain, hinge.vertices);
-    Bending(K).add(HingeState(hinge, at.position), local);
+    Bending({K}).add(HingeState(hinge, at.position), local);
     std::array<Mat3, 4> G;
     for (int i = 0; i < 4; ++i)
         G[i] = at.basis[hinge.vertices[i]] - at_corner[i] * flow.basis[hinge.vertices[i]];
@@ -229,7 +230,7 @@ TEST(EulerianElement, IsBitIdenticalWithoutEolVerticesAndForAnyNumberOfThreads)
 {
     const ClothMesh mesh = crumpled_sheet({30, 30}, GridPattern::Alternating, 12);
     const Terms terms =
-        make_terms({0.15, 500.0, 0.3, 1e-4, 0.01, 1e-3}, Gravity{}, Wind{Vec3(1, 2, 3), 1.2, 1.0, {}},
+        make_terms(Material{0.15, 500.0, 0.3, 1e-4, 0.01, 1e-3}, Gravity{}, Wind{Vec3(1, 2, 3), 1.2, 1.0, {}},
                    {Pull{{Vec2(0, 0), Vec2(0.5, 1)}, Vec3(1, 0, 0)}});
     Linearization at = random_linearization(mesh, 13);
     const ClothElements elements = make_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));

@@ -55,7 +55,7 @@ struct FoldedStrip {
     Eigen::VectorXd force() const
     {
         Eigen::VectorXd rhs = Eigen::VectorXd::Zero(18);
-        add_momentum_flux(kDensity, elements_of(mesh), at, rhs);
+        add_momentum_flux(Material{kDensity}, elements_of(mesh), at, rhs);
         return rhs / at.gamma;
     }
 };
@@ -93,7 +93,7 @@ TEST(MomentumFlux, IsNothingWhereClothIsFlatOrNoMaterialFlows)
     Linearization none = flat.at;
     none.flow.reset();
     Eigen::VectorXd rhs = Eigen::VectorXd::Zero(18);
-    add_momentum_flux(kDensity, elements_of(flat.mesh), none, rhs);
+    add_momentum_flux(Material{kDensity}, elements_of(flat.mesh), none, rhs);
     EXPECT_EQ(rhs.norm(), 0.0);
 }
 
@@ -135,7 +135,7 @@ TEST(MomentumFlux, HasThePowerOfTheKineticEnergyThatFlowsFromOneSideToTheOther)
     }
     const ClothElements elements = elements_of(mesh);
     Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * n);
-    add_momentum_flux(kDensity, elements, at, rhs);
+    add_momentum_flux(Material{kDensity}, elements, at, rhs);
     const double power = rhs.sum() / at.gamma;
 
     double expected = 0.0, size = 0.0;
@@ -164,10 +164,11 @@ TEST(MomentumFlux, IsPartOfTheAssembledSystemWhereverThereIsInertia)
 {
     const FoldedStrip strip(0.6, 2.0);
     Terms terms;
-    terms.density = kDensity;
+    terms.materials = Material{kDensity};
     const Eigen::VectorXd with = assemble(strip.mesh, terms, strip.at).rhs;
     EXPECT_LT((with - strip.at.gamma * strip.force()).norm(), kRoundOff * with.norm());
-    EXPECT_EQ(make_terms({kDensity, 50.0, 0.3, 0.0, 0.0, 1e-3}, {}, {}, {}).density, kDensity);
+    EXPECT_EQ(make_terms(Material{kDensity, 50.0, 0.3, 0.0, 0.0, 1e-3}, {}, {}, {}).materials[0].density,
+              kDensity);
 }
 
 }  // namespace

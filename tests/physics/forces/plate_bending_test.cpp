@@ -30,7 +30,7 @@ struct Sheet {
 
     std::vector<HingeMoment> moments(const PlateMaterial& plate) const
     {
-        return find_hinge_moments(plate, elements, mesh.world, nullptr);
+        return find_hinge_moments({plate}, elements, mesh.world, nullptr);
     }
 
     double energy(const Terms& terms) const { return compute_energies(elements, terms, mesh.world).bending; }
@@ -80,7 +80,8 @@ void curve(const Mat2& H, ClothMesh& mesh)
 Terms plate_terms(double poisson_ratio)
 {
     Terms terms;
-    terms.hinges.push_back(std::make_unique<PlateBending>(kStiffness, poisson_ratio));
+    terms.hinges.push_back(
+        std::make_unique<PlateBending>(std::vector<PlateMaterial>{{kStiffness, poisson_ratio}}));
     return terms;
 }
 
@@ -104,7 +105,7 @@ std::vector<Mat2> curvatures()
 Linearization at_rest(const ClothMesh& mesh)
 {
     Linearization at = linearization_at_rest(mesh, 1);
-    at.damping = 0.0;
+    at.damping = {0.0};
     at.flow.reset();
     at.basis.assign(mesh.world.size(), Mat3::Identity());
     at.has_basis.assign(mesh.world.size(), 0);
@@ -276,7 +277,7 @@ TEST(PlateBending, ACreaseHasTheEnergyOfBendingAndTakesNoPartInThePlate)
             mesh.world[v] = Vec3(0.5 + 0.8 * far, mesh.material[v].y(), -0.6 * far);
     Sheet sheet(mesh);
     Terms hinges;
-    hinges.hinges.push_back(std::make_unique<Bending>(kStiffness));
+    hinges.hinges.push_back(std::make_unique<Bending>(std::vector<double>{kStiffness}));
     const Terms plate = plate_terms(0.3);
     EXPECT_GT(sheet.energy(plate), 0.0);
     for (HingeElement& hinge : sheet.elements.hinges)

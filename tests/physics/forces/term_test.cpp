@@ -261,15 +261,15 @@ struct Case {
 };
 
 const std::vector<Case<3>> kFaceTerms = {
-    {"membrane", std::make_shared<Membrane>(500.0, 0.3), Stiffness::Exact, true},
-    {"membrane, nu 0", std::make_shared<Membrane>(50.0, 0.0), Stiffness::Exact, true},
-    {"membrane, nu 0.49", std::make_shared<Membrane>(2e5, 0.49), Stiffness::Exact, true},
-    {"membrane, nu -0.5", std::make_shared<Membrane>(500.0, -0.5), Stiffness::Exact, true},
-    {"gravity", std::make_shared<GravityForce>(0.15, Gravity{}), Stiffness::Exact, false},
+    {"membrane", std::make_shared<Membrane>(Material{0.0, 500.0, 0.3}), Stiffness::Exact, true},
+    {"membrane, nu 0", std::make_shared<Membrane>(Material{0.0, 50.0, 0.0}), Stiffness::Exact, true},
+    {"membrane, nu 0.49", std::make_shared<Membrane>(Material{0.0, 2e5, 0.49}), Stiffness::Exact, true},
+    {"membrane, nu -0.5", std::make_shared<Membrane>(Material{0.0, 500.0, -0.5}), Stiffness::Exact, true},
+    {"gravity", std::make_shared<GravityForce>(Material{0.15}, Gravity{}), Stiffness::Exact, false},
 };
 
 const std::vector<Case<4>> kHingeTerms = {
-    {"bending", std::make_shared<Bending>(1e-2), Stiffness::GaussNewton, true},
+    {"bending", std::make_shared<Bending>(std::vector<double>{1e-2}), Stiffness::GaussNewton, true},
 };
 
 template <int N, typename Visit>
@@ -394,7 +394,7 @@ std::array<Vec2, N> material_forces(const typename Element<N>::Term& term, const
         bases[i] = &none;
         material_bases[i] = &both;
     }
-    LocalSystem<N> local(at, vertices, element.deformation);
+    LocalSystem<N> local(at, vertices, 0, element.deformation);
     term.add(element.state(), local);
     local.reduce_eulerian(bases, material_bases);
     for (int i = 0; i < N; ++i) forces[i] = local.rhs(i).template head<2>();
@@ -528,7 +528,7 @@ TEST(Bending, StiffnessIsGaussNewtonInTheSineOfHalfTheAngle)
 {
     Generator random(11);
     const double K = 0.7;
-    const Bending bending(K);
+    const Bending bending({K});
     for (const double degrees : {0.0, 1e-6, 10.0, 90.0, 150.0, 179.0, 179.999, 180.0}) {
         const HingeElement hinge = Element<4>::make(random);
         std::vector<Vec3> x = Element<4>::rest(hinge);
@@ -562,7 +562,7 @@ TEST(Bending, ACreaseForcesAreMinusTheGradientsOfItsEnergy)
 {
     constexpr double kTolerance = 1e-8;  // of central differences
     Generator random(21);
-    const Bending bending(0.7);
+    const Bending bending({0.7});
     for (const double degrees : {0.0, 1.0, 30.0, 59.0, 61.0, 90.0, 170.0}) {
         const std::vector<Vec2> X = ElementAt<4>::make_material(random);
         const ElementAt<4> crease = folded_crease(degrees, X);
@@ -591,7 +591,7 @@ TEST(Bending, ACreaseForcesAreMinusTheGradientsOfItsEnergy)
 
 TEST(Bending, ACreaseFoldedFarExertsNoForceAndAShallowOneThatOfAHingeOfItsWidth)
 {
-    const Bending bending(0.7);
+    const Bending bending({0.7});
     Generator random(22);
     const std::vector<Vec2> X = ElementAt<4>::make_material(random);
     for (const double degrees : {60.001, 90.0, 179.0}) {
@@ -611,7 +611,7 @@ TEST(Bending, ACreaseFoldedFarExertsNoForceAndAShallowOneThatOfAHingeOfItsWidth)
 TEST(Bending, AFoldOnACreaseDoesNoWorkOnMaterialThatFlowsAcrossIt)
 {
     // The energy of a crease does not depend on the widths of the faces beside it.
-    const Bending bending(0.7);
+    const Bending bending({0.7});
     Generator random(23);
     const std::vector<Vec2> X = ElementAt<4>::make_material(random);
     const ElementAt<4> crease = folded_crease(50.0, X);
@@ -636,7 +636,7 @@ TEST(Membrane, UniformStretchAnswersWithEPerWidth)
             mesh.world.emplace_back(X.x() * (1 + e), X.y() * (1 - nu * e), 0.0);
         const ClothElements elements = make_elements(mesh, make_topology(4, mesh.faces));
         Terms terms;
-        terms.faces.push_back(std::make_unique<Membrane>(E, nu));
+        terms.faces.push_back(std::make_unique<Membrane>(Material{0.0, E, nu}));
         Linearization at = make_linearization<4>(mesh.world);
         at.basis.assign(4, Mat3::Identity());
         at.has_basis.assign(4, 0);
@@ -717,7 +717,7 @@ TEST(Inertia, IsTheReportsElementMatrix)
     Generator random(1);
     const FaceElement face = Element<3>::make(random);
     const Evaluation<3> result =
-        evaluate<3>(Inertia(0.15), face, make_linearization<3>(std::vector<Vec3>(3, Vec3::Zero())));
+        evaluate<3>(Inertia(Material{0.15}), face, make_linearization<3>(std::vector<Vec3>(3, Vec3::Zero())));
     for (int i = 0; i < 9; ++i)
         for (int j = 0; j < 9; ++j) {
             const double expected = i % 3 != j % 3 ? 0.0 : 0.15 * face.area / 12.0 * (i == j ? 2.0 : 1.0);

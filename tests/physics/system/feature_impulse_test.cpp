@@ -31,7 +31,7 @@ TEST(FeatureImpulse, AlongWhatMovesNoMaterialIsTheSystemsResidual)
         if (v % 4 == 1) at.flow->basis[v].setZero();
     }
     const Terms terms =
-        make_terms({0.15, 500.0, 0.3, 1e-4, 0.01, 1e-3}, Gravity{}, Wind{Vec3(1, 2, 3), 1.2, 1.0, {}},
+        make_terms(Material{0.15, 500.0, 0.3, 1e-4, 0.01, 1e-3}, Gravity{}, Wind{Vec3(1, 2, 3), 1.2, 1.0, {}},
                    {Pull{{Vec2(0, 0), Vec2(0.5, 1)}, Vec3(1, 0, 0)}});
     const ClothElements elements = make_elements(mesh, make_topology(n, mesh.faces));
     const Assembled system = assemble(mesh, terms, at);
@@ -57,7 +57,7 @@ TEST(FeatureImpulse, IsNoneWhereNoMaterialFlows)
     const ClothMesh mesh = crumpled_sheet({3, 3}, GridPattern::Diagonal, 44);
     Linearization at = random_linearization(mesh, 45);
     at.flow.reset();
-    const Terms terms = make_terms({0.15, 500.0, 0.3, 1e-4, 0.0, 1e-3}, Gravity{}, {}, {});
+    const Terms terms = make_terms(Material{0.15, 500.0, 0.3, 1e-4, 0.0, 1e-3}, Gravity{}, {}, {});
     const ClothElements elements = make_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces));
     for (const Vec3& impulse :
          compute_feature_impulses(mesh, elements, terms, at, some_velocity(mesh.vertex_count())))

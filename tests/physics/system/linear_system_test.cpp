@@ -40,7 +40,7 @@ Sheet make_sheet(std::array<int, 2> resolution, GridPattern pattern)
                              {Pull{{Vec2(0, 0), Vec2(0.5, 1)}, Vec3(1, 0, 0)}});
     Linearization& at = sheet.at;
     at.time = at.gamma = 0.005;
-    at.damping = 0.01;
+    at.damping = {0.01};
     at.position = sheet.mesh.world;
     at.v_last.resize(n);
     for (Vec3& v : at.v_last) v = Vec3(noise(random), noise(random), noise(random));
@@ -215,8 +215,8 @@ TEST(KineticEnergy, OfARigidTranslationIsHalfMassSpeedSquared)
 {
     const Sheet sheet = make_sheet({6, 6}, GridPattern::Cross);
     const std::vector<Vec3> velocity(sheet.mesh.world.size(), Vec3(1.0, -2.0, 2.0));
-    EXPECT_NEAR(kinetic_energy(0.15, sheet.elements, velocity), 0.5 * 0.15 * 9.0, 1e-14);
-    EXPECT_LT((linear_momentum(0.15, sheet.elements, velocity) - 0.15 * velocity[0]).norm(), 1e-14);
+    EXPECT_NEAR(kinetic_energy(Material{0.15}, sheet.elements, velocity), 0.5 * 0.15 * 9.0, 1e-14);
+    EXPECT_LT((linear_momentum(Material{0.15}, sheet.elements, velocity) - 0.15 * velocity[0]).norm(), 1e-14);
 }
 
 }  // namespace

@@ -99,7 +99,8 @@ double energy_gain(const VelocityField& old, const FitPatch& patch, const Veloci
         const auto corner = [&](int v) { return Vec3(fit.velocity[v] - F * fit.material_velocity[v]); };
         fitted.velocity.push_back({corner(a), corner(b), corner(c)});
     }
-    return compute_kinetic_energy(kDensity, fitted) - compute_kinetic_energy(kDensity, old);
+    return compute_kinetic_energy(Material{kDensity}, fitted) -
+           compute_kinetic_energy(Material{kDensity}, old);
 }
 
 TEST(VelocityFit, ChangesNothingWhereTheMeshIsTheSame)
@@ -107,7 +108,7 @@ TEST(VelocityFit, ChangesNothingWhereTheMeshIsTheSame)
     Random random;
     const FitPatch patch = make_patch(3, false);
     const std::vector<Vec3> velocity = random_velocities(patch.material.size(), random);
-    const auto fit = fit_velocity(kDensity, field_of(patch, velocity), patch);
+    const auto fit = fit_velocity(Material{kDensity}, field_of(patch, velocity), patch);
     ASSERT_TRUE(fit);
     for (std::size_t v = 0; v < velocity.size(); ++v)
         EXPECT_NEAR((fit->velocity[v] - velocity[v]).norm(), 0.0, kRoundOff);
@@ -125,7 +126,7 @@ TEST(VelocityFit, DoesNotDependOnTheCornerAtWhichATriangleStarts)
         std::rotate(field.triangles[t].begin(), field.triangles[t].begin() + by, field.triangles[t].end());
         std::rotate(field.velocity[t].begin(), field.velocity[t].begin() + by, field.velocity[t].end());
     }
-    const auto fit = fit_velocity(kDensity, field, patch);
+    const auto fit = fit_velocity(Material{kDensity}, field, patch);
     ASSERT_TRUE(fit);
     for (std::size_t v = 0; v < velocity.size(); ++v)
         EXPECT_NEAR((fit->velocity[v] - velocity[v]).norm(), 0.0, kRoundOff);
@@ -138,10 +139,11 @@ TEST(VelocityFit, KeepsMomentumAndGainsNoEnergyInFreeClothOnAnotherMesh)
         const FitPatch old = make_patch(n, false), other = make_patch(n, true);
         const std::vector<Vec3> velocity = random_velocities(old.material.size(), random);
         const VelocityField field = field_of(old, velocity);
-        const auto fit = fit_velocity(kDensity, field, other);
+        const auto fit = fit_velocity(Material{kDensity}, field, other);
         ASSERT_TRUE(fit);
         EXPECT_NEAR((momentum(field_of(other, fit->velocity)) - momentum(field)).norm(), 0.0, kRoundOff);
-        EXPECT_LE(energy_gain(field, other, *fit), kRoundOff * compute_kinetic_energy(kDensity, field));
+        EXPECT_LE(energy_gain(field, other, *fit),
+                  kRoundOff * compute_kinetic_energy(Material{kDensity}, field));
         EXPECT_LT(energy_gain(field, other, *fit), -1e-4) << "a random field cannot be carried over whole";
     }
 }
@@ -159,7 +161,7 @@ TEST(VelocityFit, IsTheNearestFieldOfThatMomentum)
         if (!other.is_free[v]) other.drift[v] = velocity[v];
     }
     const VelocityField field = field_of(old, velocity);
-    const auto fit = fit_velocity(kDensity, field, other);
+    const auto fit = fit_velocity(Material{kDensity}, field, other);
     ASSERT_TRUE(fit);
     EXPECT_NEAR((momentum(field_of(other, fit->velocity)) - momentum(field)).norm(), 0.0, kRoundOff);
     // Squared distance to the old field by fine quadrature; changes without net momentum must increase this
@@ -217,8 +219,8 @@ TEST(VelocityFit, FindsTheVelocityOfAnEolVertexOnFlatClothExactly)
     const Vec3 velocity = random.vector();
     for (Vec3& drift : flowing.drift) drift = velocity;
     flowing.drift[middle] = Vec3::Zero();
-    const auto fit =
-        fit_velocity(kDensity, field_of(old, std::vector<Vec3>(old.material.size(), velocity)), flowing);
+    const auto fit = fit_velocity(Material{kDensity},
+                                  field_of(old, std::vector<Vec3>(old.material.size(), velocity)), flowing);
     ASSERT_TRUE(fit);
     EXPECT_NEAR((fit->velocity[middle] - Vec3(0, velocity.y(), velocity.z())).norm(), 0.0, kRoundOff);
     EXPECT_NEAR((fit->material_velocity[middle] - Vec2(-velocity.x(), 0)).norm(), 0.0, kRoundOff);
@@ -234,14 +236,14 @@ TEST(VelocityFit, DoesNotDependOnWhereTheClothIsOrHowLargeItIs)
         for (FitPatch* patch : {&old, &other})
             for (Vec2& X : patch->material) X = scale * (X + Vec2(100, -50));
         const std::vector<Vec3> velocity = random_velocities(old.material.size(), random);
-        const auto fit = fit_velocity(kDensity, field_of(old, velocity), other);
+        const auto fit = fit_velocity(Material{kDensity}, field_of(old, velocity), other);
         ASSERT_TRUE(fit);
         const Vec3 before = momentum(field_of(old, velocity)),
                    after = momentum(field_of(other, fit->velocity));
         // The offset of coordinates is 100 times the cloth's size.
         EXPECT_NEAR((after - before).norm(), 0.0, 1e-11 * scale * scale);
         EXPECT_LE(energy_gain(field_of(old, velocity), other, *fit),
-                  1e-11 * compute_kinetic_energy(kDensity, field_of(old, velocity)));
+                  1e-11 * compute_kinetic_energy(Material{kDensity}, field_of(old, velocity)));
     }
 }
 
@@ -249,7 +251,8 @@ TEST(VelocityFit, WithoutFreeVerticesThereIsNone)
 {
     FitPatch patch = make_patch(1, false);
     patch.is_free.assign(4, 0);
-    EXPECT_FALSE(fit_velocity(kDensity, field_of(patch, std::vector<Vec3>(4, Vec3::UnitX())), patch));
+    EXPECT_FALSE(
+        fit_velocity(Material{kDensity}, field_of(patch, std::vector<Vec3>(4, Vec3::UnitX())), patch));
 }
 
 }  // namespace

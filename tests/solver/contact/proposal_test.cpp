@@ -30,7 +30,7 @@ struct Above {
 
     explicit Above(const RigidMotion& motion = {}, const Placement& place = {})
     {
-        scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, kThickness};
+        scene.materials[0] = {0.05, 50.0, 0.3, 1e-5, 0.0, kThickness};
         const Placement plate = place * Placement{Mat3::Identity(), Vec3(0, 0, -0.5e-3)};
         scene.obstacles.push_back(MovingObstacle("plate", make_box({0.2, 0.2, 1e-3}), plate, motion, 30.0));
         ClothGrid grid;

@@ -25,7 +25,7 @@ struct Setting {
         Carrier carrier;
         carrier.motion.begin = carrier.motion.end = carrier.reference = at;
         steps.obstacles.assign(static_cast<std::size_t>(obstacles), carrier);
-        cushion = {kModulus, std::vector<double>(at.size(), kArea)};
+        cushion = {std::vector<double>(at.size(), kModulus), std::vector<double>(at.size(), kArea)};
     }
 
     void add(int obstacle, const std::array<int, 3>& vertices, const Vec3& normal, const Vec3& point)

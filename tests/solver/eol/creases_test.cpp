@@ -20,7 +20,7 @@ EolCloth draped_with(int count)
     const Drape drape;
     EolCloth cloth(make_ridge(90.0), make_draped(drape));
     cloth.scene.gravity = Gravity{};
-    cloth.scene.material.bending_stiffness = 1e-6;  // this cloth bends within millimetres
+    cloth.scene.materials[0].bending_stiffness = 1e-6;  // this cloth bends within millimetres
     const int tip = tip_of(cloth.scene.obstacles[0].shape());
     for (int k = 0; k < count; ++k)
         cloth.add_eol(cloth.vertex_at(0.2, 0.1 + k * 0.4 / drape.cells), false, tip);
@@ -69,15 +69,15 @@ TEST(Creases, AreNoneWithoutATargetForTheMesh)
 TEST(Creases, AreNoneWhereTheBendIsAsWide)
 {
     EolCloth cloth = draped_with(3);
-    const double half = 0.5 * 0.87 * cloth.scene.eol->mean_length;
-    const double tension = cloth.scene.material.density * 9.81 * 0.4;
+    const double half = 0.5 * 0.87 * cloth.scene.eol->mean_lengths[0];
+    const double tension = cloth.scene.materials[0].density * 9.81 * 0.4;
     for (const auto& [share, is_crease] : {std::pair(0.99, true), {1.01, false}}) {
-        cloth.scene.material.bending_stiffness = share * tension * half * half;
+        cloth.scene.materials[0].bending_stiffness = share * tension * half * half;
         ClothElements elements = elements_of(cloth.state.mesh);
         EXPECT_EQ(mark(cloth, elements), is_crease);
         EXPECT_EQ(creases_of(elements).empty(), !is_crease);
     }
-    cloth.scene.material.bending_stiffness = 1e-6;
+    cloth.scene.materials[0].bending_stiffness = 1e-6;
     cloth.scene.gravity.reset();
     ClothElements elements = elements_of(cloth.state.mesh);
     EXPECT_FALSE(mark(cloth, elements)) << "nothing pulls";

@@ -138,8 +138,8 @@ TEST(EolCoordinates, OnAWireTheVertexFollowsIntoTheOutwardPlane)
     cloth.add_eol(v, false, 0);
     cloth.state.mesh.world[v] += Vec3(1e-4, 0.0, 1e-3);
     const auto place_in = [&](double dt) {
-        return place_eol_vertex(cloth.scene.obstacles[0].shape(), cloth.scene.material.thickness, cloth.state,
-                                0, cloth.stars(), cloth.state.mesh.world, {}, dt);
+        return place_eol_vertex(cloth.scene.obstacles[0].shape(), cloth.scene.materials.thickness(),
+                                cloth.state, 0, cloth.stars(), cloth.state.mesh.world, {}, dt);
     };
     const EolPlacing placing = place_in(1.0);
     ASSERT_TRUE(placing.coordinates);

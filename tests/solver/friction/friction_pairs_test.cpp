@@ -67,9 +67,9 @@ struct Layers {
 
     explicit Layers(int vertex) : flowing(vertex)
     {
-        scene.material = {0.2, 50.0, 0.3, 1e-5, 0.0, kThickness};
+        scene.materials[0] = {0.2, 50.0, 0.3, 1e-5, 0.0, kThickness};
         scene.self_contact = ClothContact{kThickness};
-        scene.friction = Friction{{}, 0.3};
+        scene.friction = Friction{{0.3}, {}, {}};
         state = make_state(scene, make_layers(), Vec3::Zero());
         stars = make_stars(state.mesh.vertex_count(), state.mesh.faces);
         elements = make_elements(state.mesh, stars.topology);

@@ -435,7 +435,7 @@ EolCloth folded_beside(double speed)
 {
     EolCloth cloth(make_ridge(60.0), make_draped({8, 0.0, 110.0}));
     cloth.scene.eol = uniform_target(0.05, 10.0);
-    cloth.scene.material.youngs_modulus = 2000.0;
+    cloth.scene.materials[0].youngs_modulus = 2000.0;
     const double half = 55.0 * M_PI / 180.0;
     const Vec3 way(std::sin(half), 0.0, std::cos(half));  // upwards along the left side
     for (std::size_t v = 0; v < cloth.state.ids.size(); ++v) {
@@ -746,7 +746,7 @@ TEST(Conform, NothingOfAnObstacleGetsThroughTheCloth)
     // faces.
     EolCloth cloth = lying(17.0);
     cloth.scene.gravity = Gravity{};
-    cloth.scene.material.youngs_modulus = 1e-3;
+    cloth.scene.materials[0].youngs_modulus = 1e-3;
     for (Vec3& x : cloth.state.mesh.world)
         x.z() += 0.001 + 0.002 * std::sin(40.0 * x.x()) * std::sin(20.0 * x.y());
     press_edges(cloth);
@@ -777,7 +777,7 @@ TEST(ConformedSteps, ClothThatFallsOnARidgeBendsOnVerticesOfIt)
 {
     for (const double turn : {0.0, 17.0}) {
         EolCloth cloth = lying(turn);
-        cloth.scene.material.thickness = kThickness;
+        cloth.scene.materials[0].thickness = kThickness;
         cloth.scene.gravity = Gravity{};
         State& state = cloth.state;
         for (Vec3& x : state.mesh.world) x.z() += 2e-3;

@@ -40,7 +40,7 @@ struct Folded {
     Energies energies(const Terms& terms) const
     {
         const SurgeryResult made = surgery.result();
-        Creases creases{kCreaseWidth, {}};
+        Creases creases{{kCreaseWidth}, {}};
         for (const auto& edge : made.tagged_edges) creases.edges.push_back({edge.a, edge.b});
         ClothElements elements =
             make_elements(made.mesh, make_topology(made.mesh.vertex_count(), made.mesh.faces));
@@ -67,9 +67,9 @@ TEST(SurgeryEnergy, IsTheRiseThatTheStepWillFind)
 {
     for (const double stiffness : {0.0, 1e-3, 1e-1}) {
         Folded cloth(90.0, 3e-3);
-        cloth.cloth.scene.material.bending_stiffness = stiffness;
+        cloth.cloth.scene.materials[0].bending_stiffness = stiffness;
         const Scene& scene = cloth.cloth.scene;
-        const Terms terms = make_terms(scene.material, scene.gravity, {}, {});
+        const Terms terms = make_terms(scene.materials, scene.gravity, {}, {});
         ClothSurgery& surgery = cloth.surgery;
         const VertexId on = cloth.at(0.2, 0.2), next = cloth.at(0.2, 0.15);
         const VertexId beside = cloth.at(0.15, 0.2), inner = cloth.at(0.1, 0.1), border = cloth.at(0.0, 0.2);
@@ -78,7 +78,7 @@ TEST(SurgeryEnergy, IsTheRiseThatTheStepWillFind)
             ASSERT_TRUE(proposal.is_legal()) << what << to_string(proposal.verdict);
             const SurgeryEvent& event = proposal.event;
             const auto energy = [&](const std::vector<PatchFace>& faces) {
-                return find_energies(surgery, event, faces, terms, Folded::kCreaseWidth).sum();
+                return find_energies(surgery, event, faces, terms, {Folded::kCreaseWidth}).sum();
             };
             const double rise = energy(event.after) - energy(event.before), before = cloth.energy(terms);
             ASSERT_EQ(surgery.commit(proposal), Verdict::Done) << what;
@@ -105,7 +105,7 @@ TEST(SurgeryEnergy, OfAPlateIsNearTheRiseThatTheStepWillFind)
     constexpr double kShare = 0.25;  // of the rise, on rough cloth
     for (const char* what : {"a move", "a collapse", "a flip"}) {
         Folded cloth(90.0, 3e-3);
-        Material& material = cloth.cloth.scene.material;
+        Material& material = cloth.cloth.scene.materials[0];
         material.bending_stiffness = 1e-1;
         material.bending_model = BendingModel::Plate;
         const Terms terms = make_terms(material, {}, {}, {});
@@ -119,7 +119,7 @@ TEST(SurgeryEnergy, OfAPlateIsNearTheRiseThatTheStepWillFind)
                                    : surgery.propose_flip(inner, cloth.at(0.15, 0.15));
         ASSERT_TRUE(proposal.is_legal()) << what << to_string(proposal.verdict);
         const auto bending = [&](const std::vector<PatchFace>& faces) {
-            return find_energies(surgery, proposal.event, faces, terms, Folded::kCreaseWidth).bending;
+            return find_energies(surgery, proposal.event, faces, terms, {Folded::kCreaseWidth}).bending;
         };
         const double rise = bending(proposal.event.after) - bending(proposal.event.before);
         const double before = cloth.energies(terms).bending;
@@ -135,8 +135,8 @@ TEST(MeshChangeGuard, DoesNotLetStiffClothBeBent)
     // noticeable energy.
     for (const auto& [stiffness, is_allowed] : {std::pair(1e-9, true), {1e-1, false}}) {
         Folded cloth(160.0);
-        cloth.cloth.scene.material.youngs_modulus = 1e-3;
-        cloth.cloth.scene.material.bending_stiffness = stiffness;
+        cloth.cloth.scene.materials[0].youngs_modulus = 1e-3;
+        cloth.cloth.scene.materials[0].bending_stiffness = stiffness;
         cloth.cloth.scene.gravity.reset();
         for (Vec3& v : cloth.cloth.state.velocity) v = Vec3(0.3, 0.0, 0.0);
         RelaxationMemo relaxations;
@@ -154,7 +154,7 @@ TEST(MeshChangeGuard, DoesNotLetClothBeLifted)
     for (const bool is_heavy : {false, true}) {
         Folded cloth(180.0);
         State& state = cloth.cloth.state;
-        cloth.cloth.scene.material = {1.0, 1e-6, 0.3, 0.0, 0.0, 1e-3};
+        cloth.cloth.scene.materials[0] = {1.0, 1e-6, 0.3, 0.0, 0.0, 1e-3};
         if (!is_heavy) cloth.cloth.scene.gravity.reset();
         for (Vec3& v : state.velocity) v = Vec3(0.5, 0.0, 0.0);
         for (std::size_t v = 0; v < state.ids.size(); ++v)
@@ -209,7 +209,7 @@ TEST(MeshChangeGuard, WithCareNothingCountsOnClothThatGivesWay)
 TEST(MeshChangeGuard, SplitsAreFree)
 {
     Folded cloth;
-    cloth.cloth.scene.material.bending_stiffness = 1e-1;
+    cloth.cloth.scene.materials[0].bending_stiffness = 1e-1;
     RelaxationMemo relaxations;
     MeshChangeGuard guard(cloth.cloth.scene, cloth.cloth.state, StrainLimit::AsMade, {}, relaxations);
     guard.watch(cloth.surgery);

@@ -52,7 +52,7 @@ EolCloth free_cloth(unsigned seed, double fold = 180.0, double rough = 0.0)
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> shift(-rough, rough);
     for (Vec3& x : cloth.state.mesh.world) x += Vec3(shift(random), shift(random), 1.0 + shift(random));
-    cloth.scene.material.bending_stiffness = 0.0;
+    cloth.scene.materials[0].bending_stiffness = 0.0;
     shake(cloth.state, 1.0, random);
     return cloth;
 }
@@ -174,7 +174,7 @@ EolCloth sliding_cloth(double speed)
 {
     EolCloth cloth(make_ridge(60.0), make_draped({8, 0.0, 60.0}));
     State& state = cloth.state;
-    cloth.scene.material.bending_stiffness = 0.0;
+    cloth.scene.materials[0].bending_stiffness = 0.0;
     for (int v = 0; v < state.mesh.vertex_count(); ++v) {
         const double across = state.mesh.material[v].x() - 0.2;
         if (std::abs(across) < 1e-9) {
@@ -436,7 +436,7 @@ TEST(MeshTransfer, MomentumOfFreeClothIsKeptAndEnergyNeverRises)
         const double energy = kinetic_energy_of(cloth.scene, cloth.state);
         const Vec3 momentum = momentum_of(cloth.scene, cloth.state);
         worst_gain = std::max(worst_gain, energy_gain(cloth, after) / energy);
-        const double scale = std::sqrt(2.0 * energy * cloth.scene.material.density * 0.16);
+        const double scale = std::sqrt(2.0 * energy * cloth.scene.materials[0].density * 0.16);
         worst_momentum =
             std::max(worst_momentum, (momentum_of(cloth.scene, after) - momentum).norm() / scale);
     }
@@ -492,7 +492,7 @@ TEST(MeshTransfer, ContactsOfAnEdgeThatWasSplitAndOfItsFacesAreDropped)
 EolCloth bent_cloth()
 {
     EolCloth cloth(make_ridge(60.0), make_draped({8, 0.0, 180.0}));
-    cloth.scene.material = {0.2, 5e4, 0.3, 1e-6, 0.0, 1e-3};
+    cloth.scene.materials[0] = {0.2, 5e4, 0.3, 1e-6, 0.0, 1e-3};
     for (Vec3& x : cloth.state.mesh.world) {
         const double angle = x.x() / 0.1;
         x = Vec3(0.1 * std::sin(angle), x.y(), 1.0 + 0.1 * std::cos(angle));
@@ -566,8 +566,8 @@ TEST(MeshTransfer, StrainOfClothAtRestWithoutWeightIsRelativeToItsElasticEnergy)
     // A vertex is removed from a fold whose vertices are all held, so that nothing gives way.
     const auto strain_of = [](double stiffness) {
         EolCloth cloth = bent_cloth();
-        cloth.scene.material.youngs_modulus *= stiffness;
-        cloth.scene.material.bending_stiffness *= stiffness;
+        cloth.scene.materials[0].youngs_modulus *= stiffness;
+        cloth.scene.materials[0].bending_stiffness *= stiffness;
         Pin pin;
         pin.material = {Vec2(-10.0, -10.0), Vec2(10.0, 10.0)};
         cloth.scene.pins = {pin};

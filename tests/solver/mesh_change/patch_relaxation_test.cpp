@@ -59,8 +59,8 @@ TEST(PatchRelaxation, LowersTheEnergyAndReturnsWhatThereIs)
         for (const double bending : {0.0, 1e-5, 1e-2})
             for (const double rough : {1e-6, 1e-3, 5e-3, 0.05}) {
                 Setting setting(rough);
-                setting.cloth.scene.material.youngs_modulus = stiffness;
-                setting.cloth.scene.material.bending_stiffness = bending;
+                setting.cloth.scene.materials[0].youngs_modulus = stiffness;
+                setting.cloth.scene.materials[0].bending_stiffness = bending;
                 const double before = setting.energy();
                 const double after = setting.relax();
                 EXPECT_NEAR(after, setting.energy(), 1e-12 * before);
@@ -73,8 +73,8 @@ TEST(PatchRelaxation, LowersTheEnergyOfAPlate)
     // The patch is the whole cloth, so its moments are those of the step.
     for (const double rough : {1e-6, 1e-3, 5e-3}) {
         Setting setting(rough);
-        setting.cloth.scene.material.bending_stiffness = 1e-2;
-        setting.cloth.scene.material.bending_model = BendingModel::Plate;
+        setting.cloth.scene.materials[0].bending_stiffness = 1e-2;
+        setting.cloth.scene.materials[0].bending_model = BendingModel::Plate;
         const double before = setting.energy();
         const double after = setting.relax();
         EXPECT_NEAR(after, setting.energy(), 1e-9 * before);
@@ -96,8 +96,8 @@ Setting make_squares(int count, bool is_touching)
 {
     Setting setting(0.0);
     setting.cloth.scene.gravity = Gravity{};
-    setting.cloth.scene.material.youngs_modulus = 5.0;     // so soft that relaxation takes several steps
-    setting.cloth.scene.material.bending_stiffness = 0.0;  // hinges would couple the squares
+    setting.cloth.scene.materials[0].youngs_modulus = 5.0;     // so soft that relaxation takes several steps
+    setting.cloth.scene.materials[0].bending_stiffness = 0.0;  // hinges would couple the squares
     std::mt19937 random(4);
     std::normal_distribution<double> shift(0.0, 5e-3);
     std::array<Vec3, 16> shifts;
@@ -213,8 +213,8 @@ TEST(PatchRelaxation, CanRelaxByWhatItRelaxesBy)
                     Setting setting(rough);
                     Scene& scene = setting.cloth.scene;
                     scene.gravity = Gravity{};
-                    scene.material.youngs_modulus = stiffness;
-                    scene.material.bending_stiffness = bending;
+                    scene.materials[0].youngs_modulus = stiffness;
+                    scene.materials[0].bending_stiffness = bending;
                     const RelaxedPatch& patch = setting.patch;
                     const LoosePatch loose{setting.cloth.state.mesh, patch.is_free, patch.normals, {}};
                     const double drop = share * setting.energy();
@@ -261,7 +261,7 @@ TEST(PatchRelaxation, NeverPassesAnObstacle)
         if (kind > 1)
             for (Vec3& p : mesh.points) p += above + (kind == 3 ? Vec3(0.015, 0, 0) : Vec3(0, 0, 0));
         Setting setting(0.0, mesh);
-        setting.cloth.scene.material.youngs_modulus = 1e3;
+        setting.cloth.scene.materials[0].youngs_modulus = 1e3;
         State& state = setting.cloth.state;
         const int middle = setting.cloth.vertex_at(0.2, 0.2);
         state.mesh.world[middle].z() += 0.06;
@@ -309,9 +309,9 @@ double hang(Setting& setting)
     constexpr double kLength = 0.4;
     Scene& scene = setting.cloth.scene;
     scene.gravity = Gravity{};
-    scene.material.poisson_ratio = 0.0;
+    scene.materials[0].poisson_ratio = 0.0;
     State& state = setting.cloth.state;
-    const double rate = scene.material.density * 9.81 / scene.material.youngs_modulus;
+    const double rate = scene.materials[0].density * 9.81 / scene.materials[0].youngs_modulus;
     for (std::size_t v = 0; v < state.ids.size(); ++v) {
         const Vec2& X = state.mesh.material[v];
         const double s = kLength - X.y();
@@ -326,7 +326,7 @@ TEST(PatchRelaxation, DoesNotLiftWhatHangsFromAnEdge)
     for (const double stiffness : {50.0, 2e3, 2e5})
         for (const double rough : {0.0, 0.02}) {  // noise over the depth
             Setting setting(0.0);
-            setting.cloth.scene.material.youngs_modulus = stiffness;
+            setting.cloth.scene.materials[0].youngs_modulus = stiffness;
             const double depth = hang(setting);
             const State hanging = setting.cloth.state;
             const double at_rest = find_patch_energy(setting.cloth.scene, {}, hanging.mesh);
@@ -353,14 +353,14 @@ TEST(PatchRelaxation, WhatFallsIsNotPaidByFallingForItsStrain)
     Setting setting(0.0);
     Scene& scene = setting.cloth.scene;
     scene.gravity = Gravity{};
-    scene.material.bending_stiffness = 0.0;  // so that no bending supports a single vertex
+    scene.materials[0].bending_stiffness = 0.0;  // so that no bending supports a single vertex
     const State before = setting.cloth.state;
-    const double weight = scene.material.density * 0.16 * 9.81;
+    const double weight = scene.materials[0].density * 0.16 * 9.81;
     // The energy after a fall by 5 cm.
     setting.patch.wanted = find_patch_energy(scene, {}, before.mesh) - 0.05 * weight;
     setting.relax();
     // The factor 2: with a consistent mass, a vertex with held neighbours has an inertia of half its weight.
-    const double most = 2.0 * 0.01 * scene.eol->mean_length;
+    const double most = 2.0 * 0.01 * scene.eol->mean_lengths[0];
     double fallen = 0.0;
     for (std::size_t v = 0; v < before.ids.size(); ++v)
         fallen = std::max(fallen, before.mesh.world[v].z() - setting.cloth.state.mesh.world[v].z());
@@ -372,7 +372,7 @@ TEST(PatchRelaxation, APatchHasTheEnergyThatTheStepFinds)
 {
     EolCloth cloth(testing::make_ridge(90.0), make_draped({}));
     cloth.scene.gravity = Gravity{};
-    cloth.scene.material.bending_stiffness = 1e-4;
+    cloth.scene.materials[0].bending_stiffness = 1e-4;
     const int tip = testing::tip_of(cloth.scene.obstacles[0].shape());
     for (int k = 0; k < 4; ++k) cloth.add_eol(cloth.vertex_at(0.2, 0.1 + 0.05 * k), false, tip);
     Workspace work;
@@ -396,8 +396,8 @@ TEST(PatchRelaxation, FoldsItsCreasesAsTheStepDoes)
     // Half of the cloth is held, and the faces have different sizes.
     Setting setting(5e-3);
     Scene& scene = setting.cloth.scene;
-    scene.material.youngs_modulus = 5.0;
-    scene.material.bending_stiffness = 1e-2;
+    scene.materials[0].youngs_modulus = 5.0;
+    scene.materials[0].bending_stiffness = 1e-2;
     State& state = setting.cloth.state;
     std::mt19937 random(5);
     std::uniform_real_distribution<double> shift(-0.01, 0.01);
@@ -405,7 +405,7 @@ TEST(PatchRelaxation, FoldsItsCreasesAsTheStepDoes)
         if (setting.patch.is_free[v] != 0) state.mesh.material[v] += Vec2(shift(random), shift(random));
         if (state.mesh.material[v].x() < 0.2) setting.patch.is_free[v] = 0;
     }
-    Creases creases{0.03, {}};
+    Creases creases{{0.03}, {}};
     for (int k = 1; k < 7; ++k) {
         const int a = setting.cloth.vertex_at(0.25, 0.05 * k),
                   b = setting.cloth.vertex_at(0.25, 0.05 * (k + 1));

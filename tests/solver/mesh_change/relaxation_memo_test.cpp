@@ -48,7 +48,7 @@ TEST(RelaxationMemo, AnswersWhateverHasChangedAsIfItHadNotBeenAskedBefore)
         {"material", [](LoosePatch& patch, int v) { patch.mesh.material[v].x() += 0.02; }},
         {"creases",
          [](LoosePatch& patch, int v) {
-             patch.creases = {0.1, {{v, patch.mesh.vertex_count()}}};
+             patch.creases = {{0.1}, {{v, patch.mesh.vertex_count()}}};
          }},
         {"faces", [](LoosePatch& patch, int) { patch.mesh.faces.pop_back(); }},
     };

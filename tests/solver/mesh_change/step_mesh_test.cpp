@@ -28,7 +28,7 @@ EolCloth heading_for_pleat(double youngs_modulus)
 {
     EolCloth cloth = lying(0.0);
     cloth.scene.gravity = Gravity{};
-    cloth.scene.material.youngs_modulus = youngs_modulus;
+    cloth.scene.materials[0].youngs_modulus = youngs_modulus;
     press_edges(cloth);
     testing::take(cloth);
 
@@ -86,7 +86,7 @@ EolCloth heading_for_two_pleats(double youngs_modulus, double turn, const std::a
     cloth.scene.eol = uniform_target(kCell, 10.0);
     for (Vec3& x : cloth.state.mesh.world) x.z() += testing::kThickness;
     cloth.scene.gravity = Gravity{};
-    cloth.scene.material.youngs_modulus = youngs_modulus;
+    cloth.scene.materials[0].youngs_modulus = youngs_modulus;
     press_edges(cloth);
     testing::take(cloth);
 

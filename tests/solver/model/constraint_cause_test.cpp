@@ -275,7 +275,7 @@ TEST(ConstraintCause, StiffClothThatWouldBeStrainedIsGuarded)
     for (const double cells : {0.04, 0.15}) {
         const double beside = cells * kLyingCell;
         EolCloth cloth = lying(0.0, 0.2 - 3.0 * kLyingCell + beside);
-        cloth.scene.material.youngs_modulus = 1e7;
+        cloth.scene.materials[0].youngs_modulus = 1e7;
         for (Vec3& x : cloth.state.mesh.world) {
             const double away = x.x() - beside;
             x = Vec3(beside + 0.8 * away, x.y(), x.z() + 0.6 * (beside / 0.8 - std::abs(away)));
@@ -297,7 +297,7 @@ TEST(ConstraintCause, WhatSurgeryBesideItMovesOffThePlaneIsCounted)
 {
     // Material lines are wavy across the ridge, and the cloth is so soft that strain prevents no mesh change.
     EolCloth cloth = lying(17.0);
-    cloth.scene.material.youngs_modulus = 1e-9;
+    cloth.scene.materials[0].youngs_modulus = 1e-9;
     cloth.scene.gravity = Gravity{};
     for (Vec3& x : cloth.state.mesh.world) x.x() += 0.012 * std::sin(90.0 * x.y() + 40.0 * x.x());
     press_edges(cloth);

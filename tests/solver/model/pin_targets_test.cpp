@@ -31,7 +31,7 @@ struct Falling {
 
     explicit Falling(const std::vector<Pin>& pins)
     {
-        scene.material = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
+        scene.materials[0] = {0.05, 50.0, 0.3, 1e-5, 0.0, 1e-3};
         scene.gravity = Gravity{};
         scene.pins = pins;
         ClothGrid grid;

@@ -40,7 +40,7 @@ constexpr double kAbove = 1.05e-3;  // m, of the sheet above the table: a thickn
 Scene plain_scene()
 {
     Scene scene;
-    scene.material = {0.15, 500.0, 0.3, 0.0, 0.0, 1e-3};  // neither bending nor damping
+    scene.materials[0] = {0.15, 500.0, 0.3, 0.0, 0.0, 1e-3};  // neither bending nor damping
     return scene;
 }
 
@@ -106,7 +106,7 @@ std::map<std::string, double> count(const SheetRun& run)
         {"colours of hinges", mesh.elements.hinge_colors.order.size()},
         {"entries of hinges in the matrix",
          static_cast<double>(mesh.system.matrix().nonZeros()) - 9.0 * static_cast<double>(blocks)},
-        {"damping", run.work.linearization.damping},
+        {"damping", run.work.linearization.damping[0]},
         {"targets of pins", run.work.pin_targets.size()},
         {"anchors of pins", run.state.anchors.size()},
         {"moved obstacles", run.work.carriers.obstacles.size()},
@@ -157,9 +157,9 @@ Pin pin_at_border()
 const Effect kEffects[] = {
     {"none", [](Scene&) {}, {}},
     {"bending",
-     [](Scene& s) { s.material.bending_stiffness = 1e-5; },
+     [](Scene& s) { s.materials[0].bending_stiffness = 1e-5; },
      {"hinge terms", "hinges", "colours of hinges", "entries of hinges in the matrix"}},
-    {"damping", [](Scene& s) { s.material.damping = 0.01; }, {"damping"}},
+    {"damping", [](Scene& s) { s.materials[0].damping = 0.01; }, {"damping"}},
     {"gravity",
      [](Scene& s) { s.gravity = Gravity{}; },
      {"terms of faces beyond inertia and membrane", "gravity terms"}},
@@ -176,7 +176,7 @@ const Effect kEffects[] = {
     {"friction",
      [](Scene& s) {
          add_table(s);
-         s.friction.emplace().coefficients = {0.5};
+         s.friction.emplace().of_pieces = {0.5};
      },
      with_obstacle({"slip contacts"})},
     {"self_contact",
@@ -254,7 +254,7 @@ const Stage kStages[] = {
                           r.work.mesh, report);
      }},
     {"find_momentum_flux", "eol",
-     [](SheetRun& r) { find_momentum_flux(0.15, r.work.mesh.elements, r.work.linearization); }},
+     [](SheetRun& r) { find_momentum_flux(r.scene.materials, r.work.mesh.elements, r.work.linearization); }},
     {"find_pin_targets", "pin",
      [](SheetRun& r) { find_pin_targets(r.scene, r.state, r.state.time + kStep); }},
     {"move_obstacles", "obstacle",

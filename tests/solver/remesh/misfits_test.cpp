@@ -45,7 +45,7 @@ Sheet make_sheet(int cells, float length, const std::function<Vec3(const Vec2&)>
     grid.pattern = GridPattern::Cross;
     ClothMesh mesh = make_cloth_grid(grid);
     for (std::size_t v = 0; v < mesh.world.size(); ++v) mesh.world[v] = shape(mesh.material[v]);
-    sheet.scene.material = {0.15, 500.0, 0.3, 1e-4, 0.0, 1e-3};
+    sheet.scene.materials[0] = {0.15, 500.0, 0.3, 1e-4, 0.0, 1e-3};
     Remeshing remesh;
     remesh.shortest = 0.01;
     remesh.longest = 0.5;

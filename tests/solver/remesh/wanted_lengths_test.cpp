@@ -46,7 +46,7 @@ Sheet make_sheet(GridPattern pattern, int cells, const std::function<Vec3(const 
     grid.pattern = pattern;
     ClothMesh mesh = make_cloth_grid(grid);
     for (std::size_t v = 0; v < mesh.world.size(); ++v) mesh.world[v] = shape(mesh.material[v]);
-    sheet.scene.material = {0.15, 500.0, 0.3, 1e-5, 0.0, 1e-3};
+    sheet.scene.materials[0] = {0.15, 500.0, 0.3, 1e-5, 0.0, 1e-3};
     Remeshing remesh;
     remesh.shortest = 0.01;
     remesh.longest = 0.5;
@@ -125,7 +125,7 @@ TEST(WantedLengths, GiveAWrinkleFourCellsWhateverTheBendingModel)
     constexpr double kStrain = 0.05, kStiffness = 0.08;  // J, so stiff that no halving limits the length
     Sheet sheet = make_sheet(GridPattern::Cross, 8,
                              [](const Vec2& X) { return Vec3((1.0 - kStrain) * X.x(), X.y(), 0.0); });
-    Material& material = sheet.scene.material;
+    Material& material = sheet.scene.materials[0];
     material.bending_stiffness = kStiffness;
     for (const auto& [model, rigidity] : {std::pair(BendingModel::Hinge, 4.0 / 3.0 * kStiffness),
                                           std::pair(BendingModel::Plate, kStiffness)}) {

@@ -196,7 +196,7 @@ TEST(EolRetention, HoldsNothingBetweenThatIsOffTheFeature)
 {
     FlowingCloth still(180.0, 0.0);
     EXPECT_EQ(still.hold(), EolRetention::Loose);
-    const double thickness = still.cloth.scene.material.thickness;
+    const double thickness = still.cloth.scene.materials.thickness();
     for (Vec3& x : still.cloth.state.mesh.world) x.z() += 3.0 * thickness;
     EXPECT_EQ(still.hold(), EolRetention::None);
 }

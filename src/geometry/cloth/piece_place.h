@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "geometry/vectors.h"
+
+namespace arris {
+
+/// Most pieces of cloth in a scene.
+inline constexpr int kMaxPieces = 1000;
+
+/// Where a piece of cloth is in the plane of all material, in which pieces lie side by side along u: a
+/// piece's own (u, v) is there at (u + shift, v).
+struct PiecePlace {
+    std::string name;                                         ///< empty for a [cloth] without one
+    double shift = 0.0;                                       ///< m
+    double begin = -std::numeric_limits<double>::infinity();  ///< m, where its part of the plane begins
+
+    Vec2 to_plane(const Vec2& own) const { return {own.x() + shift, own.y()}; }
+    Vec2 from_plane(const Vec2& X) const { return {X.x() - shift, X.y()}; }
+};
+
+}  // namespace arris
