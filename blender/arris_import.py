@@ -65,8 +65,18 @@ def read_header(data, path):
     return elements, end + len(b"end_header\n")
 
 
+def own_material(data, material):
+    """Material coordinates in those of each piece of cloth. The header says where pieces lie in the frame's plane."""
+    lines = (line.split() for line in data[:data.find(b"end_header\n")].decode("ascii", "replace").splitlines())
+    pieces = [(float(words[4]), float(words[3])) for words in lines if words[:2] == ["comment", "piece"]]
+    if pieces:
+        begins, shifts = np.array(pieces).T
+        material[:, 0] -= shifts[np.maximum(np.searchsorted(begins, material[:, 0], side="right") - 1, 0)]
+    return material
+
+
 def read_frame(path):
-    """A frame's points (n x 3, m), material coordinates (n x 2, m), faces (m x 3) and EOL edges (k x 2)."""
+    """A frame's points (n x 3, m), faces (m x 3), UVs of their corners (m x 3 x 2, m) and EOL edges (k x 2)."""
     data = read_bytes(path)
     elements, offset = read_header(data, path)
     tables = {}
@@ -77,16 +87,21 @@ def read_frame(path):
         vertex, face, edge = tables["vertex"], tables["face"], tables["edge"]
         points = np.column_stack([vertex[name] for name in "xyz"])
         material = np.column_stack([vertex[name] for name in "uv"])
+        corner_points = face["vertex_indices"]
+        if "point" in tables:  # vertices on seams have several material points
+            further = np.column_stack([tables["point"][name] for name in "uv"])
+            material, corner_points = np.vstack([material, further]), face["point_indices"]
+        material = own_material(data, material)
         edges = np.column_stack([edge["vertex1"], edge["vertex2"]])
         triangles, corners = face["vertex_indices"], face["vertex_indices_count"]
-    except (KeyError, ValueError) as error:
+    except (IndexError, KeyError, ValueError) as error:
         raise ArrisError(f"{path}: is cut short, or is not a frame of cloth") from error
-    for indices in (triangles, edges):  # Blender checks no index
-        if indices.size and not (0 <= indices.min() and indices.max() < len(points)):
+    for indices, count in ((triangles, len(points)), (edges, len(points)), (corner_points, len(material))):
+        if indices.size and not (0 <= indices.min() and indices.max() < count):  # Blender checks no index
             raise ArrisError(f"{path}: has an index of a vertex that does not exist")
     if (corners != 3).any() or not np.isfinite(points).all():
         raise ArrisError(f"{path}: has a face that is no triangle, or a point that is not finite")
-    return points, material, triangles, edges
+    return points, triangles, material[corner_points], edges
 
 
 def read_obstacle(path):
@@ -194,10 +209,10 @@ def split_normals(mesh, angle):
 
 
 def show_cloth(mesh, path):
-    points, material, faces, folds = read_frame(path)
+    points, faces, uvs, folds = read_frame(path)
     fill_mesh(mesh, points, faces)
     layer = mesh.uv_layers.new(name="UVMap", do_init=False)
-    layer.data.foreach_set("uv", material[faces.ravel()].astype(np.float32).ravel())
+    layer.data.foreach_set("uv", uvs.astype(np.float32).ravel())
     set_folds(mesh, find_edges(mesh, folds))
 
 

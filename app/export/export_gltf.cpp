@@ -34,7 +34,7 @@ struct Shape {
     std::vector<Float3> positions, normals;
 };
 
-/// Means of the normals of the faces around each vertex, by area.
+/// For each material point the mean of the normals of the faces around its vertex, by area.
 std::vector<Vec3> find_normals(const Frame& frame)
 {
     std::vector<Vec3> normals(frame.world.size(), Vec3::Zero());
@@ -42,6 +42,7 @@ std::vector<Vec3> find_normals(const Frame& frame)
         const Vec3 &a = frame.world[face[0]], &b = frame.world[face[1]], &c = frame.world[face[2]];
         for (const int v : face) normals[v] += (b - a).cross(c - a);
     }
+    for (const int v : frame.seam_vertices) normals.push_back(normals[v]);
     for (Vec3& normal : normals) {
         normal.stableNormalize();
         if (!(normal.squaredNorm() > 0.5))
@@ -72,10 +73,12 @@ class Shapes {
                 fmt::format("{}: frame {} has another mesh than frame 0; allowed: one mesh", path_, i));
         const std::vector<Vec3> normals = find_normals(frame);
         Shape shape;
-        for (std::size_t v = 0; v < frame.world.size(); ++v) {
+        const std::size_t n = frame.world.size();
+        for (std::size_t p = 0; p < normals.size(); ++p) {
+            const std::size_t v = p < n ? p : static_cast<std::size_t>(frame.seam_vertices[p - n]);
             shape.positions.push_back(
                 to_float3(path_, i, v, i == 0 ? frame.world[v] : frame.world[v] - first_.world[v]));
-            shape.normals.push_back(to_float3(path_, i, v, i == 0 ? normals[v] : normals[v] - normals_[v]));
+            shape.normals.push_back(to_float3(path_, i, v, i == 0 ? normals[p] : normals[p] - normals_[p]));
         }
         return shape;
     }
@@ -95,11 +98,12 @@ std::size_t add_cloth_mesh(GltfAsset& asset, const Shapes& shapes, std::size_t f
     std::vector<std::array<float, 2>> uv;
     for (const Vec2& X : first.own_material())
         uv.push_back({static_cast<float>(X[0]), static_cast<float>(X[1])});
-    const std::size_t indices = asset.add("SCALAR", kGltfUnsigned, to_indices(first.faces), kGltfIndexArray);
+    const std::size_t indices =
+        asset.add("SCALAR", kGltfUnsigned, to_indices(first.corners()), kGltfIndexArray);
     const std::size_t uvs = asset.add("VEC2", kGltfFloat, uv, kGltfVertexArray);
 
     asset.begin_streamed();
-    GltfShapes described = asset.add_shapes(frame_count, first.world.size(), {"POSITION", "NORMAL"},
+    GltfShapes described = asset.add_shapes(frame_count, uv.size(), {"POSITION", "NORMAL"},
                                             [&](std::size_t i) { return shapes.read(i).positions; });
     described.attributes["TEXCOORD_0"] = uvs;
     const Json primitive = {

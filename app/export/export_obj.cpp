@@ -20,14 +20,16 @@ void write_obj(const std::string& path, const Frame& frame, UpAxis up)
         to_string(up));
     for (const Vec3& x : frame.world) fmt::format_to(out, "v {} {} {}\n", x[0], x[1], x[2]);
     for (const Vec2& X : frame.own_material()) fmt::format_to(out, "vt {} {}\n", X[0], X[1]);
-    const auto put = [&](const Face& face) {
-        fmt::format_to(out, "f {0}/{0} {1}/{1} {2}/{2}\n", face[0] + 1, face[1] + 1, face[2] + 1);
+    const auto put = [&](std::size_t f) {
+        const Face &face = frame.faces[f], &points = frame.corners()[f];
+        fmt::format_to(out, "f {}/{} {}/{} {}/{}\n", face[0] + 1, points[0] + 1, face[1] + 1, points[1] + 1,
+                       face[2] + 1, points[2] + 1);
     };
     if (frame.pieces.empty())
-        for (const Face& face : frame.faces) put(face);
+        for (std::size_t f = 0; f < frame.faces.size(); ++f) put(f);
     for (std::size_t p = 0; p < frame.pieces.size(); ++p) {
         fmt::format_to(out, "g {}\n", frame.pieces[p].name);
-        for (const int f : frame.faces_of(static_cast<int>(p))) put(frame.faces[f]);
+        for (const int f : frame.faces_of(static_cast<int>(p))) put(static_cast<std::size_t>(f));
     }
     // Some readers make lines of a whole object that has any, so the edges are an object of their own.
     if (!frame.eol_edges.empty()) fmt::format_to(out, "o cloth_eol\n");

@@ -37,6 +37,7 @@ struct Changes {
     std::vector<std::size_t> meshes;   ///< frames whose vertices or faces are others than in the frame before
     bool has_eol_edges = false;        ///< whether any frame has them
     bool is_material_moving = false;   ///< whether material coordinates ever change
+    bool has_seams = false;            ///< whether any vertex has several material points
 };
 
 Changes find_changes(const FrameSource& frames)
@@ -51,6 +52,7 @@ Changes find_changes(const FrameSource& frames)
         if (i > 0 && (frame.faces != previous.faces || frame.ids != previous.ids))
             changes.meshes.push_back(i);
         if (i > 0 && frame.material != previous.material) changes.is_material_moving = true;
+        changes.has_seams = changes.has_seams || !frame.seam_vertices.empty();
         changes.has_eol_edges = changes.has_eol_edges || !frame.eol_edges.empty();
         previous = std::move(frame);
     }
@@ -78,11 +80,16 @@ void put_face_counts(fmt::memory_buffer& out, const Frame& frame)
     put_array(out, std::vector<int>(frame.faces.size(), 3));
 }
 
-void put_faces(fmt::memory_buffer& out, const Frame& frame)
+void put_corners(fmt::memory_buffer& out, const std::vector<Face>& faces)
 {
     std::vector<int> indices;
-    for (const Face& face : frame.faces) indices.insert(indices.end(), face.begin(), face.end());
+    for (const Face& face : faces) indices.insert(indices.end(), face.begin(), face.end());
     put_array(out, indices);
+}
+
+void put_faces(fmt::memory_buffer& out, const Frame& frame)
+{
+    put_corners(out, frame.faces);
 }
 
 void put_extent(fmt::memory_buffer& out, const Frame& frame)
@@ -184,8 +191,11 @@ std::vector<Attribute> attributes(std::size_t frame_count, const Changes& change
         {"float3[] extent", every, put_extent},
         {"texCoord2f[] primvars:st", changes.is_material_moving ? every : first,
          [](auto& out, const Frame& frame) { put_array(out, frame.own_material()); },
-         "interpolation = \"vertex\""},
+         fmt::format("interpolation = \"{}\"", changes.has_seams ? "faceVarying" : "vertex")},
     };
+    if (changes.has_seams)
+        list.push_back({"int[] primvars:st:indices", samples_at(changes.faces),
+                        [](auto& out, const Frame& frame) { put_corners(out, frame.corners()); }});
     if (!changes.has_eol_edges) return list;
     list.push_back({"int[] creaseIndices", samples_at(changes.creases), put_creases});
     list.push_back({"int[] creaseLengths", samples_at(changes.creases), put_crease_lengths});

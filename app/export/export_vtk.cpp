@@ -136,7 +136,8 @@ void write_vtp(const std::string& path, const Frame& frame)
 {
     VtpText text{piece(frame.world.size(), 0, frame.eol_edges.size(), frame.faces.size()), {}};
     std::vector<Vec3> material;
-    for (const Vec2& X : frame.own_material()) material.emplace_back(X[0], X[1], 0.0);
+    for (const Vec2& X : frame.own_material())
+        if (material.size() < frame.world.size()) material.emplace_back(X[0], X[1], 0.0);
     text.xml += "<PointData>\n";
     text.add("UInt32", "id", 1, frame.ids);
     text.add("UInt8", "eol", 1, frame.eol);
@@ -151,7 +152,7 @@ void write_vtp(const std::string& path, const Frame& frame)
     text.add("Float64", "bending_energy", 1, with_lines(lines, 0.0, frame.bending_energy));
     if (!frame.pieces.empty()) {
         std::vector<std::int32_t> pieces(lines, -1);
-        for (const Face& face : frame.faces) pieces.push_back(frame.piece_of(face));
+        for (const Face& points : frame.corners()) pieces.push_back(frame.piece_of(points));
         text.add("Int32", "piece", 1, pieces);
     }
     text.xml += "</CellData>\n";

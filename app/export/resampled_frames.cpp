@@ -123,7 +123,7 @@ class FramePoints {
         : sampling_(sampling),
           frame_(frame),
           i_(i),
-          locator_(frame.material, frame.faces),
+          locator_(frame.material, frame.corners()),
           corners_(frame.world.size(), {-1, Vec3::Zero()})
     {
         for (std::size_t v = 0; v < frame.ids.size(); ++v) by_id_.emplace(frame.ids[v], v);
@@ -139,7 +139,7 @@ class FramePoints {
         if (own != by_id_.end() && frame_.material[own->second] == X && corners_[own->second].face >= 0)
             return corners_[own->second];
         const int f = sampling_.border_faces[v];
-        const Vec2 inside = f < 0 ? X : centroid(sampling_.mesh.material, sampling_.mesh.faces[f]);
+        const Vec2 inside = f < 0 ? X : centroid(sampling_.mesh.material, sampling_.mesh.corners()[f]);
         return require(f < 0 ? locator_.locate(X, sampling_.tolerance)
                              : locator_.locate_on_border(X, inside, sampling_.tolerance),
                        X);
@@ -169,7 +169,7 @@ Vec3 interpolate(const std::vector<Vec3>& values, const Face& face, const Vec3& 
 
 void sample_vertices(const Sampling& sampling, const Frame& frame, const FramePoints& points, Frame& result)
 {
-    const std::size_t count = sampling.mesh.material.size();
+    const std::size_t count = sampling.mesh.ids.size();
     result.material = sampling.mesh.material;
     result.ids = sampling.mesh.ids;
     result.eol.assign(count, 0);
@@ -189,10 +189,12 @@ void sample_faces(const Sampling& sampling, const Frame& frame, const FramePoint
 {
     result.faces = sampling.mesh.faces;
     result.pieces = sampling.mesh.pieces;
-    for (const Face& face : result.faces) {
+    result.face_points = sampling.mesh.face_points;
+    result.seam_vertices = sampling.mesh.seam_vertices;
+    for (const Face& face : sampling.mesh.corners()) {
         const int f = points.face_at(centroid(sampling.mesh.material, face));
         const double share =
-            twice_area_of(sampling.mesh.material, face) / twice_area_of(frame.material, frame.faces[f]);
+            twice_area_of(sampling.mesh.material, face) / twice_area_of(frame.material, frame.corners()[f]);
         result.strain.push_back(frame.strain[f]);
         result.stretch_energy.push_back(share * frame.stretch_energy[f]);
         result.bending_energy.push_back(share * frame.bending_energy[f]);
@@ -219,7 +221,7 @@ GridSize parse_grid(const std::string& text)
 ConstantMesh make_constant_mesh(const Frame& first, const std::optional<GridSize>& grid)
 {
     if (grid) return make_grid(require_rectangle(first), *grid);
-    return {first.material, first.faces, first.ids, first.pieces};
+    return {first.material, first.faces, first.ids, first.pieces, first.face_points, first.seam_vertices};
 }
 
 FrameSource resampled_frames(const FrameSource& frames, const ConstantMesh& mesh)

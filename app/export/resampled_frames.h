@@ -22,6 +22,10 @@ struct ConstantMesh {
     std::vector<Face> faces;         ///< counter-clockwise
     std::vector<std::uint32_t> ids;  ///< of vertices; of a grid, numbers that no frame need have
     std::vector<PiecePlace> pieces;  ///< of several pieces
+    std::vector<Face> face_points;   ///< as in Frame
+    std::vector<int> seam_vertices;  ///< likewise
+
+    const std::vector<Face>& corners() const { return face_points.empty() ? faces : face_points; }
 };
 
 /// The mesh of the first frame, EOL vertices included; with `grid`, a grid over the first frame's rectangle

@@ -233,7 +233,7 @@ ViewerBlocks pack_run(const std::string& run_directory, const ViewerOptions& opt
     for (std::int64_t index = 0; index <= last; ++index) {
         if (index % blocks.stride != 0 && index != last) continue;
         const std::string path = frame_file(run_directory, index, "ply");
-        const Frame frame = read_frame(path);
+        const Frame frame = split_seams(read_frame(path));
         check_magnitudes(frame, path);
         store_topology(frame, topology, blocks);
         store_frame(frame, index, time(index), topology, blocks);

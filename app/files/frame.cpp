@@ -28,22 +28,34 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::uint64_t kVertexBytes = 11 * 8 + 4 + 1 + 1;
 constexpr std::uint64_t kFaceBytes = 1 + 3 * 4 + 3 * 8;
-constexpr std::uint64_t kEdgeBytes = 2 * 4, kPieceBytes = 4;
+constexpr std::uint64_t kEdgeBytes = 2 * 4, kPieceBytes = 4, kCornersBytes = 1 + 3 * 4,
+                        kPointBytes = 2 * 8 + 4;
 constexpr std::size_t kMaxHeaderBytes = 2048 + 128 * kMaxPieces;
 
 struct Counts {
     std::uint64_t vertices = 0, faces = 0, edges = 0;
+    std::uint64_t points = 0;  ///< further ones, of vertices on seams
+};
 
-    std::uint64_t body_bytes(bool has_pieces) const
+/// What a frame's file holds.
+struct Layout {
+    Counts counts;
+    std::vector<PiecePlace> pieces;
+
+    bool has_seams() const { return counts.points > 0; }
+    std::uint64_t body_bytes() const
     {
-        return vertices * kVertexBytes + faces * (kFaceBytes + (has_pieces ? kPieceBytes : 0)) +
-               edges * kEdgeBytes;
+        const std::uint64_t face =
+            kFaceBytes + (pieces.empty() ? 0 : kPieceBytes) + (has_seams() ? kCornersBytes : 0);
+        return counts.vertices * kVertexBytes + counts.faces * face + counts.edges * kEdgeBytes +
+               counts.points * kPointBytes;
     }
 };
 
 // The only definition of the header: the reader compares the file with it.
-std::string header(const Counts& counts, const std::vector<PiecePlace>& pieces)
+std::string header(const Layout& layout)
 {
+    const auto& [counts, pieces] = layout;
     std::string text = "ply\nformat binary_little_endian 1.0\n";
     text += "comment Arris frame: m, m/s, J; v: of the vertex, w: of the material there\n";
     if (!pieces.empty()) text += "comment pieces: name, shift of u, u where it begins\n";
@@ -57,7 +69,11 @@ std::string header(const Counts& counts, const std::vector<PiecePlace>& pieces)
     text += "property list uchar int vertex_indices\n";
     text += "property double strain\nproperty double stretch_energy\nproperty double bending_energy\n";
     if (!pieces.empty()) text += "property int piece\n";
+    if (layout.has_seams()) text += "property list uchar int point_indices\n";
     text += fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n", counts.edges);
+    if (layout.has_seams())
+        text += fmt::format("element point {}\nproperty double u\nproperty double v\nproperty int vertex\n",
+                            counts.points);
     return text + "end_header\n";
 }
 
@@ -91,16 +107,20 @@ void put_face(std::string& bytes, const Frame& frame, std::size_t i)
     put(bytes, frame.strain[i]);
     put(bytes, frame.stretch_energy[i]);
     put(bytes, frame.bending_energy[i]);
-    if (!frame.pieces.empty()) put(bytes, std::int32_t{frame.piece_of(frame.faces[i])});
+    if (!frame.pieces.empty()) put(bytes, std::int32_t{frame.piece_of(frame.corners()[i])});
+    if (frame.face_points.empty()) return;
+    put(bytes, std::uint8_t{3});
+    for (const int point : frame.face_points[i]) put(bytes, std::int32_t{point});
 }
 
 [[maybe_unused]] bool has_matching_sizes(const Frame& frame)
 {
     const std::size_t n = frame.world.size(), m = frame.faces.size();
-    return frame.material.size() == n && frame.vertex_velocity.size() == n &&
-           frame.material_velocity.size() == n && frame.ids.size() == n && frame.eol.size() == n &&
-           frame.contact.size() == n && frame.strain.size() == m && frame.stretch_energy.size() == m &&
-           frame.bending_energy.size() == m;
+    return frame.material.size() == n + frame.seam_vertices.size() &&
+           frame.face_points.size() == (frame.seam_vertices.empty() ? 0 : m) &&
+           frame.vertex_velocity.size() == n && frame.material_velocity.size() == n &&
+           frame.ids.size() == n && frame.eol.size() == n && frame.contact.size() == n &&
+           frame.strain.size() == m && frame.stretch_energy.size() == m && frame.bending_energy.size() == m;
 }
 
 // Reads values from a body whose length has been checked against the header.
@@ -178,8 +198,30 @@ void take_face(BodyReader& reader, std::size_t i, Frame& frame)
     frame.strain[i] = reader.take_finite("face", i);
     frame.stretch_energy[i] = reader.take_finite("face", i);
     frame.bending_energy[i] = reader.take_finite("face", i);
-    if (!frame.pieces.empty() && reader.take<std::int32_t>() != frame.piece_of(face))
-        reader.fail("face", i, "is not where its piece is");
+    const int piece = frame.pieces.empty() ? 0 : reader.take<std::int32_t>();
+    if (frame.face_points.empty()) {
+        if (piece != frame.piece_of(face)) reader.fail("face", i, "is not where its piece is");
+        return;
+    }
+    if (reader.take<std::uint8_t>() != 3) reader.fail("face", i, "is not a triangle");
+    for (int& point : frame.face_points[i]) point = reader.take_index(frame.material.size(), "face", i);
+}
+
+void take_point(BodyReader& reader, std::size_t i, Frame& frame)
+{
+    for (double& coordinate : frame.material[frame.world.size() + i])
+        coordinate = reader.take_finite("point", i);
+    frame.seam_vertices[i] = reader.take_index(frame.world.size(), "point", i);
+}
+
+/// Requires that the points at a face's corners are of its vertices.
+void check_points(const BodyReader& reader, std::size_t i, const Frame& frame)
+{
+    for (int k = 0; k < 3; ++k) {
+        const auto point = static_cast<std::size_t>(frame.face_points[i][k]), n = frame.world.size();
+        const int vertex = point < n ? static_cast<int>(point) : frame.seam_vertices[point - n];
+        if (vertex != frame.faces[i][k]) reader.fail("face", i, "has a point of another vertex");
+    }
 }
 
 void take_edge(BodyReader& reader, std::size_t i, Frame& frame)
@@ -193,7 +235,9 @@ void resize(Frame& frame, const Counts& counts)
 {
     for (auto* vectors : {&frame.world, &frame.vertex_velocity, &frame.material_velocity})
         vectors->resize(counts.vertices);
-    frame.material.resize(counts.vertices);
+    frame.material.resize(counts.vertices + counts.points);
+    frame.seam_vertices.resize(counts.points);
+    if (counts.points > 0) frame.face_points.resize(counts.faces);
     frame.ids.resize(counts.vertices);
     for (auto* flags : {&frame.eol, &frame.contact}) flags->resize(counts.vertices);
     frame.faces.resize(counts.faces);
@@ -240,8 +284,7 @@ std::vector<PiecePlace> find_pieces(const std::string& path, const std::string& 
 }
 
 struct Header {
-    Counts counts;
-    std::vector<PiecePlace> pieces;
+    Layout layout;
     std::size_t bytes;
 };
 
@@ -255,23 +298,22 @@ Header read_header(const std::string& path, std::istream& in)
         throw InputError(path + ": is not a frame: it does not begin with \"ply\"");
     constexpr std::string_view kEnd = "\nend_header\n";
     text.resize(std::min(text.size(), text.find(kEnd)));  // what looks like a header in the body is none
-    const Counts counts = {find_count(path, text, "vertex"), find_count(path, text, "face"),
-                           find_count(path, text, "edge")};
-    const std::vector<PiecePlace> pieces = find_pieces(path, text);
-    const std::string expected = header(counts, pieces);
+    const Counts counts = {
+        find_count(path, text, "vertex"), find_count(path, text, "face"), find_count(path, text, "edge"),
+        text.find("\nelement point ") == std::string::npos ? 0 : find_count(path, text, "point")};
+    const Layout layout = {counts, find_pieces(path, text)};
+    const std::string expected = header(layout);
     text += kEnd;
     if (!text.starts_with(expected))
         throw InputError(path + ": is not a frame: its header differs from that of `arris run`");
     in.clear();
     in.seekg(static_cast<std::streamoff>(expected.size()));
-    return {counts, pieces, expected.size()};
+    return {layout, expected.size()};
 }
 
 std::string read_body(const std::string& path, std::istream& in, const Header& read, std::uint64_t file_bytes)
 {
-    const Counts& counts = read.counts;
-    const std::uint64_t body_bytes = counts.body_bytes(!read.pieces.empty()),
-                        promised = read.bytes + body_bytes;
+    const std::uint64_t body_bytes = read.layout.body_bytes(), promised = read.bytes + body_bytes;
     if (promised != file_bytes)
         throw InputError(
             fmt::format("{}: has {} bytes, but its header implies {}", path, file_bytes, promised));
@@ -283,48 +325,22 @@ std::string read_body(const std::string& path, std::istream& in, const Header& r
 
 }  // namespace
 
-namespace {
-
-int piece_at(const std::vector<PiecePlace>& pieces, const Vec2& X)
-{
-    const auto after = std::upper_bound(pieces.begin(), pieces.end(), X.x(),
-                                        [](double u, const PiecePlace& piece) { return u < piece.begin; });
-    return std::max(0, static_cast<int>(after - pieces.begin()) - 1);
-}
-
-}  // namespace
-
-int Frame::piece_of(const Face& face) const
-{
-    return piece_at(pieces, material[face[0]]);
-}
-
-std::vector<Vec2> Frame::own_material() const
-{
-    std::vector<Vec2> own = material;
-    if (!pieces.empty())
-        for (Vec2& X : own) X = pieces[piece_at(pieces, X)].from_plane(X);
-    return own;
-}
-
-std::vector<int> Frame::faces_of(int piece) const
-{
-    std::vector<int> found;
-    for (std::size_t f = 0; f < faces.size(); ++f)
-        if (piece_of(faces[f]) == piece) found.push_back(static_cast<int>(f));
-    return found;
-}
-
 void write_frame(const std::string& path, const Frame& frame)
 {
     assert(has_matching_sizes(frame) && "a frame's arrays have one entry per vertex or per face");
-    const Counts counts = {frame.world.size(), frame.faces.size(), frame.eol_edges.size()};
-    std::string bytes = header(counts, frame.pieces);
-    bytes.reserve(bytes.size() + counts.body_bytes(!frame.pieces.empty()));
+    const Counts counts = {frame.world.size(), frame.faces.size(), frame.eol_edges.size(),
+                           frame.seam_vertices.size()};
+    const Layout layout = {counts, frame.pieces};
+    std::string bytes = header(layout);
+    bytes.reserve(bytes.size() + layout.body_bytes());
     for (std::size_t i = 0; i < counts.vertices; ++i) put_vertex(bytes, frame, i);
     for (std::size_t i = 0; i < counts.faces; ++i) put_face(bytes, frame, i);
     for (const auto& edge : frame.eol_edges)
         for (const int vertex : edge) put(bytes, std::int32_t{vertex});
+    for (std::size_t i = 0; i < counts.points; ++i) {
+        put_vector(bytes, frame.material[counts.vertices + i]);
+        put(bytes, std::int32_t{frame.seam_vertices[i]});
+    }
     write_atomically(path, bytes);
 }
 
@@ -338,15 +354,18 @@ Frame read_frame(const std::string& path)
     if (error || !in) throw InputError(path + ": cannot be opened");
 
     Header read = read_header(path, in);
-    const Counts& counts = read.counts;
+    const Counts& counts = read.layout.counts;
     const std::string body = read_body(path, in, read, file_bytes);
     Frame frame;
-    frame.pieces = std::move(read.pieces);
+    frame.pieces = std::move(read.layout.pieces);
     resize(frame, counts);
     BodyReader reader(path, body);
     for (std::size_t i = 0; i < counts.vertices; ++i) take_vertex(reader, i, frame);
     for (std::size_t i = 0; i < counts.faces; ++i) take_face(reader, i, frame);
     for (std::size_t i = 0; i < counts.edges; ++i) take_edge(reader, i, frame);
+    for (std::size_t i = 0; i < counts.points; ++i) take_point(reader, i, frame);
+    if (counts.points > 0)
+        for (std::size_t i = 0; i < counts.faces; ++i) check_points(reader, i, frame);
     return frame;
 }
 

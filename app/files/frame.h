@@ -14,7 +14,7 @@ namespace arris {
 /// One frame as written to frames/cloth_%05d.ply. All other formats are made from these files.
 struct Frame {
     std::vector<Vec3> world;              ///< x y z, m
-    std::vector<Vec2> material;           ///< u v, m, in the plane of all pieces
+    std::vector<Vec2> material;           ///< u v, m, of each material point, in the plane of all pieces
     std::vector<Vec3> vertex_velocity;    ///< vx vy vz, m/s: velocity of the vertex
     std::vector<Vec3> material_velocity;  ///< wx wy wz, m/s: velocity of the material at the vertex
     std::vector<std::uint32_t> ids;
@@ -25,12 +25,20 @@ struct Frame {
     std::vector<double> stretch_energy;  ///< per face, J
     std::vector<double> bending_energy;  ///< per face, J: half of the energy of each of its hinges
     std::vector<std::array<int, 2>> eol_edges;
+    std::vector<Face> face_points;   ///< as in ClothMesh: empty without seams
+    std::vector<int> seam_vertices;  ///< likewise
     std::vector<PiecePlace> pieces;  ///< of several pieces of cloth, ascending by `begin`; empty for one
 
-    int piece_of(const Face& face) const;        ///< index in `pieces`; 0 where there are none
-    std::vector<Vec2> own_material() const;      ///< u v, m, of each vertex in the coordinates of its piece
+    /// Points at the corners of each face.
+    const std::vector<Face>& corners() const { return face_points.empty() ? faces : face_points; }
+    int piece_of(const Face& points) const;      ///< index in `pieces`; 0 where there are none
+    std::vector<Vec2> own_material() const;      ///< u v, m, of each point in the coordinates of its piece
     std::vector<int> faces_of(int piece) const;  ///< ascending
 };
+
+/// The same frame with a vertex of its own for every material point, for formats whose vertices have one UV.
+/// Vertices of one place have one id.
+Frame split_seams(const Frame& frame);
 
 /// Writes a binary little-endian PLY file atomically. Throws std::runtime_error naming the path and the
 /// system's reason if writing fails.

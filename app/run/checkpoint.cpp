@@ -92,6 +92,22 @@ std::vector<Vec2> read_vectors(BinaryReader& in)
     });
 }
 
+void write_faces(BinaryWriter& out, const std::vector<Face>& faces)
+{
+    out.list(faces, [&](const Face& face) {
+        for (const int v : face) out.number(static_cast<std::int32_t>(v));
+    });
+}
+
+std::vector<Face> read_faces(BinaryReader& in)
+{
+    return in.list<Face>(3 * sizeof(std::int32_t), [&] {
+        Face face;
+        for (int& v : face) v = in.number<std::int32_t>();
+        return face;
+    });
+}
+
 void write_friction(BinaryWriter& out, const ContactFriction& friction)
 {
     out.vector(friction.force);
@@ -132,9 +148,9 @@ void write_state(BinaryWriter& out, const State& state)
     out.number(state.step);
     write_vectors(out, state.mesh.material);
     out.vectors(state.mesh.world);
-    out.list(state.mesh.faces, [&](const Face& face) {
-        for (const int v : face) out.number(static_cast<std::int32_t>(v));
-    });
+    write_faces(out, state.mesh.faces);
+    write_faces(out, state.mesh.face_points);
+    out.list(state.mesh.seam_vertices, [&](int v) { out.number(static_cast<std::int32_t>(v)); });
     out.list(state.ids, [&](std::uint32_t id) { out.number(id); });
     out.number(state.next_id);
     out.vectors(state.velocity);
@@ -190,11 +206,9 @@ State read_state(BinaryReader& in)
     state.step = in.number<std::int64_t>();
     state.mesh.material = read_vectors(in);
     state.mesh.world = in.vectors();
-    state.mesh.faces = in.list<Face>(3 * sizeof(std::int32_t), [&] {
-        Face face;
-        for (int& v : face) v = in.number<std::int32_t>();
-        return face;
-    });
+    state.mesh.faces = read_faces(in);
+    state.mesh.face_points = read_faces(in);
+    state.mesh.seam_vertices = in.list<int>(sizeof(std::int32_t), [&] { return in.number<std::int32_t>(); });
     state.ids = in.list<std::uint32_t>(sizeof(std::uint32_t), [&] { return in.number<std::uint32_t>(); });
     state.next_id = in.number<std::uint32_t>();
     state.velocity = in.vectors();

@@ -86,8 +86,9 @@ std::string find_defect(const Checkpoint& checkpoint)
     const State& state = checkpoint.state;
     const std::size_t n = state.mesh.world.size();
     if (state.ids.size() != n || state.velocity.size() != n || state.previous_world.size() != n ||
-        state.previous_velocity.size() != n || state.mesh.material.size() != n ||
-        state.material_velocity.size() != n || state.previous_material.size() != n ||
+        state.previous_velocity.size() != n ||
+        state.mesh.material.size() != n + state.mesh.seam_vertices.size() ||
+        state.material_velocity.size() != n || state.previous_material.size() != state.mesh.material.size() ||
         state.previous_material_velocity.size() != n)
         return "its arrays differ in length";
     for (std::size_t v = 1; v < n; ++v)
@@ -95,8 +96,10 @@ std::string find_defect(const Checkpoint& checkpoint)
     for (std::size_t v = 0; v < n; ++v)
         if (!state.velocity[v].allFinite() || !state.previous_world[v].allFinite() ||
             !state.previous_velocity[v].allFinite() || !state.material_velocity[v].allFinite() ||
-            !state.previous_material[v].allFinite() || !state.previous_material_velocity[v].allFinite())
+            !state.previous_material_velocity[v].allFinite())
             return fmt::format("vertex {} is not finite", v);
+    for (const Vec2& X : state.previous_material)
+        if (!X.allFinite()) return "a material point is not finite";
     if (const std::string defect = find_defect(state.active, state.ids); !defect.empty()) return defect;
     for (std::size_t k = 0; k < state.coupled.size(); ++k) {
         const auto& [v, w] = state.coupled[k];

@@ -87,7 +87,8 @@ ClothMesh read_first_cloth(const std::string& directory, const State& state)
     const std::string path = frame_file(directory, 0, "ply");
     if (!std::filesystem::exists(path)) return state.mesh;
     Frame first = read_frame(path);
-    ClothMesh cloth{std::move(first.material), std::move(first.world), std::move(first.faces)};
+    ClothMesh cloth{std::move(first.material), std::move(first.world), std::move(first.faces),
+                    std::move(first.face_points), std::move(first.seam_vertices)};
     if (const std::string defect = validate(cloth); !defect.empty())
         throw InputError(fmt::format("{}: is damaged: {}", printable(path), defect));
     return cloth;

@@ -19,7 +19,7 @@ std::vector<std::array<int, 2>> find_eol_edges(const std::vector<MovingObstacle>
 {
     std::vector<std::array<int, 2>> edges;
     if (state.eol.empty()) return edges;
-    const ClothStars stars = make_stars(state.mesh.vertex_count(), state.mesh.faces);
+    const ClothStars stars = make_stars(state.mesh);
     for (const auto& [a, b] : find_trace_edges(obstacles, state, stars))
         edges.push_back({state.index_of(state.eol[a].vertex_id), state.index_of(state.eol[b].vertex_id)});
     return edges;
@@ -33,6 +33,8 @@ Frame make_frame(const std::vector<MovingObstacle>& obstacles, const State& stat
     Frame frame;
     frame.world = state.mesh.world;
     frame.material = state.mesh.material;
+    frame.face_points = state.mesh.face_points;
+    frame.seam_vertices = state.mesh.seam_vertices;
     frame.vertex_velocity = state.velocity;
     frame.material_velocity = mean_corner_velocities(
         elements,
@@ -64,7 +66,8 @@ std::vector<ProbeSample> sample_probes(const std::vector<Probe>& probes, const S
         ProbeSample sample;
         if (at.face >= 0) {
             const Face& face = state.mesh.faces[at.face];
-            const FaceElement element = make_face_element(state.mesh.material, face);
+            const FaceElement element =
+                make_face_element(state.mesh.material, face, state.mesh.points_of(at.face));
             const Mat32 F = FaceState(element, state.mesh.world).F;
             for (int k = 0; k < 3; ++k) {
                 const int v = face[k];

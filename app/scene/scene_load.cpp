@@ -144,48 +144,6 @@ Scene to_scene(const Json& json)
     return scene;
 }
 
-/// The pieces as the scene has them. Where they are in the plane follows with their meshes.
-std::vector<ClothPiece> to_pieces(const Json& json)
-{
-    std::vector<ClothPiece> pieces;
-    const std::vector<const Json*> tables = piece_tables(json);
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        ClothPiece piece;
-        piece.key = piece_key(json, i);
-        piece.name = tables[i]->value("name", "");
-        piece.material_key = piece.key + ".material";
-        const Json fabrics = json.value("fabric", Json::array());
-        for (std::size_t k = 0; k < fabrics.size(); ++k)
-            if (tables[i]->contains("fabric") && (*tables[i])["fabric"] == fabrics[k]["name"])
-                piece.material_key = fmt::format("fabric.{}", k);
-        pieces.push_back(piece);
-    }
-    return pieces;
-}
-
-/// The cloth of a resumed run.
-void take_cloth(const LoadOptions& options, RunConfig& config)
-{
-    config.cloth = *options.cloth;
-    if (!options.pieces) {
-        config.pieces.front().vertices = config.cloth.vertex_count();
-        config.pieces.front().faces = config.cloth.face_count();
-        return;
-    }
-    if (options.pieces->size() != config.pieces.size())
-        throw InputError(fmt::format("{}: is damaged: it has {} pieces of cloth, and its scene has {}",
-                                     options.pieces_file, options.pieces->size(), config.pieces.size()));
-    for (std::size_t i = 0; i < config.pieces.size(); ++i) {
-        const ClothPiece& stored = (*options.pieces)[i];
-        ClothPiece& piece = config.pieces[i];
-        piece.shift = stored.shift;
-        piece.begin = stored.begin;
-        piece.end = stored.end;
-        piece.vertices = stored.vertices;
-        piece.faces = stored.faces;
-    }
-}
-
 /// What refers to the material of a piece, once the pieces' places are known.
 void place_in_material(const Json& json, RunConfig& config)
 {
@@ -193,9 +151,9 @@ void place_in_material(const Json& json, RunConfig& config)
     for (std::size_t i = 1; i < tables.size(); ++i)
         config.scene.materials.add(config.pieces[i].begin, to_material((*tables[i])["material"]));
     config.scene.pieces.assign(config.pieces.begin(), config.pieces.end());
-    for (const Vec2& X : config.cloth.material)
-        config.cloth_velocity.push_back(
-            to_vec3((*tables[static_cast<std::size_t>(config.scene.materials.piece_at(X))])["velocity"]));
+    for (int v = 0; v < config.cloth.vertex_count(); ++v)
+        config.cloth_velocity.push_back(to_vec3(
+            (*tables[static_cast<std::size_t>(piece_of(config.scene, config.cloth, v))])["velocity"]));
     for (std::size_t i = 0; i < config.scene.pins.size(); ++i) {
         const Json& pin = json["pin"][i];
         config.scene.pins[i].material = piece_of(config, pin).to_plane(to_material_box(pin["material"]));
@@ -324,15 +282,18 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
                         piece_of(config, config.as_run["probe"][i]), "is not on the cloth");
 }
 
-/// Mean edge length of each piece, m.
-std::vector<double> mean_edges(const RunConfig& config)
+/// The mesh of sewn cloth does not change yet.
+void check_seams(const SceneDocument& document, RunConfig& config)
 {
-    std::vector<double> lengths;
-    for (std::size_t i = 0; i < config.pieces.size(); ++i) {
-        const ClothMesh mesh = extract_piece(config, i);
-        lengths.push_back(measure_edges(mesh, make_topology(mesh.vertex_count(), mesh.faces)).mean);
-    }
-    return lengths;
+    if (!config.cloth.has_seams()) return;
+    if (config.as_run.contains("remesh"))
+        document.fail("remesh", "is not built yet for cloth with seams",
+                      "no [remesh], or cloth whose UVs have no seams");
+    if (config.as_run["eol"]["enabled"].get<bool>() && has_features(config.scene))
+        config.warnings.push_back(fmt::format(
+            "{}: the cloth has seams, for which EOL vertices are not built yet: contacts keep it off sharp "
+            "features, where it may snag",
+            document.describe("eol.enabled")));
 }
 
 /// Checks that the cloth starts clear of the obstacles, and moves it out to its stand-off.
@@ -380,21 +341,19 @@ RunConfig load_scene(const SceneSource& source, const LoadOptions& options)
     config.settings = to_settings(json);
     config.output.frames_per_second = to_double(json["output"]["frames_per_second"]);
     config.output.formats = json["output"]["formats"].get<std::vector<std::string>>();
-    config.pieces = to_pieces(json);
+    config.pieces = list_pieces(json);
 
     std::vector<ObstaclePlan> plans = plan_obstacles(json);
     std::vector<RigidMotion*> motions;
     for (ObstaclePlan& plan : plans) motions.push_back(&plan.motion);
     merge_events(config, motions);
     check_length(document, config, plans);
-    if (options.cloth)
-        take_cloth(options, config);
-    else
-        make_scene_cloth(document, config);
+    options.cloth ? take_scene_cloth(options, config) : make_scene_cloth(document, config);
     place_in_material(json, config);
     check_meetings(document, config);
     load_obstacles(document, options, std::move(plans), config);
-    if (json["eol"]["enabled"].get<bool>() && has_features(config.scene))
+    check_seams(document, config);
+    if (json["eol"]["enabled"].get<bool>() && has_features(config.scene) && !config.cloth.has_seams())
         config.scene.eol = make_initial_target(config.cloth);
     if (json.contains("remesh")) config.scene.remesh = to_remeshing(document, config);
     if (config.pieces.size() > 1) {

@@ -39,7 +39,7 @@ std::vector<char> mark_compressed(const Materials& materials, const ClothMesh& m
 {
     std::vector<char> is_compressed;
     for (int f = 0; f < mesh.face_count(); ++f) {
-        const Material& material = materials.at(mesh.material[mesh.faces[f][0]]);
+        const Material& material = materials.at(mesh.corners(f)[0]);
         const double least = principal_tensions(stretches[f], material).minCoeff();
         if (!(least < -kLeastCompression * material.youngs_modulus)) continue;
         is_compressed.resize(mesh.world.size(), 0);

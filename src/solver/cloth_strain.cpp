@@ -17,8 +17,7 @@ Vec2 mean_stretches(const std::vector<Vec2>& stretches, const ClothMesh& mesh, c
     Vec2 sum = Vec2::Zero();
     double area = 0.0;
     for (const int f : stars[vertex]) {
-        const auto& [a, b, c] = mesh.faces[f];
-        const double part = twice_area(mesh.material[a], mesh.material[b], mesh.material[c]);
+        const double part = twice_area(mesh.corners(f));
         sum += part * stretches[f];
         area += part;
     }

@@ -149,13 +149,12 @@ class Census {
     /// Whether a contact lies at that vertex of the cloth, by the rule in constraint_cause.h.
     bool is_at(const Contact& contact, int vertex) const
     {
-        Vec2 material = Vec2::Zero();
-        for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i) {
+        for (int i = 0; i < 4 && contact.vertices[i] >= 0; ++i)
             if (contact.kind == ContactKind::Edge && contact.vertices[i] == vertex &&
                 contact.weights[i] > kAtEnd)
                 return true;
-            material += contact.weights[i] * state_.mesh.material[contact.vertices[i]];
-        }
+        const Vec2 material =
+            blend_material(state_.mesh, work_.mesh.stars, contact.vertices, contact.weights);
         return (material - state_.mesh.material[vertex]).norm() <= kOnFeature * scene_.materials.thickness();
     }
 

@@ -17,7 +17,7 @@ std::vector<Overrun> find_overrun(const std::vector<Vec2>& material, const std::
     std::vector<Overrun> overrun;
     for (const EolCoordinates& at : eol)
         for (const int f : mesh.stars.faces[at.vertex]) {
-            const auto& [a, b, c] = mesh.faces_of_elements[f];
+            const auto& [a, b, c] = mesh.elements.faces[f].points;
             const double left = 0.5 * twice_area(material[a], material[b], material[c]);
             if (left >= (1.0 - kMostFaceTaken) * mesh.elements.faces[f].area) continue;
             const Vec2 way = material[at.vertex] - mesh.material_of_elements[at.vertex];

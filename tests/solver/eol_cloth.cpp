@@ -114,7 +114,7 @@ int EolCloth::add_eol(int vertex, bool is_corner, int feature)
 
 ClothStars stars_of(const ClothMesh& mesh)
 {
-    return make_stars(mesh.vertex_count(), mesh.faces);
+    return make_stars(mesh);
 }
 
 ClothStars EolCloth::stars() const

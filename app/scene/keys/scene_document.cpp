@@ -216,8 +216,8 @@ class OverrideWalk {
         if (!value_->member(part)) value_->members.emplace_back(std::string(part), made(key->type));
         value_ = value_->member(part);
         name_ = name;
-        is_list_ =
-            key->type == KeyType::Tables || (key->may_repeat && value_->kind == SceneValue::Kind::Array);
+        const bool is_repeated = key->may_repeat && value_->kind == SceneValue::Kind::Array;
+        is_list_ = key->type == KeyType::Tables || is_repeated;
     }
 
     void enter_element(std::string_view part)
@@ -230,8 +230,7 @@ class OverrideWalk {
                             count == 0 ? "0" : fmt::format("0 to {}, where {} appends", count, count));
         if (*index == count) value_->items.push_back(made(KeyType::Table));
         value_ = &value_->items[*index];
-        const SceneKey* key = find_scene_key(name_);
-        if (!key || !key->may_repeat) name_ += "[]";
+        if (!find_scene_key(name_)->may_repeat) name_ += "[]";
         is_list_ = false;
     }
 
@@ -297,8 +296,7 @@ std::string read_scene_text(const std::string& path)
     const std::uintmax_t size = fs::file_size(path, error);
     if (error) refuse(error.message());
     if (size > kMaxFileBytes)
-        refuse(
-            fmt::format("is {} bytes long; allowed: a scene file of at most {} bytes", size, kMaxFileBytes));
+        refuse(fmt::format("is {} bytes long; allowed: a file of at most {} bytes", size, kMaxFileBytes));
     std::ifstream stream(path, std::ios::binary);
     if (!stream) refuse(std::strerror(errno));
     std::string text(size, '\0');

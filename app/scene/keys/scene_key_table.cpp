@@ -101,7 +101,9 @@ std::vector<SceneKey> make_scene_keys()
         text("cloth.file", KeyType::Path, kPath, "",
              "OBJ mesh used instead of a rectangle or an outline. Its positions are the initial world "
              "positions; its UVs, "
-             "times `uv_scale`, are the material coordinates. A flat mesh without UVs takes the material "
+             "times `uv_scale`, are the material coordinates. Places with several UVs are seams, along which "
+             "the "
+             "cloth is sewn. A flat mesh without UVs takes the material "
              "coordinates from its positions; flat pieces in different planes, such as layers, are laid side "
              "by "
              "side along u, a tenth of the widest apart."),

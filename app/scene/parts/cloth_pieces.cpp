@@ -52,4 +52,22 @@ std::string piece_key(const nlohmann::ordered_json& scene, std::size_t i)
     return scene["cloth"].is_array() ? fmt::format("cloth.{}", i) : "cloth";
 }
 
+std::vector<ClothPiece> list_pieces(const nlohmann::ordered_json& scene)
+{
+    std::vector<ClothPiece> pieces;
+    const std::vector<const nlohmann::ordered_json*> tables = piece_tables(scene);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        ClothPiece piece;
+        piece.key = piece_key(scene, i);
+        piece.name = tables[i]->value("name", "");
+        piece.material_key = piece.key + ".material";
+        const nlohmann::ordered_json fabrics = scene.value("fabric", nlohmann::ordered_json::array());
+        for (std::size_t k = 0; k < fabrics.size(); ++k)
+            if (tables[i]->contains("fabric") && (*tables[i])["fabric"] == fabrics[k]["name"])
+                piece.material_key = fmt::format("fabric.{}", k);
+        pieces.push_back(piece);
+    }
+    return pieces;
+}
+
 }  // namespace arris

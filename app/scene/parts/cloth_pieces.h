@@ -34,4 +34,7 @@ std::vector<const nlohmann::ordered_json*> piece_tables(const nlohmann::ordered_
 /// Key of piece i of `scene`: "cloth", or "cloth.i".
 std::string piece_key(const nlohmann::ordered_json& scene, std::size_t i);
 
+/// The pieces of a completed scene. Where they are in the plane follows with their meshes.
+std::vector<ClothPiece> list_pieces(const nlohmann::ordered_json& scene);
+
 }  // namespace arris

@@ -10,8 +10,7 @@ ClothMesh extract_piece(const RunConfig& config, std::size_t i)
     if (config.pieces.size() == 1) return config.cloth;
     std::vector<int> faces;
     for (int f = 0; f < config.cloth.face_count(); ++f)
-        if (config.scene.materials.piece_at(config.cloth.material[config.cloth.faces[f][0]]) ==
-            static_cast<int>(i))
+        if (config.scene.materials.piece_at(config.cloth.corners(f)[0]) == static_cast<int>(i))
             faces.push_back(f);
     return extract_faces(config.cloth, faces).mesh;
 }

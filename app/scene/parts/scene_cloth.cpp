@@ -11,6 +11,8 @@
 
 #include "app/scene/keys/scene_json.h"
 #include "app/scene/parts/cloth_pieces.h"
+#include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth/sewing.h"
 #include "geometry/cloth_input/cloth_file.h"
 #include "geometry/cloth_input/cloth_grid.h"
 #include "geometry/cloth_input/cloth_outline.h"
@@ -243,9 +245,10 @@ Eigen::AlignedBox2d material_box(const ClothMesh& mesh)
 double longest_edge(const ClothMesh& mesh)
 {
     double longest = 0.0;
-    for (const Face& face : mesh.faces)
-        for (int k = 0; k < 3; ++k)
-            longest = std::max(longest, (mesh.material[face[k]] - mesh.material[face[(k + 1) % 3]]).norm());
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        const std::array<Vec2, 3> corners = mesh.corners(f);
+        for (int k = 0; k < 3; ++k) longest = std::max(longest, (corners[k] - corners[(k + 1) % 3]).norm());
+    }
     return longest;
 }
 
@@ -273,14 +276,6 @@ void lay_out(const std::vector<ClothMesh>& meshes, std::vector<ClothPiece>& piec
         begin = box.max().x() + pieces[i].shift + 0.5 * room;
         if (i + 1 < meshes.size()) pieces[i].end = begin;
     }
-}
-
-void append(const ClothMesh& mesh, const ClothPiece& piece, ClothMesh& cloth)
-{
-    const int first = cloth.vertex_count();
-    for (const Vec2& X : mesh.material) cloth.material.push_back(piece.to_plane(X));
-    cloth.world.insert(cloth.world.end(), mesh.world.begin(), mesh.world.end());
-    for (const auto& [a, b, c] : mesh.faces) cloth.faces.push_back({a + first, b + first, c + first});
 }
 
 }  // namespace
@@ -316,11 +311,44 @@ void make_scene_cloth(const SceneDocument& document, RunConfig& config)
         config.pieces[i].vertices = meshes[i].vertex_count();
         config.pieces[i].faces = meshes[i].face_count();
         // The size of the whole is checked with the pieces so far.
-        if (i + 1 < tables.size()) append(meshes[i], {}, config.cloth);
+        if (i + 1 < tables.size()) config.cloth = join(meshes);
     }
     lay_out(meshes, config.pieces);
-    config.cloth = {};
-    for (std::size_t i = 0; i < meshes.size(); ++i) append(meshes[i], config.pieces[i], config.cloth);
+    for (std::size_t i = 1; i < meshes.size(); ++i)
+        for (Vec2& X : meshes[i].material) X = config.pieces[i].to_plane(X);
+    config.cloth = join(meshes);
+}
+
+void take_scene_cloth(const LoadOptions& options, RunConfig& config)
+{
+    config.cloth = *options.cloth;
+    if (!options.pieces) {
+        config.pieces.front().vertices = config.cloth.vertex_count();
+        config.pieces.front().faces = config.cloth.face_count();
+        return;
+    }
+    if (options.pieces->size() != config.pieces.size())
+        throw InputError(fmt::format("{}: is damaged: it has {} pieces of cloth, and its scene has {}",
+                                     options.pieces_file, options.pieces->size(), config.pieces.size()));
+    for (std::size_t i = 0; i < config.pieces.size(); ++i) {
+        const ClothPiece& stored = (*options.pieces)[i];
+        ClothPiece& piece = config.pieces[i];
+        piece.shift = stored.shift;
+        piece.begin = stored.begin;
+        piece.end = stored.end;
+        piece.vertices = stored.vertices;
+        piece.faces = stored.faces;
+    }
+}
+
+std::vector<double> mean_edges(const RunConfig& config)
+{
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i < config.pieces.size(); ++i) {
+        const ClothMesh mesh = extract_piece(config, i);
+        lengths.push_back(measure_edges(mesh, make_topology(mesh.vertex_count(), mesh.faces)).mean);
+    }
+    return lengths;
 }
 
 }  // namespace arris

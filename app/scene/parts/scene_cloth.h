@@ -26,4 +26,11 @@ std::optional<SceneEstimate> estimate_piece(const SceneDocument& document,
 /// InputError, also where the run would take more vertices or memory than is allowed.
 void make_scene_cloth(const SceneDocument& document, RunConfig& config);
 
+/// The cloth and the pieces' places of a resumed run. Throws InputError where they are not those of the
+/// scene.
+void take_scene_cloth(const LoadOptions& options, RunConfig& config);
+
+/// Mean edge length of each piece, m.
+std::vector<double> mean_edges(const RunConfig& config);
+
 }  // namespace arris

@@ -59,12 +59,26 @@ void refuse_estimate(const SceneDocument& document, const std::string& key, doub
                   fmt::format("at most {:.7g} {}", most, what));
 }
 
+namespace {
+
+/// Length, m, of an edge in the material of its left face.
+double material_length(const ClothMesh& cloth, const MeshEdge& edge)
+{
+    if (!cloth.has_seams()) return (cloth.material[edge.b] - cloth.material[edge.a]).norm();
+    const Face& face = cloth.faces[edge.face_left];
+    const std::array<Vec2, 3> corners = cloth.corners(edge.face_left);
+    const auto corner_of = [&](int v) { return std::find(face.begin(), face.end(), v) - face.begin(); };
+    return (corners[corner_of(edge.b)] - corners[corner_of(edge.a)]).norm();
+}
+
+}  // namespace
+
 EdgeLengths measure_edges(const ClothMesh& cloth, const MeshTopology& topology)
 {
     EdgeLengths lengths;
     lengths.least = std::numeric_limits<double>::infinity();
     for (const MeshEdge& edge : topology.edges) {
-        const double length = (cloth.material[edge.b] - cloth.material[edge.a]).norm();
+        const double length = material_length(cloth, edge);
         lengths.least = std::min(lengths.least, length);
         lengths.greatest = std::max(lengths.greatest, length);
         lengths.mean += length / static_cast<double>(topology.edges.size());

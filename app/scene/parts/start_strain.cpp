@@ -19,8 +19,8 @@ bool StrainRange::is_surprising() const
 StrainRange measure_strain(const ClothMesh& cloth)
 {
     StrainRange strain;
-    for (const Face& face : cloth.faces) {
-        const FaceElement element = make_face_element(cloth.material, face);
+    for (int f = 0; f < cloth.face_count(); ++f) {
+        const FaceElement element = make_face_element(cloth.material, cloth.faces[f], cloth.points_of(f));
         const Vec2 stretches = principal_stretches(FaceState(element, cloth.world).F);
         strain.greatest = std::max(strain.greatest, stretches[0] - 1.0);
         strain.least = std::min(strain.least, stretches[1] - 1.0);

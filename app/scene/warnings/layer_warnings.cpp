@@ -16,8 +16,8 @@ namespace {
 double mean_height(const ClothMesh& cloth)
 {
     double sum = 0.0;
-    for (const Face& face : cloth.faces) {
-        const Vec2 &a = cloth.material[face[0]], &b = cloth.material[face[1]], &c = cloth.material[face[2]];
+    for (int f = 0; f < cloth.face_count(); ++f) {
+        const auto [a, b, c] = cloth.corners(f);
         const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
         const Vec2 first = b - a, second = c - a;
         sum += std::abs(first.x() * second.y() - first.y() * second.x()) / longest;

@@ -241,7 +241,7 @@ void check_angles(const RunConfig& config, const Piece& piece, Warnings& warning
     if (thin == 0) return;
     const bool is_from_file = warnings.is_written(piece.key("file"));
     const bool is_outline = warnings.is_written(piece.key("outline"));
-    const Vec2 X = piece.place.from_plane(cloth.material[cloth.faces[thinnest][0]]);
+    const Vec2 X = piece.place.from_plane(cloth.corners(thinnest)[0]);
     warnings.note(
         piece.key(is_from_file ? "file"
                   : is_outline ? "outline"

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "geometry/cloth/material_locator.h"
+#include "geometry/sort_unique.h"
 
 namespace arris {
 namespace {
@@ -79,10 +80,11 @@ ClipPoint interpolate(const ClipPoint& p, const ClipPoint& q, double s)
     return {p.X + s * (q.X - p.X), p.weights + s * (q.weights - p.weights)};
 }
 
-ClipPolygon corners_of(const ClothMesh& mesh, const Face& face)
+ClipPolygon corners_of(const ClothMesh& mesh, int face)
 {
     ClipPolygon polygon;
-    for (int k = 0; k < 3; ++k) polygon.push({mesh.material[face[k]], Vec3::Unit(k)});
+    const std::array<Vec2, 3> corners = mesh.corners(face);
+    for (int k = 0; k < 3; ++k) polygon.push({corners[k], Vec3::Unit(k)});
     return polygon;
 }
 
@@ -106,7 +108,7 @@ ClipPolygon clip(const ClipPolygon& polygon, int axis, double bound, double sign
 }
 
 // Integrals of a face's three shape functions over its part inside the box.
-Vec3 integrate_area(const ClothMesh& mesh, const Face& face, const MaterialBox& box)
+Vec3 integrate_area(const ClothMesh& mesh, int face, const MaterialBox& box)
 {
     ClipPolygon polygon = corners_of(mesh, face);
     for (int axis = 0; axis < 2; ++axis) {
@@ -124,11 +126,9 @@ Vec3 integrate_area(const ClothMesh& mesh, const Face& face, const MaterialBox& 
     return integral.cwiseMax(0.0);
 }
 
-bool overlaps(const ClothMesh& mesh, const Face& face, const MaterialBox& box)
+bool overlaps(const ClothMesh& mesh, int face, const MaterialBox& box)
 {
-    const Vec2& a = mesh.material[face[0]];
-    const Vec2& b = mesh.material[face[1]];
-    const Vec2& c = mesh.material[face[2]];
+    const auto [a, b, c] = mesh.corners(face);
     return (a.cwiseMin(b).cwiseMin(c).array() <= box.max.array()).all() &&
            (a.cwiseMax(b).cwiseMax(c).array() >= box.min.array()).all();
 }
@@ -136,7 +136,7 @@ bool overlaps(const ClothMesh& mesh, const Face& face, const MaterialBox& box)
 void spread_by_area(const ClothMesh& mesh, const MaterialBox& box, ShareSum& sum)
 {
     for (int f = 0; f < mesh.face_count(); ++f)
-        if (overlaps(mesh, mesh.faces[f], box)) sum.add(f, integrate_area(mesh, mesh.faces[f], box));
+        if (overlaps(mesh, f, box)) sum.add(f, integrate_area(mesh, f, box));
 }
 
 // The part of an axis-parallel line inside one face, from `begin` to `end`.
@@ -149,7 +149,7 @@ struct LinePart {
 std::optional<LinePart> clip_line(const ClothMesh& mesh, int f, const MaterialBox& box, int axis)
 {
     const int across = 1 - axis;
-    ClipPolygon polygon = corners_of(mesh, mesh.faces[f]);
+    ClipPolygon polygon = corners_of(mesh, f);
     polygon = clip(polygon, across, box.min[across], 1.0);
     polygon = clip(polygon, across, box.min[across], -1.0);
     polygon = clip(polygon, axis, box.min[axis], 1.0);
@@ -168,7 +168,7 @@ void spread_by_length(const ClothMesh& mesh, const MaterialBox& box, int axis, S
 {
     std::vector<LinePart> parts;
     for (int f = 0; f < mesh.face_count(); ++f) {
-        if (!overlaps(mesh, mesh.faces[f], box)) continue;
+        if (!overlaps(mesh, f, box)) continue;
         if (const auto part = clip_line(mesh, f, box, axis)) parts.push_back(*part);
     }
     std::stable_sort(parts.begin(), parts.end(), [axis](const LinePart& p, const LinePart& q) {
@@ -186,18 +186,18 @@ void spread_by_length(const ClothMesh& mesh, const MaterialBox& box, int axis, S
     }
 }
 
-// Puts the whole load on the candidate nearest to `point` (lowest index on ties). The load is listed under
-// face `preferred` if the vertex is one of its corners, else under its first face.
+// Puts the whole load on the candidate point nearest to `point` (lowest index on ties). The load is listed
+// under face `preferred` if the vertex is one of its corners, else under its first face.
 void spread_to_nearest_vertex(const ClothMesh& mesh, const std::vector<int>& candidates, const Vec2& point,
                               std::optional<int> preferred, ShareSum& sum)
 {
     int nearest = -1;
     double least = std::numeric_limits<double>::infinity();
-    for (const int v : candidates) {
-        const double squared_distance = (mesh.material[v] - point).squaredNorm();
+    for (const int p : candidates) {
+        const double squared_distance = (mesh.material[p] - point).squaredNorm();
         if (squared_distance < least) {
             least = squared_distance;
-            nearest = v;
+            nearest = mesh.vertex_of(p);
         }
     }
     if (nearest < 0) return;
@@ -222,6 +222,15 @@ void spread_over_point(const ClothMesh& mesh, const Vec2& point, ShareSum& sum)
     spread_to_nearest_vertex(mesh, all, point, face, sum);
 }
 
+std::vector<int> points_in_box(const ClothMesh& mesh, const MaterialBox& box)
+{
+    const double tolerance = kMaterialTolerance * material_size(mesh.material);
+    std::vector<int> inside;
+    for (int p = 0; p < static_cast<int>(mesh.material.size()); ++p)
+        if (box.contains(mesh.material[p], tolerance)) inside.push_back(p);
+    return inside;
+}
+
 // For a box that only touches the cloth from outside: spreads along the box's sides, else to the nearest
 // vertex.
 void spread_over_sides(const ClothMesh& mesh, const MaterialBox& box, ShareSum& sum)
@@ -234,7 +243,7 @@ void spread_over_sides(const ClothMesh& mesh, const MaterialBox& box, ShareSum& 
         }
     }
     if (!sum.is_empty()) return;
-    spread_to_nearest_vertex(mesh, vertices_in_box(mesh, box), 0.5 * (box.min + box.max), std::nullopt, sum);
+    spread_to_nearest_vertex(mesh, points_in_box(mesh, box), 0.5 * (box.min + box.max), std::nullopt, sum);
 }
 
 // The part of the box within the cloth's bounding box. A side no longer than the tolerance gets length zero.
@@ -284,10 +293,10 @@ double material_size(const std::vector<Vec2>& material)
 
 std::vector<int> vertices_in_box(const ClothMesh& mesh, const MaterialBox& box)
 {
-    const double tolerance = kMaterialTolerance * material_size(mesh.material);
-    std::vector<int> inside;
-    for (int v = 0; v < mesh.vertex_count(); ++v)
-        if (box.contains(mesh.material[v], tolerance)) inside.push_back(v);
+    std::vector<int> inside = points_in_box(mesh, box);
+    if (!mesh.has_seams()) return inside;
+    for (int& point : inside) point = mesh.vertex_of(point);
+    sort_unique(inside);
     return inside;
 }
 

@@ -109,7 +109,7 @@ MaterialLocation locate(const ClothMesh& mesh, const Vec2& point)
     const Eigen::AlignedBox2d near(point.array() - tolerance, point.array() + tolerance);
     BestFace best(point, tolerance);
     for (int f = 0; f < mesh.face_count(); ++f) {
-        const Corners X = corners_of(mesh.material, mesh.faces[f]);
+        const Corners X = mesh.corners(f);
         const Eigen::AlignedBox2d box(X[0].cwiseMin(X[1]).cwiseMin(X[2]), X[0].cwiseMax(X[1]).cwiseMax(X[2]));
         if (box.intersects(near)) best.offer(f, X);
     }

@@ -21,6 +21,7 @@ MaterialLocation locate(const ClothMesh& mesh, const Vec2& point);
 /// Finds many material points in one mesh, each in logarithmic time. Keeps references to its arguments.
 class MaterialLocator {
   public:
+    /// `faces`: of points.
     MaterialLocator(const std::vector<Vec2>& material, const std::vector<Face>& faces);
 
     /// As the free function `locate`; a point outside the cloth goes to the nearest face within `tolerance`

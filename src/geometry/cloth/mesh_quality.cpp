@@ -10,23 +10,22 @@ namespace arris {
 double material_area(const ClothMesh& mesh)
 {
     double doubled = 0.0;
-    for (const Face& f : mesh.faces)
-        doubled += twice_area(mesh.material[f[0]], mesh.material[f[1]], mesh.material[f[2]]);
+    for (int f = 0; f < mesh.face_count(); ++f) doubled += twice_area(mesh.corners(f));
     return 0.5 * doubled;
 }
 
 namespace {
 
 /// Least angle of a face in material space, radians.
-double least_angle(const ClothMesh& mesh, const Face& f)
+double least_angle(const std::array<Vec2, 3>& corners)
 {
     // At each corner tan = cross / dot; atan2 needs no division and no clamp.
     double least = std::numbers::pi;
-    const double doubled = twice_area(mesh.material[f[0]], mesh.material[f[1]], mesh.material[f[2]]);
+    const double doubled = twice_area(corners);
     for (int k = 0; k < 3; ++k) {
-        const Vec2& apex = mesh.material[f[k]];
-        const Vec2 to_next = mesh.material[f[(k + 1) % 3]] - apex;
-        const Vec2 to_last = mesh.material[f[(k + 2) % 3]] - apex;
+        const Vec2& apex = corners[k];
+        const Vec2 to_next = corners[(k + 1) % 3] - apex;
+        const Vec2 to_last = corners[(k + 2) % 3] - apex;
         least = std::min(least, std::atan2(doubled, to_next.dot(to_last)));
     }
     return least;
@@ -41,13 +40,13 @@ double in_degrees(double angle)
 
 double least_material_angle(const ClothMesh& mesh, int face)
 {
-    return in_degrees(least_angle(mesh, mesh.faces[face]));
+    return in_degrees(least_angle(mesh.corners(face)));
 }
 
 double least_material_angle(const ClothMesh& mesh)
 {
     double least = mesh.faces.empty() ? 0.0 : std::numbers::pi;
-    for (const Face& f : mesh.faces) least = std::min(least, least_angle(mesh, f));
+    for (int f = 0; f < mesh.face_count(); ++f) least = std::min(least, least_angle(mesh.corners(f)));
     return in_degrees(least);
 }
 

@@ -75,10 +75,33 @@ int opposite_vertex(const std::vector<Face>& faces, const Side& side)
     return faces[side.face()][(side.corner + 2) % 3];
 }
 
+/// Points of faces against their vertices.
+std::string find_bad_point(const ClothMesh& mesh, const Names& names)
+{
+    if (mesh.face_points.size() != mesh.faces.size())
+        return fmt::format("{} faces but {} faces of points", mesh.faces.size(), mesh.face_points.size());
+    for (const int v : mesh.seam_vertices)
+        if (v < 0 || v >= mesh.vertex_count()) return fmt::format("a point is of vertex {}", v);
+    std::vector<char> is_used(mesh.material.size(), 0);
+    for (int f = 0; f < mesh.face_count(); ++f)
+        for (int k = 0; k < 3; ++k) {
+            const int point = mesh.face_points[f][k];
+            if (point < 0 || point >= static_cast<int>(mesh.material.size()) ||
+                mesh.vertex_of(point) != mesh.faces[f][k])
+                return fmt::format("face {} has a point of another vertex", names.face(f));
+            is_used[point] = 1;
+        }
+    for (std::size_t p = 0; p < is_used.size(); ++p)
+        if (is_used[p] == 0)
+            return fmt::format("a point of vertex {} belongs to no face",
+                               names.vertex(mesh.vertex_of(static_cast<int>(p))));
+    return {};
+}
+
 std::string find_bad_index(const ClothMesh& mesh, const Names& names)
 {
     const int n = mesh.vertex_count();
-    if (mesh.material.size() != mesh.world.size())
+    if (mesh.material.size() != mesh.world.size() + mesh.seam_vertices.size())
         return fmt::format("{} material but {} world coordinates", mesh.material.size(), mesh.world.size());
     std::vector<char> is_used(mesh.world.size(), 0);
     for (int f = 0; f < mesh.face_count(); ++f) {
@@ -93,16 +116,17 @@ std::string find_bad_index(const ClothMesh& mesh, const Names& names)
     }
     for (int v = 0; v < n; ++v)
         if (is_used[v] == 0) return fmt::format("vertex {} belongs to no face", names.vertex(v));
-    return {};
+    return mesh.has_seams() || !mesh.seam_vertices.empty() ? find_bad_point(mesh, names) : "";
 }
 
 std::string find_bad_coordinate(const ClothMesh& mesh, const Names& names)
 {
+    for (int p = 0; p < static_cast<int>(mesh.material.size()); ++p)
+        if (const Vec2& X = mesh.material[p]; !X.allFinite())
+            return fmt::format("vertex {} has material coordinates ({}, {})", names.vertex(mesh.vertex_of(p)),
+                               X.x(), X.y());
     for (int v = 0; v < mesh.vertex_count(); ++v) {
-        const Vec2& X = mesh.material[v];
         const Vec3& x = mesh.world[v];
-        if (!X.allFinite())
-            return fmt::format("vertex {} has material coordinates ({}, {})", names.vertex(v), X.x(), X.y());
         if (!x.allFinite())
             return fmt::format("vertex {} is at ({}, {}, {})", names.vertex(v), x.x(), x.y(), x.z());
     }
@@ -164,8 +188,8 @@ std::string find_bow_tie(const ClothMesh& mesh, const std::vector<Side>& sides, 
 std::string find_bad_orientation(const ClothMesh& mesh, const Names& names)
 {
     for (int f = 0; f < mesh.face_count(); ++f) {
-        const auto& [a, b, c] = mesh.faces[f];
-        const int turn = exact_orientation(mesh.material[a], mesh.material[b], mesh.material[c]);
+        const auto [a, b, c] = mesh.corners(f);
+        const int turn = exact_orientation(a, b, c);
         if (turn < 0) return fmt::format("face {} is clockwise in material space", names.face(f));
         if (turn == 0) return fmt::format("face {} has no material area", names.face(f));
     }

@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "geometry/cgal.h"
 #include "geometry/cloth/euler_characteristic.h"
 #include "geometry/cloth/mesh_pieces.h"
 #include "geometry/cloth/mesh_topology.h"
+#include "geometry/cloth/sewing.h"
 #include "geometry/cloth/sub_mesh.h"
 #include "geometry/cloth_input/chart_overlap.h"
 #include "geometry/cloth_input/cloth_obj.h"
@@ -27,8 +30,7 @@
 namespace arris {
 namespace {
 
-constexpr const char* kTubeAdvice =
-    "; a tube cannot be simulated yet: open it along a seam, and move the two sides apart";
+constexpr const char* kTubeAdvice = "; a tube needs UVs that part it along a seam";
 
 struct FileVertex {
     Vec3 position;
@@ -68,15 +70,15 @@ class ClothReader {
         require_areas();
         for (const std::string& wrong : {find_doubled_face(placed_), find_branching_edge(placed_)})
             if (!wrong.empty()) refuse(wrong);
-        require_single_uvs();
         if (file_.has_uv) {
             take_uvs();
         } else {
             flatten();
         }
         orient();
-        require_manifold();
         require_no_overlap();
+        sew_places();
+        require_manifold();
         return {mesh_, warnings_, file_.has_uv};
     }
 
@@ -230,29 +232,6 @@ class ClothReader {
                                              kLargestCoordinate));
     }
 
-    // A place with two UVs is a seam, at which the cloth would come apart, or two pieces touch there.
-    void require_single_uvs() const
-    {
-        std::vector<int> order(file_.vertices.size());
-        for (std::size_t v = 0; v < order.size(); ++v) order[v] = static_cast<int>(v);
-        const auto place = [&](int v) { return file_.vertices[v].place(); };
-        std::sort(order.begin(), order.end(), [&](int v, int w) { return place(v) < place(w); });
-        const auto twin = std::adjacent_find(order.begin(), order.end(),
-                                             [&](int v, int w) { return place(v) == place(w); });
-        if (twin == order.end()) return;
-        const int first = std::min(*twin, *(twin + 1)), second = std::max(*twin, *(twin + 1));
-        const FileVertex &a = file_.vertices[first], &b = file_.vertices[second];
-        const std::vector<int> piece = label_pieces(static_cast<int>(file_.vertices.size()), file_.faces);
-        refuse(fmt::format(
-            "vertex ({}, {}, {}) has two UVs, ({}, {}) and ({}, {}): {}", a.position.x(), a.position.y(),
-            a.position.z(), a.uv.x(), a.uv.y(), b.uv.x(), b.uv.y(),
-            piece[first] == piece[second]
-                ? "a tube, or a piece with a UV seam, cannot be simulated yet; allowed: one UV at each place "
-                  "(open the cloth along its seam, and move the two sides apart)"
-                : "two pieces touch there, and cannot be sewn together yet; allowed: pieces that are apart, "
-                  "such as layers with a distance between them, or one UV at each place"));
-    }
-
     void place_in_world()
     {
         mesh_.faces = file_.faces;
@@ -260,17 +239,16 @@ class ClothReader {
             mesh_.world.push_back(to_z_up_ * (unit_ * vertex.position));
         placed_ = {{}, {}, file_.faces, file_.corners, file_.lines};
         std::map<decltype(FileVertex().place()), int> index;
-        std::vector<int> place;
         for (std::size_t v = 0; v < file_.vertices.size(); ++v) {
             const auto [found, is_new] =
                 index.emplace(file_.vertices[v].place(), static_cast<int>(placed_.places.size()));
-            place.push_back(found->second);
+            place_.push_back(found->second);
             if (!is_new) continue;
             placed_.places.push_back(mesh_.world[v]);
             placed_.numbers.push_back(file_.numbers[v]);
         }
         for (Face& face : placed_.faces)
-            for (int& v : face) v = place[v];
+            for (int& v : face) v = place_[v];
     }
 
     void require_areas() const
@@ -327,7 +305,7 @@ class ClothReader {
         return exact_orientation(mesh_.material[a], mesh_.material[b], mesh_.material[c]);
     }
 
-    // Makes every face counter-clockwise in material space; mirrors the chart if all are clockwise.
+    // Makes every face counter-clockwise in material space; mirrors charts whose faces all are clockwise.
     void orient()
     {
         std::vector<int> turns;
@@ -336,23 +314,43 @@ class ClothReader {
             if (turns[f] == 0)
                 refuse(placed_.describe(f) + " has no area in material space (its UVs lie on a line)");
         }
-        const auto clockwise = std::count(turns.begin(), turns.end(), -1);
-        if (clockwise == 0) return;
-        if (clockwise < mesh_.face_count()) refuse(explain_turns(placed_, turns));
-        mirror();
+        if (std::count(turns.begin(), turns.end(), -1) == 0) return;
+        const std::vector<int> chart = label_pieces(mesh_.vertex_count(), mesh_.faces);
+        std::map<int, int> turn_of;  // of each chart
+        for (int f = 0; f < mesh_.face_count(); ++f)
+            if (turn_of.emplace(chart[mesh_.faces[f][0]], turns[f]).first->second != turns[f])
+                refuse(explain_turns(placed_, turns));
+        int mirrored = 0;
+        for (const auto& [label, turn] : turn_of)
+            if (turn < 0) {
+                mirror(chart, label);
+                ++mirrored;
+            }
+        const std::string whose =
+            mirrored == static_cast<int>(turn_of.size())
+                ? "its UVs are"
+                : fmt::format("the UVs of {} of its {} charts are", mirrored, turn_of.size());
+        warnings_.push_back(
+            fmt::format("{}: {} mirrored; u was turned round (u became u_min + u_max - u)", path_, whose));
     }
 
-    void mirror()
+    void mirror(const std::vector<int>& chart, int label)
     {
-        double least = mesh_.material.front().x();
-        double most = least;
-        for (const Vec2& X : mesh_.material) {
-            least = std::min(least, X.x());
-            most = std::max(most, X.x());
+        double least = std::numeric_limits<double>::infinity(), most = -least;
+        for (std::size_t v = 0; v < chart.size(); ++v) {
+            if (chart[v] != label) continue;
+            least = std::min(least, mesh_.material[v].x());
+            most = std::max(most, mesh_.material[v].x());
         }
-        for (Vec2& X : mesh_.material) X.x() = least + most - X.x();
-        warnings_.push_back(path_ +
-                            ": its UVs are mirrored; u was turned round (u became u_min + u_max - u)");
+        for (std::size_t v = 0; v < chart.size(); ++v)
+            if (chart[v] == label) mesh_.material[v].x() = least + most - mesh_.material[v].x();
+    }
+
+    // A place with several UVs is on a seam.
+    void sew_places()
+    {
+        mesh_ = sew(std::move(mesh_), place_);
+        if (mesh_.has_seams()) file_.numbers = placed_.numbers;
     }
 
     void require_manifold() const
@@ -379,7 +377,8 @@ class ClothReader {
     FileMesh file_;
     std::map<int, int> joined_;  // a vertex, and the earlier one that stands for it
     ClothMesh mesh_;
-    PlacedFaces placed_;  // the mesh with one vertex at each place
+    std::vector<int> place_;  // of each vertex of the file: index of its place
+    PlacedFaces placed_;      // the mesh with one vertex at each place
     std::vector<std::string> warnings_;
 };
 

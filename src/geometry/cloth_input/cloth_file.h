@@ -19,14 +19,15 @@ struct ClothFile {
 /// the initial world positions, and UVs times `uv_scale` (m) the material coordinates. Flat pieces
 /// without UVs are their own charts (flat_charts.h). `unit_in_metres` scales positions, not UVs. `up` is the
 /// file's up axis, 'x', 'y' or 'z'; a rotation about a single axis turns it to +z. The only format is OBJ.
-/// Coordinates are the doubles nearest to the file's numbers (times `unit_in_metres`). Several pieces are
-/// allowed if their charts do not overlap. Vertices are numbered in the order of their first use by faces. A
+/// Coordinates are the doubles nearest to the file's numbers (times `unit_in_metres`). Places with
+/// several UVs are seams, along which charts are sewn together, or a chart to itself: a tube. Charts must not
+/// overlap. Vertices are numbered in the order of their first use by faces. A
 /// chart that is mirrored as a whole is mirrored back, with a warning.
 ///
 /// Throws InputError naming the file if the mesh cannot be cloth:
 ///  - file unreadable, truncated or without faces; coordinates not finite or out of range;
 ///  - mesh not manifold, faces twice, without area or crossing themselves;
-///  - UV seams (a place with two UVs), overlapping or folded charts, a curved piece without UVs.
+///  - overlapping or folded charts, charts that touch in a single place, a curved piece without UVs.
 ClothFile read_cloth_file(const std::string& path, double unit_in_metres, char up, double uv_scale = 1.0);
 
 }  // namespace arris

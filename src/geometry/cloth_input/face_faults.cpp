@@ -127,7 +127,7 @@ std::string describe_turned(const PlacedFaces& mesh, const std::vector<int>& tur
         name_faces(mesh, turned), is_one ? "its" : "their");
 }
 
-std::string describe_turned_faces(const PlacedFaces& mesh, std::span<const Side> edge)
+std::string describe_fold(const PlacedFaces& mesh, std::span<const Side> edge)
 {
     ClothMesh cloth;
     cloth.world = mesh.places;
@@ -137,19 +137,6 @@ std::string describe_turned_faces(const PlacedFaces& mesh, std::span<const Side>
         "allowed: UVs at which no two faces overlap{}",
         mesh.numbers[edge[0].low], mesh.numbers[edge[0].high], name_faces(mesh, {edge[0].face, edge[1].face}),
         euler_characteristic(cloth) > 0 ? "" : "; a tube cannot be laid out with one UV at each place");
-}
-
-std::string describe_mirrored(const PlacedFaces& mesh, const std::vector<std::vector<int>>& parts,
-                              const std::vector<int>& turns)
-{
-    std::vector<int> all;
-    for (const std::vector<int>& part : parts) all.insert(all.end(), part.begin(), part.end());
-    std::sort(all.begin(), all.end());
-    const std::vector<int> mirrored = find_minority(all, turns);
-    return fmt::format(
-        "{} of {} triangles are clockwise in material space, unlike those of other pieces: {}; "
-        "allowed: pieces that all run the same way (turn these faces over, or mirror their UVs)",
-        mirrored.size(), mesh.faces.size(), name_faces(mesh, mirrored));
 }
 
 }  // namespace
@@ -225,9 +212,7 @@ std::string explain_turns(const PlacedFaces& mesh, const std::vector<int>& turns
         const std::vector<int> minority = find_minority(part, turns);
         turned.insert(turned.end(), minority.begin(), minority.end());
     }
-    if (!turned.empty()) return describe_turned(mesh, turned);
-    if (!fold.empty()) return describe_turned_faces(mesh, fold);
-    return describe_mirrored(mesh, parts, turns);
+    return turned.empty() ? describe_fold(mesh, fold) : describe_turned(mesh, turned);
 }
 
 }  // namespace arris

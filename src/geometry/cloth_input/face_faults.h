@@ -31,9 +31,9 @@ std::string find_doubled_face(const PlacedFaces& mesh);
 /// An edge of more than two faces.
 std::string find_branching_edge(const PlacedFaces& mesh);
 
-/// Why triangles run in different directions in the material: some are turned over against their neighbours,
-/// or the chart is folded, or a piece is mirrored. `turns` are the triangles' exact orientations, 1 or -1,
-/// both of which occur; no edge may have more than two faces.
+/// Why triangles of a chart run in different directions in the material: some are turned over against their
+/// neighbours, or the chart is folded. `turns` are the triangles' exact orientations, 1 or -1, both of which
+/// occur in that chart; no edge may have more than two faces.
 std::string explain_turns(const PlacedFaces& mesh, const std::vector<int>& turns);
 
 }  // namespace arris

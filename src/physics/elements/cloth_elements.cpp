@@ -54,11 +54,12 @@ ElementColors color_elements(int vertex_count, const std::vector<Element>& eleme
 
 }  // namespace
 
-FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face, int piece)
+FaceElement make_face_element(const std::vector<Vec2>& material, const Face& vertices, const Face& points,
+                              int piece)
 {
-    const Vec2& a = material[face[0]];
-    const Vec2& b = material[face[1]];
-    const Vec2& c = material[face[2]];
+    const Vec2& a = material[points[0]];
+    const Vec2& b = material[points[1]];
+    const Vec2& c = material[points[2]];
     const double doubled = twice_area(a, b, c);
     assert(doubled > 0.0 && "material faces are counter-clockwise");
 
@@ -66,37 +67,83 @@ FaceElement make_face_element(const std::vector<Vec2>& material, const Face& fac
     const auto gradient = [&](const Vec2& from, const Vec2& to) -> Vec2 {
         return Vec2(from.y() - to.y(), to.x() - from.x()) / doubled;
     };
-    return {face, 0.5 * doubled, {gradient(b, c), gradient(c, a), gradient(a, b)}, piece};
+    return {vertices, points, 0.5 * doubled, {gradient(b, c), gradient(c, a), gradient(a, b)}, piece};
 }
 
-double compute_hinge_weight(const std::vector<Vec2>& material, const HingeElement& hinge, double area_c,
-                            double area_d)
+FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face, int piece)
 {
-    const Vec2 e = material[hinge.vertices[1]] - material[hinge.vertices[0]];
-    return hinge.is_crease() ? 3.0 * e.norm() / hinge.crease_width
-                             : 3.0 * e.squaredNorm() / (area_c + area_d);
+    return make_face_element(material, face, face, piece);
+}
+
+FaceElement move_element(const FaceElement& face, const std::vector<Vec2>& material)
+{
+    return make_face_element(material, face.vertices, face.points, face.piece);
+}
+
+namespace {
+
+/// The points in a face at the ends of a hinge's edge.
+std::array<int, 2> ends_in(const FaceElement& face, const HingeElement& hinge)
+{
+    const auto point_of = [&](int vertex) {
+        int k = 0;
+        while (face.vertices[k] != vertex) ++k;
+        return face.points[k];
+    };
+    return {point_of(hinge.vertices[0]), point_of(hinge.vertices[1])};
+}
+
+/// A hinge's edge in the material. On a seam its direction is that in face c.
+struct MaterialEdge {
+    Vec2 way;
+    double squared_length, length;
+    bool is_seam;
+};
+
+MaterialEdge find_edge(const std::vector<Vec2>& material, const HingeElement& hinge, const FaceElement& c,
+                       const FaceElement& d)
+{
+    const auto [a_in_c, b_in_c] = ends_in(c, hinge);
+    const auto [a_in_d, b_in_d] = ends_in(d, hinge);
+    const Vec2 e = material[b_in_c] - material[a_in_c];
+    if (a_in_c == a_in_d && b_in_c == b_in_d) return {e, e.squaredNorm(), e.norm(), false};
+    const double length = 0.5 * (e.norm() + (material[b_in_d] - material[a_in_d]).norm());
+    return {e, length * length, length, true};
+}
+
+}  // namespace
+
+void set_hinge(const std::vector<Vec2>& material, const FaceElement& c, const FaceElement& d,
+               HingeElement& hinge)
+{
+    const MaterialEdge edge = find_edge(material, hinge, c, d);
+    hinge.weight = hinge.is_crease() ? 3.0 * edge.length / hinge.crease_width
+                                     : 3.0 * edge.squared_length / (c.area + d.area);
+    hinge.pieces = {c.piece, d.piece};
+    hinge.share = c.area / (c.area + d.area);
+    hinge.is_seam = edge.is_seam;
 }
 
 std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& material,
                                                    const HingeElement& hinge, const FaceElement& c,
                                                    const FaceElement& d)
 {
-    const Vec2 e = material[hinge.vertices[1]] - material[hinge.vertices[0]];
+    const MaterialEdge edge = find_edge(material, hinge, c, d);
     std::array<Vec2, 4> gradients = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
     if (hinge.is_crease()) {
-        gradients[1] = 3.0 / hinge.crease_width * e.normalized();
+        gradients[1] = 3.0 / hinge.crease_width * edge.way.normalized();
         gradients[0] = -gradients[1];
         return gradients;
     }
     // w = 3 |e|^2 / A: dw = 6 e . de / A - w dA / A, and a face's area grows by A_f b_i . dX_i.
     const double area = c.area + d.area;
-    const double weight = compute_hinge_weight(material, hinge, c.area, d.area);
+    const double weight = 3.0 * edge.squared_length / area;
     for (int i = 0; i < 4; ++i)
         for (const FaceElement* face : {&c, &d})
             for (int k = 0; k < 3; ++k)
                 if (face->vertices[k] == hinge.vertices[i])
                     gradients[i] -= weight * face->area / area * face->gradients[k];
-    const Vec2 along_edge = 6.0 / area * e;
+    const Vec2 along_edge = 6.0 / area * edge.way;
     gradients[0] -= along_edge;
     gradients[1] += along_edge;
     return gradients;
@@ -109,16 +156,16 @@ ClothElements list_elements(const ClothMesh& mesh, const MeshTopology& topology,
     elements.vertex_count = mesh.vertex_count();
     elements.hinge_use = use;
     elements.faces.reserve(mesh.faces.size());
-    for (const Face& face : mesh.faces)
-        elements.faces.push_back(
-            make_face_element(mesh.material, face, materials.piece_at(mesh.material[face[0]])));
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        const Face& points = mesh.points_of(f);
+        elements.faces.push_back(make_face_element(mesh.material, mesh.faces[f], points,
+                                                   materials.piece_at(mesh.material[points[0]])));
+    }
     if (use == HingeUse::None) return elements;
     elements.hinges.reserve(topology.hinges.size());
     for (const Hinge& hinge : topology.hinges) {
         HingeElement made{{hinge.a, hinge.b, hinge.c, hinge.d}, {hinge.face_c, hinge.face_d}};
-        made.weight = compute_hinge_weight(mesh.material, made, elements.faces[hinge.face_c].area,
-                                           elements.faces[hinge.face_d].area);
-        made.piece = elements.faces[hinge.face_c].piece;
+        set_hinge(mesh.material, elements.faces[hinge.face_c], elements.faces[hinge.face_d], made);
         elements.hinges.push_back(made);
     }
     return elements;
@@ -137,12 +184,10 @@ ClothElements make_elements(const ClothMesh& mesh, const MeshTopology& topology,
 void update_elements(const ClothMesh& mesh, const std::vector<char>& is_moved, ClothElements& elements)
 {
     for (FaceElement& face : elements.faces)
-        if (has_moved(is_moved, face.vertices))
-            face = make_face_element(mesh.material, face.vertices, face.piece);
+        if (has_moved(is_moved, face.vertices)) face = move_element(face, mesh.material);
     for (HingeElement& hinge : elements.hinges)
         if (has_moved(is_moved, hinge.vertices))
-            hinge.weight = compute_hinge_weight(mesh.material, hinge, elements.faces[hinge.faces[0]].area,
-                                                elements.faces[hinge.faces[1]].area);
+            set_hinge(mesh.material, elements.faces[hinge.faces[0]], elements.faces[hinge.faces[1]], hinge);
 }
 
 namespace {
@@ -162,9 +207,10 @@ std::vector<double> lump(const ClothElements& elements, const Density& density)
 std::vector<double> piece_areas(const Materials& materials, const ClothMesh& mesh)
 {
     std::vector<double> areas(static_cast<std::size_t>(materials.count()), 0.0);
-    for (const auto& [a, b, c] : mesh.faces)
-        areas[materials.piece_at(mesh.material[a])] +=
-            twice_area(mesh.material[a], mesh.material[b], mesh.material[c]);
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        const std::array<Vec2, 3> corners = mesh.corners(f);
+        areas[materials.piece_at(corners[0])] += twice_area(corners);
+    }
     for (double& area : areas) area *= 0.5;
     return areas;
 }

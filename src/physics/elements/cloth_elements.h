@@ -14,19 +14,23 @@ namespace arris {
 /// sum_i x_i gradients[i]^T (3x2).
 struct FaceElement {
     Face vertices;
+    Face points;        ///< of the material (ClothMesh), at its corners
     double area = 0.0;  ///< m^2, in the material
     std::array<Vec2, 3> gradients;
     int piece = 0;  ///< of the cloth: whose material it has
 };
 
 /// Two faces (a, b, c), (b, a, d) that share the edge (a, b). `weight` = 3 |e|^2 / A, with e the edge and A
-/// the area of both faces, in the material; for a crease, 3 |e| / its width.
+/// the area of both faces, in the material; for a crease, 3 |e| / its width. On a seam |e| is the mean of the
+/// edge's lengths on both sides.
 struct HingeElement {
     std::array<int, 4> vertices;
     std::array<int, 2> faces;
     double weight = 0.0;
-    double crease_width = 0.0;  ///< m; 0 if the hinge is no crease (physics/forces/bending.h)
-    int piece = 0;              ///< of both faces
+    double crease_width = 0.0;           ///< m; 0 if the hinge is no crease (physics/forces/bending.h)
+    std::array<int, 2> pieces = {0, 0};  ///< of its faces
+    double share = 0.5;                  ///< of the first face in the area of both; for unlike pieces
+    bool is_seam = false;                ///< whether its faces have points of their own at the edge
 
     bool is_crease() const { return crease_width > 0.0; }
 };
@@ -80,15 +84,21 @@ double integrate(double Material::*property, const Materials& materials, const C
 /// Mass of each vertex, kg: a third of its faces'.
 std::vector<double> lump_masses(const Materials& materials, const ClothElements& elements);
 
-/// Element of the triangle with corners at `material[face[i]]`, m; it must be counter-clockwise.
+/// Element of the triangle with corners at `material[points[i]]`, m; it must be counter-clockwise.
+FaceElement make_face_element(const std::vector<Vec2>& material, const Face& vertices, const Face& points,
+                              int piece = 0);
+/// The same where every vertex has one point.
 FaceElement make_face_element(const std::vector<Vec2>& material, const Face& face, int piece = 0);
 
-/// `weight` of a hinge with vertices at `material`, m, between faces with these areas.
-double compute_hinge_weight(const std::vector<Vec2>& material, const HingeElement& hinge, double area_c,
-                            double area_d);
+/// The element at other material coordinates of its points.
+FaceElement move_element(const FaceElement& face, const std::vector<Vec2>& material);
 
-/// Derivatives of a hinge's weight by the material coordinates of its vertices, 1/m. `c` and `d` are the
-/// elements of its faces at `material`.
+/// Sets a hinge's weight, pieces and share. `c` and `d` are the elements of its faces at `material`, m.
+void set_hinge(const std::vector<Vec2>& material, const FaceElement& c, const FaceElement& d,
+               HingeElement& hinge);
+
+/// Derivatives of a hinge's weight by the material coordinates of its vertices, 1/m; as set_hinge. The ends
+/// of a seam's edge must not move.
 std::array<Vec2, 4> compute_hinge_weight_gradients(const std::vector<Vec2>& material,
                                                    const HingeElement& hinge, const FaceElement& c,
                                                    const FaceElement& d);

@@ -24,7 +24,7 @@ Mat32 deformation_rate(const FaceState& face, const ExtrapolatedState& state)
 FaceSystem eulerian_inertia_and_loads(const FaceElement& face, const Terms& terms, const Linearization& at)
 {
     const ExtrapolatedState& there = at.flow->extrapolated;
-    const FaceElement element = make_face_element(there.material, face.vertices, face.piece);
+    const FaceElement element = move_element(face, there.material);
     const FaceState state(element, there.position);
     FaceSystem local(at, face.vertices, face.piece, {state.F, state.F, state.F});
     const Mat32 F_rate = deformation_rate(state, there);
@@ -37,7 +37,7 @@ FaceSystem eulerian_inertia_and_loads(const FaceElement& face, const Terms& term
 
 FaceSystem eulerian_elasticity(const FaceElement& face, const Terms& terms, const Linearization& at)
 {
-    const FaceElement element = make_face_element(at.flow->position, face.vertices, face.piece);
+    const FaceElement element = move_element(face, at.flow->position);
     const FaceState state(element, at.position);
     FaceSystem local(at, face.vertices, face.piece, {state.F, state.F, state.F});
     for (const auto& term : terms.faces)
@@ -49,17 +49,17 @@ HingeSystem eulerian_hinge(const HingeElement& hinge, const HingeMoment* moment,
                            const ClothElements& elements, const Terms& terms, const Linearization& at)
 {
     const std::vector<Vec2>& X = at.flow->position;
-    const FaceElement c = make_face_element(X, elements.faces[hinge.faces[0]].vertices);
-    const FaceElement d = make_face_element(X, elements.faces[hinge.faces[1]].vertices);
+    const FaceElement c = move_element(elements.faces[hinge.faces[0]], X);
+    const FaceElement d = move_element(elements.faces[hinge.faces[1]], X);
     HingeElement element = hinge;
-    element.weight = compute_hinge_weight(X, hinge, c.area, d.area);
+    set_hinge(X, c, d, element);
     HingeState state(element, at.position, moment);
     state.weight_gradients = compute_hinge_weight_gradients(X, hinge, c, d);
 
     // Vertices a and b belong to both faces, c and d to one each.
     const Mat32 F_c = FaceState(c, at.position).F, F_d = FaceState(d, at.position).F;
     const Mat32 mean = 0.5 * (F_c + F_d);
-    HingeSystem local(at, hinge.vertices, hinge.piece, {mean, mean, F_c, F_d});
+    HingeSystem local(at, hinge.vertices, hinge.pieces[0], {mean, mean, F_c, F_d});
     for (const auto& term : terms.hinges) term->add(state, local);
     return local;
 }

@@ -19,7 +19,7 @@ struct Crease {
 Crease find_crease(const HingeElement& hinge, const ClothElements& elements, const ExtrapolatedState& there)
 {
     const auto deformation = [&](int face) {
-        const FaceElement element = make_face_element(there.material, elements.faces[face].vertices);
+        const FaceElement element = move_element(elements.faces[face], there.material);
         return FaceState(element, there.position).F;
     };
     const auto [a, b] = std::array{hinge.vertices[0], hinge.vertices[1]};
@@ -56,7 +56,7 @@ std::vector<CreaseForce> find_momentum_flux(const Materials& materials, const Cl
         if (!has_eulerian_vertex<2>(*at.flow, {hinge.vertices[0], hinge.vertices[1]})) continue;
         const Crease crease = find_crease(hinge, elements, at.flow->extrapolated);
         const std::array<Vec3, 2> turned = turned_flow(crease, at.flow->extrapolated.material_velocity);
-        const double density = materials[hinge.piece].density;
+        const double density = materials[hinge.pieces[0]].density;
         found.push_back(
             {crease.vertices, {-density * turned[0], -density * turned[1]}, 0.5 * (crease.F_c + crease.F_d)});
     }

@@ -135,11 +135,21 @@ class HingeTerm {
     virtual void add(const HingeState& hinge, HingeSystem& system) const = 0;
 };
 
+/// The piece whose damping an element has; on a seam that of its first side.
+inline int piece_of(const FaceElement& face)
+{
+    return face.piece;
+}
+inline int piece_of(const HingeElement& hinge)
+{
+    return hinge.pieces[0];
+}
+
 /// Sums the terms of one element (FaceState or HingeState) without flow of material.
 template <int N, typename State, typename ElementTerms>
 LocalSystem<N> sum_terms(const State& state, const ElementTerms& terms, const Linearization& at)
 {
-    LocalSystem<N> local(at, state.element.vertices, state.element.piece);
+    LocalSystem<N> local(at, state.element.vertices, piece_of(state.element));
     for (const auto& term : terms) term->add(state, local);
     return local;
 }

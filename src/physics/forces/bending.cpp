@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/forces/bending.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "physics/elements/hinge_angle.h"
@@ -25,9 +26,16 @@ Response find_response(const HingeElement& hinge, double sigma)
 
 }  // namespace
 
+double Bending::stiffness_of(const HingeElement& hinge) const
+{
+    const double c = stiffness_[hinge.pieces[0]], d = stiffness_[hinge.pieces[1]];
+    if (hinge.pieces[0] == hinge.pieces[1] || !(c > 0.0) || !(d > 0.0)) return std::min(c, d);
+    return 1.0 / (hinge.share / c + (1.0 - hinge.share) / d);
+}
+
 double Bending::energy(const HingeState& hinge) const
 {
-    const double stiffness = stiffness_[hinge.element.piece];
+    const double stiffness = stiffness_of(hinge.element);
     if (!(stiffness > 0.0)) return 0.0;
     const std::optional<HingeAngle> angle = find_hinge_angle(hinge.x);
     if (!angle) return 0.0;
@@ -36,7 +44,7 @@ double Bending::energy(const HingeState& hinge) const
 
 void Bending::add(const HingeState& hinge, HingeSystem& system) const
 {
-    const double stiffness = stiffness_[hinge.element.piece];
+    const double stiffness = stiffness_of(hinge.element);
     if (!(stiffness > 0.0)) return;
     const std::optional<HingeAngle> angle = find_hinge_angle(hinge.x);
     if (!angle) return;

@@ -35,6 +35,9 @@ class Bending : public HingeTerm {
     void add(const HingeState& hinge, HingeSystem& system) const override;
 
   private:
+    /// Of a hinge: on a seam, two plates in series.
+    double stiffness_of(const HingeElement& hinge) const;
+
     std::vector<double> stiffness_;
 };
 

@@ -40,7 +40,8 @@ struct PlateFace {
     FaceElement element;
     std::array<int, 3> hinges;  ///< opposite each corner; the number of hinges where the edge has no moment
     std::array<bool, 3> has_moment = {false, false, false};
-    Mat3 compliance;  ///< zero rows and columns where the edge has no moment
+    Mat3 compliance;            ///< zero rows and columns where the edge has no moment
+    Vec3 scale = Vec3::Ones();  ///< of y: an edge's length in the face over that of its hinge, 1 but on seams
 
     int hinge_count() const
     {
@@ -52,12 +53,36 @@ struct PlateFace {
     {
         return {values[hinges[0]], values[hinges[1]], values[hinges[2]]};
     }
+
+    /// The corner opposite a hinge's edge.
+    int corner_of(const HingeElement& hinge, int side) const
+    {
+        const Face& corners = element.vertices;
+        return static_cast<int>(std::find(corners.begin(), corners.end(), hinge.vertices[2 + side]) -
+                                corners.begin());
+    }
+
+    /// Length, m, of the edge opposite a corner: squared.
+    double squared_length(int corner) const
+    {
+        return 4.0 * element.area * element.area * element.gradients[corner].squaredNorm();
+    }
 };
+
+/// Length, m, of a hinge's edge; on a seam the mean of both sides.
+double length_of(const HingeElement& hinge, const std::vector<PlateFace>& faces)
+{
+    const PlateFace &c = faces[hinge.faces[0]], &d = faces[hinge.faces[1]];
+    const double length = std::sqrt(c.squared_length(c.corner_of(hinge, 0)));
+    if (!hinge.is_seam) return length;
+    return 0.5 * (length + std::sqrt(d.squared_length(d.corner_of(hinge, 1))));
+}
 
 /// Whether the hinge is one of these plates'.
 bool has_moment(const std::vector<PlateMaterial>& plates, const HingeElement& hinge)
 {
-    return !hinge.is_crease() && plates[hinge.piece].stiffness > 0.0;
+    return !hinge.is_crease() && plates[hinge.pieces[0]].stiffness > 0.0 &&
+           plates[hinge.pieces[1]].stiffness > 0.0;
 }
 
 std::vector<PlateFace> list_faces(const std::vector<PlateMaterial>& plates, const ClothElements& elements,
@@ -69,25 +94,28 @@ std::vector<PlateFace> list_faces(const std::vector<PlateMaterial>& plates, cons
         const FaceElement& element = f < inner ? elements.faces[f] : elements.rim[f - inner];
         const bool flows = flow != nullptr && has_eulerian_vertex(*flow, element.vertices);
         faces[f].hinges.fill(static_cast<int>(elements.hinges.size()));
-        faces[f].element =
-            flows ? make_face_element(flow->position, element.vertices, element.piece) : element;
+        faces[f].element = flows ? move_element(element, flow->position) : element;
     }
     for (std::size_t h = 0; h < elements.hinges.size(); ++h) {
         const HingeElement& hinge = elements.hinges[h];
         if (!has_moment(plates, hinge)) continue;
         for (int side = 0; side < 2; ++side) {
             PlateFace& face = faces[hinge.faces[side]];
-            const Face& corners = face.element.vertices;
-            const auto apex = std::find(corners.begin(), corners.end(), hinge.vertices[2 + side]);
-            assert(apex != corners.end() && "a hinge's apexes are corners of its faces");
-            face.hinges[apex - corners.begin()] = static_cast<int>(h);
-            face.has_moment[apex - corners.begin()] = true;
+            const int apex = face.corner_of(hinge, side);
+            assert(apex < 3 && "a hinge's apexes are corners of its faces");
+            face.hinges[apex] = static_cast<int>(h);
+            face.has_moment[apex] = true;
+            // The whole edge has one moment, L m, and so L / L_face m per length of the face's side.
+            if (hinge.is_seam)
+                face.scale[apex] = std::sqrt(face.squared_length(apex)) / length_of(hinge, faces);
         }
     }
     for (PlateFace& face : faces) {
         face.compliance.setZero();
         if (face.hinge_count() == 0) continue;
-        face.compliance = plate_compliance(plates[face.element.piece], face.element);
+        face.compliance = face.scale.asDiagonal() *
+                          plate_compliance(plates[face.element.piece], face.element) *
+                          face.scale.asDiagonal();
         for (int i = 0; i < 3; ++i)
             if (!face.has_moment[i]) {
                 face.compliance.row(i).setZero();
@@ -202,14 +230,6 @@ double signed_sine(const std::array<Vec3, 4>& x)
     return angle ? std::copysign(2.0 * std::sqrt(angle->squared_sine()), sine_of_angle(*angle, x)) : 0.0;
 }
 
-double squared_length(const HingeElement& hinge, const std::vector<PlateFace>& faces)
-{
-    const PlateFace& face = faces[hinge.faces[0]];
-    const Face& corners = face.element.vertices;
-    const auto apex = std::find(corners.begin(), corners.end(), hinge.vertices[2]) - corners.begin();
-    return 4.0 * face.element.area * face.element.area * face.element.gradients[apex].squaredNorm();
-}
-
 /// Adds -dV/dX at fixed positions and moments to the hinges with an EOL vertex. V is the sum of y s / L over
 /// hinges, less the faces' energies, of which each hinge of a face takes an equal share.
 void add_material_forces(const std::vector<PlateMaterial>& plates, const ClothElements& elements,
@@ -227,8 +247,8 @@ void add_material_forces(const std::vector<PlateMaterial>& plates, const ClothEl
         force[1] += along;
         for (const int f : hinge.faces) {
             const PlateFace& face = faces[f];
-            const std::array<Vec2, 3> gradients =
-                plate_energy_gradients(plates[face.element.piece], face.element, face.gather(y));
+            const std::array<Vec2, 3> gradients = plate_energy_gradients(
+                plates[face.element.piece], face.element, face.scale.cwiseProduct(face.gather(y)));
             for (int i = 0; i < 4; ++i)
                 for (int k = 0; k < 3; ++k)
                     if (face.element.vertices[k] == hinge.vertices[i])
@@ -289,7 +309,7 @@ std::vector<HingeMoment> find_hinge_moments(const std::vector<PlateMaterial>& pl
     for (std::size_t h = 0; h < n; ++h) {
         const HingeElement& hinge = elements.hinges[h];
         if (!has_moment(plates, hinge)) continue;
-        length[h] = std::sqrt(squared_length(hinge, faces));
+        length[h] = length_of(hinge, faces);
         sine[h] = signed_sine(HingeState(hinge, position).x);
         q[h] = sine[h] / length[h];
     }

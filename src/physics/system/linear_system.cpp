@@ -252,8 +252,9 @@ void LinearSystem::set_loads(const ClothMesh& mesh, const Terms& terms, const Li
             const Face& face = loaded.faces[corner.face];
             const int v = face[corner.corner];
             if (!at.flow->is_eulerian[v]) continue;
-            const Mat32 F =
-                FaceState(make_face_element(loaded.material, face), at.flow->extrapolated.position).F;
+            const Mat32 F = FaceState(make_face_element(loaded.material, face, loaded.points_of(corner.face)),
+                                      at.flow->extrapolated.position)
+                                .F;
             rhs_.segment<3>(3 * v) -=
                 at.flow->basis[v].transpose() * (F.transpose() * (at.gamma * corner.force));
         }

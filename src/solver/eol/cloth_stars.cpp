@@ -17,6 +17,20 @@ Face turned_to(const Face& face, int vertex)
     return {face[at], face[(at + 1) % 3], face[(at + 2) % 3]};
 }
 
+/// The point of a vertex in a face.
+int point_in(const ClothMesh& mesh, int face, int vertex)
+{
+    const Face& corners = mesh.faces[face];
+    return mesh.points_of(face)[std::find(corners.begin(), corners.end(), vertex) - corners.begin()];
+}
+
+bool is_seam(const ClothMesh& mesh, const MeshEdge& edge)
+{
+    return mesh.has_seams() &&
+           (point_in(mesh, edge.face_left, edge.a) != point_in(mesh, edge.face_right, edge.a) ||
+            point_in(mesh, edge.face_left, edge.b) != point_in(mesh, edge.face_right, edge.b));
+}
+
 }  // namespace
 
 double StarFace::angle() const
@@ -24,14 +38,19 @@ double StarFace::angle() const
     return std::atan2(sides.col(0).cross(sides.col(1)).norm(), sides.col(0).dot(sides.col(1)));
 }
 
-ClothStars make_stars(int vertex_count, const std::vector<Face>& faces)
+ClothStars make_stars(const ClothMesh& mesh)
 {
+    const int vertex_count = mesh.vertex_count();
     ClothStars stars;
-    stars.topology = make_topology(vertex_count, faces);
-    stars.faces = VertexFaces(vertex_count, faces);
+    stars.topology = make_topology(vertex_count, mesh.faces);
+    stars.faces = VertexFaces(vertex_count, mesh.faces);
     stars.border_neighbours.assign(vertex_count, {-1, -1});
+    if (mesh.has_seams()) {
+        stars.is_on_seam.assign(vertex_count, 0);
+        for (const int v : mesh.seam_vertices) stars.is_on_seam[v] = 1;
+    }
     for (const MeshEdge& edge : stars.topology.edges) {
-        if (edge.face_right >= 0) continue;
+        if (edge.face_right >= 0 && !is_seam(mesh, edge)) continue;
         for (const auto& [v, w] : {std::pair(edge.a, edge.b), std::pair(edge.b, edge.a)})
             stars.border_neighbours[v][stars.border_neighbours[v][0] < 0 ? 0 : 1] = w;
     }
@@ -45,11 +64,13 @@ Star look_around(const ClothMesh& mesh, std::span<const int> faces, int vertex,
     star.faces.reserve(faces.size());
     for (const int f : faces) {
         const Face face = turned_to(mesh.faces[f], vertex);
+        const int point = mesh.has_seams() ? point_in(mesh, f, vertex) : vertex;
+        const Face points = turned_to(mesh.points_of(f), point);
         Mat32 Dx;
         Mat2 DX;
         for (int k = 0; k < 2; ++k) {
             Dx.col(k) = positions[face[k + 1]] - positions[vertex];
-            DX.col(k) = mesh.material[face[k + 1]] - mesh.material[vertex];
+            DX.col(k) = mesh.material[points[k + 1]] - mesh.material[point];
         }
         const Vec3 across = Dx.col(0).cross(Dx.col(1));
         if (!(across.norm() > 0.0)) continue;  // collapsed: has no direction
@@ -64,11 +85,30 @@ Star look_around(const ClothMesh& mesh, std::span<const int> faces, int vertex,
     return star;
 }
 
+Vec2 blend_material(const ClothMesh& mesh, const ClothStars& stars, std::span<const int> vertices,
+                    std::span<const double> weights)
+{
+    int common = -1;  // a face that has them all
+    if (mesh.has_seams())
+        for (const int f : stars.faces[vertices[0]])
+            if (std::all_of(vertices.begin(), vertices.end(), [&](int v) {
+                    const Face& face = mesh.faces[f];
+                    return v < 0 || std::find(face.begin(), face.end(), v) != face.end();
+                }))
+                common = f;
+    Vec2 X = Vec2::Zero();
+    for (std::size_t i = 0; i < vertices.size() && vertices[i] >= 0; ++i)
+        X += weights[i] * mesh.material[common < 0 ? vertices[i] : point_in(mesh, common, vertices[i])];
+    return X;
+}
+
 std::optional<Vec2> find_border(const ClothMesh& mesh, const ClothStars& stars, int vertex)
 {
     constexpr double kStraight = 0.9;  // cosine: at a corner the border bends by more than 26 degrees
     const auto [a, b] = stars.border_neighbours[vertex];
     if (a < 0) return std::nullopt;
+    if (!stars.is_on_seam.empty() && stars.is_on_seam[vertex])
+        return Vec2(Vec2::Zero());  // stays, as a corner
     const Vec2 before = (mesh.material[vertex] - mesh.material[a]).normalized();
     const Vec2 after = (mesh.material[b] - mesh.material[vertex]).normalized();
     return before.dot(after) < kStraight ? Vec2(Vec2::Zero()) : Vec2((before + after).normalized());

@@ -17,9 +17,11 @@ namespace arris {
 struct ClothStars {
     MeshTopology topology;
     VertexFaces faces;
-    std::vector<std::array<int, 2>> border_neighbours;  ///< for a border vertex, ascending; else -1
+    /// For a vertex on the border of the material, ascending; else -1. Seams are such borders.
+    std::vector<std::array<int, 2>> border_neighbours;
+    std::vector<char> is_on_seam;  ///< by vertex; empty without seams
 };
-ClothStars make_stars(int vertex_count, const std::vector<Face>& faces);
+ClothStars make_stars(const ClothMesh& mesh);
 
 /// A face at a vertex, relative to that vertex.
 struct StarFace {
@@ -44,6 +46,11 @@ struct Star {
 /// `faces`: the faces at the vertex. `positions`: of the cloth, in any frame. Collapsed faces are left out.
 Star look_around(const ClothMesh& mesh, std::span<const int> faces, int vertex,
                  const std::vector<Vec3>& positions);
+
+/// Material coordinates of the point with these weights of up to three vertices that have a face in common. A
+/// point of a seam is that on either side.
+Vec2 blend_material(const ClothMesh& mesh, const ClothStars& stars, std::span<const int> vertices,
+                    std::span<const double> weights);
 
 /// Material direction of the border through a border vertex, unit; zero at a corner of the cloth; nothing at
 /// inner vertices.

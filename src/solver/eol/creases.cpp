@@ -68,7 +68,7 @@ bool mark_creases(const Creases& creases, const ClothMesh& mesh, ClothElements& 
         const auto [a, b] = std::minmax(hinge.vertices[0], hinge.vertices[1]);
         const bool is_crease =
             std::binary_search(creases.edges.begin(), creases.edges.end(), std::array{a, b});
-        const double width = is_crease ? creases.widths[hinge.piece] : 0.0;
+        const double width = is_crease ? creases.widths[hinge.pieces[0]] : 0.0;
         if (width == hinge.crease_width) continue;
         hinge.crease_width = width;
         is_changed[a] = 1;

@@ -91,12 +91,9 @@ class PatchFitter {
         VelocityField field;
         for (const int f : faces) {
             const Face& face = before_.mesh.faces[f];
-            std::array<Vec2, 3> X;
+            const std::array<Vec2, 3> X = before_.mesh.corners(f);
             std::array<Vec3, 3> x, w;
-            for (int i = 0; i < 3; ++i) {
-                X[i] = before_.mesh.material[face[i]];
-                x[i] = before_.mesh.world[face[i]];
-            }
+            for (int i = 0; i < 3; ++i) x[i] = before_.mesh.world[face[i]];
             const Mat32 F = deformation_gradient(X, x);
             for (int i = 0; i < 3; ++i) w[i] = velocity[face[i]] - F * flow[face[i]];
             field.triangles.push_back(X);
@@ -138,11 +135,10 @@ class PatchFitter {
 
     Heft heft_of(const ClothMesh& mesh, const std::vector<int>& faces) const
     {
-        const std::vector<Vec2>& X = mesh.material;
         Heft heft;
         for (const int f : faces) {
-            const auto& [a, b, c] = mesh.faces[f];
-            heft.add(scene_.materials.at(X[a]), 0.5 * twice_area(X[a], X[b], X[c]));
+            const std::array<Vec2, 3> X = mesh.corners(f);
+            heft.add(scene_.materials.at(X[0]), 0.5 * twice_area(X));
         }
         return heft;
     }
@@ -166,12 +162,11 @@ class PatchFitter {
         const VelocityField field = old_field(faces, before_.velocity, before_.material_velocity);
         const double elastic = find_energies(scene_, creases_before_, before_.mesh).elastic();
         double area = 0.0, length = 0.0;  // length: weighted by area
-        for (const Face& face : before_.mesh.faces) {
-            const Vec2& X = before_.mesh.material[face[0]];
-            const double part =
-                0.5 * twice_area(X, before_.mesh.material[face[1]], before_.mesh.material[face[2]]);
+        for (const int f : faces) {
+            const std::array<Vec2, 3> X = before_.mesh.corners(f);
+            const double part = 0.5 * twice_area(X);
             area += part;
-            length += part * target_length(scene_, before_, X);
+            length += part * target_length(scene_, before_, X[0]);
         }
         const double kinetic = compute_kinetic_energy(scene_.materials, field);
         return std::max(moving_energy(elastic, kinetic, heft_of(before_.mesh, faces), length / area),

@@ -28,7 +28,7 @@ namespace {
 void prepare_stars(const State& state, MeshCache& cache)
 {
     if (cache.faces_of_stars == state.mesh.faces) return;
-    cache.stars = make_stars(state.mesh.vertex_count(), state.mesh.faces);
+    cache.stars = make_stars(state.mesh);
     cache.faces_of_stars = state.mesh.faces;
 }
 
@@ -271,7 +271,7 @@ class MeshTries {
     {
         if (!made.outcome.mesh || made.is_carried_over()) return;
         const ClothMesh& mesh = made.outcome.mesh->surgery.mesh;
-        made.stars = make_stars(mesh.vertex_count(), mesh.faces);
+        made.stars = make_stars(mesh);
         seconds_.move += watch_.lap();
         made.state = transfer(scene_, state_, cache_.stars, *made.outcome.mesh, made.stars, made.transferred,
                               most_strain);

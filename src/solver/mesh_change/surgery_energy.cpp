@@ -63,9 +63,7 @@ class PatchElements {
         HingeElement hinge{{a, b, c, d}, {f, inner >= 0 ? inner : add_rim({b, a, d})}};
         const bool is_crease = crease_width > 0.0 && is_on_trace(surgery_, event_, ids_[a], ids_[b]);
         hinge.crease_width = is_crease ? crease_width : 0.0;
-        hinge.piece = elements_.faces[f].piece;
-        const double area_d = 0.5 * twice_area(material_[b], material_[a], material_[d]);
-        hinge.weight = compute_hinge_weight(material_, hinge, elements_.faces[f].area, area_d);
+        set_hinge(material_, elements_.faces[f], make_element({b, a, d}), hinge);
         elements_.hinges.push_back(hinge);
     }
 

@@ -47,6 +47,19 @@ double turn(const std::vector<Vec3>& x, const Hinge& hinge)
     return std::atan2(sine_of_angle(*angle, corners), angle->normal_c.dot(angle->normal_d));
 }
 
+/// The way along a hinge in the material of one of its faces.
+Vec2 edge_in(const ClothMesh& mesh, int face, const Hinge& hinge)
+{
+    if (!mesh.has_seams()) return mesh.material[hinge.b] - mesh.material[hinge.a];
+    const std::array<Vec2, 3> corners = mesh.corners(face);
+    Vec2 way = Vec2::Zero();
+    for (int k = 0; k < 3; ++k) {
+        if (mesh.faces[face][k] == hinge.b) way += corners[k];
+        if (mesh.faces[face][k] == hinge.a) way -= corners[k];
+    }
+    return way;
+}
+
 /// Adds half of each hinge's second fundamental form to the two faces beside it.
 void add_curvature(const Scene& scene, const State& state, const ClothStars& stars,
                    std::vector<Measures>& faces)
@@ -59,11 +72,11 @@ void add_curvature(const Scene& scene, const State& state, const ClothStars& sta
     }
     for (const Hinge& hinge : stars.topology.hinges) {
         if (folds.contains({hinge.a, hinge.b})) continue;
-        const Vec2 edge = state.mesh.material[hinge.b] - state.mesh.material[hinge.a];
         const double theta = turn(state.mesh.world, hinge);
-        const Sym2 form =
-            0.5 * theta / edge.norm() * Sym2(edge.y() * edge.y(), -edge.x() * edge.y(), edge.x() * edge.x());
         for (const int f : {hinge.face_c, hinge.face_d}) {
+            const Vec2 edge = edge_in(state.mesh, f, hinge);
+            const Sym2 form = 0.5 * theta / edge.norm() *
+                              Sym2(edge.y() * edge.y(), -edge.x() * edge.y(), edge.x() * edge.x());
             faces[f].segment<3>(kSigned) += form;
             faces[f].segment<3>(kSizes) += theta < 0.0 ? Sym2(-form) : form;
         }
@@ -77,12 +90,9 @@ std::vector<Measures> measure_faces(const Scene& scene, const State& state, cons
     add_curvature(scene, state, stars, faces);
     for (std::size_t f = 0; f < faces.size(); ++f) {
         const Face& face = state.mesh.faces[f];
-        std::array<Vec2, 3> X;
+        const std::array<Vec2, 3> X = state.mesh.corners(static_cast<int>(f));
         std::array<Vec3, 3> x, w;
-        for (int i = 0; i < 3; ++i) {
-            X[i] = state.mesh.material[face[i]];
-            x[i] = state.mesh.world[face[i]];
-        }
+        for (int i = 0; i < 3; ++i) x[i] = state.mesh.world[face[i]];
         const Mat32 F = deformation_gradient(X, x);
         for (int i = 0; i < 3; ++i) w[i] = state.velocity[face[i]] - F * state.material_velocity[face[i]];
         const Mat32 gradient = deformation_gradient(X, w);
@@ -102,8 +112,7 @@ std::vector<Measures> spread(const MaterialGrid& grid, const ClothMesh& mesh,
 {
     std::vector<Measures> nodes(static_cast<std::size_t>(grid.size()), Measures::Zero());
     for (std::size_t f = 0; f < faces.size(); ++f) {
-        std::array<Vec2, 3> X;
-        for (int i = 0; i < 3; ++i) X[i] = mesh.material[mesh.faces[f][i]];
+        const std::array<Vec2, 3> X = mesh.corners(static_cast<int>(f));
         double longest = 0.0;
         for (int i = 0; i < 3; ++i) longest = std::max(longest, (X[i] - X[(i + 1) % 3]).norm());
         const int n = std::max(1, static_cast<int>(std::ceil(longest / grid.spacing)));

@@ -193,10 +193,9 @@ FeatureSite make_bend_site(const State& state, const ClothStars& stars, std::int
                            const FeatureBend& bend, const std::array<int, 3>& vertices,
                            const std::array<double, 3>& weights, const Vec3& outward)
 {
-    Vec2 X = Vec2::Zero();
+    const Vec2 X = blend_material(state.mesh, stars, vertices, weights);
     int near = 0, count = 0, border = 0;
     for (int i = 0; i < 3 && vertices[i] >= 0; ++i) {
-        X += weights[i] * state.mesh.material[vertices[i]];
         if (weights[i] > weights[near]) near = i;
         if (!(weights[i] > 0.0)) continue;
         ++count;

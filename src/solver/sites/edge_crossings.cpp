@@ -76,7 +76,7 @@ std::optional<FeatureSite> EdgeCrossings::find(int a, int b, int feature, const 
     }
     const std::optional<double> s = find_share(a, b, feature, reach);
     if (!s || (*s == 0.0 && is_eol(a)) || (*s == 1.0 && is_eol(b))) return std::nullopt;
-    const Vec2 X = (1.0 - *s) * state_.mesh.material[a] + *s * state_.mesh.material[b];
+    const Vec2 X = blend_material(state_.mesh, stars_, std::array{a, b}, std::array{1.0 - *s, *s});
     if (is_beside_fold(a, b, feature, X)) return std::nullopt;
     FeatureSite site = {FeatureId::edge(o_, feature), X, state_.ids[*s < 0.5 ? a : b], normal};
     site.edge = {*s < 1.0 ? a : b, *s > 0.0 ? b : a};
@@ -101,9 +101,10 @@ std::array<Vec3, 2> EdgeCrossings::segment_at(int v, int feature) const
 Vec3 EdgeCrossings::place_of(const FeatureSite& site) const
 {
     const auto& [a, b] = site.edge;
-    const std::vector<Vec2>& X = state_.mesh.material;
-    const double length = (X[b] - X[a]).norm();
-    const double s = length > 0.0 ? (site.material - X[a]).norm() / length : 0.0;
+    const Vec2 first = blend_material(state_.mesh, stars_, std::array{a, b}, std::array{1.0, 0.0}),
+               last = blend_material(state_.mesh, stars_, std::array{a, b}, std::array{0.0, 1.0});
+    const double length = (last - first).norm();
+    const double s = length > 0.0 ? (site.material - first).norm() / length : 0.0;
     return (1.0 - s) * positions_[a] + s * positions_[b];
 }
 

@@ -78,8 +78,7 @@ class SiteFinder {
         const PointOnTriangle closest = closest_on_triangle(obstacle_->mesh().points[contact.element],
                                                             {a, b, c}, (b - a).cross(c - a).normalized());
         if (const std::optional<FeatureSite> at = at_corner_of(v, corner)) return at;
-        Vec2 X = Vec2::Zero();
-        for (int i = 0; i < 3; ++i) X += closest.weights[i] * state_.mesh.material[v[i]];
+        const Vec2 X = blend_material(state_.mesh, stars_, v, closest.weights);
         const auto heaviest = std::max_element(closest.weights.begin(), closest.weights.end());
         return make_corner(corner, X, v[heaviest - closest.weights.begin()], contact.normal);
     }
@@ -105,8 +104,7 @@ class SiteFinder {
             const Vec3 there = p + height * frame->outward;
             const PointOnTriangle closest = closest_on_triangle(there, face, up);
             if (!((closest.point - there).norm() <= kOnSurface * thickness_)) continue;
-            Vec2 X = Vec2::Zero();
-            for (int i = 0; i < 3; ++i) X += closest.weights[i] * state_.mesh.material[v[i]];
+            const Vec2 X = blend_material(state_.mesh, stars_, v, closest.weights);
             const auto heaviest = std::max_element(closest.weights.begin(), closest.weights.end());
             return FeatureSite{FeatureId::edge(o_, feature), X,
                                state_.ids[v[heaviest - closest.weights.begin()]], normal};

@@ -21,12 +21,8 @@ const double kGathered = std::log(20.0);
 /// Material area at a vertex, m^2: a third of its faces'.
 double area_at(const State& state, const ClothStars& stars, int v)
 {
-    const std::vector<Vec2>& X = state.mesh.material;
     double area = 0.0;
-    for (const int f : stars.faces[v]) {
-        const auto& [a, b, c] = state.mesh.faces[f];
-        area += twice_area(X[a], X[b], X[c]) / 6.0;
-    }
+    for (const int f : stars.faces[v]) area += twice_area(state.mesh.corners(f)) / 6.0;
     return area;
 }
 

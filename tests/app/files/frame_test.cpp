@@ -136,6 +136,40 @@ TEST(Frame, ReadsBackItsPieces)
     for (std::size_t n = 0; n < bytes.size(); n += 7) EXPECT_NE(error_of(bytes.substr(0, n)), "") << n;
 }
 
+TEST(Frame, ReadsBackItsSeams)
+{
+    // The example's two triangles, with a point of its own in the second one for vertices 1 and 2.
+    Frame sewn = make_two_pieces();
+    sewn.material = {{0, 0}, {0.25, 0}, {0.25, 0.5}, {2, 0.125}, {1.5, 0}, {1.5, 0.5}};
+    sewn.face_points = {{0, 1, 2}, {5, 3, 4}};
+    sewn.seam_vertices = {1, 2};
+    const TemporaryDirectory dir;
+    write_frame(dir / "a.ply", sewn);
+    const std::string bytes = read_bytes(dir / "a.ply");
+    EXPECT_THAT(bytes, HasSubstr("property int piece\nproperty list uchar int point_indices\nelement edge"));
+    EXPECT_THAT(bytes, HasSubstr("element point 2\nproperty double u\nproperty double v\n"
+                                 "property int vertex\nend_header\n"));
+    const Frame read = read_frame(dir / "a.ply");
+    expect_same_bits(read, sewn);
+    EXPECT_EQ(read.face_points, sewn.face_points);
+    EXPECT_EQ(read.seam_vertices, sewn.seam_vertices);
+    EXPECT_EQ(read.faces_of(1), std::vector<int>{1});
+    const Frame split = split_seams(read);
+    EXPECT_EQ(split.faces, sewn.face_points);
+    EXPECT_EQ(split.world[4], sewn.world[1]);
+    EXPECT_EQ(split.ids[5], sewn.ids[2]);
+    for (std::size_t n = 0; n < bytes.size(); n += 5) EXPECT_NE(error_of(bytes.substr(0, n)), "") << n;
+    for (std::size_t n = body_offset(bytes); n < bytes.size(); ++n) {  // no byte brings it down
+        std::string broken = bytes;
+        broken[n] = static_cast<char>(broken[n] ^ 0x55);
+        error_of(broken);
+    }
+    Frame crossed = sewn;
+    crossed.face_points[1] = {4, 3, 5};
+    write_frame(dir / "b.ply", crossed);
+    EXPECT_THAT(error_of(read_bytes(dir / "b.ply")), HasSubstr("face 1 has a point of another vertex"));
+}
+
 TEST(Frame, ReadsBackWhenEmpty)
 {
     const TemporaryDirectory dir;

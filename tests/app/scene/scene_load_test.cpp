@@ -454,9 +454,8 @@ TEST(SceneLoad, RefusesWhatIsNoSceneFile)
 
     write_bytes(directory / "huge.toml", "");
     std::filesystem::resize_file(directory / "huge.toml", (16 << 20) + 1);
-    EXPECT_EQ(
-        refusal(directory / "huge.toml"),
-        directory / "huge.toml: is 16777217 bytes long; allowed: a scene file of at most 16777216 bytes");
+    EXPECT_EQ(refusal(directory / "huge.toml"),
+              directory / "huge.toml: is 16777217 bytes long; allowed: a file of at most 16777216 bytes");
 }
 
 TEST(SceneLoad, RefusesFoldsThatAreNotIsometric)

@@ -398,7 +398,6 @@ std::vector<Defect> defects()
          "line 5: 'f 1 2 x': 'x' is no index; allowed: 'f' and at least 3"},
         {"uv index out of range", kCorners + kUvs + "f 1/1 2/2 3/9\n",
          "line 9: a face names UV 9, but there are 4"},
-        {"seam", kCorners + kUvs + "vt 5 5\nvt 6 6\nf 1/1 2/2 3/3\nf 1/5 3/6 4/4\n", "two UVs"},
         {"mixed uvs", kCorners + kUvs + "f 1/1 2/2 3/3\nf 1 3 4\n", "some faces have UVs"},
         {"overlapping pieces",
          kCorners + "v 5 0 0\nv 6 0 0\nv 6 1 0\n" + kUvs + "f 1/1 2/2 3/3\nf 5/1 6/2 7/3\n",
@@ -411,11 +410,6 @@ std::vector<Defect> defects()
          kCorners + "v 5 0 0\nv 6 0 0\nv 6 1 0\n" + kUvs +
              "vt 0.9 0.1\nvt 2 0\nvt 2 1\nf 1/1 2/2 3/3\nf 5/5 6/6 7/7\n",
          "overlap in material space"},
-        {"mirrored piece",
-         kCorners + "v 5 0 0\nv 6 0 0\nv 6 1 0\n" + kUvs + "vt 9 0\nvt 8 0\nvt 8 1\n" +
-             "f 1/1 2/2 3/3\nf 5/5 6/6 7/7\n",
-         "1 of 2 triangles are clockwise in material space, unlike those of other pieces: the face of line "
-         "16"},
         {"folded chart", kCorners + "vt 0 0\nvt 1 0\nvt 1 1\nvt 1 0.2\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
          "the chart is folded at edge (1, 3), between the faces of lines 9 and 10"},
         {"faces of both directions", kCorners + "f 1 2 3\nf 1 4 3\n",
@@ -471,37 +465,79 @@ std::string tube(int n, bool has_seam, double tip = 1.0)
     return text;
 }
 
-TEST_F(ClothFileTest, SaysOfTubesAndSeamsWhatIsMissingAndWhatIsAllowed)
+/// Vertices, points beyond those, and faces.
+std::array<int, 3> counts_of(const ClothMesh& mesh)
 {
-    constexpr const char* kSeam =
-        "a tube, or a piece with a UV seam, cannot be simulated yet; allowed: one UV at each place";
-    constexpr const char* kPieces =
-        "two pieces touch there, and cannot be sewn together yet; allowed: pieces";
-    constexpr const char* kTube = "a tube cannot be laid out with one UV at each place";
-    const std::string panels =
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
-        "vt 0 1\nvt 5 0\nvt 6 0\nvt 6 1\nvt 5 1\n";
+    return {mesh.vertex_count(), static_cast<int>(mesh.seam_vertices.size()), mesh.face_count()};
+}
+
+TEST_F(ClothFileTest, SewsWhereOnePlaceHasSeveralUvs)
+{
+    const ClothMesh three = read(tube(3, true)).mesh, many = read(tube(24, true)).mesh,
+                    cone = read(tube(12, true, 0.5)).mesh;
+    EXPECT_EQ(counts_of(three), (std::array{6, 2, 6}));
+    EXPECT_EQ(counts_of(many), (std::array{48, 2, 48}));
+    EXPECT_EQ(counts_of(cone), (std::array{24, 2, 24}));
+    for (const ClothMesh* mesh : {&three, &many, &cone}) EXPECT_EQ(validate(*mesh), "");
+    // Every side of the tube has the same area, that at the seam, too.
+    for (int f = 0; f < many.face_count(); ++f)
+        EXPECT_NEAR(twice_area(many.corners(f)), 2.0 * std::sin(std::acos(-1.0) / 24), 1e-12);
+    EXPECT_EQ(make_topology(many.vertex_count(), many.faces).hinges.size(), 48u) << "none at the rims";
+}
+
+const std::string kPanels =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+    "vt 0 1\nvt 5 0\nvt 6 0\nvt 6 1\nvt 5 1\n";
+
+TEST_F(ClothFileTest, SewsPanelsOfWhichOneIsMirrored)
+{
+    const ClothFile plain = read(kPanels + "f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8\n");
+    EXPECT_EQ(counts_of(plain.mesh), (std::array{6, 2, 4}));
+    EXPECT_EQ(validate(plain.mesh), "");
+    EXPECT_TRUE(plain.warnings.empty());
+    const ClothFile mirrored = read(kPanels + "f 1/1 2/2 3/3 4/4\nf 2/6 5/5 6/8 3/7\n");
+    EXPECT_EQ(mirrored.mesh.material, plain.mesh.material);
+    EXPECT_EQ(validate(mirrored.mesh), "");
+    ASSERT_EQ(mirrored.warnings.size(), 1u);
+    EXPECT_THAT(mirrored.warnings[0], HasSubstr("the UVs of 1 of its 2 charts are mirrored"));
+}
+
+TEST_F(ClothFileTest, SewsAPillow)
+{
+    // Two squares, sewn along all their sides, of five places each: a corner has two UVs, too.
+    const std::string places = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0.1\nv 0.5 0.5 -0.1\n";
+    std::string text = places;
+    for (const double u : {0.0, 3.0})
+        text += fmt::format("vt {0} 0\nvt {1} 0\nvt {1} 1\nvt {0} 1\nvt {2} 0.5\n", u, u + 1.0, u + 0.5);
+    for (int k = 0; k < 4; ++k) text += fmt::format("f {0}/{0} {1}/{1} 5/5\n", k + 1, (k + 1) % 4 + 1);
+    for (int k = 0; k < 4; ++k)
+        text += fmt::format("f {1}/{3} {0}/{2} 6/10\n", k + 1, (k + 1) % 4 + 1, k + 6, (k + 1) % 4 + 6);
+    const ClothFile pillow = read(text);
+    EXPECT_EQ(counts_of(pillow.mesh), (std::array{6, 4, 8}));
+    EXPECT_EQ(validate(pillow.mesh), "");
+    const MeshTopology topology = make_topology(6, pillow.mesh.faces);
+    EXPECT_EQ(topology.hinges.size(), 12u);
+    EXPECT_EQ(std::count(topology.is_border.begin(), topology.is_border.end(), 1), 0);
+}
+
+TEST_F(ClothFileTest, SaysWhatCannotBeSewn)
+{
     const Defect kSeams[] = {
-        {"tube of 3 sides", tube(3, true), kSeam},
-        {"tube of 24 sides", tube(24, true), kSeam},
-        {"cone", tube(12, true, 0.5), kSeam},
-        {"tube with one UV at each place", tube(24, false), kTube},
-        {"panels sewn along a line", panels + "f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8\n", kPieces},
-        {"panels sewn at a corner", panels + "v 2 2 0\nv 1 2 0\nf 1/1 2/2 3/3 4/4\nf 3/5 6/6 7/7 8/8\n",
-         kPieces},
-        {"pillow", panels + "v 0.5 0.5 1\nvt 8 1\nf 1/1 2/2 3/3 4/4\nf 2/5 1/6 9/7\n", ""},
+        {"tube with one UV at each place", tube(24, false),
+         "a tube cannot be laid out with one UV at each place"},
+        {"panels sewn at a corner", kPanels + "v 2 2 0\nv 1 2 0\nf 1/1 2/2 3/3 4/4\nf 3/5 6/6 7/7 8/8\n",
+         "vertex 3 joins parts of the cloth in a single point, where faces 17 and 18 meet"},
+        {"three panels at a seam",
+         kPanels + "v 1 0 1\nv 1 1 1\nvt 8 0\nvt 9 0\nvt 9 1\nvt 8 1\n"
+                   "f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8\nf 2/9 7/10 8/11 3/12\n",
+         "has more than two faces"},
+        {"panels that overlap", kPanels + "f 1/1 2/2 3/3 4/4\nf 2/1 5/2 6/3 3/4\n",
+         "overlap in material space"},
     };
     for (const Defect& seam : kSeams) {
         SCOPED_TRACE(seam.name);
         EXPECT_THAT(refusal(seam.text), HasSubstr(seam.says));
     }
-    // The tube that is opened along its seam is cloth.
-    std::string open = tube(24, true);
-    const std::string last = "f 24/24 1/25 25/50 48/49\n";
-    ASSERT_NE(open.find(last), std::string::npos);
-    open.replace(open.find(last), last.size(),
-                 "v 0.999 -0.01 0\nv 0.999 -0.01 1\nf 24/24 49/25 50/50 48/49\n");
-    EXPECT_EQ(read(open).mesh.vertex_count(), 50);
 }
 
 TEST_F(ClothFileTest, RefusesWhatIsNoObjFile)

@@ -167,7 +167,7 @@ struct ElementAt<4> {
           x(world),
           weight_gradients(compute_hinge_weight_gradients(material, hinge, c, d))
     {
-        hinge.weight = compute_hinge_weight(material, hinge, c.area, d.area);
+        set_hinge(material, c, d, hinge);
         const Mat32 F_c = FaceState(c, x).F, F_d = FaceState(d, x).F;
         deformation = {0.5 * (F_c + F_d), 0.5 * (F_c + F_d), F_c, F_d};
     }

@@ -71,7 +71,7 @@ struct Layers {
         scene.self_contact = ClothContact{kThickness};
         scene.friction = Friction{{0.3}, {}, {}};
         state = make_state(scene, make_layers(), Vec3::Zero());
-        stars = make_stars(state.mesh.vertex_count(), state.mesh.faces);
+        stars = make_stars(state.mesh);
         elements = make_elements(state.mesh, stars.topology);
         prediction = predict(state, Integrator::ImplicitEuler, 0.005);
         carriers = move_obstacles(scene, state, stars.topology.edges, prediction, {}, 0.005);

@@ -30,7 +30,7 @@ struct Sheet {
     /// Ends a step that began with `misfits` and changed nothing.
     void refuse(const std::vector<std::array<VertexId, 2>>& misfits)
     {
-        note_refused_edges(misfits, make_stars(state.mesh.vertex_count(), state.mesh.faces), state);
+        note_refused_edges(misfits, make_stars(state.mesh), state);
         state.step += kRemeshPeriod;
     }
 };

@@ -24,10 +24,7 @@ struct Sheet {
     Scene scene;
     State state;
 
-    std::vector<float> wanted() const
-    {
-        return find_wanted_lengths(scene, state, make_stars(state.mesh.vertex_count(), state.mesh.faces));
-    }
+    std::vector<float> wanted() const { return find_wanted_lengths(scene, state, make_stars(state.mesh)); }
 
     /// Edge length asked for in the middle, m: not the mesh's mean, which is shorter.
     double in_the_middle() const
@@ -213,7 +210,7 @@ TEST(CellLengths, HalveInAHundredthOfASecondAndGrowMoreSlowly)
     Sheet sheet = make_sheet(GridPattern::Cross, 8, [](const Vec2& X) {
         return Vec3(0.02 * std::sin(X.x() / 0.02), X.y(), 0.02 * std::cos(X.x() / 0.02));
     });
-    const ClothStars stars = make_stars(sheet.state.mesh.vertex_count(), sheet.state.mesh.faces);
+    const ClothStars stars = make_stars(sheet.state.mesh);
     const auto now = [&] {
         return interpolate(sheet.scene.remesh->grid, sheet.state.sizing_field, Vec2(0.5, 0.5));
     };

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "geometry/cloth/cloth_mesh.h"
+
+namespace arris {
+
+/// Sews a mesh, in which every point is a vertex, together: points with the same `vertex_of` become one
+/// vertex, where the first of them is. Vertices are numbered from 0 in the order of their first points.
+/// Returned as it is where no vertex has several points.
+ClothMesh sew(ClothMesh parts, const std::vector<int>& vertex_of);
+
+/// One mesh of several, which stay apart.
+ClothMesh join(const std::vector<ClothMesh>& meshes);
+
+}  // namespace arris

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sewn cloth: two halves of a sheet, sewn together along the line that parts them, are the sheet.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "geometry/cloth/mesh_quality.h"
+#include "geometry/obstacle_input/obstacle_shapes.h"
+#include "physics/forces/energies.h"
+#include "physics/forces/make_terms.h"
+#include "solver/step.h"
+#include "tests/validation/cloth_run.h"
+
+namespace arris {
+namespace {
+
+constexpr double kCut = 0.5;     // m, u of the seam
+constexpr double kApart = 0.75;  // m, by which the right half lies farther right in the material
+
+/// Parts the material of a mesh along u = kCut, where it must have edges.
+ClothMesh part_and_sew(ClothMesh mesh)
+{
+    const std::vector<Vec2> whole = mesh.material;
+    std::vector<int> other(whole.size(), -1);  // points of the right half on the seam
+    const auto is_on_seam = [&](int v) { return std::abs(whole[v].x() - kCut) < 1e-12; };
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+        if (whole[v].x() > kCut && !is_on_seam(v)) mesh.material[v].x() += kApart;
+        if (!is_on_seam(v)) continue;
+        other[v] = static_cast<int>(mesh.material.size());
+        mesh.material.push_back(whole[v] + Vec2(kApart, 0.0));
+        mesh.seam_vertices.push_back(v);
+    }
+    for (const Face& face : mesh.faces) {
+        const double middle = (whole[face[0]] + whole[face[1]] + whole[face[2]]).x() / 3.0;
+        Face points = face;
+        for (int& p : points)
+            if (middle > kCut && other[p] >= 0) p = other[p];
+        mesh.face_points.push_back(points);
+    }
+    return mesh;
+}
+
+struct SewnCase {
+    const char* name;
+    BendingModel model;
+    GridPattern pattern;
+    bool is_two_pieces;  ///< of equal materials
+};
+
+void PrintTo(const SewnCase& one, std::ostream* out)
+{
+    *out << one.name;
+}
+
+class Sewn : public ::testing::TestWithParam<SewnCase> {
+  protected:
+    Scene make_scene(bool is_sewn) const
+    {
+        Scene scene;
+        const Material material = {0.15, 500.0, 0.3, 1e-4, 0.001, 1e-3, GetParam().model};
+        scene.materials = material;
+        if (is_sewn && GetParam().is_two_pieces) scene.materials.add(kCut + 0.5 * kApart, material);
+        scene.gravity.emplace();
+        return scene;
+    }
+    ClothMesh whole() const { return make_sheet({1.0, 0.6}, {10, 6}, GetParam().pattern); }
+};
+
+/// Greatest distance between the vertices of two states.
+double distance(const State& a, const State& b)
+{
+    double greatest = 0.0;
+    for (std::size_t v = 0; v < a.mesh.world.size(); ++v)
+        greatest = std::max(greatest, (a.mesh.world[v] - b.mesh.world[v]).norm());
+    return greatest;
+}
+
+TEST_P(Sewn, HasTheAreaAndEnergiesOfTheSheet)
+{
+    ClothMesh sheet = whole();
+    for (Vec3& x : sheet.world)
+        x = Vec3(1.05 * x.x(), x.y(), 0.1 * std::sin(7.0 * x.x()) * std::cos(3.0 * x.y()));
+    const ClothMesh sewn = part_and_sew(sheet);
+    ASSERT_EQ(validate(sewn), "");
+    EXPECT_NEAR(material_area(sewn), material_area(sheet), 1e-15);
+    const auto energies_of = [&](const ClothMesh& mesh, const Scene& scene) {
+        const ClothElements elements = list_elements(mesh, make_topology(mesh.vertex_count(), mesh.faces),
+                                                     HingeUse::Terms, scene.materials);
+        return compute_energies(elements, make_terms(scene.materials, scene.gravity, {}, {}), mesh.world);
+    };
+    const Energies one = energies_of(sheet, make_scene(false)), two = energies_of(sewn, make_scene(true));
+    EXPECT_GT(one.bending, 1e-6);
+    EXPECT_NEAR(two.bending, one.bending, 1e-11 * one.bending);
+    EXPECT_NEAR(two.stretch, one.stretch, 1e-11 * one.stretch);
+    EXPECT_NEAR(two.gravity, one.gravity, 1e-12 * std::abs(one.gravity) + 1e-15);
+}
+
+TEST_P(Sewn, MovesAsTheSheet)
+{
+    const auto run_of = [&](bool is_sewn) {
+        Scene scene = make_scene(is_sewn);
+        scene.pins.push_back({{{0.0, 0.0}, {0.0, 0.6}}, {}});
+        return ClothRun(std::move(scene), is_sewn ? part_and_sew(whole()) : whole(), Vec3(0.0, 0.2, 0.1));
+    };
+    ClothRun sheet = run_of(false), sewn = run_of(true);
+    sheet.advance(0.005);
+    sewn.advance(0.005);
+    EXPECT_LT(distance(sheet.state, sewn.state), 1e-13);
+    for (int k = 1; k < 100; ++k) {
+        sheet.advance(0.005);
+        sewn.advance(0.005);
+    }
+    EXPECT_LT(distance(sheet.state, sewn.state), 1e-6);
+    EXPECT_GT(distance(sheet.state, make_state(sheet.scene, whole(), Vec3::Zero())), 0.3);
+}
+
+TEST_P(Sewn, DrapesAsTheSheet)
+{
+    const auto run_of = [&](bool is_sewn) {
+        Scene scene = make_scene(is_sewn);
+        scene.friction =
+            Friction{std::vector<double>(static_cast<std::size_t>(scene.materials.count()), 0.3), {}, {}};
+        scene.self_contact = ClothContact{1e-3};
+        ClothMesh mesh = whole();
+        lay(mesh, {-0.3, -0.3, 0.22});
+        const Mat3 turn = (Eigen::AngleAxisd(0.4, Vec3::UnitY()) * Eigen::AngleAxisd(0.2, Vec3::UnitX()))
+                              .toRotationMatrix();
+        for (Vec3& x : mesh.world) x = turn * x + Vec3(0.02, 0.01, 0.17);
+        if (is_sewn) mesh = part_and_sew(mesh);
+        scene.obstacles.push_back(MovingObstacle("table", make_box({0.4, 0.4, 0.4}), {}, {}, 30.0));
+        return ClothRun(std::move(scene), std::move(mesh));
+    };
+    ClothRun sheet = run_of(false), sewn = run_of(true);
+    for (int k = 0; k < 100; ++k) {
+        sheet.advance(0.005);
+        sewn.advance(0.005);
+    }
+    EXPECT_LT(distance(sheet.state, sewn.state), 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Seams, Sewn,
+    ::testing::Values(SewnCase{"hinges", BendingModel::Hinge, GridPattern::Diagonal, false},
+                      SewnCase{"plate", BendingModel::Plate, GridPattern::Cross, false},
+                      SewnCase{"hinges_of_two_pieces", BendingModel::Hinge, GridPattern::Cross, true},
+                      SewnCase{"plate_of_two_pieces", BendingModel::Plate, GridPattern::Diagonal, true}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+/// A hinge between two materials is two plates in series.
+TEST(SeamHinge, BendsAsTwoPlatesInSeries)
+{
+    // Two triangles whose areas are 1 : 3, on a seam.
+    ClothMesh mesh;
+    mesh.material = {{0, 0}, {1, 0}, {0.5, 0.5}, {0.5, -1.5}, {9, 0}, {10, 0}};
+    mesh.material[3] = {9.5, -1.5};
+    mesh.world = {{0, 0, 0}, {1, 0, 0}, {0.5, 0.45, 0.2}, {0.5, -1.5, 0}};
+    mesh.faces = {{0, 1, 2}, {1, 0, 3}};
+    mesh.face_points = {{0, 1, 2}, {5, 4, 3}};
+    mesh.seam_vertices = {0, 1};
+    ASSERT_EQ(validate(mesh), "");
+    const auto bending_of = [&](double c, double d) {
+        Materials materials(Material{0.1, 100.0, 0.3, c});
+        materials.add(5.0, Material{0.1, 100.0, 0.3, d});
+        const ClothElements elements =
+            list_elements(mesh, make_topology(4, mesh.faces), HingeUse::Terms, materials);
+        return compute_energies(elements, make_terms(materials, {}, {}, {}), mesh.world).bending;
+    };
+    const double equal = bending_of(1.0, 1.0);
+    EXPECT_NEAR(bending_of(2.0, 6.0), equal * 4.0 / (1.0 / 2.0 + 3.0 / 6.0), 1e-12 * equal);
+    EXPECT_EQ(bending_of(2.0, 0.0), 0.0);
+}
+
+}  // namespace
+}  // namespace arris
