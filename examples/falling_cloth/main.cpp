@@ -17,7 +17,7 @@ int main()
     for (Vec3& x : cloth.world) x += Vec3(-0.3, -0.4, 0.1);  // m; up is +z
 
     Scene scene;
-    scene.material = *find_material_preset("cotton");
+    scene.materials = *find_material_preset("cotton");
     scene.gravity = Gravity{};
     scene.obstacles.emplace_back("box", make_box({0.5, 0.5, 0.1}), Placement{}, RigidMotion{}, 30.0);
     scene.eol = make_initial_target(cloth);

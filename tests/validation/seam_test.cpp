@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "geometry/cloth/mesh_quality.h"
+#include "geometry/cloth/sewing.h"
 #include "geometry/obstacle_input/obstacle_shapes.h"
 #include "physics/forces/energies.h"
+#include "physics/forces/inertia.h"
 #include "physics/forces/make_terms.h"
 #include "solver/step.h"
 #include "tests/validation/cloth_run.h"
@@ -168,6 +171,88 @@ TEST(SeamHinge, BendsAsTwoPlatesInSeries)
     const double equal = bending_of(1.0, 1.0);
     EXPECT_NEAR(bending_of(2.0, 6.0), equal * 4.0 / (1.0 / 2.0 + 3.0 / 6.0), 1e-12 * equal);
     EXPECT_EQ(bending_of(2.0, 0.0), 0.0);
+}
+
+/// A tube of `n` sides about z, sewn to itself along a line; from z = 0 down to -length in `m` rows.
+ClothMesh make_tube(int n, int m, double radius, double length)
+{
+    ClothMesh mesh;
+    std::vector<int> vertex_of;
+    const double side = 2.0 * radius * std::sin(std::numbers::pi / n);
+    for (int j = 0; j <= m; ++j)
+        for (int i = 0; i <= n; ++i) {
+            const double angle = 2.0 * std::numbers::pi * (i % n) / n;
+            mesh.material.push_back({side * i, length * j / m});
+            mesh.world.push_back({radius * std::cos(angle), -radius * std::sin(angle), -length * j / m});
+            vertex_of.push_back(j * n + i % n);
+        }
+    const auto at = [&](int i, int j) { return j * (n + 1) + i; };
+    for (int j = 0; j < m; ++j)
+        for (int i = 0; i < n; ++i) {
+            mesh.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            mesh.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    return sew(mesh, vertex_of);
+}
+
+/// Hung by its rim, a tube of Poisson ratio 0 stretches as a rope: u(z) = rho g (L z - z^2 / 2) / E, at
+/// vertices exactly.
+TEST(SewnTube, HangsAsARope)
+{
+    constexpr double kLength = 0.5, kDensity = 0.2, kModulus = 40.0, kG = 9.81;
+    const ClothMesh tube = make_tube(12, 10, 0.1, kLength);
+    ASSERT_EQ(validate(tube), "");
+    Scene scene;
+    scene.materials = Material{kDensity, kModulus, 0.0, 0.0};
+    scene.gravity.emplace();
+    scene.pins.push_back({{{0.0, 0.0}, {1.0, 0.0}}, {}});
+    ClothRun run(std::move(scene), tube);
+    settle(run);
+    double worst = 0.0;
+    for (std::size_t v = 0; v < tube.world.size(); ++v) {
+        const double z = -tube.world[v].z();
+        const double u = kDensity * kG * (kLength * z - 0.5 * z * z) / kModulus;
+        worst = std::max(worst, (run.state.mesh.world[v] - (tube.world[v] - Vec3(0.0, 0.0, u))).norm());
+    }
+    EXPECT_LT(worst, 1e-6);
+}
+
+TEST(SewnTube, KeepsItsMomentumInFlight)
+{
+    Scene scene;
+    scene.materials = Material{0.2, 300.0, 0.3, 1e-4};
+    ClothRun run(std::move(scene), make_tube(9, 6, 0.1, 0.3), Vec3(1.0, -2.0, 3.0));
+    for (std::size_t v = 0; v < run.state.velocity.size(); ++v)
+        run.state.velocity[v] += Vec3(std::sin(7.0 * v), std::cos(5.0 * v), std::sin(3.0 * v));
+    const auto momentum = [&] {
+        return linear_momentum(run.scene.materials, run.work.mesh.elements, run.state.velocity);
+    };
+    run.advance(0.002);
+    const Vec3 before = momentum();
+    for (int k = 0; k < 50; ++k) run.advance(0.002);
+    EXPECT_LT((momentum() - before).norm(), 1e-12 * before.norm());
+}
+
+/// Two fabrics in series, of Poisson ratio 0: each stretches by F / (E width) of its length.
+TEST(SewnStrip, OfTwoFabricsStretchesAsTheyDoInSeries)
+{
+    constexpr double kWidth = 0.6, kFirst = 50.0, kSecond = 200.0, kForce = 1.2;
+    const ClothMesh strip = part_and_sew(make_sheet({1.0, kWidth}, {10, 6}, GridPattern::Diagonal));
+    Scene scene;
+    scene.materials = Material{0.1, kFirst, 0.0, 1e-5};
+    scene.materials.add(kCut + 0.5 * kApart, Material{0.4, kSecond, 0.0, 1e-3});
+    scene.pins.push_back({{{0.0, 0.0}, {0.0, kWidth}}, {}});
+    scene.pulls.push_back({{{1.0 + kApart, 0.0}, {1.0 + kApart, kWidth}}, Vec3(kForce, 0.0, 0.0)});
+    ClothRun run(std::move(scene), strip);
+    settle(run);
+    const double tension = kForce / kWidth;
+    double worst = 0.0;
+    for (std::size_t v = 0; v < strip.world.size(); ++v) {
+        const double x = strip.world[v].x();
+        const double u = tension * (std::min(x, kCut) / kFirst + std::max(x - kCut, 0.0) / kSecond);
+        worst = std::max(worst, (run.state.mesh.world[v] - (strip.world[v] + Vec3(u, 0.0, 0.0))).norm());
+    }
+    EXPECT_LT(worst, 1e-9);
 }
 
 }  // namespace
