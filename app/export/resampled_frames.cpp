@@ -58,8 +58,8 @@ MaterialBox require_rectangle(const Frame& first)
     Eigen::AlignedBox2d box;
     for (const Vec2& X : first.material) box.extend(X);
     double area = 0.0, length = 0.0;
-    for (const Face& face : first.faces) area += 0.5 * twice_area_of(first.material, face);
-    for (const auto& [edge, face] : find_border(first.faces))
+    for (const Face& face : first.corners()) area += 0.5 * twice_area_of(first.material, face);
+    for (const auto& [edge, face] : find_border(first.corners()))
         length += (first.material[edge[1]] - first.material[edge[0]]).norm();
     if (first.faces.empty() || !is_near(area, box.volume()) || !is_near(length, 2.0 * box.sizes().sum()))
         throw InputError(

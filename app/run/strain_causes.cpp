@@ -166,7 +166,9 @@ Cause pins_at(const RunConfig& config, double time, double sign)
             for (const HeldVertex& a : held[i])
                 for (const HeldVertex& b : held[j]) {
                     const double length = (a.material - b.material).norm();
-                    if (!(length > 0.0)) continue;
+                    const Materials& materials = config.scene.materials;
+                    if (!(length > 0.0) || materials.piece_at(a.material) != materials.piece_at(b.material))
+                        continue;
                     const double strain = sign * ((a.world - b.world).norm() / length - 1.0);
                     if (!(strain > cause.strain)) continue;
                     cause.strain = strain;

@@ -277,7 +277,9 @@ void check_meetings(const SceneDocument& document, const RunConfig& config)
             refuse_miss(document, fmt::format("pull.{}.material", i), config,
                         piece_of(config, config.as_run["pull"][i]), "contains no cloth");
     for (std::size_t i = 0; i < config.probes.size(); ++i)
-        if (locate(cloth, config.probes[i].material).face < 0)
+        if (const ClothPiece& piece = piece_of(config, config.as_run["probe"][i]);
+            locate(cloth, config.probes[i].material).face < 0 ||
+            !(config.probes[i].material.x() >= piece.begin && config.probes[i].material.x() < piece.end))
             refuse_miss(document, fmt::format("probe.{}.material", i), config,
                         piece_of(config, config.as_run["probe"][i]), "is not on the cloth");
 }

@@ -14,14 +14,14 @@ namespace {
 
 bool is_mesh_size(const std::string& key)
 {
-    return key == "cloth.resolution" || key == "cloth.edge_length";
+    return without_piece(key) == "cloth.resolution" || without_piece(key) == "cloth.edge_length";
 }
 
 std::string axis_label(const std::string& key, bool has_error)
 {
     if (is_mesh_size(key) && !has_error) return "vertices of the cloth";
-    if (key == "cloth.resolution") return "cells along the cloth's longer side";
-    if (key == "cloth.edge_length") return "edge length (m)";
+    if (without_piece(key) == "cloth.resolution") return "cells along the cloth's longer side";
+    if (without_piece(key) == "cloth.edge_length") return "edge length (m)";
     if (key == "time.step") return "time step (s)";
     return key;
 }

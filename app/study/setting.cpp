@@ -67,7 +67,7 @@ bool is_number(const SceneValue& value)
 std::optional<double> number_of(const std::string& key, const SceneValue& value)
 {
     if (is_number(value)) return value.number;
-    if (key != kResolution || value.kind != SceneValue::Kind::Array || value.items.empty())
+    if (without_piece(key) != kResolution || value.kind != SceneValue::Kind::Array || value.items.empty())
         return std::nullopt;
     if (!std::all_of(value.items.begin(), value.items.end(), is_number)) return std::nullopt;
     double most = 0.0;
@@ -91,6 +91,15 @@ Setting make_setting(const std::string& key, const SceneValue& value)
     return {key, toml, value.kind == SceneValue::Kind::Text ? value.text : toml, number_of(key, value)};
 }
 
+std::string without_piece(const std::string& key)
+{
+    constexpr std::string_view kCloth = "cloth.";
+    if (!key.starts_with(kCloth)) return key;
+    const std::size_t end = key.find_first_not_of("0123456789", kCloth.size());
+    const bool is_index = end != std::string::npos && end > kCloth.size() && key[end] == '.';
+    return is_index ? std::string(kCloth) + key.substr(end + 1) : key;
+}
+
 std::string assignment(const Setting& setting)
 {
     return setting.key + "=" + setting.toml;
@@ -109,7 +118,7 @@ bool is_numerical_key(const std::string& key)
     constexpr std::array<std::string_view, 4> kKeys = {kResolution, "cloth.pattern", "cloth.pattern_angle",
                                                        "cloth.edge_length"};
     return std::any_of(kTables.begin(), kTables.end(), [&](auto table) { return key.starts_with(table); }) ||
-           std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
+           std::find(kKeys.begin(), kKeys.end(), without_piece(key)) != kKeys.end();
 }
 
 std::string label_setting(const Setting& setting)

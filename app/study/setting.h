@@ -29,6 +29,9 @@ std::string assignment(const Setting& setting);
 /// The setting of a key, or null.
 const Setting* find_setting(const std::vector<Setting>& settings, const std::string& key);
 
+/// The key without the index of a piece of cloth: "cloth.resolution" for "cloth.1.resolution".
+std::string without_piece(const std::string& key);
+
 /// Whether a key changes how a problem is computed (mesh, time step, solver, EOL vertices, output), not the
 /// problem itself: runs that differ only in such keys should have the same result.
 bool is_numerical_key(const std::string& key);

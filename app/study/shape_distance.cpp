@@ -39,7 +39,7 @@ class MaterialMap {
     static std::vector<BoxTree::Box> material_boxes(const Frame& frame)
     {
         std::vector<BoxTree::Box> boxes;
-        for (const auto& face : frame.faces) {
+        for (const auto& face : frame.corners()) {
             BoxTree::Box box;
             for (const int corner : face)
                 box.extend(Vec3(frame.material[corner].x(), frame.material[corner].y(), 0.0));
@@ -52,7 +52,7 @@ class MaterialMap {
 
     std::optional<Vec3> weights_in(int face, const Vec2& point) const
     {
-        const auto& corners = frame_.faces[face];
+        const auto& corners = frame_.corners()[face];
         const Vec2 &a = frame_.material[corners[0]], &b = frame_.material[corners[1]],
                    &c = frame_.material[corners[2]];
         const double area = cross(b - a, c - a);

@@ -43,7 +43,7 @@ std::size_t count_different(const Study& study, const std::vector<std::string>& 
 /// How readily a key is left out where the others determine it.
 int rank_of(const Study& study, const std::string& key)
 {
-    if (key == "cloth.resolution") return 3;
+    if (without_piece(key) == "cloth.resolution") return 3;
     if (key == "time.step") return 2;
     return is_numeric(study, key) ? 1 : 0;
 }

@@ -39,7 +39,7 @@ std::string curve_name(const StudyCurve& curve)
 std::string slope_text(const StudyCurve& curve, const std::string& key, bool has_error)
 {
     if (!curve.slope) return "";
-    const double sign = has_error && key == "cloth.resolution" ? -1.0 : 1.0;
+    const double sign = has_error && without_piece(key) == "cloth.resolution" ? -1.0 : 1.0;
     const double rounded = 0.01 * std::round(100.0 * sign * *curve.slope) + 0.0;  // no minus before a zero
     return fmt::format(" ({} {:.2f})", has_error ? "order" : "exponent", rounded);
 }

@@ -98,7 +98,7 @@ FlowedMaterial find_flowed_material(const Prediction& prediction, const std::vec
                                     const Eigen::VectorXd& velocity)
 {
     FlowedMaterial flowed = {prediction.material,
-                             std::vector<Vec2>(prediction.material.size(), Vec2::Zero())};
+                             std::vector<Vec2>(prediction.material_velocity.size(), Vec2::Zero())};
     for (const EolCoordinates& at : eol) {
         Vec2& flow = flowed.velocity[at.vertex];
         flow = at.material_basis * velocity.segment<3>(3 * at.vertex);

@@ -242,23 +242,12 @@ Eigen::AlignedBox2d material_box(const ClothMesh& mesh)
     return box;
 }
 
-double longest_edge(const ClothMesh& mesh)
-{
-    double longest = 0.0;
-    for (int f = 0; f < mesh.face_count(); ++f) {
-        const std::array<Vec2, 3> corners = mesh.corners(f);
-        for (int k = 0; k < 3; ++k) longest = std::max(longest, (corners[k] - corners[(k + 1) % 3]).norm());
-    }
-    return longest;
-}
-
-/// Room between neighbouring pieces in the plane of all material: what is near a piece there is its own.
+/// Room between neighbouring pieces in the plane of all material: what is near a piece there is its own. It
+/// does not depend on the meshes, so that a material point is at one place for every resolution.
 double room_between(const std::vector<ClothMesh>& meshes)
 {
-    constexpr double kEdges = 8.0, kShare = 0.1;
     double room = 0.0;
-    for (const ClothMesh& mesh : meshes)
-        room = std::max({room, kEdges * longest_edge(mesh), kShare * material_box(mesh).sizes().x()});
+    for (const ClothMesh& mesh : meshes) room = std::max(room, material_box(mesh).sizes().maxCoeff());
     return room;
 }
 
@@ -319,6 +308,18 @@ void make_scene_cloth(const SceneDocument& document, RunConfig& config)
     config.cloth = join(meshes);
 }
 
+namespace {
+
+/// Index of the piece that a place in the plane of all material belongs to.
+int piece_at(const std::vector<ClothPiece>& pieces, const Vec2& X)
+{
+    int piece = 0;
+    while (piece + 1 < static_cast<int>(pieces.size()) && X.x() >= pieces[piece + 1].begin) ++piece;
+    return piece;
+}
+
+}  // namespace
+
 void take_scene_cloth(const LoadOptions& options, RunConfig& config)
 {
     config.cloth = *options.cloth;
@@ -327,9 +328,22 @@ void take_scene_cloth(const LoadOptions& options, RunConfig& config)
         config.pieces.front().faces = config.cloth.face_count();
         return;
     }
+    const auto damaged = [&](const std::string& why) {
+        throw InputError(fmt::format("{}: is damaged: {}", options.pieces_file, why));
+    };
     if (options.pieces->size() != config.pieces.size())
-        throw InputError(fmt::format("{}: is damaged: it has {} pieces of cloth, and its scene has {}",
-                                     options.pieces_file, options.pieces->size(), config.pieces.size()));
+        damaged(fmt::format("it has {} pieces of cloth, and its scene has {}", options.pieces->size(),
+                            config.pieces.size()));
+    std::vector<int> faces(config.pieces.size(), 0);
+    for (int f = 0; f < config.cloth.face_count(); ++f) {
+        const auto [a, b, c] = config.cloth.corners(f);
+        const int piece = piece_at(*options.pieces, a);
+        if (piece_at(*options.pieces, b) != piece || piece_at(*options.pieces, c) != piece)
+            damaged(fmt::format("face {} is in two pieces of cloth", f));
+        ++faces[piece];
+    }
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        if (faces[i] == 0) damaged(fmt::format("piece {} has no cloth", i));
     for (std::size_t i = 0; i < config.pieces.size(); ++i) {
         const ClothPiece& stored = (*options.pieces)[i];
         ClothPiece& piece = config.pieces[i];

@@ -60,7 +60,10 @@ SceneEffect friction_effect(const RunConfig& config)
         return {"friction", false, "no [[obstacle]] that could rub"};
     std::vector<std::string> parts;
     for (const double coefficient : coefficients) parts.push_back(fmt::format("{:g}", coefficient));
-    if (do_layers_slip) parts.push_back(fmt::format("{:g} between layers", fmt::join(of_layers, ", ")));
+    if (do_layers_slip)
+        parts.push_back(of_layers.size() == 1 ? fmt::format("{:g} between layers", *of_layers.begin())
+                                              : fmt::format("{:g} to {:g} between layers", *of_layers.begin(),
+                                                            *of_layers.rbegin()));
     return {"friction", true, fmt::format("coefficient {}", fmt::join(parts, ", "))};
 }
 

@@ -34,7 +34,8 @@ Remeshing to_remeshing(const SceneDocument& document, const RunConfig& config)
     Remeshing remesh;
     remesh.shortest = to_double(json["edge_length"][0]);
     remesh.longest = to_double(json["edge_length"][1]);
-    check_shortest(document, config.cloth, remesh.shortest);
+    for (std::size_t i = 0; i < config.pieces.size(); ++i)
+        check_shortest(document, extract_piece(config, i), remesh.shortest);
     remesh.angle = to_double(json["angle"]) * std::numbers::pi / 180.0;
     remesh.compression = to_double(json["compression"]);
     remesh.velocity = to_double(json["velocity"]);

@@ -98,6 +98,9 @@ std::optional<PinMeeting> find_nearest_pins(const RunConfig& config)
         for (std::size_t p = 0; p < pins.size(); ++p)
             for (std::size_t q = 0; q < p; ++q) {
                 const double apart = (centres[p].material - centres[q].material).norm();
+                const Materials& materials = config.scene.materials;
+                if (materials.piece_at(centres[p].material) != materials.piece_at(centres[q].material))
+                    continue;
                 if (!(apart > 0.0) || !pins[p].holds(0.0, time) || !pins[q].holds(0.0, time)) continue;
                 const double share = (places[p] - places[q]).norm() / apart;
                 if (!nearest || share < nearest->share) nearest = {{q, p}, time, share};
@@ -108,13 +111,16 @@ std::optional<PinMeeting> find_nearest_pins(const RunConfig& config)
 
 double spread_of_pins(const RunConfig& config)
 {
-    Eigen::AlignedBox2d cloth, held;
-    for (const Vec2& X : config.cloth.material) cloth.extend(X);
+    std::vector<Eigen::AlignedBox2d> cloth(config.pieces.size()), held(config.pieces.size());
+    for (const Vec2& X : config.cloth.material) cloth[config.scene.materials.piece_at(X)].extend(X);
     for (const Pin& pin : config.scene.pins)
         if (pin.holds(pin.start, config.duration))
             for (const int v : vertices_in_box(config.cloth, pin.material))
-                held.extend(config.cloth.material[v]);
-    return diagonal(held) / diagonal(cloth);
+                held[piece_of(config.scene, config.cloth, v)].extend(config.cloth.material[v]);
+    double greatest = 0.0;
+    for (std::size_t p = 0; p < cloth.size(); ++p)
+        greatest = std::max(greatest, diagonal(held[p]) / diagonal(cloth[p]));
+    return greatest;
 }
 
 }  // namespace arris

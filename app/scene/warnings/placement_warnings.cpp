@@ -89,7 +89,9 @@ void check_reach(const RunConfig& config, Warnings& warnings)
     constexpr double kSpread = 0.05;  // of the cloth's size
     if (config.scene.obstacles.empty() || !only_falls(config)) return;
     const Box3 cloth = box_around(config.cloth.world);
-    const double size = material_size(config.cloth.material);
+    double size = 0.0;  // of the largest piece
+    for (std::size_t i = 0; i < config.pieces.size(); ++i)
+        size = std::max(size, material_size(extract_piece(config, i).material));
     const double spread =
         config.scene.materials.thickness() + kSpread * size + std::max(0.0, size - cloth.diagonal().norm());
     const Vec3 reach = 0.5 * cloth.sizes() + Vec3::Constant(spread);

@@ -352,7 +352,11 @@ std::vector<std::string> find_ineffective_keys(const SceneDocument& document, co
     check_bends(config, warnings);
     check_stillness(config, topology, warnings);
     check_remeshing(config, warnings);
-    return warnings.lines_;
+    // Pieces of one fabric have the same warnings.
+    std::vector<std::string> lines;
+    for (const std::string& line : warnings.lines_)
+        if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+    return lines;
 }
 
 }  // namespace arris

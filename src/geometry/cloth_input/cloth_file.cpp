@@ -319,19 +319,31 @@ class ClothReader {
         std::map<int, int> turn_of;  // of each chart
         for (int f = 0; f < mesh_.face_count(); ++f)
             if (turn_of.emplace(chart[mesh_.faces[f][0]], turns[f]).first->second != turns[f])
-                refuse(explain_turns(placed_, turns));
+                refuse(explain_turns(placed_, turns_in_charts(chart, turns)));
         int mirrored = 0;
-        for (const auto& [label, turn] : turn_of)
-            if (turn < 0) {
-                mirror(chart, label);
-                ++mirrored;
-            }
+        for (const auto& [label, turn] : turn_of) mirrored += turn < 0 ? 1 : 0;
+        // Charts may lie in each other's notches: all of them are mirrored as one.
+        if (mirrored == static_cast<int>(turn_of.size()))
+            mirror(std::vector<int>(chart.size(), 0), 0);
+        else
+            for (const auto& [label, turn] : turn_of)
+                if (turn < 0) mirror(chart, label);
         const std::string whose =
             mirrored == static_cast<int>(turn_of.size())
                 ? "its UVs are"
                 : fmt::format("the UVs of {} of its {} charts are", mirrored, turn_of.size());
         warnings_.push_back(
             fmt::format("{}: {} mirrored; u was turned round (u became u_min + u_max - u)", path_, whose));
+    }
+
+    // Turns of faces, 1 for those that run like most of their chart, else -1.
+    std::vector<int> turns_in_charts(const std::vector<int>& chart, std::vector<int> turns) const
+    {
+        std::map<int, int> sums;
+        for (int f = 0; f < mesh_.face_count(); ++f) sums[chart[mesh_.faces[f][0]]] += turns[f];
+        for (int f = 0; f < mesh_.face_count(); ++f)
+            if (sums[chart[mesh_.faces[f][0]]] < 0) turns[f] = -turns[f];
+        return turns;
     }
 
     void mirror(const std::vector<int>& chart, int label)

@@ -107,6 +107,7 @@ std::optional<Vec2> find_border(const ClothMesh& mesh, const ClothStars& stars, 
     constexpr double kStraight = 0.9;  // cosine: at a corner the border bends by more than 26 degrees
     const auto [a, b] = stars.border_neighbours[vertex];
     if (a < 0) return std::nullopt;
+    if (b < 0) return Vec2(Vec2::Zero());  // the tip of a dart
     if (!stars.is_on_seam.empty() && stars.is_on_seam[vertex])
         return Vec2(Vec2::Zero());  // stays, as a corner
     const Vec2 before = (mesh.material[vertex] - mesh.material[a]).normalized();

@@ -33,6 +33,7 @@ std::optional<Eigen::VectorXd> PatchEquations::find_way(const ClothMesh& patch, 
 {
     constexpr std::size_t kFew = 25;  // free vertices, up to which dense equations are faster
     at_.position = patch.world;
+    at_.damping.assign(static_cast<std::size_t>(terms.materials.count()), 0.0);
     std::optional<Eigen::VectorXd> velocity = free_.size() <= kFew
                                                   ? solve_dense(elements, terms, normals)
                                                   : solve_sparse(patch, elements, terms, normals);

@@ -79,7 +79,7 @@ class Relaxation {
             free_.push_back(static_cast<int>(v));
         }
         MeshTopology topology = make_topology(patch_.mesh.vertex_count(), patch_.mesh.faces);
-        elements_ = list_elements(patch_.mesh, topology);
+        elements_ = list_elements(patch_.mesh, topology, HingeUse::Terms, terms_.materials);
         mark_creases(patch_.creases, patch_.mesh, elements_);
         // A coupled hinge depends on all others, so that no energy is constant.
         const ClothElements held = terms_.coupled_hinges() ? ClothElements{} : take_held();

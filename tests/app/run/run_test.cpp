@@ -275,6 +275,42 @@ formats = ["obj", "usd", "vtk", "gltf"]
     EXPECT_NE(usd.find("def GeomSubset \"above\""), std::string::npos);
 }
 
+TEST_F(Run, OfSewnClothItIsTheSameRunResumed)
+{
+    fs::copy(fs::path(ARRIS_SOURCE_DIR) / "data/meshes/sleeve.obj", fs::path(folder / "sleeve.obj"));
+    write_bytes(scene, R"(
+duration = 0.3
+[cloth]
+file = "sleeve.obj"
+translate = [-0.25, 0.0, 0.2]
+[gravity]
+[friction]
+[self_contact]
+[eol]
+enabled = false
+[[obstacle]]
+box = [0.3, 0.3, 0.1]
+[output]
+formats = ["obj", "usd", "vtk", "gltf", "pc2"]
+)");
+    const std::string through = run_through("through", {"--threads", "1"});
+    expect_same_run(through, run_through("two", {"--threads", "2"}));
+    const std::string dir = run_through("parts", {"--set", "duration=0.25"});
+    fs::remove(folder / "sleeve.obj");
+    Program resumed(folder, {"resume", dir, "--until", "0.3"});
+    EXPECT_EQ(resumed.wait(), 0) << resumed.err();
+    for (const char* file : {"frames/cloth_00003.ply", "frames/cloth_00007.ply"})
+        EXPECT_TRUE(read_bytes(through + "/" + file) == read_bytes(dir + "/" + file)) << file;
+    const std::string obj = read_bytes(through + "/frames/cloth_00007.obj");
+    const auto count = [&](const std::string& word) {
+        std::size_t n = 0;
+        for (std::size_t at = obj.find(word); at != std::string::npos; at = obj.find(word, at + 1)) ++n;
+        return n;
+    };
+    EXPECT_EQ(count("\nv "), 26u * 21u) << "one vertex at each place";
+    EXPECT_EQ(count("\nvt "), 27u * 21u);
+}
+
 TEST_F(Run, AStepThatCtrlCCutsOffCountsInTheSeconds)
 {
     const std::string dir = folder / "stopped";

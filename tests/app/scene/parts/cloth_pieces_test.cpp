@@ -160,6 +160,15 @@ TEST(ClothPieces, RefuseWhatContradicts)
                 HasSubstr("size is not an index of cloth; allowed: 0 to 2, where 2 appends"));
 }
 
+TEST(ClothPieces, AProbeBeyondItsPieceIsOnNoOther)
+{
+    const std::string probe = "[[probe]]\nname = \"p\"\npiece = \"flag\"\nmaterial = ";
+    const RunConfig config = load(kPieces);
+    const double other = config.pieces[1].shift + 0.3;  // u of the curtain's middle in the plane
+    EXPECT_THAT(refusal(kPieces + probe + fmt::format("[{}, 0.4]\n", other)),
+                HasSubstr("is not on the cloth"));
+}
+
 TEST(ClothPieces, AnUnusedFabricIsAWarning)
 {
     EXPECT_THAT(
