@@ -15,7 +15,10 @@
 #include "app/text/counted.h"
 #include "app/text/printable.h"
 #include "geometry/cloth/material_locator.h"
+#include "geometry/cloth/mesh_pieces.h"
 #include "geometry/cloth/mesh_quality.h"
+#include "geometry/sort_unique.h"
+#include "physics/elements/cloth_elements.h"
 
 namespace arris {
 namespace {
@@ -59,6 +62,20 @@ void describe_material(const Material& material, const std::string& name, Lines&
         material.damping, material.thickness));
 }
 
+/// "  sewn along 1.2 m of seams, from 2 islands".
+std::string describe_seams(const ClothMesh& cloth)
+{
+    const ClothElements elements =
+        list_elements(cloth, make_topology(cloth.vertex_count(), cloth.faces), HingeUse::Terms);
+    double length = 0.0;
+    for (const HingeElement& hinge : elements.hinges)
+        if (hinge.is_seam) length += (cloth.world[hinge.vertices[0]] - cloth.world[hinge.vertices[1]]).norm();
+    std::vector<int> islands = label_pieces(static_cast<int>(cloth.material.size()), cloth.face_points);
+    sort_unique(islands);
+    return fmt::format("  sewn along {:.4g} m of seams, from {}", length,
+                       counted(islands.size(), "island of UVs", "islands of UVs"));
+}
+
 void describe_piece(const RunConfig& config, std::size_t i, Lines& lines)
 {
     const ClothMesh cloth = extract_piece(config, i);
@@ -75,6 +92,7 @@ void describe_piece(const RunConfig& config, std::size_t i, Lines& lines)
         fmt::format("  mesh edges: mean {:.4g} m, from {:.4g} to {:.4g} m; least angle {:.3g} degrees",
                     edges.mean, edges.least, edges.greatest, least_material_angle(cloth)));
     lines.push_back(fmt::format("  initial extent: {}", extent(cloth.world)));
+    if (cloth.has_seams()) lines.push_back(describe_seams(cloth));
     const std::string preset = json["material"]["preset"].get<std::string>();
     describe_material(material,
                       json.contains("fabric")

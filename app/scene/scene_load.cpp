@@ -292,10 +292,11 @@ void check_seams(const SceneDocument& document, RunConfig& config)
         document.fail("remesh", "is not built yet for cloth with seams",
                       "no [remesh], or cloth whose UVs have no seams");
     if (config.as_run["eol"]["enabled"].get<bool>() && has_features(config.scene))
-        config.warnings.push_back(fmt::format(
-            "{}: the cloth has seams, for which EOL vertices are not built yet: contacts keep it off sharp "
-            "features, where it may snag",
-            document.describe("eol.enabled")));
+        config.warnings.push_back(
+            fmt::format("{}: cloth of the scene has seams, for which EOL vertices are not built yet: "
+                        "contacts keep all cloth off "
+                        "sharp features, where it may snag (eol.enabled = false says so)",
+                        document.describe("eol.enabled")));
 }
 
 /// Checks that the cloth starts clear of the obstacles, and moves it out to its stand-off.

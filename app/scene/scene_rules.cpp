@@ -383,13 +383,13 @@ void apply_scene_rules(const SceneDocument& document, Json& scene)
     if (scene.contains("pull"))
         for (std::size_t i = 0; i < scene["pull"].size(); ++i)
             check_pull_times(document, fmt::format("pull.{}", i), scene["pull"][i]);
+    check_names(document, scene);
     for (const char* table : {"pin", "pull", "probe"}) {
         const Json users = scene.value(table, Json::array());
         for (std::size_t i = 0; i < users.size(); ++i)
             check_piece(document, fmt::format("{}.{}", table, i), scene, users[i]);
     }
     if (scene.contains("remesh")) check_edge_lengths(document, scene["remesh"]);
-    check_names(document, scene);
 }
 
 }  // namespace arris

@@ -37,7 +37,10 @@ SceneEffect eol_effect(const RunConfig& config)
 SceneEffect remesh_effect(const RunConfig& config)
 {
     if (!config.scene.remesh)
-        return {"remesh", false, "no [remesh]: the mesh changes only near sharp features, with EOL vertices"};
+        return {"remesh", false,
+                config.cloth.has_seams()
+                    ? "no [remesh]: the mesh of cloth with seams does not change yet"
+                    : "no [remesh]: the mesh changes only near sharp features, with EOL vertices"};
     const Remeshing& remesh = *config.scene.remesh;
     return {"remesh", true,
             fmt::format("edges of {:g} to {:g} m, about {} vertices at most", remesh.shortest, remesh.longest,

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -18,6 +19,7 @@
 #include "geometry/cloth/sewing.h"
 #include "geometry/cloth/sub_mesh.h"
 #include "geometry/cloth_input/chart_overlap.h"
+#include "geometry/cloth_input/chart_turns.h"
 #include "geometry/cloth_input/cloth_obj.h"
 #include "geometry/cloth_input/face_faults.h"
 #include "geometry/cloth_input/flat_charts.h"
@@ -70,11 +72,7 @@ class ClothReader {
         require_areas();
         for (const std::string& wrong : {find_doubled_face(placed_), find_branching_edge(placed_)})
             if (!wrong.empty()) refuse(wrong);
-        if (file_.has_uv) {
-            take_uvs();
-        } else {
-            flatten();
-        }
+        file_.has_uv ? take_uvs() : flatten();
         orient();
         require_no_overlap();
         sew_places();
@@ -105,6 +103,7 @@ class ClothReader {
     // Cuts the faces into triangles, and joins vertices of equal place and UV.
     void collect()
     {
+        find_seam_places();
         std::map<decltype(FileVertex().key()), int> index;
         std::size_t first = 0;
         for (const int count : statements_.corner_counts) {
@@ -179,7 +178,44 @@ class ClothReader {
             const int low = std::min(first, second), high = std::max(first, second);
             if (low != high) joined_[high] = low;
         }
-        return triangles.faces;
+        return vertices.size() == 4 ? cut_off_seams(vertices, triangles.faces) : triangles.faces;
+    }
+
+    // Places with several UVs.
+    void find_seam_places()
+    {
+        std::map<decltype(FileVertex().place()), Vec2> uvs;
+        for (const ObjCorner& corner : statements_.corners) {
+            const FileVertex vertex = vertex_at(corner);
+            if (uvs.emplace(vertex.place(), vertex.uv).first->second != vertex.uv)
+                seam_places_.insert(vertex.place());
+        }
+    }
+
+    // Triangles of a four-sided face along the other diagonal where that spares a triangle with all corners
+    // on seams, which the other side of the seams might have, too: as in the corner of a pillow.
+    std::vector<Face> cut_off_seams(const std::vector<int>& vertices,
+                                    const std::vector<Face>& triangles) const
+    {
+        const auto is_on_seam = [&](int corner) {
+            return seam_places_.contains(file_.vertices[vertices[corner]].place());
+        };
+        const auto count = [&](const std::vector<Face>& faces) {
+            return std::count_if(faces.begin(), faces.end(), [&](const Face& face) {
+                return std::all_of(face.begin(), face.end(), is_on_seam);
+            });
+        };
+        if (triangles.size() != 2 || count(triangles) == 0) return triangles;
+        const auto turn = [&](const Face& face) {
+            const auto uv = [&](int k) { return file_.vertices[vertices[face[k]]].uv; };
+            return exact_orientation(uv(0), uv(1), uv(2));
+        };
+        for (const std::vector<Face>& other :
+             {std::vector<Face>{{0, 1, 2}, {0, 2, 3}}, std::vector<Face>{{0, 1, 3}, {1, 2, 3}}})
+            if (count(other) < count(triangles) && turn(other[0]) == turn(triangles[0]) &&
+                turn(other[1]) == turn(triangles[0]))
+                return other;
+        return triangles;
     }
 
     FileVertex vertex_at(const ObjCorner& corner) const
@@ -299,63 +335,19 @@ class ClothReader {
                         euler_characteristic(extract_faces(mesh_, faces).mesh) > 0 ? "" : kTubeAdvice));
     }
 
-    int orientation_of(int face) const
-    {
-        const auto& [a, b, c] = mesh_.faces[face];
-        return exact_orientation(mesh_.material[a], mesh_.material[b], mesh_.material[c]);
-    }
-
-    // Makes every face counter-clockwise in material space; mirrors charts whose faces all are clockwise.
     void orient()
     {
-        std::vector<int> turns;
-        for (int f = 0; f < mesh_.face_count(); ++f) {
-            turns.push_back(orientation_of(f));
-            if (turns[f] == 0)
-                refuse(placed_.describe(f) + " has no area in material space (its UVs lie on a line)");
-        }
-        if (std::count(turns.begin(), turns.end(), -1) == 0) return;
-        const std::vector<int> chart = label_pieces(mesh_.vertex_count(), mesh_.faces);
-        std::map<int, int> turn_of;  // of each chart
-        for (int f = 0; f < mesh_.face_count(); ++f)
-            if (turn_of.emplace(chart[mesh_.faces[f][0]], turns[f]).first->second != turns[f])
-                refuse(explain_turns(placed_, turns_in_charts(chart, turns)));
-        int mirrored = 0;
-        for (const auto& [label, turn] : turn_of) mirrored += turn < 0 ? 1 : 0;
-        // Charts may lie in each other's notches: all of them are mirrored as one.
-        if (mirrored == static_cast<int>(turn_of.size()))
-            mirror(std::vector<int>(chart.size(), 0), 0);
-        else
-            for (const auto& [label, turn] : turn_of)
-                if (turn < 0) mirror(chart, label);
+        const ChartTurns turns = turn_charts(placed_, mesh_);
+        if (!turns.wrong.empty()) refuse(turns.wrong);
+        if (turns.mirrored == 0) return;
         const std::string whose =
-            mirrored == static_cast<int>(turn_of.size())
+            turns.mirrored == turns.charts
                 ? "its UVs are"
-                : fmt::format("the UVs of {} of its {} charts are", mirrored, turn_of.size());
-        warnings_.push_back(
-            fmt::format("{}: {} mirrored; u was turned round (u became u_min + u_max - u)", path_, whose));
-    }
-
-    // Turns of faces, 1 for those that run like most of their chart, else -1.
-    std::vector<int> turns_in_charts(const std::vector<int>& chart, std::vector<int> turns) const
-    {
-        std::map<int, int> sums;
-        for (int f = 0; f < mesh_.face_count(); ++f) sums[chart[mesh_.faces[f][0]]] += turns[f];
-        for (int f = 0; f < mesh_.face_count(); ++f)
-            if (sums[chart[mesh_.faces[f][0]]] < 0) turns[f] = -turns[f];
-        return turns;
-    }
-
-    void mirror(const std::vector<int>& chart, int label)
-    {
-        double least = std::numeric_limits<double>::infinity(), most = -least;
-        for (std::size_t v = 0; v < chart.size(); ++v) {
-            if (chart[v] != label) continue;
-            least = std::min(least, mesh_.material[v].x());
-            most = std::max(most, mesh_.material[v].x());
-        }
-        for (std::size_t v = 0; v < chart.size(); ++v)
-            if (chart[v] == label) mesh_.material[v].x() = least + most - mesh_.material[v].x();
+                : fmt::format("the UVs of {} of its {} charts are", turns.mirrored, turns.charts);
+        warnings_.push_back(fmt::format(
+            "{}: {} mirrored; u was turned round (u became u_min + u_max - u): pins, pulls, probes "
+            "and exported UVs follow",
+            path_, whose));
     }
 
     // A place with several UVs is on a seam.
@@ -387,6 +379,7 @@ class ClothReader {
     Mat3 to_z_up_;
     ObjFile statements_;
     FileMesh file_;
+    std::set<decltype(FileVertex().place())> seam_places_;
     std::map<int, int> joined_;  // a vertex, and the earlier one that stands for it
     ClothMesh mesh_;
     std::vector<int> place_;  // of each vertex of the file: index of its place

@@ -520,6 +520,39 @@ TEST_F(ClothFileTest, SewsAPillow)
     EXPECT_EQ(std::count(topology.is_border.begin(), topology.is_border.end(), 1), 0);
 }
 
+TEST_F(ClothFileTest, SewsAPillowcaseOfQuadsWhateverTheirDiagonals)
+{
+    // Two panels of n x n quads, sewn along three sides; of a quad in a corner three places are on seams.
+    for (const int first : {0, 1, 2, 3}) {
+        const int n = 4;
+        std::string text;
+        for (const double z : {0.02, -0.02})
+            for (int j = 0; j <= n; ++j)
+                for (int i = 0; i <= n; ++i) {
+                    const bool is_sewn = i == 0 || i == n || j == 0;
+                    text += fmt::format("v {} {} {}\n", i, j, is_sewn ? 0.0 : z);
+                }
+        for (const double u : {0.0, 9.0})
+            for (int j = 0; j <= n; ++j)
+                for (int i = 0; i <= n; ++i) text += fmt::format("vt {} {}\n", u > 0.0 ? u + n - i : i, j);
+        for (const int panel : {0, 1})
+            for (int j = 0; j < n; ++j)
+                for (int i = 0; i < n; ++i) {
+                    const auto at = [&](int di, int dj) {
+                        return panel * (n + 1) * (n + 1) + (j + dj) * (n + 1) + i + di + 1;
+                    };
+                    std::array<int, 4> quad = {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
+                    if (panel == 1) std::reverse(quad.begin(), quad.end());
+                    text += "f";
+                    for (int k = 0; k < 4; ++k) text += fmt::format(" {0}/{0}", quad[(k + first) % 4]);
+                    text += "\n";
+                }
+        const ClothMesh mesh = read(text).mesh;
+        EXPECT_EQ(validate(mesh), "");
+        EXPECT_EQ(counts_of(mesh), (std::array{2 * 25 - 13, 13, 64}));
+    }
+}
+
 TEST_F(ClothFileTest, SaysWhatCannotBeSewn)
 {
     const Defect kSeams[] = {

@@ -193,6 +193,27 @@ std::array<std::vector<Vec3>, 2> probe(const std::string& text)
     return places;
 }
 
+/// Cloth that slips over an edge, where the mesh changes at every step, beside cloth that is held far away.
+TEST(ClothPieces, DrapeByTheirOwnMaterialWhereTheMeshChanges)
+{
+    const auto end_of = [](const std::string& far_away) {
+        const auto [start, end] = probe(
+            "duration = 1\n[[cloth]]\nname = \"far\"\nsize = [0.6, 0.5]\nresolution = [12, 10]\n"
+            "translate = [50, 0, 0]\nmaterial = { " +
+            far_away +
+            " }\n[[cloth]]\nname = \"near\"\nsize = [0.6, 0.5]\nresolution = [12, 10]\n"
+            "translate = [-0.2, -0.25, 0.0011]\n[gravity]\n"
+            "[[obstacle]]\nbox = [0.5, 1, 1]\ntranslate = [0, 0, -0.5]\n"
+            "[[pin]]\npiece = \"far\"\nmaterial = [[0, 0], [0.6, 0.5]]\n"
+            "[[probe]]\nname = \"p\"\npiece = \"near\"\nmaterial = [0.6, 0.25]\n");
+        EXPECT_GT((end[0] - start[0]).norm(), 0.1);
+        return end[0];
+    };
+    const Vec3 same = end_of("preset = \"cotton\""),
+               stiff = end_of("youngs_modulus = 5e5, bending_stiffness = 0.01, damping = 0.01");
+    EXPECT_LT((same - stiff).norm(), 1e-9);
+}
+
 /// Pins along one side and probes all over a piece.
 std::string hold_and_probe(const std::string& name, double width, double height)
 {
