@@ -27,17 +27,22 @@ std::vector<std::string> scene_files()
     return files;
 }
 
-/// Half the cells that a scene's line "resolution = [u, v]" has, or twice its edge_length, as a setting;
+/// Half the cells that a scene's lines "resolution = [u, v]" have, or twice its edge_length, as settings;
 /// empty where it has neither.
-std::string halved_resolution(const std::string& file)
+std::vector<std::string> halved_resolution(const std::string& file)
 {
     const std::string text = read_bytes(file);
     std::smatch found;
     if (std::regex_search(text, found, std::regex("\nedge_length = ([0-9.]+)")))
-        return "cloth.edge_length=" + std::to_string(2.0 * std::stod(found[1]));
-    if (!std::regex_search(text, found, std::regex("\nresolution = \\[(\\d+), (\\d+)\\]"))) return {};
-    return "cloth.resolution=[" + std::to_string((std::stoi(found[1]) + 1) / 2) + "," +
-           std::to_string((std::stoi(found[2]) + 1) / 2) + "]";
+        return {"cloth.edge_length=" + std::to_string(2.0 * std::stod(found[1]))};
+    const bool has_pieces = text.find("\n[[cloth]]") != std::string::npos;
+    const std::regex line("\nresolution = \\[(\\d+), (\\d+)\\]");
+    std::vector<std::string> settings;
+    for (std::sregex_iterator at(text.begin(), text.end(), line), end; at != end; ++at)
+        settings.push_back(fmt::format("cloth{}.resolution=[{},{}]",
+                                       has_pieces ? fmt::format(".{}", settings.size()) : "",
+                                       (std::stoi((*at)[1]) + 1) / 2, (std::stoi((*at)[2]) + 1) / 2));
+    return settings;
 }
 
 /// Whether anything does work on the cloth but gravity.
@@ -76,7 +81,7 @@ nlohmann::json run_coarse(const std::string& scene, const TemporaryDirectory& fo
 {
     const std::string dir = folder / name;
     std::vector<std::string> arguments = {"run", scene, "-o", dir, "--set", "output.formats=[]"};
-    if (const std::string halved = halved_resolution(scene); !halved.empty())
+    for (const std::string& halved : halved_resolution(scene))
         arguments.insert(arguments.end(), {"--set", halved});
     arguments.insert(arguments.end(), more.begin(), more.end());
     Program program(folder, arguments);

@@ -128,6 +128,7 @@ std::vector<Overrun> overrun_by(double way)
     Workspace& work = flowing.work;
     const State& state = flowing.cloth.state;
     work.prediction.material = state.mesh.material;
+    work.prediction.material_velocity = state.material_velocity;
     work.prediction.gamma = kStep;
     work.solution.velocity = Eigen::VectorXd::Zero(3 * state.mesh.vertex_count());
     work.solution.velocity[3 * flowing.v + 2] = way / kStep;
